@@ -1,0 +1,1 @@
+//! Layer parameterization: the map from curved rock to flat space.

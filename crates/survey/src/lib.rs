@@ -1,0 +1,1 @@
+//! Nouns and files of a seismic survey and its interpretation.

@@ -1,0 +1,1 @@
+//! Texture transfer functions, colour maps and the pattern library.
