@@ -1,0 +1,96 @@
+//! Progress of long work, with cancellation: every long call takes a [`Progress`] and asks it now and then.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+
+/// The work was cancelled by the user. Nothing was written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("cancelled")]
+pub struct Cancelled;
+
+/// What receives progress: a terminal bar, a window, or nothing.
+pub trait ProgressSink: Send + Sync {
+    /// A stage of `total` steps begins.
+    fn begin(&self, stage: &str, total: u64);
+    /// `done` steps of the current stage are finished.
+    fn advance(&self, done: u64);
+    /// Something the user should know, which does not stop the work.
+    fn warn(&self, message: &str);
+}
+
+/// A sink that ignores everything.
+struct Silent;
+
+impl ProgressSink for Silent {
+    fn begin(&self, _stage: &str, _total: u64) {}
+    fn advance(&self, _done: u64) {}
+    fn warn(&self, _message: &str) {}
+}
+
+/// A handle shared by the one who works and the one who watches. Cheap to clone.
+#[derive(Clone)]
+pub struct Progress {
+    sink: Arc<dyn ProgressSink>,
+    cancelled: Arc<AtomicBool>,
+    done: Arc<AtomicU64>,
+}
+
+impl Progress {
+    /// Reports to `sink`.
+    pub fn new(sink: Arc<dyn ProgressSink>) -> Self {
+        Self { sink, cancelled: Arc::default(), done: Arc::default() }
+    }
+
+    /// Reports to nobody; still cancellable.
+    pub fn silent() -> Self {
+        Self::new(Arc::new(Silent))
+    }
+
+    /// Begins a stage of `total` steps.
+    pub fn begin(&self, stage: &str, total: u64) {
+        self.done.store(0, Ordering::Relaxed);
+        self.sink.begin(stage, total);
+    }
+
+    /// Adds `steps` finished steps; from any thread.
+    ///
+    /// # Errors
+    /// [`Cancelled`] once [`Progress::cancel`] was called.
+    pub fn step(&self, steps: u64) -> Result<(), Cancelled> {
+        let done = self.done.fetch_add(steps, Ordering::Relaxed) + steps;
+        self.sink.advance(done);
+        self.check()
+    }
+
+    /// Asks whether to go on.
+    ///
+    /// # Errors
+    /// [`Cancelled`] once [`Progress::cancel`] was called.
+    pub fn check(&self) -> Result<(), Cancelled> {
+        if self.cancelled.load(Ordering::Relaxed) { Err(Cancelled) } else { Ok(()) }
+    }
+
+    /// Tells the user something that does not stop the work.
+    pub fn warn(&self, message: &str) {
+        self.sink.warn(message);
+    }
+
+    /// Asks the work to stop at its next check.
+    pub fn cancel(&self) {
+        self.cancelled.store(true, Ordering::Relaxed);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cancel_reaches_a_clone() {
+        let progress = Progress::silent();
+        let worker = progress.clone();
+        assert_eq!(worker.step(1), Ok(()));
+        progress.cancel();
+        assert_eq!(worker.step(1), Err(Cancelled));
+    }
+}
