@@ -1,1 +1,42 @@
 //! Texture transfer functions, colour maps and the pattern library.
+//!
+//! A cut face is coloured by a stack of functions (P-illus 4, figure 7): the layer's texture by
+//! layer and depth ([`LayerTtf`]), textures of scalar volumes over it ([`ScalarTtf`]), and a blend to the raw
+//! data in the colours of an [`RgbaFunction`]. [`TransferFunctions`] holds them as they are written in a
+//! project, [`TtfTables`] as the CPU and the GPU read them, [`shade()`] is the reference evaluation.
+//! Textures come from the [`TextureLibrary`]; [`FaceFrame`] says how they lie on a face.
+//!
+//! Spaces: (i, j, k) are flat coordinates with k local to a layer; normals and gradients are metric
+//! with voxel axes (z down); colours are sRGB-encoded throughout.
+
+mod builtin;
+mod colour;
+mod colour_map;
+pub mod coordinates;
+mod error;
+mod frequency;
+mod function;
+mod layer;
+mod library;
+mod palette;
+mod raster;
+mod rgba;
+mod scalar;
+mod shade;
+pub mod tables;
+pub mod texture;
+
+pub use colour::{Colour, linear_from_srgb, srgb_from_linear};
+pub use colour_map::ColourMap;
+pub use coordinates::{FaceFrame, Mapping, MappingWeights};
+pub use error::Error;
+pub use frequency::Frequency;
+pub use function::{RawColour, TransferFunctions, TtfSettings};
+pub use layer::{DepthInterval, LayerStyle, LayerTtf};
+pub use library::{Pattern, TextureLibrary};
+pub use raster::{MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX};
+pub use rgba::{RgbaFunction, RgbaStop, symmetric_clip};
+pub use scalar::{ScalarInterval, ScalarTtf};
+pub use shade::{FlatFootprint, FlatPoint, ShadePoint, shade};
+pub use tables::{BlockExtent, LayerExtent, TtfTables};
+pub use texture::Texture;

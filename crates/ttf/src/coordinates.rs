@@ -1,0 +1,185 @@
+//! From flat space to texture space on a face (P-illus 3.5; DESIGN 3.4).
+//!
+//! A point of a face has flat coordinates (i, j, k). A pattern is laid on it by one of three
+//! *mappings*, each linear in (i, j, k), with `a` = extent of j / extent of i in metres:
+//!
+//! | mapping | u (times the horizontal frequency) | v | where |
+//! |---|---|---|---|
+//! | along | `t.x·i + t.y·a·j` | k (times the vertical frequency) | side faces; the others when the layer strikes along t |
+//! | across | `−t.y·i + t.x·a·j` | k (times the vertical frequency) | top and bottom faces on which the layer strikes across t |
+//! | map | `i` | `a·j` (times the horizontal frequency) | any face that is parallel to the layer |
+//!
+//! t is the horizontal direction that lies in the face: y for a face of constant x, x for a face of constant
+//! y, x for a horizontal face, and the true direction for an oblique one, so a pattern keeps its size on
+//! any vertical cut. The paper always uses `along` on top faces, with t = x: where a layer dips towards x,
+//! i and k then change together and nothing changes along y, so the pattern smears into stripes. We take
+//! the horizontal coordinate that runs along strike, and leave k for j when the face is parallel to
+//! the layer, because there k does not change at all.
+//!
+//! Weights come from the strike line on the face, s = n × g, for face normal n and g = ∇k/|∇k|:
+//! |s| is the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep:
+//! `map = 1 − S(sin² 10°, sin² 25°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`,
+//! `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map − along`; t′ = t turned by 90°.
+//!
+//! Spaces: normals and gradients are in metric space with the axes of voxel space (x, y in metres, z
+//! in metres downwards); their signs do not matter. All arithmetic is f32 so that a WGSL twin computes the same.
+
+/// sin² of the angle between face and layer below which only the map mapping is used (10°).
+pub const MAP_ONLY_SIN_SQ: f32 = 0.030_153_69;
+/// sin² of the angle between face and layer above which the map mapping is not used (25°).
+pub const NO_MAP_SIN_SQ: f32 = 0.178_606_2;
+/// Share of the strike line along t below which the across mapping alone is used.
+pub const ACROSS_ONLY_SHARE: f32 = 0.35;
+/// Share of the strike line along t above which the along mapping alone is used.
+pub const ALONG_ONLY_SHARE: f32 = 0.65;
+/// Squared horizontal part of the unit normal below which a face counts as horizontal.
+const HORIZONTAL_NORMAL_SQ: f32 = 1e-6;
+
+/// A face as the texture mapping sees it: its normal and the horizontal direction in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaceFrame {
+    /// Unit normal (metric axes x, y, z down); the sign has no effect.
+    pub normal: [f32; 3],
+    /// Unit horizontal direction t (x, y) in the face.
+    pub along: [f32; 2],
+}
+
+/// The weights of the three mappings; they are in [0, 1] and add up to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MappingWeights {
+    /// Weight of u along t, v = k.
+    pub along: f32,
+    /// Weight of u across t, v = k.
+    pub across: f32,
+    /// Weight of u = i, v = j.
+    pub map: f32,
+}
+
+/// One mapping: texture coordinates before the frequencies, as linear forms of (i, j, k).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mapping {
+    /// Coefficients of u; times the horizontal frequency.
+    pub u: [f32; 3],
+    /// Coefficients of v; times the vertical frequency, or the horizontal one in the map mapping.
+    pub v: [f32; 3],
+}
+
+impl FaceFrame {
+    /// The frame of a face with this normal (any length; metric axes x, y, z down).
+    ///
+    /// The direction t is turned so that its larger component is positive: i and j grow with u.
+    ///
+    /// ```
+    /// use ttf::FaceFrame;
+    /// assert_eq!(FaceFrame::new([1.0, 0.0, 0.0]).along, [0.0, 1.0]);
+    /// assert_eq!(FaceFrame::new([0.0, -1.0, 0.0]).along, [1.0, 0.0]);
+    /// assert_eq!(FaceFrame::new([0.0, 0.0, 1.0]).along, [1.0, 0.0]);
+    /// ```
+    pub fn new(normal: [f32; 3]) -> Self {
+        let normal = unit(normal);
+        let horizontal_sq = normal[0] * normal[0] + normal[1] * normal[1];
+        if !(horizontal_sq > HORIZONTAL_NORMAL_SQ) {
+            return Self {
+                normal,
+                along: [1.0, 0.0],
+            };
+        }
+        let scale = 1.0 / horizontal_sq.sqrt();
+        let [x, y] = [-normal[1] * scale, normal[0] * scale];
+        let larger = if x.abs() >= y.abs() { x } else { y };
+        let sign = if larger < 0.0 { -1.0 } else { 1.0 };
+        // Adding 0 turns -0 into 0.
+        Self {
+            normal,
+            along: [sign * x + 0.0, sign * y + 0.0],
+        }
+    }
+
+    /// The weights at a point where k rises along `grad_k` (any length). A gradient that is zero or
+    /// NaN gives the along mapping alone.
+    pub fn weights(&self, grad_k: [f32; 3]) -> MappingWeights {
+        let g = unit(grad_k);
+        let n = self.normal;
+        let s = [
+            n[1] * g[2] - n[2] * g[1],
+            n[2] * g[0] - n[0] * g[2],
+            n[0] * g[1] - n[1] * g[0],
+        ];
+        let sin_sq = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
+        if g == [0.0; 3] || !sin_sq.is_finite() {
+            return MappingWeights {
+                along: 1.0,
+                across: 0.0,
+                map: 0.0,
+            };
+        }
+        let map = 1.0 - smoothstep(MAP_ONLY_SIN_SQ, NO_MAP_SIN_SQ, sin_sq);
+        let along_t = s[0] * self.along[0] + s[1] * self.along[1];
+        let across_t = s[1] * self.along[0] - s[0] * self.along[1];
+        let horizontal_sq = along_t * along_t + across_t * across_t;
+        let share = if horizontal_sq > 1e-12 {
+            along_t * along_t / horizontal_sq
+        } else {
+            1.0
+        };
+        let along = (1.0 - map) * smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
+        MappingWeights {
+            along,
+            across: (1.0 - map - along).max(0.0),
+            map,
+        }
+    }
+
+    /// The three mappings (along, across, map) for a block whose j axis is `aspect_j` times as long
+    /// as its i axis.
+    pub fn mappings(&self, aspect_j: f32) -> [Mapping; 3] {
+        let [x, y] = self.along;
+        let k = [0.0, 0.0, 1.0];
+        [
+            Mapping {
+                u: [x, y * aspect_j, 0.0],
+                v: k,
+            },
+            Mapping {
+                u: [-y, x * aspect_j, 0.0],
+                v: k,
+            },
+            Mapping {
+                u: [1.0, 0.0, 0.0],
+                v: [0.0, aspect_j, 0.0],
+            },
+        ]
+    }
+}
+
+impl MappingWeights {
+    /// In the order of [`FaceFrame::mappings`].
+    pub fn to_array(self) -> [f32; 3] {
+        [self.along, self.across, self.map]
+    }
+}
+
+impl Mapping {
+    /// Texture coordinates (u, v) of a flat point or of a flat displacement, before the frequencies.
+    pub fn apply(&self, flat: [f32; 3]) -> [f32; 2] {
+        let dot = |a: [f32; 3]| a[0] * flat[0] + a[1] * flat[1] + a[2] * flat[2];
+        [dot(self.u), dot(self.v)]
+    }
+}
+
+/// The cubic step of WGSL's `smoothstep`.
+pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
+    let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+/// The vector at unit length; zero where it has none.
+fn unit(vector: [f32; 3]) -> [f32; 3] {
+    let length_sq = vector.iter().map(|part| part * part).sum::<f32>();
+    if length_sq > 0.0 && length_sq.is_finite() {
+        let scale = 1.0 / length_sq.sqrt();
+        vector.map(|part| part * scale)
+    } else {
+        [0.0; 3]
+    }
+}

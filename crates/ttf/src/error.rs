@@ -1,0 +1,202 @@
+//! What can be wrong with a transfer function or a texture, with the facts as fields and a hint in
+//! the text.
+
+use std::path::PathBuf;
+
+/// Everything this crate refuses.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A colour that is not `#rrggbb`.
+    #[error("`{text}` is not a colour; write it as #rrggbb, for example #e8c98a")]
+    BadColour {
+        /// The text found.
+        text: String,
+    },
+    /// A frequency that is not a positive finite number.
+    #[error(
+        "{place}: the frequency {horizontal} x {vertical} is not usable; both numbers must be finite and above 0"
+    )]
+    BadFrequency {
+        /// Where it was found.
+        place: String,
+        /// Repeats along i.
+        horizontal: f32,
+        /// Repeats along k.
+        vertical: f32,
+    },
+    /// An opacity, blend or stop position outside [0, 1].
+    #[error("{place}: {quantity} is {value}, but must lie between 0 and 1")]
+    OutsideUnit {
+        /// Where it was found.
+        place: String,
+        /// Which quantity.
+        quantity: &'static str,
+        /// The value found.
+        value: f32,
+    },
+    /// A depth interval outside [0, 1], empty, reversed or not a number.
+    #[error(
+        "layer `{layer}`: the depth interval [{low}, {high}) is not usable; k runs from 0 (bottom) to 1 (top) and the first number must be the smaller one"
+    )]
+    BadDepthInterval {
+        /// The layer's name.
+        layer: String,
+        /// Lower end found.
+        low: f32,
+        /// Upper end found.
+        high: f32,
+    },
+    /// A value interval that is empty, reversed or not a number.
+    #[error(
+        "scalar function on `{volume}`: the interval [{low}, {high}) is not usable; the first number must be the smaller one (-inf and inf are allowed)"
+    )]
+    BadValueInterval {
+        /// The volume's name.
+        volume: String,
+        /// Lower end found.
+        low: f32,
+        /// Upper end found.
+        high: f32,
+    },
+    /// Two intervals of one function share values.
+    #[error(
+        "{place}: the intervals [{first_low}, {first_high}) and [{second_low}, {second_high}) overlap; let one end where the other begins"
+    )]
+    Overlap {
+        /// Where it was found.
+        place: String,
+        /// First interval, lower end.
+        first_low: f32,
+        /// First interval, upper end.
+        first_high: f32,
+        /// Second interval, lower end.
+        second_low: f32,
+        /// Second interval, upper end.
+        second_high: f32,
+    },
+    /// Two styles for one layer.
+    #[error("layer `{layer}` has two styles; keep one of them")]
+    DuplicateLayer {
+        /// The layer's name.
+        layer: String,
+    },
+    /// A layer name that the stratigraphy does not have.
+    #[error("there is no layer `{layer}`; the layers are {known}")]
+    UnknownLayer {
+        /// The name asked for.
+        layer: String,
+        /// The names there are, bottom to top.
+        known: String,
+    },
+    /// A texture name that is not in the library.
+    #[error(
+        "{place}: there is no texture `{texture}`{}; `petroglyph patterns OUT.png` draws all of them",
+        match nearest { Some(name) => format!(", did you mean `{name}`?"), None => String::new() }
+    )]
+    UnknownTexture {
+        /// Where it was asked for.
+        place: String,
+        /// The name asked for.
+        texture: String,
+        /// The most similar name there is, if one is close.
+        nearest: Option<String>,
+    },
+    /// A texture name that is taken.
+    #[error("the texture name `{texture}` is taken; rename the file or give another name")]
+    DuplicateTexture {
+        /// The name.
+        texture: String,
+    },
+    /// A function without enough stops or with stops out of order.
+    #[error(
+        "{place}: {fact}; a colour function needs at least two stops at rising positions from 0 to 1"
+    )]
+    BadStops {
+        /// Where it was found.
+        place: String,
+        /// What is wrong.
+        fact: String,
+    },
+    /// A domain that is empty or not finite.
+    #[error(
+        "{place}: the domain [{low}, {high}] is not usable; both ends must be finite and the first the smaller one"
+    )]
+    BadDomain {
+        /// Where it was found.
+        place: String,
+        /// Lower end.
+        low: f32,
+        /// Upper end.
+        high: f32,
+    },
+    /// The block has no extent to relate patterns to.
+    #[error("{quantity} is {value}; it must be finite and above 0 to size the patterns")]
+    BadExtent {
+        /// Which length.
+        quantity: &'static str,
+        /// The value found.
+        value: f32,
+    },
+    /// A texture file that cannot be read.
+    #[error("cannot read the texture {path}: {source}")]
+    ReadTexture {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A texture file whose name says no format we read.
+    #[error("{path} is not a texture we read; use .png, .jpg, .jpeg or .svg")]
+    UnknownFormat {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A raster image that does not decode.
+    #[error("the texture {path} does not decode ({source}); open and save it again as PNG")]
+    BadImage {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: image::ImageError,
+    },
+    /// An SVG that does not parse.
+    #[error(
+        "the texture {name} is not a usable SVG ({source}); text and linked images are not supported, paths are"
+    )]
+    BadSvg {
+        /// The file or pattern.
+        name: String,
+        /// Why.
+        source: resvg::usvg::Error,
+    },
+    /// An image without pixels, or one too large to be a tile.
+    #[error(
+        "the texture {name} is {width} x {height} pixels; a tile must have between 1 and {limit} a side, scale it down"
+    )]
+    BadSize {
+        /// The file or pattern.
+        name: String,
+        /// Width found.
+        width: u32,
+        /// Height found.
+        height: u32,
+        /// Largest side accepted.
+        limit: u32,
+    },
+    /// A file that is larger than any tile has reason to be.
+    #[error("the texture {path} has {bytes} bytes, more than the {limit} accepted; scale it down")]
+    TooManyBytes {
+        /// The file.
+        path: PathBuf,
+        /// Bytes found.
+        bytes: u64,
+        /// Bytes accepted.
+        limit: u64,
+    },
+    /// The pattern catalogue does not parse or does not fit the drawings.
+    #[error("the pattern catalogue is damaged: {fact}")]
+    BadCatalogue {
+        /// What is wrong.
+        fact: String,
+    },
+}

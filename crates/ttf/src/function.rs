@@ -1,0 +1,97 @@
+//! Everything that decides how a cut face is coloured, in one serialisable value: the layer
+//! function, the stack of scalar functions, the raw-data colours and the blend between them
+//! (P-illus 4, figure 7).
+
+use serde::{Deserialize, Serialize};
+
+use crate::layer::check_unit;
+use crate::{Colour, Error, LayerTtf, RgbaFunction, ScalarTtf, TextureLibrary};
+
+/// The transfer functions of a scene.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TransferFunctions {
+    /// Blend and global frequency.
+    pub settings: TtfSettings,
+    /// Raw-data colours; absent = nothing to blend to, and the blend has no effect.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raw: Option<RawColour>,
+    /// Layer styles. Layers without one get a default.
+    pub layers: LayerTtf,
+    /// Scalar functions, composited over the layers first to last.
+    pub scalars: Vec<ScalarTtf>,
+}
+
+/// The two sliders.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct TtfSettings {
+    /// 0 = illustrative … 1 = raw (P-illus 4.3). Default 0.
+    pub blend: f32,
+    /// Factor on every frequency (P-illus 4.2), above 0. Default 1.
+    pub global_frequency: f32,
+}
+
+impl Default for TtfSettings {
+    fn default() -> Self {
+        Self {
+            blend: 0.0,
+            global_frequency: 1.0,
+        }
+    }
+}
+
+/// How the raw data are coloured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct RawColour {
+    /// Name of the volume shown.
+    pub volume: String,
+    /// Colour of a sample without data; absent = the illustration shows through there. Default a light grey,
+    /// so that no data is shown as such.
+    #[serde(default = "no_data_grey", skip_serializing_if = "Option::is_none")]
+    pub no_data: Option<Colour>,
+    /// Value → colour.
+    pub function: RgbaFunction,
+}
+
+fn no_data_grey() -> Option<Colour> {
+    Some(Colour::new(0xdc, 0xdc, 0xda))
+}
+
+impl RawColour {
+    /// A volume in the colours of a function, no data in light grey.
+    pub fn new(volume: &str, function: RgbaFunction) -> Self {
+        Self {
+            volume: volume.to_owned(),
+            no_data: no_data_grey(),
+            function,
+        }
+    }
+}
+
+impl TransferFunctions {
+    /// Refuses what cannot be drawn.
+    ///
+    /// # Errors
+    /// Whatever the parts refuse, with the place named.
+    pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
+        check_unit("the settings", "the blend", self.settings.blend)?;
+        let factor = self.settings.global_frequency;
+        if !(factor.is_finite() && factor > 0.0) {
+            return Err(Error::BadFrequency {
+                place: "the global frequency".to_owned(),
+                horizontal: factor,
+                vertical: factor,
+            });
+        }
+        if let Some(raw) = &self.raw {
+            raw.function
+                .validate(&format!("the colours of `{}`", raw.volume))?;
+        }
+        self.layers.validate(library)?;
+        self.scalars
+            .iter()
+            .try_for_each(|function| function.validate(library))
+    }
+}

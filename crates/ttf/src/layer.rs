@@ -1,0 +1,217 @@
+//! The layer texture transfer function (P-illus 4.1): layer and depth in it → texture, frequencies,
+//! opacity.
+//!
+//! The paper maps one packed k' to texture and frequencies. We store styles by layer *identity* (its
+//! name) and local k in [0, 1] (0 = bottom horizon), so that adding or removing a horizon does not
+//! shift the look of every layer above it; packed values are derived where they are needed.
+//!
+//! Intervals are half-open, `[low, high)`; the one that ends at 1 includes the top horizon itself.
+//! Where no interval covers k, the layer shows its plain colour.
+
+use serde::{Deserialize, Serialize};
+
+use crate::{Colour, Error, Frequency, TextureLibrary};
+
+/// The styles of all layers that have been given one, in any order.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct LayerTtf {
+    /// One style per layer name.
+    pub styles: Vec<LayerStyle>,
+}
+
+/// How one layer is drawn.
+///
+/// ```
+/// let style: ttf::LayerStyle = toml::from_str(r##"
+///     layer = "Chalk"
+///     colour = "#d9e2d2"
+///     intervals = [{ k = [0.0, 0.5], texture = "chalk" }, { k = [0.5, 1.0], texture = "marl" }]
+/// "##).unwrap();
+/// assert_eq!(style.texture_at(0.5), Some("marl"));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LayerStyle {
+    /// The layer's name in the stratigraphy.
+    pub layer: String,
+    /// The colour under the pattern, sRGB.
+    pub colour: Colour,
+    /// Recolours the ink of the patterns; absent = the texture's own colours.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ink: Option<Colour>,
+    /// Opacity of the layer inside a cut-out, in [0, 1] (P-illus 5: extruding layers). Default 0: cut away.
+    #[serde(default)]
+    pub opacity: f32,
+    /// Frequency of the intervals that state none; absent = from the tile's printed size.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<Frequency>,
+    /// Textures by depth in the layer; empty = plain colour.
+    #[serde(default)]
+    pub intervals: Vec<DepthInterval>,
+}
+
+/// A texture over a part of a layer's depth.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DepthInterval {
+    /// Half-open range of local k, `[low, high)`, within [0, 1].
+    pub k: [f32; 2],
+    /// Name of the texture in the library.
+    pub texture: String,
+    /// Repeats of the tile; absent = the layer's.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<Frequency>,
+    /// Opacity of the texture over the colour, in [0, 1]. Default 1.
+    #[serde(default = "opaque")]
+    pub opacity: f32,
+    /// Background of this interval; absent = the layer's colour.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
+}
+
+pub(crate) fn opaque() -> f32 {
+    1.0
+}
+
+impl LayerStyle {
+    /// A layer in one colour without a pattern.
+    pub fn plain(layer: &str, colour: Colour) -> Self {
+        Self {
+            layer: layer.to_owned(),
+            colour,
+            ink: None,
+            opacity: 0.0,
+            frequency: None,
+            intervals: Vec::new(),
+        }
+    }
+
+    /// A layer filled with one texture from bottom to top.
+    pub fn textured(layer: &str, colour: Colour, texture: &str) -> Self {
+        let interval = DepthInterval {
+            k: [0.0, 1.0],
+            texture: texture.to_owned(),
+            frequency: None,
+            opacity: 1.0,
+            colour: None,
+        };
+        Self {
+            intervals: vec![interval],
+            ..Self::plain(layer, colour)
+        }
+    }
+
+    /// The texture at local `k` (clamped to [0, 1]), if an interval covers it.
+    pub fn texture_at(&self, k: f32) -> Option<&str> {
+        self.interval_at(k)
+            .map(|interval| interval.texture.as_str())
+    }
+
+    /// The interval that covers local `k` (clamped to [0, 1]).
+    pub fn interval_at(&self, k: f32) -> Option<&DepthInterval> {
+        let k = k.clamp(0.0, 1.0);
+        self.intervals.iter().find(|interval| {
+            let [low, high] = interval.k;
+            k >= low && (k < high || high >= 1.0)
+        })
+    }
+
+    /// Refuses what cannot be drawn.
+    ///
+    /// # Errors
+    /// Intervals outside [0, 1], empty, overlapping; opacities outside [0, 1]; unusable frequencies;
+    /// textures the library does not have.
+    pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
+        let place = format!("layer `{}`", self.layer);
+        check_unit(&place, "the cut-out opacity", self.opacity)?;
+        if let Some(frequency) = self.frequency {
+            frequency.validate(&place)?;
+        }
+        for interval in &self.intervals {
+            let [low, high] = interval.k;
+            if !(low >= 0.0 && high <= 1.0 && low < high) {
+                return Err(Error::BadDepthInterval {
+                    layer: self.layer.clone(),
+                    low,
+                    high,
+                });
+            }
+            check_unit(&place, "the texture's opacity", interval.opacity)?;
+            if let Some(frequency) = interval.frequency {
+                frequency.validate(&place)?;
+            }
+            library.index_of(&interval.texture, &place)?;
+        }
+        check_overlap(&place, self.intervals.iter().map(|interval| interval.k))
+    }
+}
+
+impl LayerTtf {
+    /// The style of a layer.
+    pub fn style(&self, layer: &str) -> Option<&LayerStyle> {
+        self.styles.iter().find(|style| style.layer == layer)
+    }
+
+    /// Puts a style in place of the layer's present one, or adds it.
+    pub fn set(&mut self, style: LayerStyle) {
+        match self
+            .styles
+            .iter_mut()
+            .find(|present| present.layer == style.layer)
+        {
+            Some(present) => *present = style,
+            None => self.styles.push(style),
+        }
+    }
+
+    /// Refuses what cannot be drawn.
+    ///
+    /// # Errors
+    /// Two styles for one layer, and whatever [`LayerStyle::validate`] refuses.
+    pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
+        for (index, style) in self.styles.iter().enumerate() {
+            if self.styles[..index]
+                .iter()
+                .any(|earlier| earlier.layer == style.layer)
+            {
+                return Err(Error::DuplicateLayer {
+                    layer: style.layer.clone(),
+                });
+            }
+            style.validate(library)?;
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a value outside [0, 1], NaN included.
+pub(crate) fn check_unit(place: &str, quantity: &'static str, value: f32) -> Result<(), Error> {
+    if (0.0..=1.0).contains(&value) {
+        return Ok(());
+    }
+    Err(Error::OutsideUnit {
+        place: place.to_owned(),
+        quantity,
+        value,
+    })
+}
+
+/// Refuses half-open intervals that share values. The intervals themselves must be valid.
+pub(crate) fn check_overlap(
+    place: &str,
+    intervals: impl Iterator<Item = [f32; 2]>,
+) -> Result<(), Error> {
+    let mut sorted: Vec<[f32; 2]> = intervals.collect();
+    sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    match sorted.windows(2).find(|pair| pair[1][0] < pair[0][1]) {
+        None => Ok(()),
+        Some(pair) => Err(Error::Overlap {
+            place: place.to_owned(),
+            first_low: pair[0][0],
+            first_high: pair[0][1],
+            second_low: pair[1][0],
+            second_high: pair[1][1],
+        }),
+    }
+}

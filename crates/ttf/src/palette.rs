@@ -1,0 +1,69 @@
+//! The look of a layer nobody has styled: a project renders before anything is assigned.
+//!
+//! A layer whose name speaks of a rock ("Zechstein salt", "Chalk Gp") gets that rock; the others
+//! take turns through a sequence in which neighbours differ in tone and in texture.
+
+use crate::{Colour, LayerStyle, LayerTtf, TextureLibrary};
+
+/// Patterns for layers without a telling name, bottom to top.
+const SEQUENCE: [&str; 8] = [
+    "granite",
+    "sandstone-bedded",
+    "shale",
+    "limestone",
+    "siltstone",
+    "dolostone",
+    "marl",
+    "sand",
+];
+
+/// Words in a layer's name and the pattern they stand for; the first that fits counts.
+const WORDS: [(&str, &str); 31] = [
+    ("water", "water"),
+    ("sea", "water"),
+    ("conglomerate", "conglomerate"),
+    ("gravel", "conglomerate"),
+    ("breccia", "breccia"),
+    ("till", "till"),
+    ("oil shale", "oil-shale"),
+    ("black shale", "carbonaceous-shale"),
+    ("marl", "marl"),
+    ("chalk", "chalk"),
+    ("chert", "chert"),
+    ("flint", "chert"),
+    ("dolo", "dolostone"),
+    ("ooli", "limestone-oolitic"),
+    ("limestone", "limestone"),
+    ("carbonate", "limestone"),
+    ("salt", "salt"),
+    ("halite", "salt"),
+    ("gypsum", "gypsum"),
+    ("anhydrite", "gypsum"),
+    ("coal", "coal"),
+    ("silt", "siltstone"),
+    ("shale", "shale"),
+    ("clay", "shale"),
+    ("mud", "shale"),
+    ("sand", "sandstone-bedded"),
+    ("basalt", "basalt"),
+    ("tuff", "tuff"),
+    ("schist", "schist"),
+    ("gneiss", "gneiss"),
+    ("basement", "granite"),
+];
+
+impl LayerTtf {
+    /// The style of layer number `index` (from the bottom) while it has none of its own.
+    pub fn default_style(layer: &str, index: usize, library: &TextureLibrary) -> LayerStyle {
+        let lower = layer.to_lowercase();
+        let by_name = WORDS
+            .iter()
+            .find(|(word, _)| lower.contains(word))
+            .map(|(_, pattern)| *pattern);
+        let pattern = by_name.unwrap_or(SEQUENCE[index % SEQUENCE.len()]);
+        match library.find(pattern) {
+            Some(found) => LayerStyle::textured(layer, library.pattern(found).colour, pattern),
+            None => LayerStyle::plain(layer, Colour::new(0xe6, 0xe0, 0xd2)),
+        }
+    }
+}

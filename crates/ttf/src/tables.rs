@@ -1,0 +1,390 @@
+//! Transfer functions compiled to flat tables that the CPU reads as slices and the GPU as buffers.
+//!
+//! All entries are `repr(C)`, 16-byte aligned in size, without padding the compiler chose, so that
+//! they go to storage buffers as they are. Colours are sRGB-encoded in [0, 1]. Texture indices are
+//! slots of [`TtfTables::textures`], which holds only the textures in use.
+
+use std::sync::Arc;
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::{
+    Error, Frequency, LayerStyle, LayerTtf, ScalarInterval, Texture, TextureLibrary,
+    TransferFunctions,
+};
+
+/// Stands for "no texture" or "no volume" in the tables.
+pub const NONE: u32 = u32::MAX;
+
+/// What the tables must know of the block: its layers and sizes in metres.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockExtent {
+    /// Length of the block along x in metres, (Nx − 1)·spacing: what i in [0, 1] stands for.
+    pub extent_i_m: f32,
+    /// Length of the block along y in metres.
+    pub extent_j_m: f32,
+    /// The layers, bottom to top: index = layer number.
+    pub layers: Vec<LayerExtent>,
+    /// Metres of rock to a millimetre of the printed figure: sizes the patterns that state no frequency.
+    pub metres_per_mm: f32,
+}
+
+/// A layer's name and size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerExtent {
+    /// The layer's name in the stratigraphy.
+    pub name: String,
+    /// Mean thickness in metres: what k in [0, 1] stands for.
+    pub thickness_m: f32,
+}
+
+/// The scene-wide numbers.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct TtfGlobals {
+    /// Colour of raw samples without data; alpha 0 = the illustration shows.
+    pub no_data: [f32; 4],
+    /// Domain of the raw colours.
+    pub raw_domain: [f32; 2],
+    /// 0 illustrative … 1 raw.
+    pub blend: f32,
+    /// Factor on every frequency.
+    pub global_frequency: f32,
+    /// Extent of j over extent of i, in metres.
+    pub aspect_j: f32,
+    /// Slot of the raw volume, or [`NONE`].
+    pub raw_volume: u32,
+    /// Entries in the scalar table.
+    pub scalar_count: u32,
+    /// Entries in the stop table.
+    pub stop_count: u32,
+}
+
+/// A layer.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct LayerEntry {
+    /// Plain colour (r, g, b) and opacity in a cut-out.
+    pub colour: [f32; 4],
+    /// Frequency where no interval covers k (scalar textures use it).
+    pub frequency: [f32; 2],
+    /// First entry in the interval table.
+    pub first_interval: u32,
+    /// Number of entries there.
+    pub interval_count: u32,
+}
+
+/// A depth interval of a layer.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct IntervalEntry {
+    /// Background (r, g, b), and the opacity of the texture on it.
+    pub colour: [f32; 4],
+    /// Ink (r, g, b); w = 1: it replaces the texture's colours, 0: it does not.
+    pub ink: [f32; 4],
+    /// Half-open range of k; ends on a horizon are stretched to ±`f32::MAX`.
+    pub k: [f32; 2],
+    /// Horizontal and vertical frequency.
+    pub frequency: [f32; 2],
+    /// Texture slot.
+    pub texture: u32,
+    /// Zero.
+    pub padding: [u32; 3],
+}
+
+/// A value interval of a scalar function.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct ScalarEntry {
+    /// Background (r, g, b); w = 1: opaque, 0: ink only.
+    pub colour: [f32; 4],
+    /// Ink (r, g, b); w = 1: it replaces the texture's colours, 0: it does not.
+    pub ink: [f32; 4],
+    /// Half-open range of values.
+    pub range: [f32; 2],
+    /// Factors on the layer's frequency.
+    pub factor: [f32; 2],
+    /// Texture slot.
+    pub texture: u32,
+    /// Volume slot.
+    pub volume: u32,
+    /// Opacity over what is below.
+    pub opacity: f32,
+    /// Zero.
+    pub padding: u32,
+}
+
+/// A stop of the raw colours.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+pub struct StopEntry {
+    /// Straight RGBA.
+    pub colour: [f32; 4],
+    /// Position in the domain, 0 to 1, rising.
+    pub at: f32,
+    /// Zero.
+    pub padding: [f32; 3],
+}
+
+/// The compiled transfer functions.
+#[derive(Debug, Clone)]
+pub struct TtfTables {
+    /// Scene-wide numbers.
+    pub globals: TtfGlobals,
+    /// One entry per layer, bottom to top.
+    pub layers: Vec<LayerEntry>,
+    /// Depth intervals, a layer's own in a row, rising in k.
+    pub intervals: Vec<IntervalEntry>,
+    /// Scalar intervals in the order in which they are composited.
+    pub scalars: Vec<ScalarEntry>,
+    /// Stops of the raw colours.
+    pub stops: Vec<StopEntry>,
+    /// Names of the volumes whose values [`crate::shade`] takes, by slot.
+    pub volumes: Vec<String>,
+    /// The textures in use, by slot: the layers of the GPU's texture array.
+    pub textures: Vec<Arc<Texture>>,
+}
+
+impl TtfTables {
+    /// Compiles the functions for a block.
+    ///
+    /// Layers without a style get [`LayerTtf::default_style`]. Styles of layers that the block does not
+    /// have are left out.
+    ///
+    /// # Errors
+    /// What [`TransferFunctions::validate`] refuses; extents that are not finite and positive; a
+    /// pattern that does not rasterise.
+    pub fn compile(
+        functions: &TransferFunctions,
+        block: &BlockExtent,
+        library: &TextureLibrary,
+    ) -> Result<Self, Error> {
+        functions.validate(library)?;
+        block.validate()?;
+        let mut slots = Slots::new(library);
+        let mut layers = Vec::with_capacity(block.layers.len());
+        let mut intervals = Vec::new();
+        for (index, layer) in block.layers.iter().enumerate() {
+            let style = functions
+                .layers
+                .style(&layer.name)
+                .cloned()
+                .unwrap_or_else(|| LayerTtf::default_style(&layer.name, index, library));
+            let first_interval = intervals.len() as u32;
+            slots.add_intervals(&style, block, layer.thickness_m, &mut intervals)?;
+            let [r, g, b] = style.colour.to_unit();
+            let frequency = style
+                .frequency
+                .unwrap_or_else(|| block.frequency(layer.thickness_m, PLAIN_TILE_MM));
+            layers.push(LayerEntry {
+                colour: [r, g, b, style.opacity],
+                frequency: [frequency.horizontal, frequency.vertical],
+                first_interval,
+                interval_count: intervals.len() as u32 - first_interval,
+            });
+        }
+        let mut scalars = Vec::new();
+        for function in &functions.scalars {
+            let volume = slots.volume(&function.volume);
+            for interval in &function.intervals {
+                scalars.push(slots.scalar(interval, volume)?);
+            }
+        }
+        let (mut stops, mut raw_domain, mut raw_volume, mut no_data) =
+            (Vec::new(), [0.0, 1.0], NONE, [0.0; 4]);
+        if let Some(raw) = &functions.raw {
+            raw_volume = slots.volume(&raw.volume);
+            raw_domain = raw.function.domain;
+            no_data = opaque_or_nothing(raw.no_data);
+            stops.extend(raw.function.stops.iter().map(|stop| {
+                let [r, g, b] = stop.colour.to_unit();
+                StopEntry {
+                    colour: [r, g, b, stop.opacity],
+                    at: stop.at,
+                    padding: [0.0; 3],
+                }
+            }));
+        }
+        let globals = TtfGlobals {
+            no_data,
+            raw_domain,
+            blend: functions.settings.blend,
+            global_frequency: functions.settings.global_frequency,
+            aspect_j: block.extent_j_m / block.extent_i_m,
+            raw_volume,
+            scalar_count: scalars.len() as u32,
+            stop_count: stops.len() as u32,
+        };
+        let Slots {
+            volumes, textures, ..
+        } = slots;
+        Ok(Self {
+            globals,
+            layers,
+            intervals,
+            scalars,
+            stops,
+            volumes,
+            textures,
+        })
+    }
+
+    /// The opaque average colour of a layer at local k, its texture included: the ground's colour is
+    /// that of the topmost layer at k = 1 (P-illus 5). Black for a layer there is not.
+    pub fn average_colour(&self, layer: u32, k: f32) -> [f32; 3] {
+        let Some(entry) = self.layers.get(layer as usize) else {
+            return [0.0; 3];
+        };
+        match self.interval_at(entry, k) {
+            None => [entry.colour[0], entry.colour[1], entry.colour[2]],
+            Some(interval) => {
+                let [r, g, b, opacity] = interval.colour;
+                let background = [r, g, b];
+                let ink = (interval.ink[3] > 0.5).then_some([
+                    interval.ink[0],
+                    interval.ink[1],
+                    interval.ink[2],
+                ]);
+                let full = self.textures[interval.texture as usize].average_over(background, ink);
+                std::array::from_fn(|c| background[c] + (full[c] - background[c]) * opacity)
+            }
+        }
+    }
+
+    /// The interval of a layer that covers k.
+    pub(crate) fn interval_at(&self, layer: &LayerEntry, k: f32) -> Option<&IntervalEntry> {
+        let first = layer.first_interval as usize;
+        self.intervals[first..first + layer.interval_count as usize]
+            .iter()
+            .find(|interval| k >= interval.k[0] && k < interval.k[1])
+    }
+}
+
+/// Tile size assumed for a layer without a texture: the usual one of the library.
+const PLAIN_TILE_MM: [f32; 2] = [20.0, 20.0];
+
+impl BlockExtent {
+    fn frequency(&self, thickness_m: f32, tile_mm: [f32; 2]) -> Frequency {
+        let tile_m = tile_mm.map(|side| side * self.metres_per_mm);
+        Frequency::for_tile(self.extent_i_m, thickness_m, tile_m)
+    }
+
+    fn validate(&self) -> Result<(), Error> {
+        let check = |quantity: &'static str, value: f32| {
+            if value.is_finite() && value > 0.0 {
+                Ok(())
+            } else {
+                Err(Error::BadExtent { quantity, value })
+            }
+        };
+        check("the block's extent along x", self.extent_i_m)?;
+        check("the block's extent along y", self.extent_j_m)?;
+        check(
+            "the figure's scale (metres per millimetre)",
+            self.metres_per_mm,
+        )?;
+        self.layers
+            .iter()
+            .try_for_each(|layer| check("a layer's mean thickness", layer.thickness_m))
+    }
+}
+
+/// Gives textures and volumes their slots in the order in which they are first needed.
+struct Slots<'a> {
+    library: &'a TextureLibrary,
+    library_indices: Vec<usize>,
+    textures: Vec<Arc<Texture>>,
+    volumes: Vec<String>,
+}
+
+impl<'a> Slots<'a> {
+    fn new(library: &'a TextureLibrary) -> Self {
+        Self {
+            library,
+            library_indices: Vec::new(),
+            textures: Vec::new(),
+            volumes: Vec::new(),
+        }
+    }
+
+    fn texture(&mut self, index: usize) -> Result<u32, Error> {
+        if let Some(slot) = self
+            .library_indices
+            .iter()
+            .position(|&present| present == index)
+        {
+            return Ok(slot as u32);
+        }
+        self.textures.push(self.library.texture(index)?);
+        self.library_indices.push(index);
+        Ok(self.textures.len() as u32 - 1)
+    }
+
+    fn volume(&mut self, name: &str) -> u32 {
+        let slot = self
+            .volumes
+            .iter()
+            .position(|present| present == name)
+            .unwrap_or_else(|| {
+                self.volumes.push(name.to_owned());
+                self.volumes.len() - 1
+            });
+        slot as u32
+    }
+
+    fn add_intervals(
+        &mut self,
+        style: &LayerStyle,
+        block: &BlockExtent,
+        thickness_m: f32,
+        intervals: &mut Vec<IntervalEntry>,
+    ) -> Result<(), Error> {
+        let mut sorted: Vec<_> = style.intervals.iter().collect();
+        sorted.sort_by(|a, b| a.k[0].total_cmp(&b.k[0]));
+        for interval in sorted {
+            let index = self.library.index_of(&interval.texture, &style.layer)?;
+            let tile_mm = self.library.pattern(index).tile_mm;
+            let frequency = interval
+                .frequency
+                .or(style.frequency)
+                .unwrap_or_else(|| block.frequency(thickness_m, tile_mm));
+            let [r, g, b] = interval.colour.unwrap_or(style.colour).to_unit();
+            let [low, high] = interval.k;
+            intervals.push(IntervalEntry {
+                colour: [r, g, b, interval.opacity],
+                ink: opaque_or_nothing(style.ink),
+                k: [
+                    if low <= 0.0 { f32::MIN } else { low },
+                    if high >= 1.0 { f32::MAX } else { high },
+                ],
+                frequency: [frequency.horizontal, frequency.vertical],
+                texture: self.texture(index)?,
+                padding: [0; 3],
+            });
+        }
+        Ok(())
+    }
+
+    fn scalar(&mut self, interval: &ScalarInterval, volume: u32) -> Result<ScalarEntry, Error> {
+        let index = self
+            .library
+            .index_of(&interval.texture, "a scalar function")?;
+        Ok(ScalarEntry {
+            colour: opaque_or_nothing(interval.colour),
+            ink: opaque_or_nothing(interval.ink),
+            range: interval.range,
+            factor: interval.factor,
+            texture: self.texture(index)?,
+            volume,
+            opacity: interval.opacity,
+            padding: 0,
+        })
+    }
+}
+
+fn opaque_or_nothing(colour: Option<crate::Colour>) -> [f32; 4] {
+    colour.map_or([0.0; 4], |colour| {
+        let [r, g, b] = colour.to_unit();
+        [r, g, b, 1.0]
+    })
+}
