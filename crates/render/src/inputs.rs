@@ -1,0 +1,122 @@
+//! What a scene is drawn from: borrowed data of the project, in voxel space.
+
+use crate::voxel_box::VoxelBox;
+use glam::Vec3;
+use survey::{SurveyGeometry, Volume};
+
+/// The data behind a picture. What is `None` is not drawn: without a model, for instance, faces show raw data only.
+#[derive(Clone, Copy)]
+pub struct Inputs<'a> {
+    /// Where samples are.
+    pub geometry: &'a SurveyGeometry,
+    /// Scalar volumes, raw data among them.
+    pub volumes: &'a [NamedVolume<'a>],
+    /// Changes whenever data behind any of these references change: what is on the GPU is kept while it stays the same.
+    pub version: u64,
+}
+
+/// A scalar volume and the part of the survey it covers; size and extent may differ from the survey's (P-illus 5.1).
+#[derive(Clone, Copy)]
+pub struct NamedVolume<'a> {
+    /// Unique name, as scenes and transfer functions have it.
+    pub name: &'a str,
+    /// The samples.
+    pub volume: &'a Volume<f32>,
+    /// Voxel positions of the first and the last sample along each axis.
+    pub covers: VoxelBox,
+}
+
+/// Interpolation weights below this do not ask for their sample.
+pub const NO_WEIGHT: f32 = 1e-5;
+/// How far outside its extent a volume still answers, in its own samples: only rounding.
+pub const SLACK: f32 = 1e-3;
+
+impl<'a> NamedVolume<'a> {
+    /// A volume on the survey's own lattice.
+    pub fn whole(name: &'a str, volume: &'a Volume<f32>) -> Self {
+        Self { name, volume, covers: VoxelBox::of_size(volume.size()) }
+    }
+
+    /// Scale and offset from voxel to this volume's own sample indices: `index = p · scale + offset`.
+    pub fn index_from_voxel(&self) -> (Vec3, Vec3) {
+        let last = Vec3::from_array(self.volume.size().map(|n| n.saturating_sub(1) as f32));
+        let scale = last / self.covers.extent().as_vec3().max(Vec3::splat(1e-6));
+        (scale, -self.covers.low().as_vec3() * scale)
+    }
+
+    /// Trilinear value at a voxel position; NaN outside the extent and where a needed sample is dead or not a number.
+    pub fn sample(&self, p: Vec3) -> f32 {
+        let (scale, offset) = self.index_from_voxel();
+        let index = p * scale + offset;
+        let size = self.volume.size();
+        let mut low = [0usize; 3];
+        let mut fraction = [0.0f32; 3];
+        for axis in 0..3 {
+            let last = size[axis].saturating_sub(1) as f32;
+            if !(index[axis] >= -SLACK && index[axis] <= last + SLACK) {
+                return f32::NAN;
+            }
+            let clamped = index[axis].clamp(0.0, last);
+            let floor = clamped.floor().min((last - 1.0).max(0.0));
+            low[axis] = floor as usize;
+            fraction[axis] = clamped - floor;
+        }
+        let mut sum = 0.0;
+        for corner in 0..8usize {
+            let mut weight = 1.0;
+            let mut at = low;
+            for axis in 0..3 {
+                if corner >> axis & 1 == 1 {
+                    weight *= fraction[axis];
+                    at[axis] = (at[axis] + 1).min(size[axis] - 1);
+                } else {
+                    weight *= 1.0 - fraction[axis];
+                }
+            }
+            if weight < NO_WEIGHT {
+                continue;
+            }
+            if !self.volume.is_live(at[0], at[1]) {
+                return f32::NAN;
+            }
+            sum += weight * self.volume.at(at[0], at[1], at[2]);
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_linear_field_is_reproduced_on_another_lattice() {
+        // 5 × 3 × 9 samples over a part of the survey, value 2x − y + 3z in survey voxels.
+        let covers = VoxelBox { min: [10.0, 20.0, 30.0], max: [18.0, 24.0, 34.0] };
+        let mut volume = Volume::filled([5, 3, 9], 0.0f32);
+        for x in 0..5 {
+            for y in 0..3 {
+                for (z, value) in volume.trace_mut(x, y).iter_mut().enumerate() {
+                    let p = [10.0 + 2.0 * x as f32, 20.0 + 2.0 * y as f32, 30.0 + 0.5 * z as f32];
+                    *value = 2.0 * p[0] - p[1] + 3.0 * p[2];
+                }
+            }
+        }
+        let named = NamedVolume { name: "a", volume: &volume, covers };
+        for p in [Vec3::new(10.0, 20.0, 30.0), Vec3::new(13.3, 21.9, 33.37), Vec3::new(18.0, 24.0, 34.0)] {
+            assert!((named.sample(p) - (2.0 * p.x - p.y + 3.0 * p.z)).abs() < 1e-3, "{p}");
+        }
+        assert!(named.sample(Vec3::new(9.9, 21.0, 31.0)).is_nan());
+        assert!(named.sample(Vec3::new(12.0, 21.0, 34.1)).is_nan());
+    }
+
+    #[test]
+    fn a_dead_trace_is_no_data_but_its_neighbours_are() {
+        let mut volume = Volume::filled([3, 3, 2], 1.0f32);
+        volume.set_live(Some((0..9).map(|n| n != 4).collect())).unwrap();
+        let named = NamedVolume::whole("a", &volume);
+        assert_eq!(named.sample(Vec3::new(0.0, 1.0, 0.5)), 1.0);
+        assert!(named.sample(Vec3::new(0.5, 1.0, 0.5)).is_nan());
+        assert!(named.sample(Vec3::new(1.0, 1.0, 0.0)).is_nan());
+    }
+}

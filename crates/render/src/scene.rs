@@ -1,0 +1,280 @@
+//! What a picture shows, as one declarative value: written to and read from TOML, with a default for everything.
+//!
+//! A [`Scene`] says nothing about where data come from; [`crate::Inputs`] brings those. Positions are voxel
+//! (x = inline index, y = crossline index, z = sample index downwards), sizes of lines and images are pixels.
+
+use crate::camera::{Camera, View};
+use crate::error::SceneError;
+use crate::outline::Outlines;
+use crate::voxel_box::VoxelBox;
+use serde::{Deserialize, Serialize};
+use survey::SurveyGeometry;
+use ttf::{Colour, RawColour};
+
+/// Largest image side, pixels.
+pub const MAX_SIDE_PX: u32 = 32_768;
+/// Most samples a pixel along one axis.
+pub const MAX_SAMPLES: u32 = 16;
+/// Most cut-outs in a scene.
+pub const MAX_CUT_OUTS: usize = 16;
+
+/// A picture of a block.
+///
+/// ```
+/// let scene: render::Scene = toml::from_str("size_px = [800, 600]\n[camera]\nelevation_deg = 40.0").unwrap();
+/// assert_eq!((scene.size_px, scene.camera.elevation_deg), ([800, 600], 40.0));
+/// assert_eq!(scene.exaggeration, 1.0);
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Scene {
+    /// Pixels across and down. Default 1600 × 1200.
+    pub size_px: [u32; 2],
+    /// Samples a pixel along each axis, averaged on sRGB-encoded values. Default 3, so 9 a pixel.
+    pub samples: u32,
+    /// Vertical exaggeration of the display; the parameterization does not see it. Default 1.
+    pub exaggeration: f64,
+    /// 0 = illustrative … 1 = raw (P-illus 4.3, 5.2). Default 0.
+    pub blend: f32,
+    /// Factor on every texture frequency (P-illus 4.2). Default 1.
+    pub global_frequency: f32,
+    /// How flat coordinates are looked up. Default exact.
+    pub lookup: Lookup,
+    /// Colour behind the block. Default white; [`Background::Transparent`] leaves the pixels empty.
+    pub background: Background,
+    /// Darkening of the side faces that turn away from the viewer's left, 0 = unlit (DESIGN: faces are unlit) …
+    /// 0.5. Default 0.
+    pub face_tone: f32,
+    /// The part of the survey shown. Absent: all of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub roaming_box: Option<VoxelBox>,
+    /// Where from.
+    pub camera: Camera,
+    /// The ground as relief of the topmost horizon; absent: the block has a flat top.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ground: Option<Ground>,
+    /// The volume shown as raw data and its colours; absent: those of the transfer functions.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raw: Option<RawColour>,
+    /// Lines drawn over the faces.
+    pub outlines: Outlines,
+    /// Boxes cut out of the roaming box.
+    pub cut_outs: Vec<VoxelBox>,
+}
+
+impl Default for Scene {
+    fn default() -> Self {
+        Self {
+            size_px: [1600, 1200],
+            samples: 3,
+            exaggeration: 1.0,
+            blend: 0.0,
+            global_frequency: 1.0,
+            lookup: Lookup::Exact,
+            background: Background::Colour(Colour::WHITE),
+            face_tone: 0.0,
+            roaming_box: None,
+            camera: Camera::default(),
+            ground: None,
+            raw: None,
+            outlines: Outlines::default(),
+            cut_outs: Vec::new(),
+        }
+    }
+}
+
+/// How flat coordinates are looked up.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Lookup {
+    /// The region from the interpretation itself, coordinates from its own grid: crisp at any zoom.
+    #[default]
+    Exact,
+    /// The paper's packed volume with extrapolated corners (P-illus 3.3, 3.4), the baseline.
+    Packed,
+}
+
+/// What is behind the block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Background {
+    /// Nothing: alpha 0.
+    Transparent,
+    /// One colour.
+    #[serde(untagged)]
+    Colour(Colour),
+}
+
+impl Background {
+    /// Straight RGBA in [0, 1], sRGB-encoded.
+    pub fn rgba(self) -> [f32; 4] {
+        match self {
+            Self::Transparent => [0.0; 4],
+            Self::Colour(colour) => {
+                let [r, g, b] = colour.to_unit();
+                [r, g, b, 1.0]
+            }
+        }
+    }
+}
+
+/// The relief of the topmost horizon: everything above it is air (P-illus 5).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Ground {
+    /// Strength of the hill shading that tells slopes apart, 0 (none) … 1. Default 0.35: mild.
+    pub hill_shade: f32,
+    /// Bearing the light comes from, degrees clockwise from north, turning with the camera: 0 = from behind the block.
+    /// Default −45, so from the upper left, as maps have it.
+    pub light_deg: f32,
+}
+
+impl Default for Ground {
+    fn default() -> Self {
+        Self { hill_shade: 0.35, light_deg: -45.0 }
+    }
+}
+
+impl Scene {
+    /// The part of the survey shown.
+    pub fn box_in(&self, geometry: &SurveyGeometry) -> VoxelBox {
+        self.roaming_box.unwrap_or_else(|| VoxelBox::of_size(geometry.size()))
+    }
+
+    /// The fitted camera. The scene must be valid.
+    pub fn view(&self, geometry: &SurveyGeometry) -> View {
+        View::new(&self.camera, geometry, &self.box_in(geometry), self.exaggeration, self.size_px)
+    }
+
+    /// The cut-outs, clipped to the roaming box.
+    pub fn cuts_in(&self, geometry: &SurveyGeometry) -> Vec<VoxelBox> {
+        let roaming_box = self.box_in(geometry);
+        self.cut_outs.iter().filter_map(|cut| cut.intersection(&roaming_box)).collect()
+    }
+
+    /// Refuses what has no picture.
+    ///
+    /// # Errors
+    /// The first [`SceneError`] found.
+    pub fn validate(&self, geometry: &SurveyGeometry) -> Result<(), SceneError> {
+        let [width, height] = self.size_px;
+        if [width, height].iter().any(|side| !(1..=MAX_SIDE_PX).contains(side)) {
+            return Err(SceneError::ImageSize { width, height, limit: MAX_SIDE_PX });
+        }
+        let number = |what: &'static str, found: f64, low: f64, high: f64| {
+            if found >= low && found <= high {
+                Ok(())
+            } else {
+                Err(SceneError::OutOfRange { what, found, low, high })
+            }
+        };
+        number("the samples a pixel", f64::from(self.samples), 1.0, f64::from(MAX_SAMPLES))?;
+        number("the vertical exaggeration", self.exaggeration, 1e-3, 1e3)?;
+        number("the blend", f64::from(self.blend), 0.0, 1.0)?;
+        number("the global frequency", f64::from(self.global_frequency), 1e-4, 1e4)?;
+        number("the face tone", f64::from(self.face_tone), 0.0, 0.5)?;
+        if let Some(ground) = self.ground {
+            number("the hill shading", f64::from(ground.hill_shade), 0.0, 1.0)?;
+            number("the light's bearing", f64::from(ground.light_deg), -3600.0, 3600.0)?;
+        }
+        self.camera.validate()?;
+        self.outlines.validate()?;
+        self.validate_boxes(geometry)
+    }
+
+    fn validate_boxes(&self, geometry: &SurveyGeometry) -> Result<(), SceneError> {
+        let roaming_box = self.box_in(geometry);
+        let [min, max] = [roaming_box.min, roaming_box.max];
+        if !roaming_box.is_solid() {
+            return Err(SceneError::EmptyBox { what: "the roaming box".into(), min, max });
+        }
+        let last = VoxelBox::of_size(geometry.size()).max;
+        if (0..3).any(|axis| min[axis] < 0.0 || max[axis] > last[axis]) {
+            return Err(SceneError::OutsideSurvey { min, max, last });
+        }
+        if self.cut_outs.len() > MAX_CUT_OUTS {
+            return Err(SceneError::TooManyCutOuts { found: self.cut_outs.len(), limit: MAX_CUT_OUTS });
+        }
+        for (index, cut) in self.cut_outs.iter().enumerate() {
+            if !cut.is_solid() {
+                return Err(SceneError::EmptyBox { what: format!("cut-out {}", index + 1), min: cut.min, max: cut.max });
+            }
+            if cut.intersection(&roaming_box).is_none() {
+                return Err(SceneError::CutOutOutside {
+                    index: index + 1,
+                    min: cut.min,
+                    max: cut.max,
+                    box_min: min,
+                    box_max: max,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::Projection;
+    use survey::VerticalUnit;
+    use ttf::{ColourMap, RgbaFunction};
+
+    fn geometry() -> SurveyGeometry {
+        SurveyGeometry::regular([40, 30, 20], 25.0, 10.0, VerticalUnit::Metres)
+    }
+
+    fn full() -> Scene {
+        let block = VoxelBox { min: [1.0, 2.0, 3.0], max: [30.0, 20.0, 15.5] };
+        Scene {
+            size_px: [64, 48],
+            background: Background::Transparent,
+            lookup: Lookup::Packed,
+            roaming_box: Some(block),
+            ground: Some(Ground::default()),
+            raw: Some(RawColour::new("seismic", RgbaFunction::centred(ColourMap::Grey, 2.0))),
+            camera: Camera {
+                azimuth_deg: Some(20.0),
+                projection: Projection::Perspective { fov_deg: 30.0 },
+                target: Some([1.0, 2.0, 3.0]),
+                ..Camera::default()
+            },
+            cut_outs: vec![block.corner_cut(crate::Corner::MinMax, [0.5, 0.5])],
+            ..Scene::default()
+        }
+    }
+
+    #[test]
+    fn toml_round_trips_and_an_empty_file_is_the_default() {
+        for scene in [full(), Scene::default()] {
+            let text = toml::to_string(&scene).unwrap();
+            assert_eq!(toml::from_str::<Scene>(&text).unwrap(), scene, "{text}");
+        }
+        assert_eq!(toml::from_str::<Scene>("").unwrap(), Scene::default());
+        assert!(toml::from_str::<Scene>("exageration = 2.0").is_err());
+        let coloured: Scene = toml::from_str("background = '#ffeedd'").unwrap();
+        assert_eq!(coloured.background, Background::Colour(Colour::new(0xff, 0xee, 0xdd)));
+    }
+
+    #[test]
+    fn what_has_no_picture_is_refused() {
+        full().validate(&geometry()).unwrap();
+        let refused = |change: fn(&mut Scene)| {
+            let mut scene = full();
+            change(&mut scene);
+            scene.validate(&geometry()).unwrap_err()
+        };
+        assert!(matches!(refused(|s| s.size_px = [0, 10]), SceneError::ImageSize { .. }));
+        assert!(matches!(refused(|s| s.size_px = [10, 1 << 20]), SceneError::ImageSize { .. }));
+        assert!(matches!(refused(|s| s.exaggeration = f64::NAN), SceneError::OutOfRange { .. }));
+        assert!(matches!(refused(|s| s.camera.zoom = 0.0), SceneError::OutOfRange { .. }));
+        assert!(matches!(refused(|s| s.camera.target = Some([f64::NAN; 3])), SceneError::OutOfRange { .. }));
+        assert!(matches!(refused(|s| s.roaming_box.as_mut().unwrap().max[0] = 1.0), SceneError::EmptyBox { .. }));
+        assert!(matches!(refused(|s| s.roaming_box.as_mut().unwrap().max[0] = 99.0), SceneError::OutsideSurvey { .. }));
+        assert!(matches!(refused(|s| s.cut_outs[0].min[2] = f64::NAN), SceneError::EmptyBox { .. }));
+        assert!(matches!(
+            refused(|s| s.cut_outs[0] = VoxelBox { min: [31.0; 3], max: [35.0; 3] }),
+            SceneError::CutOutOutside { index: 1, .. }
+        ));
+    }
+}

@@ -1,0 +1,219 @@
+//! The first point of the solid block on a ray (P-illus 5.1): inside the roaming box, outside every cut-out.
+//!
+//! A ray crosses each box over an interval of t. The solid is the roaming box's interval minus the cut-outs': from a
+//! start t, while the point is inside a cut-out, go on to that cut-out's exit. Because only interval ends
+//! are compared, any number of overlapping or touching cut-outs works, and the plane hit is known exactly.
+//!
+//! Voxel space, f32; rays have unit direction, so t is in voxels. The shader `faces.wgsl` computes the same.
+
+use crate::camera::ViewRay;
+use crate::voxel_box::VoxelBox;
+use glam::Vec3;
+
+/// Boxes closer than this along a ray touch, voxels.
+pub const TOUCH: f32 = 1e-3;
+
+/// A ray in voxel space, single precision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// A point in front of the block.
+    pub origin: Vec3,
+    /// Unit direction.
+    pub direction: Vec3,
+}
+
+impl Ray {
+    /// The point at distance `t`, voxels.
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + self.direction * t
+    }
+}
+
+impl From<ViewRay> for Ray {
+    fn from(ray: ViewRay) -> Self {
+        Self { origin: ray.origin.as_vec3(), direction: ray.direction.as_vec3() }
+    }
+}
+
+/// A plane of constant x, y or z that a ray meets.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaceHit {
+    /// Distance along the ray, voxels.
+    pub t: f32,
+    /// Where, with the plane's coordinate exact.
+    pub point: Vec3,
+    /// The axis of the plane's normal: 0 = x, 1 = y, 2 = z.
+    pub axis: usize,
+}
+
+/// A stretch of solid rock along a ray.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SolidSpan {
+    /// The face it begins at.
+    pub entry: FaceHit,
+    /// Distance at which it ends, voxels.
+    pub end: f32,
+}
+
+/// The roaming box without its cut-outs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solid {
+    /// Smallest and largest corner of the roaming box.
+    pub roaming_box: [Vec3; 2],
+    /// Smallest and largest corners of the cut-outs.
+    pub cut_outs: Vec<[Vec3; 2]>,
+}
+
+/// The interval of t over which a ray is inside a box, and the axes of the planes at its ends.
+#[derive(Debug, Clone, Copy)]
+struct Crossing {
+    enter: f32,
+    exit: f32,
+    enter_axis: usize,
+    exit_axis: usize,
+}
+
+/// Largest component that counts as parallel to a plane is replaced by this, so that 1/d stays finite.
+const PARALLEL: f32 = 1e-12;
+
+fn cross(ray: &Ray, [low, high]: [Vec3; 2]) -> Crossing {
+    let mut crossing = Crossing { enter: f32::MIN, exit: f32::MAX, enter_axis: 0, exit_axis: 0 };
+    for axis in 0..3 {
+        let d = ray.direction[axis];
+        let d = if d.abs() < PARALLEL { PARALLEL } else { d };
+        let a = (low[axis] - ray.origin[axis]) / d;
+        let b = (high[axis] - ray.origin[axis]) / d;
+        if a.min(b) > crossing.enter {
+            (crossing.enter, crossing.enter_axis) = (a.min(b), axis);
+        }
+        if a.max(b) < crossing.exit {
+            (crossing.exit, crossing.exit_axis) = (a.max(b), axis);
+        }
+    }
+    crossing
+}
+
+impl Solid {
+    /// The block of a scene; cut-outs must already be clipped to the box.
+    pub fn new(roaming_box: &VoxelBox, cut_outs: &[VoxelBox]) -> Self {
+        let corners = |b: &VoxelBox| [b.low().as_vec3(), b.high().as_vec3()];
+        Self { roaming_box: corners(roaming_box), cut_outs: cut_outs.iter().map(corners).collect() }
+    }
+
+    /// Whether a point is in the box and in no cut-out; borders count as inside for the box and outside for cut-outs.
+    pub fn contains(&self, p: Vec3) -> bool {
+        let [low, high] = self.roaming_box;
+        p.cmpge(low).all()
+            && p.cmple(high).all()
+            && !self.cut_outs.iter().any(|[low, high]| p.cmpgt(*low).all() && p.cmplt(*high).all())
+    }
+
+    /// The first stretch of rock that begins at or after distance `from`.
+    pub fn next_span(&self, ray: &Ray, from: f32) -> Option<SolidSpan> {
+        let outer = cross(ray, self.roaming_box);
+        let mut plane = self.roaming_box;
+        let (mut t, mut axis, mut entering) = (outer.enter, outer.enter_axis, true);
+        if from > t {
+            t = from;
+        }
+        // Every round leaves one cut-out for good, so there are at most as many rounds as cut-outs.
+        for _ in 0..=self.cut_outs.len() {
+            let mut moved = false;
+            for cut in &self.cut_outs {
+                let crossing = cross(ray, *cut);
+                if crossing.enter <= t + TOUCH && t + TOUCH < crossing.exit {
+                    (t, axis, entering, plane) = (crossing.exit, crossing.exit_axis, false, *cut);
+                    moved = true;
+                }
+            }
+            if !moved {
+                break;
+            }
+        }
+        if t + TOUCH >= outer.exit {
+            return None;
+        }
+        let mut end = outer.exit;
+        for cut in &self.cut_outs {
+            let crossing = cross(ray, *cut);
+            if crossing.enter > t + TOUCH && crossing.enter < crossing.exit {
+                end = end.min(crossing.enter);
+            }
+        }
+        let mut point = ray.at(t);
+        if t != from {
+            let forwards = ray.direction[axis] >= 0.0;
+            point[axis] = if forwards == entering { plane[0][axis] } else { plane[1][axis] };
+        }
+        Some(SolidSpan { entry: FaceHit { t, point, axis }, end })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn block() -> Solid {
+        Solid { roaming_box: [Vec3::ZERO, Vec3::splat(10.0)], cut_outs: Vec::new() }
+    }
+
+    fn along_x(y: f32, z: f32) -> Ray {
+        Ray { origin: Vec3::new(-5.0, y, z), direction: Vec3::X }
+    }
+
+    #[test]
+    fn the_front_face_without_cut_outs() {
+        let span = block().next_span(&along_x(4.0, 6.0), f32::MIN).unwrap();
+        assert_eq!((span.entry.t, span.entry.point, span.entry.axis, span.end), (5.0, Vec3::new(0.0, 4.0, 6.0), 0, 15.0));
+        assert_eq!(block().next_span(&along_x(10.5, 6.0), f32::MIN), None);
+        assert_eq!(block().next_span(&along_x(4.0, 6.0), 15.0), None);
+    }
+
+    #[test]
+    fn a_cut_out_shows_its_back_face() {
+        let mut solid = block();
+        solid.cut_outs.push([Vec3::ZERO, Vec3::new(3.0, 10.0, 10.0)]);
+        let span = solid.next_span(&along_x(4.0, 6.0), f32::MIN).unwrap();
+        assert_eq!((span.entry.point, span.entry.axis), (Vec3::new(3.0, 4.0, 6.0), 0));
+        let backwards = Ray { origin: Vec3::new(15.0, 4.0, 6.0), direction: -Vec3::X };
+        let span = solid.next_span(&backwards, f32::MIN).unwrap();
+        assert_eq!((span.entry.t, span.end), (5.0, 12.0));
+        assert_eq!(solid.next_span(&backwards, 12.0), None);
+    }
+
+    #[test]
+    fn touching_and_overlapping_cut_outs_are_passed_in_any_order() {
+        for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {
+            let cuts = [[0.0, 2.0], [2.0, 4.0], [3.5, 6.0]];
+            let mut solid = block();
+            solid.cut_outs =
+                order.map(|n| [Vec3::new(cuts[n][0], 0.0, 0.0), Vec3::new(cuts[n][1], 10.0, 10.0)]).to_vec();
+            assert_eq!(solid.next_span(&along_x(4.0, 6.0), f32::MIN).unwrap().entry.point.x, 6.0);
+        }
+    }
+
+    /// Walks rays in small steps and asks at each point whether it is rock.
+    #[test]
+    fn it_agrees_with_walking() {
+        let mut solid = block();
+        solid.cut_outs = vec![
+            [Vec3::new(5.0, 0.0, 0.0), Vec3::new(10.0, 5.0, 10.0)],
+            [Vec3::new(2.0, 4.0, 0.0), Vec3::new(7.0, 8.0, 5.0)],
+            [Vec3::new(3.0, 3.0, 3.0), Vec3::new(6.0, 6.0, 9.0)],
+        ];
+        for n in 0..500 {
+            let turn = n as f32 * 0.61;
+            let direction = Vec3::new(turn.cos(), turn.sin(), 0.4 * (turn * 1.7).sin() + 0.05).normalize();
+            let through = Vec3::new(3.0 + (n % 7) as f32 * 0.7, 2.0 + (n % 5) as f32 * 1.3, 1.0 + (n % 11) as f32 * 0.7);
+            let ray = Ray { origin: through - direction * 30.0, direction };
+            // Rock shorter than the tolerance (an edge just grazed) does not count.
+            let rock = |t: f32| (0..5).all(|step| solid.contains(ray.at(t + step as f32 * 1e-3)));
+            let walked = (0..60_000).map(|s| s as f32 * 1e-3).find(|t| rock(*t));
+            let found = solid.next_span(&ray, f32::MIN).map(|span| span.entry.t);
+            match (walked, found) {
+                (Some(walked), Some(found)) => assert!((walked - found).abs() < 5e-3, "ray {n}: {walked} or {found}"),
+                (walked, found) => assert_eq!(walked.is_some(), found.is_some(), "ray {n}: {walked:?} or {found:?}"),
+            }
+        }
+    }
+}
