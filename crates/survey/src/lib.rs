@@ -20,6 +20,7 @@ pub mod geometry;
 pub mod height_field;
 pub mod horizon;
 pub mod mesh;
+pub mod model;
 pub mod progress;
 pub mod stratigraphy;
 pub mod volume;

@@ -1,0 +1,21 @@
+//! The interpretation made solid: which layer and which fault block is at any place of the volume.
+//!
+//! [`StructuralModel`] holds, for each horizon and fault block, an *extended* sheet (a [`crate::HeightField`] defined everywhere), and a
+//! [`FaultNetwork`] whose surfaces cut the volume into blocks. From them [`StructuralModel::region_at`] is exact at any zoom: nothing
+//! is looked up in a voxel grid.
+//!
+//! # Spaces
+//! Positions are voxel (x, y, z), z down. Distances to faults are metric (m).
+
+mod contacts;
+mod extension;
+mod network;
+mod report;
+mod settings;
+mod structural;
+
+pub use contacts::ContactRules;
+pub use network::{BlockSignature, FaultNetwork, FaultSurface};
+pub use report::{ModelError, ModelNote, ModelReport};
+pub use settings::ModelSettings;
+pub use structural::{Region, StructuralModel};
