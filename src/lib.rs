@@ -1,1 +1,14 @@
-//! Petroglyph.
+//! Petroglyph: from a 3D seismic survey and its interpretation to a geological illustration.
+//!
+//! This crate joins the others into a program. A [`Project`] is a folder on disk; every change to it is a [`Command`],
+//! whoever asks for it (command line, window, script), so that each can be undone, also by another process later.
+//! What is computed from a project is cached beside it, keyed by what it was computed from.
+
+pub mod cli;
+pub mod command;
+pub mod error;
+pub mod project;
+
+pub use command::{Command, Effect};
+pub use error::ProjectError;
+pub use project::Project;

@@ -1,1 +1,5 @@
-fn main() {}
+//! The `petroglyph` program.
+
+fn main() -> std::process::ExitCode {
+    petroglyph::cli::main()
+}

@@ -1,0 +1,71 @@
+//! What can be typed.
+
+use clap::{Args, Parser, Subcommand};
+use std::path::PathBuf;
+
+/// Turns a 3D seismic survey and its interpretation into geological illustrations.
+#[derive(Debug, Parser)]
+#[command(name = "petroglyph", version, about, propagate_version = true, max_term_width = 110)]
+pub(super) struct Arguments {
+    /// Answer with one JSON object on stdout
+    #[arg(long, global = true)]
+    pub(super) json: bool,
+    #[command(subcommand)]
+    pub(super) action: Action,
+}
+
+#[derive(Debug, Subcommand)]
+pub(super) enum Action {
+    /// Say what a file or project holds
+    #[command(after_help = "Example:\n  petroglyph info survey.sgy\n  petroglyph info north.petro --json")]
+    Info {
+        /// SEG-Y file, horizon or fault file, or project folder
+        path: PathBuf,
+    },
+    /// Begin a project without seismic
+    #[command(
+        after_help = "Example:\n  petroglyph create sketch.petro --bounds 0,5000,0,4000,0,2000 --size 201x161x101 --z-unit m"
+    )]
+    Create(CreateArgs),
+    /// State the velocity that turns two-way time into metres
+    #[command(after_help = "Example:\n  petroglyph velocity north.petro 2500")]
+    Velocity {
+        /// Project folder
+        project: PathBuf,
+        /// Velocity, m/s
+        velocity_m_s: f64,
+    },
+    /// Go back by one command
+    #[command(after_help = "Example:\n  petroglyph undo north.petro")]
+    Undo {
+        /// Project folder
+        project: PathBuf,
+    },
+    /// Go forward by one undone command
+    #[command(after_help = "Example:\n  petroglyph redo north.petro")]
+    Redo {
+        /// Project folder
+        project: PathBuf,
+    },
+    /// Forget the history and free the data only it refers to
+    #[command(after_help = "Example:\n  petroglyph prune north.petro")]
+    Prune {
+        /// Project folder
+        project: PathBuf,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CreateArgs {
+    /// Project folder to make, usually NAME.petro
+    pub(super) project: PathBuf,
+    /// World bounds X0,X1,Y0,Y1,Z0,Z1: metres, and the vertical unit positive down
+    #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", allow_hyphen_values = true)]
+    pub(super) bounds: Option<String>,
+    /// Samples along X, Y and Z [default: 128x128x128]
+    #[arg(long, value_name = "NxNxN", requires = "bounds")]
+    pub(super) size: Option<String>,
+    /// Unit of Z: m or ms (two-way time) [default: m]
+    #[arg(long, value_name = "UNIT", requires = "bounds")]
+    pub(super) z_unit: Option<String>,
+}

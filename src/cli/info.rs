@@ -1,0 +1,80 @@
+//! `petroglyph info`: what a file or a project holds.
+
+use super::report::Report;
+use crate::error::Noun;
+use crate::project::Project;
+use serde_json::json;
+use std::path::Path;
+use survey::SurveyGeometry;
+
+/// Describes whatever is at `path`.
+pub(super) fn describe(path: &Path) -> anyhow::Result<Report> {
+    project(&Project::open(path)?)
+}
+
+fn project(project: &Project) -> anyhow::Result<Report> {
+    let document = project.document();
+    let mut report = Report::default();
+    report.say(format!("project {}", project.root().display()));
+    report.field("project", project.root());
+    report.field("version", document.version);
+    if let Some(geometry) = &document.geometry {
+        frame(geometry, &mut report);
+    } else {
+        report.say("no survey frame yet: import a volume");
+    }
+    for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Layer] {
+        let names = document.names(noun);
+        if !names.is_empty() {
+            report.say(format!("{noun}s: {}", names.join(", ")));
+        }
+        report.field(&format!("{noun}s"), names);
+    }
+    let history = project.history()?;
+    if let Some(last) = history.iter().rev().find(|line| line.in_effect) {
+        report.say(format!("last change: {}", last.summary));
+    }
+    report.field("history", history);
+    Ok(report)
+}
+
+/// The lattice and its place in the world.
+fn frame(geometry: &SurveyGeometry, report: &mut Report) {
+    let line = |axis: &survey::LineAxis| json!({ "first": axis.first, "last": axis.last(), "step": axis.step, "count": axis.count });
+    let vertical = &geometry.vertical;
+    let unit = vertical.unit.symbol();
+    report
+        .say(format!(
+            "inlines {} to {} step {} ({}), crosslines {} to {} step {} ({})",
+            geometry.inlines.first,
+            geometry.inlines.last(),
+            geometry.inlines.step,
+            geometry.inlines.count,
+            geometry.crosslines.first,
+            geometry.crosslines.last(),
+            geometry.crosslines.step,
+            geometry.crosslines.count
+        ))
+        .say(format!(
+            "{} samples, {} to {} {unit}, every {} {unit}",
+            vertical.count,
+            vertical.first,
+            vertical.last(),
+            vertical.interval
+        ))
+        .field("inlines", line(&geometry.inlines))
+        .field("crosslines", line(&geometry.crosslines))
+        .field("samples", vertical.count)
+        .field("interval", vertical.interval)
+        .field("first_sample", vertical.first)
+        .field("vertical_unit", unit)
+        .field("velocity_m_s", geometry.velocity_m_s)
+        .field(
+            "geometry",
+            json!({
+                "origin": geometry.origin,
+                "inline_vector": geometry.inline_vector,
+                "crossline_vector": geometry.crossline_vector,
+            }),
+        );
+}

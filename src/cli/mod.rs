@@ -1,0 +1,26 @@
+//! The command line: parse what was typed, work out what it means, do it, say what happened.
+//!
+//! Results for people go to stdout, progress and warnings to stderr; with `--json` stdout holds exactly one object. Exit codes: 0 done,
+//! 1 failed, 2 wrong usage.
+
+mod args;
+mod failure;
+mod info;
+mod report;
+mod request;
+mod run;
+mod terminal;
+
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Runs the program with the arguments of this process.
+pub fn main() -> ExitCode {
+    let typed = args::Arguments::parse();
+    let json = typed.json;
+    let outcome = request::Request::try_from(typed.action).map_err(run::Failure::Usage).and_then(run::run);
+    match outcome {
+        Ok(report) => report.print(json),
+        Err(failure) => failure::print(&failure, json),
+    }
+}

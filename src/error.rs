@@ -1,0 +1,191 @@
+//! What can go wrong with a project, with the facts as fields and a hint for what to do next.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Kinds of named things in a project.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Noun {
+    /// A seismic or attribute volume.
+    Volume,
+    /// An interpreted horizon.
+    Horizon,
+    /// An interpreted fault.
+    Fault,
+    /// A layer between two horizons.
+    Layer,
+    /// A named view.
+    Scene,
+}
+
+impl std::fmt::Display for Noun {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Volume => "volume",
+            Self::Horizon => "horizon",
+            Self::Fault => "fault",
+            Self::Layer => "layer",
+            Self::Scene => "scene",
+        })
+    }
+}
+
+/// Why something could not be done with a project. The project is as it was before.
+#[derive(Debug, thiserror::Error)]
+pub enum ProjectError {
+    /// Nothing is there.
+    #[error("there is no project at {}", path.display())]
+    NotFound {
+        /// Where it was looked for.
+        path: PathBuf,
+    },
+    /// Something else is there.
+    #[error("{} is not a Petroglyph project: {fact}", path.display())]
+    NotAProject {
+        /// What was opened.
+        path: PathBuf,
+        /// What it is or lacks.
+        fact: &'static str,
+    },
+    /// Something is there already.
+    #[error("{} exists already", path.display())]
+    Exists {
+        /// Where the project was to be created.
+        path: PathBuf,
+    },
+    /// Written by a later version of the program.
+    #[error(
+        "{} was written by a newer Petroglyph (project version {found}; this program knows up to {supported})", path.display()
+    )]
+    Newer {
+        /// The project's file.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+        /// The latest version known here.
+        supported: u32,
+    },
+    /// `project.toml` or a history step cannot be understood.
+    #[error("{} cannot be understood: {detail}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        detail: String,
+    },
+    /// Another process is changing the project.
+    #[error("{} is being changed by another Petroglyph process", path.display())]
+    Locked {
+        /// The project.
+        path: PathBuf,
+    },
+    /// The folder cannot be written.
+    #[error("{} cannot be written: it is read-only or belongs to someone else", path.display())]
+    ReadOnly {
+        /// The file or folder.
+        path: PathBuf,
+    },
+    /// No space left.
+    #[error("the disk is full: {} could not be written", path.display())]
+    DiskFull {
+        /// The file or folder.
+        path: PathBuf,
+    },
+    /// Any other failure of the file system.
+    #[error("{} could not be {action}", path.display())]
+    Io {
+        /// "read", "written", ...
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A name is taken.
+    #[error("the project already has a {noun} named \"{name}\"")]
+    Duplicate {
+        /// What it is.
+        noun: Noun,
+        /// The name wanted.
+        name: String,
+    },
+    /// A name does not exist.
+    #[error("the project has no {noun} named \"{name}\" ({})", listed(.known))]
+    Unknown {
+        /// What was looked for.
+        noun: Noun,
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// A name that cannot be used.
+    #[error("\"{name}\" cannot be the name of a {noun}: {fact}")]
+    BadName {
+        /// What was to be named.
+        noun: Noun,
+        /// The name given.
+        name: String,
+        /// What is wrong with it.
+        fact: &'static str,
+    },
+    /// A survey frame that conversions cannot work with.
+    #[error("the survey geometry cannot be used: {0}")]
+    Geometry(#[from] survey::geometry::GeometryError),
+    /// The user stopped it.
+    #[error("cancelled")]
+    Cancelled(#[from] survey::Cancelled),
+    /// Interpretation without a frame to place it in.
+    #[error("the project has no survey frame yet")]
+    NoGeometry,
+    /// At the first step.
+    #[error("there is nothing to undo")]
+    NothingToUndo,
+    /// At the last step.
+    #[error("there is nothing to redo")]
+    NothingToRedo,
+}
+
+fn listed(names: &[String]) -> String {
+    if names.is_empty() { "it has none".to_owned() } else { format!("it has: {}", names.join(", ")) }
+}
+
+impl ProjectError {
+    /// Sorts a failure of the file system into what the user can act on.
+    pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::DiskFull { path },
+            io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied if action != "read" => {
+                Self::ReadOnly { path }
+            }
+            _ => Self::Io { action, path, source },
+        }
+    }
+
+    /// What to do next, where that can be said in general.
+    pub fn hint(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NotFound { .. } => {
+                "check the path, or make a project with `petroglyph import SURVEY.sgy PROJECT` or `petroglyph create`"
+            }
+            Self::NotAProject { .. } => "give the folder that holds project.toml, usually NAME.petro",
+            Self::Exists { .. } => "choose another name, or move the old project away first",
+            Self::Newer { .. } => "update Petroglyph, or ask for the project to be saved by the older version",
+            Self::Malformed { .. } => "undo the last edit by hand, or copy the last good state from history/",
+            Self::Locked { .. } => "wait until the other command has finished, then try again; nothing was changed",
+            Self::ReadOnly { .. } => "copy the project to a folder you may write to; nothing was changed",
+            Self::DiskFull { .. } => {
+                "free some space (derived/ may be deleted, `petroglyph prune` forgets undone data), then try again; nothing was changed"
+            }
+            Self::Duplicate { .. } => "choose another --name, or rename or remove the present one first",
+            Self::Unknown { .. } => "check the spelling; names are listed by `petroglyph info PROJECT`",
+            Self::NoGeometry => "import a volume, or create the project with --bounds and --size",
+            Self::BadName { .. } => "use letters, digits, blanks, - and _",
+            Self::NothingToUndo | Self::NothingToRedo => "`petroglyph info PROJECT` shows the history",
+            Self::Cancelled(_) => "nothing was changed",
+            Self::Geometry(_) => "check the header bytes and bounds the geometry is made from",
+            Self::Io { .. } => return None,
+        })
+    }
+}

@@ -1,0 +1,147 @@
+//! Commands, undo and redo, crashes and edits by hand, on a project without data.
+
+use super::*;
+use crate::command::SetVelocity;
+use survey::VerticalUnit;
+
+fn geometry() -> SurveyGeometry {
+    SurveyGeometry::regular([4, 5, 6], 25.0, 4.0, VerticalUnit::Milliseconds)
+}
+
+fn begun(folder: &Path) -> Project {
+    Project::create(&folder.join("a.petro"), Some(geometry())).unwrap().publish().unwrap()
+}
+
+fn velocity(velocity_m_s: f64) -> Command {
+    Command::SetVelocity(SetVelocity { velocity_m_s })
+}
+
+fn bytes(project: &Project) -> String {
+    fs::read_to_string(project.root().join("project.toml")).unwrap()
+}
+
+#[test]
+fn undo_and_redo_restore_every_state_byte_for_byte_in_other_processes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    let mut states = vec![bytes(&project)];
+    for velocity_m_s in [1500.0, 2500.0, 3000.5] {
+        project.apply(&velocity(velocity_m_s), &Progress::silent()).unwrap();
+        states.push(bytes(&project));
+    }
+    for state in states.iter().rev().skip(1) {
+        let mut other = Project::open(project.root()).unwrap();
+        other.undo().unwrap();
+        assert_eq!(&bytes(&project), state);
+    }
+    assert!(matches!(project.undo(), Err(ProjectError::NothingToUndo)));
+    for state in &states[1..] {
+        Project::open(project.root()).unwrap().redo().unwrap();
+        assert_eq!(&bytes(&project), state);
+    }
+    assert!(matches!(project.redo(), Err(ProjectError::NothingToRedo)));
+}
+
+#[test]
+fn a_command_after_an_undo_forgets_what_was_undone() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    for velocity_m_s in [1500.0, 2500.0, 3000.0] {
+        project.apply(&velocity(velocity_m_s), &Progress::silent()).unwrap();
+    }
+    project.undo().unwrap();
+    project.undo().unwrap();
+    project.apply(&velocity(4000.0), &Progress::silent()).unwrap();
+    assert!(matches!(project.redo(), Err(ProjectError::NothingToRedo)));
+    let steps: Vec<u32> = project.history().unwrap().iter().map(|line| line.step).collect();
+    assert_eq!(steps, [0, 1, 2]);
+    project.undo().unwrap();
+    assert_eq!(project.document().geometry.as_ref().unwrap().velocity_m_s, 1500.0);
+}
+
+#[test]
+fn a_refused_command_changes_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    let before = bytes(&project);
+    assert!(project.apply(&velocity(-1.0), &Progress::silent()).is_err());
+    assert!(project.apply(&velocity(f64::NAN), &Progress::silent()).is_err());
+    let cancelled = Progress::silent();
+    cancelled.cancel();
+    assert!(matches!(project.apply(&velocity(1600.0), &cancelled), Err(ProjectError::Cancelled(_))));
+    assert_eq!(bytes(&project), before);
+    assert_eq!(project.history().unwrap().len(), 1);
+}
+
+#[test]
+fn an_edit_by_hand_is_a_step_of_its_own() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    let path = project.root().join("project.toml");
+    fs::write(&path, bytes(&project).replace("velocity_m_s = 2000.0", "velocity_m_s = 1900.0")).unwrap();
+    project.apply(&velocity(2600.0), &Progress::silent()).unwrap();
+    project.undo().unwrap();
+    assert_eq!(project.document().geometry.as_ref().unwrap().velocity_m_s, 1900.0);
+    project.undo().unwrap();
+    assert_eq!(project.document().geometry.as_ref().unwrap().velocity_m_s, 2000.0);
+}
+
+#[test]
+fn a_crash_before_the_rename_leaves_the_old_state_and_one_after_it_the_new() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    project.apply(&velocity(1500.0), &Progress::silent()).unwrap();
+    let old = bytes(&project);
+    let history = project.root().join("history");
+    // Before: the step is prepared, project.toml is not replaced, data is half written.
+    let step = fs::read_to_string(history.join("0001.toml")).unwrap().replace("1500.0", "1700.0");
+    fs::write(history.join("0002.toml.new"), step).unwrap();
+    fs::write(history.join("0003.toml.new"), "summ").unwrap();
+    fs::create_dir_all(project.root().join("volumes/x.zarr.new/0")).unwrap();
+    fs::write(project.root().join("project.toml.new"), "vers").unwrap();
+    Project::open(project.root()).unwrap().undo().unwrap();
+    Project::open(project.root()).unwrap().redo().unwrap();
+    assert_eq!(bytes(&project), old);
+    for left in ["history/0002.toml.new", "history/0003.toml.new", "volumes/x.zarr.new", "project.toml.new"] {
+        assert!(!project.root().join(left).exists(), "{left}");
+    }
+    // After: project.toml is the new state, its step has not got its name.
+    fs::rename(history.join("0001.toml"), history.join("0001.toml.new")).unwrap();
+    Project::open(project.root()).unwrap().undo().unwrap();
+    assert_eq!(project.history().unwrap().len(), 2);
+}
+
+#[test]
+fn pruning_forgets_the_way_but_not_the_state() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    project.apply(&velocity(1500.0), &Progress::silent()).unwrap();
+    let state = bytes(&project);
+    project.prune().unwrap();
+    assert_eq!(bytes(&project), state);
+    assert!(matches!(project.undo(), Err(ProjectError::NothingToUndo)));
+    project.apply(&velocity(1600.0), &Progress::silent()).unwrap();
+    project.undo().unwrap();
+    assert_eq!(bytes(&project), state);
+}
+
+#[test]
+fn a_project_that_is_not_published_leaves_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    drop(Project::create(&folder.path().join("a.petro"), None).unwrap());
+    assert!(storage::entries(folder.path()).is_empty());
+    let _first = Project::create(&folder.path().join("a.petro"), None).unwrap();
+    assert!(matches!(Project::create(&folder.path().join("a.petro"), None), Err(ProjectError::Locked { .. })));
+}
+
+#[test]
+fn what_is_no_project_is_said_to_be_none() {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(matches!(Project::open(folder.path()), Err(ProjectError::NotAProject { .. })));
+    assert!(matches!(Project::open(&folder.path().join("x")), Err(ProjectError::NotFound { .. })));
+    let project = begun(folder.path());
+    assert!(matches!(Project::create(project.root(), None).map(|_| ()), Err(ProjectError::Exists { .. })));
+    let path = project.root().join("project.toml");
+    fs::write(&path, "version = 2\n").unwrap();
+    assert!(matches!(Project::open(project.root()), Err(ProjectError::Newer { found: 2, .. })));
+}
