@@ -23,6 +23,7 @@ pub mod mesh;
 pub mod model;
 pub mod progress;
 pub mod stratigraphy;
+pub mod synth;
 pub mod volume;
 
 pub use fault::Fault;
