@@ -7,9 +7,11 @@
 //! | parameters for a size and a seed | `design` |
 //! | convolutional seismic, noise, impedance | `seismic` |
 //! | horizons and faults an exact interpreter would pick | `interpretation` |
+//! | small models with exact k for tests | [`closed_form`] |
 //!
 //! Everything depends on the settings alone: the same bytes at any number of threads.
 
+pub mod closed_form;
 mod column;
 mod design;
 mod faulting;
