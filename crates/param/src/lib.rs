@@ -1,1 +1,22 @@
 //! Layer parameterization: the map from curved rock to flat space.
+
+mod closest;
+mod compute;
+mod error;
+mod grid;
+mod lattice;
+mod layer;
+mod metric;
+mod model;
+mod nearest;
+mod parameterization;
+mod settings;
+mod surface;
+mod touched;
+mod trace;
+
+pub use error::ParamError;
+pub use grid::{FlatPoint, RegionGrid, SheetRef};
+pub use model::{LayerModel, Region};
+pub use parameterization::Parameterization;
+pub use settings::{KDefinition, ParamSettings};

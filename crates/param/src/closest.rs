@@ -1,0 +1,118 @@
+//! The closest point of a sheet, exact on the bicubic surface.
+//!
+//! With u = p − (x, y, h(x, y)) and w = G u ([`crate::metric`]) the squared distance is F = u·w. Its stationary points
+//! solve s_x·w = s_y·w = 0, s_x = (1, 0, h_x) and s_y = (0, 1, h_y) being the tangents:
+//!
+//! ```text
+//! ½ ∂F/∂a    = −s_a·w
+//! ½ ∂²F/∂a∂b = s_aᵀ G s_b − h_ab w_z
+//! ```
+//!
+//! Damped Newton: where the second derivative is not positive definite (beyond a centre of curvature) the surface's own
+//! curvature is left out (Gauss–Newton, always positive definite), and a step that increases F is halved. The surface is
+//! C¹, its second derivative jumps between cells; the convergence stays superlinear there.
+//!
+//! A [`Foot`] remembers the jet of the surface where it stands, so that following a point that moves (along a column, along
+//! a trace) costs about one evaluation of the surface a move: the first Newton step is made from the remembered jet, the second
+//! from a fresh one, and as soon as a step is shorter than [`CONVERGED`] it is made on the second-order continuation of the jet.
+//!
+//! Newton finds a *local* minimum; which one is the business of [`crate::lattice`].
+
+use crate::metric::Metric;
+use crate::surface::{Frame, Jet, Surface};
+use glam::{Vec2, Vec3};
+
+/// A Newton step this short (voxels) is the last: the error after it is of the order of its square.
+const CONVERGED: f32 = 2e-3;
+/// Newton steps before giving up; reached only on surfaces rougher than their own lattice.
+const MOST_STEPS: usize = 40;
+/// Longest step, voxels: keeps a bad start from flying to another fold.
+const LONGEST_STEP: f32 = 8.0;
+
+/// The closest point of a sheet, all positions relative to a [`Frame`].
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Foot {
+    /// Voxel (x, y) of the foot, from the frame's column.
+    pub at: Vec2,
+    /// The surface there.
+    pub jet: Jet,
+    /// Distance, in units of the scaled metric.
+    pub distance: f32,
+}
+
+impl Foot {
+    /// A start for [`Foot::follow`] at `at`.
+    #[inline]
+    pub fn start(surface: &Surface, frame: Frame, at: Vec2) -> Self {
+        Self { at, jet: surface.jet(frame, at), distance: f32::INFINITY }
+    }
+
+    /// The voxel vector of the upward unit normal of the metric (−z is up), i.e. the metric gradient of the distance
+    /// of points above the sheet. Unlike (p − c)/d it needs no division by a distance near 0.
+    #[inline]
+    pub fn upward_normal(&self, metric: &Metric) -> Vec3 {
+        let covector = Vec3::new(self.jet.gradient.x, self.jet.gradient.y, -1.0);
+        let raised = metric.raise(covector);
+        raised * (1.0 / covector.dot(raised).sqrt())
+    }
+
+    /// The foot as a position relative to the frame.
+    #[inline]
+    pub fn position(&self) -> Vec3 {
+        self.at.extend(self.jet.h)
+    }
+
+    /// Walks to the local closest point of `p` (relative to the frame) from where the foot stands.
+    #[inline]
+    pub fn follow(&mut self, surface: &Surface, metric: &Metric, frame: Frame, p: Vec3) {
+        let (mut at, mut jet) = (self.at, self.jet);
+        let (mut last_at, mut last_f) = (at, f32::INFINITY);
+        for step_index in 0..MOST_STEPS {
+            let u = p - at.extend(jet.h);
+            let w = metric.lower(u);
+            let f = u.dot(w);
+            if f > last_f * (1.0 + 1e-5) + 1e-10 {
+                // The last step climbed: halve it. A foot that cannot descend any more stays where it was.
+                let half = 0.5 * (at - last_at);
+                at = last_at + half;
+                if half.length_squared() < 1e-9 {
+                    at = last_at;
+                    jet = surface.jet(frame, at);
+                    break;
+                }
+                jet = surface.jet(frame, at);
+                continue;
+            }
+            let step = newton_step(&jet, w, metric);
+            if step_index > 0 && step.length_squared() < CONVERGED * CONVERGED {
+                jet = jet.moved(step);
+                at += step;
+                break;
+            }
+            (last_at, last_f) = (at, f);
+            at += step;
+            jet = surface.jet(frame, at);
+        }
+        let distance = metric.length_squared(p - at.extend(jet.h)).max(0.0).sqrt();
+        *self = Self { at, jet, distance };
+    }
+}
+
+/// The damped Newton step for the residual covector w at a jet.
+#[inline]
+fn newton_step(jet: &Jet, w: Vec3, metric: &Metric) -> Vec2 {
+    let (sx, sy) = (Vec3::new(1.0, 0.0, jet.gradient.x), Vec3::new(0.0, 1.0, jet.gradient.y));
+    let (gx, gy) = (sx.dot(w), sy.dot(w));
+    let (lx, ly) = (metric.lower(sx), metric.lower(sy));
+    let (axx, axy, ayy) = (sx.dot(lx), sx.dot(ly), sy.dot(ly));
+    let [hxx, hxy, hyy] = jet.hessian;
+    let (mut xx, mut xy, mut yy) = (axx - hxx * w.z, axy - hxy * w.z, ayy - hyy * w.z);
+    let mut determinant = xx * yy - xy * xy;
+    if !(determinant > 1e-2 * (axx * ayy - axy * axy) && xx + yy > 0.0) {
+        (xx, xy, yy) = (axx, axy, ayy);
+        determinant = xx * yy - xy * xy;
+    }
+    let step = Vec2::new(yy * gx - xy * gy, xx * gy - xy * gx) * (1.0 / determinant);
+    let length_sq = step.length_squared();
+    if length_sq > LONGEST_STEP * LONGEST_STEP { step * (LONGEST_STEP / length_sq.sqrt()) } else { step }
+}

@@ -1,0 +1,231 @@
+//! Fills the stratigraphic grid of one region.
+//!
+//! Per column the levels are walked from the bottom to the top with both feet following; every node then starts its own trace
+//! to the middle. Columns are independent of each other (they share only the lattice of closest points), so the result does not
+//! depend on threads.
+//!
+//! Degenerate places: where the sheets are closer than a thousandth of a voxel, or cross (a pinch-out seen from beyond
+//! its edge), offsets are those of the nearest column within two that has a thickness, so that a wedge keeps its k up to the edge, and 0 farther away. A
+//! number that is not finite never leaves this file: its node keeps offset 0 and is flagged.
+
+use crate::grid::{PINCHED, RegionGrid};
+use crate::lattice::{COLUMNS, FootLattice, LEVELS, LatticeShape};
+use crate::layer::{Feet, Layer, LayerKind};
+use crate::surface::Frame;
+use crate::touched::Touched;
+use crate::trace::Tracer;
+use crate::closest::Foot;
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use survey::{Cancelled, Progress};
+
+/// What one column of a grid is filled with.
+struct Column<'a> {
+    offsets: &'a mut [[f32; 3]],
+    creases: &'a mut [bool],
+}
+
+/// Fills `grid.offsets` and `grid.creases`. `samples` is the count of voxels along z: levels that lie far outside the
+/// volume are copied from the last one inside.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn fill(
+    grid: &mut RegionGrid,
+    layer: &Layer,
+    touched: &Touched,
+    samples: usize,
+    tolerance: f32,
+    progress: &Progress,
+) -> Result<(), Cancelled> {
+    let [nx, ny] = grid.size;
+    let levels = grid.levels;
+    let mut offsets = vec![[0.0f32; 3]; nx * ny * levels];
+    let mut creases = vec![false; nx * ny * levels];
+    let origin = grid.origin;
+    let filler = Filler::new(layer, grid, touched, samples, tolerance, progress)?;
+    offsets.par_chunks_mut(ny * levels).zip(creases.par_chunks_mut(ny * levels)).enumerate().try_for_each(
+        |(x, (offsets, creases))| {
+            for (y, (offsets, creases)) in offsets.chunks_mut(levels).zip(creases.chunks_mut(levels)).enumerate() {
+                let column = [origin[0] + x as i32, origin[1] + y as i32];
+                if touched.wanted[x * ny + y] && layer.thickness(column) >= PINCHED {
+                    filler.column(column, Column { offsets, creases });
+                }
+            }
+            progress.step(1)
+        },
+    )?;
+    extend_over_pinch_outs(layer, touched, levels, &mut offsets);
+    grid.creases = creases
+        .par_chunks(64)
+        .map(|bits| bits.iter().enumerate().fold(0, |word, (bit, &set)| word | u64::from(set) << bit))
+        .collect();
+    grid.offsets = offsets;
+    Ok(())
+}
+
+struct Filler<'a> {
+    layer: &'a Layer,
+    levels: usize,
+    samples: f32,
+    tolerance: f32,
+    bottom: Option<FootLattice>,
+    top: Option<FootLattice>,
+}
+
+impl<'a> Filler<'a> {
+    fn new(
+        layer: &'a Layer,
+        grid: &RegionGrid,
+        touched: &Touched,
+        samples: usize,
+        tolerance: f32,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let levels = grid.levels;
+        let shape = lattice_shape(grid, touched);
+        let place = |column: [i32; 2], level: usize| {
+            let v = (level * LEVELS) as f32 / (levels - 1) as f32;
+            (layer.frame(column), Vec3::new(0.0, 0.0, -v * layer.thickness(column)))
+        };
+        let make = |surface| FootLattice::new(shape.clone(), surface, &layer.metric, place, progress).map(Some);
+        let (bottom, top) = match layer.kind {
+            LayerKind::Ratio => (make(&layer.bottom)?, make(&layer.top)?),
+            LayerKind::AboveBottom(_) => (make(&layer.bottom)?, None),
+            LayerKind::BelowTop(_) => (None, make(&layer.top)?),
+            LayerKind::Vertical => (None, None),
+        };
+        Ok(Self { layer, levels, samples: samples as f32, tolerance, bottom, top })
+    }
+
+    /// The levels of a column that lie in the volume, and three more on each side.
+    fn level_range(&self, frame: Frame, thickness: f32) -> (usize, usize) {
+        let scale = (self.levels - 1) as f32 / thickness;
+        let deepest = ((frame.z - (self.samples - 1.0)) * scale).floor() - 3.0;
+        let highest = (frame.z * scale).ceil() + 3.0;
+        let last = self.levels - 1;
+        (( deepest.max(0.0) as usize).min(last), (highest.max(0.0) as usize).min(last))
+    }
+
+    fn column(&self, column: [i32; 2], mut out: Column) {
+        let (frame, thickness) = (self.layer.frame(column), self.layer.thickness(column));
+        let (first, last) = self.level_range(frame, thickness);
+        match (&self.bottom, &self.top) {
+            (Some(bottom), Some(top)) => {
+                let tracer = Tracer {
+                    layer: self.layer,
+                    lattices: [bottom, top],
+                    top_level: (self.levels - 1) as f32,
+                    tolerance: self.tolerance,
+                };
+                self.ratio_column(&tracer, frame, thickness, first..=last, &mut out);
+                copy_outwards(out.offsets, first, last);
+            }
+            (lattice, other) => {
+                if let Some(lattice) = lattice.as_ref().or(other.as_ref()) {
+                    self.parallel_column(lattice, frame, thickness, first..=last, &mut out);
+                    copy_outwards(out.offsets, first, last);
+                }
+            }
+        }
+    }
+
+    fn ratio_column(&self, tracer: &Tracer, frame: Frame, thickness: f32, levels: std::ops::RangeInclusive<usize>, out: &mut Column) {
+        let layer = self.layer;
+        let start = |lattice: &FootLattice, surface| {
+            let level = *levels.start() as f32;
+            let at = lattice.start(frame.column[0] as f32, frame.column[1] as f32, level);
+            let origin = Vec2::new(frame.column[0] as f32, frame.column[1] as f32);
+            Foot::start(surface, frame, at.map_or(Vec2::ZERO, |at| at - origin))
+        };
+        let mut feet = Feet {
+            bottom: start(tracer.lattices[0], &layer.bottom),
+            top: start(tracer.lattices[1], &layer.top),
+        };
+        for level in levels {
+            let v = level as f32 / (self.levels - 1) as f32;
+            let p = Vec3::new(0.0, 0.0, -v * thickness);
+            layer.follow(frame, p, &mut feet);
+            tracer.challenge(frame, p, level as f32, &mut feet);
+            let sample = layer.ratio(&feet);
+            let crossing = tracer.trace(frame, p, sample, &feet);
+            let dk = if level == 0 || level == self.levels - 1 { 0.0 } else { sample.k - v };
+            let offset = [crossing.at.x, crossing.at.y, dk];
+            let finite = offset.iter().all(|value| value.is_finite());
+            out.offsets[level] = if finite { offset } else { [0.0; 3] };
+            out.creases[level] = crossing.crease || !finite;
+        }
+    }
+
+    fn parallel_column(&self, lattice: &FootLattice, frame: Frame, thickness: f32, levels: std::ops::RangeInclusive<usize>, out: &mut Column) {
+        let layer = self.layer;
+        let (surface, upwards, reference) = match layer.kind {
+            LayerKind::AboveBottom(reference) => (&layer.bottom, true, reference),
+            LayerKind::BelowTop(reference) => (&layer.top, false, reference),
+            LayerKind::Ratio | LayerKind::Vertical => return,
+        };
+        let mut foot = Foot::start(surface, frame, Vec2::ZERO);
+        // From the sheet outwards, where the foot starts as the column itself.
+        let (first, last) = (*levels.start(), *levels.end());
+        for n in 0..=last - first {
+            let level = if upwards { first + n } else { last - n };
+            let v = level as f32 / (self.levels - 1) as f32;
+            let p = Vec3::new(0.0, 0.0, -v * thickness);
+            foot.follow(surface, &layer.metric, frame, p);
+            out.creases[level] = lattice.challenge(&mut foot, surface, &layer.metric, frame, p, level as f32);
+            let ratio = foot.distance / reference;
+            let k = if upwards { ratio } else { 1.0 - ratio };
+            let offset = [foot.at.x, foot.at.y, k - v];
+            let finite = offset.iter().all(|value| value.is_finite());
+            out.offsets[level] = if finite { offset } else { [0.0; 3] };
+        }
+    }
+}
+
+/// Levels beyond the volume repeat the last one computed.
+fn copy_outwards(offsets: &mut [[f32; 3]], first: usize, last: usize) {
+    let (low, high) = (offsets[first], offsets[last]);
+    offsets[..first].fill(low);
+    offsets[last + 1..].fill(high);
+}
+
+fn lattice_shape(grid: &RegionGrid, touched: &Touched) -> LatticeShape {
+    let along = |count: usize, stride: usize| (count - 1).div_ceil(stride) + 1;
+    let size = [along(grid.size[0], COLUMNS), along(grid.size[1], COLUMNS), along(grid.levels, LEVELS)];
+    let mut wanted = vec![false; size[0] * size[1]];
+    for x in 0..grid.size[0] {
+        for y in (0..grid.size[1]).filter(|y| touched.wanted[x * grid.size[1] + y]) {
+            // All corners of the cell that holds the column.
+            for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                let (u, v) = ((x / COLUMNS + a).min(size[0] - 1), (y / COLUMNS + b).min(size[1] - 1));
+                wanted[u * size[1] + v] = true;
+            }
+        }
+    }
+    LatticeShape { origin: grid.origin, size, wanted }
+}
+
+/// Columns without thickness take the offsets of the nearest column that has one, two columns far at most.
+fn extend_over_pinch_outs(layer: &Layer, touched: &Touched, levels: usize, offsets: &mut [[f32; 3]]) {
+    let [nx, ny] = touched.size;
+    let known: Vec<bool> = (0..nx * ny)
+        .map(|n| {
+            let column = [touched.origin[0] + (n / ny) as i32, touched.origin[1] + (n % ny) as i32];
+            touched.wanted[n] && layer.thickness(column) >= PINCHED
+        })
+        .collect();
+    let mut near: Vec<(i32, i32)> = (-2..=2).flat_map(|a| (-2..=2).map(move |b| (a, b))).collect();
+    near.sort_by_key(|&(a, b)| (a * a + b * b, a, b));
+    for n in (0..nx * ny).filter(|&n| touched.wanted[n] && !known[n]) {
+        let (x, y) = ((n / ny) as i32, (n % ny) as i32);
+        let source = near.iter().find_map(|&(a, b)| {
+            let (u, v) = (x + a, y + b);
+            let inside = u >= 0 && v >= 0 && u < nx as i32 && v < ny as i32;
+            let m = (u * ny as i32 + v) as usize;
+            (inside && known[m]).then_some(m)
+        });
+        if let Some(m) = source {
+            offsets.copy_within(m * levels..(m + 1) * levels, n * levels);
+        }
+    }
+}

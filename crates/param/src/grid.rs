@@ -1,0 +1,167 @@
+//! The stratigraphic grid of one region: offsets from (x, y, v) to (i, j, k), and the exact lookup in it.
+//!
+//! v is 0 on the bottom sheet and 1 on the top sheet of the layer, along the vertical. Columns of the grid are voxel columns, levels are
+//! evenly spaced in v; a node stores
+//!
+//! ```text
+//! dx = i·(Nx−1) − x      dy = j·(Ny−1) − y      dk = k − v
+//! ```
+//!
+//! so that dk = 0 on both sheets of a closed layer: horizons are exact by construction, whatever the resolution. A lookup is
+//! v from the two sheets, then trilinear in (x, y, v); its Jacobian follows by the chain rule. All in f32 and in this order, so that
+//! a shader can do the same.
+//!
+//! Memory: 12 bytes a node, one bit for the crease flag.
+
+use crate::{LayerModel, Region};
+use glam::Vec3;
+
+/// Layers thinner than this (voxels) have no inside: offsets are 0 and v is ½ on the spot.
+pub const PINCHED: f32 = 1e-3;
+
+/// A sheet by reference: a horizon's sheet in the region's block, or a level plane, shifted vertically.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SheetRef {
+    /// The horizon; `None` for the plane z = 0.
+    pub horizon: Option<usize>,
+    /// Voxels of z added (positive is down).
+    pub shift: f32,
+}
+
+impl SheetRef {
+    /// Voxel z and its slopes (∂z/∂x, ∂z/∂y).
+    pub fn sample<M: LayerModel + ?Sized>(&self, model: &M, block: u16, x: f32, y: f32) -> (f32, [f32; 2]) {
+        match self.horizon {
+            None => (self.shift, [0.0; 2]),
+            Some(horizon) => {
+                let sample = model.sheet(horizon, block).sample(x, y);
+                (sample.z + self.shift, sample.gradient.to_array())
+            }
+        }
+    }
+
+    /// Voxel z.
+    pub fn z<M: LayerModel + ?Sized>(&self, model: &M, block: u16, x: f32, y: f32) -> f32 {
+        self.horizon.map_or(0.0, |horizon| model.sheet(horizon, block).z_at(x, y)) + self.shift
+    }
+}
+
+/// Flat coordinates of a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlatPoint {
+    /// Inline coordinate, 0 … 1 over the volume; outside near the walls.
+    pub i: f32,
+    /// Crossline coordinate, likewise.
+    pub j: f32,
+    /// 0 on the layer's bottom, 1 on its top.
+    pub k: f32,
+    /// The region it was looked up in.
+    pub region: Region,
+}
+
+/// The parameterization of one layer in one fault block.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RegionGrid {
+    /// Which.
+    pub region: Region,
+    /// Voxel column of grid column (0, 0).
+    pub origin: [i32; 2],
+    /// Counts of columns along x and y; 0 when the region touches no voxel column.
+    pub size: [usize; 2],
+    /// Count of levels, at least 2 where there are columns.
+    pub levels: usize,
+    /// Where v = 0.
+    pub bottom: SheetRef,
+    /// Where v = 1. In an open or parallel layer this is the other sheet shifted by the reference thickness.
+    pub top: SheetRef,
+    /// Metres of thickness that k = 0 … 1 stands for, in an open or parallel layer.
+    pub thickness_m: Option<f64>,
+    /// `[dx, dy, dk]` per node `[x][y][level]`: voxels, voxels, k.
+    pub offsets: Vec<[f32; 3]>,
+    /// One bit per node, 64 a word in the order of `offsets`: a closest point jumped on its trace, or the trace could
+    /// not arrive at the middle.
+    pub creases: Vec<u64>,
+}
+
+impl RegionGrid {
+    /// Index of a node in `offsets`.
+    #[inline]
+    pub fn node(&self, x: usize, y: usize, level: usize) -> usize {
+        (x * self.size[1] + y) * self.levels + level
+    }
+
+    /// Whether the trace of a node met a crease.
+    pub fn is_crease(&self, node: usize) -> bool {
+        self.creases[node / 64] >> (node % 64) & 1 == 1
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.offsets.len() * size_of::<[f32; 3]>() + self.creases.len() * size_of::<u64>()
+    }
+
+    /// v and its voxel derivative at `p`, clamped to the layer.
+    fn level_fraction<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> (f32, Vec3) {
+        let block = self.region.block;
+        let (bottom, bottom_slope) = self.bottom.sample(model, block, p.x, p.y);
+        let (top, top_slope) = self.top.sample(model, block, p.x, p.y);
+        let thickness = bottom - top;
+        if thickness < PINCHED {
+            return (0.5, Vec3::ZERO);
+        }
+        let inverse = 1.0 / thickness;
+        let v = (bottom - p.z) * inverse;
+        let along = |axis: usize| (bottom_slope[axis] * (1.0 - v) + top_slope[axis] * v) * inverse;
+        (v.clamp(0.0, 1.0), Vec3::new(along(0), along(1), -inverse))
+    }
+
+    /// Offsets and their derivatives along (x, y, v) at a column position and level fraction; positions outside the grid
+    /// take the nearest column's.
+    fn interpolate(&self, x: f32, y: f32, v: f32) -> ([f32; 3], [[f32; 3]; 3]) {
+        if self.offsets.is_empty() {
+            return ([0.0; 3], [[0.0; 3]; 3]);
+        }
+        let split = |at: f32, count: usize| {
+            let at = at.clamp(0.0, (count - 1) as f32);
+            let cell = (at as usize).min(count.saturating_sub(2));
+            (cell, at - cell as f32)
+        };
+        let (cx, fx) = split(x - self.origin[0] as f32, self.size[0]);
+        let (cy, fy) = split(y - self.origin[1] as f32, self.size[1]);
+        let scale = (self.levels - 1) as f32;
+        let (cl, fl) = split(v * scale, self.levels);
+        let at = |a: usize, b: usize, c: usize| {
+            let (x, y, l) = ((cx + a).min(self.size[0] - 1), (cy + b).min(self.size[1] - 1), (cl + c).min(self.levels - 1));
+            self.offsets[self.node(x, y, l)]
+        };
+        let mut value = [0.0; 3];
+        let mut slope = [[0.0; 3]; 3];
+        let corners: [[[[f32; 3]; 2]; 2]; 2] =
+            std::array::from_fn(|a| std::array::from_fn(|b| std::array::from_fn(|c| at(a, b, c))));
+        for n in 0..3 {
+            let c = |a: usize, b: usize, l: usize| corners[a][b][l][n];
+            let mix = |low: f32, high: f32, f: f32| low + (high - low) * f;
+            let along_v = |a: usize, b: usize| mix(c(a, b, 0), c(a, b, 1), fl);
+            let (low, high) = (mix(along_v(0, 0), along_v(0, 1), fy), mix(along_v(1, 0), along_v(1, 1), fy));
+            value[n] = mix(low, high, fx);
+            slope[n][0] = high - low;
+            slope[n][1] = mix(along_v(0, 1) - along_v(0, 0), along_v(1, 1) - along_v(1, 0), fx);
+            let rise = |a: usize, b: usize| c(a, b, 1) - c(a, b, 0);
+            slope[n][2] = mix(mix(rise(0, 0), rise(0, 1), fy), mix(rise(1, 0), rise(1, 1), fy), fx) * scale;
+        }
+        (value, slope)
+    }
+
+    /// Flat coordinates of voxel `p` by this region's parameterization, and their Jacobian ∂(i, j, k)/∂(x, y, z) per
+    /// voxel. `volume` is the count of voxels of the model.
+    pub fn lookup<M: LayerModel + ?Sized>(&self, model: &M, volume: [usize; 3], p: Vec3) -> (FlatPoint, [[f32; 3]; 3]) {
+        let (v, v_slope) = self.level_fraction(model, p);
+        let ([dx, dy, dk], slope) = self.interpolate(p.x, p.y, v);
+        let [si, sj] = [0, 1].map(|axis: usize| 1.0 / volume[axis].saturating_sub(1).max(1) as f32);
+        let row = |n: usize, unit: Vec3, scale: f32| {
+            ((unit + Vec3::new(slope[n][0], slope[n][1], 0.0) + v_slope * slope[n][2]) * scale).to_array()
+        };
+        let flat = FlatPoint { i: (p.x + dx) * si, j: (p.y + dy) * sj, k: v + dk, region: self.region };
+        (flat, [row(0, Vec3::X, si), row(1, Vec3::Y, sj), row(2, v_slope, 1.0)])
+    }
+}

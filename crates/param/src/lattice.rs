@@ -1,0 +1,246 @@
+//! Which of the local closest points is the global one.
+//!
+//! Finding the global minimum costs a kd-tree query and a walk from where it says; doing that at every node would be slow
+//! and is not needed, since neighbouring places share the branch of the surface that they are closest to. So it is done
+//! on a coarse lattice (every [`COLUMNS`]th column, every [`LEVELS`]th level of a region). Each lattice node then tries
+//! the feet of its neighbours, which mends the rare start that led into the wrong fold, and everything finer (nodes,
+//! steps of traces) follows its own foot and is *challenged* by those of the lattice: where a foot of the lattice is
+//! nearer, or where the lattice around disagrees about the branch, the walk is made from there too and the best is kept.
+//!
+//! Nothing depends on the order of the work: the lattice is computed in passes that read the previous pass only.
+
+use crate::closest::Foot;
+use crate::metric::Metric;
+use crate::nearest::NodeFinder;
+use crate::surface::{Frame, Surface};
+use glam::{Vec2, Vec3};
+use rayon::prelude::*;
+use survey::{Cancelled, Progress};
+
+/// Columns from one lattice node to the next.
+pub const COLUMNS: usize = 4;
+/// Levels from one lattice node to the next.
+pub const LEVELS: usize = 4;
+/// Passes in which lattice nodes try their neighbours' feet.
+const PASSES: usize = 2;
+/// Feet of neighbouring lattice nodes farther apart than this (voxels) are taken for different branches.
+const BRANCH: f32 = 6.0;
+
+/// Where the nodes of a region's lattice are.
+#[derive(Debug, Clone)]
+pub struct LatticeShape {
+    /// Column of lattice node (0, 0).
+    pub origin: [i32; 2],
+    /// Counts of lattice nodes along x, y and the levels.
+    pub size: [usize; 3],
+    /// Per lattice column `[x][y]`, whether it is wanted.
+    pub wanted: Vec<bool>,
+}
+
+/// The global closest points of one sheet at the nodes of a lattice.
+pub struct FootLattice {
+    shape: LatticeShape,
+    /// Voxel (x, y) of the foot, absolute; NaN where it is not wanted.
+    feet: Vec<Vec2>,
+    /// Per cell, whether its corners lie on different branches.
+    mixed: Vec<bool>,
+}
+
+impl FootLattice {
+    /// Computes the lattice. `place(x, y)` gives the frame of a column and the height of a lattice level in it.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn new(
+        shape: LatticeShape,
+        surface: &Surface,
+        metric: &Metric,
+        place: impl Fn([i32; 2], usize) -> (Frame, Vec3) + Sync,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        let finder = NodeFinder::new(surface, metric);
+        let [_, ny, nl] = shape.size;
+        let nodes = shape.size.iter().product();
+        let mut feet = vec![Vec2::NAN; nodes];
+        let column_of = |column: usize| {
+            let at = [column / ny, column % ny].map(|n| (n * COLUMNS) as i32);
+            [shape.origin[0] + at[0], shape.origin[1] + at[1]]
+        };
+        let walk = |column: [i32; 2], level: usize, from: Vec2| {
+            let (frame, p) = place(column, level);
+            let origin = Vec2::new(column[0] as f32, column[1] as f32);
+            let mut foot = Foot::start(surface, frame, from - origin);
+            foot.follow(surface, metric, frame, p);
+            (foot.at + origin, foot.distance)
+        };
+        let mut distances = vec![f32::INFINITY; nodes];
+        feet.par_chunks_mut(nl).zip(distances.par_chunks_mut(nl)).enumerate().try_for_each(
+            |(index, (feet, distances))| {
+                progress.check()?;
+                if !shape.wanted[index] {
+                    return Ok(());
+                }
+                let column = column_of(index);
+                for level in 0..nl {
+                    let (frame, p) = place(column, level);
+                    let in_voxels = p.as_dvec3() + glam::DVec3::new(f64::from(column[0]), f64::from(column[1]), f64::from(frame.z));
+                    let [x, y] = finder.near(in_voxels);
+                    (feet[level], distances[level]) = walk(column, level, Vec2::new(x as f32, y as f32));
+                    if level > 0 && (feet[level] - feet[level - 1]).length_squared() > 1.0 {
+                        let (foot, distance) = walk(column, level, feet[level - 1]);
+                        if distance < distances[level] {
+                            (feet[level], distances[level]) = (foot, distance);
+                        }
+                    }
+                }
+                Ok(())
+            },
+        )?;
+        let mut lattice = Self { shape: shape.clone(), feet, mixed: Vec::new() };
+        for _ in 0..PASSES {
+            progress.check()?;
+            let improved: Vec<(Vec2, f32)> = (0..nodes)
+                .into_par_iter()
+                .map(|node| {
+                    let mut best = (lattice.feet[node], distances[node]);
+                    let (index, level) = (node / nl, node % nl);
+                    if !shape.wanted[index] {
+                        return best;
+                    }
+                    for candidate in lattice.neighbours(index / ny, index % ny, level) {
+                        let foreign = (candidate - best.0).length_squared() > 0.25 * BRANCH * BRANCH;
+                        if foreign {
+                            let (foot, distance) = walk(column_of(index), level, candidate);
+                            if distance < best.1 * (1.0 - 1e-5) {
+                                best = (foot, distance);
+                            }
+                        }
+                    }
+                    best
+                })
+                .collect();
+            for (node, (foot, distance)) in improved.into_iter().enumerate() {
+                (lattice.feet[node], distances[node]) = (foot, distance);
+            }
+        }
+        lattice.mixed = lattice.find_mixed();
+        Ok(lattice)
+    }
+
+    /// The feet of the (up to six) neighbours of a lattice node.
+    fn neighbours(&self, x: usize, y: usize, level: usize) -> impl Iterator<Item = Vec2> {
+        let [nx, ny, nl] = self.shape.size;
+        let at = |x: usize, y: usize, level: usize| {
+            if x < nx && y < ny && level < nl { self.feet[(x * ny + y) * nl + level] } else { Vec2::NAN }
+        };
+        [
+            at(x.wrapping_sub(1), y, level),
+            at(x + 1, y, level),
+            at(x, y.wrapping_sub(1), level),
+            at(x, y + 1, level),
+            at(x, y, level.wrapping_sub(1)),
+            at(x, y, level + 1),
+        ]
+        .into_iter()
+        .filter(|foot| !foot.is_nan())
+    }
+
+    fn find_mixed(&self) -> Vec<bool> {
+        let [_, ny, nl] = self.shape.size;
+        (0..self.feet.len())
+            .into_par_iter()
+            .map(|node| {
+                let corners = self.corners([node / nl / ny, node / nl % ny, node % nl]);
+                let mut known = corners.into_iter().filter(|foot| !foot.is_nan());
+                let Some(first) = known.next() else { return false };
+                let (low, high) = known.fold((first, first), |(low, high), foot| (low.min(foot), high.max(foot)));
+                (high - low).max_element() > 2.0 * BRANCH
+            })
+            .collect()
+    }
+
+    /// The eight feet around a cell, the last ones repeated at the upper borders.
+    fn corners(&self, cell: [usize; 3]) -> [Vec2; 8] {
+        let [_, ny, nl] = self.shape.size;
+        std::array::from_fn(|corner| {
+            let n: [usize; 3] = std::array::from_fn(|axis| {
+                (cell[axis] + (corner >> axis & 1)).min(self.shape.size[axis] - 1)
+            });
+            self.feet[(n[0] * ny + n[1]) * nl + n[2]]
+        })
+    }
+
+    /// A start near voxel (x, y) and a (fractional) level of the region's grid: the nearest lattice node's foot.
+    pub fn start(&self, x: f32, y: f32, level: f32) -> Option<Vec2> {
+        let (_, nearest) = self.cell(x, y, level);
+        let foot = self.feet[nearest];
+        (!foot.is_nan()).then_some(foot)
+    }
+
+    /// The cell that holds a place, and the lattice node nearest to it.
+    #[inline]
+    fn cell(&self, x: f32, y: f32, level: f32) -> ([usize; 3], usize) {
+        let [_, ny, nl] = self.shape.size;
+        let at = [
+            (x - self.shape.origin[0] as f32) * (1.0 / COLUMNS as f32),
+            (y - self.shape.origin[1] as f32) * (1.0 / COLUMNS as f32),
+            level * (1.0 / LEVELS as f32),
+        ];
+        // `as usize` saturates at 0, and sends NaN there.
+        let clamp = |value: f32, axis: usize| (value as usize).min(self.shape.size[axis] - 1);
+        let cell = [clamp(at[0], 0), clamp(at[1], 1), clamp(at[2], 2)];
+        let near = [clamp(at[0] + 0.5, 0), clamp(at[1] + 0.5, 1), clamp(at[2] + 0.5, 2)];
+        (cell, (near[0] * ny + near[1]) * nl + near[2])
+    }
+
+    /// Lets the lattice challenge a foot that was followed to `p`; returns whether another branch turned out nearer.
+    #[inline]
+    pub fn challenge(
+        &self,
+        foot: &mut Foot,
+        surface: &Surface,
+        metric: &Metric,
+        frame: Frame,
+        p: Vec3,
+        level: f32,
+    ) -> bool {
+        let column = Vec2::new(frame.column[0] as f32, frame.column[1] as f32);
+        let (cell, nearest) = self.cell(p.x + column.x, p.y + column.y, level);
+        let [_, ny, nl] = self.shape.size;
+        if self.mixed[(cell[0] * ny + cell[1]) * nl + cell[2]] {
+            let mut changed = false;
+            for corner in self.corners(cell) {
+                changed |= try_branch(foot, surface, metric, frame, p, corner - column, 1.0);
+            }
+            return changed;
+        }
+        try_branch(foot, surface, metric, frame, p, self.feet[nearest] - column, 0.0)
+    }
+}
+
+/// Walks from `start` where that point of the surface is nearer than the foot, give or take `slack` (scaled metric).
+fn try_branch(
+    foot: &mut Foot,
+    surface: &Surface,
+    metric: &Metric,
+    frame: Frame,
+    p: Vec3,
+    start: Vec2,
+    slack: f32,
+) -> bool {
+    // Also false for the NaN of a lattice node that was not wanted.
+    if (start - foot.at).length_squared() > 0.25 {
+        let mut other = Foot::start(surface, frame, start);
+        let distance_sq = metric.length_squared(p - other.position());
+        let limit = foot.distance + slack;
+        if distance_sq < limit * limit {
+            other.follow(surface, metric, frame, p);
+            if other.distance < foot.distance * (1.0 - 1e-5) {
+                let moved = (other.at - foot.at).length_squared() > 0.25;
+                *foot = other;
+                return moved;
+            }
+        }
+    }
+    false
+}

@@ -1,0 +1,102 @@
+//! One region's sheets, and the field k over them.
+//!
+//! # Distance ratio (P-illus 3.1)
+//!
+//! ```text
+//! k = d_b / (d_b + d_t)         ∇k = (d_t ∇d_b − d_b ∇d_t) / (d_b + d_t)²
+//! ```
+//!
+//! with ∇d the metric unit normal of the sheet at the closest point, towards the layer: analytic, and stable where d
+//! vanishes. Isocurves are followed with k itself as the parameter, dp/dk = ∇k/|∇k|², so that a curve arrives at
+//! k = 0.5 by construction.
+//!
+//! # Parallel
+//!
+//! k = d/T from the bottom, or 1 − d/T from the top, T being the layer's reference thickness in metres. Curves along ∇k are the
+//! sheet's normals; their foot is known. The normals of a curved sheet meet farther out, on the side it is hollow
+//! to, so (i, j) are those of the *foot*: there is no common surface at half height that all of them cross.
+//!
+//! # Spaces
+//! Positions are voxels relative to the [`Frame`] of a column (its integer x, y; height of the bottom sheet there).
+
+use crate::closest::Foot;
+use crate::metric::Metric;
+use crate::surface::{Frame, Surface};
+use glam::Vec3;
+
+/// Two sheets of one layer in one block, and what k means between them.
+pub struct Layer {
+    /// Where k = 0; for a layer open below, the top sheet lowered by its thickness.
+    pub bottom: Surface,
+    /// Where k = 1 (distance ratio); otherwise the sheet at the reference thickness.
+    pub top: Surface,
+    /// How k is measured.
+    pub kind: LayerKind,
+    /// Lengths and angles.
+    pub metric: Metric,
+}
+
+/// How k is measured in a region.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LayerKind {
+    /// Ratio of the distances to both sheets.
+    Ratio,
+    /// Distance from the bottom over the thickness (scaled metric).
+    AboveBottom(f32),
+    /// 1 − distance from the top over the thickness (scaled metric).
+    BelowTop(f32),
+    /// k is the fraction of the height; i, j are the column's own.
+    Vertical,
+}
+
+/// Both feet of a point that moves through a layer.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Feet {
+    /// On the bottom sheet.
+    pub bottom: Foot,
+    /// On the top sheet.
+    pub top: Foot,
+}
+
+/// The ratio field at a point.
+#[derive(Debug, Clone, Copy)]
+pub struct RatioSample {
+    /// k.
+    pub k: f32,
+    /// dp/dk along the isocurve, voxels per unit of k; zero where ∇k vanishes.
+    pub velocity: Vec3,
+}
+
+impl Layer {
+    /// The frame of a column: relative height 0 is on the bottom sheet.
+    pub fn frame(&self, column: [i32; 2]) -> Frame {
+        Frame { column, z: self.bottom.node(column[0], column[1]) }
+    }
+
+    /// Voxels between the sheets in a column; negative where they cross.
+    pub fn thickness(&self, column: [i32; 2]) -> f32 {
+        self.bottom.node(column[0], column[1]) - self.top.node(column[0], column[1])
+    }
+
+    /// Moves both feet to `p` and evaluates the ratio there.
+    #[inline]
+    pub fn follow(&self, frame: Frame, p: Vec3, feet: &mut Feet) -> RatioSample {
+        feet.bottom.follow(&self.bottom, &self.metric, frame, p);
+        feet.top.follow(&self.top, &self.metric, frame, p);
+        self.ratio(feet)
+    }
+
+    /// The ratio from feet that are up to date.
+    #[inline]
+    pub fn ratio(&self, feet: &Feet) -> RatioSample {
+        let (db, dt) = (feet.bottom.distance, feet.top.distance);
+        let sum = db + dt;
+        let towards_bottom = feet.bottom.upward_normal(&self.metric);
+        let towards_top = feet.top.upward_normal(&self.metric);
+        // The distance to the top grows downwards, hence the plus.
+        let gradient = (towards_bottom * dt + towards_top * db) * (1.0 / (sum * sum));
+        let squared = self.metric.length_squared(gradient);
+        let velocity = if squared * sum * sum > 1e-4 { gradient * (1.0 / squared) } else { Vec3::ZERO };
+        RatioSample { k: db / sum, velocity }
+    }
+}

@@ -1,0 +1,52 @@
+//! Where to start looking for a closest point: the nearest of a sparse set of the sheet's nodes, by kd-tree.
+//!
+//! Every [`STRIDE`]th node of a sheet, placed in metres, goes into an immutable `kiddo` tree. The walk over the surface
+//! ([`crate::closest`]) makes the answer exact, so the set can be sparse, and a sparse set is also what keeps the tree fast.
+//! Nodes of a height field differ in (x, y), so there are no duplicates by construction.
+
+use crate::metric::Metric;
+use crate::surface::Surface;
+use glam::{DMat3, DVec3};
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+
+/// Distance between the nodes that are put into the tree, voxels.
+const STRIDE: usize = 4;
+
+/// Finds a node of a sheet near a point.
+pub struct NodeFinder {
+    tree: Option<ImmutableKdTree<f32, 3>>,
+    columns: Vec<[i32; 2]>,
+    map: DMat3,
+    centre: DVec3,
+}
+
+impl NodeFinder {
+    /// Builds the tree over a sheet.
+    pub fn new(surface: &Surface, metric: &Metric) -> Self {
+        let (origin, size) = surface.extent();
+        let along = |axis: usize| {
+            let last = size[axis] - 1;
+            (0..last).step_by(STRIDE).chain([last]).map(move |n| origin[axis] + n as i32)
+        };
+        let columns: Vec<[i32; 2]> = along(0).flat_map(|x| along(1).map(move |y| [x, y])).collect();
+        let [x, y] = columns[columns.len() / 2];
+        let centre = DVec3::new(f64::from(x), f64::from(y), f64::from(surface.node(x, y)));
+        let map = metric.scaled_from_voxel();
+        let place = |p: DVec3| (map * (p - centre)).as_vec3().to_array();
+        let points: Vec<[f32; 3]> = columns
+            .iter()
+            .map(|&[x, y]| place(DVec3::new(f64::from(x), f64::from(y), f64::from(surface.node(x, y)))))
+            .collect();
+        Self { tree: ImmutableKdTree::new_from_slice(&points).ok(), columns, map, centre }
+    }
+
+    /// The column of the nearest node in the set to voxel `p`.
+    pub fn near(&self, p: DVec3) -> [i32; 2] {
+        let query = (self.map * (p - self.centre)).as_vec3().to_array();
+        let item = self.tree.as_ref().map(|tree| tree.query(&query).nearest_one::<SquaredEuclidean<f32>>().execute());
+        match item {
+            Some(found) => self.columns[found.item as usize],
+            None => [p.x.round() as i32, p.y.round() as i32],
+        }
+    }
+}

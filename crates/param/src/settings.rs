@@ -1,0 +1,80 @@
+//! How k is defined per layer, and how finely the parameterization is stored.
+
+use crate::ParamError;
+use serde::{Deserialize, Serialize};
+
+/// What k means inside a layer. k is 0 at the bottom sheet and grows upwards in all of them.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum KDefinition {
+    /// k = d_bottom / (d_bottom + d_top), distances in metres to the closest points of the two sheets; i, j are where the
+    /// curve along ∇k crosses k = 0.5 (P-illus 3.1). An open layer has one sheet only and falls back on the parallel
+    /// definition of that sheet.
+    #[default]
+    DistanceRatio,
+    /// k = d_bottom / T with the layer's reference thickness T: beds parallel to the bottom, cut off by the top, as
+    /// below an unconformity. i, j are those of the closest point on the bottom sheet.
+    ParallelToBottom,
+    /// k = 1 − d_top / T: beds parallel to the top that end on the bottom, as above an onlap surface. i, j are those of
+    /// the closest point on the top sheet.
+    ParallelToTop,
+}
+
+/// Settings of [`crate::Parameterization::compute`].
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ParamSettings {
+    /// Distance between two levels of the stratigraphic grid where the layer is thickest, voxels. Default 2: memory and
+    /// time go with its inverse, the interpolation error of k between levels with its square.
+    pub level_spacing: f32,
+    /// Definition of k per layer, index 0 = deepest. Layers beyond the list take [`KDefinition::DistanceRatio`].
+    /// Default empty.
+    pub definitions: Vec<KDefinition>,
+    /// Vertical exaggeration at which distances and angles are measured: 1 (default) is true space; another value
+    /// parameterizes in display space, so that textures look undistorted at that exaggeration.
+    pub exaggeration: f64,
+    /// Lateral error allowed per step of a trace, voxels. Default 5e-4, a hundredth of what can be seen in a texture; the
+    /// angle between i, j and k at one voxel is good to about this many radians.
+    pub trace_tolerance: f32,
+}
+
+impl Default for ParamSettings {
+    fn default() -> Self {
+        Self { level_spacing: 2.0, definitions: Vec::new(), exaggeration: 1.0, trace_tolerance: 5e-4 }
+    }
+}
+
+impl ParamSettings {
+    /// Checks the ranges of all settings for a model of so many layers.
+    ///
+    /// # Errors
+    /// The first [`ParamError`] found.
+    pub fn validate(&self, layers: usize) -> Result<(), ParamError> {
+        let in_range = |setting, found: f64, expected, ok: bool| {
+            if ok { Ok(()) } else { Err(ParamError::Setting { setting, found, expected }) }
+        };
+        let spacing = self.level_spacing;
+        in_range("level_spacing", f64::from(spacing), "from 0.25 to 64 voxels", (0.25..=64.0).contains(&spacing))?;
+        let tolerance = self.trace_tolerance;
+        in_range("trace_tolerance", f64::from(tolerance), "from 1e-5 to 1 voxel", (1e-5..=1.0).contains(&tolerance))?;
+        let exaggeration = self.exaggeration;
+        in_range("exaggeration", exaggeration, "from 0.001 to 1000", (1e-3..=1e3).contains(&exaggeration))?;
+        match self.definitions.len() {
+            count if count > layers => Err(ParamError::NoSuchLayer { layer: count - 1, layers }),
+            _ => Ok(()),
+        }
+    }
+
+    /// The definition that holds in `layer`: the stated one, or the parallel one that an open layer allows. `None` when
+    /// the only layer is open on both sides: k is then the vertical fraction of the volume.
+    pub fn definition(&self, layer: usize, layers: usize) -> Option<KDefinition> {
+        let stated = self.definitions.get(layer).copied().unwrap_or_default();
+        match (layer == 0, layer + 1 == layers) {
+            (true, true) => None,
+            (true, false) => Some(KDefinition::ParallelToTop),
+            (false, true) => Some(KDefinition::ParallelToBottom),
+            (false, false) => Some(stated),
+        }
+    }
+}
