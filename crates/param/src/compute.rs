@@ -8,13 +8,13 @@
 //! its edge), offsets are those of the nearest column within two that has a thickness, so that a wedge keeps its k up to the edge, and 0 farther away. A
 //! number that is not finite never leaves this file: its node keeps offset 0 and is flagged.
 
+use crate::closest::Foot;
 use crate::grid::{PINCHED, RegionGrid};
 use crate::lattice::{COLUMNS, FootLattice, LEVELS, LatticeShape};
 use crate::layer::{Feet, Layer, LayerKind};
 use crate::surface::Frame;
 use crate::touched::Touched;
 use crate::trace::Tracer;
-use crate::closest::Foot;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
@@ -104,7 +104,7 @@ impl<'a> Filler<'a> {
         let deepest = ((frame.z - (self.samples - 1.0)) * scale).floor() - 3.0;
         let highest = (frame.z * scale).ceil() + 3.0;
         let last = self.levels - 1;
-        (( deepest.max(0.0) as usize).min(last), (highest.max(0.0) as usize).min(last))
+        ((deepest.max(0.0) as usize).min(last), (highest.max(0.0) as usize).min(last))
     }
 
     fn column(&self, column: [i32; 2], mut out: Column) {
@@ -130,7 +130,14 @@ impl<'a> Filler<'a> {
         }
     }
 
-    fn ratio_column(&self, tracer: &Tracer, frame: Frame, thickness: f32, levels: std::ops::RangeInclusive<usize>, out: &mut Column) {
+    fn ratio_column(
+        &self,
+        tracer: &Tracer,
+        frame: Frame,
+        thickness: f32,
+        levels: std::ops::RangeInclusive<usize>,
+        out: &mut Column,
+    ) {
         let layer = self.layer;
         let start = |lattice: &FootLattice, surface| {
             let level = *levels.start() as f32;
@@ -138,10 +145,8 @@ impl<'a> Filler<'a> {
             let origin = Vec2::new(frame.column[0] as f32, frame.column[1] as f32);
             Foot::start(surface, frame, at.map_or(Vec2::ZERO, |at| at - origin))
         };
-        let mut feet = Feet {
-            bottom: start(tracer.lattices[0], &layer.bottom),
-            top: start(tracer.lattices[1], &layer.top),
-        };
+        let mut feet =
+            Feet { bottom: start(tracer.lattices[0], &layer.bottom), top: start(tracer.lattices[1], &layer.top) };
         for level in levels {
             let v = level as f32 / (self.levels - 1) as f32;
             let p = Vec3::new(0.0, 0.0, -v * thickness);
@@ -157,7 +162,14 @@ impl<'a> Filler<'a> {
         }
     }
 
-    fn parallel_column(&self, lattice: &FootLattice, frame: Frame, thickness: f32, levels: std::ops::RangeInclusive<usize>, out: &mut Column) {
+    fn parallel_column(
+        &self,
+        lattice: &FootLattice,
+        frame: Frame,
+        thickness: f32,
+        levels: std::ops::RangeInclusive<usize>,
+        out: &mut Column,
+    ) {
         let layer = self.layer;
         let (surface, upwards, reference) = match layer.kind {
             LayerKind::AboveBottom(reference) => (&layer.bottom, true, reference),

@@ -131,7 +131,8 @@ impl RegionGrid {
         let scale = (self.levels - 1) as f32;
         let (cl, fl) = split(v * scale, self.levels);
         let at = |a: usize, b: usize, c: usize| {
-            let (x, y, l) = ((cx + a).min(self.size[0] - 1), (cy + b).min(self.size[1] - 1), (cl + c).min(self.levels - 1));
+            let (x, y, l) =
+                ((cx + a).min(self.size[0] - 1), (cy + b).min(self.size[1] - 1), (cl + c).min(self.levels - 1));
             self.offsets[self.node(x, y, l)]
         };
         let mut value = [0.0; 3];

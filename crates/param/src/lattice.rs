@@ -83,7 +83,8 @@ impl FootLattice {
                 let column = column_of(index);
                 for level in 0..nl {
                     let (frame, p) = place(column, level);
-                    let in_voxels = p.as_dvec3() + glam::DVec3::new(f64::from(column[0]), f64::from(column[1]), f64::from(frame.z));
+                    let in_voxels =
+                        p.as_dvec3() + glam::DVec3::new(f64::from(column[0]), f64::from(column[1]), f64::from(frame.z));
                     let [x, y] = finder.near(in_voxels);
                     (feet[level], distances[level]) = walk(column, level, Vec2::new(x as f32, y as f32));
                     if level > 0 && (feet[level] - feet[level - 1]).length_squared() > 1.0 {
@@ -163,9 +164,8 @@ impl FootLattice {
     fn corners(&self, cell: [usize; 3]) -> [Vec2; 8] {
         let [_, ny, nl] = self.shape.size;
         std::array::from_fn(|corner| {
-            let n: [usize; 3] = std::array::from_fn(|axis| {
-                (cell[axis] + (corner >> axis & 1)).min(self.shape.size[axis] - 1)
-            });
+            let n: [usize; 3] =
+                std::array::from_fn(|axis| (cell[axis] + (corner >> axis & 1)).min(self.shape.size[axis] - 1));
             self.feet[(n[0] * ny + n[1]) * nl + n[2]]
         })
     }

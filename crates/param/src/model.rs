@@ -2,20 +2,13 @@
 
 use glam::{DMat3, Vec3};
 use survey::HeightField;
-
-/// One layer in one fault block.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
-pub struct Region {
-    /// Layer, 0 = deepest.
-    pub layer: u16,
-    /// Fault block.
-    pub block: u16,
-}
+pub use survey::model::Region;
+use survey::model::StructuralModel;
 
 /// An interpretation made solid: sheets that are defined everywhere, and the region of every point.
 ///
-/// With n horizons (0 = youngest) there are n + 1 layers: horizon h is the bottom of layer n − h and the top of layer
-/// n − 1 − h.
+/// [`StructuralModel`] is one; closed-form models are others. With n horizons (0 = youngest) there are n + 1 layers:
+/// horizon h is the bottom of layer n − h and the top of layer n − 1 − h. Positions are voxels.
 pub trait LayerModel: Sync {
     /// Counts of voxels `[inlines, crosslines, samples]`.
     fn size(&self) -> [usize; 3];
@@ -29,4 +22,30 @@ pub trait LayerModel: Sync {
     fn sheet(&self, horizon: usize, block: u16) -> &HeightField;
     /// The region at a voxel position.
     fn region_at(&self, p: Vec3) -> Region;
+}
+
+impl LayerModel for StructuralModel {
+    fn size(&self) -> [usize; 3] {
+        self.size()
+    }
+
+    fn metric(&self) -> DMat3 {
+        self.metric()
+    }
+
+    fn layer_count(&self) -> usize {
+        self.layer_count()
+    }
+
+    fn block_count(&self) -> usize {
+        self.block_count()
+    }
+
+    fn sheet(&self, horizon: usize, block: u16) -> &HeightField {
+        self.sheet(horizon, block)
+    }
+
+    fn region_at(&self, p: Vec3) -> Region {
+        self.region_at(p)
+    }
 }

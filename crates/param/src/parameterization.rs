@@ -52,7 +52,9 @@ impl Parameterization {
         progress.begin("parameterizing", rows as u64);
         let reach: Vec<f32> = (0..layers)
             .map(|layer| {
-                (0..blocks).map(|block| reach(model, settings, layer, block, &touched[block * layers + layer])).fold(1.0, f32::max)
+                (0..blocks)
+                    .map(|block| reach(model, settings, layer, block, &touched[block * layers + layer]))
+                    .fold(1.0, f32::max)
             })
             .collect();
         let mut grids = Vec::with_capacity(layers * blocks);
@@ -84,12 +86,7 @@ impl Parameterization {
 
     /// Flat coordinates of a voxel position by the (extended) parameterization of a given region, with the Jacobian
     /// ∂(i, j, k)/∂(x, y, z) per voxel.
-    pub fn lookup_in<M: LayerModel + ?Sized>(
-        &self,
-        model: &M,
-        p: Vec3,
-        region: Region,
-    ) -> (FlatPoint, [[f32; 3]; 3]) {
+    pub fn lookup_in<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, region: Region) -> (FlatPoint, [[f32; 3]; 3]) {
         self.grid(region).lookup(model, self.size, p)
     }
 
@@ -163,8 +160,10 @@ fn plan<'a, M: LayerModel + ?Sized>(
     let node = move |sheet: SheetRef, x, y| {
         sheet.horizon.map_or(0.0, |horizon| model.sheet(horizon, region.block).node(x, y)) + sheet.shift
     };
-    let thickest =
-        wanted_columns(touched).map(|[x, y]| node(bottom, x, y) - node(top, x, y)).fold(0.0, f32::max).min(4.0 * (last + 1.0));
+    let thickest = wanted_columns(touched)
+        .map(|[x, y]| node(bottom, x, y) - node(top, x, y))
+        .fold(0.0, f32::max)
+        .min(4.0 * (last + 1.0));
     let levels = ((thickest / settings.level_spacing).ceil() as usize + 1).max(FEWEST_LEVELS);
     let thickness_m = match kind {
         LayerKind::AboveBottom(thickness) | LayerKind::BelowTop(thickness) => {

@@ -58,8 +58,12 @@ pub struct Surface {
 /// Catmull–Rom weights and their first two derivatives at fraction t.
 #[inline]
 fn weights(t: f32) -> [Vec4; 3] {
-    let (a, b, c, d) =
-        (Vec4::new(0.0, 1.0, 0.0, 0.0), Vec4::new(-0.5, 0.0, 0.5, 0.0), Vec4::new(1.0, -2.5, 2.0, -0.5), Vec4::new(-0.5, 1.5, -1.5, 0.5));
+    let (a, b, c, d) = (
+        Vec4::new(0.0, 1.0, 0.0, 0.0),
+        Vec4::new(-0.5, 0.0, 0.5, 0.0),
+        Vec4::new(1.0, -2.5, 2.0, -0.5),
+        Vec4::new(-0.5, 1.5, -1.5, 0.5),
+    );
     [a + t * (b + t * (c + t * d)), b + t * (2.0 * c + (3.0 * t) * d), 2.0 * c + (6.0 * t) * d]
 }
 

@@ -1,0 +1,157 @@
+//! The parameterization sampled on a lattice: the arrays i, j, k, layer and block of a project on disk.
+//!
+//! Sample p of a volume of M samples along an axis of N voxels lies at voxel p·(N−1)/(M−1) (corner-aligned), and values are
+//! *evaluated* there, not resampled. Between columns they are bilinear as in the exact lookup, along a column the cubic through
+//! four levels (Catmull–Rom, end slopes by a parabola), a little better than the lookup's linear interpolation.
+//!
+//! Memory: 16 bytes a sample.
+
+use crate::grid::{PINCHED, RegionGrid};
+use crate::{LayerModel, ParamError, Parameterization, Region};
+use glam::Vec3;
+use rayon::prelude::*;
+use survey::{Progress, Volume};
+
+/// Layer and block of a sample that belongs to no region.
+pub const NO_REGION: u16 = u16::MAX;
+
+/// i, j, k and the region at every sample of a lattice that spans the survey.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VoxelParameterization {
+    /// Counts of samples `[inlines, crosslines, samples]`.
+    pub size: [usize; 3],
+    /// Inline coordinate, NaN where there is no region.
+    pub i: Volume<f32>,
+    /// Crossline coordinate, likewise.
+    pub j: Volume<f32>,
+    /// 0 on the bottom of the sample's layer, 1 on its top.
+    pub k: Volume<f32>,
+    /// Layer, 0 = deepest; [`NO_REGION`] for none.
+    pub layer: Volume<u16>,
+    /// Fault block; [`NO_REGION`] for none.
+    pub block: Volume<u16>,
+}
+
+/// Voxel position of a sample of a corner-aligned lattice.
+pub fn corner_aligned(sample: usize, samples: usize, voxels: usize) -> f32 {
+    if samples < 2 { 0.0 } else { (sample as f64 * (voxels - 1) as f64 / (samples - 1) as f64) as f32 }
+}
+
+impl Parameterization {
+    /// Samples the parameterization on a lattice of `size` that spans the survey; [`Self::size`] for one sample a voxel.
+    ///
+    /// # Errors
+    /// [`ParamError::VolumeSize`] when a side is 0, or cancelled.
+    pub fn voxel_volumes<M: LayerModel + ?Sized>(
+        &self,
+        model: &M,
+        size: [usize; 3],
+        progress: &Progress,
+    ) -> Result<VoxelParameterization, ParamError> {
+        if size.contains(&0) {
+            return Err(ParamError::VolumeSize { size });
+        }
+        let mut out = VoxelParameterization {
+            size,
+            i: Volume::filled(size, f32::NAN),
+            j: Volume::filled(size, f32::NAN),
+            k: Volume::filled(size, f32::NAN),
+            layer: Volume::filled(size, NO_REGION),
+            block: Volume::filled(size, NO_REGION),
+        };
+        progress.begin("sampling i, j, k", size[0] as u64);
+        let slab = size[1] * size[2];
+        let values = out.i.samples_mut().par_chunks_mut(slab).zip(out.j.samples_mut().par_chunks_mut(slab));
+        let values = values.zip(out.k.samples_mut().par_chunks_mut(slab));
+        let ids = out.layer.samples_mut().par_chunks_mut(slab).zip(out.block.samples_mut().par_chunks_mut(slab));
+        values.zip(ids).enumerate().try_for_each(|(px, (((i, j), k), (layer, block)))| {
+            let x = corner_aligned(px, size[0], self.size[0]);
+            for py in 0..size[1] {
+                let y = corner_aligned(py, size[1], self.size[1]);
+                let mut trace = Trace::default();
+                for pz in 0..size[2] {
+                    let p = Vec3::new(x, y, corner_aligned(pz, size[2], self.size[2]));
+                    let region = model.region_at(p);
+                    if usize::from(region.layer) >= self.layers || usize::from(region.block) >= self.blocks {
+                        continue;
+                    }
+                    let value = trace.at(self, model, region, p);
+                    let n = py * size[2] + pz;
+                    (i[n], j[n], k[n]) = (value[0], value[1], value[2]);
+                    (layer[n], block[n]) = (region.layer, region.block);
+                }
+            }
+            progress.step(1)
+        })?;
+        Ok(out)
+    }
+}
+
+/// Sheet heights of the region that a walk down a trace is in.
+#[derive(Default)]
+struct Trace {
+    region: Option<Region>,
+    bottom: f32,
+    thickness: f32,
+}
+
+impl Trace {
+    fn at<M: LayerModel + ?Sized>(&mut self, param: &Parameterization, model: &M, region: Region, p: Vec3) -> [f32; 3] {
+        let grid = param.grid(region);
+        if self.region != Some(region) {
+            self.bottom = grid.bottom.z(model, region.block, p.x, p.y);
+            self.thickness = self.bottom - grid.top.z(model, region.block, p.x, p.y);
+            self.region = Some(region);
+        }
+        let v = if self.thickness < PINCHED { 0.5 } else { ((self.bottom - p.z) / self.thickness).clamp(0.0, 1.0) };
+        let [dx, dy, dk] = grid.smooth_offset(p.x, p.y, v);
+        let scale = [0, 1].map(|axis: usize| 1.0 / param.size[axis].saturating_sub(1).max(1) as f32);
+        [(p.x + dx) * scale[0], (p.y + dy) * scale[1], v + dk]
+    }
+}
+
+impl RegionGrid {
+    /// Offsets at a column position and level fraction, bilinear between columns and cubic along them.
+    fn smooth_offset(&self, x: f32, y: f32, v: f32) -> [f32; 3] {
+        if self.offsets.is_empty() {
+            return [0.0; 3];
+        }
+        let split = |at: f32, count: usize| {
+            let at = at.clamp(0.0, (count - 1) as f32);
+            let cell = (at as usize).min(count.saturating_sub(2));
+            (cell, at - cell as f32)
+        };
+        let (cx, fx) = split(x - self.origin[0] as f32, self.size[0]);
+        let (cy, fy) = split(y - self.origin[1] as f32, self.size[1]);
+        let (cl, fl) = split(v * (self.levels - 1) as f32, self.levels);
+        let mut sum = [0.0; 3];
+        for (a, wx) in [(0, 1.0 - fx), (1, fx)] {
+            for (b, wy) in [(0, 1.0 - fy), (1, fy)] {
+                if wx * wy > 0.0 {
+                    let start = self.node(cx + a, cy + b, 0);
+                    let value = cubic(&self.offsets[start..start + self.levels], cl, fl);
+                    for n in 0..3 {
+                        sum[n] += wx * wy * value[n];
+                    }
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// Catmull–Rom between levels `cell` and `cell + 1` of a column; beyond its ends the parabola through the last three.
+#[inline]
+fn cubic(column: &[[f32; 3]], cell: usize, t: f32) -> [f32; 3] {
+    let last = column.len() - 1;
+    let (b, c) = (column[cell], column[(cell + 1).min(last)]);
+    if last < 2 {
+        return std::array::from_fn(|n| b[n] + (c[n] - b[n]) * t);
+    }
+    std::array::from_fn(|n| {
+        let (b, c) = (b[n], c[n]);
+        let a = if cell > 0 { column[cell - 1][n] } else { 3.0 * (b - c) + column[cell + 2][n] };
+        let d = if cell + 2 <= last { column[cell + 2][n] } else { 3.0 * (c - b) + column[cell - 1][n] };
+        b + 0.5 * t * ((c - a) + t * ((2.0 * a - 5.0 * b + 4.0 * c - d) + t * (3.0 * (b - c) + d - a)))
+    })
+}
