@@ -14,6 +14,8 @@ pub enum Noun {
     Fault,
     /// A layer between two horizons.
     Layer,
+    /// A picture to tile a layer with.
+    Texture,
     /// A named view.
     Scene,
 }
@@ -25,6 +27,7 @@ impl std::fmt::Display for Noun {
             Self::Horizon => "horizon",
             Self::Fault => "fault",
             Self::Layer => "layer",
+            Self::Texture => "texture",
             Self::Scene => "scene",
         })
     }
@@ -132,6 +135,15 @@ pub enum ProjectError {
     /// A survey frame that conversions cannot work with.
     #[error("the survey geometry cannot be used: {0}")]
     Geometry(#[from] survey::geometry::GeometryError),
+    /// A transfer function or texture that cannot be drawn.
+    #[error(transparent)]
+    Style(#[from] ttf::Error),
+    /// A view that shows nothing.
+    #[error(transparent)]
+    Scene(#[from] render::SceneError),
+    /// No picture could be made.
+    #[error(transparent)]
+    Render(#[from] render::RenderError),
     /// The user stopped it.
     #[error("cancelled")]
     Cancelled(#[from] survey::Cancelled),
@@ -185,7 +197,9 @@ impl ProjectError {
             Self::NothingToUndo | Self::NothingToRedo => "`petroglyph info PROJECT` shows the history",
             Self::Cancelled(_) => "nothing was changed",
             Self::Geometry(_) => "check the header bytes and bounds the geometry is made from",
-            Self::Io { .. } => return None,
+            Self::Style(_) => "`petroglyph patterns OUT.png` draws every pattern with its name",
+            Self::Scene(_) => "`petroglyph scene show` prints a scene; `petroglyph render --help` lists what can be set",
+            Self::Io { .. } | Self::Render(_) => return None,
         })
     }
 }

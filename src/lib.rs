@@ -7,7 +7,10 @@
 pub mod cli;
 pub mod command;
 pub mod error;
+pub mod library;
 pub mod project;
+pub mod scene;
+pub mod style;
 
 pub use command::{Command, Effect};
 pub use error::ProjectError;

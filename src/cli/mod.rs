@@ -6,10 +6,12 @@
 mod args;
 mod failure;
 mod info;
+mod list;
 mod report;
 mod request;
 mod run;
 mod terminal;
+mod view;
 
 use clap::Parser;
 use std::process::ExitCode;

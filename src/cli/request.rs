@@ -1,10 +1,14 @@
 //! What was meant: typed text turned into commands and values, or refused as wrong usage.
 
-use super::args::{Action, CreateArgs};
-use crate::command::{Command, SetVelocity};
+use super::args::{Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, ScalarAction, SceneAction};
+use super::view::View;
+use crate::command::{
+    AddTexture, Command, RemoveScalar, RemoveScene, ResetLayer, SetLayer, SetScalar, SetVelocity,
+};
 use glam::DVec2;
 use std::path::PathBuf;
 use survey::{SurveyGeometry, VerticalUnit};
+use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
 
 /// Something to do.
 #[derive(Debug)]
@@ -15,12 +19,31 @@ pub(super) enum Request {
     Create { project: PathBuf, geometry: Option<SurveyGeometry> },
     /// Change a project.
     Change { project: PathBuf, command: Command },
+    /// Keep a view, made from what the project or a file has.
+    AddScene { project: PathBuf, name: String, from: Option<PathBuf>, view: View },
+    /// Set the colours of raw data.
+    SetRaw { project: PathBuf, volume: Option<String>, map: ColourMap, range: Option<[f32; 2]> },
+    /// Say something about a project.
+    List { project: PathBuf, what: Listing },
     /// Go back.
     Undo(PathBuf),
     /// Go forward.
     Redo(PathBuf),
     /// Forget the history.
     Prune(PathBuf),
+}
+
+/// What to list of a project.
+#[derive(Debug)]
+pub(super) enum Listing {
+    /// Layers and their styles.
+    Layers,
+    /// Scalar functions.
+    Scalars,
+    /// Named views.
+    Scenes,
+    /// One view as TOML; `None`: the one that rendering starts from.
+    Scene(Option<String>),
 }
 
 /// What is wrong with the usage.
@@ -30,11 +53,40 @@ impl TryFrom<Action> for Request {
     type Error = Usage;
 
     fn try_from(action: Action) -> Result<Self, Usage> {
+        let change = |project: PathBuf, command: Command| Self::Change { project, command };
         Ok(match action {
             Action::Info { path } => Self::Info(path),
             Action::Create(typed) => Self::Create { geometry: frame(&typed)?, project: typed.project },
             Action::Velocity { project, velocity_m_s } => {
-                Self::Change { project, command: Command::SetVelocity(SetVelocity { velocity_m_s }) }
+                change(project, Command::SetVelocity(SetVelocity { velocity_m_s }))
+            }
+            Action::Layer(LayerAction::List { project }) => Self::List { project, what: Listing::Layers },
+            Action::Layer(LayerAction::Set(typed)) => {
+                let (project, command) = set_layer(typed)?;
+                change(project, Command::SetLayer(command))
+            }
+            Action::Layer(LayerAction::Reset { project, layer }) => {
+                change(project, Command::ResetLayer(ResetLayer { layer }))
+            }
+            Action::Scalar(ScalarAction::List { project }) => Self::List { project, what: Listing::Scalars },
+            Action::Scalar(ScalarAction::Set { project, volume, interval }) => {
+                let intervals = interval.iter().map(|text| scalar_interval(text)).collect::<Result<_, _>>()?;
+                change(project, Command::SetScalar(SetScalar { function: ScalarTtf { volume, intervals } }))
+            }
+            Action::Scalar(ScalarAction::Remove { project, volume }) => {
+                change(project, Command::RemoveScalar(RemoveScalar { volume }))
+            }
+            Action::Raw(typed) => raw(typed)?,
+            Action::Texture(typed) => {
+                change(typed.project, Command::AddTexture(AddTexture { path: typed.file, width_mm: typed.width_mm }))
+            }
+            Action::Scene(SceneAction::List { project }) => Self::List { project, what: Listing::Scenes },
+            Action::Scene(SceneAction::Show { project, name }) => Self::List { project, what: Listing::Scene(name) },
+            Action::Scene(SceneAction::Add { project, name, from, view }) => {
+                Self::AddScene { project, name, from, view: view.try_into()? }
+            }
+            Action::Scene(SceneAction::Remove { project, name }) => {
+                change(project, Command::RemoveScene(RemoveScene { name }))
             }
             Action::Undo { project } => Self::Undo(project),
             Action::Redo { project } => Self::Redo(project),
@@ -43,6 +95,72 @@ impl TryFrom<Action> for Request {
     }
 }
 
+fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
+    let frequency = match &typed.frequency {
+        None => None,
+        Some(text) => {
+            let [horizontal, vertical] = numbers::<2>("--frequency", text, ',')?;
+            Some(Frequency { horizontal: horizontal as f32, vertical: vertical as f32 })
+        }
+    };
+    let change = SetLayer {
+        layer: typed.layer,
+        name: typed.name,
+        colour: typed.colour.as_deref().map(colour).transpose()?,
+        ink: typed.ink.as_deref().map(colour).transpose()?,
+        pattern: typed.pattern,
+        intervals: typed.interval.iter().map(|text| depth_interval(text)).collect::<Result<_, _>>()?,
+        frequency,
+        opacity: typed.opacity,
+    };
+    if change == (SetLayer { layer: change.layer.clone(), ..SetLayer::default() }) {
+        return Err("layer set: nothing to change; give --name, --pattern, --colour or another option".to_owned());
+    }
+    Ok((typed.project, change))
+}
+
+fn colour(text: &str) -> Result<Colour, Usage> {
+    text.parse().map_err(|error: ttf::Error| error.to_string())
+}
+
+/// `LOW,HIGH,PATTERN[,OPACITY]`
+fn depth_interval(text: &str) -> Result<DepthInterval, Usage> {
+    let usage = || format!("--interval {text}: expected LOW,HIGH,PATTERN or LOW,HIGH,PATTERN,OPACITY");
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let number = |part: &str| part.parse::<f32>().map_err(|_| usage());
+    let (low, high, texture, opacity) = match parts[..] {
+        [low, high, texture] => (number(low)?, number(high)?, texture, 1.0),
+        [low, high, texture, opacity] => (number(low)?, number(high)?, texture, number(opacity)?),
+        _ => return Err(usage()),
+    };
+    Ok(DepthInterval { k: [low, high], texture: texture.to_owned(), frequency: None, opacity, colour: None })
+}
+
+/// `LOW,HIGH,PATTERN[,OPACITY[,H,V]]`
+fn scalar_interval(text: &str) -> Result<ScalarInterval, Usage> {
+    let usage = || {
+        format!("--interval {text}: expected LOW,HIGH,PATTERN, LOW,HIGH,PATTERN,OPACITY or LOW,HIGH,PATTERN,OPACITY,H,V")
+    };
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let number = |part: &str| part.parse::<f32>().map_err(|_| usage());
+    let (low, high, texture, opacity, factor) = match parts[..] {
+        [low, high, texture] => (low, high, texture, 1.0, [1.0; 2]),
+        [low, high, texture, opacity] => (low, high, texture, number(opacity)?, [1.0; 2]),
+        [low, high, texture, opacity, h, v] => (low, high, texture, number(opacity)?, [number(h)?, number(v)?]),
+        _ => return Err(usage()),
+    };
+    let range = [number(low)?, number(high)?];
+    Ok(ScalarInterval { range, texture: texture.to_owned(), factor, opacity, colour: None, ink: None })
+}
+
+fn raw(typed: RawArgs) -> Result<Request, Usage> {
+    let map = ColourMap::from_name(&typed.map).ok_or_else(|| {
+        format!("--map {}: expected one of {}", typed.map, ColourMap::ALL.map(ColourMap::name).join(", "))
+    })?;
+    let range = typed.range.as_deref().map(|text| numbers::<2>("--range", text, ',')).transpose()?;
+    let range = range.map(|range| range.map(|value| value as f32));
+    Ok(Request::SetRaw { project: typed.project, volume: typed.volume, map, range })
+}
 /// The lattice that `--bounds`, `--size` and `--z-unit` describe: its first and last samples lie on the bounds.
 fn frame(typed: &CreateArgs) -> Result<Option<SurveyGeometry>, Usage> {
     let Some(bounds) = &typed.bounds else { return Ok(None) };

@@ -1,10 +1,16 @@
 //! Doing what was meant.
 
-use super::info;
 use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
+use super::{info, list};
+use crate::command::{AddScene, Command, SetRaw};
 use crate::project::Project;
+use crate::{scene, style};
+use anyhow::Context;
+use render::Scene;
+use std::path::Path;
+use survey::Progress;
 
 /// Why there is no answer.
 #[derive(Debug)]
@@ -33,11 +39,23 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             report
         }
         Request::Change { project, command } => {
-            let effect = Project::open(&project)?.apply(&command, &progress)?;
-            let mut report = Report::line(effect.summary());
-            report.fields(&effect);
-            report
+            change(Project::open(&project)?, &command, &progress)?
         }
+        Request::AddScene { project, name, from, view } => {
+            let project = Project::open(&project)?;
+            let mut scene = match from {
+                Some(file) => scene_file(&file)?,
+                None => scene::choose(project.document(), None)?,
+            };
+            view.change(&mut scene, project.document().frame()?);
+            change(project, &Command::AddScene(AddScene { name, scene }), &progress)?
+        }
+        Request::SetRaw { project, volume, map, range } => {
+            let project = Project::open(&project)?;
+            let raw = style::raw_colour(project.document(), volume.as_deref(), map, range)?;
+            change(project, &Command::SetRaw(SetRaw { raw }), &progress)?
+        }
+        Request::List { project, what } => list::list(&Project::open(&project)?, what)?,
         Request::Undo(project) => {
             let undone = Project::open(&project)?.undo()?;
             let mut report = Report::line(format!("undone: {undone}"));
@@ -60,4 +78,18 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
         report.field("warnings", warnings);
     }
     Ok(report)
+}
+
+/// Applies a command and tells what it did.
+fn change(mut project: Project, command: &Command, progress: &Progress) -> anyhow::Result<Report> {
+    let effect = project.apply(command, progress)?;
+    let mut report = Report::line(effect.summary());
+    report.fields(&effect);
+    Ok(report)
+}
+
+/// Reads a scene that a person wrote.
+fn scene_file(path: &Path) -> anyhow::Result<Scene> {
+    let text = std::fs::read_to_string(path).with_context(|| format!("{} could not be read", path.display()))?;
+    toml::from_str(&text).with_context(|| format!("{} is not a scene", path.display()))
 }

@@ -5,14 +5,24 @@
 //! from a command, because every state is remembered.
 
 mod contact;
+mod layer;
+mod scalar;
+mod scene;
 mod survey_frame;
+mod texture;
 
 pub use contact::SetContact;
+pub use layer::{ResetLayer, SetLayer};
+pub use scalar::{RemoveScalar, SetRaw, SetScalar};
+pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
+pub use texture::AddTexture;
 
 use crate::error::{Noun, ProjectError};
 use crate::project::Draft;
+use crate::project::document::Source;
 use serde::{Deserialize, Serialize};
+use std::path::Path;
 use survey::{Progress, SurveyGeometry};
 
 /// A change to a project.
@@ -29,6 +39,22 @@ pub enum Command {
     SetVelocity(SetVelocity),
     /// Say what a horizon does to its neighbours.
     SetContact(SetContact),
+    /// Change how a layer looks.
+    SetLayer(SetLayer),
+    /// Take a layer's style away.
+    ResetLayer(ResetLayer),
+    /// Lay textures of a volume's values over the layers.
+    SetScalar(SetScalar),
+    /// Take a volume's textures away.
+    RemoveScalar(RemoveScalar),
+    /// Say how raw data is coloured.
+    SetRaw(SetRaw),
+    /// Bring a tile of one's own.
+    AddTexture(AddTexture),
+    /// Keep a view under a name.
+    AddScene(AddScene),
+    /// Take a view away.
+    RemoveScene(RemoveScene),
 }
 
 /// What a command did: the facts to tell the user.
@@ -51,6 +77,14 @@ impl Command {
             Self::Create { .. } => Err(ProjectError::Exists { path: draft.root().to_owned() }),
             Self::SetVelocity(change) => change.execute(draft),
             Self::SetContact(change) => change.execute(draft),
+            Self::SetLayer(change) => change.execute(draft),
+            Self::ResetLayer(change) => change.execute(draft),
+            Self::SetScalar(change) => change.execute(draft),
+            Self::RemoveScalar(change) => change.execute(draft),
+            Self::SetRaw(change) => change.execute(draft),
+            Self::AddTexture(change) => change.execute(draft),
+            Self::AddScene(change) => change.execute(draft),
+            Self::RemoveScene(change) => change.execute(draft),
         }
     }
 }
@@ -63,4 +97,10 @@ impl Effect {
             Self::Changed { summary } => summary.clone(),
         }
     }
+}
+
+/// Facts of a file that was read as `reading`.
+fn source_of(path: &Path, reading: String) -> Result<Source, ProjectError> {
+    let facts = std::fs::metadata(path).map_err(|source| ProjectError::io("read", path, source))?;
+    Ok(Source { path: path.to_owned(), bytes: facts.len(), reading })
 }

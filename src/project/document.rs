@@ -4,9 +4,11 @@
 //! states differ only where the project does.
 
 use crate::error::{Noun, ProjectError};
+use render::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use survey::{Contact, StratigraphicHorizon, Stratigraphy, SurveyGeometry};
+use ttf::TransferFunctions;
 
 /// The version this program writes, and the newest it reads.
 pub const VERSION: u32 = 1;
@@ -58,6 +60,8 @@ pub struct VolumeEntry {
     pub polarity: Polarity,
     /// The value that 99 % of the samples do not exceed in size: where colours are clipped.
     pub clip: f32,
+    /// The smallest sample; not negative: an attribute without a natural zero.
+    pub lowest: f32,
     /// Where it came from.
     pub source: Source,
     /// Its own lattice, where that is not the project's.
@@ -99,6 +103,30 @@ pub struct FaultEntry {
     pub source: Source,
 }
 
+/// A tile of the user's own.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TextureEntry {
+    /// Unique name, by which layers call it: the file's name without its ending.
+    pub name: String,
+    /// The picture, relative to the project's folder.
+    pub file: String,
+    /// Printed width and height, mm.
+    pub tile_mm: [f32; 2],
+    /// Where it came from.
+    pub source: Source,
+}
+
+/// A view with a name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SceneEntry {
+    /// Unique name.
+    pub name: String,
+    /// What it shows.
+    pub scene: Scene,
+}
+
 /// The state of a project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -122,6 +150,15 @@ pub struct Document {
     /// Faults in order of import.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<FaultEntry>,
+    /// The user's own tiles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub textures: Vec<TextureEntry>,
+    /// Textures of layers and volumes, colours of raw data. What is absent gets a default when it is drawn.
+    #[serde(default)]
+    pub style: TransferFunctions,
+    /// Named views.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scenes: Vec<SceneEntry>,
 }
 
 /// Says at the top of the file what it is.
@@ -138,6 +175,9 @@ impl Document {
             volumes: Vec::new(),
             horizons: Vec::new(),
             faults: Vec::new(),
+            textures: Vec::new(),
+            style: TransferFunctions::default(),
+            scenes: Vec::new(),
         }
     }
 
@@ -182,7 +222,7 @@ impl Document {
                 self.layer_names.len()
             ));
         }
-        for noun in [Noun::Volume, Noun::Horizon, Noun::Fault] {
+        for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Layer, Noun::Texture, Noun::Scene] {
             let names = self.names(noun);
             if let Some(twice) = names.iter().enumerate().find(|(index, name)| names[..*index].contains(name)) {
                 return Err(format!("two {noun}s are named \"{}\"", twice.1));
@@ -204,8 +244,9 @@ impl Document {
             Noun::Volume => self.volumes.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Horizon => self.horizons.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Fault => self.faults.iter().map(|entry| entry.name.clone()).collect(),
-            Noun::Layer => self.stratigraphy().layer_names_bottom_up().into_iter().rev().collect(),
-            Noun::Scene => Vec::new(),
+            Noun::Layer => self.layers(),
+            Noun::Texture => self.textures.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Scene => self.scenes.iter().map(|entry| entry.name.clone()).collect(),
         }
     }
 
@@ -214,7 +255,8 @@ impl Document {
         let volumes = self.volumes.iter().map(|entry| entry.file.as_str());
         let horizons = self.horizons.iter().map(|entry| entry.file.as_str());
         let faults = self.faults.iter().map(|entry| entry.file.as_str());
-        volumes.chain(horizons).chain(faults)
+        let textures = self.textures.iter().map(|entry| entry.file.as_str());
+        volumes.chain(horizons).chain(faults).chain(textures)
     }
 
     /// The horizons' order, contacts and the layers between them.

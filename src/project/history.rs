@@ -109,7 +109,7 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
             (_, Err(_)) => storage::remove(&path),
         }
     }
-    for folder in ["", "volumes", "horizons", "faults"] {
+    for folder in ["", "volumes", "horizons", "faults", "textures"] {
         storage::entries(&root.join(folder)).iter().filter(|path| is_new(path)).for_each(|path| storage::remove(path));
     }
     Ok(())

@@ -3,7 +3,7 @@
 //! ```text
 //! project.toml        the state (see `document`); replaced as a whole, never changed in place
 //! history/NNNN.toml   each command with the state it led to (see `history`)
-//! volumes/ horizons/ faults/   data, one new file or folder for each generation
+//! volumes/ horizons/ faults/ textures/   data, one new file or folder for each generation
 //! derived/            what was computed; may be deleted
 //! lock                held while a command runs
 //! ```
@@ -17,6 +17,7 @@
 pub mod document;
 mod draft;
 mod history;
+mod layers;
 mod storage;
 
 pub use document::{Document, Polarity};
@@ -227,7 +228,7 @@ impl NewProject {
         fs::create_dir_all(&root).map_err(fail)?;
         // Two processes may want to create the same project; the one in the making is locked under another name than its own commands use.
         let lock = Lock::take_named(&root, "creating")?;
-        for folder in ["history", "volumes", "horizons", "faults"] {
+        for folder in ["history", "volumes", "horizons", "faults", "textures"] {
             storage::remove(&root.join(folder));
             fs::create_dir(root.join(folder)).map_err(fail)?;
         }

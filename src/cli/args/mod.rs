@@ -1,5 +1,11 @@
 //! What can be typed.
 
+mod layer;
+mod scene;
+
+pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, TextureArgs};
+pub(super) use scene::{SceneAction, ViewArgs};
+
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
 
@@ -35,6 +41,21 @@ pub(super) enum Action {
         /// Velocity, m/s
         velocity_m_s: f64,
     },
+    /// The look of layers: names, colours, patterns
+    #[command(subcommand)]
+    Layer(LayerAction),
+    /// Textures by the values of a volume, over the layers
+    #[command(subcommand)]
+    Scalar(ScalarAction),
+    /// Say which volume is shown as raw data, and in which colours
+    #[command(after_help = "Example:\n  petroglyph raw north.petro --volume seismic --map grey")]
+    Raw(RawArgs),
+    /// Bring a tile of your own into a project
+    #[command(after_help = "Example:\n  petroglyph texture north.petro coal-seam.svg --width-mm 12")]
+    Texture(TextureArgs),
+    /// Named views
+    #[command(subcommand)]
+    Scene(SceneAction),
     /// Go back by one command
     #[command(after_help = "Example:\n  petroglyph undo north.petro")]
     Undo {

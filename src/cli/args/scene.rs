@@ -1,0 +1,99 @@
+//! What can be typed about views.
+
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum SceneAction {
+    /// List the named views
+    #[command(after_help = "Example:\n  petroglyph scene list north.petro")]
+    List {
+        /// Project folder
+        project: PathBuf,
+    },
+    /// Keep a view under a name
+    #[command(
+        after_help = "Examples:\n  petroglyph scene add north.petro corner --cut nearest,0.5,0.4 --azimuth 30 --exaggeration 2\n  petroglyph scene add north.petro figure3 --from figure3.toml"
+    )]
+    Add {
+        /// Project folder
+        project: PathBuf,
+        /// Its name
+        name: String,
+        /// TOML file to start from, as `scene show` prints it
+        #[arg(long, value_name = "FILE.toml")]
+        from: Option<PathBuf>,
+        #[command(flatten)]
+        view: ViewArgs,
+    },
+    /// Print a view as TOML, to edit and give to `render --scene` or `scene add --from`
+    #[command(after_help = "Example:\n  petroglyph scene show north.petro corner > corner.toml")]
+    Show {
+        /// Project folder
+        project: PathBuf,
+        /// Its name [default: the view that `render` starts from]
+        name: Option<String>,
+    },
+    /// Take a view away
+    #[command(after_help = "Example:\n  petroglyph scene remove north.petro corner")]
+    Remove {
+        /// Project folder
+        project: PathBuf,
+        /// Its name
+        name: String,
+    },
+}
+
+/// Changes to a view.
+#[derive(Debug, Default, Args)]
+pub(in crate::cli) struct ViewArgs {
+    /// Size of the image in pixels
+    #[arg(long, value_name = "WxH")]
+    pub(in crate::cli) size: Option<String>,
+    /// 0 = illustrative to 1 = raw data
+    #[arg(long, value_name = "0..1")]
+    pub(in crate::cli) blend: Option<f32>,
+    /// How layer coordinates are looked up: exact, or the packed volume of the published method
+    #[arg(long, value_name = "exact|packed")]
+    pub(in crate::cli) lookup: Option<String>,
+    /// Vertical exaggeration
+    #[arg(long, value_name = "FACTOR")]
+    pub(in crate::cli) exaggeration: Option<f64>,
+    /// Bearing the camera looks along, degrees clockwise from north
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub(in crate::cli) azimuth: Option<f64>,
+    /// Height of the camera above the horizontal, degrees
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub(in crate::cli) elevation: Option<f64>,
+    /// Perspective with this opening angle instead of a parallel projection
+    #[arg(long, value_name = "DEG")]
+    pub(in crate::cli) perspective: Option<f64>,
+    /// Factor on the scale at which the block fits the image
+    #[arg(long, value_name = "FACTOR")]
+    pub(in crate::cli) zoom: Option<f64>,
+    /// Show this part of the survey: inlines, crosslines, vertical values
+    #[arg(long = "box", value_name = "IL0,IL1,XL0,XL1,Z0,Z1", allow_hyphen_values = true)]
+    pub(in crate::cli) roaming_box: Option<String>,
+    /// Cut a corner off over the whole height: nearest, min-min, min-max, max-min or max-max (first and last inline, crossline), and the share of
+    /// the block's length along inlines and crosslines; repeat it for several
+    #[arg(long, value_name = "CORNER[,SHARE,SHARE]")]
+    pub(in crate::cli) cut: Vec<String>,
+    /// Cut a box out; repeat it for several
+    #[arg(long, value_name = "IL0,IL1,XL0,XL1,Z0,Z1", allow_hyphen_values = true)]
+    pub(in crate::cli) cut_box: Vec<String>,
+    /// Relief of the topmost horizon instead of a flat top
+    #[arg(long, value_name = "on|off")]
+    pub(in crate::cli) ground: Option<String>,
+    /// Lines along horizons, faults and edges
+    #[arg(long, value_name = "on|off")]
+    pub(in crate::cli) outlines: Option<String>,
+    /// Factor on the frequency of every pattern
+    #[arg(long, value_name = "FACTOR")]
+    pub(in crate::cli) global_frequency: Option<f32>,
+    /// Samples a pixel along each axis
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) samples: Option<u32>,
+    /// Colour behind the block, or `transparent`
+    #[arg(long, value_name = "#RRGGBB")]
+    pub(in crate::cli) background: Option<String>,
+}

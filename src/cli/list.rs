@@ -1,0 +1,107 @@
+//! Listings of a project's parts.
+
+use super::report::Report;
+use super::request::Listing;
+use crate::error::Noun;
+use crate::library;
+use crate::project::Project;
+use crate::scene;
+use serde_json::{Value, json};
+use ttf::{LayerStyle, LayerTtf};
+
+/// Answers a listing.
+pub(super) fn list(project: &Project, what: Listing) -> anyhow::Result<Report> {
+    match what {
+        Listing::Layers => layers(project),
+        Listing::Scalars => Ok(scalars(project)),
+        Listing::Scenes => Ok(scenes(project)),
+        Listing::Scene(name) => show_scene(project, name.as_deref()),
+    }
+}
+
+fn layers(project: &Project) -> anyhow::Result<Report> {
+    let document = project.document();
+    let library = library::of_project(project.root(), document)?;
+    let names = document.layers();
+    let mut report = Report::default();
+    let mut objects = Vec::new();
+    for (position, name) in names.iter().enumerate() {
+        let index = names.len() - 1 - position;
+        let own = document.style.layers.style(name);
+        let style = own.cloned().unwrap_or_else(|| LayerTtf::default_style(name, index, &library));
+        let by_default = if own.is_none() { " (by default)" } else { "" };
+        report.say(format!("{name}: {}{by_default}", describe(&style)));
+        objects.push(json!({ "name": name, "index": index, "assigned": own.is_some(), "style": style }));
+    }
+    report.field("layers", objects);
+    Ok(report)
+}
+
+fn describe(style: &LayerStyle) -> String {
+    let textures: Vec<String> = style
+        .intervals
+        .iter()
+        .map(|interval| match interval.k {
+            [0.0, 1.0] => interval.texture.clone(),
+            [low, high] => format!("{} from {low} to {high}", interval.texture),
+        })
+        .collect();
+    let textures = if textures.is_empty() { "no pattern".to_owned() } else { textures.join(", ") };
+    format!("{textures} on {}", style.colour)
+}
+
+fn scalars(project: &Project) -> Report {
+    let stack = &project.document().style.scalars;
+    let mut report = Report::default();
+    for function in stack {
+        for interval in &function.intervals {
+            let [low, high] = interval.range;
+            report.say(format!("{}: {} from {low} to {high}, opacity {}", function.volume, interval.texture, interval.opacity));
+        }
+    }
+    if stack.is_empty() {
+        report.say("no textures by value");
+    }
+    // JSON has no infinity; an open end is null there.
+    let finite = |value: f32| if value.is_finite() { json!(value) } else { Value::Null };
+    let objects: Vec<Value> = stack
+        .iter()
+        .map(|function| {
+            let intervals: Vec<Value> = function
+                .intervals
+                .iter()
+                .map(|interval| {
+                    json!({
+                        "range": interval.range.map(finite),
+                        "texture": interval.texture,
+                        "opacity": interval.opacity,
+                        "factor": interval.factor,
+                    })
+                })
+                .collect();
+            json!({ "volume": function.volume, "intervals": intervals })
+        })
+        .collect();
+    report.field("scalars", objects);
+    report
+}
+
+fn scenes(project: &Project) -> Report {
+    let names = project.document().names(Noun::Scene);
+    let mut report = Report::default();
+    if names.is_empty() {
+        report.say("no scenes yet: rendering starts from a default view");
+    }
+    for name in &names {
+        report.say(name);
+    }
+    report.field("scenes", names);
+    report
+}
+
+fn show_scene(project: &Project, name: Option<&str>) -> anyhow::Result<Report> {
+    let scene = scene::choose(project.document(), name)?;
+    let mut report = Report::line(toml::to_string_pretty(&scene)?.trim_end());
+    report.field("scene", scene);
+    Ok(report)
+}

@@ -1,0 +1,202 @@
+//! What was meant by the options of a view: changes on a scene.
+
+use super::args::ViewArgs;
+use super::request::{Usage, counts, numbers};
+use glam::DVec3;
+use render::{Background, Corner, Ground, Lookup, Outlines, Projection, Scene, VoxelBox};
+use survey::SurveyGeometry;
+
+/// Changes to a scene; what is absent stays.
+#[derive(Debug, Default, Clone, PartialEq)]
+pub(super) struct View {
+    size_px: Option<[u32; 2]>,
+    blend: Option<f32>,
+    lookup: Option<Lookup>,
+    exaggeration: Option<f64>,
+    azimuth_deg: Option<f64>,
+    elevation_deg: Option<f64>,
+    projection: Option<Projection>,
+    zoom: Option<f64>,
+    roaming_box: Option<LineBox>,
+    cuts: Vec<Cut>,
+    ground: Option<Option<Ground>>,
+    outlines: Option<Outlines>,
+    global_frequency: Option<f32>,
+    samples: Option<u32>,
+    background: Option<Background>,
+}
+
+/// A box in line numbers and vertical values: two inlines, two crosslines, two values.
+type LineBox = [f64; 6];
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Cut {
+    Corner { corner: Option<Corner>, share: [f64; 2] },
+    Box(LineBox),
+}
+
+/// Share of the block that a corner cut takes unless told otherwise.
+const CUT_SHARE: f64 = 0.45;
+
+impl TryFrom<ViewArgs> for View {
+    type Error = Usage;
+
+    fn try_from(typed: ViewArgs) -> Result<Self, Usage> {
+        let size_px = match &typed.size {
+            None => None,
+            Some(text) => {
+                let [width, height] = counts::<2>("--size", text)?;
+                let side = |count: usize| u32::try_from(count).map_err(|_| format!("--size {text}: too large"));
+                Some([side(width)?, side(height)?])
+            }
+        };
+        let lookup = match typed.lookup.as_deref() {
+            None => None,
+            Some("exact") => Some(Lookup::Exact),
+            Some("packed") => Some(Lookup::Packed),
+            Some(other) => return Err(format!("--lookup {other}: expected exact or packed")),
+        };
+        let mut cuts = Vec::new();
+        for text in &typed.cut {
+            cuts.push(corner_cut(text)?);
+        }
+        for text in &typed.cut_box {
+            cuts.push(Cut::Box(numbers("--cut-box", text, ',')?));
+        }
+        let background = match typed.background.as_deref() {
+            None => None,
+            Some("transparent") => Some(Background::Transparent),
+            Some(text) => Some(Background::Colour(text.parse().map_err(|error: ttf::Error| error.to_string())?)),
+        };
+        Ok(Self {
+            size_px,
+            blend: typed.blend,
+            lookup,
+            exaggeration: typed.exaggeration,
+            azimuth_deg: typed.azimuth,
+            elevation_deg: typed.elevation,
+            projection: typed.perspective.map(|fov_deg| Projection::Perspective { fov_deg }),
+            zoom: typed.zoom,
+            roaming_box: typed.roaming_box.map(|text| numbers("--box", &text, ',')).transpose()?,
+            cuts,
+            ground: switch("--ground", typed.ground.as_deref(), Some(Ground::default()), None)?,
+            outlines: switch("--outlines", typed.outlines.as_deref(), Outlines::default(), Outlines::none())?,
+            global_frequency: typed.global_frequency,
+            samples: typed.samples,
+            background,
+        })
+    }
+}
+
+fn switch<T>(option: &str, text: Option<&str>, on: T, off: T) -> Result<Option<T>, Usage> {
+    match text {
+        None => Ok(None),
+        Some("on") => Ok(Some(on)),
+        Some("off") => Ok(Some(off)),
+        Some(other) => Err(format!("{option} {other}: expected on or off")),
+    }
+}
+
+fn corner_cut(text: &str) -> Result<Cut, Usage> {
+    let usage = || format!("--cut {text}: expected CORNER or CORNER,SHARE,SHARE with shares between 0 and 1");
+    let mut parts = text.splitn(2, ',');
+    let corner = match parts.next().unwrap_or_default() {
+        "nearest" => None,
+        "min-min" => Some(Corner::MinMin),
+        "min-max" => Some(Corner::MinMax),
+        "max-min" => Some(Corner::MaxMin),
+        "max-max" => Some(Corner::MaxMax),
+        other => {
+            return Err(format!("--cut {other}: expected nearest, min-min, min-max, max-min or max-max"));
+        }
+    };
+    let share = match parts.next() {
+        None => [CUT_SHARE; 2],
+        Some(shares) => numbers::<2>("--cut", shares, ',').map_err(|_| usage())?,
+    };
+    if share.iter().all(|share| *share > 0.0 && *share < 1.0) { Ok(Cut::Corner { corner, share }) } else { Err(usage()) }
+}
+
+impl View {
+    /// Changes `scene` where something was said. Cuts, when given, replace the scene's own.
+    pub(super) fn change(&self, scene: &mut Scene, geometry: &SurveyGeometry) {
+        scene.size_px = self.size_px.unwrap_or(scene.size_px);
+        scene.blend = self.blend.unwrap_or(scene.blend);
+        scene.lookup = self.lookup.unwrap_or(scene.lookup);
+        scene.exaggeration = self.exaggeration.unwrap_or(scene.exaggeration);
+        scene.camera.azimuth_deg = self.azimuth_deg.or(scene.camera.azimuth_deg);
+        scene.camera.elevation_deg = self.elevation_deg.unwrap_or(scene.camera.elevation_deg);
+        scene.camera.projection = self.projection.unwrap_or(scene.camera.projection);
+        scene.camera.zoom = self.zoom.unwrap_or(scene.camera.zoom);
+        scene.roaming_box = self.roaming_box.map(|lines| voxel_box(lines, geometry)).or(scene.roaming_box);
+        scene.ground = self.ground.unwrap_or(scene.ground);
+        scene.outlines = self.outlines.unwrap_or(scene.outlines);
+        scene.global_frequency = self.global_frequency.unwrap_or(scene.global_frequency);
+        scene.samples = self.samples.unwrap_or(scene.samples);
+        scene.background = self.background.unwrap_or(scene.background);
+        if !self.cuts.is_empty() {
+            let block = scene.box_in(geometry);
+            let view = scene.view(geometry);
+            let cut = |cut: &Cut| match *cut {
+                Cut::Corner { corner, share } => {
+                    block.corner_cut(corner.unwrap_or_else(|| view.nearest_corner(&block)), share)
+                }
+                Cut::Box(lines) => voxel_box(lines, geometry),
+            };
+            scene.cut_outs = self.cuts.iter().map(cut).collect();
+        }
+    }
+}
+
+/// The voxel box between two inlines, two crosslines and two vertical values, in any order.
+fn voxel_box([il0, il1, xl0, xl1, z0, z1]: LineBox, geometry: &SurveyGeometry) -> VoxelBox {
+    let corner = |il, xl, z| geometry.voxel_from_lines(il, xl).extend(geometry.vertical.index_of(z));
+    let (a, b): (DVec3, DVec3) = (corner(il0, xl0, z0), corner(il1, xl1, z1));
+    VoxelBox { min: a.min(b).to_array(), max: a.max(b).to_array() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::VerticalUnit;
+
+    fn geometry() -> SurveyGeometry {
+        let mut geometry = SurveyGeometry::regular([41, 31, 21], 25.0, 4.0, VerticalUnit::Milliseconds);
+        geometry.inlines.first = 140;
+        geometry.inlines.step = -1;
+        geometry
+    }
+
+    #[test]
+    fn boxes_are_given_in_line_numbers_also_where_they_count_down() {
+        let typed = ViewArgs { roaming_box: Some("130,110,1,11,8,40".into()), ..ViewArgs::default() };
+        let mut scene = Scene::default();
+        View::try_from(typed).unwrap().change(&mut scene, &geometry());
+        let block = scene.roaming_box.unwrap();
+        assert_eq!((block.min, block.max), ([10.0, 0.0, 2.0], [30.0, 10.0, 10.0]));
+    }
+
+    #[test]
+    fn the_nearest_corner_depends_on_the_camera() {
+        let cut = |azimuth| {
+            let typed =
+                ViewArgs { cut: vec!["nearest,0.5,0.5".into()], azimuth: Some(azimuth), ..ViewArgs::default() };
+            let mut scene = Scene::default();
+            View::try_from(typed).unwrap().change(&mut scene, &geometry());
+            scene.cut_outs[0]
+        };
+        assert_ne!(cut(30.0), cut(210.0));
+        assert_eq!(cut(30.0).extent(), DVec3::new(20.0, 15.0, 20.0));
+    }
+
+    #[test]
+    fn nonsense_is_a_usage_error() {
+        let refused = |typed: ViewArgs| View::try_from(typed).unwrap_err();
+        refused(ViewArgs { cut: vec!["left".into()], ..ViewArgs::default() });
+        refused(ViewArgs { cut: vec!["nearest,0.5".into()], ..ViewArgs::default() });
+        refused(ViewArgs { cut: vec!["nearest,0,1".into()], ..ViewArgs::default() });
+        refused(ViewArgs { size: Some("800".into()), ..ViewArgs::default() });
+        refused(ViewArgs { lookup: Some("fast".into()), ..ViewArgs::default() });
+        refused(ViewArgs { background: Some("red".into()), ..ViewArgs::default() });
+    }
+}
