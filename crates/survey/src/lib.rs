@@ -16,6 +16,7 @@
 //! Only [`geometry::SurveyGeometry`] converts between them.
 
 pub mod fault;
+pub mod formats;
 pub mod geometry;
 pub mod height_field;
 pub mod horizon;

@@ -1,0 +1,239 @@
+//! Horizon and fault files, in and out.
+//!
+//! A file goes through the same steps whatever its format: its signature names the format ([`Format`], with the evidence in
+//! the report), its reader hands over numbers as they are, these are converted ([`ImportOptions`] states the order), placed on
+//! nodes, split into single-valued sheets, and checked against the survey. The [`ImportReport`] says what was read, assumed
+//! and left out. A surface beside the survey, above or below it, or with a unit or sign that cannot be right is an
+//! error, never a surprise; nothing is returned or written then.
+//!
+//! | format | horizon in | fault in | horizon out | fault out |
+//! |---|---|---|---|---|
+//! | CSV / XYZ with or without a header | ✓ | points, sticks | ✓ | |
+//! | Irap classic ASCII | ✓ | | ✓ | |
+//!
+//! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
+
+mod columns;
+mod csv;
+mod error;
+mod horizon;
+mod irap;
+mod lattice;
+mod options;
+mod placement;
+mod raster;
+mod raw;
+mod report;
+mod scatter;
+mod sheets;
+mod table;
+mod text;
+mod vertical;
+mod write;
+
+pub use columns::Column;
+pub use error::{Extent, FormatError};
+pub use options::{ImportOptions, PlaceBy, ZPositive, ZUnit};
+pub use report::{Gridding, ImportReport, Provenance, Settled};
+
+use crate::geometry::SurveyGeometry;
+use crate::horizon::Horizon;
+use raw::{RawSurface, ReadContext};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::io::Write;
+use std::path::Path;
+use text::SourceFile;
+
+#[cfg(test)]
+mod tests;
+
+/// A file format of horizons or faults.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// CSV or XYZ, with or without a header line.
+    Csv,
+    /// Irap classic ASCII grid.
+    Irap,
+}
+
+/// What a file holds, or is wanted to hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SurfaceKind {
+    /// A horizon.
+    Horizon,
+    /// A fault.
+    Fault,
+}
+
+impl fmt::Display for SurfaceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Horizon => "horizon",
+            Self::Fault => "fault",
+        })
+    }
+}
+
+type Reader = fn(&SourceFile, &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError>;
+type HorizonWriter = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::Failure>;
+type FaultWriter = fn(&mut dyn Write, &crate::Fault, &SurveyGeometry) -> Result<(), write::Failure>;
+
+/// What the program knows of a format.
+struct Codec {
+    format: Format,
+    /// The word of the `--format` option.
+    name: &'static str,
+    /// The usual extension.
+    extension: &'static str,
+    /// The evidence that a file is of this format.
+    detect: fn(&SourceFile) -> Option<String>,
+    read_horizon: Option<Reader>,
+    read_fault: Option<Reader>,
+    write_horizon: Option<HorizonWriter>,
+    write_fault: Option<FaultWriter>,
+}
+
+/// Every format, in the order in which signatures are tried: those that cannot be mistaken first.
+const CODECS: &[Codec] = &[irap::CODEC, csv::CODEC];
+
+impl Format {
+    fn codec(self) -> &'static Codec {
+        // Every variant has its line in the table; a test makes sure.
+        CODECS.iter().find(|c| c.format == self).unwrap_or(&csv::CODEC)
+    }
+
+    /// Every format.
+    pub fn all() -> impl Iterator<Item = Self> {
+        CODECS.iter().map(|c| c.format)
+    }
+
+    /// The word for the format, as options and reports have it.
+    pub fn name(self) -> &'static str {
+        self.codec().name
+    }
+
+    /// The usual extension of its files, without the dot.
+    pub fn extension(self) -> &'static str {
+        self.codec().extension
+    }
+
+    /// The format of that word.
+    pub fn from_name(name: &str) -> Option<Self> {
+        CODECS.iter().find(|c| c.name.eq_ignore_ascii_case(name)).map(|c| c.format)
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+fn names(select: impl Fn(&Codec) -> bool) -> String {
+    CODECS.iter().filter(|c| select(c)).map(|c| c.name).collect::<Vec<_>>().join(", ")
+}
+
+/// Opens a file, settles its format and reads its surfaces as they are, of those asked for.
+fn read_raw(
+    path: &Path,
+    geometry: Option<&SurveyGeometry>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<(SourceFile, Settled<Format>, Vec<RawSurface>), FormatError> {
+    let source = SourceFile::open(path)?;
+    let format = match options.format {
+        Some(format) => Settled { value: format, source: Provenance::Option },
+        None => {
+            let found = CODECS.iter().find_map(|c| Some((c.format, (c.detect)(&source)?)));
+            let (value, evidence) = found.ok_or_else(|| {
+                let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(80)]);
+                let found = text::lines(&start)
+                    .next()
+                    .map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)));
+                FormatError::UnknownFormat { file: path.to_path_buf(), found, known: names(|_| true) }
+            })?;
+            Settled { value, source: Provenance::File(evidence) }
+        }
+    };
+    let reader_of = |c: &Codec| if kind == SurfaceKind::Horizon { c.read_horizon } else { c.read_fault };
+    let Some(reader) = reader_of(format.value.codec()) else {
+        let instead = names(|c| reader_of(c).is_some());
+        return Err(FormatError::Unsupported { format: format.value, action: "read", kind, instead });
+    };
+    let surfaces = reader(&source, &ReadContext { geometry, options, kind })?;
+    let surfaces = selected(&source, surfaces, options, kind)?;
+    Ok((source, format, surfaces))
+}
+
+/// The surfaces asked for: of the name selected; of several, the one of the name given; else all.
+fn selected(
+    source: &SourceFile,
+    surfaces: Vec<RawSurface>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<Vec<RawSurface>, FormatError> {
+    let wanted = match (&options.select, &options.name) {
+        (Some(name), _) => name,
+        (None, Some(name)) if surfaces.len() > 1 => name,
+        _ => return Ok(surfaces),
+    };
+    let available = surfaces.iter().map(|s| s.name.clone().unwrap_or_else(|| "(no name)".into())).collect::<Vec<_>>();
+    let found: Vec<_> = surfaces.into_iter().filter(|s| s.name.as_deref() == Some(wanted)).collect();
+    if found.is_empty() {
+        return Err(FormatError::NoSuchName {
+            file: source.path.clone(),
+            kind,
+            wanted: wanted.clone(),
+            available: available.join(", "),
+        });
+    }
+    Ok(found)
+}
+
+/// The name of a surface: the one given, else its own, else the file's.
+fn name_of(raw: &RawSurface, source: &SourceFile, options: &ImportOptions) -> String {
+    let own = raw.name.as_deref().map(str::trim).filter(|n| !n.is_empty());
+    options.name.clone().or_else(|| own.map(String::from)).unwrap_or_else(|| source.stem())
+}
+
+/// Reads the horizons of a file onto nodes over the survey.
+///
+/// # Errors
+/// [`FormatError`] when the file cannot be read, does not fit the survey, or is unclear; the text says what to do.
+///
+/// # Cost
+/// O(n log n) in points or nodes; the file is held in memory.
+pub fn read_horizons(
+    path: &Path,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    let (source, format, surfaces) = read_raw(path, Some(geometry), options, SurfaceKind::Horizon)?;
+    surfaces
+        .into_iter()
+        .map(|raw| {
+            let name = name_of(&raw, &source, options);
+            horizon::build(path, name, format.clone(), raw, geometry, options)
+        })
+        .collect()
+}
+
+/// Writes a horizon; beside the target first, then renamed.
+///
+/// # Errors
+/// [`FormatError::NotRepresentable`] when the format cannot hold it, [`FormatError::Io`].
+pub fn write_horizon(
+    path: &Path,
+    horizon: &Horizon,
+    geometry: &SurveyGeometry,
+    format: Format,
+) -> Result<(), FormatError> {
+    let Some(writer) = format.codec().write_horizon else {
+        let instead = names(|c| c.write_horizon.is_some());
+        return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Horizon, instead });
+    };
+    write::beside(path, &horizon.name, format, |out| writer(out, horizon, geometry))
+}

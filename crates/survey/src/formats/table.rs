@@ -1,0 +1,231 @@
+//! Rows of a text table to points, once its columns are known.
+
+use super::FormatError;
+use super::columns::{self, Column, ColumnLayout};
+use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::text::{self, Field, Line, SourceFile};
+use glam::DVec2;
+use std::collections::HashMap;
+
+/// From here on a magnitude means "undefined" in the formats that write 1e30 for it.
+pub(super) const UNDEFINED: f64 = 1e29;
+
+/// How the lines of a table are cut into numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Cut {
+    /// What stands between fields; `None` = blanks.
+    pub delimiter: Option<char>,
+    /// Whether numbers have a decimal comma.
+    pub decimal_comma: bool,
+}
+
+impl Cut {
+    /// How a line is cut: by `;`, tab or comma, whichever it has, in this order, else by blanks.
+    ///
+    /// A comma between digits of a table cut by `;` or tab is a decimal comma.
+    pub fn of(line: &str) -> Self {
+        // A tab beside blanks is a table with blanks; OpendTect cuts by tabs alone.
+        let delimiter = [';', '\t', ','].into_iter().find(|&d| line.contains(d));
+        let delimiter =
+            if delimiter == Some('\t') && !line.contains("\t\t") && !line.contains('"') { None } else { delimiter };
+        let decimal_comma = delimiter != Some(',')
+            && text::fields(line, delimiter).iter().any(|f| {
+                f.text.split_once(',').is_some_and(|(a, b)| {
+                    a.bytes().last().is_some_and(|c| c.is_ascii_digit())
+                        && b.bytes().next().is_some_and(|c| c.is_ascii_digit())
+                }) && text::number(&f.text.replacen(',', ".", 1)).is_some()
+            });
+        Self { delimiter, decimal_comma }
+    }
+
+    /// The fields of a line.
+    pub fn fields<'a>(&self, line: &'a str) -> Vec<Field<'a>> {
+        text::fields(line, self.delimiter)
+    }
+
+    /// A field as a number.
+    pub fn number(&self, field: &str) -> Option<f64> {
+        if self.decimal_comma { text::number(&field.replacen(',', ".", 1)) } else { text::number(field) }
+    }
+
+    /// A field as a vertical value: words for "nothing" are NaN.
+    fn vertical(&self, field: &str) -> Option<f64> {
+        match field.to_ascii_lowercase().as_str() {
+            "" | "-" | "null" | "none" | "na" | "n/a" | "undef" | "undefined" => Some(f64::NAN),
+            _ => self.number(field),
+        }
+    }
+}
+
+/// Whether a line is a comment or a mark of the end.
+pub(super) fn is_comment(line: &str) -> bool {
+    line.starts_with(['#', '!', '%', '@']) || line.starts_with("//") || matches!(line, "END" | "EOD")
+}
+
+/// The numbers of up to 2000 rows spread over the table, to tell columns apart, and whether a name stands before them.
+pub(super) fn sample_rows(rows: &[Line<'_>], cut: Cut) -> (Vec<Vec<f64>>, bool) {
+    let stride = (rows.len() / 2000).max(1);
+    let mut named = false;
+    let numbers = rows
+        .iter()
+        .step_by(stride)
+        .map(|line| {
+            let fields = cut.fields(line.text);
+            let name = fields.first().is_some_and(|f| f.quoted || cut.number(f.text).is_none());
+            named |= name;
+            fields.iter().skip(usize::from(name)).map_while(|f| cut.number(f.text)).collect()
+        })
+        .collect();
+    (numbers, named)
+}
+
+/// Reads rows into points, grouped by name in order of first appearance.
+pub(super) fn surfaces(
+    source: &SourceFile,
+    rows: &[Line<'_>],
+    cut: Cut,
+    layout: ColumnLayout,
+    context: &ReadContext<'_>,
+) -> Result<Vec<RawSurface>, FormatError> {
+    if !layout.is_complete() {
+        return Err(FormatError::Columns {
+            file: source.path.clone(),
+            why: format!(
+                "the columns {} hold no Z with X, Y or inline, crossline",
+                layout.columns.iter().map(|c| format!("{c:?}").to_lowercase()).collect::<Vec<_>>().join(", ")
+            ),
+            example: "x,y,z".into(),
+        });
+    }
+    let last = layout.columns.iter().rposition(|&c| c != Column::Other).unwrap_or(0);
+    let mut order: Vec<(Option<String>, Vec<RawPoint>)> = Vec::new();
+    let mut by_name: HashMap<Option<String>, usize> = HashMap::new();
+    let mut separators = 0usize;
+    let mut breaks = 0.0;
+    for line in rows {
+        let fields = cut.fields(line.text);
+        if is_separator(&fields, cut) {
+            separators += 1;
+            breaks += 1.0;
+            continue;
+        }
+        if fields.len() <= last {
+            let expected = format!("at least {} fields", last + 1);
+            return Err(source.syntax(line.number, expected, line.text));
+        }
+        let (name, mut point) = point_of(source, line, &fields, cut, &layout.columns)?;
+        if separators > 0 || context.kind == super::SurfaceKind::Fault {
+            point.stick = point.stick.or((separators > 0).then_some(breaks));
+        }
+        let slot = *by_name.entry(name.clone()).or_insert_with(|| {
+            order.push((name, Vec::new()));
+            order.len() - 1
+        });
+        order[slot].1.push(point);
+    }
+    if separators > 0 {
+        // Points before the first separator belong to the first part.
+        for (_, points) in &mut order {
+            points.iter_mut().for_each(|p| p.stick = p.stick.or(Some(0.0)));
+        }
+    }
+    let vertical = VerticalFacts { unit: layout.unit, domain: layout.domain, positive: layout.positive };
+    Ok(order
+        .into_iter()
+        .map(|(name, points)| RawSurface {
+            name,
+            shape: RawShape::Points(points),
+            vertical: vertical.clone(),
+            notes: layout.notes.clone(),
+        })
+        .collect())
+}
+
+/// RMS ends each part of a points file with a row of three 999.0.
+fn is_separator(fields: &[Field<'_>], cut: Cut) -> bool {
+    fields.len() == 3 && fields.iter().all(|f| cut.number(f.text) == Some(999.0))
+}
+
+fn point_of(
+    source: &SourceFile,
+    line: &Line<'_>,
+    fields: &[Field<'_>],
+    cut: Cut,
+    columns: &[Column],
+) -> Result<(Option<String>, RawPoint), FormatError> {
+    let (mut inline, mut crossline, mut x, mut y) = (None, None, None, None);
+    let mut name = None;
+    let mut point = RawPoint { z: f64::NAN, ..RawPoint::default() };
+    for (field, column) in fields.iter().zip(columns) {
+        let finite = |what: &str| {
+            cut.number(field.text)
+                .filter(|v| v.is_finite())
+                .ok_or_else(|| source.syntax(line.number, format!("a number for the {what}"), field.text))
+        };
+        match column {
+            Column::Inline => inline = Some(finite("inline")?),
+            Column::Crossline => crossline = Some(finite("crossline")?),
+            Column::X => x = Some(finite("X")?),
+            Column::Y => y = Some(finite("Y")?),
+            Column::Z => {
+                let value = cut.vertical(field.text);
+                let value = value.ok_or_else(|| source.syntax(line.number, "a number for Z", field.text))?;
+                point.z = if value.abs() < UNDEFINED { value } else { f64::NAN };
+            }
+            Column::Name => name = Some(field.text.to_string()),
+            Column::Stick => point.stick = Some(finite("stick")?),
+            Column::Node => point.node = Some(finite("node")?),
+            Column::Sheet => point.sheet = Some(finite("sheet")?),
+            Column::Quality => point.quality = columns::quality_of(field.text),
+            Column::Other => {}
+        }
+    }
+    point.lines = inline.zip(crossline).map(|(a, b)| DVec2::new(a, b));
+    // Far beyond any coordinate system the arithmetic would overflow.
+    if let Some(far) = [inline, crossline, x, y].into_iter().flatten().find(|v| v.abs() > 1e12) {
+        return Err(source.syntax(line.number, "a coordinate below 1e12", &far.to_string()));
+    }
+    point.xy = x.zip(y).map(|(a, b)| DVec2::new(a, b));
+    Ok((name, point))
+}
+
+/// The columns the user gave, the header's, or those that fit the survey.
+pub(super) fn settle_columns(
+    source: &SourceFile,
+    context: &ReadContext<'_>,
+    header: Option<ColumnLayout>,
+    rows: &[Line<'_>],
+    cut: Cut,
+) -> Result<ColumnLayout, FormatError> {
+    if let Some(columns) = &context.options.columns {
+        return Ok(ColumnLayout::plain(columns.clone()));
+    }
+    let (numbers, named) = sample_rows(rows, cut);
+    match header {
+        Some(mut layout) => {
+            // OpendTect's bulk export puts a name before the columns its header lists.
+            let width = rows.first().map_or(0, |line| cut.fields(line.text).len());
+            if named && !layout.columns.contains(&Column::Name) && width == layout.columns.len() + 1 {
+                layout.columns.insert(0, Column::Name);
+            }
+            Ok(layout)
+        }
+        None => columns::by_fit(source, context, &numbers, named),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_cut_is_seen_in_the_line() {
+        assert_eq!(Cut::of("1;2;3").delimiter, Some(';'));
+        assert_eq!(Cut::of("1, 2, 3").delimiter, Some(','));
+        assert_eq!(Cut::of("1 2\t3").delimiter, None);
+        let german = Cut::of("1,5;2,25;3");
+        assert!(german.decimal_comma);
+        assert_eq!(german.number("2,25"), Some(2.25));
+        assert!(!Cut::of("1,5").decimal_comma);
+    }
+}
