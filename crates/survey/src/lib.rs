@@ -23,6 +23,7 @@ pub mod horizon;
 pub mod mesh;
 pub mod model;
 pub mod progress;
+pub mod segy;
 pub mod stratigraphy;
 pub mod synth;
 pub mod volume;

@@ -1,0 +1,398 @@
+//! An open SEG-Y file: mapped into memory, its headers understood.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use glam::DVec2;
+use memmap2::Mmap;
+
+use super::columns::{Column, Columns};
+use super::detect::{Detected, coordinate_bytes, coordinates, detect, fields};
+use super::error::{SegyError, SegyProblem};
+use super::frame::Frame;
+use super::header::{Field, Traces, at};
+use super::info::{BytePositions, Findings, GeometrySummary, LengthUnit, SegyInfo};
+use super::lines::{Flaw, Lattice, NO_TRACE};
+use super::place::{MAX_RESIDUAL_BINS, Placement};
+use super::vertical::{Vertical, coordinate_unit};
+use super::{SegyOptions, TraceWeight};
+use crate::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
+use crate::progress::Progress;
+
+/// Bin size where a file has no coordinates, m.
+const ASSUMED_BIN_M: f64 = 25.0;
+
+/// Trace weights beyond this are no weights.
+const MAX_WEIGHT: i32 = 50;
+
+/// An open SEG-Y file. Samples are read from the mapped file when they are asked for.
+///
+/// Nobody may shorten the file while it is open: the system ends a program that reads beyond a mapped file's end.
+#[derive(Debug)]
+pub struct SegyFile {
+    pub(super) path: PathBuf,
+    map: Mmap,
+    frame: Frame,
+    info: SegyInfo,
+    geometry: SurveyGeometry,
+    lattice: Lattice,
+    dead: Vec<bool>,
+    shifts: Option<Vec<u32>>,
+    /// Trace weighting factors that apply.
+    weights: Option<Column>,
+}
+
+impl SegyFile {
+    /// Opens a file and understands its headers.
+    ///
+    /// # Errors
+    /// [`SegyError`] when the file is not a post-stack 3D volume.
+    pub fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<Self, SegyError> {
+        open(path, options, progress).map_err(|problem| problem.in_file(path))
+    }
+
+    /// What the file holds.
+    pub fn info(&self) -> &SegyInfo {
+        &self.info
+    }
+
+    /// The survey, in ms or m.
+    ///
+    /// # Errors
+    /// [`SegyProblem::SingleTrace`] for a file of one trace.
+    pub fn geometry(&self) -> Result<SurveyGeometry, SegyError> {
+        if self.lattice.places() < 2 {
+            return Err(SegyProblem::SingleTrace.in_file(&self.path));
+        }
+        self.geometry.validate().map_err(|e| SegyProblem::Geometry(e).in_file(&self.path))?;
+        Ok(self.geometry.clone())
+    }
+
+    /// `[inlines, crosslines, samples]`.
+    pub fn size(&self) -> [usize; 3] {
+        self.geometry.size()
+    }
+
+    /// Whether a trace that is not flagged dead stands at inline index `x`, crossline index `y`.
+    pub fn is_live(&self, x: usize, y: usize) -> bool {
+        self.trace_at(x, y).is_some_and(|trace| !self.dead[trace])
+    }
+
+    /// Number in the file, from 0, of the trace at inline index `x`, crossline index `y`.
+    pub fn trace_at(&self, x: usize, y: usize) -> Option<usize> {
+        let trace = self.lattice.trace_of[x * self.lattice.crosslines.count + y];
+        (trace != NO_TRACE).then_some(trace as usize)
+    }
+
+    /// Decodes the trace at inline index `x`, crossline index `y` into `out`, whose length is the count of samples.
+    /// What the file does not hold is 0, and so are values that are no numbers, whose count is returned.
+    pub fn read_trace(&self, x: usize, y: usize, out: &mut [f32]) -> usize {
+        let Some(trace) = self.trace_at(x, y) else {
+            out.fill(0.0);
+            return 0;
+        };
+        let shift = self.shifts.as_ref().map_or(0, |shifts| shifts[trace] as usize).min(out.len());
+        let (before, rest) = out.split_at_mut(shift);
+        let recorded = rest.len().min(self.frame.samples);
+        let (values, after) = rest.split_at_mut(recorded);
+        before.fill(0.0);
+        after.fill(0.0);
+        self.frame.format.decode(self.frame.order, self.traces().samples(trace), values);
+        if let Some(weights) = &self.weights
+            && (1..=MAX_WEIGHT).contains(&weights.at(trace).abs())
+        {
+            let factor = 2.0_f32.powi(weights.at(trace));
+            values.iter_mut().for_each(|value| *value *= factor);
+        }
+        let mut non_finite = 0;
+        for value in values.iter_mut().filter(|value| !value.is_finite()) {
+            *value = 0.0;
+            non_finite += 1;
+        }
+        non_finite
+    }
+
+    fn traces(&self) -> Traces<'_> {
+        self.frame.traces(&self.map)
+    }
+}
+
+fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyFile, SegyProblem> {
+    check_bytes(options)?;
+    let map = map(path)?;
+    let mut findings = Findings::default();
+    let frame = Frame::read(&map, options, &mut findings)?;
+    let traces = frame.traces(&map);
+    let mut wanted = fields(options);
+    wanted.push(Field::I32(at::TRACE_IN_RECORD));
+    wanted.push(Field::I32(at::OFFSET));
+    wanted.push(Field::U16(at::INTERVAL));
+    let short =
+        [at::TRACE_ID, at::COORDINATE_SCALAR, at::COORDINATE_UNIT, at::LAG_A, at::DELAY, at::WEIGHT, at::TIME_SCALAR];
+    wanted.extend(short.map(Field::I16));
+    let columns = Columns::read(&traces, &wanted, progress)?;
+    let count = traces.count();
+
+    let dead = dead_traces(&columns, count, &mut findings);
+    let detected =
+        if count == 1 { single_trace(&columns, options)? } else { detect(&columns, options, &mut findings)? };
+    let vertical = Vertical::find(&frame, &columns, &dead, options, &mut findings)?;
+    let unit = coordinate_unit(&frame, options, &mut findings);
+    let place = place(&detected, &columns, unit, options, &mut findings)?;
+    note_lattice(&detected.lattice, &mut findings);
+    let weights = weights(&columns, options, &mut findings);
+
+    let lattice = detected.lattice;
+    let metres = unit.metres();
+    let geometry = SurveyGeometry {
+        inlines: lattice.inlines,
+        crosslines: lattice.crosslines,
+        vertical: vertical.axis(),
+        origin: DVec2::from(place.summary.origin) * metres,
+        inline_vector: DVec2::from(place.summary.inline_vector) * metres,
+        crossline_vector: DVec2::from(place.summary.crossline_vector) * metres,
+        velocity_m_s: DEFAULT_VELOCITY_M_S,
+    };
+    let (major, minor) = frame.binary.revision;
+    let info = SegyInfo {
+        file: path.to_owned(),
+        bytes: map.len() as u64,
+        inlines: lattice.inlines.into(),
+        crosslines: lattice.crosslines.into(),
+        samples: vertical.samples,
+        interval: vertical.interval,
+        start: vertical.first,
+        vertical_unit: vertical.unit,
+        sample_format: frame.format,
+        format_code: frame.format.code(),
+        traces: count,
+        missing_traces: lattice.places() - lattice.filled(),
+        dead_traces: dead.iter().filter(|&&dead| dead).count(),
+        duplicate_traces: lattice.duplicates,
+        sorted_by: if lattice.inline_sorted { "inline" } else { "crossline" },
+        byte_positions: BytePositions {
+            inline: detected.inline_byte,
+            crossline: detected.crossline_byte,
+            x: place.bytes.map(|bytes| bytes[0]),
+            y: place.bytes.map(|bytes| bytes[1]),
+        },
+        coordinate_unit: unit,
+        coordinate_scalar: columns.get(Field::I16(at::COORDINATE_SCALAR)).range,
+        geometry: place.summary,
+        revision: format!("{major}.{minor}"),
+        byte_order: frame.order,
+        polarity_code: frame.binary.polarity,
+        text_encoding: frame.encoding,
+        text: frame.text.clone(),
+        extended_text: frame.extended_text.clone(),
+        candidates: detected.candidates,
+        evidence: findings.evidence,
+        assumptions: findings.assumptions,
+        warnings: findings.warnings,
+    };
+    Ok(SegyFile { path: path.to_owned(), map, frame, info, geometry, lattice, dead, shifts: vertical.shifts, weights })
+}
+
+fn check_bytes(options: &SegyOptions) -> Result<(), SegyProblem> {
+    for (option, byte) in [
+        ("--inline-byte", options.inline_byte),
+        ("--crossline-byte", options.crossline_byte),
+        ("--x-byte", options.x_byte),
+        ("--y-byte", options.y_byte),
+    ] {
+        if let Some(byte) = byte
+            && !(1..=237).contains(&byte)
+        {
+            let expected = "1 to 237, the first of 4 bytes in the 240-byte trace header";
+            return Err(SegyProblem::BadOption { option, found: byte.to_string(), expected });
+        }
+    }
+    match options.bin_m {
+        Some(bin) if !(bin > 0.0 && bin.is_finite()) => Err(SegyProblem::BadOption {
+            option: "--bin",
+            found: bin.to_string(),
+            expected: "a positive number of metres",
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn map(path: &Path) -> Result<Mmap, SegyProblem> {
+    let io = |doing, hint| move |source| SegyProblem::Io { doing, hint, source };
+    let file = File::open(path).map_err(io("open it", "check the name and that you may read it"))?;
+    let metadata = file.metadata().map_err(io("ask for its length", "check the disk"))?;
+    if !metadata.is_file() {
+        let source = std::io::Error::from(std::io::ErrorKind::InvalidInput);
+        return Err(io("read it", "give a file, not a folder or a device")(source));
+    }
+    if metadata.len() == 0 {
+        return Err(SegyProblem::TooShort { bytes: 0 });
+    }
+    #[expect(
+        unsafe_code,
+        reason = "a file can be mapped in no other way; the map is read only, and a volume larger than memory is read from it without a copy"
+    )]
+    let map = unsafe { Mmap::map(&file) };
+    map.map_err(io("map it into memory", "copy it to a local disk"))
+}
+
+fn dead_traces(columns: &Columns, count: usize, findings: &mut Findings) -> Vec<bool> {
+    let id = columns.get(Field::I16(at::TRACE_ID));
+    if id.constant() == Some(2) {
+        findings.warning("every trace is flagged dead (byte 29 is 2); the flag is ignored".to_owned());
+        return vec![false; count];
+    }
+    let dead: Vec<bool> = id.iter().map(|id| id == 2).collect();
+    let number = dead.iter().filter(|&&dead| dead).count();
+    if number > 0 {
+        findings.evidence(format!("{number} of {count} traces are flagged dead (byte 29 is 2): they are not live"));
+    }
+    dead
+}
+
+/// A file of one trace has no lattice; its line numbers are those of the standard, or as stated.
+fn single_trace(columns: &Columns, options: &SegyOptions) -> Result<Detected, SegyProblem> {
+    let inline_byte = options.inline_byte.unwrap_or(at::INLINE);
+    let crossline_byte = options.crossline_byte.unwrap_or(at::CROSSLINE);
+    let column = |byte| columns.get(Field::I32(byte));
+    let lattice = Lattice::place(column(inline_byte), column(crossline_byte))
+        .map_err(|_: Flaw| SegyProblem::NoLineNumbers { tried: Vec::new() })?;
+    Ok(Detected { inline_byte, crossline_byte, lattice, candidates: Vec::new() })
+}
+
+fn note_lattice(lattice: &Lattice, findings: &mut Findings) {
+    if let Some(example) = lattice.first_duplicate {
+        findings.warning(format!(
+            "{} traces repeat the line numbers of an earlier one (the first is trace {}); the first of each is kept",
+            lattice.duplicates,
+            example + 1
+        ));
+    }
+    if lattice.unnumbered > 0 {
+        findings.warning(format!("{} traces have both line numbers 0 and are left out", lattice.unnumbered));
+    }
+    let missing = lattice.places() - lattice.filled();
+    if missing > 0 {
+        findings.evidence(format!("{missing} of {} places have no trace: they are not live", lattice.places()));
+    }
+}
+
+fn weights(columns: &Columns, options: &SegyOptions, findings: &mut Findings) -> Option<Column> {
+    let weights = columns.get(Field::I16(at::WEIGHT));
+    let is_used = |weight: i32| (1..=MAX_WEIGHT).contains(&weight.abs());
+    if options.trace_weight == TraceWeight::Ignore || !weights.iter().any(is_used) {
+        return None;
+    }
+    findings.assumption(format!(
+        "samples are multiplied by 2^N, N the trace weight at byte 169, {} to {} (--trace-weight ignore leaves them as stored)",
+        weights.range[0], weights.range[1]
+    ));
+    Some(weights.clone())
+}
+
+/// Where the lattice is, and the bytes that say so.
+struct Place {
+    bytes: Option<[u16; 2]>,
+    summary: GeometrySummary,
+}
+
+fn place(
+    detected: &Detected,
+    columns: &Columns,
+    unit: LengthUnit,
+    options: &SegyOptions,
+    findings: &mut Findings,
+) -> Result<Place, SegyProblem> {
+    let homes = coordinate_bytes(options);
+    let lattice = &detected.lattice;
+    let mut fits: Vec<([u16; 2], Placement)> = Vec::new();
+    for &bytes in homes.iter().filter(|b| !b.contains(&detected.inline_byte) && !b.contains(&detected.crossline_byte)) {
+        if !coordinates(columns, bytes).vary() {
+            continue;
+        }
+        let units = columns.get(Field::I16(at::COORDINATE_UNIT)).range;
+        refuse_angles(units[1]).and(refuse_angles(units[0]))?;
+        fits.extend(Placement::fit(lattice, &coordinates(columns, bytes)).map(|fit| (bytes, fit)));
+    }
+    let chosen = fits.iter().find(|(_, fit)| fit.agrees()).or(fits.first());
+    let Some((bytes, fit)) = chosen else {
+        let bin = options.bin_m.unwrap_or(ASSUMED_BIN_M) / unit.metres();
+        if options.bin_m.is_some() {
+            findings.evidence(format!("place: square bins of {bin} {}, as stated, from 0, 0", unit.symbol()));
+        } else {
+            findings.assumption(format!(
+                "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y were found at bytes {} (--x-byte and --y-byte, or --bin, state otherwise)",
+                homes.iter().map(|[x, y]| format!("{x} and {y}")).collect::<Vec<_>>().join(", ")
+            ));
+        }
+        let summary = GeometrySummary {
+            origin: [0.0; 2],
+            inline_vector: [bin, 0.0],
+            crossline_vector: [0.0, bin],
+            residual_rms_bins: None,
+            residual_max_bins: None,
+        };
+        return Ok(Place { bytes: None, summary });
+    };
+    note_placement(*bytes, fit, columns, unit, findings);
+    Ok(Place {
+        bytes: Some(*bytes),
+        summary: GeometrySummary {
+            origin: fit.origin.to_array(),
+            inline_vector: fit.inline_vector.to_array(),
+            crossline_vector: fit.crossline_vector.to_array(),
+            residual_rms_bins: Some(fit.rms_bins),
+            residual_max_bins: Some(fit.max_bins),
+        },
+    })
+}
+
+fn refuse_angles(code: i32) -> Result<(), SegyProblem> {
+    let unit = match code {
+        2 => "seconds of arc",
+        3 => "decimal degrees",
+        4 => "degrees, minutes and seconds",
+        _ => return Ok(()),
+    };
+    Err(SegyProblem::AngularCoordinates { code: code as i16, unit })
+}
+
+fn note_placement(bytes: [u16; 2], fit: &Placement, columns: &Columns, unit: LengthUnit, findings: &mut Findings) {
+    let [low, high] = columns.get(Field::I16(at::COORDINATE_SCALAR)).range;
+    let scalar = if low == high { low.to_string() } else { format!("{low} to {high}") };
+    findings.evidence(format!(
+        "place: X at byte {} and Y at byte {}, scalar {scalar}; bins of {:.2} by {:.2} {}; X and Y of {} traces lie within {:.3} bin of the lattice (root mean square)",
+        bytes[0],
+        bytes[1],
+        fit.inline_vector.length(),
+        fit.crossline_vector.length(),
+        unit.symbol(),
+        fit.traces,
+        fit.rms_bins
+    ));
+    if low != high {
+        findings.warning(format!(
+            "the coordinate scalar (byte 71) differs between traces, {scalar}; each trace's own is used"
+        ));
+    }
+    if fit.max_bins > MAX_RESIDUAL_BINS {
+        findings.warning(format!(
+            "X and Y of {} traces lie more than half a bin off the lattice, trace {} by {:.1} bins: check the line and coordinate bytes",
+            fit.outliers,
+            fit.worst_trace + 1,
+            fit.max_bins
+        ));
+    }
+    if fit.skew() > 1e-3 {
+        findings.warning(format!(
+            "inlines and crosslines are not perpendicular (the cosine of their angle is {:.4})",
+            fit.skew()
+        ));
+    }
+    if fit.without > 0 {
+        findings.evidence(format!(
+            "{} traces have no X and Y (both 0); they are placed by their line numbers",
+            fit.without
+        ));
+    }
+}

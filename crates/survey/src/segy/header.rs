@@ -1,0 +1,178 @@
+//! Fields of the binary and trace headers. Positions are the standard's: 1-based bytes of the file or trace header.
+
+use super::sample::ByteOrder;
+
+/// Bytes of the textual and binary file headers together.
+pub(super) const FILE_HEADER_BYTES: usize = 3600;
+/// Bytes of one trace header.
+pub(super) const TRACE_HEADER_BYTES: usize = 240;
+/// `0x01020304` at byte 3297 (revision 2) states the byte order.
+pub(super) const ORDER_CONSTANT: u32 = 0x0102_0304;
+
+/// Trace header positions.
+pub(super) mod at {
+    /// Trace number in the line.
+    pub const TRACE_IN_LINE: u16 = 1;
+    /// Trace number in the file.
+    pub const TRACE_IN_FILE: u16 = 5;
+    /// Original field record number.
+    pub const FIELD_RECORD: u16 = 9;
+    /// Trace number in the field record.
+    pub const TRACE_IN_RECORD: u16 = 13;
+    /// CDP ensemble number.
+    pub const CDP: u16 = 21;
+    /// Trace number in the ensemble.
+    pub const TRACE_IN_CDP: u16 = 25;
+    /// Trace identification code, i16; 1 live, 2 dead.
+    pub const TRACE_ID: u16 = 29;
+    /// Data use, i16; 1 production.
+    pub const DATA_USE: u16 = 35;
+    /// Source to receiver distance.
+    pub const OFFSET: u16 = 37;
+    /// Coordinate scalar, i16.
+    pub const COORDINATE_SCALAR: u16 = 71;
+    /// Coordinate unit, i16.
+    pub const COORDINATE_UNIT: u16 = 89;
+    /// Lag time A, i16.
+    pub const LAG_A: u16 = 105;
+    /// Delay recording time, i16.
+    pub const DELAY: u16 = 109;
+    /// Samples in this trace, u16.
+    pub const SAMPLES: u16 = 115;
+    /// Sample interval of this trace, u16.
+    pub const INTERVAL: u16 = 117;
+    /// Trace weighting factor, i16.
+    pub const WEIGHT: u16 = 169;
+    /// CDP X.
+    pub const CDP_X: u16 = 181;
+    /// CDP Y.
+    pub const CDP_Y: u16 = 185;
+    /// Inline number.
+    pub const INLINE: u16 = 189;
+    /// Crossline number.
+    pub const CROSSLINE: u16 = 193;
+    /// Time scalar, i16, for the times at 95 to 114.
+    pub const TIME_SCALAR: u16 = 215;
+}
+
+/// The fields of the binary file header that reading needs.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct BinaryHeader {
+    pub interval: u16,
+    pub samples: u16,
+    pub format: u16,
+    pub measurement: u16,
+    pub polarity: u16,
+    pub extended_samples: u32,
+    pub extended_interval: f64,
+    pub order_constant: u32,
+    /// Major and minor; (0, 0) for every value that no revision has.
+    pub revision: (u8, u8),
+    pub extended_headers: i16,
+    pub extra_trace_headers: i16,
+    pub trace_count: u64,
+    pub first_trace: u64,
+    pub trailers: i32,
+}
+
+impl BinaryHeader {
+    /// Reads from the first 3600 bytes of a file.
+    pub fn parse(file: &[u8], order: ByteOrder) -> Self {
+        let u16_at = |byte: usize| u16::from_be_bytes(order.get(file, byte - 1));
+        let u64_at = |byte: usize| u64::from_be_bytes(order.get(file, byte - 1));
+        Self {
+            interval: u16_at(3217),
+            samples: u16_at(3221),
+            format: u16_at(3225),
+            measurement: u16_at(3255),
+            polarity: u16_at(3257),
+            extended_samples: u32::from_be_bytes(order.get(file, 3268)),
+            extended_interval: f64::from_be_bytes(order.get(file, 3272)),
+            order_constant: u32::from_be_bytes(order.get(file, 3296)),
+            revision: revision(u16_at(3501), [file[3500], file[3501]]),
+            extended_headers: u16_at(3505).cast_signed(),
+            extra_trace_headers: u16_at(3507).cast_signed(),
+            trace_count: u64_at(3513),
+            first_trace: u64_at(3521),
+            trailers: i32::from_be_bytes(order.get(file, 3528)),
+        }
+    }
+
+    /// Whether the fields that revision 2 added mean something.
+    pub fn has_revision_2(&self) -> bool {
+        self.revision.0 >= 2
+    }
+}
+
+/// Revision 1 stores one 16-bit number (0x0100), revision 2 two bytes (2, minor) whatever the byte order.
+fn revision(word: u16, stored: [u8; 2]) -> (u8, u8) {
+    match (word.to_be_bytes(), stored) {
+        ([major @ 1..=2, minor], _) => (major, minor),
+        (_, [2, minor @ 0..=1]) => (2, minor),
+        _ => (0, 0),
+    }
+}
+
+/// The traces of a mapped file.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Traces<'a> {
+    /// Exactly `count · stride` bytes.
+    pub bytes: &'a [u8],
+    pub order: ByteOrder,
+    /// Bytes of a trace, headers included.
+    pub stride: usize,
+    /// Bytes of its headers: 240, or a multiple with trace header extensions.
+    pub header_bytes: usize,
+}
+
+impl<'a> Traces<'a> {
+    pub fn count(&self) -> usize {
+        self.bytes.len() / self.stride
+    }
+
+    /// The first 240 bytes of a trace.
+    pub fn header(&self, trace: usize) -> &'a [u8] {
+        &self.bytes[trace * self.stride..][..TRACE_HEADER_BYTES]
+    }
+
+    /// The encoded samples of a trace.
+    pub fn samples(&self, trace: usize) -> &'a [u8] {
+        &self.bytes[trace * self.stride + self.header_bytes..(trace + 1) * self.stride]
+    }
+}
+
+/// A number in a trace header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Field {
+    /// 4 bytes, signed.
+    I32(u16),
+    /// 2 bytes, signed.
+    I16(u16),
+    /// 2 bytes, unsigned.
+    U16(u16),
+}
+
+impl Field {
+    /// Its value in a 240-byte header.
+    pub fn get(self, header: &[u8], order: ByteOrder) -> i32 {
+        match self {
+            Self::I32(byte) => i32::from_be_bytes(order.get(header, usize::from(byte) - 1)),
+            Self::I16(byte) => i32::from(i16::from_be_bytes(order.get(header, usize::from(byte) - 1))),
+            Self::U16(byte) => i32::from(u16::from_be_bytes(order.get(header, usize::from(byte) - 1))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn revisions_in_both_conventions() {
+        assert_eq!(revision(0x0100, [1, 0]), (1, 0));
+        assert_eq!(revision(0x0201, [2, 1]), (2, 1));
+        assert_eq!(revision(0x0002, [2, 0]), (2, 0), "revision 2, little-endian, stores bytes");
+        assert_eq!(revision(0x0001, [0, 1]), (0, 0));
+        assert_eq!(revision(0x3030, [0x30, 0x30]), (0, 0));
+    }
+}

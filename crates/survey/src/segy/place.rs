@@ -1,0 +1,172 @@
+//! The place of the lattice in the world: `[X Y]ᵀ = origin + i·a + j·b`, least squares over all traces' X and Y.
+//!
+//! With a bar for the mean, the deviations satisfy `S [a b] = [Σ(i-ī)(X-X̄) …]`, S the 2 × 2 matrix of second moments of
+//! i and j. Coordinates are stored as integers, so the fit is also finer than any single one of them. If some traces
+//! lie more than half a bin off, the fit is repeated once without them.
+
+use glam::{DMat2, DVec2};
+
+use super::columns::Column;
+use super::lines::Lattice;
+use super::vertical::scaled;
+
+/// Half a bin: beyond it a trace would be nearer to another place of the lattice.
+pub(super) const MAX_RESIDUAL_BINS: f64 = 0.5;
+
+/// X, Y and their scalar in every trace.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Coordinates<'a> {
+    pub x: &'a Column,
+    pub y: &'a Column,
+    pub scalar: &'a Column,
+}
+
+impl Coordinates<'_> {
+    /// Whether X or Y varies.
+    pub fn vary(&self) -> bool {
+        self.x.constant().is_none() || self.y.constant().is_none()
+    }
+
+    /// X and Y of a trace; none if both are 0.
+    pub fn of(&self, trace: usize) -> Option<DVec2> {
+        let (x, y) = (self.x.at(trace), self.y.at(trace));
+        let scalar = self.scalar.at(trace);
+        ((x, y) != (0, 0)).then(|| DVec2::new(scaled(x, scalar), scaled(y, scalar)))
+    }
+}
+
+/// A fitted place, in the unit of the coordinates.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Placement {
+    pub origin: DVec2,
+    pub inline_vector: DVec2,
+    pub crossline_vector: DVec2,
+    /// Root mean square distance of the traces that were used from their place, in bins.
+    pub rms_bins: f64,
+    /// Largest distance among all traces, in bins, and the trace.
+    pub max_bins: f64,
+    pub worst_trace: usize,
+    /// Traces with coordinates.
+    pub traces: usize,
+    /// Traces that lie off by more than half a bin and were left out of the fit.
+    pub outliers: usize,
+    /// Traces whose X and Y are both 0.
+    pub without: usize,
+}
+
+impl Placement {
+    /// Fits; none if the traces with coordinates, or the coordinates, lie on a line.
+    pub fn fit(lattice: &Lattice, coordinates: &Coordinates<'_>) -> Option<Self> {
+        let points =
+            || lattice.traces().map(|(i, j, trace)| (DVec2::new(i as f64, j as f64), coordinates.of(trace), trace));
+        let located = || points().filter_map(|(at, world, trace)| world.map(|world| (at, world, trace)));
+        let first = Affine::fit(located().map(|(at, world, _)| (at, world)))?;
+        let is_near = |affine: &Affine, at, world| affine.residual_bins(at, world) <= MAX_RESIDUAL_BINS;
+        let near = located().filter(|&(at, world, _)| is_near(&first, at, world)).count();
+        let total = located().count();
+        // Gross errors pull the first fit; a second without them shows whether they are few.
+        let affine = if near < total && near * 2 > total {
+            Affine::fit(
+                located().filter(|&(at, world, _)| is_near(&first, at, world)).map(|(at, world, _)| (at, world)),
+            )
+            .unwrap_or(first)
+        } else {
+            first
+        };
+        let (mut sum_sq, mut used, mut max_bins, mut worst_trace) = (0.0, 0_usize, 0.0, 0);
+        for (at, world, trace) in located() {
+            let bins = affine.residual_bins(at, world);
+            if bins > max_bins {
+                (max_bins, worst_trace) = (bins, trace);
+            }
+            if bins <= MAX_RESIDUAL_BINS {
+                sum_sq += bins * bins;
+                used += 1;
+            }
+        }
+        Some(Self {
+            origin: affine.origin,
+            inline_vector: affine.linear.x_axis,
+            crossline_vector: affine.linear.y_axis,
+            rms_bins: (sum_sq / used.max(1) as f64).sqrt(),
+            max_bins,
+            worst_trace,
+            traces: total,
+            outliers: total - used,
+            without: points().count() - total,
+        })
+    }
+
+    /// Whether no trace, or next to none, lies off by more than half a bin.
+    pub fn agrees(&self) -> bool {
+        self.outliers * 100 <= self.traces
+    }
+
+    /// |cos| of the angle between inlines and crosslines: 0 if orthogonal.
+    pub fn skew(&self) -> f64 {
+        self.inline_vector.dot(self.crossline_vector).abs()
+            / (self.inline_vector.length() * self.crossline_vector.length())
+    }
+}
+
+/// World from index.
+struct Affine {
+    origin: DVec2,
+    linear: DMat2,
+    inverse: DMat2,
+}
+
+impl Affine {
+    fn fit(points: impl Iterator<Item = (DVec2, DVec2)> + Clone) -> Option<Self> {
+        let mut count = 0.0;
+        let (mut mean_at, mut mean_world) = (DVec2::ZERO, DVec2::ZERO);
+        for (at, world) in points.clone() {
+            count += 1.0;
+            mean_at += (at - mean_at) / count;
+            mean_world += (world - mean_world) / count;
+        }
+        let (mut moment, mut mixed) = (DMat2::ZERO, DMat2::ZERO);
+        for (at, world) in points {
+            let (at, world) = (at - mean_at, world - mean_world);
+            moment += DMat2::from_cols(at * at.x, at * at.y);
+            mixed += DMat2::from_cols(world * at.x, world * at.y);
+        }
+        let scale = moment.x_axis.x * moment.y_axis.y;
+        if count < 3.0 || moment.determinant() <= 1e-9 * scale || scale <= 0.0 {
+            return None;
+        }
+        let linear = mixed * moment.inverse();
+        let sides = linear.x_axis.length() * linear.y_axis.length();
+        let is_proper = linear.determinant().abs() > 1e-6 * sides;
+        is_proper.then(|| Self { origin: mean_world - linear * mean_at, linear, inverse: linear.inverse() })
+    }
+
+    /// Distance from the lattice place along its farther axis, in bins.
+    fn residual_bins(&self, at: DVec2, world: DVec2) -> f64 {
+        (self.inverse * (world - self.origin) - at).abs().max_element()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_exact_affine_map_is_found() {
+        let map = |at: DVec2| {
+            DVec2::new(605_000.0, 6_073_000.0) + DVec2::new(12.0, 5.0) * at.x + DVec2::new(-4.0, 24.0) * at.y
+        };
+        let points: Vec<_> =
+            (0..20).map(|k| DVec2::new(f64::from(k % 5), f64::from(k / 5))).map(|at| (at, map(at))).collect();
+        let affine = Affine::fit(points.iter().copied()).unwrap();
+        assert!((affine.origin - map(DVec2::ZERO)).length() < 1e-6);
+        assert!((affine.linear.y_axis - DVec2::new(-4.0, 24.0)).length() < 1e-9);
+        assert!(affine.residual_bins(DVec2::ONE, map(DVec2::new(1.0, 1.75))) - 0.75 < 1e-6);
+    }
+
+    #[test]
+    fn a_line_of_points_has_no_fit() {
+        let points: Vec<_> = (0..9).map(|k| (DVec2::splat(f64::from(k)), DVec2::new(f64::from(k), 0.0))).collect();
+        assert!(Affine::fit(points.iter().copied()).is_none());
+    }
+}

@@ -1,0 +1,157 @@
+//! A whole volume from a SEG-Y file, decoded in parallel from the mapped file into its place.
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::error::{SegyError, SegyProblem};
+use super::file::SegyFile;
+use super::info::SegyInfo;
+use crate::geometry::SurveyGeometry;
+use crate::progress::{Cancelled, Progress};
+use crate::volume::Volume;
+
+/// Amplitudes of the live traces.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Amplitudes {
+    /// Smallest.
+    pub min: f32,
+    /// Largest.
+    pub max: f32,
+    /// Mean.
+    pub mean: f64,
+    /// Root mean square.
+    pub rms: f64,
+    /// Samples of live traces.
+    pub samples: u64,
+    /// Samples that were no numbers; they are read as 0.
+    pub non_finite: u64,
+}
+
+/// A volume that was read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SegyVolume {
+    /// Its lattice, in ms or m.
+    pub geometry: SurveyGeometry,
+    /// Its samples; 0 where there is no live trace.
+    pub volume: Volume<f32>,
+    /// Its amplitudes.
+    pub amplitudes: Amplitudes,
+    /// What the file holds.
+    pub info: SegyInfo,
+}
+
+/// Sums over a part of the volume.
+#[derive(Debug, Clone, Copy)]
+struct Sums {
+    min: f32,
+    max: f32,
+    sum: f64,
+    sum_sq: f64,
+    samples: u64,
+    non_finite: u64,
+}
+
+impl Sums {
+    const NONE: Self =
+        Self { min: f32::INFINITY, max: f32::NEG_INFINITY, sum: 0.0, sum_sq: 0.0, samples: 0, non_finite: 0 };
+
+    fn add_trace(&mut self, trace: &[f32]) {
+        for &value in trace {
+            self.min = self.min.min(value);
+            self.max = self.max.max(value);
+            self.sum += f64::from(value);
+            self.sum_sq += f64::from(value) * f64::from(value);
+        }
+        self.samples += trace.len() as u64;
+    }
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+            sum: self.sum + other.sum,
+            sum_sq: self.sum_sq + other.sum_sq,
+            samples: self.samples + other.samples,
+            non_finite: self.non_finite + other.non_finite,
+        }
+    }
+
+    fn amplitudes(self) -> Amplitudes {
+        let count = self.samples.max(1) as f64;
+        let range = if self.samples > 0 { [self.min, self.max] } else { [0.0; 2] };
+        Amplitudes {
+            min: range[0],
+            max: range[1],
+            mean: self.sum / count,
+            rms: (self.sum_sq / count).sqrt(),
+            samples: self.samples,
+            non_finite: self.non_finite,
+        }
+    }
+}
+
+impl SegyFile {
+    /// Decodes inlines `first_inline..` into `out`, `[inline][crossline][sample]`, as many as fit: for volumes that are
+    /// read in parts. Returns the amplitudes of that part; the same on any number of threads.
+    ///
+    /// # Errors
+    /// [`SegyProblem::Cancelled`].
+    pub fn read_inlines(
+        &self,
+        first_inline: usize,
+        out: &mut [f32],
+        progress: &Progress,
+    ) -> Result<Amplitudes, SegyError> {
+        let [_, crosslines, samples] = self.size();
+        let sums: Vec<Sums> = out
+            .par_chunks_mut(crosslines * samples)
+            .enumerate()
+            .map(|(index, inline)| {
+                let mut sums = Sums::NONE;
+                for (crossline, trace) in inline.chunks_mut(samples).enumerate() {
+                    sums.non_finite += self.read_trace(first_inline + index, crossline, trace) as u64;
+                    if self.is_live(first_inline + index, crossline) {
+                        sums.add_trace(trace);
+                    }
+                }
+                progress.step(crosslines as u64)?;
+                Ok(sums)
+            })
+            .collect::<Result<_, Cancelled>>()
+            .map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
+        // In order, so that the last bit does not depend on the threads.
+        Ok(sums.into_iter().fold(Sums::NONE, Sums::add).amplitudes())
+    }
+
+    /// Which places hold a live trace, `[inline][crossline]`; none if all do.
+    pub fn live(&self) -> Option<Vec<bool>> {
+        let [inlines, crosslines, _] = self.size();
+        let live: Vec<bool> =
+            (0..inlines * crosslines).map(|place| self.is_live(place / crosslines, place % crosslines)).collect();
+        live.contains(&false).then_some(live)
+    }
+
+    /// Reads the whole volume.
+    ///
+    /// # Errors
+    /// [`SegyProblem::SingleTrace`] for a file of one trace, and [`SegyProblem::Cancelled`].
+    pub fn read(&self, progress: &Progress) -> Result<SegyVolume, SegyError> {
+        let geometry = self.geometry()?;
+        let size = geometry.size();
+        progress.begin("reading traces", (size[0] * size[1]) as u64);
+        let mut volume = Volume::filled(size, 0.0_f32);
+        let amplitudes = self.read_inlines(0, volume.samples_mut(), progress)?;
+        let mut info = self.info().clone();
+        if amplitudes.non_finite > 0 {
+            let warning =
+                format!("{} samples are no numbers (NaN or infinite) and are read as 0", amplitudes.non_finite);
+            progress.warn(&warning);
+            info.warnings.push(warning);
+        }
+        let live = self.live();
+        volume.set_live(live).map_err(|mismatch| {
+            SegyProblem::SizeMismatch { volume: size, geometry: mismatch.size }.in_file(&self.path)
+        })?;
+        Ok(SegyVolume { geometry, volume, amplitudes, info })
+    }
+}

@@ -1,0 +1,98 @@
+//! What is not a post-stack 3D volume, told by its trace headers.
+
+use super::columns::Columns;
+use super::detect::{Candidate, Verdict};
+use super::error::SegyProblem;
+use super::header::{Field, at};
+use super::lines::Lattice;
+
+/// Several traces a bin: the line numbers of the standard (or the stated ones) repeat, or gathers are numbered.
+pub(super) fn pre_stack(columns: &Columns, candidates: &[Candidate]) -> Result<(), SegyProblem> {
+    let repeated = candidates.first().filter(|c| c.verdict == Verdict::Repeated);
+    let Some(candidate) = repeated else { return Ok(()) };
+    let (inline, crossline) =
+        (columns.get(Field::I32(candidate.inline_byte)), columns.get(Field::I32(candidate.crossline_byte)));
+    let Ok(lattice) = Lattice::build(inline, crossline) else { return Ok(()) };
+    let Some(example) = lattice.first_duplicate else { return Ok(()) };
+    let offset = columns.get(Field::I32(at::OFFSET));
+    let offsets = match offset.constant() {
+        None => format!("offsets at byte 37 run from {} to {}", offset.range[0], offset.range[1]),
+        Some(_) => "their offsets at byte 37 do not differ".to_owned(),
+    };
+    Err(SegyProblem::PreStack {
+        evidence: format!(
+            "{} traces stand in {} bins (trace {} repeats inline {}, crossline {}, read at bytes {} and {}) and {offsets}",
+            lattice.filled() + lattice.duplicates,
+            lattice.filled(),
+            example + 1,
+            inline.at(example),
+            crossline.at(example),
+            candidate.inline_byte,
+            candidate.crossline_byte
+        ),
+    })
+}
+
+/// Gathers without line numbers: by shot, or by CDP.
+pub(super) fn shot_gathers(columns: &Columns) -> Result<(), SegyProblem> {
+    let record = columns.get(Field::I32(at::FIELD_RECORD));
+    let in_record = columns.get(Field::I32(at::TRACE_IN_RECORD));
+    let cdp = columns.get(Field::I32(at::CDP));
+    let offset = columns.get(Field::I32(at::OFFSET));
+    if cdp.constant().is_some() && record.constant().is_none() && in_record.constant().is_none() {
+        return Err(SegyProblem::PreStack {
+            evidence: format!(
+                "field records {} to {} (byte 9) hold traces {} to {} (byte 13), and there are no line or CDP numbers: these are shot gathers",
+                record.range[0], record.range[1], in_record.range[0], in_record.range[1]
+            ),
+        });
+    }
+    let pairs = || cdp.iter().zip(offset.iter()).zip(cdp.iter().zip(offset.iter()).skip(1));
+    let together = pairs().filter(|((cdp, offset), (next_cdp, next_offset))| cdp == next_cdp && offset != next_offset);
+    if cdp.constant().is_none() && together.count() * 2 > pairs().count() {
+        return Err(SegyProblem::PreStack {
+            evidence: format!(
+                "neighbouring traces share a CDP number (byte 21) and differ in offset ({} to {} at byte 37): these are CDP gathers",
+                offset.range[0], offset.range[1]
+            ),
+        });
+    }
+    Ok(())
+}
+
+/// One line: an axis that does not vary, or both numbers changing from trace to trace.
+pub(super) fn two_dimensional(columns: &Columns, candidates: &[Candidate]) -> Result<(), SegyProblem> {
+    let of = |byte: u16| {
+        let [low, high] = columns.get(Field::I32(byte)).range;
+        format!("{low} to {high}")
+    };
+    for candidate in candidates.iter().filter(|c| c.inline_byte != at::TRACE_IN_FILE) {
+        let (inline, crossline) = (candidate.inline_byte, candidate.crossline_byte);
+        let evidence = match candidate.verdict {
+            Verdict::ConstantInline(number) if number != 0 => format!(
+                "the inline number (byte {inline}) is {number} throughout while the crossline number (byte {crossline}) runs from {}",
+                of(crossline)
+            ),
+            Verdict::ConstantCrossline(number) if number != 0 => format!(
+                "the crossline number (byte {crossline}) is {number} throughout while the inline number (byte {inline}) runs from {}",
+                of(inline)
+            ),
+            Verdict::Diagonal => format!(
+                "each trace has an inline (byte {inline}, {}) and a crossline number (byte {crossline}, {}) of its own",
+                of(inline),
+                of(crossline)
+            ),
+            _ => continue,
+        };
+        return Err(SegyProblem::TwoDimensional { evidence });
+    }
+    let cdp = columns.get(Field::I32(at::CDP));
+    let counts_up = cdp.iter().zip(cdp.iter().skip(1)).all(|(a, b)| b == a.wrapping_add(1));
+    let counts_down = cdp.iter().zip(cdp.iter().skip(1)).all(|(a, b)| b == a.wrapping_sub(1));
+    if cdp.constant().is_none() && (counts_up || counts_down) {
+        return Err(SegyProblem::TwoDimensional {
+            evidence: format!("there are no inline numbers, and the CDP number (byte 21) counts from {}", of(at::CDP)),
+        });
+    }
+    Ok(())
+}
