@@ -17,7 +17,34 @@ use crate::touched::Touched;
 use crate::trace::Tracer;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
 use survey::{Cancelled, Progress};
+
+/// Processor time spent, summed over threads.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct ComputeCost {
+    /// Finding closest points, i.e. k (f_z of P-illus 3.1) at all nodes.
+    pub closest_points: Duration,
+    /// Following isocurves to the middle, i.e. i and j.
+    pub traces: Duration,
+}
+
+/// Nanoseconds counted from many threads.
+#[derive(Default)]
+struct Clock(AtomicU64);
+
+impl Clock {
+    fn add(&self, since: Instant) -> Instant {
+        let now = Instant::now();
+        self.0.fetch_add((now - since).as_nanos() as u64, Ordering::Relaxed);
+        now
+    }
+
+    fn total(&self) -> Duration {
+        Duration::from_nanos(self.0.load(Ordering::Relaxed))
+    }
+}
 
 /// What one column of a grid is filled with.
 struct Column<'a> {
@@ -37,7 +64,7 @@ pub fn fill(
     samples: usize,
     tolerance: f32,
     progress: &Progress,
-) -> Result<(), Cancelled> {
+) -> Result<ComputeCost, Cancelled> {
     let [nx, ny] = grid.size;
     let levels = grid.levels;
     let mut offsets = vec![[0.0f32; 3]; nx * ny * levels];
@@ -61,7 +88,7 @@ pub fn fill(
         .map(|bits| bits.iter().enumerate().fold(0, |word, (bit, &set)| word | u64::from(set) << bit))
         .collect();
     grid.offsets = offsets;
-    Ok(())
+    Ok(ComputeCost { closest_points: filler.closest_points.total(), traces: filler.traces.total() })
 }
 
 struct Filler<'a> {
@@ -71,6 +98,8 @@ struct Filler<'a> {
     tolerance: f32,
     bottom: Option<FootLattice>,
     top: Option<FootLattice>,
+    closest_points: Clock,
+    traces: Clock,
 }
 
 impl<'a> Filler<'a> {
@@ -88,6 +117,7 @@ impl<'a> Filler<'a> {
             let v = (level * LEVELS) as f32 / (levels - 1) as f32;
             (layer.frame(column), Vec3::new(0.0, 0.0, -v * layer.thickness(column)))
         };
+        let clock = Instant::now();
         let make = |surface| FootLattice::new(shape.clone(), surface, &layer.metric, place, progress).map(Some);
         let (bottom, top) = match layer.kind {
             LayerKind::Ratio => (make(&layer.bottom)?, make(&layer.top)?),
@@ -95,7 +125,19 @@ impl<'a> Filler<'a> {
             LayerKind::BelowTop(_) => (None, make(&layer.top)?),
             LayerKind::Vertical => (None, None),
         };
-        Ok(Self { layer, levels, samples: samples as f32, tolerance, bottom, top })
+        let filler = Self {
+            layer,
+            levels,
+            samples: samples as f32,
+            tolerance,
+            bottom,
+            top,
+            closest_points: Clock::default(),
+            traces: Clock::default(),
+        };
+        let lattices = clock.elapsed() * rayon::current_num_threads() as u32;
+        filler.closest_points.0.store(lattices.as_nanos() as u64, Ordering::Relaxed);
+        Ok(filler)
     }
 
     /// The levels of a column that lie in the volume, and three more on each side.
@@ -147,19 +189,32 @@ impl<'a> Filler<'a> {
         };
         let mut feet =
             Feet { bottom: start(tracer.lattices[0], &layer.bottom), top: start(tracer.lattices[1], &layer.top) };
+        // First k at every level, with the feet that its trace starts from; then the traces.
+        let clock = Instant::now();
+        let place = |level: usize| Vec3::new(0.0, 0.0, -(level as f32 / (self.levels - 1) as f32) * thickness);
+        let first = *levels.start();
+        let mut states = Vec::with_capacity(levels.end() - first + 1);
+        let mut last_feet: Option<Feet> = None;
         for level in levels {
-            let v = level as f32 / (self.levels - 1) as f32;
-            let p = Vec3::new(0.0, 0.0, -v * thickness);
+            let p = place(level);
             layer.follow(frame, p, &mut feet);
-            tracer.challenge(frame, p, level as f32, &mut feet);
-            let sample = layer.ratio(&feet);
-            let crossing = tracer.trace(frame, p, sample, &feet);
+            let jumped = tracer.challenge(frame, p, level as f32, &mut feet) && last_feet.is_some();
+            states.push((layer.ratio(&feet), feet));
+            last_feet = Some(feet);
+            out.creases[level] = jumped;
+        }
+        let clock = self.closest_points.add(clock);
+        for (n, (sample, feet)) in states.iter().enumerate() {
+            let level = first + n;
+            let crossing = tracer.trace(frame, place(level), *sample, feet);
+            let v = level as f32 / (self.levels - 1) as f32;
             let dk = if level == 0 || level == self.levels - 1 { 0.0 } else { sample.k - v };
             let offset = [crossing.at.x, crossing.at.y, dk];
             let finite = offset.iter().all(|value| value.is_finite());
             out.offsets[level] = if finite { offset } else { [0.0; 3] };
-            out.creases[level] = crossing.crease || !finite;
+            out.creases[level] |= crossing.crease || !finite;
         }
+        self.traces.add(clock);
     }
 
     fn parallel_column(
@@ -176,6 +231,7 @@ impl<'a> Filler<'a> {
             LayerKind::BelowTop(reference) => (&layer.top, false, reference),
             LayerKind::Ratio | LayerKind::Vertical => return,
         };
+        let clock = Instant::now();
         let mut foot = Foot::start(surface, frame, Vec2::ZERO);
         // From the sheet outwards, where the foot starts as the column itself.
         let (first, last) = (*levels.start(), *levels.end());
@@ -191,6 +247,7 @@ impl<'a> Filler<'a> {
             let finite = offset.iter().all(|value| value.is_finite());
             out.offsets[level] = if finite { offset } else { [0.0; 3] };
         }
+        self.closest_points.add(clock);
     }
 }
 

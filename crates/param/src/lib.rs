@@ -1,5 +1,6 @@
 //! Layer parameterization: the map from curved rock to flat space.
 
+pub mod accuracy;
 mod closest;
 mod compute;
 mod error;
@@ -17,6 +18,7 @@ mod touched;
 mod trace;
 mod voxels;
 
+pub use compute::ComputeCost;
 pub use error::ParamError;
 pub use grid::{FlatPoint, RegionGrid, SheetRef};
 pub use model::{LayerModel, Region};

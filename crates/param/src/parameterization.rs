@@ -1,6 +1,6 @@
 //! The parameterization of a whole model: one [`RegionGrid`] per layer and fault block.
 
-use crate::compute;
+use crate::compute::{self, ComputeCost};
 use crate::grid::{FlatPoint, RegionGrid, SheetRef};
 use crate::layer::{Layer, LayerKind};
 use crate::metric::Metric;
@@ -16,7 +16,7 @@ const FEWEST_LEVELS: usize = 5;
 /// k, i and j of every point of a model.
 ///
 /// Lookups ask the model for the region and for its sheets, so the model that was parameterized has to be passed along.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Parameterization {
     /// Counts of voxels of the model.
     pub size: [usize; 3],
@@ -26,6 +26,8 @@ pub struct Parameterization {
     pub blocks: usize,
     /// Index `block · layers + layer`.
     pub grids: Vec<RegionGrid>,
+    /// What it cost; the only part that differs from run to run.
+    pub cost: ComputeCost,
 }
 
 impl Parameterization {
@@ -57,6 +59,7 @@ impl Parameterization {
                     .fold(1.0, f32::max)
             })
             .collect();
+        let mut cost = ComputeCost::default();
         let mut grids = Vec::with_capacity(layers * blocks);
         for block in 0..blocks {
             for layer in 0..layers {
@@ -64,12 +67,15 @@ impl Parameterization {
                 let region = Region { layer: layer as u16, block: block as u16 };
                 let (mut grid, sheets) = plan(model, settings, &metric, region, touched, reach[layer]);
                 if !touched.wanted.is_empty() {
-                    compute::fill(&mut grid, &sheets(), touched, size[2], settings.trace_tolerance, progress)?;
+                    let spent =
+                        compute::fill(&mut grid, &sheets(), touched, size[2], settings.trace_tolerance, progress)?;
+                    cost.closest_points += spent.closest_points;
+                    cost.traces += spent.traces;
                 }
                 grids.push(grid);
             }
         }
-        Ok(Self { size, layers, blocks, grids })
+        Ok(Self { size, layers, blocks, grids, cost })
     }
 
     /// The grid of a region.
@@ -88,6 +94,11 @@ impl Parameterization {
     /// ∂(i, j, k)/∂(x, y, z) per voxel.
     pub fn lookup_in<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, region: Region) -> (FlatPoint, [[f32; 3]; 3]) {
         self.grid(region).lookup(model, self.size, p)
+    }
+
+    /// Whether the parameterization has a crease (a jump of a closest point) beside voxel `p` of a region.
+    pub fn is_near_crease<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, region: Region) -> bool {
+        self.grid(region).is_near_crease(model, p)
     }
 
     /// Bytes held by all grids.
@@ -175,7 +186,7 @@ fn plan<'a, M: LayerModel + ?Sized>(
         region,
         origin: touched.origin,
         size: touched.size,
-        levels: if kind == LayerKind::Vertical { 2 } else { levels },
+        levels: if kind == LayerKind::Vertical { 3 } else { levels },
         bottom,
         top,
         thickness_m,

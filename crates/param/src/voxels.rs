@@ -1,12 +1,11 @@
 //! The parameterization sampled on a lattice: the arrays i, j, k, layer and block of a project on disk.
 //!
 //! Sample p of a volume of M samples along an axis of N voxels lies at voxel p·(N−1)/(M−1) (corner-aligned), and values are
-//! *evaluated* there, not resampled. Between columns they are bilinear as in the exact lookup, along a column the cubic through
-//! four levels (Catmull–Rom, end slopes by a parabola), a little better than the lookup's linear interpolation.
+//! *evaluated* there by the exact lookup, not resampled.
 //!
 //! Memory: 16 bytes a sample.
 
-use crate::grid::{PINCHED, RegionGrid};
+use crate::grid::{PINCHED, RegionGrid, cubic, split};
 use crate::{LayerModel, ParamError, Parameterization, Region};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -104,32 +103,27 @@ impl Trace {
             self.region = Some(region);
         }
         let v = if self.thickness < PINCHED { 0.5 } else { ((self.bottom - p.z) / self.thickness).clamp(0.0, 1.0) };
-        let [dx, dy, dk] = grid.smooth_offset(p.x, p.y, v);
+        let [dx, dy, dk] = grid.offset(p.x, p.y, v);
         let scale = [0, 1].map(|axis: usize| 1.0 / param.size[axis].saturating_sub(1).max(1) as f32);
         [(p.x + dx) * scale[0], (p.y + dy) * scale[1], v + dk]
     }
 }
 
 impl RegionGrid {
-    /// Offsets at a column position and level fraction, bilinear between columns and cubic along them.
-    fn smooth_offset(&self, x: f32, y: f32, v: f32) -> [f32; 3] {
+    /// The offsets of [`RegionGrid::lookup`] without their slopes: columns of no weight are not visited.
+    fn offset(&self, x: f32, y: f32, v: f32) -> [f32; 3] {
         if self.offsets.is_empty() {
             return [0.0; 3];
         }
-        let split = |at: f32, count: usize| {
-            let at = at.clamp(0.0, (count - 1) as f32);
-            let cell = (at as usize).min(count.saturating_sub(2));
-            (cell, at - cell as f32)
-        };
         let (cx, fx) = split(x - self.origin[0] as f32, self.size[0]);
         let (cy, fy) = split(y - self.origin[1] as f32, self.size[1]);
-        let (cl, fl) = split(v * (self.levels - 1) as f32, self.levels);
+        let (cell, fraction) = split(v * (self.levels - 1) as f32, self.levels);
         let mut sum = [0.0; 3];
         for (a, wx) in [(0, 1.0 - fx), (1, fx)] {
             for (b, wy) in [(0, 1.0 - fy), (1, fy)] {
                 if wx * wy > 0.0 {
                     let start = self.node(cx + a, cy + b, 0);
-                    let value = cubic(&self.offsets[start..start + self.levels], cl, fl);
+                    let (value, _) = cubic(&self.offsets[start..start + self.levels], cell, fraction);
                     for n in 0..3 {
                         sum[n] += wx * wy * value[n];
                     }
@@ -138,20 +132,4 @@ impl RegionGrid {
         }
         sum
     }
-}
-
-/// Catmull–Rom between levels `cell` and `cell + 1` of a column; beyond its ends the parabola through the last three.
-#[inline]
-fn cubic(column: &[[f32; 3]], cell: usize, t: f32) -> [f32; 3] {
-    let last = column.len() - 1;
-    let (b, c) = (column[cell], column[(cell + 1).min(last)]);
-    if last < 2 {
-        return std::array::from_fn(|n| b[n] + (c[n] - b[n]) * t);
-    }
-    std::array::from_fn(|n| {
-        let (b, c) = (b[n], c[n]);
-        let a = if cell > 0 { column[cell - 1][n] } else { 3.0 * (b - c) + column[cell + 2][n] };
-        let d = if cell + 2 <= last { column[cell + 2][n] } else { 3.0 * (c - b) + column[cell - 1][n] };
-        b + 0.5 * t * ((c - a) + t * ((2.0 * a - 5.0 * b + 4.0 * c - d) + t * (3.0 * (b - c) + d - a)))
-    })
 }

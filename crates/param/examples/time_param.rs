@@ -1,0 +1,61 @@
+//! Stage times of the parameterization on a folded, faulted model: `time_param [N …]`, default 64 and 128.
+//!
+//! Four layers between horizons with dips up to 35° and thickness ± 30 %, three fault blocks.
+
+#[path = "../tests/closed_form/mod.rs"]
+mod closed_form;
+
+use closed_form::ClosedForm;
+use glam::Vec3;
+use param::{PackedVolume, ParamSettings, Parameterization};
+use std::f64::consts::TAU;
+use std::time::Instant;
+use survey::Progress;
+
+/// Two faults dipping 60°, throws of 4 and 6 % of the depth.
+fn model(n: usize) -> ClosedForm {
+    let side = n as f64;
+    let depth = move |h: usize, block: u16, x: f64, y: f64| {
+        let (u, v) = (x / side, y / side);
+        let level = side * (0.27 + 0.22 * h as f64);
+        let fold = 0.045 * side * (TAU * (1.5 * u + 0.4 * v)).sin();
+        let swell = 0.03 * side * (TAU * (0.9 * u - 0.7 * v) + 1.3 * h as f64).cos();
+        level + fold + swell + side * [0.0, 0.04, 0.1][usize::from(block)]
+    };
+    let block_at = move |p: Vec3| {
+        let (x, z) = (p.x / n as f32, p.z / n as f32);
+        u16::from(x > 0.3 + 0.3 * z) + u16::from(x > 0.9 - 0.4 * z + 0.1 * p.y / n as f32)
+    };
+    ClosedForm::faulted([n; 3], 3, 3, depth, block_at)
+}
+
+fn main() {
+    let sizes: Vec<usize> = std::env::args().skip(1).filter_map(|size| size.parse().ok()).collect();
+    for n in if sizes.is_empty() { vec![64, 128] } else { sizes } {
+        let model = model(n);
+        let voxels = (n * n * n) as f64;
+        let report = |stage: &str, seconds: f64| {
+            println!("{n:4}³ {stage:24} {seconds:8.2} s {:8.0} ns a voxel", seconds / voxels * 1e9);
+        };
+        let start = Instant::now();
+        let param = Parameterization::compute(&model, &ParamSettings::default(), &Progress::silent()).unwrap();
+        report("compute", start.elapsed().as_secs_f64());
+        report("  closest points (CPU)", param.cost.closest_points.as_secs_f64());
+        report("  traces (CPU)", param.cost.traces.as_secs_f64());
+        let start = Instant::now();
+        let volumes = param.voxel_volumes(&model, param.size, &Progress::silent()).unwrap();
+        report("voxel volumes", start.elapsed().as_secs_f64());
+        let start = Instant::now();
+        let packed = PackedVolume::from_voxels(&volumes, param.size, param.layers, param.blocks);
+        report("packing", start.elapsed().as_secs_f64());
+        let nodes: usize = param.grids.iter().map(|grid| grid.offsets.len()).sum();
+        let creases: u32 = param.grids.iter().flat_map(|grid| &grid.creases).map(|word| word.count_ones()).sum();
+        println!(
+            "{n:4}³ {:.2} nodes and {:.1} bytes a voxel; {:.2} % of the nodes at creases; {} packed",
+            nodes as f64 / voxels,
+            param.bytes() as f64 / voxels,
+            100.0 * f64::from(creases) / nodes as f64,
+            packed.values.len()
+        );
+    }
+}
