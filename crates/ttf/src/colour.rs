@@ -29,9 +29,7 @@ impl Colour {
 
     /// A colour from its three channels.
     pub const fn new(red: u8, green: u8, blue: u8) -> Self {
-        Self {
-            rgb: [red, green, blue],
-        }
+        Self { rgb: [red, green, blue] }
     }
 
     /// The channels in [0, 1], sRGB-encoded.
@@ -41,9 +39,7 @@ impl Colour {
 
     /// The nearest eight-bit colour; channels are clamped to [0, 1], NaN becomes 0.
     pub fn from_unit(rgb: [f32; 3]) -> Self {
-        Self {
-            rgb: rgb.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8),
-        }
+        Self { rgb: rgb.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8) }
     }
 
     /// Relative luminance Y in [0, 1] (Rec. 709 weights on linear light): what greyscale print keeps.
@@ -55,29 +51,19 @@ impl Colour {
 
 /// Linear light from an sRGB-encoded channel (IEC 61966-2-1).
 pub fn linear_from_srgb(encoded: f32) -> f32 {
-    if encoded <= 0.040_45 {
-        encoded / 12.92
-    } else {
-        ((encoded + 0.055) / 1.055).powf(2.4)
-    }
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
 /// sRGB-encoded channel from linear light (IEC 61966-2-1).
 pub fn srgb_from_linear(linear: f32) -> f32 {
-    if linear <= 0.003_130_8 {
-        linear * 12.92
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
+    if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
 impl std::str::FromStr for Colour {
     type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Error> {
-        let bad = || Error::BadColour {
-            text: text.to_owned(),
-        };
+        let bad = || Error::BadColour { text: text.to_owned() };
         let digits = text.strip_prefix('#').ok_or_else(bad)?;
         if digits.len() != 6 || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
             return Err(bad());
@@ -118,9 +104,7 @@ mod tests {
         for text in ["#000000", "#ffffff", "#12ab9f"] {
             assert_eq!(text.parse::<Colour>().unwrap().to_string(), text);
         }
-        for text in [
-            "", "#fff", "12ab9f", "#12ab9g", "#12ab9f0", "#+1ab9f", "#éa",
-        ] {
+        for text in ["", "#fff", "12ab9f", "#12ab9g", "#12ab9f0", "#+1ab9f", "#éa"] {
             assert!(text.parse::<Colour>().is_err(), "{text}");
         }
     }

@@ -37,14 +37,8 @@ pub enum ColourMap {
 
 impl ColourMap {
     /// All maps.
-    pub const ALL: [Self; 6] = [
-        Self::Seismics,
-        Self::PetrelLike,
-        Self::RedWhiteBlack,
-        Self::Grey,
-        Self::CoolWarm,
-        Self::Strata,
-    ];
+    pub const ALL: [Self; 6] =
+        [Self::Seismics, Self::PetrelLike, Self::RedWhiteBlack, Self::Grey, Self::CoolWarm, Self::Strata];
 
     /// The name used in files and on the command line.
     pub fn name(self) -> &'static str {
@@ -120,18 +114,10 @@ fn moreland_cool_warm(t: f32) -> [f32; 3] {
     let warm = msh_from_srgb([0.706, 0.016, 0.150]);
     // Both ends are saturated and differ in hue by more than 60 degrees, so the unsaturated middle
     // is always inserted; each half then blends one end with it at the hue that end spins to.
-    let (end, fraction) = if t <= 0.5 {
-        (cool, 1.0 - 2.0 * t)
-    } else {
-        (warm, 2.0 * t - 1.0)
-    };
+    let (end, fraction) = if t <= 0.5 { (cool, 1.0 - 2.0 * t) } else { (warm, 2.0 * t - 1.0) };
     let [m, s, h] = end;
     let spin = s * (MIDDLE * MIDDLE - m * m).max(0.0).sqrt() / (m * s.sin());
-    let middle_hue = if h > -std::f32::consts::FRAC_PI_3 {
-        h + spin
-    } else {
-        h - spin
-    };
+    let middle_hue = if h > -std::f32::consts::FRAC_PI_3 { h + spin } else { h - spin };
     let mix = |at_middle: f32, at_end: f32| at_middle + (at_end - at_middle) * fraction;
     srgb_from_msh([mix(MIDDLE, m), mix(0.0, s), mix(middle_hue, h)])
 }
@@ -147,11 +133,7 @@ fn msh_from_srgb(srgb: [f32; 3]) -> [f32; 3] {
         0.019_333_9 * r + 0.119_192 * g + 0.950_304_1 * b,
     ];
     let f = |ratio: f32| {
-        if ratio > 0.008_856 {
-            ratio.cbrt()
-        } else {
-            7.787 * ratio + 16.0 / 116.0
-        }
+        if ratio > 0.008_856 { ratio.cbrt() } else { 7.787 * ratio + 16.0 / 116.0 }
     };
     let [fx, fy, fz] = std::array::from_fn(|axis| f(xyz[axis] / WHITE_XYZ[axis]));
     let [l, a, b] = [116.0 * fy - 16.0, 500.0 * (fx - fy), 200.0 * (fy - fz)];
@@ -163,18 +145,10 @@ fn srgb_from_msh([m, s, h]: [f32; 3]) -> [f32; 3] {
     let [l, a, b] = [m * s.cos(), m * s.sin() * h.cos(), m * s.sin() * h.sin()];
     let fy = (l + 16.0) / 116.0;
     let inverse = |f: f32| {
-        if f > 0.206_893 {
-            f * f * f
-        } else {
-            (f - 16.0 / 116.0) / 7.787
-        }
+        if f > 0.206_893 { f * f * f } else { (f - 16.0 / 116.0) / 7.787 }
     };
     let [fx, fz] = [fy + a / 500.0, fy - b / 200.0];
-    let [x, y, z] = [
-        inverse(fx) * WHITE_XYZ[0],
-        inverse(fy) * WHITE_XYZ[1],
-        inverse(fz) * WHITE_XYZ[2],
-    ];
+    let [x, y, z] = [inverse(fx) * WHITE_XYZ[0], inverse(fy) * WHITE_XYZ[1], inverse(fz) * WHITE_XYZ[2]];
     [
         3.240_454_2 * x - 1.537_138_5 * y - 0.498_531_4 * z,
         -0.969_266 * x + 1.876_010_8 * y + 0.041_556 * z,
@@ -224,29 +198,16 @@ mod tests {
     fn diverging_maps_are_nearly_neutral_in_the_middle() {
         for map in ColourMap::ALL.into_iter().filter(|map| map.is_diverging()) {
             let stops = map.stops();
-            let (_, middle) = stops
-                .iter()
-                .find(|(at, _)| *at == 0.5)
-                .expect("a stop at zero");
+            let (_, middle) = stops.iter().find(|(at, _)| *at == 0.5).expect("a stop at zero");
             let [high, low] = [middle.rgb.iter().max(), middle.rgb.iter().min()];
-            assert!(
-                high.unwrap() - low.unwrap() <= 5,
-                "{}: {middle}",
-                map.name()
-            );
+            assert!(high.unwrap() - low.unwrap() <= 5, "{}: {middle}", map.name());
         }
     }
 
     #[test]
     fn cool_warm_has_the_published_ends_and_middle() {
         let stops = ColourMap::CoolWarm.stops();
-        let near = |found: Colour, expected: [u8; 3]| {
-            found
-                .rgb
-                .iter()
-                .zip(expected)
-                .all(|(a, b)| a.abs_diff(b) <= 1)
-        };
+        let near = |found: Colour, expected: [u8; 3]| found.rgb.iter().zip(expected).all(|(a, b)| a.abs_diff(b) <= 1);
         assert!(near(stops[0].1, [59, 76, 192]), "{}", stops[0].1);
         assert!(near(stops[16].1, [221, 221, 221]), "{}", stops[16].1);
         assert!(near(stops[32].1, [180, 4, 38]), "{}", stops[32].1);
@@ -255,23 +216,13 @@ mod tests {
     #[test]
     fn strata_brightens_evenly_and_stays_inside_srgb() {
         let stops = ColourMap::Strata.stops();
-        let lightness: Vec<f32> = stops
-            .iter()
-            .map(|(_, c)| 116.0 * c.luminance().cbrt() - 16.0)
-            .collect();
+        let lightness: Vec<f32> = stops.iter().map(|(_, c)| 116.0 * c.luminance().cbrt() - 16.0).collect();
         let steps: Vec<f32> = lightness.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let mean = steps.iter().sum::<f32>() / steps.len() as f32;
-        assert!(
-            steps.iter().all(|step| (step / mean - 1.0).abs() < 0.35),
-            "{steps:?}"
-        );
+        assert!(steps.iter().all(|step| (step / mean - 1.0).abs() < 0.35), "{steps:?}");
         for step in 0..=100 {
             let rgb = strata(step as f32 / 100.0);
-            assert!(
-                rgb.iter()
-                    .all(|channel| (0.0..=1.0).contains(channel) && *channel > 0.0),
-                "{step}: {rgb:?}"
-            );
+            assert!(rgb.iter().all(|channel| (0.0..=1.0).contains(channel) && *channel > 0.0), "{step}: {rgb:?}");
         }
     }
 }

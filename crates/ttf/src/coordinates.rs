@@ -79,20 +79,14 @@ impl FaceFrame {
         let normal = unit(normal);
         let horizontal_sq = normal[0] * normal[0] + normal[1] * normal[1];
         if !(horizontal_sq > HORIZONTAL_NORMAL_SQ) {
-            return Self {
-                normal,
-                along: [1.0, 0.0],
-            };
+            return Self { normal, along: [1.0, 0.0] };
         }
         let scale = 1.0 / horizontal_sq.sqrt();
         let [x, y] = [-normal[1] * scale, normal[0] * scale];
         let larger = if x.abs() >= y.abs() { x } else { y };
         let sign = if larger < 0.0 { -1.0 } else { 1.0 };
         // Adding 0 turns -0 into 0.
-        Self {
-            normal,
-            along: [sign * x + 0.0, sign * y + 0.0],
-        }
+        Self { normal, along: [sign * x + 0.0, sign * y + 0.0] }
     }
 
     /// The weights at a point where k rises along `grad_k` (any length). A gradient that is zero or
@@ -100,34 +94,18 @@ impl FaceFrame {
     pub fn weights(&self, grad_k: [f32; 3]) -> MappingWeights {
         let g = unit(grad_k);
         let n = self.normal;
-        let s = [
-            n[1] * g[2] - n[2] * g[1],
-            n[2] * g[0] - n[0] * g[2],
-            n[0] * g[1] - n[1] * g[0],
-        ];
+        let s = [n[1] * g[2] - n[2] * g[1], n[2] * g[0] - n[0] * g[2], n[0] * g[1] - n[1] * g[0]];
         let sin_sq = s[0] * s[0] + s[1] * s[1] + s[2] * s[2];
         if g == [0.0; 3] || !sin_sq.is_finite() {
-            return MappingWeights {
-                along: 1.0,
-                across: 0.0,
-                map: 0.0,
-            };
+            return MappingWeights { along: 1.0, across: 0.0, map: 0.0 };
         }
         let map = 1.0 - smoothstep(MAP_ONLY_SIN_SQ, NO_MAP_SIN_SQ, sin_sq);
         let along_t = s[0] * self.along[0] + s[1] * self.along[1];
         let across_t = s[1] * self.along[0] - s[0] * self.along[1];
         let horizontal_sq = along_t * along_t + across_t * across_t;
-        let share = if horizontal_sq > 1e-12 {
-            along_t * along_t / horizontal_sq
-        } else {
-            1.0
-        };
+        let share = if horizontal_sq > 1e-12 { along_t * along_t / horizontal_sq } else { 1.0 };
         let along = (1.0 - map) * smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
-        MappingWeights {
-            along,
-            across: (1.0 - map - along).max(0.0),
-            map,
-        }
+        MappingWeights { along, across: (1.0 - map - along).max(0.0), map }
     }
 
     /// The three mappings (along, across, map) for a block whose j axis is `aspect_j` times as long
@@ -136,18 +114,9 @@ impl FaceFrame {
         let [x, y] = self.along;
         let k = [0.0, 0.0, 1.0];
         [
-            Mapping {
-                u: [x, y * aspect_j, 0.0],
-                v: k,
-            },
-            Mapping {
-                u: [-y, x * aspect_j, 0.0],
-                v: k,
-            },
-            Mapping {
-                u: [1.0, 0.0, 0.0],
-                v: [0.0, aspect_j, 0.0],
-            },
+            Mapping { u: [x, y * aspect_j, 0.0], v: k },
+            Mapping { u: [-y, x * aspect_j, 0.0], v: k },
+            Mapping { u: [1.0, 0.0, 0.0], v: [0.0, aspect_j, 0.0] },
         ]
     }
 }

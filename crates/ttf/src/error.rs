@@ -13,9 +13,7 @@ pub enum Error {
         text: String,
     },
     /// A frequency that is not a positive finite number.
-    #[error(
-        "{place}: the frequency {horizontal} x {vertical} is not usable; both numbers must be finite and above 0"
-    )]
+    #[error("{place}: the frequency {horizontal} x {vertical} is not usable; both numbers must be finite and above 0")]
     BadFrequency {
         /// Where it was found.
         place: String,
@@ -108,9 +106,7 @@ pub enum Error {
         texture: String,
     },
     /// A function without enough stops or with stops out of order.
-    #[error(
-        "{place}: {fact}; a colour function needs at least two stops at rising positions from 0 to 1"
-    )]
+    #[error("{place}: {fact}; a colour function needs at least two stops at rising positions from 0 to 1")]
     BadStops {
         /// Where it was found.
         place: String,
@@ -160,9 +156,7 @@ pub enum Error {
         source: image::ImageError,
     },
     /// An SVG that does not parse.
-    #[error(
-        "the texture {name} is not a usable SVG ({source}); text and linked images are not supported, paths are"
-    )]
+    #[error("the texture {name} is not a usable SVG ({source}); text and linked images are not supported, paths are")]
     BadSvg {
         /// The file or pattern.
         name: String,

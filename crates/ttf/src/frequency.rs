@@ -27,18 +27,12 @@ impl Frequency {
     /// assert_eq!(frequency, ttf::Frequency { horizontal: 40.0, vertical: 2.0 });
     /// ```
     pub fn for_tile(extent_i_m: f32, thickness_m: f32, tile_m: [f32; 2]) -> Self {
-        Self {
-            horizontal: extent_i_m / tile_m[0],
-            vertical: thickness_m / tile_m[1],
-        }
+        Self { horizontal: extent_i_m / tile_m[0], vertical: thickness_m / tile_m[1] }
     }
 
     /// Multiplied by a scalar function's factors (P-illus 4.2).
     pub fn scaled(self, factor: [f32; 2]) -> Self {
-        Self {
-            horizontal: self.horizontal * factor[0],
-            vertical: self.vertical * factor[1],
-        }
+        Self { horizontal: self.horizontal * factor[0], vertical: self.vertical * factor[1] }
     }
 
     /// Refuses numbers that are not finite and positive.
@@ -50,11 +44,7 @@ impl Frequency {
         if usable(self.horizontal) && usable(self.vertical) {
             return Ok(());
         }
-        Err(Error::BadFrequency {
-            place: place.to_owned(),
-            horizontal: self.horizontal,
-            vertical: self.vertical,
-        })
+        Err(Error::BadFrequency { place: place.to_owned(), horizontal: self.horizontal, vertical: self.vertical })
     }
 }
 
@@ -64,46 +54,16 @@ mod tests {
 
     #[test]
     fn factors_multiply_each_axis() {
-        let layer = Frequency {
-            horizontal: 12.0,
-            vertical: 3.0,
-        };
-        assert_eq!(
-            layer.scaled([0.5, 2.0]),
-            Frequency {
-                horizontal: 6.0,
-                vertical: 6.0
-            }
-        );
+        let layer = Frequency { horizontal: 12.0, vertical: 3.0 };
+        assert_eq!(layer.scaled([0.5, 2.0]), Frequency { horizontal: 6.0, vertical: 6.0 });
     }
 
     #[test]
     fn only_positive_finite_numbers_pass() {
         for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-            assert!(
-                Frequency {
-                    horizontal: bad,
-                    vertical: 1.0
-                }
-                .validate("x")
-                .is_err()
-            );
-            assert!(
-                Frequency {
-                    horizontal: 1.0,
-                    vertical: bad
-                }
-                .validate("x")
-                .is_err()
-            );
+            assert!(Frequency { horizontal: bad, vertical: 1.0 }.validate("x").is_err());
+            assert!(Frequency { horizontal: 1.0, vertical: bad }.validate("x").is_err());
         }
-        assert!(
-            Frequency {
-                horizontal: 0.1,
-                vertical: 40.0
-            }
-            .validate("x")
-            .is_ok()
-        );
+        assert!(Frequency { horizontal: 0.1, vertical: 40.0 }.validate("x").is_ok());
     }
 }

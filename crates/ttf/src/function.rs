@@ -34,10 +34,7 @@ pub struct TtfSettings {
 
 impl Default for TtfSettings {
     fn default() -> Self {
-        Self {
-            blend: 0.0,
-            global_frequency: 1.0,
-        }
+        Self { blend: 0.0, global_frequency: 1.0 }
     }
 }
 
@@ -62,11 +59,7 @@ fn no_data_grey() -> Option<Colour> {
 impl RawColour {
     /// A volume in the colours of a function, no data in light grey.
     pub fn new(volume: &str, function: RgbaFunction) -> Self {
-        Self {
-            volume: volume.to_owned(),
-            no_data: no_data_grey(),
-            function,
-        }
+        Self { volume: volume.to_owned(), no_data: no_data_grey(), function }
     }
 }
 
@@ -86,12 +79,9 @@ impl TransferFunctions {
             });
         }
         if let Some(raw) = &self.raw {
-            raw.function
-                .validate(&format!("the colours of `{}`", raw.volume))?;
+            raw.function.validate(&format!("the colours of `{}`", raw.volume))?;
         }
         self.layers.validate(library)?;
-        self.scalars
-            .iter()
-            .try_for_each(|function| function.validate(library))
+        self.scalars.iter().try_for_each(|function| function.validate(library))
     }
 }

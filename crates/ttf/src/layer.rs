@@ -77,35 +77,19 @@ pub(crate) fn opaque() -> f32 {
 impl LayerStyle {
     /// A layer in one colour without a pattern.
     pub fn plain(layer: &str, colour: Colour) -> Self {
-        Self {
-            layer: layer.to_owned(),
-            colour,
-            ink: None,
-            opacity: 0.0,
-            frequency: None,
-            intervals: Vec::new(),
-        }
+        Self { layer: layer.to_owned(), colour, ink: None, opacity: 0.0, frequency: None, intervals: Vec::new() }
     }
 
     /// A layer filled with one texture from bottom to top.
     pub fn textured(layer: &str, colour: Colour, texture: &str) -> Self {
-        let interval = DepthInterval {
-            k: [0.0, 1.0],
-            texture: texture.to_owned(),
-            frequency: None,
-            opacity: 1.0,
-            colour: None,
-        };
-        Self {
-            intervals: vec![interval],
-            ..Self::plain(layer, colour)
-        }
+        let interval =
+            DepthInterval { k: [0.0, 1.0], texture: texture.to_owned(), frequency: None, opacity: 1.0, colour: None };
+        Self { intervals: vec![interval], ..Self::plain(layer, colour) }
     }
 
     /// The texture at local `k` (clamped to [0, 1]), if an interval covers it.
     pub fn texture_at(&self, k: f32) -> Option<&str> {
-        self.interval_at(k)
-            .map(|interval| interval.texture.as_str())
+        self.interval_at(k).map(|interval| interval.texture.as_str())
     }
 
     /// The interval that covers local `k` (clamped to [0, 1]).
@@ -131,11 +115,7 @@ impl LayerStyle {
         for interval in &self.intervals {
             let [low, high] = interval.k;
             if !(low >= 0.0 && high <= 1.0 && low < high) {
-                return Err(Error::BadDepthInterval {
-                    layer: self.layer.clone(),
-                    low,
-                    high,
-                });
+                return Err(Error::BadDepthInterval { layer: self.layer.clone(), low, high });
             }
             check_unit(&place, "the texture's opacity", interval.opacity)?;
             if let Some(frequency) = interval.frequency {
@@ -155,11 +135,7 @@ impl LayerTtf {
 
     /// Puts a style in place of the layer's present one, or adds it.
     pub fn set(&mut self, style: LayerStyle) {
-        match self
-            .styles
-            .iter_mut()
-            .find(|present| present.layer == style.layer)
-        {
+        match self.styles.iter_mut().find(|present| present.layer == style.layer) {
             Some(present) => *present = style,
             None => self.styles.push(style),
         }
@@ -171,13 +147,8 @@ impl LayerTtf {
     /// Two styles for one layer, and whatever [`LayerStyle::validate`] refuses.
     pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
         for (index, style) in self.styles.iter().enumerate() {
-            if self.styles[..index]
-                .iter()
-                .any(|earlier| earlier.layer == style.layer)
-            {
-                return Err(Error::DuplicateLayer {
-                    layer: style.layer.clone(),
-                });
+            if self.styles[..index].iter().any(|earlier| earlier.layer == style.layer) {
+                return Err(Error::DuplicateLayer { layer: style.layer.clone() });
             }
             style.validate(library)?;
         }
@@ -190,18 +161,11 @@ pub(crate) fn check_unit(place: &str, quantity: &'static str, value: f32) -> Res
     if (0.0..=1.0).contains(&value) {
         return Ok(());
     }
-    Err(Error::OutsideUnit {
-        place: place.to_owned(),
-        quantity,
-        value,
-    })
+    Err(Error::OutsideUnit { place: place.to_owned(), quantity, value })
 }
 
 /// Refuses half-open intervals that share values. The intervals themselves must be valid.
-pub(crate) fn check_overlap(
-    place: &str,
-    intervals: impl Iterator<Item = [f32; 2]>,
-) -> Result<(), Error> {
+pub(crate) fn check_overlap(place: &str, intervals: impl Iterator<Item = [f32; 2]>) -> Result<(), Error> {
     let mut sorted: Vec<[f32; 2]> = intervals.collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
     match sorted.windows(2).find(|pair| pair[1][0] < pair[0][1]) {

@@ -23,7 +23,9 @@ mod raster;
 mod rgba;
 mod scalar;
 mod shade;
+mod sheet;
 pub mod tables;
+pub mod text;
 pub mod texture;
 
 pub use colour::{Colour, linear_from_srgb, srgb_from_linear};
@@ -38,5 +40,6 @@ pub use raster::{MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX};
 pub use rgba::{RgbaFunction, RgbaStop, symmetric_clip};
 pub use scalar::{ScalarInterval, ScalarTtf};
 pub use shade::{FlatFootprint, FlatPoint, ShadePoint, shade};
+pub use sheet::contact_sheet;
 pub use tables::{BlockExtent, LayerExtent, TtfTables};
 pub use texture::Texture;

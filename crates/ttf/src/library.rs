@@ -62,19 +62,13 @@ impl TextureLibrary {
     /// [`Error::BadCatalogue`] if catalogue and drawings do not fit, which a test rules out.
     pub fn builtin() -> Result<Self, Error> {
         let catalogue: Catalogue =
-            toml::from_str(CATALOGUE).map_err(|error| Error::BadCatalogue {
-                fact: error.to_string(),
-            })?;
-        let mut library = Self {
-            entries: Vec::new(),
-        };
+            toml::from_str(CATALOGUE).map_err(|error| Error::BadCatalogue { fact: error.to_string() })?;
+        let mut library = Self { entries: Vec::new() };
         for pattern in catalogue.pattern {
             let (_, svg) = DRAWINGS
                 .iter()
                 .find(|(name, _)| *name == pattern.name)
-                .ok_or_else(|| Error::BadCatalogue {
-                    fact: format!("`{}` has no drawing", pattern.name),
-                })?;
+                .ok_or_else(|| Error::BadCatalogue { fact: format!("`{}` has no drawing", pattern.name) })?;
             library.push(pattern, Some((*svg).to_owned()), OnceLock::new())?;
         }
         Ok(library)
@@ -90,10 +84,7 @@ impl TextureLibrary {
     /// A file that cannot be read, is no image, is empty or absurdly large; a name that is taken.
     pub fn add_user(&mut self, path: &Path) -> Result<usize, Error> {
         let (texture, svg, shape) = raster::read_tile(path)?;
-        let name = path
-            .file_stem()
-            .map(|stem| stem.to_string_lossy().into_owned())
-            .unwrap_or_default();
+        let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         let mean = texture.average_over([1.0; 3], None);
         let pattern = Pattern {
             title: name.clone(),
@@ -113,22 +104,11 @@ impl TextureLibrary {
         self.entries[index].pattern.tile_mm = tile_mm;
     }
 
-    fn push(
-        &mut self,
-        pattern: Pattern,
-        svg: Option<String>,
-        texture: OnceLock<Arc<Texture>>,
-    ) -> Result<usize, Error> {
+    fn push(&mut self, pattern: Pattern, svg: Option<String>, texture: OnceLock<Arc<Texture>>) -> Result<usize, Error> {
         if self.find(&pattern.name).is_some() {
-            return Err(Error::DuplicateTexture {
-                texture: pattern.name,
-            });
+            return Err(Error::DuplicateTexture { texture: pattern.name });
         }
-        self.entries.push(Entry {
-            pattern,
-            svg,
-            texture,
-        });
+        self.entries.push(Entry { pattern, svg, texture });
         Ok(self.entries.len() - 1)
     }
 
@@ -159,9 +139,7 @@ impl TextureLibrary {
 
     /// Index of a name.
     pub fn find(&self, name: &str) -> Option<usize> {
-        self.entries
-            .iter()
-            .position(|entry| entry.pattern.name == name)
+        self.entries.iter().position(|entry| entry.pattern.name == name)
     }
 
     /// Index of a name that was asked for at `place`.
@@ -176,11 +154,7 @@ impl TextureLibrary {
                 .min()
                 .filter(|(distance, nearest)| *distance <= 1 + nearest.len() / 4)
                 .map(|(_, nearest)| nearest.clone());
-            Error::UnknownTexture {
-                place: place.to_owned(),
-                texture: name.to_owned(),
-                nearest,
-            }
+            Error::UnknownTexture { place: place.to_owned(), texture: name.to_owned(), nearest }
         })
     }
 

@@ -6,16 +6,8 @@
 use crate::{Colour, LayerStyle, LayerTtf, TextureLibrary};
 
 /// Patterns for layers without a telling name, bottom to top.
-const SEQUENCE: [&str; 8] = [
-    "granite",
-    "sandstone-bedded",
-    "shale",
-    "limestone",
-    "siltstone",
-    "dolostone",
-    "marl",
-    "sand",
-];
+const SEQUENCE: [&str; 8] =
+    ["granite", "sandstone-bedded", "shale", "limestone", "siltstone", "dolostone", "marl", "sand"];
 
 /// Words in a layer's name and the pattern they stand for; the first that fits counts.
 const WORDS: [(&str, &str); 31] = [
@@ -56,10 +48,7 @@ impl LayerTtf {
     /// The style of layer number `index` (from the bottom) while it has none of its own.
     pub fn default_style(layer: &str, index: usize, library: &TextureLibrary) -> LayerStyle {
         let lower = layer.to_lowercase();
-        let by_name = WORDS
-            .iter()
-            .find(|(word, _)| lower.contains(word))
-            .map(|(_, pattern)| *pattern);
+        let by_name = WORDS.iter().find(|(word, _)| lower.contains(word)).map(|(_, pattern)| *pattern);
         let pattern = by_name.unwrap_or(SEQUENCE[index % SEQUENCE.len()]);
         match library.find(pattern) {
             Some(found) => LayerStyle::textured(layer, library.pattern(found).colour, pattern),

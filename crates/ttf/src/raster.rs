@@ -22,35 +22,19 @@ pub const MAX_FILE_BYTES: u64 = 64 << 20;
 /// # Errors
 /// See [`crate::TextureLibrary::add_user`].
 pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), Error> {
-    let extension = path
-        .extension()
-        .map(|text| text.to_string_lossy().to_lowercase())
-        .unwrap_or_default();
+    let extension = path.extension().map(|text| text.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !["png", "jpg", "jpeg", "svg"].contains(&extension.as_str()) {
-        return Err(Error::UnknownFormat {
-            path: path.to_owned(),
-        });
+        return Err(Error::UnknownFormat { path: path.to_owned() });
     }
-    let unreadable = |source| Error::ReadTexture {
-        path: path.to_owned(),
-        source,
-    };
+    let unreadable = |source| Error::ReadTexture { path: path.to_owned(), source };
     let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
     if bytes > MAX_FILE_BYTES {
-        return Err(Error::TooManyBytes {
-            path: path.to_owned(),
-            bytes,
-            limit: MAX_FILE_BYTES,
-        });
+        return Err(Error::TooManyBytes { path: path.to_owned(), bytes, limit: MAX_FILE_BYTES });
     }
     let content = std::fs::read(path).map_err(unreadable)?;
     if extension == "svg" {
         let (texture, shape) = rasterize(&path.display().to_string(), &content)?;
-        return Ok((
-            texture,
-            Some(String::from_utf8_lossy(&content).into_owned()),
-            shape,
-        ));
+        return Ok((texture, Some(String::from_utf8_lossy(&content).into_owned()), shape));
     }
     let (texture, shape) = decode(path, &content)?;
     Ok((texture, None, shape))
@@ -61,11 +45,8 @@ pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), E
 /// # Errors
 /// [`Error::BadSvg`] with the name given.
 pub(crate) fn rasterize(name: &str, svg: &[u8]) -> Result<(Texture, f32), Error> {
-    let tree =
-        usvg::Tree::from_data(svg, &usvg::Options::default()).map_err(|source| Error::BadSvg {
-            name: name.to_owned(),
-            source,
-        })?;
+    let tree = usvg::Tree::from_data(svg, &usvg::Options::default())
+        .map_err(|source| Error::BadSvg { name: name.to_owned(), source })?;
     let bad_size = || Error::BadSize {
         name: name.to_owned(),
         width: tree.size().width() as u32,
@@ -88,16 +69,9 @@ pub(crate) fn rasterize(name: &str, svg: &[u8]) -> Result<(Texture, f32), Error>
 }
 
 fn decode(path: &Path, content: &[u8]) -> Result<(Texture, f32), Error> {
-    let bad_image = |source| Error::BadImage {
-        path: path.to_owned(),
-        source,
-    };
-    let bad_size = |width, height| Error::BadSize {
-        name: path.display().to_string(),
-        width,
-        height,
-        limit: MAX_IMAGE_SIDE_PX,
-    };
+    let bad_image = |source| Error::BadImage { path: path.to_owned(), source };
+    let bad_size =
+        |width, height| Error::BadSize { name: path.display().to_string(), width, height, limit: MAX_IMAGE_SIDE_PX };
     let format = image::guess_format(content).map_err(bad_image)?;
     let reader = || image::ImageReader::with_format(std::io::Cursor::new(content), format);
     let (width, height) = reader().into_dimensions().map_err(bad_image)?;
@@ -119,32 +93,22 @@ fn decode(path: &Path, content: &[u8]) -> Result<(Texture, f32), Error> {
     let wide = resample_rows(&premultiplied, width as usize, side);
     let turned = transpose(&wide, side);
     let square = transpose(&resample_rows(&turned, height as usize, side), side);
-    Ok((
-        Texture::from_premultiplied(square),
-        height as f32 / width as f32,
-    ))
+    Ok((Texture::from_premultiplied(square), height as f32 / width as f32))
 }
 
 /// Resamples every row from `from` to `to` texels, wrapping around.
 fn resample_rows(texels: &[[f32; 4]], from: usize, to: usize) -> Vec<[f32; 4]> {
     let step = from as f64 / to as f64;
     let weights: Vec<Vec<(usize, f32)>> = (0..to)
-        .map(|index| {
-            if from > to {
-                area_weights(index as f64 * step, step)
-            } else {
-                linear_weights(index, step)
-            }
-        })
+        .map(|index| if from > to { area_weights(index as f64 * step, step) } else { linear_weights(index, step) })
         .collect();
     texels
         .chunks_exact(from)
         .flat_map(|row| {
             weights.iter().map(move |taps| {
-                taps.iter()
-                    .fold([0.0; 4], |sum: [f32; 4], &(index, weight)| {
-                        std::array::from_fn(|c| sum[c] + weight * row[index % from][c])
-                    })
+                taps.iter().fold([0.0; 4], |sum: [f32; 4], &(index, weight)| {
+                    std::array::from_fn(|c| sum[c] + weight * row[index % from][c])
+                })
             })
         })
         .collect()
@@ -174,7 +138,5 @@ fn linear_weights(index: usize, step: f64) -> Vec<(usize, f32)> {
 
 fn transpose(texels: &[[f32; 4]], width: usize) -> Vec<[f32; 4]> {
     let height = texels.len() / width;
-    (0..texels.len())
-        .map(|index| texels[(index % height) * width + index / height])
-        .collect()
+    (0..texels.len()).map(|index| texels[(index % height) * width + index / height]).collect()
 }

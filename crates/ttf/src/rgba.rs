@@ -36,15 +36,7 @@ pub struct RgbaStop {
 impl RgbaFunction {
     /// A colour map over a range of values, opaque.
     pub fn over(map: ColourMap, domain: [f32; 2]) -> Self {
-        let stops = map
-            .stops()
-            .into_iter()
-            .map(|(at, colour)| RgbaStop {
-                at,
-                colour,
-                opacity: 1.0,
-            })
-            .collect();
+        let stops = map.stops().into_iter().map(|(at, colour)| RgbaStop { at, colour, opacity: 1.0 }).collect();
         Self { domain, stops }
     }
 
@@ -68,26 +60,14 @@ impl RgbaFunction {
         }
         let [low, high] = self.domain;
         let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
-        let after = self
-            .stops
-            .partition_point(|stop| stop.at <= t)
-            .clamp(1, self.stops.len());
+        let after = self.stops.partition_point(|stop| stop.at <= t).clamp(1, self.stops.len());
         let left = self.stops[after - 1];
         let right = self.stops[after.min(self.stops.len() - 1)];
         let span = right.at - left.at;
-        let fraction = if span > 0.0 {
-            (t - left.at) / span
-        } else {
-            0.0
-        };
+        let fraction = if span > 0.0 { (t - left.at) / span } else { 0.0 };
         let mix = |a: f32, b: f32| a + (b - a) * fraction;
         let (a, b) = (left.colour.to_unit(), right.colour.to_unit());
-        [
-            mix(a[0], b[0]),
-            mix(a[1], b[1]),
-            mix(a[2], b[2]),
-            mix(left.opacity, right.opacity),
-        ]
+        [mix(a[0], b[0]), mix(a[1], b[1]), mix(a[2], b[2]), mix(left.opacity, right.opacity)]
     }
 
     /// The function sampled at `count` evenly spaced values of the domain, ends included: a lookup
@@ -95,9 +75,7 @@ impl RgbaFunction {
     pub fn bake(&self, count: usize) -> Vec<[f32; 4]> {
         let [low, high] = self.domain;
         let last = count.saturating_sub(1).max(1) as f32;
-        (0..count)
-            .map(|index| self.evaluate(low + (high - low) * index as f32 / last))
-            .collect()
+        (0..count).map(|index| self.evaluate(low + (high - low) * index as f32 / last)).collect()
     }
 
     /// Refuses what cannot be evaluated.
@@ -108,34 +86,21 @@ impl RgbaFunction {
     pub fn validate(&self, place: &str) -> Result<(), Error> {
         let [low, high] = self.domain;
         if !(low.is_finite() && high.is_finite() && low < high) {
-            return Err(Error::BadDomain {
-                place: place.to_owned(),
-                low,
-                high,
-            });
+            return Err(Error::BadDomain { place: place.to_owned(), low, high });
         }
-        let bad = |fact: String| {
-            Err(Error::BadStops {
-                place: place.to_owned(),
-                fact,
-            })
-        };
+        let bad = |fact: String| Err(Error::BadStops { place: place.to_owned(), fact });
         if self.stops.len() < 2 {
             return bad(format!("it has {} stop(s)", self.stops.len()));
         }
         if self.stops[0].at != 0.0 || self.stops[self.stops.len() - 1].at != 1.0 {
             return bad("its first stop is not at 0 or its last not at 1".to_owned());
         }
-        if let Some(pair) = self
-            .stops
-            .windows(2)
-            .find(|pair| pair[0].at.is_nan() || pair[1].at.is_nan() || pair[0].at > pair[1].at)
+        if let Some(pair) =
+            self.stops.windows(2).find(|pair| pair[0].at.is_nan() || pair[1].at.is_nan() || pair[0].at > pair[1].at)
         {
             return bad(format!("stop {} follows stop {}", pair[1].at, pair[0].at));
         }
-        self.stops
-            .iter()
-            .try_for_each(|stop| check_unit(place, "a stop's opacity", stop.opacity))
+        self.stops.iter().try_for_each(|stop| check_unit(place, "a stop's opacity", stop.opacity))
     }
 }
 
@@ -147,11 +112,7 @@ impl RgbaFunction {
 /// assert_eq!(ttf::symmetric_clip(&samples, 0.99), Some(99.0));
 /// ```
 pub fn symmetric_clip(samples: &[f32], fraction: f32) -> Option<f32> {
-    let mut sizes: Vec<f32> = samples
-        .iter()
-        .filter(|sample| sample.is_finite())
-        .map(|sample| sample.abs())
-        .collect();
+    let mut sizes: Vec<f32> = samples.iter().filter(|sample| sample.is_finite()).map(|sample| sample.abs()).collect();
     let last = sizes.len().checked_sub(1)?;
     let rank = ((last as f64 * f64::from(fraction.clamp(0.0, 1.0))).round() as usize).min(last);
     let (_, value, _) = sizes.select_nth_unstable_by(rank, f32::total_cmp);
@@ -167,21 +128,9 @@ mod tests {
         RgbaFunction {
             domain: [10.0, 20.0],
             stops: vec![
-                RgbaStop {
-                    at: 0.0,
-                    colour: Colour::BLACK,
-                    opacity: 0.0,
-                },
-                RgbaStop {
-                    at: 0.25,
-                    colour: Colour::WHITE,
-                    opacity: 1.0,
-                },
-                RgbaStop {
-                    at: 1.0,
-                    colour: Colour::new(255, 0, 0),
-                    opacity: 0.5,
-                },
+                RgbaStop { at: 0.0, colour: Colour::BLACK, opacity: 0.0 },
+                RgbaStop { at: 0.25, colour: Colour::WHITE, opacity: 1.0 },
+                RgbaStop { at: 1.0, colour: Colour::new(255, 0, 0), opacity: 0.5 },
             ],
         }
     }
@@ -204,14 +153,7 @@ mod tests {
     #[test]
     fn a_step_is_two_stops_at_one_place() {
         let mut function = ramp();
-        function.stops.insert(
-            2,
-            RgbaStop {
-                at: 0.25,
-                colour: Colour::BLACK,
-                opacity: 1.0,
-            },
-        );
+        function.stops.insert(2, RgbaStop { at: 0.25, colour: Colour::BLACK, opacity: 1.0 });
         function.validate("x").unwrap();
         assert_eq!(function.evaluate(12.5), [0.0, 0.0, 0.0, 1.0]);
         assert!(function.evaluate(12.4999)[0] > 0.99);
@@ -244,10 +186,7 @@ mod tests {
 
     #[test]
     fn the_clip_ignores_what_is_no_number() {
-        assert_eq!(
-            symmetric_clip(&[f32::NAN, -3.0, 1.0, f32::INFINITY], 1.0),
-            Some(3.0)
-        );
+        assert_eq!(symmetric_clip(&[f32::NAN, -3.0, 1.0, f32::INFINITY], 1.0), Some(3.0));
         assert_eq!(symmetric_clip(&[], 0.99), None);
         assert_eq!(symmetric_clip(&[0.0, 0.0], 0.99), None);
     }

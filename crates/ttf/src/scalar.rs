@@ -55,9 +55,7 @@ fn same_frequency() -> [f32; 2] {
 impl ScalarTtf {
     /// The interval that holds `value`; none for NaN.
     pub fn interval_at(&self, value: f32) -> Option<&ScalarInterval> {
-        self.intervals
-            .iter()
-            .find(|interval| value >= interval.range[0] && value < interval.range[1])
+        self.intervals.iter().find(|interval| value >= interval.range[0] && value < interval.range[1])
     }
 
     /// Refuses what cannot be drawn.
@@ -69,19 +67,10 @@ impl ScalarTtf {
         for interval in &self.intervals {
             let [low, high] = interval.range;
             if low.is_nan() || high.is_nan() || low >= high {
-                return Err(Error::BadValueInterval {
-                    volume: self.volume.clone(),
-                    low,
-                    high,
-                });
+                return Err(Error::BadValueInterval { volume: self.volume.clone(), low, high });
             }
             check_unit(&place, "the texture's opacity", interval.opacity)?;
-            Frequency {
-                horizontal: 1.0,
-                vertical: 1.0,
-            }
-            .scaled(interval.factor)
-            .validate(&place)?;
+            Frequency { horizontal: 1.0, vertical: 1.0 }.scaled(interval.factor).validate(&place)?;
             library.index_of(&interval.texture, &place)?;
         }
         check_overlap(&place, self.intervals.iter().map(|interval| interval.range))

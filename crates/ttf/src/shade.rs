@@ -71,10 +71,7 @@ pub fn shade(tables: &TtfTables, point: &ShadePoint, scalars: &[f32]) -> [f32; 4
         for entry in &tables.scalars {
             let value = value_of(entry.volume);
             if value >= entry.range[0] && value < entry.range[1] {
-                let scaled = [
-                    frequency[0] * entry.factor[0],
-                    frequency[1] * entry.factor[1],
-                ];
+                let scaled = [frequency[0] * entry.factor[0], frequency[1] * entry.factor[1]];
                 let ink = inked(sampler.sample(entry.texture, scaled), entry.ink);
                 colour = over(colour, on_background(ink, entry.colour), entry.opacity);
             }
@@ -82,16 +79,8 @@ pub fn shade(tables: &TtfTables, point: &ShadePoint, scalars: &[f32]) -> [f32; 4
     }
     if tables.globals.raw_volume != NONE {
         let value = value_of(tables.globals.raw_volume);
-        let raw = if value.is_nan() {
-            tables.globals.no_data
-        } else {
-            raw_colour(tables, value)
-        };
-        let share = if value.is_nan() {
-            raw[3] * tables.globals.blend
-        } else {
-            tables.globals.blend
-        };
+        let raw = if value.is_nan() { tables.globals.no_data } else { raw_colour(tables, value) };
+        let share = if value.is_nan() { raw[3] * tables.globals.blend } else { tables.globals.blend };
         colour = std::array::from_fn(|c| colour[c] + (raw[c] - colour[c]) * share);
     }
     [colour[0], colour[1], colour[2], 1.0]
@@ -105,14 +94,8 @@ fn raw_colour(tables: &TtfTables, value: f32) -> [f32; 4] {
     for pair in tables.stops.windows(2) {
         if t >= pair[0].at {
             let span = pair[1].at - pair[0].at;
-            let fraction = if span > 0.0 {
-                ((t - pair[0].at) / span).min(1.0)
-            } else {
-                1.0
-            };
-            colour = std::array::from_fn(|c| {
-                pair[0].colour[c] + (pair[1].colour[c] - pair[0].colour[c]) * fraction
-            });
+            let fraction = if span > 0.0 { ((t - pair[0].at) / span).min(1.0) } else { 1.0 };
+            colour = std::array::from_fn(|c| pair[0].colour[c] + (pair[1].colour[c] - pair[0].colour[c]) * fraction);
         }
     }
     colour
@@ -152,28 +135,19 @@ struct Sampler<'a> {
 impl<'a> Sampler<'a> {
     fn new(tables: &'a TtfTables, point: &ShadePoint) -> Self {
         let flat = [point.flat.i, point.flat.j, point.flat.k];
-        let coordinates = point.face.mappings(tables.globals.aspect_j).map(|mapping| {
-            [flat, point.footprint.dx, point.footprint.dy].map(|vector| mapping.apply(vector))
-        });
-        Self {
-            tables,
-            weights: point.face.weights(point.grad_k).to_array(),
-            coordinates,
-        }
+        let coordinates = point
+            .face
+            .mappings(tables.globals.aspect_j)
+            .map(|mapping| [flat, point.footprint.dx, point.footprint.dy].map(|vector| mapping.apply(vector)));
+        Self { tables, weights: point.face.weights(point.grad_k).to_array(), coordinates }
     }
 
     fn sample(&self, texture: u32, frequency: [f32; 2]) -> [f32; 4] {
         let texture = &self.tables.textures[texture as usize];
-        let [horizontal, vertical] =
-            frequency.map(|part| part * self.tables.globals.global_frequency);
-        let scales = [
-            [horizontal, vertical],
-            [horizontal, vertical],
-            [horizontal, horizontal],
-        ];
+        let [horizontal, vertical] = frequency.map(|part| part * self.tables.globals.global_frequency);
+        let scales = [[horizontal, vertical], [horizontal, vertical], [horizontal, horizontal]];
         let mut sum = [0.0; 4];
-        for ((weight, coordinates), scale) in self.weights.iter().zip(&self.coordinates).zip(scales)
-        {
+        for ((weight, coordinates), scale) in self.weights.iter().zip(&self.coordinates).zip(scales) {
             if *weight > 0.0 {
                 let [uv, dx, dy] = coordinates.map(|pair| [pair[0] * scale[0], pair[1] * scale[1]]);
                 let texel = texture.sample(uv, dx, dy);

@@ -8,10 +8,7 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::{
-    Error, Frequency, LayerStyle, LayerTtf, ScalarInterval, Texture, TextureLibrary,
-    TransferFunctions,
-};
+use crate::{Error, Frequency, LayerStyle, LayerTtf, ScalarInterval, Texture, TextureLibrary, TransferFunctions};
 
 /// Stands for "no texture" or "no volume" in the tables.
 pub const NONE: u32 = u32::MAX;
@@ -173,9 +170,7 @@ impl TtfTables {
             let first_interval = intervals.len() as u32;
             slots.add_intervals(&style, block, layer.thickness_m, &mut intervals)?;
             let [r, g, b] = style.colour.to_unit();
-            let frequency = style
-                .frequency
-                .unwrap_or_else(|| block.frequency(layer.thickness_m, PLAIN_TILE_MM));
+            let frequency = style.frequency.unwrap_or_else(|| block.frequency(layer.thickness_m, PLAIN_TILE_MM));
             layers.push(LayerEntry {
                 colour: [r, g, b, style.opacity],
                 frequency: [frequency.horizontal, frequency.vertical],
@@ -190,19 +185,14 @@ impl TtfTables {
                 scalars.push(slots.scalar(interval, volume)?);
             }
         }
-        let (mut stops, mut raw_domain, mut raw_volume, mut no_data) =
-            (Vec::new(), [0.0, 1.0], NONE, [0.0; 4]);
+        let (mut stops, mut raw_domain, mut raw_volume, mut no_data) = (Vec::new(), [0.0, 1.0], NONE, [0.0; 4]);
         if let Some(raw) = &functions.raw {
             raw_volume = slots.volume(&raw.volume);
             raw_domain = raw.function.domain;
             no_data = opaque_or_nothing(raw.no_data);
             stops.extend(raw.function.stops.iter().map(|stop| {
                 let [r, g, b] = stop.colour.to_unit();
-                StopEntry {
-                    colour: [r, g, b, stop.opacity],
-                    at: stop.at,
-                    padding: [0.0; 3],
-                }
+                StopEntry { colour: [r, g, b, stop.opacity], at: stop.at, padding: [0.0; 3] }
             }));
         }
         let globals = TtfGlobals {
@@ -215,18 +205,8 @@ impl TtfTables {
             scalar_count: scalars.len() as u32,
             stop_count: stops.len() as u32,
         };
-        let Slots {
-            volumes, textures, ..
-        } = slots;
-        Ok(Self {
-            globals,
-            layers,
-            intervals,
-            scalars,
-            stops,
-            volumes,
-            textures,
-        })
+        let Slots { volumes, textures, .. } = slots;
+        Ok(Self { globals, layers, intervals, scalars, stops, volumes, textures })
     }
 
     /// The opaque average colour of a layer at local k, its texture included: the ground's colour is
@@ -240,11 +220,7 @@ impl TtfTables {
             Some(interval) => {
                 let [r, g, b, opacity] = interval.colour;
                 let background = [r, g, b];
-                let ink = (interval.ink[3] > 0.5).then_some([
-                    interval.ink[0],
-                    interval.ink[1],
-                    interval.ink[2],
-                ]);
+                let ink = (interval.ink[3] > 0.5).then_some([interval.ink[0], interval.ink[1], interval.ink[2]]);
                 let full = self.textures[interval.texture as usize].average_over(background, ink);
                 std::array::from_fn(|c| background[c] + (full[c] - background[c]) * opacity)
             }
@@ -271,21 +247,12 @@ impl BlockExtent {
 
     fn validate(&self) -> Result<(), Error> {
         let check = |quantity: &'static str, value: f32| {
-            if value.is_finite() && value > 0.0 {
-                Ok(())
-            } else {
-                Err(Error::BadExtent { quantity, value })
-            }
+            if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::BadExtent { quantity, value }) }
         };
         check("the block's extent along x", self.extent_i_m)?;
         check("the block's extent along y", self.extent_j_m)?;
-        check(
-            "the figure's scale (metres per millimetre)",
-            self.metres_per_mm,
-        )?;
-        self.layers
-            .iter()
-            .try_for_each(|layer| check("a layer's mean thickness", layer.thickness_m))
+        check("the figure's scale (metres per millimetre)", self.metres_per_mm)?;
+        self.layers.iter().try_for_each(|layer| check("a layer's mean thickness", layer.thickness_m))
     }
 }
 
@@ -299,20 +266,11 @@ struct Slots<'a> {
 
 impl<'a> Slots<'a> {
     fn new(library: &'a TextureLibrary) -> Self {
-        Self {
-            library,
-            library_indices: Vec::new(),
-            textures: Vec::new(),
-            volumes: Vec::new(),
-        }
+        Self { library, library_indices: Vec::new(), textures: Vec::new(), volumes: Vec::new() }
     }
 
     fn texture(&mut self, index: usize) -> Result<u32, Error> {
-        if let Some(slot) = self
-            .library_indices
-            .iter()
-            .position(|&present| present == index)
-        {
+        if let Some(slot) = self.library_indices.iter().position(|&present| present == index) {
             return Ok(slot as u32);
         }
         self.textures.push(self.library.texture(index)?);
@@ -321,14 +279,10 @@ impl<'a> Slots<'a> {
     }
 
     fn volume(&mut self, name: &str) -> u32 {
-        let slot = self
-            .volumes
-            .iter()
-            .position(|present| present == name)
-            .unwrap_or_else(|| {
-                self.volumes.push(name.to_owned());
-                self.volumes.len() - 1
-            });
+        let slot = self.volumes.iter().position(|present| present == name).unwrap_or_else(|| {
+            self.volumes.push(name.to_owned());
+            self.volumes.len() - 1
+        });
         slot as u32
     }
 
@@ -344,19 +298,14 @@ impl<'a> Slots<'a> {
         for interval in sorted {
             let index = self.library.index_of(&interval.texture, &style.layer)?;
             let tile_mm = self.library.pattern(index).tile_mm;
-            let frequency = interval
-                .frequency
-                .or(style.frequency)
-                .unwrap_or_else(|| block.frequency(thickness_m, tile_mm));
+            let frequency =
+                interval.frequency.or(style.frequency).unwrap_or_else(|| block.frequency(thickness_m, tile_mm));
             let [r, g, b] = interval.colour.unwrap_or(style.colour).to_unit();
             let [low, high] = interval.k;
             intervals.push(IntervalEntry {
                 colour: [r, g, b, interval.opacity],
                 ink: opaque_or_nothing(style.ink),
-                k: [
-                    if low <= 0.0 { f32::MIN } else { low },
-                    if high >= 1.0 { f32::MAX } else { high },
-                ],
+                k: [if low <= 0.0 { f32::MIN } else { low }, if high >= 1.0 { f32::MAX } else { high }],
                 frequency: [frequency.horizontal, frequency.vertical],
                 texture: self.texture(index)?,
                 padding: [0; 3],
@@ -366,9 +315,7 @@ impl<'a> Slots<'a> {
     }
 
     fn scalar(&mut self, interval: &ScalarInterval, volume: u32) -> Result<ScalarEntry, Error> {
-        let index = self
-            .library
-            .index_of(&interval.texture, "a scalar function")?;
+        let index = self.library.index_of(&interval.texture, "a scalar function")?;
         Ok(ScalarEntry {
             colour: opaque_or_nothing(interval.colour),
             ink: opaque_or_nothing(interval.ink),

@@ -39,21 +39,14 @@ impl Texture {
     /// If the count is not the square of a power of two; callers resample first.
     pub(crate) fn from_premultiplied(mut texels: Vec<[f32; 4]>) -> Self {
         let mut side = texels.len().isqrt();
-        assert!(
-            side.is_power_of_two() && side * side == texels.len(),
-            "{} texels",
-            texels.len()
-        );
+        assert!(side.is_power_of_two() && side * side == texels.len(), "{} texels", texels.len());
         let mut levels = vec![quantize(&texels)];
         while side > 1 {
             texels = halve(&texels, side);
             side /= 2;
             levels.push(quantize(&texels));
         }
-        Self {
-            levels,
-            mean: texels[0],
-        }
+        Self { levels, mean: texels[0] }
     }
 
     /// Texels a side at level 0.
@@ -88,10 +81,7 @@ impl Texture {
         let mut sum = [0.0; 4];
         for tap in 0..footprint.taps {
             let offset = (tap as f32 + 0.5) / footprint.taps as f32 - 0.5;
-            let at = [
-                uv[0] + offset * footprint.axis[0],
-                uv[1] + offset * footprint.axis[1],
-            ];
+            let at = [uv[0] + offset * footprint.axis[0], uv[1] + offset * footprint.axis[1]];
             let texel = self.trilinear(at, lod);
             for channel in 0..4 {
                 sum[channel] += texel[channel];
@@ -119,8 +109,7 @@ impl Texture {
         };
         let (x0, x1, fx) = place(uv[0]);
         let (y0, y1, fy) = place(uv[1]);
-        let at =
-            |x: usize, y: usize, channel: usize| f32::from(texels[y * side + x][channel]) / 255.0;
+        let at = |x: usize, y: usize, channel: usize| f32::from(texels[y * side + x][channel]) / 255.0;
         std::array::from_fn(|channel| {
             let bottom = at(x0, y0, channel) + (at(x1, y0, channel) - at(x0, y0, channel)) * fx;
             let top = at(x0, y1, channel) + (at(x1, y1, channel) - at(x0, y1, channel)) * fx;
@@ -158,22 +147,10 @@ impl Footprint {
         let first = [major_sq - r, q];
         let second = [q, major_sq - p];
         let length_sq = |v: [f32; 2]| v[0] * v[0] + v[1] * v[1];
-        let longer = if length_sq(first) >= length_sq(second) {
-            first
-        } else {
-            second
-        };
+        let longer = if length_sq(first) >= length_sq(second) { first } else { second };
         let length = length_sq(longer).sqrt();
-        let axis = if length > 0.0 {
-            longer.map(|part| part / length)
-        } else {
-            [1.0, 0.0]
-        };
-        Self {
-            lod: width.log2(),
-            taps,
-            axis: axis.map(|part| part * major / side),
-        }
+        let axis = if length > 0.0 { longer.map(|part| part / length) } else { [1.0, 0.0] };
+        Self { lod: width.log2(), taps, axis: axis.map(|part| part * major / side) }
     }
 }
 
@@ -184,12 +161,7 @@ fn halve(texels: &[[f32; 4]], side: usize) -> Vec<[f32; 4]> {
         .map(|index| {
             let corner = (index / half) * 2 * side + (index % half) * 2;
             let box_ = [corner, corner + 1, corner + side, corner + side + 1];
-            std::array::from_fn(|channel| {
-                box_.iter()
-                    .map(|&texel| texels[texel][channel])
-                    .sum::<f32>()
-                    * 0.25
-            })
+            std::array::from_fn(|channel| box_.iter().map(|&texel| texels[texel][channel]).sum::<f32>() * 0.25)
         })
         .collect()
 }
@@ -220,33 +192,19 @@ mod tests {
         assert_eq!(texture.levels().len(), 4);
         for level in texture.levels() {
             for (channel, expected) in [0.5_f32, 0.5, 0.5, 1.0].into_iter().enumerate() {
-                let mean = level
-                    .iter()
-                    .map(|texel| f32::from(texel[channel]))
-                    .sum::<f32>()
-                    / (255.0 * level.len() as f32);
-                assert!(
-                    (mean - expected).abs() < 0.5 / 255.0 + 1e-6,
-                    "channel {channel}: {mean}"
-                );
+                let mean =
+                    level.iter().map(|texel| f32::from(texel[channel])).sum::<f32>() / (255.0 * level.len() as f32);
+                assert!((mean - expected).abs() < 0.5 / 255.0 + 1e-6, "channel {channel}: {mean}");
             }
         }
     }
 
     #[test]
     fn a_checker_averages_to_its_mean_over_the_background() {
-        let black_half = (0..16)
-            .map(|i| [0.0, 0.0, 0.0, ((i % 4 + i / 4) % 2) as f32])
-            .collect();
+        let black_half = (0..16).map(|i| [0.0, 0.0, 0.0, ((i % 4 + i / 4) % 2) as f32]).collect();
         let texture = Texture::from_premultiplied(black_half);
-        assert_eq!(
-            texture.average_over([1.0, 0.5, 0.0], None),
-            [0.5, 0.25, 0.0]
-        );
-        assert_eq!(
-            texture.average_over([1.0, 0.5, 0.0], Some([0.0, 0.5, 1.0])),
-            [0.5, 0.5, 0.5]
-        );
+        assert_eq!(texture.average_over([1.0, 0.5, 0.0], None), [0.5, 0.25, 0.0]);
+        assert_eq!(texture.average_over([1.0, 0.5, 0.0], Some([0.0, 0.5, 1.0])), [0.5, 0.5, 0.5]);
     }
 
     #[test]
@@ -275,9 +233,7 @@ mod tests {
     #[test]
     fn a_long_footprint_blurs_along_and_stays_sharp_across() {
         // Columns black and white, 64 wide; the footprint is long in v, narrow in u.
-        let columns = (0..64 * 64)
-            .map(|i| [(i / 8 % 2) as f32, 0.0, 0.0, 1.0])
-            .collect();
+        let columns = (0..64 * 64).map(|i| [(i / 8 % 2) as f32, 0.0, 0.0, 1.0]).collect();
         let texture = Texture::from_premultiplied(columns);
         let at = |u: f32, du: [f32; 2], dv: [f32; 2]| texture.sample([u, 0.4], du, dv)[0];
         let long = [0.0, 8.0 / 64.0];
@@ -291,11 +247,8 @@ mod tests {
     #[test]
     fn the_footprint_finds_the_axes_of_a_turned_ellipse() {
         let (sin, cos) = 0.6_f32.sin_cos();
-        let footprint = Footprint::new(
-            64.0,
-            [6.0 * cos / 64.0, 6.0 * sin / 64.0],
-            [-2.0 * sin / 64.0, 2.0 * cos / 64.0],
-        );
+        let footprint =
+            Footprint::new(64.0, [6.0 * cos / 64.0, 6.0 * sin / 64.0], [-2.0 * sin / 64.0, 2.0 * cos / 64.0]);
         assert_eq!(footprint.taps, 3);
         assert!((footprint.lod - 1.0).abs() < 1e-5);
         let length = footprint.axis[0].hypot(footprint.axis[1]) * 64.0;

@@ -1,0 +1,292 @@
+//! A square tile of ink that wraps around: whatever crosses an edge is drawn again on the opposite one.
+//!
+//! Unit: points at printed size (1 pt = 25.4/72 mm); x right, y **down** as in SVG.
+
+use std::fmt::Write;
+
+/// A point in the tile, in points.
+pub type Point = [f32; 2];
+
+/// The one ink all patterns are drawn in: a warm black.
+const INK: &str = "#231f1b";
+
+/// Deterministic pseudo-random numbers (SplitMix64, Steele, Lea and Flood 2014).
+pub struct Dice(u64);
+
+impl Dice {
+    /// A stream of its own for each pattern.
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    }
+
+    /// Evenly distributed in [low, high).
+    pub fn between(&mut self, low: f32, high: f32) -> f32 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^= z >> 31;
+        low + (high - low) * ((z >> 40) as f32 / (1_u64 << 24) as f32)
+    }
+
+    /// Evenly distributed around zero.
+    pub fn jitter(&mut self, size: f32) -> f32 {
+        self.between(-size, size)
+    }
+}
+
+enum Style {
+    Stroke(f32),
+    Fill,
+}
+
+struct Element {
+    style: Style,
+    /// Path data as a function of the offset: points with the command before each.
+    commands: Vec<(char, Vec<Point>)>,
+}
+
+/// The drawing.
+pub struct Tile {
+    /// Side in points.
+    pub side: f32,
+    elements: Vec<Element>,
+}
+
+impl Tile {
+    /// An empty tile.
+    pub fn new(side: f32) -> Self {
+        Self { side, elements: Vec::new() }
+    }
+
+    /// A straight stroke.
+    pub fn line(&mut self, from: Point, to: Point, width: f32) {
+        self.polyline(&[from, to], width);
+    }
+
+    /// Straight strokes through points.
+    pub fn polyline(&mut self, points: &[Point], width: f32) {
+        let mut commands = vec![('M', vec![points[0]])];
+        commands.extend(points[1..].iter().map(|&point| ('L', vec![point])));
+        self.elements.push(Element { style: Style::Stroke(width), commands });
+    }
+
+    /// A smooth stroke through points (Catmull–Rom).
+    pub fn curve(&mut self, points: &[Point], width: f32) {
+        let last = points.len() - 1;
+        let at = |index: isize| points[index.clamp(0, last as isize) as usize];
+        let mut commands = vec![('M', vec![points[0]])];
+        for index in 0..last as isize {
+            commands.push(spline(at(index - 1), at(index), at(index + 1), at(index + 2)));
+        }
+        self.elements.push(Element { style: Style::Stroke(width), commands });
+    }
+
+    /// A smooth closed outline through points.
+    pub fn blob(&mut self, points: &[Point], width: f32) {
+        let commands = closed_curve(points);
+        self.elements.push(Element { style: Style::Stroke(width), commands });
+    }
+
+    /// A closed outline with corners.
+    pub fn polygon(&mut self, points: &[Point], width: f32) {
+        let mut commands = vec![('M', vec![points[0]])];
+        commands.extend(points[1..].iter().map(|&point| ('L', vec![point])));
+        commands.push(('Z', Vec::new()));
+        self.elements.push(Element { style: Style::Stroke(width), commands });
+    }
+
+    /// A filled area with corners.
+    pub fn filled_polygon(&mut self, points: &[Point]) {
+        self.polygon(points, 0.0);
+        if let Some(element) = self.elements.last_mut() {
+            element.style = Style::Fill;
+        }
+    }
+
+    /// A round dot: a stroke of no length with round ends.
+    pub fn dot(&mut self, centre: Point, radius: f32) {
+        let commands = vec![('M', vec![centre]), ('L', vec![centre])];
+        self.elements.push(Element { style: Style::Stroke(2.0 * radius), commands });
+    }
+
+    /// An upright ellipse in outline.
+    pub fn ellipse(&mut self, centre: Point, radii: [f32; 2], width: f32) {
+        let commands = circle(centre, radii);
+        self.elements.push(Element { style: Style::Stroke(width), commands });
+    }
+
+    /// An upright filled ellipse.
+    pub fn filled_ellipse(&mut self, centre: Point, radii: [f32; 2]) {
+        let commands = circle(centre, radii);
+        self.elements.push(Element { style: Style::Fill, commands });
+    }
+
+    /// The shortest way from one point to another over the edges.
+    pub fn offset(&self, from: Point, to: Point) -> Point {
+        [to[0] - from[0], to[1] - from[1]].map(|part| part - (part / self.side).round() * self.side)
+    }
+
+    /// Distance over the edges.
+    pub fn distance(&self, a: Point, b: Point) -> f32 {
+        let [x, y] = self.offset(a, b);
+        x.hypot(y)
+    }
+
+    /// Poisson-disc points at least `gap` apart, none closer than `clearance` to an obstacle (centre, radius),
+    /// as many as go in: even density without rows or rivers.
+    pub fn scatter(&self, dice: &mut Dice, gap: f32, obstacles: &[(Point, f32)], clearance: f32) -> Vec<Point> {
+        let mut points: Vec<Point> = Vec::new();
+        for _ in 0..40_000 {
+            let candidate = [dice.between(0.0, self.side), dice.between(0.0, self.side)];
+            let free = points.iter().all(|&point| self.distance(point, candidate) >= gap)
+                && obstacles.iter().all(|&(centre, radius)| self.distance(centre, candidate) >= radius + clearance);
+            if free {
+                points.push(candidate);
+            }
+        }
+        points
+    }
+
+    /// Discs of the given radii, largest first, `gap` apart: each placed where a dart first finds room.
+    pub fn pack(&self, dice: &mut Dice, radii: &[f32], gap: f32) -> Vec<(Point, f32)> {
+        let mut discs: Vec<(Point, f32)> = Vec::new();
+        for &radius in radii {
+            for _ in 0..4_000 {
+                let centre = [dice.between(0.0, self.side), dice.between(0.0, self.side)];
+                if discs.iter().all(|&(other, size)| self.distance(other, centre) >= size + radius + gap) {
+                    discs.push((centre, radius));
+                    break;
+                }
+            }
+        }
+        discs
+    }
+
+    /// The drawing as SVG; elements that reach over an edge are repeated on the other side.
+    pub fn to_svg(&self) -> String {
+        let side = self.side;
+        let mut groups: Vec<(String, String)> = Vec::new();
+        for element in &self.elements {
+            let (style, reach) = match element.style {
+                Style::Fill => (format!("fill=\"{INK}\""), 0.0),
+                Style::Stroke(width) => (
+                    format!(
+                        "fill=\"none\" stroke=\"{INK}\" stroke-width=\"{width}\" stroke-linecap=\"round\" stroke-linejoin=\"round\""
+                    ),
+                    width,
+                ),
+            };
+            let data = self.wrapped(element, reach);
+            match groups.iter_mut().find(|(present, _)| *present == style) {
+                Some((_, path)) => path.push_str(&data),
+                None => groups.push((style, data)),
+            }
+        }
+        let mut svg = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{side}pt\" height=\"{side}pt\" viewBox=\"0 0 {side} {side}\">\n"
+        );
+        for (style, path) in groups {
+            let _ = writeln!(svg, "<path {style} d=\"{path}\"/>");
+        }
+        svg.push_str("</svg>\n");
+        svg
+    }
+
+    /// Path data of all copies of an element that touch the tile.
+    fn wrapped(&self, element: &Element, reach: f32) -> String {
+        let points = || element.commands.iter().flat_map(|(_, points)| points);
+        let bound = |axis: usize| {
+            points().fold((f32::MAX, f32::MIN), |(low, high), point| (low.min(point[axis]), high.max(point[axis])))
+        };
+        let shifts = |(low, high): (f32, f32)| {
+            (-4..=4)
+                .map(|step| step as f32 * self.side)
+                .filter(move |shift| high + shift + reach > 0.0 && low + shift - reach < self.side)
+                .collect::<Vec<f32>>()
+        };
+        let (across, down) = (shifts(bound(0)), shifts(bound(1)));
+        let mut data = String::new();
+        for dy in down {
+            for dx in &across {
+                for (command, points) in &element.commands {
+                    data.push(*command);
+                    for (index, point) in points.iter().enumerate() {
+                        let gap = if index == 0 { "" } else { " " };
+                        let _ = write!(data, "{gap}{} {}", short(point[0] + dx), short(point[1] + dy));
+                    }
+                }
+                data.push('\n');
+            }
+        }
+        data
+    }
+}
+
+/// Two decimals are 0.004 mm: finer than any printer.
+fn short(value: f32) -> f32 {
+    (value * 100.0).round() / 100.0 + 0.0
+}
+
+fn spline(before: Point, from: Point, to: Point, after: Point) -> (char, Vec<Point>) {
+    let handle = |a: Point, at: Point, b: Point, sign: f32| {
+        [at[0] + sign * (b[0] - a[0]) / 6.0, at[1] + sign * (b[1] - a[1]) / 6.0]
+    };
+    ('C', vec![handle(before, from, to, 1.0), handle(from, to, after, -1.0), to])
+}
+
+fn closed_curve(points: &[Point]) -> Vec<(char, Vec<Point>)> {
+    let count = points.len();
+    let at = |index: usize| points[index % count];
+    let mut commands = vec![('M', vec![points[0]])];
+    for index in 0..count {
+        commands.push(spline(at(index + count - 1), at(index), at(index + 1), at(index + 2)));
+    }
+    commands.push(('Z', Vec::new()));
+    commands
+}
+
+fn circle([x, y]: Point, [a, b]: [f32; 2]) -> Vec<(char, Vec<Point>)> {
+    // The cubic that follows a quarter circle to 0.03 %.
+    let (p, q) = (a * 0.552_285, b * 0.552_285);
+    vec![
+        ('M', vec![[x + a, y]]),
+        ('C', vec![[x + a, y + q], [x + p, y + b], [x, y + b]]),
+        ('C', vec![[x - p, y + b], [x - a, y + q], [x - a, y]]),
+        ('C', vec![[x - a, y - q], [x - p, y - b], [x, y - b]]),
+        ('C', vec![[x + p, y - b], [x + a, y - q], [x + a, y]]),
+        ('Z', Vec::new()),
+    ]
+}
+
+/// A point in polar form around a centre, with the y radius scaled by `flat`.
+pub fn polar(centre: Point, radius: f32, angle: f32, flat: f32) -> Point {
+    [centre[0] + radius * angle.cos(), centre[1] + radius * flat * angle.sin()]
+}
+
+/// A rounded, slightly irregular outline: a pebble. `tilt` turns its long axis.
+pub fn pebble(dice: &mut Dice, centre: Point, radius: f32, flat: f32, tilt: f32) -> Vec<Point> {
+    let phases = [dice.between(0.0, 6.283), dice.between(0.0, 6.283)];
+    let (sin, cos) = tilt.sin_cos();
+    (0..9)
+        .map(|step| {
+            let angle = step as f32 * std::f32::consts::TAU / 9.0;
+            let swell = 0.97 + 0.07 * (2.0 * angle + phases[0]).sin() + 0.06 * (3.0 * angle + phases[1]).sin();
+            let [x, y] = polar([0.0, 0.0], radius * swell * 0.9, angle, flat);
+            [centre[0] + x * cos - y * sin, centre[1] + x * sin + y * cos]
+        })
+        .collect()
+}
+
+/// A broken piece with corners.
+pub fn shard(dice: &mut Dice, centre: Point, radius: f32) -> Vec<Point> {
+    let corners = [3, 4, 4, 5][dice.between(0.0, 4.0) as usize];
+    let turn = dice.between(0.0, 6.283);
+    let step = std::f32::consts::TAU / corners as f32;
+    (0..corners)
+        .map(|corner| {
+            let angle = turn + corner as f32 * step + dice.jitter(step * 0.3);
+            polar(centre, radius * dice.between(0.72, 1.0), angle, 1.0)
+        })
+        .collect()
+}
