@@ -1,0 +1,237 @@
+// Which layer and fault block a voxel position lies in: the twin of `StructuralModel::region_at`.
+//
+// Sheets and fault surfaces are height fields, evaluated as `HeightField` does: Catmull–Rom bicubic through
+// the nodes, continued linearly outside.
+
+struct SheetInfo {
+    // Voxel (or fault cell) position of node (0, 0).
+    origin: vec2<i32>,
+    size: vec2<u32>,
+    // First node in the pool.
+    offset: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+// A fault as w = g(u, v): each row gives one of u, v (cells) and w (m) from (x, y, z, 1) relative to `model.centre`.
+struct FaultInfo {
+    u: vec4<f32>,
+    v: vec4<f32>,
+    w: vec4<f32>,
+    surface: SheetInfo,
+}
+
+struct ModelInfo {
+    // Voxel position that fault frames are relative to; w unused.
+    centre: vec4<f32>,
+    horizons: u32,
+    blocks: u32,
+    faults: u32,
+    layers: u32,
+    // 1 / (Nx − 1), 1 / (Ny − 1).
+    unit_from_voxel: vec2<f32>,
+    // Shortest voxel edge, m.
+    shortest_m: f32,
+    // Steepest slope of the sheets that can be the ground, voxels per voxel.
+    steepest: f32,
+}
+
+@group(3) @binding(0) var<uniform> model: ModelInfo;
+// Index horizon · blocks + block.
+@group(3) @binding(1) var<storage, read> sheets: array<SheetInfo>;
+@group(3) @binding(2) var<storage, read> faults: array<FaultInfo>;
+// Blocks first: side bits (low, high) and care bits (low, high); then horizons: contact in x.
+@group(3) @binding(3) var<storage, read> rules: array<vec4<u32>>;
+// One address space of floats over several buffers, because a binding may be as small as 128 MiB.
+@group(3) @binding(5) var<storage, read> pool_0: array<f32>;
+@group(3) @binding(6) var<storage, read> pool_1: array<f32>;
+@group(3) @binding(7) var<storage, read> pool_2: array<f32>;
+@group(3) @binding(8) var<storage, read> pool_3: array<f32>;
+
+// Floats in each of the pool's buffers.
+override pool_chunk: u32 = 0xffffffffu;
+override pool_chunks: u32 = 1u;
+
+const CONTACT_EROSIONAL: u32 = 1u;
+const CONTACT_INTRUSIVE: u32 = 3u;
+
+fn pool(index: u32) -> f32 {
+    if pool_chunks == 1u {
+        return pool_0[index];
+    }
+    let chunk = index / pool_chunk;
+    let place = index - chunk * pool_chunk;
+    switch chunk {
+        case 0u: { return pool_0[place]; }
+        case 1u: { return pool_1[place]; }
+        case 2u: { return pool_2[place]; }
+        default: { return pool_3[place]; }
+    }
+}
+
+fn sheet_inside(info: SheetInfo, u: i32, v: i32) -> f32 {
+    return pool(info.offset + u32(u) * info.size.y + u32(v));
+}
+
+// Height of a node counted from the grid's own (0, 0), continued linearly outside.
+fn sheet_node(info: SheetInfo, u: i32, v: i32) -> f32 {
+    let last = vec2<i32>(info.size) - 1;
+    let cu = clamp(u, 0, last.x);
+    let cv = clamp(v, 0, last.y);
+    let base = sheet_inside(info, cu, cv);
+    if cu == u && cv == v {
+        return base;
+    }
+    var height = base;
+    if cu != u {
+        let inner = select(last.x - 1, 1, u < 0);
+        height += (base - sheet_inside(info, inner, cv)) / f32(cu - inner) * f32(u - cu);
+    }
+    if cv != v {
+        let inner = select(last.y - 1, 1, v < 0);
+        height += (base - sheet_inside(info, cu, inner)) / f32(cv - inner) * f32(v - cv);
+    }
+    return height;
+}
+
+fn cubic_weights(t: f32) -> vec4<f32> {
+    let t2 = t * t;
+    let t3 = t2 * t;
+    return 0.5 * vec4(-t3 + 2.0 * t2 - t, 3.0 * t3 - 5.0 * t2 + 2.0, -3.0 * t3 + 4.0 * t2 + t, t3 - t2);
+}
+
+fn cubic_slopes(t: f32) -> vec4<f32> {
+    let t2 = t * t;
+    return 0.5 * vec4(-3.0 * t2 + 4.0 * t - 1.0, 9.0 * t2 - 10.0 * t, -9.0 * t2 + 8.0 * t + 1.0, 3.0 * t2 - 2.0 * t);
+}
+
+// The four nodes of one row of a 4 × 4 patch.
+fn patch_row(info: SheetInfo, u: i32, v: i32, inside: bool) -> vec4<f32> {
+    if inside {
+        let start = info.offset + u32(u) * info.size.y + u32(v);
+        return vec4(pool(start), pool(start + 1u), pool(start + 2u), pool(start + 3u));
+    }
+    return vec4(
+        sheet_node(info, u, v),
+        sheet_node(info, u, v + 1),
+        sheet_node(info, u, v + 2),
+        sheet_node(info, u, v + 3),
+    );
+}
+
+fn patch_inside(info: SheetInfo, corner: vec2<i32>) -> bool {
+    return all(corner >= vec2(0)) && all(corner + 4 <= vec2<i32>(info.size));
+}
+
+fn sheet_z(info: SheetInfo, at: vec2<f32>) -> f32 {
+    let cell = floor(at);
+    let f = at - cell;
+    let corner = vec2<i32>(cell) - 1 - info.origin;
+    let inside = patch_inside(info, corner);
+    let wx = cubic_weights(f.x);
+    let wy = cubic_weights(f.y);
+    var z = 0.0;
+    for (var a = 0; a < 4; a += 1) {
+        z += dot(patch_row(info, corner.x + a, corner.y, inside), wy) * wx[a];
+    }
+    return z;
+}
+
+// Height (x) and slopes along x and y (yz).
+fn sheet_sample(info: SheetInfo, at: vec2<f32>) -> vec3<f32> {
+    let cell = floor(at);
+    let f = at - cell;
+    let corner = vec2<i32>(cell) - 1 - info.origin;
+    let inside = patch_inside(info, corner);
+    let wx = cubic_weights(f.x);
+    let wy = cubic_weights(f.y);
+    let sx = cubic_slopes(f.x);
+    let sy = cubic_slopes(f.y);
+    var result = vec3(0.0);
+    for (var a = 0; a < 4; a += 1) {
+        let row = patch_row(info, corner.x + a, corner.y, inside);
+        let along = dot(row, wy);
+        result += vec3(along * wx[a], along * sx[a], dot(row, sy) * wx[a]);
+    }
+    return result;
+}
+
+// Signed offset of a voxel position from an extended fault surface, m.
+fn fault_side(fault: u32, p: vec3<f32>) -> f32 {
+    let q = vec4(p - model.centre.xyz, 1.0);
+    let info = faults[fault];
+    return dot(info.w, q) - sheet_z(info.surface, vec2(dot(info.u, q), dot(info.v, q)));
+}
+
+fn block_of(bits: vec2<u32>) -> u32 {
+    var best = 0u;
+    var least = 0xffffffffu;
+    for (var b = 0u; b < model.blocks; b += 1u) {
+        let signature = rules[b];
+        let different = countOneBits((signature.xy ^ bits) & signature.zw);
+        let difference = different.x + different.y;
+        if difference < least {
+            least = difference;
+            best = b;
+        }
+    }
+    return best;
+}
+
+fn with_bit(bits: vec2<u32>, n: u32) -> vec2<u32> {
+    if n < 32u {
+        return bits | vec2(1u << n, 0u);
+    }
+    return bits | vec2(0u, 1u << (n - 32u));
+}
+
+fn has_bit(bits: vec2<u32>, n: u32) -> bool {
+    return (select(bits.y >> (n & 31u), bits.x >> (n & 31u), n < 32u) & 1u) == 1u;
+}
+
+fn block_at(p: vec3<f32>) -> u32 {
+    var bits = vec2(0u);
+    for (var f = 0u; f < model.faults; f += 1u) {
+        if fault_side(f, p) >= 0.0 {
+            bits = with_bit(bits, f);
+        }
+    }
+    return block_of(bits);
+}
+
+// The layer of a place whose bit h says that it lies at or below the sheet of horizon h: `ContactRules::layer`.
+fn layer_of(below: vec2<u32>) -> u32 {
+    let n = model.horizons;
+    for (var h = 0u; h < n; h += 1u) {
+        if rules[model.blocks + h].x == CONTACT_INTRUSIVE && has_bit(below, h) {
+            return n - 1u - h;
+        }
+    }
+    var layer = n;
+    for (var up = 0u; up < n; up += 1u) {
+        let h = n - 1u - up;
+        let contact = rules[model.blocks + h].x;
+        if contact == CONTACT_INTRUSIVE {
+            continue;
+        }
+        if has_bit(below, h) {
+            if layer == n {
+                layer = n - 1u - h;
+            }
+        } else if contact == CONTACT_EROSIONAL {
+            layer = n;
+        }
+    }
+    return layer;
+}
+
+fn layer_at(p: vec3<f32>, block: u32) -> u32 {
+    var below = vec2(0u);
+    for (var h = 0u; h < model.horizons; h += 1u) {
+        if p.z >= sheet_z(sheets[h * model.blocks + block], p.xy) {
+            below = with_bit(below, h);
+        }
+    }
+    return layer_of(below);
+}

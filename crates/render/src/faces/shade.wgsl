@@ -1,0 +1,236 @@
+// The colour of a point on a cut face: the twin of `ttf::shade` (P-illus 4, figure 7) and of
+// `ttf::FaceFrame` for faces of constant x, y or z.
+
+struct TtfGlobals {
+    no_data: vec4<f32>,
+    raw_domain: vec2<f32>,
+    blend: f32,
+    global_frequency: f32,
+    aspect_j: f32,
+    raw_volume: u32,
+    scalar_count: u32,
+    stop_count: u32,
+}
+
+struct LayerEntry {
+    colour: vec4<f32>,
+    frequency: vec2<f32>,
+    first_interval: u32,
+    interval_count: u32,
+}
+
+struct IntervalEntry {
+    colour: vec4<f32>,
+    ink: vec4<f32>,
+    k: vec2<f32>,
+    frequency: vec2<f32>,
+    texture: u32,
+    // Three numbers, not a vec3, which would be aligned to 16 bytes.
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
+}
+
+struct ScalarEntry {
+    colour: vec4<f32>,
+    ink: vec4<f32>,
+    range: vec2<f32>,
+    factor: vec2<f32>,
+    texture: u32,
+    volume: u32,
+    opacity: f32,
+    padding: u32,
+}
+
+struct StopEntry {
+    colour: vec4<f32>,
+    at: f32,
+    padding_0: f32,
+    padding_1: f32,
+    padding_2: f32,
+}
+
+@group(1) @binding(2) var<uniform> ttf: TtfGlobals;
+@group(1) @binding(3) var<storage, read> layers: array<LayerEntry>;
+@group(1) @binding(4) var<storage, read> intervals: array<IntervalEntry>;
+@group(1) @binding(5) var<storage, read> scalar_entries: array<ScalarEntry>;
+@group(1) @binding(6) var<storage, read> stops: array<StopEntry>;
+
+const NONE: u32 = 0xffffffffu;
+const MAP_ONLY_SIN_SQ: f32 = 0.03015369;
+const NO_MAP_SIN_SQ: f32 = 0.1786062;
+const ACROSS_ONLY_SHARE: f32 = 0.35;
+const ALONG_ONLY_SHARE: f32 = 0.65;
+
+// A point of a face in flat space, and how flat space changes there.
+struct FlatPoint {
+    ijk: vec3<f32>,
+    // Change of (i, j, k) per sample step to the right and down the image.
+    dx: vec3<f32>,
+    dy: vec3<f32>,
+    // Gradient of k in metric space.
+    grad_k: vec3<f32>,
+    layer: u32,
+    // 1 where (i, j, k) are defined.
+    defined: u32,
+}
+
+// The mappings of a face (along, across, map) with their weights.
+struct Mappings {
+    weights: vec3<f32>,
+    // Horizontal direction t in the face.
+    along: vec2<f32>,
+}
+
+fn unit_or_zero(v: vec3<f32>) -> vec3<f32> {
+    let length_sq = dot(v, v);
+    if length_sq > 0.0 && length_sq < 3e38 {
+        return v * (1.0 / sqrt(length_sq));
+    }
+    return vec3(0.0);
+}
+
+fn face_mappings(axis: u32, grad_k: vec3<f32>) -> Mappings {
+    var mappings: Mappings;
+    mappings.along = select(vec2(1.0, 0.0), vec2(0.0, 1.0), axis == 0u);
+    var n = vec3(0.0);
+    n[axis] = 1.0;
+    let g = unit_or_zero(grad_k);
+    if all(g == vec3(0.0)) {
+        mappings.weights = vec3(1.0, 0.0, 0.0);
+        return mappings;
+    }
+    let s = cross(n, g);
+    let map = 1.0 - smoothstep(MAP_ONLY_SIN_SQ, NO_MAP_SIN_SQ, dot(s, s));
+    let along_t = s.x * mappings.along.x + s.y * mappings.along.y;
+    let across_t = s.y * mappings.along.x - s.x * mappings.along.y;
+    let horizontal_sq = along_t * along_t + across_t * across_t;
+    var share = 1.0;
+    if horizontal_sq > 1e-12 {
+        share = along_t * along_t / horizontal_sq;
+    }
+    let along = (1.0 - map) * smoothstep(ACROSS_ONLY_SHARE, ALONG_ONLY_SHARE, share);
+    mappings.weights = vec3(along, max(1.0 - map - along, 0.0), map);
+    return mappings;
+}
+
+// Texture coordinates of a flat vector under mapping 0 (along), 1 (across) or 2 (map), before frequencies.
+fn map_flat(mappings: Mappings, mapping: u32, flat: vec3<f32>) -> vec2<f32> {
+    let i = flat.x;
+    let j = flat.y * ttf.aspect_j;
+    let t = mappings.along;
+    if mapping == 0u {
+        return vec2(t.x * i + t.y * j, flat.z);
+    }
+    if mapping == 1u {
+        return vec2(-t.y * i + t.x * j, flat.z);
+    }
+    return vec2(i, j);
+}
+
+fn sample_mapped(texture: u32, frequency: vec2<f32>, point: FlatPoint, mappings: Mappings) -> vec4<f32> {
+    let scale = frequency * ttf.global_frequency;
+    var sum = vec4(0.0);
+    for (var mapping = 0u; mapping < 3u; mapping += 1u) {
+        let weight = mappings.weights[mapping];
+        if weight > 0.0 {
+            let factor = select(scale, scale.xx, mapping == 2u);
+            sum += weight * sample_texture(
+                texture,
+                map_flat(mappings, mapping, point.ijk) * factor,
+                map_flat(mappings, mapping, point.dx) * factor,
+                map_flat(mappings, mapping, point.dy) * factor,
+            );
+        }
+    }
+    return sum;
+}
+
+fn inked(texel: vec4<f32>, ink: vec4<f32>) -> vec4<f32> {
+    return vec4(texel.rgb + (ink.rgb * texel.a - texel.rgb) * ink.a, texel.a);
+}
+
+fn on_background(texel: vec4<f32>, background: vec4<f32>) -> vec4<f32> {
+    let rest = (1.0 - texel.a) * background.a;
+    return vec4(texel.rgb + background.rgb * rest, texel.a + rest);
+}
+
+fn over(bottom: vec3<f32>, top: vec4<f32>, opacity: f32) -> vec3<f32> {
+    return top.rgb * opacity + bottom * (1.0 - top.a * opacity);
+}
+
+// The entry of the interval table that covers k in a layer, or NONE.
+fn interval_at(layer: LayerEntry, k: f32) -> u32 {
+    for (var n = layer.first_interval; n < layer.first_interval + layer.interval_count; n += 1u) {
+        if k >= intervals[n].k.x && k < intervals[n].k.y {
+            return n;
+        }
+    }
+    return NONE;
+}
+
+fn raw_colour(value: f32) -> vec4<f32> {
+    let t = clamp((value - ttf.raw_domain.x) / (ttf.raw_domain.y - ttf.raw_domain.x), 0.0, 1.0);
+    var colour = stops[0].colour;
+    for (var n = 0u; n + 1u < ttf.stop_count; n += 1u) {
+        if t >= stops[n].at {
+            let span = stops[n + 1u].at - stops[n].at;
+            var fraction = 1.0;
+            if span > 0.0 {
+                fraction = min((t - stops[n].at) / span, 1.0);
+            }
+            colour = stops[n].colour + (stops[n + 1u].colour - stops[n].colour) * fraction;
+        }
+    }
+    return colour;
+}
+
+// Blends from the illustration to the raw colour at a voxel position.
+fn blend_raw(colour: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
+    if ttf.raw_volume == NONE || ttf.blend == 0.0 {
+        return colour;
+    }
+    let value = sample_volume(ttf.raw_volume, p);
+    if is_no_data(value) {
+        return colour + (ttf.no_data.rgb - colour) * (ttf.no_data.a * ttf.blend);
+    }
+    return colour + (raw_colour(value).rgb - colour) * ttf.blend;
+}
+
+// The colour of a point of a face of constant x, y or z at voxel position p.
+fn shade(point: FlatPoint, axis: u32, p: vec3<f32>) -> vec3<f32> {
+    let layer = layers[point.layer];
+    var colour = layer.colour.rgb;
+    var frequency = layer.frequency;
+    if point.defined == 1u {
+        let mappings = face_mappings(axis, point.grad_k);
+        let covering = interval_at(layer, point.ijk.z);
+        if covering != NONE {
+            let interval = intervals[covering];
+            frequency = interval.frequency;
+            let ink = inked(sample_mapped(interval.texture, frequency, point, mappings), interval.ink);
+            colour = over(interval.colour.rgb, ink, interval.colour.a);
+        }
+        for (var n = 0u; n < ttf.scalar_count; n += 1u) {
+            let entry = scalar_entries[n];
+            let value = sample_volume(entry.volume, p);
+            if !is_no_data(value) && value >= entry.range.x && value < entry.range.y {
+                let ink = inked(sample_mapped(entry.texture, frequency * entry.factor, point, mappings), entry.ink);
+                colour = over(colour, on_background(ink, entry.colour), entry.opacity);
+            }
+        }
+    }
+    return blend_raw(colour, p);
+}
+
+// The opaque average colour of a layer at k (P-illus 5): the colour of the ground above it.
+fn average_colour(layer_index: u32, k: f32) -> vec3<f32> {
+    let layer = layers[layer_index];
+    let covering = interval_at(layer, k);
+    if covering == NONE {
+        return layer.colour.rgb;
+    }
+    let interval = intervals[covering];
+    let mean = texture_infos[interval.texture].mean;
+    return over(interval.colour.rgb, inked(mean, interval.ink), interval.colour.a);
+}

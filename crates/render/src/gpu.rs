@@ -1,0 +1,109 @@
+//! The graphics device without a window, and its errors as ours.
+//!
+//! The adapter's own limits are asked for, because the software driver and real cards differ by more than a factor of ten in
+//! what they can bind.
+
+use crate::error::RenderError;
+use std::sync::{Arc, Mutex};
+
+/// A device and its queue.
+pub(crate) struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    pub adapter_name: String,
+    lost: Arc<Mutex<Option<String>>>,
+}
+
+/// Storage buffers that the largest pass binds.
+const STORAGE_BUFFERS: u32 = 16;
+
+impl Gpu {
+    /// Opens the fastest adapter there is; the environment variables of wgpu (`WGPU_ADAPTER_NAME`, …) choose another.
+    pub fn headless() -> Result<Self, RenderError> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            ..wgpu::RequestAdapterOptions::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))
+            .map_err(|error| RenderError::NoAdapter { reason: error.to_string() })?;
+        let adapter_name = adapter.get_info().name;
+        let limits = adapter.limits();
+        let unsuitable = |reason: String| RenderError::Unsuitable { adapter: adapter_name.clone(), reason };
+        if limits.max_storage_buffers_per_shader_stage < STORAGE_BUFFERS {
+            let found = limits.max_storage_buffers_per_shader_stage;
+            return Err(unsuitable(format!("it binds {found} storage buffers, {STORAGE_BUFFERS} are needed")));
+        }
+        let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("petroglyph"),
+            required_limits: limits,
+            ..wgpu::DeviceDescriptor::default()
+        }))
+        .map_err(|error| unsuitable(error.to_string()))?;
+        let lost = Arc::new(Mutex::new(None));
+        let report = Arc::clone(&lost);
+        device.set_device_lost_callback(move |_, reason| {
+            if let Ok(mut lost) = report.lock() {
+                *lost = Some(reason);
+            }
+        });
+        Ok(Self { device, queue, adapter_name, lost })
+    }
+
+    /// Runs commands and turns what the graphics library says about them into an error.
+    pub fn guarded<T>(&self, commands: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
+        let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
+        let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
+        let result = commands();
+        let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
+        if let Some(reason) = self.lost_reason() {
+            return Err(RenderError::DeviceLost { reason });
+        }
+        for error in errors.into_iter().flatten() {
+            let reason = error.to_string();
+            return Err(match error {
+                wgpu::Error::OutOfMemory { .. } => RenderError::OutOfMemory { reason },
+                _ => RenderError::Device { reason },
+            });
+        }
+        result
+    }
+
+    fn lost_reason(&self) -> Option<String> {
+        self.lost.lock().ok().and_then(|lost| lost.clone())
+    }
+
+    /// A storage buffer with these bytes; never empty, since a binding may not be.
+    pub fn storage(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
+        self.filled(label, bytes, wgpu::BufferUsages::STORAGE)
+    }
+
+    /// A uniform buffer with these bytes.
+    pub fn uniform(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
+        self.filled(label, bytes, wgpu::BufferUsages::UNIFORM)
+    }
+
+    fn filled(&self, label: &str, bytes: &[u8], usage: wgpu::BufferUsages) -> wgpu::Buffer {
+        let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size: (bytes.len() as u64).next_multiple_of(16).max(256),
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        if !bytes.is_empty() {
+            self.queue.write_buffer(&buffer, 0, bytes);
+        }
+        buffer
+    }
+
+    /// Waits until everything submitted is done.
+    pub fn wait(&self) -> Result<(), RenderError> {
+        match self.device.poll(wgpu::PollType::wait_indefinitely()) {
+            Ok(_) => Ok(()),
+            Err(error) => Err(RenderError::DeviceLost {
+                reason: self.lost_reason().unwrap_or_else(|| error.to_string()),
+            }),
+        }
+    }
+}
