@@ -133,11 +133,36 @@ impl PackedVolume {
 
     /// P-illus 3.4: corners of another region are extrapolated from neighbours of this one before interpolating.
     pub fn lookup_extrapolated(&self, p: Vec3) -> FlatPoint {
+        let (corners, fraction, region) = self.extrapolated_cell(p);
+        self.unpack(trilinear(&corners, fraction), region)
+    }
+
+    /// The same with the Jacobian ∂(i, j, k)/∂(x, y, z) per voxel of the interpolation inside the cell.
+    pub fn lookup_extrapolated_jacobian(&self, p: Vec3) -> (FlatPoint, [[f32; 3]; 3]) {
+        let (corners, fraction, region) = self.extrapolated_cell(p);
+        let spread = |range: [f32; 2]| range[1] - range[0];
+        let unpacked =
+            [spread(self.i_range), spread(self.j_range) * self.blocks as f32, self.layers as f32];
+        let slopes: [[f32; 3]; 3] = std::array::from_fn(|axis| {
+            let scale = (self.size[axis] - 1) as f32 / self.voxels[axis].saturating_sub(1).max(1) as f32;
+            let end = |at: f32| {
+                let mut fraction = fraction;
+                fraction[axis] = at;
+                trilinear(&corners, fraction)
+            };
+            let (low, high) = (end(0.0), end(1.0));
+            std::array::from_fn(|n| (high[n] - low[n]) * scale * unpacked[n])
+        });
+        let jacobian = std::array::from_fn(|n| std::array::from_fn(|axis| slopes[axis][n]));
+        (self.unpack(trilinear(&corners, fraction), region), jacobian)
+    }
+
+    /// The corners of the cell around a position, those of another region extrapolated; the fractions in it; the region.
+    fn extrapolated_cell(&self, p: Vec3) -> ([[f32; 3]; 8], [f32; 3], Region) {
         let (cell, fraction) = self.cell(p);
         let nearest: [i32; 3] = std::array::from_fn(|axis| cell[axis] + i32::from(fraction[axis] >= 0.5));
         let region = self.region_of(self.at(nearest));
-        let corners = std::array::from_fn(|c| self.valid_corner(corner(cell, c), region));
-        self.unpack(trilinear(&corners, fraction), region)
+        (std::array::from_fn(|c| self.valid_corner(corner(cell, c), region)), fraction, region)
     }
 
     /// The value of a sample, extrapolated when it belongs to another region.

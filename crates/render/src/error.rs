@@ -96,6 +96,14 @@ pub enum RenderError {
         /// How many are possible.
         limit: usize,
     },
+    /// The transfer functions were compiled for another model.
+    #[error("the transfer functions style {styled} layers, but the model has {layers}; compile them for this model")]
+    LayerCount {
+        /// Layers with a style.
+        styled: usize,
+        /// Layers of the model.
+        layers: usize,
+    },
     /// A part of the input that this scene needs is missing.
     #[error("the scene needs {what}; {remedy}")]
     Missing {

@@ -2,57 +2,207 @@
 
 use crate::camera::View;
 use crate::error::RenderError;
+use crate::ground::Relief;
 use crate::inputs::{Inputs, NamedVolume};
-use crate::scene::Scene;
+use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
-use glam::Vec3;
-use ttf::RawColour;
+use glam::{DVec3, Vec3};
+use param::{PackedVolume, Parameterization};
+use survey::SurveyGeometry;
+use survey::model::StructuralModel;
+use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
+use ttf::{RawColour, TtfTables};
+
+/// Volumes that a picture can show.
+pub const MAX_VOLUMES: usize = 6;
+/// Colour under raw data where there is nothing else.
+const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
 
 /// Everything a picture needs, with names resolved.
 pub(crate) struct Frame<'a> {
     pub scene: &'a Scene,
+    pub geometry: &'a SurveyGeometry,
     pub view: View,
     pub solid: Solid,
-    pub raw: Option<(&'a RawColour, NamedVolume<'a>)>,
+    /// The transfer functions with the scene's blend, frequency and raw data.
+    pub tables: TtfTables,
+    /// One per entry of `tables.volumes`; `None` where the picture does not need it.
+    pub volumes: Vec<Option<NamedVolume<'a>>>,
+    /// What illustrates; `None` shows raw data alone.
+    pub rock: Option<Rock<'a>>,
+    /// The ground, if the scene has one.
+    pub relief: Option<Relief>,
+    /// Metres between voxels along x, y, z.
+    pub voxel_m: Vec3,
+    /// Factor on the colour of faces across x, y, z.
+    pub tones: [f32; 3],
+}
+
+/// The interpretation and the map to flat space.
+#[derive(Clone, Copy)]
+pub(crate) struct Rock<'a> {
+    pub model: &'a StructuralModel,
+    pub flat: Flat<'a>,
+}
+
+/// The two lookups.
+#[derive(Clone, Copy)]
+pub(crate) enum Flat<'a> {
+    Exact(&'a Parameterization),
+    Packed(&'a PackedVolume),
 }
 
 impl<'a> Frame<'a> {
     /// Checks the scene against the inputs.
     pub fn new(scene: &'a Scene, inputs: &Inputs<'a>) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
-        let raw = match &scene.raw {
-            None => None,
-            Some(raw) => {
-                raw.function.validate(&format!("the colours of `{}`", raw.volume))?;
-                Some((raw, find(inputs.volumes, &raw.volume)?))
+        let rock = resolve_rock(scene, inputs)?;
+        let tables = resolve_tables(scene, inputs, rock.is_some())?;
+        let volumes = resolve_volumes(&tables, inputs.volumes)?;
+        let roaming_box = scene.box_in(inputs.geometry);
+        let relief = match (&scene.ground, rock) {
+            (None, _) => None,
+            (Some(ground), Some(rock)) => Some(Relief::new(ground, scene, inputs.geometry, rock.model)),
+            (Some(_), None) => {
+                return Err(RenderError::Missing {
+                    what: "horizons for the ground",
+                    remedy: "add horizons, or leave `ground` out of the scene",
+                });
             }
         };
+        let metric = inputs.geometry.metric_from_voxel();
+        let view = scene.view(inputs.geometry);
         Ok(Self {
             scene,
-            view: scene.view(inputs.geometry),
-            solid: Solid::new(&scene.box_in(inputs.geometry), &scene.cuts_in(inputs.geometry)),
-            raw,
+            geometry: inputs.geometry,
+            tones: tones(&view, &roaming_box.centre(), scene.face_tone),
+            view,
+            solid: Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry)),
+            tables,
+            volumes,
+            rock,
+            relief,
+            voxel_m: DVec3::new(metric.x_axis.length(), metric.y_axis.length(), metric.z_axis.length()).as_vec3(),
         })
-    }
-
-    /// Straight RGBA of the raw data at a voxel position.
-    pub fn raw_at(&self, p: Vec3) -> [f32; 4] {
-        let Some((raw, volume)) = &self.raw else { return [0.5, 0.5, 0.5, 1.0] };
-        let value = volume.sample(p);
-        match raw.no_data {
-            Some(colour) if value.is_nan() => {
-                let [r, g, b] = colour.to_unit();
-                [r, g, b, 1.0]
-            }
-            _ => raw.function.evaluate(value),
-        }
     }
 }
 
-/// The volume of that name.
-fn find<'a>(volumes: &'a [NamedVolume<'a>], name: &str) -> Result<NamedVolume<'a>, RenderError> {
-    volumes.iter().find(|v| v.name == name).copied().ok_or_else(|| RenderError::UnknownVolume {
-        name: name.to_owned(),
-        present: volumes.iter().map(|v| v.name.to_owned()).collect(),
-    })
+/// The model and the lookup that the scene asks for; `None` when there is nothing to illustrate with.
+fn resolve_rock<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Rock<'a>>, RenderError> {
+    let (Some(model), Some(tables)) = (inputs.model, inputs.tables) else { return Ok(None) };
+    if tables.layers.len() < model.layer_count() {
+        return Err(RenderError::LayerCount { styled: tables.layers.len(), layers: model.layer_count() });
+    }
+    let flat = match scene.lookup {
+        Lookup::Exact => inputs.param.map(Flat::Exact),
+        Lookup::Packed => inputs.packed.map(Flat::Packed),
+    };
+    let flat = flat.ok_or(RenderError::Missing {
+        what: match scene.lookup {
+            Lookup::Exact => "the parameterization",
+            Lookup::Packed => "the packed parameterization",
+        },
+        remedy: "parameterize the project first",
+    })?;
+    Ok(Some(Rock { model, flat }))
+}
+
+/// The transfer functions as this scene uses them.
+fn resolve_tables(scene: &Scene, inputs: &Inputs, illustrated: bool) -> Result<TtfTables, RenderError> {
+    let mut tables = inputs.tables.cloned().unwrap_or_else(no_tables);
+    tables.globals.blend = scene.blend;
+    tables.globals.global_frequency = scene.global_frequency;
+    if let Some(raw) = &scene.raw {
+        raw.function.validate(&format!("the colours of `{}`", raw.volume))?;
+        set_raw(&mut tables, raw);
+    }
+    if !illustrated {
+        if tables.globals.raw_volume == NONE {
+            return Err(RenderError::Missing {
+                what: "something to show",
+                remedy: "add horizons and parameterize the project, or name a volume under `raw`",
+            });
+        }
+        tables.globals.blend = 1.0;
+        tables.globals.scalar_count = 0;
+        tables.scalars.clear();
+        let plain = LayerEntry { colour: PLAIN, frequency: [1.0; 2], first_interval: 0, interval_count: 0 };
+        tables.layers = vec![plain];
+    }
+    if tables.globals.blend == 0.0 {
+        tables.globals.raw_volume = NONE;
+    }
+    Ok(tables)
+}
+
+fn no_tables() -> TtfTables {
+    TtfTables {
+        globals: TtfGlobals {
+            no_data: [0.0; 4],
+            raw_domain: [0.0, 1.0],
+            blend: 1.0,
+            global_frequency: 1.0,
+            aspect_j: 1.0,
+            raw_volume: NONE,
+            scalar_count: 0,
+            stop_count: 0,
+        },
+        layers: Vec::new(),
+        intervals: Vec::new(),
+        scalars: Vec::new(),
+        stops: Vec::new(),
+        volumes: Vec::new(),
+        textures: Vec::new(),
+    }
+}
+
+/// Puts the scene's raw data in place of the transfer functions'.
+fn set_raw(tables: &mut TtfTables, raw: &RawColour) {
+    let slot = tables.volumes.iter().position(|name| *name == raw.volume).unwrap_or_else(|| {
+        tables.volumes.push(raw.volume.clone());
+        tables.volumes.len() - 1
+    });
+    let rgba = |colour: ttf::Colour, alpha: f32| {
+        let [r, g, b] = colour.to_unit();
+        [r, g, b, alpha]
+    };
+    tables.stops = raw
+        .function
+        .stops
+        .iter()
+        .map(|stop| StopEntry { colour: rgba(stop.colour, stop.opacity), at: stop.at, padding: [0.0; 3] })
+        .collect();
+    tables.globals.raw_volume = slot as u32;
+    tables.globals.raw_domain = raw.function.domain;
+    tables.globals.stop_count = tables.stops.len() as u32;
+    tables.globals.no_data = raw.no_data.map_or([0.0; 4], |colour| rgba(colour, 1.0));
+}
+
+/// The volumes behind the slots that are in use.
+fn resolve_volumes<'a>(
+    tables: &TtfTables,
+    volumes: &[NamedVolume<'a>],
+) -> Result<Vec<Option<NamedVolume<'a>>>, RenderError> {
+    if tables.volumes.len() > MAX_VOLUMES {
+        return Err(RenderError::TooManyVolumes { found: tables.volumes.len(), limit: MAX_VOLUMES });
+    }
+    let is_used = |slot: u32| tables.globals.raw_volume == slot || tables.scalars.iter().any(|s| s.volume == slot);
+    let find = |name: &String| {
+        volumes.iter().find(|v| v.name == *name).copied().ok_or_else(|| RenderError::UnknownVolume {
+            name: name.clone(),
+            present: volumes.iter().map(|v| v.name.to_owned()).collect(),
+        })
+    };
+    (0u32..).zip(&tables.volumes).map(|(slot, name)| is_used(slot).then(|| find(name)).transpose()).collect()
+}
+
+/// Darkens the vertical faces by how far they turn to the viewer's right.
+fn tones(view: &View, centre: &DVec3, face_tone: f32) -> [f32; 3] {
+    let here = view.project(*centre);
+    let towards = view.towards_camera(*centre);
+    let rightness = |axis: DVec3| {
+        let outwards = axis * axis.dot(towards).signum();
+        (view.project(*centre + outwards * 1e-3) - here).x
+    };
+    if rightness(DVec3::X) >= rightness(DVec3::Y) { [1.0 - face_tone, 1.0, 1.0] } else { [1.0, 1.0 - face_tone, 1.0] }
 }

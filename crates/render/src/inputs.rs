@@ -2,13 +2,24 @@
 
 use crate::voxel_box::VoxelBox;
 use glam::Vec3;
+use param::{PackedVolume, Parameterization};
+use survey::model::StructuralModel;
 use survey::{SurveyGeometry, Volume};
+use ttf::TtfTables;
 
 /// The data behind a picture. What is `None` is not drawn: without a model, for instance, faces show raw data only.
 #[derive(Clone, Copy)]
 pub struct Inputs<'a> {
     /// Where samples are.
     pub geometry: &'a SurveyGeometry,
+    /// The interpretation made solid.
+    pub model: Option<&'a StructuralModel>,
+    /// i, j, k of that model, for the exact lookup.
+    pub param: Option<&'a Parameterization>,
+    /// The paper's packed volume, for the packed lookup.
+    pub packed: Option<&'a PackedVolume>,
+    /// Layer styles, scalar functions and raw colours, compiled for this block; bottom layer first, as in the model.
+    pub tables: Option<&'a TtfTables>,
     /// Scalar volumes, raw data among them.
     pub volumes: &'a [NamedVolume<'a>],
     /// Changes whenever data behind any of these references change: what is on the GPU is kept while it stays the same.
@@ -30,6 +41,13 @@ pub struct NamedVolume<'a> {
 pub const NO_WEIGHT: f32 = 1e-5;
 /// How far outside its extent a volume still answers, in its own samples: only rounding.
 pub const SLACK: f32 = 1e-3;
+
+impl<'a> Inputs<'a> {
+    /// Raw data without an interpretation.
+    pub fn raw(geometry: &'a SurveyGeometry, volumes: &'a [NamedVolume<'a>]) -> Self {
+        Self { geometry, model: None, param: None, packed: None, tables: None, volumes, version: 0 }
+    }
+}
 
 impl<'a> NamedVolume<'a> {
     /// A volume on the survey's own lattice.

@@ -5,10 +5,12 @@
 pub mod camera;
 pub mod error;
 mod frame;
+pub mod ground;
 pub mod inputs;
 pub mod outline;
 pub mod reference;
 pub mod scene;
+mod shade;
 pub mod visible;
 pub mod voxel_box;
 

@@ -7,7 +7,7 @@ use crate::error::RenderError;
 use crate::frame::Frame;
 use crate::inputs::Inputs;
 use crate::scene::Scene;
-use crate::visible::Ray;
+use crate::shade::trace;
 use glam::{DVec2, Vec4};
 use image::RgbaImage;
 use rayon::prelude::*;
@@ -40,7 +40,7 @@ fn pixel(frame: &Frame, x: u32, y: u32) -> [u8; 4] {
         for sub_x in 0..samples {
             let offset = DVec2::new(f64::from(sub_x) + 0.5, f64::from(sub_y) + 0.5) / f64::from(samples);
             let view_ray = frame.view.ray(DVec2::new(f64::from(x), f64::from(y)) + offset);
-            let colour = trace(frame, &Ray::from(view_ray));
+            let colour = trace(frame, &view_ray);
             sum += (colour.truncate() * colour.w).extend(colour.w);
         }
     }
@@ -52,12 +52,4 @@ fn straight_bytes(premultiplied: Vec4) -> [u8; 4] {
     let alpha = premultiplied.w;
     let rgb = if alpha > 0.0 { premultiplied.truncate() / alpha } else { premultiplied.truncate() };
     rgb.extend(alpha).to_array().map(|c| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8)
-}
-
-/// Straight RGBA along one ray.
-fn trace(frame: &Frame, ray: &Ray) -> Vec4 {
-    match frame.solid.next_span(ray, f32::MIN) {
-        None => Vec4::from_array(frame.scene.background.rgba()),
-        Some(span) => Vec4::from_array(frame.raw_at(span.entry.point)),
-    }
 }

@@ -77,13 +77,22 @@ pub fn shade(tables: &TtfTables, point: &ShadePoint, scalars: &[f32]) -> [f32; 4
             }
         }
     }
-    if tables.globals.raw_volume != NONE {
-        let value = value_of(tables.globals.raw_volume);
-        let raw = if value.is_nan() { tables.globals.no_data } else { raw_colour(tables, value) };
-        let share = if value.is_nan() { raw[3] * tables.globals.blend } else { tables.globals.blend };
-        colour = std::array::from_fn(|c| colour[c] + (raw[c] - colour[c]) * share);
-    }
+    let colour = blend_raw(tables, colour, value_of(tables.globals.raw_volume));
     [colour[0], colour[1], colour[2], 1.0]
+}
+
+/// Blends an illustrated colour to the raw colour of `value` (step 4); NaN is no data.
+pub fn blend_raw(tables: &TtfTables, colour: [f32; 3], value: f32) -> [f32; 3] {
+    if tables.globals.raw_volume == NONE {
+        return colour;
+    }
+    let blend = tables.globals.blend;
+    let (raw, share) = if value.is_nan() {
+        (tables.globals.no_data, tables.globals.no_data[3] * blend)
+    } else {
+        (raw_colour(tables, value), blend)
+    };
+    std::array::from_fn(|c| colour[c] + (raw[c] - colour[c]) * share)
 }
 
 /// The raw colours at a value that is not NaN: piecewise linear between the stops, clamped.
