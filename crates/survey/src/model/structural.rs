@@ -1,7 +1,7 @@
 //! The structural model: sheets, faults and contact rules together.
 
 use super::contacts::ContactRules;
-use super::extension::extend;
+use super::extension::Extension;
 use super::network::FaultNetwork;
 use super::report::{ModelError, ModelNote, ModelReport};
 use super::settings::ModelSettings;
@@ -73,7 +73,8 @@ impl StructuralModel {
                     }
                 }
             }
-            if !extend(lattice, &mut z) {
+            let extension = Extension { radius: settings.slope_radius, noise: 0.05, slope: [0.0; 2] };
+            if extension.extend(lattice, &mut z).is_none() {
                 return Err(ModelError::EmptyHorizon { name: named.name.clone(), outside: 0, holes: 0 });
             }
             sheets.push(vec![HeightField { origin, size: lattice, z }]);

@@ -1,0 +1,142 @@
+//! Value and slope of noisy data near a rim, by weighted least squares.
+//!
+//! Around a node the data within `radius` is fitted by h = c₀ + c₁ξ + c₂η + c₃ξ²/2 + c₄ξη + c₅η²/2 (ξ, η = offset / radius) with
+//! weights (1 − ρ²)², ρ² = ξ² + η². The quadratic terms keep a slope at the rim of a curved surface unbiased; a small ridge (they are pulled
+//! to zero) keeps strips and corners from inventing curvature. Nodes far off the first fit are left out of a second one.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+/// What a surface is near one node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fit {
+    /// Value at the node.
+    pub z: f32,
+    /// Slope per node along x and y.
+    pub gradient: [f32; 2],
+}
+
+/// Ridges relative to the sum of weights. Larger damps noise in thin strips; smaller lets slope and curvature speak there. At a straight
+/// rim the moments they are compared with are 0.1 (slope) and 0.01 (curvature).
+const SLOPE_RIDGE: f64 = 1e-5;
+const CURVATURE_RIDGE: f64 = 1e-4;
+/// Deviation beyond which a node is an outlier, in robust standard deviations.
+const OUTLIER: f32 = 6.0;
+/// A fit wants at least this many nodes; its neighbourhood grows until it has them.
+const FEWEST_NODES: usize = 12;
+
+/// Fits at the nodes of a grid, made when asked for.
+pub struct LocalFits<'a> {
+    size: [usize; 2],
+    values: &'a [f32],
+    known: &'a [bool],
+    radius: f32,
+    noise: f32,
+    cache: RefCell<HashMap<usize, Fit>>,
+}
+
+impl<'a> LocalFits<'a> {
+    /// Fits to `values` where they are `known`.
+    pub fn new(size: [usize; 2], values: &'a [f32], known: &'a [bool], radius: f32, noise: f32) -> Self {
+        Self { size, values, known, radius: radius.max(2.0), noise, cache: RefCell::default() }
+    }
+
+    /// The fit at node `n`.
+    pub fn at(&self, n: usize) -> Fit {
+        if let Some(fit) = self.cache.borrow().get(&n) {
+            return *fit;
+        }
+        let mut radius = self.radius;
+        let mut nodes = self.gather(n, radius);
+        while nodes.len() < FEWEST_NODES && radius < 4.0 * self.radius {
+            radius *= 2.0;
+            nodes = self.gather(n, radius);
+        }
+        let fit = self.robust(&nodes, radius);
+        self.cache.borrow_mut().insert(n, fit);
+        fit
+    }
+
+    /// Offsets (in radii) and values of the data within `radius` of node `n`.
+    fn gather(&self, n: usize, radius: f32) -> Vec<[f32; 3]> {
+        let (x, y) = ((n / self.size[1]) as i32, (n % self.size[1]) as i32);
+        let reach = radius.floor() as i32;
+        // Above a radius of 20 every second, third, ... node tells enough.
+        let step = ((radius / 20.0).ceil() as i32).max(1);
+        let mut nodes = Vec::with_capacity(((4 * reach * reach) / (step * step)) as usize);
+        let first = |c: i32| c - (reach.min(c) / step) * step;
+        let last = |c: i32, n: usize| (c + reach).min(n as i32 - 1);
+        for i in (first(x)..=last(x, self.size[0])).step_by(step as usize) {
+            for j in (first(y)..=last(y, self.size[1])).step_by(step as usize) {
+                let m = i as usize * self.size[1] + j as usize;
+                let (dx, dy) = ((i - x) as f32 / radius, (j - y) as f32 / radius);
+                if self.known[m] && dx * dx + dy * dy < 1.0 {
+                    nodes.push([dx, dy, self.values[m]]);
+                }
+            }
+        }
+        nodes
+    }
+
+    fn robust(&self, nodes: &[[f32; 3]], radius: f32) -> Fit {
+        let c = least_squares(nodes, |_| true);
+        let off = |c: &[f64; 6], n: &[f32; 3]| (f64::from(n[2]) - quadratic(c, n[0], n[1])).abs() as f32;
+        let mut offsets: Vec<f32> = nodes.iter().map(|n| off(&c, n)).collect();
+        let half = offsets.len() / 2;
+        let deviation = if offsets.is_empty() { 0.0 } else { *offsets.select_nth_unstable_by(half, f32::total_cmp).1 };
+        let limit = OUTLIER * (1.4826 * deviation).max(self.noise);
+        let c =
+            if nodes.iter().any(|n| off(&c, n) > limit) { least_squares(nodes, |n| off(&c, n) <= limit) } else { c };
+        let r = f64::from(radius);
+        Fit { z: c[0] as f32, gradient: [(c[1] / r) as f32, (c[2] / r) as f32] }
+    }
+}
+
+fn quadratic(c: &[f64; 6], x: f32, y: f32) -> f64 {
+    let (x, y) = (f64::from(x), f64::from(y));
+    c[0] + c[1] * x + c[2] * y + 0.5 * c[3] * x * x + c[4] * x * y + 0.5 * c[5] * y * y
+}
+
+/// The six coefficients that fit the nodes which `keep` says to keep.
+fn least_squares(nodes: &[[f32; 3]], keep: impl Fn(&[f32; 3]) -> bool) -> [f64; 6] {
+    let mut a = [[0.0f64; 6]; 6];
+    let mut rhs = [0.0f64; 6];
+    for node in nodes.iter().filter(|n| keep(n)) {
+        let (x, y, z) = (f64::from(node[0]), f64::from(node[1]), f64::from(node[2]));
+        let w = (1.0 - x * x - y * y).powi(2);
+        let basis = [1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y];
+        for i in 0..6 {
+            let wb = w * basis[i];
+            for j in i..6 {
+                a[i][j] += wb * basis[j];
+            }
+            rhs[i] += wb * z;
+        }
+    }
+    let weight = a[0][0].max(1e-12);
+    for (i, row) in a.iter_mut().enumerate() {
+        row[i] += weight * [1e-12, SLOPE_RIDGE, SLOPE_RIDGE, CURVATURE_RIDGE, CURVATURE_RIDGE, CURVATURE_RIDGE][i];
+    }
+    cholesky6(a, rhs)
+}
+
+/// Solves a symmetric positive definite 6 × 6 system whose upper triangle is given.
+fn cholesky6(mut a: [[f64; 6]; 6], mut b: [f64; 6]) -> [f64; 6] {
+    for i in 0..6 {
+        for k in 0..i {
+            let f = a[k][i] / a[k][k];
+            for j in i..6 {
+                a[i][j] -= f * a[k][j];
+            }
+            b[i] -= f * b[k];
+        }
+        a[i][i] = a[i][i].max(1e-18);
+    }
+    for i in (0..6).rev() {
+        for j in i + 1..6 {
+            b[i] -= a[i][j] * b[j];
+        }
+        b[i] /= a[i][i];
+    }
+    b
+}
