@@ -10,12 +10,15 @@
 mod contacts;
 mod extension;
 mod network;
+mod nodes;
+mod order;
 mod report;
 mod settings;
+mod sheets;
 mod structural;
 
 pub use contacts::ContactRules;
-pub use network::{BlockSignature, FaultNetwork, FaultSurface};
-pub use report::{ModelError, ModelNote, ModelReport};
+pub use network::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
+pub use report::{ModelError, ModelNote, ModelReport, Placement};
 pub use settings::ModelSettings;
 pub use structural::{Region, StructuralModel};

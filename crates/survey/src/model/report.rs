@@ -110,6 +110,18 @@ pub enum ModelError {
     },
 }
 
+/// How a horizon came into a block where nothing of it was picked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Placement {
+    /// By its thickness, or its share of the interval, between its neighbours in another block.
+    Thickness {
+        /// The block the thickness was taken from.
+        donor: u16,
+    },
+    /// As the surface through the picks of all other blocks.
+    OtherBlocks,
+}
+
 /// One decision that the user should know of.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ModelNote {
@@ -117,6 +129,38 @@ pub enum ModelNote {
     Ignored {
         /// Name of the horizon.
         horizon: String,
+    },
+    /// Depths of a horizon lie outside the survey and its margin.
+    Outside {
+        /// Name of the horizon.
+        horizon: String,
+        /// How many.
+        nodes: usize,
+    },
+    /// A sheet carries the number of a block that it does not lie in.
+    Reassigned {
+        /// Name of the horizon.
+        horizon: String,
+        /// Block it was given for.
+        given: u16,
+        /// Block its nodes lie in.
+        used: u16,
+    },
+    /// Nodes close to a fault were dropped.
+    SetBack {
+        /// Name of the horizon.
+        horizon: String,
+        /// How many.
+        nodes: usize,
+    },
+    /// Two sheets of one block lie over one another; the better one was used.
+    Overlap {
+        /// Name of the horizon.
+        horizon: String,
+        /// Traces with two depths.
+        nodes: usize,
+        /// Their largest difference, samples.
+        worst: f32,
     },
     /// A sheet was continued where it has no data inside the volume.
     Extended {
@@ -127,6 +171,28 @@ pub enum ModelNote {
         /// Traces of the block's part of the horizon that have no data.
         traces: usize,
     },
+    /// A horizon without data in a block was placed there.
+    Placed {
+        /// Name of the horizon.
+        horizon: String,
+        /// Fault block.
+        block: u16,
+        /// How.
+        by: Placement,
+    },
+    /// Continued parts of two horizons crossed and were pulled together.
+    Clamped {
+        /// The horizon that should be above.
+        younger: String,
+        /// The horizon that should be below.
+        older: String,
+        /// Fault block.
+        block: u16,
+        /// Traces inside the block where they did.
+        nodes: usize,
+        /// The largest crossing, samples.
+        worst: f32,
+    },
 }
 
 impl fmt::Display for ModelNote {
@@ -135,9 +201,37 @@ impl fmt::Display for ModelNote {
             Self::Ignored { horizon } => {
                 write!(f, "horizon \"{horizon}\" is not in the stratigraphy and was left out")
             }
+            Self::Outside { horizon, nodes } => {
+                write!(f, "{nodes} depths of horizon \"{horizon}\" lie outside the survey and were left out")
+            }
+            Self::Reassigned { horizon, given, used } => {
+                write!(
+                    f,
+                    "a sheet of horizon \"{horizon}\" for fault block {given} lies in block {used} and was used there"
+                )
+            }
+            Self::SetBack { horizon, nodes } => {
+                write!(f, "{nodes} nodes of horizon \"{horizon}\" close to a fault were dropped")
+            }
+            Self::Overlap { horizon, nodes, worst } => write!(
+                f,
+                "horizon \"{horizon}\" has two depths in one fault block at {nodes} traces, up to {worst:.1} samples apart"
+            ),
             Self::Extended { horizon, block, traces } => {
                 write!(f, "horizon \"{horizon}\" was continued over {traces} traces of fault block {block}")
             }
+            Self::Placed { horizon, block, by: Placement::Thickness { donor } } => write!(
+                f,
+                "horizon \"{horizon}\" has no picks in fault block {block} and was placed by the thickness it has in block {donor}"
+            ),
+            Self::Placed { horizon, block, by: Placement::OtherBlocks } => write!(
+                f,
+                "horizon \"{horizon}\" has no picks in fault block {block} and was continued from the other blocks"
+            ),
+            Self::Clamped { younger, older, block, nodes, worst } => write!(
+                f,
+                "horizons \"{younger}\" and \"{older}\", continued without data, crossed by up to {worst:.1} samples at {nodes} traces of fault block {block} and were pulled together"
+            ),
         }
     }
 }

@@ -1,17 +1,22 @@
 //! The structural model: sheets, faults and contact rules together.
 
 use super::contacts::ContactRules;
-use super::extension::Extension;
 use super::network::FaultNetwork;
+use super::nodes::{Lattice, Nodes, gather};
+use super::order::keep_order;
 use super::report::{ModelError, ModelNote, ModelReport};
 use super::settings::ModelSettings;
+use super::sheets::{ExtendedSheet, extend_all};
 use crate::fault::Fault;
 use crate::geometry::SurveyGeometry;
 use crate::height_field::HeightField;
-use crate::horizon::Horizon;
+use crate::horizon::{Horizon, Quality};
 use crate::progress::Progress;
 use crate::stratigraphy::Stratigraphy;
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, Vec3};
+
+/// Most horizons: one bit each.
+const MOST_HORIZONS: usize = 64;
 
 /// A layer inside a fault block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -31,7 +36,7 @@ pub struct StructuralModel {
     rules: ContactRules,
     faults: FaultNetwork,
     /// `[horizon][block]`.
-    sheets: Vec<Vec<HeightField>>,
+    sheets: Vec<Vec<ExtendedSheet>>,
     report: ModelReport,
 }
 
@@ -44,51 +49,45 @@ impl StructuralModel {
         geometry: &SurveyGeometry,
         stratigraphy: &Stratigraphy,
         horizons: &[Horizon],
-        _faults: &[Fault],
+        faults: &[Fault],
         settings: &ModelSettings,
         progress: &Progress,
     ) -> Result<Self, ModelError> {
         geometry.validate()?;
+        let ordered = in_order(stratigraphy, horizons)?;
         let mut report = ModelReport::default();
-        let faults = FaultNetwork::none();
+        for horizon in horizons.iter().filter(|h| !ordered.iter().any(|o| o.name == h.name)) {
+            report.notes.push(ModelNote::Ignored { horizon: horizon.name.clone() });
+        }
+        let faults = FaultNetwork::build(geometry, faults, settings, progress)?;
         let size = geometry.size();
-        let margin = settings.margin_for(size);
-        let origin = [-(margin as i32), -(margin as i32)];
-        let lattice = [size[0] + 2 * margin, size[1] + 2 * margin];
-        let mut sheets = Vec::new();
-        for named in &stratigraphy.horizons {
-            progress.check()?;
-            let horizon = horizons
-                .iter()
-                .find(|h| h.name == named.name)
-                .ok_or_else(|| ModelError::MissingHorizon { name: named.name.clone() })?;
-            let mut z = vec![f32::NAN; lattice[0] * lattice[1]];
-            for (n, value) in z.iter_mut().enumerate() {
-                let (x, y) = ((n / lattice[1]) as i32 + origin[0], (n % lattice[1]) as i32 + origin[1]);
-                let world = geometry.world_from_voxel(DVec3::new(f64::from(x), f64::from(y), 0.0)).truncate();
-                for sheet in &horizon.sheets {
-                    let depth = sheet.depth_at_node(sheet.grid.node_at(world));
-                    if depth.is_finite() {
-                        *value = geometry.vertical.index_of(f64::from(depth)) as f32;
-                    }
-                }
+        let lattice = Lattice::with_margin(size, settings.margin_for(size));
+        progress.begin("nodes", ordered.len() as u64);
+        let mut nodes = Vec::with_capacity(ordered.len());
+        for horizon in &ordered {
+            let found = gather(geometry, lattice, horizon, &faults, settings, &mut report);
+            if found.nodes.is_empty() {
+                let Nodes { outside, holes, .. } = found;
+                return Err(ModelError::EmptyHorizon { name: horizon.name.clone(), outside, holes });
             }
-            let extension = Extension { radius: settings.slope_radius, noise: 0.05, slope: [0.0; 2] };
-            if extension.extend(lattice, &mut z).is_none() {
-                return Err(ModelError::EmptyHorizon { name: named.name.clone(), outside: 0, holes: 0 });
+            if found.outside > 0 {
+                report.notes.push(ModelNote::Outside { horizon: horizon.name.clone(), nodes: found.outside });
             }
-            sheets.push(vec![HeightField { origin, size: lattice, z }]);
+            nodes.push(found);
+            progress.step(1)?;
         }
-        for horizon in horizons {
-            if !stratigraphy.horizons.iter().any(|h| h.name == horizon.name) {
-                report.notes.push(ModelNote::Ignored { horizon: horizon.name.clone() });
-            }
-        }
+        let names: Vec<&str> = ordered.iter().map(|h| h.name.as_str()).collect();
+        let rules = ContactRules::new(stratigraphy);
+        let (mut sheets, placed) = extend_all(lattice, &names, &nodes, &faults, settings.slope_radius, progress)?;
+        report.notes.extend(placed);
+        report.notes.extend(extended(lattice, &names, &sheets, &faults));
+        let block_at = |p| faults.block_at(p);
+        report.notes.extend(keep_order(geometry, lattice, &rules, &names, &mut sheets, settings, block_at)?);
         Ok(Self {
             size,
             metric: geometry.metric_from_voxel(),
             stratigraphy: stratigraphy.clone(),
-            rules: ContactRules::new(stratigraphy),
+            rules,
             faults,
             sheets,
             report,
@@ -132,7 +131,15 @@ impl StructuralModel {
 
     /// The extended, unclipped sheet of `horizon` (0 = youngest) in `block`.
     pub fn sheet(&self, horizon: usize, block: u16) -> &HeightField {
-        &self.sheets[horizon][usize::from(block)]
+        &self.sheets[horizon][usize::from(block)].field
+    }
+
+    /// How the sheet of `horizon` in `block` came about at voxel (x, y).
+    pub fn quality_at(&self, horizon: usize, block: u16, x: f32, y: f32) -> Quality {
+        let sheet = &self.sheets[horizon][usize::from(block)];
+        let HeightField { origin, size, .. } = sheet.field;
+        let node = |c: f32, axis: usize| (c.round() as i32 - origin[axis]).clamp(0, size[axis] as i32 - 1) as usize;
+        sheet.quality[node(x, 0) * size[1] + node(y, 1)]
     }
 
     /// The block at voxel position `p`.
@@ -164,6 +171,45 @@ impl StructuralModel {
     pub fn report(&self) -> &ModelReport {
         &self.report
     }
+}
+
+/// The horizons of the stratigraphy, youngest first.
+fn in_order<'a>(stratigraphy: &Stratigraphy, horizons: &'a [Horizon]) -> Result<Vec<&'a Horizon>, ModelError> {
+    let found = stratigraphy.horizons.len();
+    if found > MOST_HORIZONS {
+        return Err(ModelError::TooMany { what: "horizons", found, limit: MOST_HORIZONS });
+    }
+    for (i, named) in stratigraphy.horizons.iter().enumerate() {
+        let given = horizons.iter().filter(|h| h.name == named.name).count();
+        if given > 1 || stratigraphy.horizons[..i].iter().any(|h| h.name == named.name) {
+            return Err(ModelError::DuplicateName { what: "horizons", name: named.name.clone() });
+        }
+    }
+    stratigraphy
+        .horizons
+        .iter()
+        .map(|named| {
+            let horizon = horizons.iter().find(|h| h.name == named.name);
+            horizon.ok_or_else(|| ModelError::MissingHorizon { name: named.name.clone() })
+        })
+        .collect()
+}
+
+/// A note for each sheet that has traces without data inside its own block and the volume.
+fn extended(lattice: Lattice, names: &[&str], sheets: &[Vec<ExtendedSheet>], faults: &FaultNetwork) -> Vec<ModelNote> {
+    let mut notes = Vec::new();
+    for (horizon, of_block) in names.iter().zip(sheets) {
+        for (block, sheet) in of_block.iter().enumerate().filter(|(_, s)| s.own > 0) {
+            let traces = (0..lattice.len())
+                .filter(|&n| !sheet.known[n] && lattice.is_inside(n))
+                .filter(|&n| usize::from(faults.block_at(lattice.place(n, sheet.field.z[n]))) == block)
+                .count();
+            if traces > 0 {
+                notes.push(ModelNote::Extended { horizon: (*horizon).to_owned(), block: block as u16, traces });
+            }
+        }
+    }
+    notes
 }
 
 #[cfg(test)]
