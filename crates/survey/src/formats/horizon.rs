@@ -53,7 +53,8 @@ pub(super) fn build(
         RawShape::Points(points) => from_points(file, &name, points, geometry, options, tolerance)?,
         RawShape::Mesh(mesh) => from_mesh(file, &name, mesh, geometry, tolerance)?,
     };
-    let outside_range = rule.check(file, &name, &raw.shape, &geometry.vertical)?;
+    let values: Vec<f64> = raw.shape.values().collect();
+    let outside_range = rule.check(file, &name, &values, &geometry.vertical, SurfaceKind::Horizon)?;
     let mut notes = raw.notes;
     notes.extend(nodes.notes);
     let report = ImportReport {

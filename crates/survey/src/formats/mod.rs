@@ -10,32 +10,43 @@
 //! |---|---|---|---|---|
 //! | CSV / XYZ with or without a header | ✓ | points, sticks | ✓ | |
 //! | Irap classic ASCII | ✓ | | ✓ | |
+//! | OpendTect ASCII | ✓ | sticks | ✓ | sticks |
+//! | GOCAD TSurf | ✓ | ✓ | ✓ | ✓ |
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
+mod bounds;
 mod columns;
 mod csv;
 mod error;
+mod fault;
 mod horizon;
 mod irap;
 mod lattice;
+mod mesh_sticks;
+mod opendtect;
 mod options;
 mod placement;
+mod plane_fit;
 mod raster;
 mod raw;
 mod report;
 mod scatter;
 mod sheets;
+mod sticks;
 mod table;
 mod text;
+mod tsurf;
 mod vertical;
 mod write;
 
+pub use bounds::{Bounds, InterpretationFile, bounds_of, survey_from_points};
 pub use columns::Column;
 pub use error::{Extent, FormatError};
 pub use options::{ImportOptions, PlaceBy, ZPositive, ZUnit};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
 
+use crate::fault::Fault;
 use crate::geometry::SurveyGeometry;
 use crate::horizon::Horizon;
 use raw::{RawSurface, ReadContext};
@@ -56,6 +67,10 @@ pub enum Format {
     Csv,
     /// Irap classic ASCII grid.
     Irap,
+    /// OpendTect ASCII horizons and fault sticks.
+    OpendTect,
+    /// GOCAD TSurf.
+    Tsurf,
 }
 
 /// What a file holds, or is wanted to hold.
@@ -79,7 +94,7 @@ impl fmt::Display for SurfaceKind {
 
 type Reader = fn(&SourceFile, &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError>;
 type HorizonWriter = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::Failure>;
-type FaultWriter = fn(&mut dyn Write, &crate::Fault, &SurveyGeometry) -> Result<(), write::Failure>;
+type FaultWriter = fn(&mut dyn Write, &Fault, &SurveyGeometry) -> Result<(), write::Failure>;
 
 /// What the program knows of a format.
 struct Codec {
@@ -97,7 +112,7 @@ struct Codec {
 }
 
 /// Every format, in the order in which signatures are tried: those that cannot be mistaken first.
-const CODECS: &[Codec] = &[irap::CODEC, csv::CODEC];
+const CODECS: &[Codec] = &[tsurf::CODEC, irap::CODEC, opendtect::CODEC, csv::CODEC];
 
 impl Format {
     fn codec(self) -> &'static Codec {
@@ -236,4 +251,35 @@ pub fn write_horizon(
         return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Horizon, instead });
     };
     write::beside(path, &horizon.name, format, |out| writer(out, horizon, geometry))
+}
+
+/// Reads the faults of a file as triangulated surfaces: TSurf as it is, sticks joined by triangles, points fitted.
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn read_fault(
+    path: &Path,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    let (source, format, surfaces) = read_raw(path, Some(geometry), options, SurfaceKind::Fault)?;
+    surfaces
+        .into_iter()
+        .map(|raw| {
+            let name = name_of(&raw, &source, options);
+            fault::build(path, name, format.clone(), raw, geometry, options)
+        })
+        .collect()
+}
+
+/// Writes a fault; beside the target first, then renamed.
+///
+/// # Errors
+/// As [`write_horizon`].
+pub fn write_fault(path: &Path, fault: &Fault, geometry: &SurveyGeometry, format: Format) -> Result<(), FormatError> {
+    let Some(writer) = format.codec().write_fault else {
+        let instead = names(|c| c.write_fault.is_some());
+        return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Fault, instead });
+    };
+    write::beside(path, &fault.name, format, |out| writer(out, fault, geometry))
 }

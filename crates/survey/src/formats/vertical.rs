@@ -4,11 +4,11 @@
 //! else from the file's own words, else they are assumed (survey's unit, positive down) and the report says so. A result
 //! outside the survey's range is refused, with the option that would make it fit when one would.
 
-use super::FormatError;
 use super::columns::Domain;
 use super::options::{ImportOptions, ZPositive, ZUnit};
 use super::raw::{RawShape, VerticalFacts};
 use super::report::{Provenance, Settled};
+use super::{FormatError, SurfaceKind};
 use crate::geometry::{VerticalAxis, VerticalUnit};
 use std::path::Path;
 
@@ -118,8 +118,15 @@ impl VerticalRule {
     ///
     /// # Errors
     /// [`FormatError::LooksLikeNull`], [`FormatError::OutsideRange`].
-    pub fn check(&self, file: &Path, name: &str, shape: &RawShape, axis: &VerticalAxis) -> Result<usize, FormatError> {
-        let values: Vec<f64> = shape.values().filter(|v| v.is_finite()).collect();
+    pub fn check(
+        &self,
+        file: &Path,
+        name: &str,
+        values: &[f64],
+        axis: &VerticalAxis,
+        kind: SurfaceKind,
+    ) -> Result<usize, FormatError> {
+        let values: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
         let survey = [axis.first, axis.last()];
         // A horizon may run along the first or last sample.
         let slack = axis.interval;
@@ -129,7 +136,8 @@ impl VerticalRule {
         let found = values.iter().fold(none, |r, &v| [r[0].min(v), r[1].max(v)]);
         for extreme in found {
             let count = values.iter().filter(|&&v| v == extreme).count();
-            if !inside(extreme) && count >= 5 && count < values.len() && count * 200 > values.len() {
+            let spike = kind == SurfaceKind::Horizon && !inside(extreme);
+            if spike && count >= 5 && count < values.len() && count * 200 > values.len() {
                 let value = round_to_file(extreme / self.scale);
                 return Err(FormatError::LooksLikeNull { file: file.to_path_buf(), name: name.into(), value, count });
             }
@@ -142,7 +150,12 @@ impl VerticalRule {
             && largest < 0.01 * survey[1]
             && largest * 1000.0 > 2.0 * slack
             && fit(1000.0) * 2 > values.len();
-        if outside * 2 <= values.len() && !flat {
+        // Faults often reach far below a survey; it is enough that they reach into it.
+        let misses = match kind {
+            SurfaceKind::Horizon => outside * 2 > values.len(),
+            SurfaceKind::Fault => found[1] < survey[0] || found[0] > survey[1],
+        };
+        if !misses && !flat {
             return Ok(outside);
         }
         let likely = [1000.0, -1.0, -1000.0, FOOT_M, -FOOT_M, 1.0 / FOOT_M, -1.0 / FOOT_M, 0.001, -0.001, 2.0, 0.5];
@@ -225,8 +238,9 @@ mod tests {
         let rule = VerticalRule::settle(Path::new("f"), &VerticalFacts::default(), options, axis.unit)?;
         let mut shape = points(values);
         rule.apply(&mut shape);
-        rule.check(Path::new("f"), "A", &shape, axis)?;
-        Ok(shape.values().collect())
+        let values: Vec<f64> = shape.values().collect();
+        rule.check(Path::new("f"), "A", &values, axis, SurfaceKind::Horizon)?;
+        Ok(values)
     }
 
     fn hint(values: &[f64], options: &ImportOptions, axis: &VerticalAxis) -> String {
