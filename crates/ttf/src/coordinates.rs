@@ -78,7 +78,7 @@ impl FaceFrame {
     pub fn new(normal: [f32; 3]) -> Self {
         let normal = unit(normal);
         let horizontal_sq = normal[0] * normal[0] + normal[1] * normal[1];
-        if !(horizontal_sq > HORIZONTAL_NORMAL_SQ) {
+        if horizontal_sq <= HORIZONTAL_NORMAL_SQ {
             return Self { normal, along: [1.0, 0.0] };
         }
         let scale = 1.0 / horizontal_sq.sqrt();
@@ -150,5 +150,86 @@ fn unit(vector: [f32; 3]) -> [f32; 3] {
         vector.map(|part| part * scale)
     } else {
         [0.0; 3]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UP: [f32; 3] = [0.0, 0.0, -1.0];
+
+    fn weights(normal: [f32; 3], grad_k: [f32; 3]) -> [f32; 3] {
+        FaceFrame::new(normal).weights(grad_k).to_array()
+    }
+
+    fn near(found: [f32; 3], expected: [f32; 3]) {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?} {expected:?}");
+    }
+
+    #[test]
+    fn side_faces_show_k_over_the_axis_that_lies_in_them() {
+        for grad_k in [UP, [0.5, 0.2, -1.0], [-0.1, 0.9, -1.0]] {
+            near(weights([1.0, 0.0, 0.0], grad_k), [1.0, 0.0, 0.0]);
+            near(weights([0.0, 1.0, 0.0], grad_k), [1.0, 0.0, 0.0]);
+        }
+        let [on_x, ..] = FaceFrame::new([1.0, 0.0, 0.0]).mappings(0.5);
+        assert_eq!(on_x.apply([0.3, 0.6, 0.9]), [0.3, 0.9]);
+        let [on_y, ..] = FaceFrame::new([0.0, -1.0, 0.0]).mappings(0.5);
+        assert_eq!(on_y.apply([0.3, 0.6, 0.9]), [0.3, 0.9]);
+    }
+
+    #[test]
+    fn a_flat_layer_on_top_is_a_map_and_a_steep_one_shows_k_along_strike() {
+        let top = [0.0, 0.0, -1.0];
+        near(weights(top, UP), [0.0, 0.0, 1.0]);
+        near(weights(top, [0.0, 1.0, -1.0]), [1.0, 0.0, 0.0]);
+        near(weights(top, [1.0, 0.0, -1.0]), [0.0, 1.0, 0.0]);
+        let [along, across, map] = FaceFrame::new(top).mappings(2.0);
+        let point = [0.25, 0.5, 0.75];
+        assert_eq!(along.apply(point), [0.25, 0.75]);
+        assert_eq!(across.apply(point), [1.0, 0.75]);
+        assert_eq!(map.apply(point), [0.25, 1.0]);
+    }
+
+    #[test]
+    fn the_map_takes_over_between_25_and_10_degrees_without_a_jump() {
+        let at = |degrees: f32| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            weights([0.0, 0.0, 1.0], [0.0, sin, -cos])
+        };
+        near(at(9.9), [0.0, 0.0, 1.0]);
+        near(at(25.1), [1.0, 0.0, 0.0]);
+        let mut previous = at(0.0);
+        for step in 1..=900 {
+            let now = at(step as f32 * 0.1);
+            assert!((now.iter().sum::<f32>() - 1.0).abs() < 1e-5);
+            assert!(now[2] <= previous[2] && previous[2] - now[2] < 0.02);
+            previous = now;
+        }
+    }
+
+    #[test]
+    fn signs_and_lengths_do_not_matter() {
+        let (normal, grad_k) = ([0.3, -0.8, 0.4], [0.2, 0.4, -0.9]);
+        let expected = weights(normal, grad_k);
+        near(weights(normal.map(|part| -7.0 * part), grad_k.map(|part| -0.01 * part)), expected);
+        assert_eq!(FaceFrame::new(normal.map(|part| -part)).along, FaceFrame::new(normal).along);
+    }
+
+    #[test]
+    fn an_oblique_section_measures_its_true_length() {
+        // A vertical face along (3, 4)/5 in a block 1000 m by 2000 m: 500 m along it.
+        let frame = FaceFrame::new([4.0, -3.0, 0.0]);
+        let [mapping, ..] = frame.mappings(2.0);
+        let step = [0.6 * 500.0 / 1000.0, 0.8 * 500.0 / 2000.0, 0.0];
+        assert!((mapping.apply(step)[0] - 500.0 / 1000.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_gradient_that_is_no_direction_falls_back_to_the_side_mapping() {
+        for grad_k in [[0.0; 3], [f32::NAN, 0.0, 1.0], [f32::INFINITY, 0.0, 0.0]] {
+            assert_eq!(weights([0.0, 0.0, 1.0], grad_k), [1.0, 0.0, 0.0]);
+        }
     }
 }

@@ -85,3 +85,24 @@ impl TransferFunctions {
         self.scalars.iter().try_for_each(|function| function.validate(library))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ColourMap, LayerStyle};
+
+    #[test]
+    fn toml_round_trips_and_an_empty_file_is_the_default() {
+        let mut functions = TransferFunctions::default();
+        functions.layers.set(LayerStyle::textured("Chalk", Colour::new(9, 8, 7), "chalk"));
+        functions.raw = Some(RawColour::new("amplitude", RgbaFunction::centred(ColourMap::Seismics, 1500.0)));
+        functions.scalars =
+            vec![toml::from_str("volume = 'z'\nintervals = [{ range = [-inf, 2.0], texture = 'sand' }]").unwrap()];
+        functions.settings.blend = 0.25;
+        functions.validate(&TextureLibrary::builtin().unwrap()).unwrap();
+        let text = toml::to_string(&functions).unwrap();
+        assert_eq!(toml::from_str::<TransferFunctions>(&text).unwrap(), functions);
+        assert_eq!(toml::from_str::<TransferFunctions>("").unwrap(), TransferFunctions::default());
+        assert!(toml::from_str::<TransferFunctions>("blend = 0.5").is_err());
+    }
+}

@@ -179,3 +179,92 @@ pub(crate) fn check_overlap(place: &str, intervals: impl Iterator<Item = [f32; 2
         }),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn library() -> TextureLibrary {
+        TextureLibrary::builtin().unwrap()
+    }
+
+    fn two_halves() -> LayerStyle {
+        let mut style = LayerStyle::textured("Chalk", Colour::WHITE, "chalk");
+        style.intervals[0].k = [0.0, 0.5];
+        style.intervals.push(DepthInterval {
+            k: [0.5, 1.0],
+            texture: "marl".to_owned(),
+            frequency: Some(Frequency { horizontal: 30.0, vertical: 4.0 }),
+            opacity: 0.5,
+            colour: Some(Colour::BLACK),
+        });
+        style
+    }
+
+    #[test]
+    fn intervals_are_half_open_and_the_last_includes_the_horizon() {
+        let style = two_halves();
+        style.validate(&library()).unwrap();
+        for (k, texture) in
+            [(0.0, "chalk"), (0.499_99, "chalk"), (0.5, "marl"), (1.0, "marl"), (-0.2, "chalk"), (1.3, "marl")]
+        {
+            assert_eq!(style.texture_at(k), Some(texture), "{k}");
+        }
+        let mut open = style;
+        open.intervals[1].k = [0.5, 0.9];
+        assert_eq!(open.texture_at(0.9), None);
+    }
+
+    #[test]
+    fn toml_round_trips_and_is_short_for_the_usual_case() {
+        let functions = LayerTtf { styles: vec![two_halves(), LayerStyle::plain("Salt", Colour::new(1, 2, 3))] };
+        #[derive(Serialize, Deserialize)]
+        struct File {
+            layers: LayerTtf,
+        }
+        let text = toml::to_string(&File { layers: functions.clone() }).unwrap();
+        assert_eq!(toml::from_str::<File>(&text).unwrap().layers, functions);
+        let short: LayerStyle = toml::from_str("layer = 'Salt'\ncolour = '#010203'").unwrap();
+        assert_eq!(short, functions.styles[1]);
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_refused_by_its_own_error() {
+        let library = library();
+        let error = |change: fn(&mut LayerStyle)| {
+            let mut style = two_halves();
+            change(&mut style);
+            style.validate(&library).unwrap_err()
+        };
+        for bad in [
+            (|style: &mut LayerStyle| style.intervals[0].k = [-0.1, 0.5]) as fn(&mut LayerStyle),
+            |style| style.intervals[1].k = [0.5, 1.1],
+            |style| style.intervals[0].k = [f32::NAN, 0.5],
+            |style| style.intervals[0].k = [0.4, 0.4],
+            |style| style.intervals[0].k = [0.5, 0.2],
+        ] {
+            assert!(matches!(error(bad), Error::BadDepthInterval { .. }));
+        }
+        assert!(matches!(error(|style| style.intervals[0].k = [0.0, 0.6]), Error::Overlap { .. }));
+        assert!(matches!(error(|style| style.opacity = 1.5), Error::OutsideUnit { .. }));
+        assert!(matches!(error(|style| style.intervals[0].opacity = f32::NAN), Error::OutsideUnit { .. }));
+        assert!(matches!(
+            error(|style| style.frequency = Some(Frequency { horizontal: 0.0, vertical: 1.0 })),
+            Error::BadFrequency { .. }
+        ));
+        let unknown = error(|style| style.intervals[0].texture = "limstone".to_owned());
+        assert!(unknown.to_string().contains("did you mean `limestone`?"), "{unknown}");
+        let twice = LayerTtf { styles: vec![two_halves(), two_halves()] };
+        assert!(matches!(twice.validate(&library), Err(Error::DuplicateLayer { .. })));
+    }
+
+    #[test]
+    fn setting_a_style_replaces_the_layers_own() {
+        let mut functions = LayerTtf::default();
+        functions.set(two_halves());
+        functions.set(LayerStyle::plain("Salt", Colour::BLACK));
+        functions.set(LayerStyle::plain("Chalk", Colour::BLACK));
+        assert_eq!(functions.styles.len(), 2);
+        assert_eq!(functions.style("Chalk"), Some(&LayerStyle::plain("Chalk", Colour::BLACK)));
+    }
+}

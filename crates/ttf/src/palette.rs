@@ -7,7 +7,7 @@ use crate::{Colour, LayerStyle, LayerTtf, TextureLibrary};
 
 /// Patterns for layers without a telling name, bottom to top.
 const SEQUENCE: [&str; 8] =
-    ["granite", "sandstone-bedded", "shale", "limestone", "siltstone", "dolostone", "marl", "sand"];
+    ["granite", "shale", "sandstone-bedded", "limestone", "siltstone", "dolostone", "marl", "sand"];
 
 /// Words in a layer's name and the pattern they stand for; the first that fits counts.
 const WORDS: [(&str, &str); 31] = [
@@ -53,6 +53,44 @@ impl LayerTtf {
         match library.find(pattern) {
             Some(found) => LayerStyle::textured(layer, library.pattern(found).colour, pattern),
             None => LayerStyle::plain(layer, Colour::new(0xe6, 0xe0, 0xd2)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_word_and_every_turn_has_a_pattern() {
+        let library = TextureLibrary::builtin().unwrap();
+        for pattern in SEQUENCE.iter().chain(WORDS.iter().map(|(_, pattern)| pattern)) {
+            assert!(library.find(pattern).is_some(), "{pattern}");
+        }
+    }
+
+    #[test]
+    fn a_telling_name_decides_and_others_take_turns() {
+        let library = TextureLibrary::builtin().unwrap();
+        let texture = |name: &str, index| LayerTtf::default_style(name, index, &library).intervals[0].texture.clone();
+        assert_eq!(texture("Zechstein SALT", 3), "salt");
+        assert_eq!(texture("Oil shale member", 3), "oil-shale");
+        assert_eq!(texture("Unit 3", 2), SEQUENCE[2]);
+        assert_eq!(texture("Unit 11", 10), SEQUENCE[2]);
+    }
+
+    #[test]
+    fn neighbours_in_the_sequence_differ_in_greyscale() {
+        let library = TextureLibrary::builtin().unwrap();
+        let lightness = |name: &str| {
+            let index = library.find(name).unwrap();
+            let colour = library.pattern(index).colour.to_unit();
+            let average = Colour::from_unit(library.texture(index).unwrap().average_over(colour, None));
+            116.0 * average.luminance().cbrt() - 16.0
+        };
+        for (lower, upper) in SEQUENCE.iter().zip(SEQUENCE.iter().cycle().skip(1)) {
+            let step = (lightness(lower) - lightness(upper)).abs();
+            assert!(step >= 4.0, "{lower} and {upper}: {step}");
         }
     }
 }

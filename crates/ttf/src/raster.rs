@@ -12,7 +12,7 @@ use crate::texture::TEXTURE_SIDE_PX;
 use crate::{Error, Texture};
 
 /// Largest side of an image accepted as a tile, in pixels.
-pub const MAX_IMAGE_SIDE_PX: u32 = 8192;
+pub const MAX_IMAGE_SIDE_PX: u32 = 4096;
 
 /// Largest file accepted as a tile, in bytes.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
@@ -139,4 +139,83 @@ fn linear_weights(index: usize, step: f64) -> Vec<(usize, f32)> {
 fn transpose(texels: &[[f32; 4]], width: usize) -> Vec<[f32; 4]> {
     let height = texels.len() / width;
     (0..texels.len()).map(|index| texels[(index % height) * width + index / height]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::TextureLibrary;
+
+    fn folder() -> tempfile::TempDir {
+        tempfile::tempdir().unwrap()
+    }
+
+    #[test]
+    fn the_bottom_row_of_an_image_is_at_v_zero() {
+        let folder = folder();
+        let path = folder.path().join("half.png");
+        let red_above_blue = |_, y| if y < 8 { image::Rgb([255, 0, 0]) } else { image::Rgb([0, 0, 255_u8]) };
+        image::RgbImage::from_fn(16, 16, red_above_blue).save(&path).unwrap();
+        let (texture, _, shape) = read_tile(&path).unwrap();
+        let at = |v: f32| texture.sample([0.5, v], [0.0; 2], [0.0; 2]);
+        assert_eq!((at(0.25), at(0.75)), ([0.0, 0.0, 1.0, 1.0], [1.0, 0.0, 0.0, 1.0]));
+        assert_eq!(shape, 1.0);
+        let svg = br##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 10 20"><rect width="10" height="10" fill="#f00"/></svg>"##;
+        let (texture, shape) = rasterize("x", svg).unwrap();
+        assert_eq!(shape, 2.0);
+        assert_eq!(texture.sample([0.5, 0.75], [0.0; 2], [0.0; 2]), [1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(texture.sample([0.5, 0.25], [0.0; 2], [0.0; 2]), [0.0; 4]);
+    }
+
+    #[test]
+    fn resampling_keeps_the_mean_and_wraps() {
+        for (width, height) in [(3_u32, 5_u32), (700, 300), (1024, 1), (512, 512)] {
+            let texels: Vec<[f32; 4]> = (0..width * height).map(|i| [((i * 7919) % 101) as f32 / 100.0; 4]).collect();
+            let side = TEXTURE_SIDE_PX as usize;
+            let wide = resample_rows(&texels, width as usize, side);
+            let square = resample_rows(&transpose(&wide, side), height as usize, side);
+            assert_eq!(square.len(), side * side);
+            let mean =
+                |texels: &[[f32; 4]]| texels.iter().map(|texel| f64::from(texel[0])).sum::<f64>() / texels.len() as f64;
+            assert!((mean(&texels) - mean(&square)).abs() < 2e-3, "{width} x {height}");
+        }
+        // Black and white texel side by side, enlarged: half grey on both edges of both.
+        let row = resample_rows(&[[0.0; 4], [1.0; 4]], 2, 512);
+        assert!((row[0][0] - 0.5).abs() < 0.01 && (row[511][0] - 0.5).abs() < 0.01 && (row[256][0] - 0.5).abs() < 0.01);
+    }
+
+    #[test]
+    fn each_kind_of_bad_file_has_its_own_error() {
+        let folder = folder();
+        let file = |name: &str, content: &[u8]| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, content).unwrap();
+            TextureLibrary::builtin().unwrap().add_user(&path).unwrap_err()
+        };
+        assert!(matches!(file("text.png", b"no image"), Error::BadImage { .. }));
+        assert!(matches!(file("empty.png", b""), Error::BadImage { .. }));
+        assert!(matches!(file("notes.txt", b"hello"), Error::UnknownFormat { .. }));
+        assert!(matches!(file("none", b"hello"), Error::UnknownFormat { .. }));
+        assert!(matches!(file("bad.svg", b"<svg"), Error::BadSvg { .. }));
+        let flat = br##"<svg xmlns="http://www.w3.org/2000/svg" width="0" height="10"/>"##;
+        assert!(matches!(file("flat.svg", flat), Error::BadSvg { .. }));
+        let path = folder.path().join("wide.png");
+        image::GrayImage::new(MAX_IMAGE_SIDE_PX + 1, 1).save(&path).unwrap();
+        let error = TextureLibrary::builtin().unwrap().add_user(&path).unwrap_err();
+        assert!(matches!(error, Error::BadSize { width, .. } if width == MAX_IMAGE_SIDE_PX + 1), "{error}");
+        let missing = TextureLibrary::builtin().unwrap().add_user(&folder.path().join("missing.png"));
+        assert!(matches!(missing, Err(Error::ReadTexture { .. })));
+        let mut truncated = std::fs::read(&path).unwrap();
+        truncated.truncate(40);
+        assert!(matches!(file("cut.png", &truncated), Error::BadImage { .. }));
+    }
+
+    #[test]
+    fn a_users_name_may_not_hide_a_pattern() {
+        let folder = folder();
+        let path = folder.path().join("limestone.png");
+        image::GrayImage::new(4, 4).save(&path).unwrap();
+        let error = TextureLibrary::builtin().unwrap().add_user(&path).unwrap_err();
+        assert!(matches!(error, Error::DuplicateTexture { .. }));
+    }
 }

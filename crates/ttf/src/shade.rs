@@ -168,3 +168,197 @@ impl<'a> Sampler<'a> {
         sum
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        BlockExtent, Colour, ColourMap, Frequency, LayerExtent, LayerStyle, LayerTtf, RawColour, RgbaFunction,
+        ScalarInterval, ScalarTtf, TextureLibrary, TransferFunctions, TtfSettings,
+    };
+
+    /// A library with two user tiles: `red` opaque, and `stripes`: black left half, nothing in the right.
+    fn library() -> TextureLibrary {
+        let folder = tempfile::tempdir().unwrap();
+        let mut library = TextureLibrary::builtin().unwrap();
+        for (name, pixel) in [
+            ("red", (|_, _| image::Rgba([255, 0, 0, 255])) as fn(u32, u32) -> image::Rgba<u8>),
+            ("stripes", |x, _| image::Rgba([0, 0, 0, if x < 256 { 255 } else { 0 }])),
+        ] {
+            let path = folder.path().join(format!("{name}.png"));
+            image::RgbaImage::from_fn(512, 512, pixel).save(&path).unwrap();
+            library.add_user(&path).unwrap();
+        }
+        library
+    }
+
+    fn block() -> BlockExtent {
+        let layer = |name: &str| LayerExtent { name: name.to_owned(), thickness_m: 100.0 };
+        BlockExtent {
+            extent_i_m: 1000.0,
+            extent_j_m: 2000.0,
+            layers: vec![layer("A"), layer("B")],
+            metres_per_mm: 10.0,
+        }
+    }
+
+    fn functions() -> TransferFunctions {
+        let mut a = LayerStyle::textured("A", Colour::WHITE, "stripes");
+        a.frequency = Some(Frequency { horizontal: 4.0, vertical: 1.0 });
+        TransferFunctions {
+            layers: LayerTtf { styles: vec![a, LayerStyle::plain("B", Colour::new(0, 0, 255))] },
+            ..TransferFunctions::default()
+        }
+    }
+
+    fn at(i: f32, k: f32, layer: u32) -> ShadePoint {
+        ShadePoint {
+            flat: FlatPoint { i, j: 0.1, k, layer },
+            footprint: FlatFootprint::default(),
+            face: FaceFrame::new([0.0, 1.0, 0.0]),
+            grad_k: [0.0, 0.0, -1.0],
+        }
+    }
+
+    fn scalar(volume: &str, range: [f32; 2], texture: &str, opacity: f32) -> ScalarTtf {
+        let interval =
+            ScalarInterval { range, texture: texture.to_owned(), factor: [1.0, 1.0], opacity, colour: None, ink: None };
+        ScalarTtf { volume: volume.to_owned(), intervals: vec![interval] }
+    }
+
+    fn colour(functions: &TransferFunctions, point: &ShadePoint, scalars: &[f32]) -> [f32; 3] {
+        let tables = TtfTables::compile(functions, &block(), &library()).unwrap();
+        let [r, g, b, alpha] = shade(&tables, point, scalars);
+        assert_eq!(alpha, 1.0);
+        [r, g, b]
+    }
+
+    #[test]
+    fn the_layers_texture_lies_at_its_frequency_on_its_colour() {
+        let functions = functions();
+        // Four repeats over i: black in the first half of each quarter.
+        for (i, expected) in [(0.06, 0.0), (0.19, 1.0), (0.31, 0.0), (0.94, 1.0)] {
+            assert_eq!(colour(&functions, &at(i, 0.5, 0), &[]), [expected; 3], "{i}");
+        }
+        assert_eq!(colour(&functions, &at(0.06, 0.5, 1), &[]), [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn one_pattern_has_one_size_on_both_pairs_of_faces() {
+        // j is twice as long as i, so the tile repeats eight times over it.
+        let mut point = at(0.06, 0.5, 0);
+        point.face = FaceFrame::new([1.0, 0.0, 0.0]);
+        for (j, expected) in [(0.03, 0.0), (0.095, 1.0), (0.155, 0.0)] {
+            point.flat.j = j;
+            assert_eq!(colour(&functions(), &point, &[]), [expected; 3], "{j}");
+        }
+    }
+
+    #[test]
+    fn global_frequency_and_factors_multiply() {
+        let mut functions = functions();
+        functions.settings.global_frequency = 0.5;
+        // Two repeats now: black up to 0.25.
+        assert_eq!(colour(&functions, &at(0.19, 0.5, 0), &[]), [0.0; 3]);
+        functions.scalars = vec![scalar("s", [0.0, 1.0], "stripes", 1.0)];
+        functions.scalars[0].intervals[0].factor = [4.0, 1.0];
+        functions.scalars[0].intervals[0].colour = Some(Colour::new(255, 0, 0));
+        // Eight repeats of the scalar texture: black up to 1/16, its red ground after it.
+        assert_eq!(colour(&functions, &at(0.03, 0.5, 0), &[0.5]), [0.0; 3]);
+        assert_eq!(colour(&functions, &at(0.09, 0.5, 0), &[0.5]), [1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn opacity_composites_in_closed_form() {
+        for (opacity, expected) in [(0.0, [0.0, 0.0, 1.0]), (0.5, [0.5, 0.0, 0.5]), (1.0, [1.0, 0.0, 0.0])] {
+            let mut functions = functions();
+            functions.scalars = vec![scalar("s", [0.0, 1.0], "red", opacity)];
+            assert_eq!(colour(&functions, &at(0.06, 0.5, 1), &[0.0]), expected);
+        }
+        let mut functions = functions();
+        functions.layers.styles[0].intervals[0].opacity = 0.25;
+        assert_eq!(colour(&functions, &at(0.06, 0.5, 0), &[]), [0.75; 3]);
+    }
+
+    #[test]
+    fn the_stack_is_composited_in_order_and_no_data_passes_through() {
+        let mut functions = functions();
+        let mut green = scalar("second", [0.0, 1.0], "plain", 0.5);
+        green.intervals[0].colour = Some(Colour::new(0, 255, 0));
+        functions.scalars = vec![scalar("first", [0.0, 1.0], "red", 1.0), green.clone()];
+        let point = at(0.06, 0.5, 1);
+        assert_eq!(colour(&functions, &point, &[0.5, 0.5]), [0.5, 0.5, 0.0]);
+        assert_eq!(colour(&functions, &point, &[0.5, f32::NAN]), [1.0, 0.0, 0.0]);
+        assert_eq!(colour(&functions, &point, &[f32::NAN, 0.5]), [0.0, 0.5, 0.5]);
+        assert_eq!(colour(&functions, &point, &[1.0, 1.0]), [0.0, 0.0, 1.0]);
+        assert_eq!(colour(&functions, &point, &[]), [0.0, 0.0, 1.0]);
+        functions.scalars.swap(0, 1);
+        assert_eq!(colour(&functions, &point, &[0.5, 0.5]), [1.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn the_blend_runs_from_illustration_to_raw_colour() {
+        let mut functions = functions();
+        functions.raw = Some(RawColour::new("amplitude", RgbaFunction::centred(ColourMap::RedWhiteBlack, 2.0)));
+        let point = at(0.06, 0.5, 1);
+        let raw = functions.raw.as_ref().unwrap().function.evaluate(-1.5);
+        for (blend, share) in [(0.0, 0.0), (0.5, 0.5), (1.0, 1.0)] {
+            functions.settings = TtfSettings { blend, ..TtfSettings::default() };
+            let found = colour(&functions, &point, &[-1.5]);
+            for (channel, illustration) in [0.0, 0.0, 1.0_f32].into_iter().enumerate() {
+                let expected = illustration + (raw[channel] - illustration) * share;
+                assert!((found[channel] - expected).abs() < 1e-6);
+            }
+        }
+        let grey = functions.raw.as_ref().unwrap().no_data.unwrap().to_unit();
+        assert_eq!(colour(&functions, &point, &[f32::NAN]), grey);
+        functions.raw.as_mut().unwrap().no_data = None;
+        assert_eq!(colour(&functions, &point, &[f32::NAN]), [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn raw_colours_are_those_of_the_function_everywhere() {
+        for map in ColourMap::ALL {
+            let mut functions = functions();
+            functions.settings.blend = 1.0;
+            let mut function = RgbaFunction::over(map, [-3.0, 7.0]);
+            let step = function.stops[1];
+            function.stops.insert(1, crate::RgbaStop { colour: Colour::BLACK, ..step });
+            functions.raw = Some(RawColour::new("amplitude", function.clone()));
+            let tables = TtfTables::compile(&functions, &block(), &library()).unwrap();
+            for step in -10..=130 {
+                let value = -4.0 + step as f32 * 0.1;
+                let found = shade(&tables, &at(0.0, 0.5, 1), &[value]);
+                let expected = function.evaluate(value);
+                assert!((0..3).all(|c| (found[c] - expected[c]).abs() < 1e-5), "{value}: {found:?} {expected:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn without_coordinates_the_layer_is_plain_and_without_a_layer_there_is_nothing() {
+        let functions = functions();
+        assert_eq!(colour(&functions, &at(f32::NAN, 0.5, 0), &[]), [1.0; 3]);
+        assert_eq!(colour(&functions, &at(0.06, f32::NAN, 0), &[]), [1.0; 3]);
+        let tables = TtfTables::compile(&functions, &block(), &library()).unwrap();
+        assert_eq!(shade(&tables, &at(0.06, 0.5, 2), &[]), [0.0; 4]);
+    }
+
+    #[test]
+    fn ink_replaces_the_drawings_colours_and_the_ground_takes_the_average() {
+        let mut functions = functions();
+        functions.layers.styles[0].ink = Some(Colour::new(0, 255, 0));
+        assert_eq!(colour(&functions, &at(0.06, 0.5, 0), &[]), [0.0, 1.0, 0.0]);
+        let tables = TtfTables::compile(&functions, &block(), &library()).unwrap();
+        assert_eq!(tables.average_colour(0, 1.0), [0.5, 1.0, 0.5]);
+        assert_eq!(tables.average_colour(1, 1.0), [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn a_wide_footprint_shows_the_average() {
+        let mut point = at(0.3, 0.5, 0);
+        point.footprint = FlatFootprint { dx: [0.25, 0.0, 0.0], dy: [0.0, 0.0, 1.0] };
+        let found = colour(&functions(), &point, &[]);
+        assert!(found.iter().all(|channel| (channel - 0.5).abs() < 0.01), "{found:?}");
+    }
+}

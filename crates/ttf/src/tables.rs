@@ -335,3 +335,70 @@ fn opaque_or_nothing(colour: Option<crate::Colour>) -> [f32; 4] {
         [r, g, b, 1.0]
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Colour, ScalarTtf};
+
+    fn block(names: &[&str]) -> BlockExtent {
+        let layers = names.iter().map(|name| LayerExtent { name: (*name).to_owned(), thickness_m: 300.0 }).collect();
+        BlockExtent { extent_i_m: 6000.0, extent_j_m: 3000.0, layers, metres_per_mm: 20.0 }
+    }
+
+    #[test]
+    fn an_unstyled_project_compiles_with_patterns_of_printed_size() {
+        let library = TextureLibrary::builtin().unwrap();
+        let tables = TtfTables::compile(&TransferFunctions::default(), &block(&["Salt", "Chalk"]), &library).unwrap();
+        assert_eq!(tables.layers.len(), 2);
+        assert_eq!(tables.textures.len(), 2);
+        assert_eq!(tables.globals.aspect_j, 0.5);
+        let tile_m = library.pattern(library.find("salt").unwrap()).tile_mm[0] * 20.0;
+        assert_eq!(tables.intervals[0].frequency, [6000.0 / tile_m, 300.0 / tile_m]);
+        assert_eq!(tables.intervals[0].k, [f32::MIN, f32::MAX]);
+    }
+
+    #[test]
+    fn intervals_are_sorted_and_textures_and_volumes_shared() {
+        let library = TextureLibrary::builtin().unwrap();
+        let mut functions = TransferFunctions::default();
+        let mut style = LayerStyle::textured("A", Colour::WHITE, "sand");
+        style.intervals[0].k = [0.5, 0.8];
+        let mut lower = style.intervals[0].clone();
+        lower.k = [0.0, 0.5];
+        style.intervals.push(lower);
+        functions.layers.set(style);
+        let scalar: ScalarTtf =
+            toml::from_str("volume = 'v'\nintervals = [{ range = [0.0, 1.0], texture = 'sand' }]").unwrap();
+        functions.scalars = vec![scalar.clone(), scalar];
+        let tables = TtfTables::compile(&functions, &block(&["A"]), &library).unwrap();
+        assert_eq!(tables.intervals[0].k, [f32::MIN, 0.5]);
+        assert_eq!(tables.intervals[1].k, [0.5, 0.8]);
+        assert_eq!((tables.textures.len(), tables.volumes.len(), tables.scalars.len()), (1, 1, 2));
+    }
+
+    #[test]
+    fn bad_extents_and_bad_functions_are_refused() {
+        let library = TextureLibrary::builtin().unwrap();
+        let compile =
+            |functions: &TransferFunctions, block: &BlockExtent| TtfTables::compile(functions, block, &library);
+        let mut flat = block(&["A"]);
+        flat.extent_j_m = 0.0;
+        assert!(matches!(compile(&TransferFunctions::default(), &flat), Err(Error::BadExtent { .. })));
+        let mut functions = TransferFunctions::default();
+        functions.settings.blend = 2.0;
+        assert!(matches!(compile(&functions, &block(&["A"])), Err(Error::OutsideUnit { .. })));
+        functions.settings.blend = 0.0;
+        functions.settings.global_frequency = f32::NAN;
+        assert!(matches!(compile(&functions, &block(&["A"])), Err(Error::BadFrequency { .. })));
+    }
+
+    #[test]
+    fn entries_are_laid_out_for_the_gpu() {
+        assert_eq!(size_of::<TtfGlobals>(), 48);
+        assert_eq!(size_of::<LayerEntry>(), 32);
+        assert_eq!(size_of::<IntervalEntry>(), 64);
+        assert_eq!(size_of::<ScalarEntry>(), 64);
+        assert_eq!(size_of::<StopEntry>(), 32);
+    }
+}

@@ -87,35 +87,46 @@ impl Texture {
                 sum[channel] += texel[channel];
             }
         }
-        sum.map(|channel| channel / footprint.taps as f32)
+        sum.map(|channel| channel / (255 * footprint.taps) as f32)
     }
 
     fn trilinear(&self, uv: [f32; 2], lod: f32) -> [f32; 4] {
-        let lower = lod.floor();
-        let fraction = lod - lower;
-        let near = self.bilinear(uv, lower as usize);
-        let far = self.bilinear(uv, (lower as usize + 1).min(self.levels.len() - 1));
+        let lower = floor(lod);
+        let fraction = lod - lower as f32;
+        let lower = lower as usize;
+        let near = self.bilinear(uv, lower);
+        let far = self.bilinear(uv, (lower + 1).min(self.levels.len() - 1));
         std::array::from_fn(|channel| near[channel] + (far[channel] - near[channel]) * fraction)
     }
 
+    /// In units of 1/255: the caller divides once.
     fn bilinear(&self, uv: [f32; 2], level: usize) -> [f32; 4] {
         let texels = &self.levels[level];
         let side = (self.side_px() as usize) >> level;
         let place = |coordinate: f32| {
-            let texel = (coordinate - coordinate.floor()) * side as f32 - 0.5;
-            let low = texel.floor();
-            let index = (low as isize).rem_euclid(side as isize) as usize;
-            (index, (index + 1) % side, texel - low)
+            let texel = (coordinate - floor(coordinate) as f32) * side as f32 - 0.5;
+            let low = floor(texel);
+            // The side is a power of two, so the mask wraps, from -1 to the last texel too.
+            let index = low as usize & (side - 1);
+            (index, (index + 1) & (side - 1), texel - low as f32)
         };
         let (x0, x1, fx) = place(uv[0]);
         let (y0, y1, fy) = place(uv[1]);
-        let at = |x: usize, y: usize, channel: usize| f32::from(texels[y * side + x][channel]) / 255.0;
+        let [a, b] = [texels[y0 * side + x0], texels[y0 * side + x1]];
+        let [c, d] = [texels[y1 * side + x0], texels[y1 * side + x1]];
         std::array::from_fn(|channel| {
-            let bottom = at(x0, y0, channel) + (at(x1, y0, channel) - at(x0, y0, channel)) * fx;
-            let top = at(x0, y1, channel) + (at(x1, y1, channel) - at(x0, y1, channel)) * fx;
+            let at = |texel: [u8; 4]| f32::from(texel[channel]);
+            let bottom = at(a) + (at(b) - at(a)) * fx;
+            let top = at(c) + (at(d) - at(c)) * fx;
             bottom + (top - bottom) * fy
         })
     }
+}
+
+/// The largest integer that is not above `x`; `f32::floor` is a library call on plain x86-64.
+fn floor(x: f32) -> i32 {
+    let truncated = x as i32;
+    truncated - i32::from(truncated as f32 > x)
 }
 
 /// Steps 1 to 3 of the sampling rule.

@@ -152,14 +152,12 @@ pub fn sandstone_crossbedded() -> Tile {
     let mut dice = Dice::new(6093);
     // Troughs: centre of the rim, half width, depth; the youngest last.
     let mut troughs: Vec<(Point, f32, f32)> = Vec::new();
-    for row in 0..6 {
+    for row in 0..7 {
         for column in 0..2 {
-            let x = column as f32 * 45.0 + (row % 2) as f32 * 22.5 + dice.jitter(9.0);
-            troughs.push((
-                [x, 83.0 - row as f32 * 15.0 + dice.jitter(3.0)],
-                dice.between(32.0, 44.0),
-                dice.between(15.0, 20.0),
-            ));
+            // Each row is shifted by 3/7 of the distance between troughs, so seven rows close the tile.
+            let x = column as f32 * 45.0 + row as f32 * 135.0 / 7.0 + dice.jitter(5.0);
+            let y = 90.0 - (row as f32 + 0.5) * 90.0 / 7.0 + dice.jitter(1.5);
+            troughs.push(([x, y], dice.between(38.0, 44.5), dice.between(17.0, 21.0)));
         }
     }
     let side = tile.side;
@@ -197,7 +195,7 @@ pub fn sandstone_crossbedded() -> Tile {
             let mut x = centre[0] - half + dice.between(0.0, 1.5);
             while x < centre[0] + half {
                 let point = floor(trough, x).map(|y| [x, y - lift]);
-                if let Some(point) = point.filter(|point| !cut(*point, 1.3) && point[1] > centre[1] - 1.0) {
+                if let Some(point) = point.filter(|point| !cut(*point, 1.3) && point[1] > centre[1] - 3.0) {
                     tile.dot(point, DOT);
                 }
                 let slope = (x - centre[0]) / half * 1.2;

@@ -8,29 +8,30 @@ const LINE: f32 = 0.65;
 /// 703: steep cleavage in close broken lines, crossed by faint bedding.
 pub fn slate() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(703));
-    // The cleavage leans 12 points to the right over 60 down, so it closes on itself after five tiles.
-    for index in 0..24 {
+    // The cleavage leans 60 points to the right over 120 down: twelve lines, two tiles long, close it.
+    for index in 0..12 {
         let x = index as f32 * 2.5;
-        let mut y = dice.between(0.0, 20.0);
-        let end = y + 60.0;
-        while y < end - 6.0 {
-            let length = dice.between(9.0, 17.0).min(end - y - 1.6);
-            let bold = if dice.between(0.0, 1.0) < 0.22 { 1.05 } else { 0.5 };
+        let mut y = dice.between(0.0, 120.0);
+        let end = y + 120.0;
+        let mut piece = index * 2;
+        while y < end - 7.0 {
+            let length = dice.between(9.0, 18.0).min(end - y - 2.0);
             let lean = |y: f32| x + y * 0.5;
-            tile.line([lean(y), y], [lean(y + length), y + length], bold);
-            y += length + dice.between(1.6, 2.6);
+            tile.line([lean(y), y], [lean(y + length), y + length], if piece % 5 == 0 { 1.0 } else { 0.5 });
+            y += length + dice.between(1.8, 2.6);
+            piece += 1;
         }
     }
     tile
 }
 
-/// 705: flakes of mica along the foliation, bent and feathered, every fourth one heavy.
+/// 705: flakes of mica along the foliation, bent and feathered, every fifth one heavy.
 pub fn schist() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(705));
     let mut flake = 0;
     for row in 0..22 {
         let base = (row as f32 + 0.5) * 60.0 / 22.0;
-        let mut x = dice.between(0.0, 10.0);
+        let mut x = dice.between(0.0, 60.0);
         let end = x + 60.0;
         while x < end - 4.0 {
             let length = dice.between(5.0, 9.5).min(end - x - 1.2);
@@ -43,7 +44,7 @@ pub fn schist() -> Tile {
                     [at, base + fold(at) + bend * (std::f32::consts::PI * along).sin() + (0.5 - along) * 0.9]
                 })
                 .collect();
-            tile.curve(&points, if flake % 4 == 0 { 0.95 } else { 0.5 });
+            tile.curve(&points, if (flake + row * 2) % 5 == 0 { 0.95 } else { 0.5 });
             flake += 1;
             x += length + dice.between(1.0, 1.8);
         }
@@ -57,7 +58,7 @@ pub fn gneiss() -> Tile {
     let mut taken: Vec<(Point, f32)> = Vec::new();
     let bands = [(4.0, 3), (17.0, 2), (26.0, 4), (41.5, 2), (51.0, 3)];
     for (top, lines) in bands {
-        let phases = [dice.between(0.0, 6.283), dice.between(0.0, 6.283)];
+        let phases = [dice.turn(), dice.turn()];
         let wave = |x: f32| {
             let turn = std::f32::consts::TAU * x / 60.0;
             1.5 * (2.0 * turn + phases[0]).sin() + 0.7 * (3.0 * turn + phases[1]).sin()
@@ -82,7 +83,7 @@ pub fn gneiss() -> Tile {
 pub fn serpentinite() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(710));
     for point in tile.scatter(&mut dice, 5.6, &[], 0.0) {
-        let (turn, sense) = (dice.between(0.0, 6.283), if dice.between(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 });
+        let (turn, sense) = (dice.turn(), if dice.between(0.0, 1.0) < 0.5 { 1.0 } else { -1.0 });
         let (sin, cos) = turn.sin_cos();
         let points: Vec<Point> = (0..=8)
             .map(|step| {
@@ -134,7 +135,7 @@ pub fn volcanic_breccia() -> Tile {
 /// 717: flows with columns, each flow with its own joints between uneven contacts.
 pub fn basalt() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(717));
-    let contacts: Vec<(f32, f32)> = [0.0, 13.0, 31.0, 44.0].iter().map(|&y| (y, dice.between(0.0, 6.283))).collect();
+    let contacts: Vec<(f32, f32)> = [0.0, 13.0, 31.0, 44.0].iter().map(|&y| (y, dice.turn())).collect();
     let height = |(y, phase): (f32, f32), x: f32| {
         let turn = std::f32::consts::TAU * x / 60.0;
         y + 0.8 * (2.0 * turn + phase).sin() + 0.5 * (5.0 * turn + 2.0 * phase).sin()
@@ -143,7 +144,7 @@ pub fn basalt() -> Tile {
         let points: Vec<Point> = (-3..=43).map(|step| step as f32 * 1.5).map(|x| [x, height(contact, x)]).collect();
         tile.curve(&points, 0.95);
         let next = contacts.get(index + 1).copied().unwrap_or((contacts[0].0 + 60.0, contacts[0].1));
-        let mut x = dice.between(0.0, 3.0);
+        let mut x = dice.between(0.0, 60.0);
         let end = x + 60.0;
         while x < end - 1.4 {
             let (top, base) = (height(contact, x), height(next, x));

@@ -13,8 +13,11 @@ use std::path::PathBuf;
 
 use tile::Tile;
 
+/// Draws a pattern.
+type Draw = fn() -> Tile;
+
 /// File name without extension, and the drawing.
-const PATTERNS: &[(&str, fn() -> Tile)] = &[
+const PATTERNS: &[(&str, Draw)] = &[
     ("plain", || Tile::new(60.0)),
     ("conglomerate", clastic::conglomerate),
     ("gravel", clastic::gravel),

@@ -29,6 +29,11 @@ impl Dice {
         low + (high - low) * ((z >> 40) as f32 / (1_u64 << 24) as f32)
     }
 
+    /// Any angle.
+    pub fn turn(&mut self) -> f32 {
+        self.between(0.0, std::f32::consts::TAU)
+    }
+
     /// Evenly distributed around zero.
     pub fn jitter(&mut self, size: f32) -> f32 {
         self.between(-size, size)
@@ -266,7 +271,7 @@ pub fn polar(centre: Point, radius: f32, angle: f32, flat: f32) -> Point {
 
 /// A rounded, slightly irregular outline: a pebble. `tilt` turns its long axis.
 pub fn pebble(dice: &mut Dice, centre: Point, radius: f32, flat: f32, tilt: f32) -> Vec<Point> {
-    let phases = [dice.between(0.0, 6.283), dice.between(0.0, 6.283)];
+    let phases = [dice.turn(), dice.turn()];
     let (sin, cos) = tilt.sin_cos();
     (0..9)
         .map(|step| {
@@ -281,7 +286,7 @@ pub fn pebble(dice: &mut Dice, centre: Point, radius: f32, flat: f32, tilt: f32)
 /// A broken piece with corners.
 pub fn shard(dice: &mut Dice, centre: Point, radius: f32) -> Vec<Point> {
     let corners = [3, 4, 4, 5][dice.between(0.0, 4.0) as usize];
-    let turn = dice.between(0.0, 6.283);
+    let turn = dice.turn();
     let step = std::f32::consts::TAU / corners as f32;
     (0..corners)
         .map(|corner| {
