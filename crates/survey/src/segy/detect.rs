@@ -348,17 +348,14 @@ impl Search<'_> {
             OTHER_LINE_FIELDS.into_iter().filter(|&byte| self.column(byte).constant().is_none()).collect();
         let inline = self.options.inline_byte;
         let crossline = self.options.crossline_byte;
-        let mut pairs: Vec<(u16, u16)> = Vec::new();
-        for &a in &varying {
-            for &b in varying.iter().filter(|&&b| b != a) {
-                match (inline, crossline) {
-                    (Some(inline), _) if a == varying[0] && b != inline => pairs.push((inline, b)),
-                    (_, Some(crossline)) if a == varying[0] && b != crossline => pairs.push((b, crossline)),
-                    (None, None) if a < b => pairs.push((a, b)),
-                    _ => {}
-                }
+        let others = |byte: u16| varying.iter().copied().filter(move |&other| other != byte);
+        let pairs: Vec<(u16, u16)> = match (inline, crossline) {
+            (Some(inline), _) => others(inline).map(|other| (inline, other)).collect(),
+            (None, Some(crossline)) => others(crossline).map(|other| (other, crossline)).collect(),
+            (None, None) => {
+                varying.iter().flat_map(|&a| others(a).filter(move |&b| a < b).map(move |b| (a, b))).collect()
             }
-        }
+        };
         let fitting: Vec<Candidate> = pairs
             .into_iter()
             .map(|(inline, crossline)| self.evaluate(inline, crossline, "", MIN_FILL_UNKNOWN))
@@ -368,6 +365,9 @@ impl Search<'_> {
         if inline.is_none() && crossline.is_none() {
             readings = readings.iter().flat_map(|reading| [reading.clone(), reading.swapped()]).collect();
         }
+        // Lines that X and Y contradict are still lines, if nothing else is there: coordinates may be wrong.
+        let contradicted = candidates.iter().find(|c| c.verdict == Verdict::ContradictsCoordinates).cloned();
+        readings.splice(0..0, contradicted);
         match readings.as_slice() {
             [] => {
                 refuse::two_dimensional(self.columns, &candidates)?;
@@ -375,7 +375,8 @@ impl Search<'_> {
             }
             [only] => {
                 let chosen = only.clone();
-                self.choose(&chosen, readings, findings)
+                let candidates = if chosen.convention.is_empty() { readings } else { candidates };
+                self.choose(&chosen, candidates, findings)
             }
             _ => Err(SegyProblem::AmbiguousLines { readings }),
         }

@@ -183,30 +183,25 @@ impl Shape {
             _ => 0,
         };
         let end = file.len().saturating_sub(trailer_bytes);
-        let first_header = file.get(starts[0]..).and_then(|rest| rest.get(..TRACE_HEADER_BYTES));
-        let in_trace = first_header.map_or(0, |header| Field::U16(at::SAMPLES).get(header, order)) as usize;
-        let counts = sample_counts(binary, in_trace);
-        let Some(&preferred_samples) = counts.first() else {
-            return Err(SegyProblem::NoSampleCount);
-        };
-        if end <= starts[0] {
-            return Err(SegyProblem::NoTraces { bytes: file.len() as u64 });
-        }
         let extra = match binary.extra_trace_headers {
             n @ 1.. if binary.has_revision_2() => usize::from(n.unsigned_abs()),
             _ => 0,
         };
         let header_sizes = [TRACE_HEADER_BYTES * (1 + extra), TRACE_HEADER_BYTES];
-        let preferred = Self { start: starts[0], header_bytes: header_sizes[0], samples: preferred_samples, traces: 0 };
-        for start in starts.iter().copied().filter(|&start| start < end) {
+        let mut preferred = None;
+        for start in starts {
+            let first_header = file.get(start..).and_then(|rest| rest.get(..TRACE_HEADER_BYTES));
+            let in_trace = first_header.map_or(0, |header| Field::U16(at::SAMPLES).get(header, order)) as usize;
+            let counts = sample_counts(binary, in_trace);
             for header_bytes in header_sizes {
                 for &samples in &counts {
                     let mut shape = Self { start, header_bytes, samples, traces: 0 };
-                    let is_preferred = shape == preferred;
-                    let bytes = end - start;
-                    if !bytes.is_multiple_of(shape.stride(format)) {
+                    let preferred = *preferred.get_or_insert(shape);
+                    let bytes = end.saturating_sub(start);
+                    if bytes == 0 || !bytes.is_multiple_of(shape.stride(format)) {
                         continue;
                     }
+                    let is_preferred = shape == preferred;
                     shape.traces = bytes / shape.stride(format);
                     if is_preferred {
                         shape.check_announced(binary, findings)?;
@@ -230,6 +225,16 @@ impl Shape {
                     return Ok(shape);
                 }
             }
+        }
+        let Some(preferred) = preferred else {
+            return Err(if end > FILE_HEADER_BYTES {
+                SegyProblem::NoSampleCount
+            } else {
+                SegyProblem::NoTraces { bytes: file.len() as u64 }
+            });
+        };
+        if end <= preferred.start {
+            return Err(SegyProblem::NoTraces { bytes: file.len() as u64 });
         }
         Err(preferred.diagnose(&file[..end], order, format))
     }

@@ -1,8 +1,8 @@
-//! The place of the lattice in the world: `[X Y]ᵀ = origin + i·a + j·b`, least squares over all traces' X and Y.
+//! The place of the lattice in the world: `[X Y]ᵀ = origin + i·a + j·b`, least squares over the traces' X and Y.
 //!
 //! With a bar for the mean, the deviations satisfy `S [a b] = [Σ(i-ī)(X-X̄) …]`, S the 2 × 2 matrix of second moments of
-//! i and j. Coordinates are stored as integers, so the fit is also finer than any single one of them. If some traces
-//! lie more than half a bin off, the fit is repeated once without them.
+//! i and j. Coordinates are stored as integers, so the fit is also finer than any single one of them. While
+//! some traces lie more than half a bin and three medians off, the fit is repeated without them.
 
 use glam::{DMat2, DVec2};
 
@@ -12,6 +12,9 @@ use super::vertical::scaled;
 
 /// Half a bin: beyond it a trace would be nearer to another place of the lattice.
 pub(super) const MAX_RESIDUAL_BINS: f64 = 0.5;
+
+/// The fit takes every n-th trace of files that have more than this: 1 ‰ of a bin needs far fewer.
+const MAX_POINTS: usize = 1 << 20;
 
 /// X, Y and their scalar in every trace.
 #[derive(Debug, Clone, Copy)]
@@ -60,19 +63,9 @@ impl Placement {
         let points =
             || lattice.traces().map(|(i, j, trace)| (DVec2::new(i as f64, j as f64), coordinates.of(trace), trace));
         let located = || points().filter_map(|(at, world, trace)| world.map(|world| (at, world, trace)));
-        let first = Affine::fit(located().map(|(at, world, _)| (at, world)))?;
-        let is_near = |affine: &Affine, at, world| affine.residual_bins(at, world) <= MAX_RESIDUAL_BINS;
-        let near = located().filter(|&(at, world, _)| is_near(&first, at, world)).count();
         let total = located().count();
-        // Gross errors pull the first fit; a second without them shows whether they are few.
-        let affine = if near < total && near * 2 > total {
-            Affine::fit(
-                located().filter(|&(at, world, _)| is_near(&first, at, world)).map(|(at, world, _)| (at, world)),
-            )
-            .unwrap_or(first)
-        } else {
-            first
-        };
+        let sample = located().step_by(total.div_ceil(MAX_POINTS).max(1)).map(|(at, world, _)| (at, world));
+        let affine = robust_fit(&sample.collect::<Vec<_>>())?;
         let (mut sum_sq, mut used, mut max_bins, mut worst_trace) = (0.0, 0_usize, 0.0, 0);
         for (at, world, trace) in located() {
             let bins = affine.residual_bins(at, world);
@@ -97,9 +90,9 @@ impl Placement {
         })
     }
 
-    /// Whether no trace, or next to none, lies off by more than half a bin.
+    /// Whether few traces lie off by more than half a bin.
     pub fn agrees(&self) -> bool {
-        self.outliers * 100 <= self.traces
+        self.outliers * 10 <= self.traces
     }
 
     /// |cos| of the angle between inlines and crosslines: 0 if orthogonal.
@@ -107,6 +100,33 @@ impl Placement {
         self.inline_vector.dot(self.crossline_vector).abs()
             / (self.inline_vector.length() * self.crossline_vector.length())
     }
+}
+
+/// Least squares, repeated without the points that lie far off, until none is left out anew.
+fn robust_fit(points: &[(DVec2, DVec2)]) -> Option<Affine> {
+    /// Rounds; gross errors are gone after one or two.
+    const ROUNDS: usize = 6;
+    /// Points beyond this many times the median residual are left out.
+    const MEDIANS: f64 = 3.0;
+    let mut kept: Vec<(DVec2, DVec2)> = points.to_vec();
+    let mut affine = Affine::fit(&kept)?;
+    for _ in 0..ROUNDS {
+        let mut residuals: Vec<f64> = points.iter().map(|&(at, world)| affine.residual_bins(at, world)).collect();
+        if residuals.iter().all(|&r| r <= MAX_RESIDUAL_BINS) {
+            break;
+        }
+        let middle = residuals.len() / 2;
+        let median = *residuals.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let limit = MAX_RESIDUAL_BINS.max(MEDIANS * median);
+        let near: Vec<_> =
+            points.iter().copied().filter(|&(at, world)| affine.residual_bins(at, world) <= limit).collect();
+        if near.len() == kept.len() {
+            break;
+        }
+        let Some(better) = Affine::fit(&near) else { break };
+        (kept, affine) = (near, better);
+    }
+    Some(affine)
 }
 
 /// World from index.
@@ -117,16 +137,16 @@ struct Affine {
 }
 
 impl Affine {
-    fn fit(points: impl Iterator<Item = (DVec2, DVec2)> + Clone) -> Option<Self> {
+    fn fit(points: &[(DVec2, DVec2)]) -> Option<Self> {
         let mut count = 0.0;
         let (mut mean_at, mut mean_world) = (DVec2::ZERO, DVec2::ZERO);
-        for (at, world) in points.clone() {
+        for &(at, world) in points {
             count += 1.0;
             mean_at += (at - mean_at) / count;
             mean_world += (world - mean_world) / count;
         }
         let (mut moment, mut mixed) = (DMat2::ZERO, DMat2::ZERO);
-        for (at, world) in points {
+        for &(at, world) in points {
             let (at, world) = (at - mean_at, world - mean_world);
             moment += DMat2::from_cols(at * at.x, at * at.y);
             mixed += DMat2::from_cols(world * at.x, world * at.y);
@@ -158,7 +178,7 @@ mod tests {
         };
         let points: Vec<_> =
             (0..20).map(|k| DVec2::new(f64::from(k % 5), f64::from(k / 5))).map(|at| (at, map(at))).collect();
-        let affine = Affine::fit(points.iter().copied()).unwrap();
+        let affine = Affine::fit(&points).unwrap();
         assert!((affine.origin - map(DVec2::ZERO)).length() < 1e-6);
         assert!((affine.linear.y_axis - DVec2::new(-4.0, 24.0)).length() < 1e-9);
         assert!(affine.residual_bins(DVec2::ONE, map(DVec2::new(1.0, 1.75))) - 0.75 < 1e-6);
@@ -167,6 +187,6 @@ mod tests {
     #[test]
     fn a_line_of_points_has_no_fit() {
         let points: Vec<_> = (0..9).map(|k| (DVec2::splat(f64::from(k)), DVec2::new(f64::from(k), 0.0))).collect();
-        assert!(Affine::fit(points.iter().copied()).is_none());
+        assert!(Affine::fit(&points).is_none());
     }
 }

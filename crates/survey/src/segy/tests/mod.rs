@@ -1,8 +1,8 @@
 //! Whole files: real ones, round trips, and everything that can be wrong.
 
-//mod broken;
-//mod built;
-//mod detection;
+mod broken;
+mod built;
+mod detection;
 mod expected;
-//mod headers;
-//mod round_trip;
+mod headers;
+mod round_trip;
