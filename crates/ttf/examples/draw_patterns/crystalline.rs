@@ -44,7 +44,7 @@ pub fn schist() -> Tile {
                     [at, base + fold(at) + bend * (std::f32::consts::PI * along).sin() + (0.5 - along) * 0.9]
                 })
                 .collect();
-            tile.curve(&points, if (flake + row * 2) % 5 == 0 { 0.95 } else { 0.5 });
+            tile.curve(&points, if (flake + row) % 5 == 0 { 0.95 } else { 0.5 });
             flake += 1;
             x += length + dice.between(1.0, 1.8);
         }
