@@ -13,7 +13,7 @@ use crate::grid::{PINCHED, RegionGrid};
 use crate::lattice::{COLUMNS, FootLattice, LEVELS, LatticeShape};
 use crate::layer::{Feet, Layer, LayerKind};
 use crate::surface::Frame;
-use crate::touched::Touched;
+use crate::touched::{Depths, Touched};
 use crate::trace::Tracer;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -52,8 +52,8 @@ struct Column<'a> {
     creases: &'a mut [bool],
 }
 
-/// Fills `grid.offsets` and `grid.creases`. `samples` is the count of voxels along z: levels that lie far outside the
-/// volume are copied from the last one inside.
+/// Fills `grid.offsets` and `grid.creases`. Levels outside the depths that a column is touched over are copied from the
+/// last one computed.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -61,7 +61,6 @@ pub fn fill(
     grid: &mut RegionGrid,
     layer: &Layer,
     touched: &Touched,
-    samples: usize,
     tolerance: f32,
     progress: &Progress,
 ) -> Result<ComputeCost, Cancelled> {
@@ -70,13 +69,14 @@ pub fn fill(
     let mut offsets = vec![[0.0f32; 3]; nx * ny * levels];
     let mut creases = vec![false; nx * ny * levels];
     let origin = grid.origin;
-    let filler = Filler::new(layer, grid, touched, samples, tolerance, progress)?;
+    let filler = Filler::new(layer, grid, touched, tolerance, progress)?;
     offsets.par_chunks_mut(ny * levels).zip(creases.par_chunks_mut(ny * levels)).enumerate().try_for_each(
         |(x, (offsets, creases))| {
             for (y, (offsets, creases)) in offsets.chunks_mut(levels).zip(creases.chunks_mut(levels)).enumerate() {
                 let column = [origin[0] + x as i32, origin[1] + y as i32];
-                if touched.wanted[x * ny + y] && layer.thickness(column) >= PINCHED {
-                    filler.column(column, Column { offsets, creases });
+                let n = x * ny + y;
+                if touched.is_wanted(n) && layer.thickness(column) >= PINCHED {
+                    filler.column(column, touched.depths[n], Column { offsets, creases });
                 }
             }
             progress.step(1)
@@ -94,7 +94,6 @@ pub fn fill(
 struct Filler<'a> {
     layer: &'a Layer,
     levels: usize,
-    samples: f32,
     tolerance: f32,
     bottom: Option<FootLattice>,
     top: Option<FootLattice>,
@@ -107,7 +106,6 @@ impl<'a> Filler<'a> {
         layer: &'a Layer,
         grid: &RegionGrid,
         touched: &Touched,
-        samples: usize,
         tolerance: f32,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
@@ -125,33 +123,25 @@ impl<'a> Filler<'a> {
             LayerKind::BelowTop(_) => (None, make(&layer.top)?),
             LayerKind::Vertical => (None, None),
         };
-        let filler = Self {
-            layer,
-            levels,
-            samples: samples as f32,
-            tolerance,
-            bottom,
-            top,
-            closest_points: Clock::default(),
-            traces: Clock::default(),
-        };
+        let filler =
+            Self { layer, levels, tolerance, bottom, top, closest_points: Clock::default(), traces: Clock::default() };
         let lattices = clock.elapsed() * rayon::current_num_threads() as u32;
         filler.closest_points.0.store(lattices.as_nanos() as u64, Ordering::Relaxed);
         Ok(filler)
     }
 
-    /// The levels of a column that lie in the volume, and three more on each side.
-    fn level_range(&self, frame: Frame, thickness: f32) -> (usize, usize) {
+    /// The levels of a column that lie in the wanted depths, and three more on each side.
+    fn level_range(&self, frame: Frame, thickness: f32, depths: Depths) -> (usize, usize) {
         let scale = (self.levels - 1) as f32 / thickness;
-        let deepest = ((frame.z - (self.samples - 1.0)) * scale).floor() - 3.0;
-        let highest = (frame.z * scale).ceil() + 3.0;
+        let lowest = ((frame.z - depths[1]) * scale).floor() - 3.0;
+        let highest = ((frame.z - depths[0]) * scale).ceil() + 3.0;
         let last = self.levels - 1;
-        ((deepest.max(0.0) as usize).min(last), (highest.max(0.0) as usize).min(last))
+        ((lowest.max(0.0) as usize).min(last), (highest.max(0.0) as usize).min(last))
     }
 
-    fn column(&self, column: [i32; 2], mut out: Column) {
+    fn column(&self, column: [i32; 2], depths: Depths, mut out: Column) {
         let (frame, thickness) = (self.layer.frame(column), self.layer.thickness(column));
-        let (first, last) = self.level_range(frame, thickness);
+        let (first, last) = self.level_range(frame, thickness, depths);
         match (&self.bottom, &self.top) {
             (Some(bottom), Some(top)) => {
                 let tracer = Tracer {
@@ -262,13 +252,12 @@ fn lattice_shape(grid: &RegionGrid, touched: &Touched) -> LatticeShape {
     let along = |count: usize, stride: usize| (count - 1).div_ceil(stride) + 1;
     let size = [along(grid.size[0], COLUMNS), along(grid.size[1], COLUMNS), along(grid.levels, LEVELS)];
     let mut wanted = vec![false; size[0] * size[1]];
-    for x in 0..grid.size[0] {
-        for y in (0..grid.size[1]).filter(|y| touched.wanted[x * grid.size[1] + y]) {
-            // All corners of the cell that holds the column.
-            for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                let (u, v) = ((x / COLUMNS + a).min(size[0] - 1), (y / COLUMNS + b).min(size[1] - 1));
-                wanted[u * size[1] + v] = true;
-            }
+    for (n, ..) in touched.columns() {
+        let (x, y) = (n / grid.size[1], n % grid.size[1]);
+        // All corners of the cell that holds the column.
+        for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let (u, v) = ((x / COLUMNS + a).min(size[0] - 1), (y / COLUMNS + b).min(size[1] - 1));
+            wanted[u * size[1] + v] = true;
         }
     }
     LatticeShape { origin: grid.origin, size, wanted }
@@ -277,15 +266,13 @@ fn lattice_shape(grid: &RegionGrid, touched: &Touched) -> LatticeShape {
 /// Columns without thickness take the offsets of the nearest column that has one, two columns far at most.
 fn extend_over_pinch_outs(layer: &Layer, touched: &Touched, levels: usize, offsets: &mut [[f32; 3]]) {
     let [nx, ny] = touched.size;
-    let known: Vec<bool> = (0..nx * ny)
-        .map(|n| {
-            let column = [touched.origin[0] + (n / ny) as i32, touched.origin[1] + (n % ny) as i32];
-            touched.wanted[n] && layer.thickness(column) >= PINCHED
-        })
-        .collect();
+    let mut known = vec![false; nx * ny];
+    for (n, column, _) in touched.columns() {
+        known[n] = layer.thickness(column) >= PINCHED;
+    }
     let mut near: Vec<(i32, i32)> = (-2..=2).flat_map(|a| (-2..=2).map(move |b| (a, b))).collect();
     near.sort_by_key(|&(a, b)| (a * a + b * b, a, b));
-    for n in (0..nx * ny).filter(|&n| touched.wanted[n] && !known[n]) {
+    for n in (0..nx * ny).filter(|&n| touched.is_wanted(n) && !known[n]) {
         let (x, y) = ((n / ny) as i32, (n % ny) as i32);
         let source = near.iter().find_map(|&(a, b)| {
             let (u, v) = (x + a, y + b);

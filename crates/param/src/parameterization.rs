@@ -5,9 +5,10 @@ use crate::grid::{FlatPoint, RegionGrid, SheetRef};
 use crate::layer::{Layer, LayerKind};
 use crate::metric::Metric;
 use crate::surface::Surface;
-use crate::touched::{Touched, touched_columns};
+use crate::touched::{Sounding, Touched};
 use crate::{KDefinition, LayerModel, ParamError, ParamSettings, Region};
 use glam::Vec3;
+use rayon::prelude::*;
 use survey::{HeightField, Progress};
 
 /// Fewest levels of a grid: the cubic along columns wants four.
@@ -49,26 +50,36 @@ impl Parameterization {
             return Err(ParamError::Empty { size });
         }
         let metric = Metric::new(model.metric(), settings.exaggeration)?;
-        let touched = touched_columns(model, progress)?;
-        let rows: usize = touched.iter().map(|region| region.size[0]).sum();
-        progress.begin("parameterizing", rows as u64);
-        let reach: Vec<f32> = (0..layers)
-            .map(|layer| {
-                (0..blocks)
-                    .map(|block| reach(model, settings, layer, block, &touched[block * layers + layer]))
-                    .fold(1.0, f32::max)
+        let sounding = Sounding::of(model, progress)?;
+        let touched: Vec<Touched> = (0..layers * blocks)
+            .into_par_iter()
+            .map(|n| {
+                let region = Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
+                let (bottom, top) = horizons(n % layers, layers);
+                let node = |horizon: Option<usize>, x, y, open| {
+                    horizon.map_or(open, |horizon| model.sheet(horizon, region.block).node(x, y))
+                };
+                sounding.touched(region, |x, y| (node(bottom, x, y, f32::INFINITY), node(top, x, y, f32::NEG_INFINITY)))
             })
             .collect();
+        drop(sounding);
+        let rows: usize = touched.iter().map(|region| region.size[0]).sum();
+        progress.begin("parameterizing", rows as u64);
+        let mut reaches = vec![1.0f32; layers];
+        for (n, touched) in touched.iter().enumerate() {
+            let region = Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
+            let reach = &mut reaches[n % layers];
+            *reach = reach.max(farthest(model, settings, region, touched));
+        }
         let mut cost = ComputeCost::default();
         let mut grids = Vec::with_capacity(layers * blocks);
         for block in 0..blocks {
             for layer in 0..layers {
                 let touched = &touched[block * layers + layer];
                 let region = Region { layer: layer as u16, block: block as u16 };
-                let (mut grid, sheets) = plan(model, settings, &metric, region, touched, reach[layer]);
-                if !touched.wanted.is_empty() {
-                    let spent =
-                        compute::fill(&mut grid, &sheets(), touched, size[2], settings.trace_tolerance, progress)?;
+                let (mut grid, sheets) = plan(model, settings, &metric, region, touched, reaches[layer]);
+                if !touched.depths.is_empty() {
+                    let spent = compute::fill(&mut grid, &sheets(), touched, settings.trace_tolerance, progress)?;
                     cost.closest_points += spent.closest_points;
                     cost.traces += spent.traces;
                 }
@@ -114,35 +125,31 @@ fn horizons(layer: usize, layers: usize) -> (Option<usize>, Option<usize>) {
 
 /// Voxels from a layer's reference sheet to the farthest place of the region, along the vertical: what the reference
 /// thickness of open and parallel layers has to cover. The distance is never longer than the vertical.
-fn reach<M: LayerModel + ?Sized>(
-    model: &M,
-    settings: &ParamSettings,
-    layer: usize,
-    block: usize,
-    touched: &Touched,
-) -> f32 {
+fn farthest<M: LayerModel + ?Sized>(model: &M, settings: &ParamSettings, region: Region, touched: &Touched) -> f32 {
     let layers = model.layer_count();
+    let layer = usize::from(region.layer);
     let (bottom, top) = horizons(layer, layers);
     let last = model.size()[2].saturating_sub(1) as f32;
-    let sheet = |horizon| model.sheet(horizon, block as u16);
-    let height = |x: i32, y: i32| match (settings.definition(layer, layers), bottom, top) {
-        (_, None, None) => last,
-        (_, Some(bottom), None) => sheet(bottom).node(x, y).min(last),
-        (_, None, Some(top)) => last - sheet(top).node(x, y).max(0.0),
-        (Some(KDefinition::DistanceRatio) | None, ..) => 0.0,
-        (_, Some(bottom), Some(top)) => sheet(bottom).node(x, y).min(last) - sheet(top).node(x, y).max(0.0),
+    let node = |horizon: usize, [x, y]: [i32; 2]| model.sheet(horizon, region.block).node(x, y);
+    // An open layer reaches to the edge of the volume, a closed one as far as it is met.
+    let met = |column: [i32; 2], z: f32| model.region_at(Vec3::new(column[0] as f32, column[1] as f32, z)) == region;
+    let step = 2.0;
+    let depths_met = |column: [i32; 2], depths: [f32; 2]| {
+        let (low, high) = (depths[0].max(0.0), depths[1].min(last));
+        (0..=((high - low) / step) as usize).map(move |n| low + n as f32 * step).filter(move |&z| met(column, z))
     };
-    wanted_columns(touched).map(|[x, y]| height(x, y)).fold(0.0, f32::max)
-}
-
-fn wanted_columns(touched: &Touched) -> impl Iterator<Item = [i32; 2]> {
-    let [_, ny] = touched.size;
-    touched
-        .wanted
-        .iter()
-        .enumerate()
-        .filter(|(_, wanted)| **wanted)
-        .map(move |(n, _)| [touched.origin[0] + (n / ny) as i32, touched.origin[1] + (n % ny) as i32])
+    let height = |column: [i32; 2], depths: [f32; 2]| match (settings.definition(layer, layers), bottom, top) {
+        (_, Some(bottom), None) => node(bottom, column).min(last),
+        (_, None, Some(top)) => last - node(top, column).max(0.0),
+        (Some(KDefinition::ParallelToBottom), Some(bottom), _) => {
+            depths_met(column, depths).next().map_or(0.0, |z| node(bottom, column) - z + step)
+        }
+        (Some(KDefinition::ParallelToTop), _, Some(top)) => {
+            depths_met(column, depths).last().map_or(0.0, |z| z - node(top, column) + step)
+        }
+        _ => 0.0,
+    };
+    touched.columns().map(|(_, column, depths)| height(column, depths)).fold(0.0, f32::max)
 }
 
 /// The empty grid of a region, and how to make its sheets.
@@ -171,8 +178,9 @@ fn plan<'a, M: LayerModel + ?Sized>(
     let node = move |sheet: SheetRef, x, y| {
         sheet.horizon.map_or(0.0, |horizon| model.sheet(horizon, region.block).node(x, y)) + sheet.shift
     };
-    let thickest = wanted_columns(touched)
-        .map(|[x, y]| node(bottom, x, y) - node(top, x, y))
+    let thickest = touched
+        .columns()
+        .map(|(_, [x, y], _)| node(bottom, x, y) - node(top, x, y))
         .fold(0.0, f32::max)
         .min(4.0 * (last + 1.0));
     let levels = ((thickest / settings.level_spacing).ceil() as usize + 1).max(FEWEST_LEVELS);

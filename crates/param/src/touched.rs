@@ -1,15 +1,39 @@
-//! Which voxel columns each region touches, and how much of the volume it fills there.
+//! Which voxel columns each region touches, and over which depths: only there its grid is computed.
+//!
+//! Every column is looked at each [`STRIDE`] samples: which blocks it crosses, over which depths, and which layers
+//! are met. Depths are widened by the stride and by those of the columns around ([`MARGIN`]), so that every
+//! interpolation inside a region has its neighbours. A layer is wanted in a column where it overlaps the block's
+//! depths and is too thin to be sure of meeting it, and wherever it was met not far away (a layer that an unconformity
+//! removed is neither).
 
 use crate::{LayerModel, Region};
 use glam::Vec3;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// Samples between two looks along a column, voxels: what is thinner than this may be overlooked in one column but
-/// not in all those around it, and the mask is widened by [`MARGIN`].
+/// Samples between two looks along a column, voxels.
 const STRIDE: usize = 4;
-/// Columns by which a touched mask is widened, so that every interpolation inside the region has its neighbours.
+/// Columns around a column whose depths it shares.
 const MARGIN: usize = 3;
+/// Columns within which a layer must have been met.
+const REACH: usize = 8;
+/// A layer thinner than this (voxels) may be met nowhere although it is there.
+const THIN: f32 = 2.0 * STRIDE as f32;
+
+/// Depths in one column, voxel z; empty when the first is larger.
+pub type Depths = [f32; 2];
+/// No depth.
+const NOWHERE: Depths = [f32::INFINITY, f32::NEG_INFINITY];
+
+/// What was met in all columns, widened by [`MARGIN`] columns on every side of the survey.
+pub struct Sounding {
+    size: [usize; 2],
+    layers: usize,
+    /// Per block, `[x][y]`.
+    depths: Vec<Vec<Depths>>,
+    /// Per region (`block · layers + layer`), `[x][y]`: met within [`REACH`] columns.
+    met: Vec<Vec<bool>>,
+}
 
 /// The columns of one region.
 #[derive(Debug, Clone)]
@@ -18,63 +42,130 @@ pub struct Touched {
     pub origin: [i32; 2],
     /// Columns of the bounding box, 0 when none is touched.
     pub size: [usize; 2],
-    /// Per column of the box, whether it is touched or next to one that is.
-    pub wanted: Vec<bool>,
+    /// Depths that are wanted per column of the box, `[x][y]`.
+    pub depths: Vec<Depths>,
 }
 
-/// The touched columns of all regions, index `block · layers + layer`.
-///
-/// # Errors
-/// [`Cancelled`].
-pub fn touched_columns<M: LayerModel + ?Sized>(model: &M, progress: &Progress) -> Result<Vec<Touched>, Cancelled> {
-    let [nx, ny, nz] = model.size();
-    let layers = model.layer_count();
-    let regions = layers * model.block_count();
-    let words = regions.div_ceil(64);
-    let mut seen = vec![0u64; nx * ny * words];
-    progress.begin("finding the regions", nx as u64);
-    seen.par_chunks_mut(ny * words).enumerate().try_for_each(|(x, row)| {
-        for (y, bits) in row.chunks_mut(words).enumerate() {
-            for z in (0..nz).step_by(STRIDE).chain([nz - 1]) {
-                let Region { layer, block } = model.region_at(Vec3::new(x as f32, y as f32, z as f32));
-                let region = usize::from(block) * layers + usize::from(layer);
-                if region < regions {
-                    bits[region / 64] |= 1 << (region % 64);
+impl Touched {
+    /// Whether column n of the box is wanted.
+    pub fn is_wanted(&self, n: usize) -> bool {
+        self.depths[n][0] <= self.depths[n][1]
+    }
+
+    /// The wanted columns: index in the box, voxel column, depths.
+    pub fn columns(&self) -> impl Iterator<Item = (usize, [i32; 2], Depths)> {
+        let ny = self.size[1];
+        (0..self.depths.len()).filter(|&n| self.is_wanted(n)).map(move |n| {
+            let column = [self.origin[0] + (n / ny) as i32, self.origin[1] + (n % ny) as i32];
+            (n, column, self.depths[n])
+        })
+    }
+}
+
+impl Sounding {
+    /// Looks at all columns of a model.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub fn of<M: LayerModel + ?Sized>(model: &M, progress: &Progress) -> Result<Self, Cancelled> {
+        let [nx, ny, nz] = model.size();
+        let (layers, blocks) = (model.layer_count(), model.block_count());
+        let (wide_x, wide_y) = (nx + 2 * MARGIN, ny + 2 * MARGIN);
+        let mut depths = vec![NOWHERE; blocks * wide_x * wide_y];
+        let mut met = vec![false; layers * blocks * wide_x * wide_y];
+        progress.begin("finding the regions", wide_x as u64);
+        // Both in the order [x][y][block …] while the columns are looked at, one row of x a task.
+        depths
+            .par_chunks_mut(wide_y * blocks)
+            .zip(met.par_chunks_mut(wide_y * layers * blocks))
+            .enumerate()
+            .try_for_each(|(u, (depths, met))| {
+                for v in 0..wide_y {
+                    // Columns past the walls repeat the wall's.
+                    let [x, y] = [(u, nx), (v, ny)].map(|(n, count)| n.saturating_sub(MARGIN).min(count - 1) as f32);
+                    for z in (0..nz).step_by(STRIDE).chain([nz - 1]) {
+                        let Region { layer, block } = model.region_at(Vec3::new(x, y, z as f32));
+                        let (layer, block) = (usize::from(layer), usize::from(block));
+                        if layer < layers && block < blocks {
+                            let range = &mut depths[v * blocks + block];
+                            *range = [range[0].min(z as f32), range[1].max(z as f32)];
+                            met[(v * blocks + block) * layers + layer] = true;
+                        }
+                    }
                 }
+                progress.step(1)
+            })?;
+        let size = [wide_x, wide_y];
+        let depths = (0..blocks)
+            .into_par_iter()
+            .map(|block| {
+                let one: Vec<Depths> = depths.iter().skip(block).step_by(blocks).copied().collect();
+                let union = |a: Depths, b: Depths| [a[0].min(b[0]), a[1].max(b[1])];
+                let mut wide = widen(size, &one, MARGIN, union);
+                for range in &mut wide {
+                    *range = [range[0] - STRIDE as f32, range[1] + STRIDE as f32];
+                }
+                wide
+            })
+            .collect();
+        let regions = layers * blocks;
+        let met = (0..regions)
+            .into_par_iter()
+            .map(|region| {
+                let one: Vec<bool> = met.iter().skip(region).step_by(regions).copied().collect();
+                widen(size, &one, REACH, |a, b| a | b)
+            })
+            .collect();
+        Ok(Self { size, layers, depths, met })
+    }
+
+    /// The columns of a region whose sheets lie at `sheets(x, y)` = (bottom, top), voxel z.
+    pub fn touched(&self, region: Region, sheets: impl Fn(i32, i32) -> (f32, f32)) -> Touched {
+        let [nx, ny] = self.size;
+        let (layer, block) = (usize::from(region.layer), usize::from(region.block));
+        let met = &self.met[block * self.layers + layer];
+        let margin = MARGIN as i32;
+        let wanted = |n: usize| -> Depths {
+            let range = self.depths[block][n];
+            let (bottom, top) = sheets((n / ny) as i32 - margin, (n % ny) as i32 - margin);
+            let overlaps = range[0] <= bottom + 1.0 && range[1] >= top - 1.0;
+            let thin = (bottom - top).abs() < THIN;
+            if met[n] || (overlaps && thin) { range } else { NOWHERE }
+        };
+        let all: Vec<Depths> = (0..nx * ny).map(wanted).collect();
+        let mut low = [usize::MAX; 2];
+        let mut high = [0; 2];
+        for n in (0..nx * ny).filter(|&n| all[n][0] <= all[n][1]) {
+            let at = [n / ny, n % ny];
+            low = [low[0].min(at[0]), low[1].min(at[1])];
+            high = [high[0].max(at[0]), high[1].max(at[1])];
+        }
+        if low[0] == usize::MAX {
+            return Touched { origin: [0; 2], size: [0; 2], depths: Vec::new() };
+        }
+        for axis in 0..2 {
+            // Two columns at least, so that there is a cell to interpolate in.
+            if low[axis] == high[axis] {
+                (low[axis], high[axis]) = (low[axis].saturating_sub(1), low[axis].max(1));
             }
         }
-        progress.step(1)
-    })?;
-    Ok((0..regions)
-        .into_par_iter()
-        .map(|region| widen([nx, ny], |x, y| seen[(x * ny + y) * words + region / 64] >> (region % 64) & 1 == 1))
-        .collect())
+        let size: [usize; 2] = std::array::from_fn(|axis| high[axis] - low[axis] + 1);
+        let depths = (low[0]..=high[0]).flat_map(|x| all[x * ny + low[1]..=x * ny + high[1]].iter().copied()).collect();
+        Touched { origin: low.map(|n| n as i32 - margin), size, depths }
+    }
 }
 
-fn widen(size: [usize; 2], seen: impl Fn(usize, usize) -> bool) -> Touched {
-    let mut low = [usize::MAX; 2];
-    let mut high = [0usize; 2];
-    for x in 0..size[0] {
-        for y in (0..size[1]).filter(|&y| seen(x, y)) {
-            low = [low[0].min(x), low[1].min(y)];
-            high = [high[0].max(x), high[1].max(y)];
-        }
-    }
-    if low[0] == usize::MAX {
-        return Touched { origin: [0; 2], size: [0; 2], wanted: Vec::new() };
-    }
-    let margin = MARGIN as i32;
-    let origin = low.map(|n| n as i32 - margin);
-    let grown: [usize; 2] = std::array::from_fn(|axis| high[axis] - low[axis] + 1 + 2 * MARGIN);
-    let mut wanted = vec![false; grown[0] * grown[1]];
-    for x in low[0]..=high[0] {
-        for y in (low[1]..=high[1]).filter(|&y| seen(x, y)) {
-            // The square of 2·MARGIN + 1 columns around (x, y), whose first column in the box is (x, y) − low.
-            for a in x - low[0]..=x - low[0] + 2 * MARGIN {
-                let start = a * grown[1] + (y - low[1]);
-                wanted[start..=start + 2 * MARGIN].fill(true);
-            }
-        }
-    }
-    Touched { origin, size: grown, wanted }
+/// The union over a square of 2·radius + 1 columns around each column.
+fn widen<T: Copy>(size: [usize; 2], values: &[T], radius: usize, union: impl Fn(T, T) -> T) -> Vec<T> {
+    let [nx, ny] = size;
+    let pass = |from: &[T], along: usize, stride: usize| -> Vec<T> {
+        (0..from.len())
+            .map(|n| {
+                let at = n / stride % along;
+                let (low, high) = (at.saturating_sub(radius), (at + radius).min(along - 1));
+                (low..=high).map(|m| from[n + m * stride - at * stride]).reduce(&union).unwrap_or(from[n])
+            })
+            .collect()
+    };
+    pass(&pass(values, ny, 1), nx, ny)
 }

@@ -1,5 +1,7 @@
 //! A model whose sheets and fault blocks are given as formulas.
 
+#![allow(dead_code, reason = "every test binary uses a part of it")]
+
 use glam::{DMat3, Vec3};
 use param::{LayerModel, Region};
 use survey::HeightField;
