@@ -24,6 +24,7 @@ pub mod mesh;
 pub mod model;
 pub mod progress;
 pub mod segy;
+pub mod store;
 pub mod stratigraphy;
 pub mod synth;
 pub mod volume;

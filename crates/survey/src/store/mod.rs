@@ -1,0 +1,37 @@
+//! The store: volumes, horizons, faults and parameterizations on disk, in Zarr v3 that other programs open too.
+//!
+//! ```text
+//! volumes/NAME.zarr               write_volume, StoredVolume
+//! horizons/NAME.zarr              write_horizon, read_horizon
+//! faults/NAME.json                write_fault, read_fault
+//! derived/parameterization.zarr   write_parameterization, StoredParameterization
+//! ```
+//!
+//! Everything is written under another name beside its place, synced and renamed at the very end ([`Replacement`]): a crash, a
+//! cancelled write or a full disk leaves what was there before. [`clean`] removes what a crash left behind. The array library (zarrs) is
+//! known to `array` and `sample` alone.
+
+mod array;
+mod error;
+mod fault;
+mod header;
+mod horizon;
+mod layout;
+mod parameterization;
+mod pyramid;
+mod replacement;
+mod sample;
+#[cfg(test)]
+mod tests;
+mod volume;
+
+pub use array::{ArrayWriter, StoredArray, read_group, write_array, write_group};
+pub use error::StoreError;
+pub use fault::{read_fault, write_fault};
+pub use header::VERSION;
+pub use horizon::{read_horizon, write_horizon};
+pub use layout::{BRICK, Layout};
+pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
+pub use replacement::{Replacement, clean};
+pub use sample::StoredSample;
+pub use volume::{SourceError, StoredVolume, VolumeInfo, write_volume, write_volume_slabs};
