@@ -53,16 +53,16 @@ fn explain_storage(error: &StorageError, action: &'static str, group: &Path, arr
     }
 }
 
-/// A shared system error as our own; it keeps its code where it has one.
+/// A shared system error as our own. What has no system code while reading comes from a decoder: the data do not fit.
 fn io_error(source: &std::io::Error, action: &'static str, path: &Path, array: &str) -> StoreError {
-    if source.kind() == std::io::ErrorKind::UnexpectedEof {
-        let reason = "a file is cut off".to_owned();
+    if let Some(code) = source.raw_os_error() {
+        return StoreError::io(action, path, std::io::Error::from_raw_os_error(code));
+    }
+    if action == "read" {
+        let reason = source.to_string();
         return StoreError::Damaged { path: path.to_owned(), array: array.to_owned(), reason };
     }
-    let own = source
-        .raw_os_error()
-        .map_or_else(|| std::io::Error::new(source.kind(), source.to_string()), std::io::Error::from_raw_os_error);
-    StoreError::io(action, path, own)
+    StoreError::io(action, path, std::io::Error::new(source.kind(), source.to_string()))
 }
 
 /// The library's view of a folder.

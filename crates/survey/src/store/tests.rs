@@ -333,10 +333,11 @@ fn damage_is_named() {
         assert!(matches!(&error, StoreError::Damaged { array, .. } if array == "0"), "{error}");
         assert!(error.to_string().contains("v.zarr"), "{error}");
     }
-    let mut altered = whole.clone();
+    let mut altered = whole;
     altered[40] ^= 0x55;
     fs::write(&chunk, &altered).unwrap();
-    assert!(matches!(read(), StoreError::Damaged { .. }));
+    let error = read();
+    assert!(matches!(error, StoreError::Damaged { .. }), "{error:?}");
     fs::remove_file(&chunk).unwrap();
     assert!(read().to_string().contains("c/1/0/1 is missing"));
     let other_box = open().unwrap().read_box::<f32>(0, [0, 0, 0], [5, 5, 5]);
