@@ -4,7 +4,9 @@
 
 pub mod camera;
 pub mod error;
+pub mod faces;
 mod frame;
+mod gpu;
 pub mod ground;
 pub mod inputs;
 pub mod outline;
@@ -16,6 +18,7 @@ pub mod voxel_box;
 
 pub use camera::{Camera, Projection, View};
 pub use error::{RenderError, SceneError};
+pub use faces::Renderer;
 pub use inputs::{Inputs, NamedVolume};
 pub use outline::{Outlines, Stroke};
 pub use scene::{Background, Ground, Lookup, Scene};

@@ -41,6 +41,38 @@ fn grid_node(start: u32) -> vec3<f32> {
     return vec3(pool(start), pool(start + 1u), pool(start + 2u));
 }
 
+// Value and slope per level of a column's curve.
+struct ColumnSample {
+    value: vec3<f32>,
+    rise: vec3<f32>,
+}
+
+// Catmull–Rom through four levels; beyond the ends, a level that continues the parabola through the last three.
+fn grid_column(start: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
+    let at = start + cell * 3u;
+    let b = grid_node(at);
+    let c = grid_node(at + 3u);
+    var a: vec3<f32>;
+    var d: vec3<f32>;
+    if cell > 0u {
+        a = grid_node(at - 3u);
+    } else {
+        a = 3.0 * (b - c) + grid_node(at + 6u);
+    }
+    if cell + 2u < levels {
+        d = grid_node(at + 6u);
+    } else {
+        d = 3.0 * (c - b) + grid_node(at - 3u);
+    }
+    let linear = c - a;
+    let square = 2.0 * a - 5.0 * b + 4.0 * c - d;
+    let cube = 3.0 * (b - c) + d - a;
+    var column: ColumnSample;
+    column.value = b + 0.5 * t * (linear + t * (square + t * cube));
+    column.rise = 0.5 * (linear + t * (2.0 * square + 3.0 * t * cube));
+    return column;
+}
+
 fn flat_exact(p: vec3<f32>, layer: u32, block: u32) -> FlatSample {
     let grid = grids[block * model.layers + layer];
     let bottom = shifted_sheet(grid.bottom_horizon, grid.bottom_shift, block, p.xy);
@@ -59,39 +91,28 @@ fn flat_exact(p: vec3<f32>, layer: u32, block: u32) -> FlatSample {
     var along_y = vec3(0.0);
     var along_v = vec3(0.0);
     if grid.size.x > 0u {
-        let count = vec3(grid.size, grid.levels);
-        let last = vec3<f32>(count - 1u);
-        let scale = last.z;
+        let scale = f32(grid.levels - 1u);
+        let last = vec3<f32>(vec3(grid.size, grid.levels) - 1u);
         let at = clamp(vec3(p.xy - vec2<f32>(grid.origin), v * scale), vec3(0.0), last);
-        let cell = min(vec3<u32>(at), max(count, vec3(2u)) - 2u);
+        let cell = min(vec3<u32>(at), vec3(grid.size, grid.levels) - 2u);
         let f = at - vec3<f32>(cell);
-        let next = min(cell + 1u, count - 1u) - cell;
         let stride_y = grid.levels * 3u;
         let stride_x = grid.size.y * stride_y;
-        let start = grid.offset + cell.x * stride_x + cell.y * stride_y + cell.z * 3u;
-        let dx = next.x * stride_x;
-        let dy = next.y * stride_y;
-        let dl = next.z * 3u;
-        let c000 = grid_node(start);
-        let c001 = grid_node(start + dl);
-        let c010 = grid_node(start + dy);
-        let c011 = grid_node(start + dy + dl);
-        let c100 = grid_node(start + dx);
-        let c101 = grid_node(start + dx + dl);
-        let c110 = grid_node(start + dx + dy);
-        let c111 = grid_node(start + dx + dy + dl);
-        let e00 = c000 + (c001 - c000) * f.z;
-        let e01 = c010 + (c011 - c010) * f.z;
-        let e10 = c100 + (c101 - c100) * f.z;
-        let e11 = c110 + (c111 - c110) * f.z;
-        let low = e00 + (e01 - e00) * f.y;
-        let high = e10 + (e11 - e10) * f.y;
+        let start = grid.offset + cell.x * stride_x + cell.y * stride_y;
+        let c00 = grid_column(start, cell.z, grid.levels, f.z);
+        let c01 = grid_column(start + stride_y, cell.z, grid.levels, f.z);
+        let c10 = grid_column(start + stride_x, cell.z, grid.levels, f.z);
+        let c11 = grid_column(start + stride_x + stride_y, cell.z, grid.levels, f.z);
+        let low = c00.value + (c01.value - c00.value) * f.y;
+        let high = c10.value + (c11.value - c10.value) * f.y;
         value = low + (high - low) * f.x;
         along_x = high - low;
-        along_y = (e01 - e00) + ((e11 - e10) - (e01 - e00)) * f.x;
-        let r0 = (c001 - c000) + ((c011 - c010) - (c001 - c000)) * f.y;
-        let r1 = (c101 - c100) + ((c111 - c110) - (c101 - c100)) * f.y;
-        along_v = (r0 + (r1 - r0) * f.x) * scale;
+        let step_0 = c01.value - c00.value;
+        let step_1 = c11.value - c10.value;
+        along_y = step_0 + (step_1 - step_0) * f.x;
+        let rise_0 = c00.rise + (c01.rise - c00.rise) * f.y;
+        let rise_1 = c10.rise + (c11.rise - c10.rise) * f.y;
+        along_v = (rise_0 + (rise_1 - rise_0) * f.x) * scale;
     }
     let unit = model.unit_from_voxel;
     var flat: FlatSample;

@@ -31,10 +31,8 @@ struct ModelInfo {
     layers: u32,
     // 1 / (Nx − 1), 1 / (Ny − 1).
     unit_from_voxel: vec2<f32>,
-    // Shortest voxel edge, m.
-    shortest_m: f32,
-    // Steepest slope of the sheets that can be the ground, voxels per voxel.
-    steepest: f32,
+    padding_0: f32,
+    padding_1: f32,
 }
 
 @group(3) @binding(0) var<uniform> model: ModelInfo;

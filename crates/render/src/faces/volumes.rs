@@ -8,8 +8,6 @@ use crate::gpu::Gpu;
 use crate::inputs::NamedVolume;
 use bytemuck::{Pod, Zeroable};
 
-/// Volumes that a picture can show.
-pub const MAX_VOLUMES: usize = 6;
 /// Stands for NaN and for dead traces on the GPU.
 const NO_DATA: f32 = -3.0e38;
 

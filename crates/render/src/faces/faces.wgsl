@@ -1,0 +1,143 @@
+// Faces of the block, cut-outs and the ground, by one ray per sample: the twin of `reference::render`.
+//
+// One invocation is one pixel of a tile; its samples are averaged on sRGB-encoded, alpha-weighted values. Voxel space.
+
+struct FaceParams {
+    // The ray through `reference_px`, and its change per pixel to the right (dx) and down (dy); w unused.
+    origin: vec4<f32>,
+    origin_dx: vec4<f32>,
+    origin_dy: vec4<f32>,
+    direction: vec4<f32>,
+    direction_dx: vec4<f32>,
+    direction_dy: vec4<f32>,
+    box_low: vec4<f32>,
+    box_high: vec4<f32>,
+    background: vec4<f32>,
+    // Metres between voxels along x, y, z; w unused.
+    voxel_m: vec4<f32>,
+    // Factor on the colour of faces across x, y, z; w unused.
+    tones: vec4<f32>,
+    // Direction to the light in display space; w: strength of the hill shading.
+    light: vec4<f32>,
+    // Columns of voxel covector → display covector; w unused.
+    display_normal_x: vec4<f32>,
+    display_normal_y: vec4<f32>,
+    display_normal_z: vec4<f32>,
+    // Heights between which the ground lies (xy), steepest slope of the sheets (z), longest voxel edge in m (w).
+    relief: vec4<f32>,
+    reference_px: vec2<f32>,
+    samples: u32,
+    cut_count: u32,
+    // Pixels of the tile: left, top, width, height.
+    tile: vec4<u32>,
+    // Smallest and largest corner of each cut-out.
+    cut_outs: array<vec4<f32>, 32>,
+}
+
+@group(0) @binding(0) var<uniform> params: FaceParams;
+// RGBA8 a pixel of the tile, row by row, red in the lowest byte.
+@group(0) @binding(1) var<storage, read_write> pixels: array<u32>;
+
+// What illustrates: 0 raw data alone, 1 the exact lookup, 2 the packed volume.
+override lookup: u32 = 1u;
+const LOOKUP_RAW: u32 = 0u;
+const LOOKUP_EXACT: u32 = 1u;
+
+// 1 where the ground is shown.
+override with_ground: u32 = 0u;
+
+// A ray with its change per sample step.
+struct PixelRay {
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    origin_dx: vec3<f32>,
+    origin_dy: vec3<f32>,
+    direction_dx: vec3<f32>,
+    direction_dy: vec3<f32>,
+}
+
+fn pixel_ray(pixel: vec2<f32>) -> PixelRay {
+    let offset = pixel - params.reference_px;
+    let direction = params.direction.xyz + params.direction_dx.xyz * offset.x + params.direction_dy.xyz * offset.y;
+    let norm = 1.0 / length(direction);
+    let step = 1.0 / f32(params.samples);
+    var ray: PixelRay;
+    ray.origin = params.origin.xyz + params.origin_dx.xyz * offset.x + params.origin_dy.xyz * offset.y;
+    ray.direction = direction * norm;
+    ray.origin_dx = params.origin_dx.xyz * step;
+    ray.origin_dy = params.origin_dy.xyz * step;
+    ray.direction_dx = params.direction_dx.xyz * (norm * step);
+    ray.direction_dy = params.direction_dy.xyz * (norm * step);
+    return ray;
+}
+
+// The change of a hit on its plane for a step of the ray.
+fn slide_on_plane(drift: vec3<f32>, direction: vec3<f32>, axis: u32) -> vec3<f32> {
+    return drift - direction * (drift[axis] / direction[axis]);
+}
+
+fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
+    var point: FlatPoint;
+    if lookup != LOOKUP_RAW {
+        var flat: FlatSample;
+        if lookup == LOOKUP_EXACT {
+            let block = block_at(p);
+            point.layer = layer_at(p, block);
+            flat = flat_exact(p, point.layer, block);
+        } else {
+            let packed = flat_packed(p);
+            point.layer = packed.layer;
+            flat = packed.flat;
+        }
+        let dx = slide_on_plane(ray.origin_dx + ray.direction_dx * t, ray.direction, axis);
+        let dy = slide_on_plane(ray.origin_dy + ray.direction_dy * t, ray.direction, axis);
+        point.ijk = flat.ijk;
+        point.dx = vec3(dot(flat.di, dx), dot(flat.dj, dx), dot(flat.dk, dx));
+        point.dy = vec3(dot(flat.di, dy), dot(flat.dj, dy), dot(flat.dk, dy));
+        point.grad_k = flat.dk / params.voxel_m.xyz;
+        point.defined = 1u;
+    }
+    return shade(point, axis, p) * params.tones[axis];
+}
+
+fn trace(ray: PixelRay) -> vec4<f32> {
+    var start = LOWEST;
+    for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
+        let span = next_span(ray.origin, ray.direction, start);
+        if !span.found {
+            break;
+        }
+        if with_ground == 0u {
+            return vec4(face_colour(ray, span.t, span.point, span.axis), 1.0);
+        }
+        if place_at(span.point).layer != model.layers - 1u {
+            return vec4(face_colour(ray, span.t, span.point, span.axis), 1.0);
+        }
+        let ground = march(ray.origin, ray.direction, span.t, span.end);
+        if ground.found {
+            return vec4(ground_colour(ground), 1.0);
+        }
+        start = span.end;
+    }
+    return params.background;
+}
+
+@compute @workgroup_size(8, 8)
+fn draw(@builtin(global_invocation_id) id: vec3<u32>) {
+    if id.x >= params.tile.z || id.y >= params.tile.w {
+        return;
+    }
+    let corner = vec2<f32>(id.xy + params.tile.xy);
+    let n = f32(params.samples);
+    var sum = vec4(0.0);
+    for (var sub_y = 0u; sub_y < params.samples; sub_y += 1u) {
+        for (var sub_x = 0u; sub_x < params.samples; sub_x += 1u) {
+            let colour = trace(pixel_ray(corner + (vec2(f32(sub_x), f32(sub_y)) + 0.5) / n));
+            sum += vec4(colour.rgb * colour.a, colour.a);
+        }
+    }
+    sum /= n * n;
+    let straight = vec4(sum.rgb / max(sum.a, 1e-6), sum.a);
+    let bytes = vec4<u32>(clamp(straight, vec4(0.0), vec4(1.0)) * 255.0 + 0.5);
+    pixels[id.y * params.tile.z + id.x] = bytes.r | bytes.g << 8u | bytes.b << 16u | bytes.a << 24u;
+}

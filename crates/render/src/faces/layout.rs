@@ -1,0 +1,142 @@
+//! The structs that Rust and the shader share, field by field in the shader's order and names.
+//!
+//! A test reads the WGSL with naga and compares every offset; nothing else keeps them together.
+
+use crate::frame::Frame;
+use crate::scene::MAX_CUT_OUTS;
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec2, DVec3, Vec3};
+
+/// What changes with every picture and tile.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct FaceParams {
+    pub origin: [f32; 4],
+    pub origin_dx: [f32; 4],
+    pub origin_dy: [f32; 4],
+    pub direction: [f32; 4],
+    pub direction_dx: [f32; 4],
+    pub direction_dy: [f32; 4],
+    pub box_low: [f32; 4],
+    pub box_high: [f32; 4],
+    pub background: [f32; 4],
+    pub voxel_m: [f32; 4],
+    pub tones: [f32; 4],
+    pub light: [f32; 4],
+    pub display_normal_x: [f32; 4],
+    pub display_normal_y: [f32; 4],
+    pub display_normal_z: [f32; 4],
+    pub relief: [f32; 4],
+    pub reference_px: [f32; 2],
+    pub samples: u32,
+    pub cut_count: u32,
+    pub tile: [u32; 4],
+    pub cut_outs: [[f32; 4]; 2 * MAX_CUT_OUTS],
+}
+
+/// A height field in the pool.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct SheetInfo {
+    pub origin: [i32; 2],
+    pub size: [u32; 2],
+    pub offset: u32,
+    pub padding: [u32; 3],
+}
+
+/// A fault surface: rows of its frame relative to the model's centre, and its height field.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct FaultInfo {
+    pub u: [f32; 4],
+    pub v: [f32; 4],
+    pub w: [f32; 4],
+    pub surface: SheetInfo,
+}
+
+/// Counts and scales of the model.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct ModelInfo {
+    pub centre: [f32; 4],
+    pub horizons: u32,
+    pub blocks: u32,
+    pub faults: u32,
+    pub layers: u32,
+    pub unit_from_voxel: [f32; 2],
+    pub padding: [f32; 2],
+}
+
+/// A region's stratigraphic grid in the pool.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct GridInfo {
+    pub origin: [i32; 2],
+    pub size: [u32; 2],
+    pub levels: u32,
+    pub offset: u32,
+    pub bottom_horizon: u32,
+    pub top_horizon: u32,
+    pub bottom_shift: f32,
+    pub top_shift: f32,
+    pub padding: [u32; 2],
+}
+
+/// The packed volume's place and ranges.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
+pub struct PackedInfo {
+    pub scale: [f32; 4],
+    pub size: [u32; 4],
+    pub i_range: [f32; 2],
+    pub j_range: [f32; 2],
+    pub layers: u32,
+    pub blocks: u32,
+    pub padding: [u32; 2],
+}
+
+impl FaceParams {
+    /// The parameters of a picture, without its tile.
+    pub fn of(frame: &Frame) -> Self {
+        let [width, height] = frame.scene.size_px;
+        let reference = DVec2::new(f64::from(width), f64::from(height)) * 0.5;
+        let ray = frame.view.ray(reference);
+        let four = |v: DVec3| v.as_vec3().extend(0.0).to_array();
+        let plain = |v: Vec3| v.extend(0.0).to_array();
+        let mut cut_outs = [[0.0; 4]; 2 * MAX_CUT_OUTS];
+        for (to, corner) in cut_outs.iter_mut().zip(frame.solid.cut_outs.iter().flatten()) {
+            *to = plain(*corner);
+        }
+        let mut params = Self {
+            origin: four(ray.origin),
+            origin_dx: four(ray.origin_step[0]),
+            origin_dy: four(ray.origin_step[1]),
+            direction: four(ray.direction),
+            direction_dx: four(ray.direction_step[0]),
+            direction_dy: four(ray.direction_step[1]),
+            box_low: plain(frame.solid.roaming_box[0]),
+            box_high: plain(frame.solid.roaming_box[1]),
+            background: frame.scene.background.rgba(),
+            voxel_m: plain(frame.voxel_m),
+            tones: Vec3::from_array(frame.tones).extend(1.0).to_array(),
+            light: [0.0; 4],
+            display_normal_x: [0.0; 4],
+            display_normal_y: [0.0; 4],
+            display_normal_z: [0.0; 4],
+            relief: [0.0; 4],
+            reference_px: reference.as_vec2().to_array(),
+            samples: frame.scene.samples,
+            cut_count: frame.solid.cut_outs.len() as u32,
+            tile: [0; 4],
+            cut_outs,
+        };
+        if let Some(relief) = &frame.relief {
+            params.light = relief.light.extend(relief.hill_shade).to_array();
+            params.display_normal_x = plain(relief.display_normal_from_voxel.x_axis);
+            params.display_normal_y = plain(relief.display_normal_from_voxel.y_axis);
+            params.display_normal_z = plain(relief.display_normal_from_voxel.z_axis);
+            params.relief = [relief.z_range[0], relief.z_range[1], relief.steepest, relief.longest_m];
+        }
+        params
+    }
+}

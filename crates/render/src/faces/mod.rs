@@ -1,0 +1,393 @@
+//! The GPU pass that draws faces, cut-outs and the ground, without a window.
+//!
+//! One compute shader, assembled from the pass and the snippets it uses; each has a CPU twin that it names. A picture is drawn in
+//! tiles, so that no dispatch runs long enough for a driver's watchdog, cancelling is quick, and an image may be larger than any
+//! limit of the device. Everything uploaded is kept while [`Inputs::version`] stays the same.
+//!
+//! Compute, not fragments: on data-centre cards compute has been seen far faster, and on the software driver both are the
+//! same.
+
+mod layout;
+mod model;
+mod textures;
+mod volumes;
+
+use crate::error::RenderError;
+use crate::frame::{Flat, Frame, MAX_VOLUMES};
+use crate::gpu::Gpu;
+use crate::inputs::Inputs;
+use crate::scene::Scene;
+use image::RgbaImage;
+use layout::FaceParams;
+use model::{ModelBuffers, POOL_BUFFERS, PackedTexture};
+use std::collections::HashMap;
+use survey::Progress;
+use textures::TextureBuffers;
+use volumes::{VolumeInfo, no_volume, upload_volume};
+
+/// The shader: the pass first, so that its error lines are true, then the snippets.
+pub(crate) const SHADER: &str = concat!(
+    include_str!("faces.wgsl"),
+    include_str!("visible.wgsl"),
+    include_str!("ground.wgsl"),
+    include_str!("model.wgsl"),
+    include_str!("flat.wgsl"),
+    include_str!("packed.wgsl"),
+    include_str!("shade.wgsl"),
+    include_str!("texture.wgsl"),
+    include_str!("volume.wgsl"),
+);
+
+/// Samples that one dispatch computes at most: a tenth of a second on the software driver.
+const SAMPLES_PER_TILE: u32 = 1 << 17;
+/// Side of a workgroup, pixels.
+const WORKGROUP: u32 = 8;
+
+/// Draws scenes on the GPU, keeping what it uploaded.
+pub struct Renderer {
+    gpu: Gpu,
+    module: wgpu::ShaderModule,
+    layouts: [wgpu::BindGroupLayout; 4],
+    pipeline_layout: wgpu::PipelineLayout,
+    pipelines: HashMap<Variant, wgpu::ComputePipeline>,
+    version: Option<u64>,
+    model: Option<ModelBuffers>,
+    model_has_grids: bool,
+    packed: Option<PackedTexture>,
+    no_packed: PackedTexture,
+    textures: Option<TextureBuffers>,
+    volumes: HashMap<String, wgpu::Texture>,
+    no_volume: wgpu::Texture,
+}
+
+/// A pipeline's constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+struct Variant {
+    lookup: u32,
+    with_ground: u32,
+    pool_chunk: u32,
+    pool_chunks: u32,
+}
+
+impl Renderer {
+    /// Opens a device and compiles the shader.
+    ///
+    /// # Errors
+    /// [`RenderError::NoAdapter`] without a Vulkan driver, [`RenderError::Unsuitable`] for one that is too small.
+    pub fn headless() -> Result<Self, RenderError> {
+        let gpu = Gpu::headless()?;
+        let (module, layouts, pipeline_layout, no_packed, no_volume) = gpu.guarded(|| {
+            let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some("faces"),
+                source: wgpu::ShaderSource::Wgsl(SHADER.into()),
+            });
+            let layouts = bind_group_layouts(&gpu);
+            let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some("faces"),
+                bind_group_layouts: &layouts.each_ref().map(Some),
+                immediate_size: 0,
+            });
+            Ok((module, layouts, pipeline_layout, PackedTexture::new(&gpu, None)?, no_volume(&gpu)))
+        })?;
+        Ok(Self {
+            gpu,
+            module,
+            layouts,
+            pipeline_layout,
+            pipelines: HashMap::new(),
+            version: None,
+            model: None,
+            model_has_grids: false,
+            packed: None,
+            no_packed,
+            textures: None,
+            volumes: HashMap::new(),
+            no_volume,
+        })
+    }
+
+    /// Name of the graphics adapter.
+    pub fn adapter_name(&self) -> &str {
+        &self.gpu.adapter_name
+    }
+
+    /// Draws the scene.
+    ///
+    /// # Errors
+    /// A scene without a picture, missing inputs, cancellation, or what the device says.
+    pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        let frame = Frame::new(scene, inputs)?;
+        self.upload(&frame, inputs)?;
+        let image = self.draw(&frame, progress)?;
+        Ok(image)
+    }
+
+    /// Brings the device's copies up to date.
+    fn upload(&mut self, frame: &Frame, inputs: &Inputs) -> Result<(), RenderError> {
+        if self.version != Some(inputs.version) {
+            self.model = None;
+            self.packed = None;
+            self.volumes.clear();
+            self.version = Some(inputs.version);
+        }
+        let gpu = &self.gpu;
+        let exact = matches!(frame.rock.map(|rock| rock.flat), Some(Flat::Exact(_)));
+        if let Some(rock) = frame.rock
+            && (self.model.is_none() || (exact && !self.model_has_grids))
+        {
+            let param = if exact { inputs.param } else { None };
+            self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, rock.model, param))?);
+            self.model_has_grids = exact;
+        }
+        if let Some(Flat::Packed(packed)) = frame.rock.map(|rock| rock.flat)
+            && self.packed.is_none()
+        {
+            self.packed = Some(gpu.guarded(|| PackedTexture::new(gpu, Some(packed)))?);
+        }
+        if !self.textures.as_ref().is_some_and(|held| held.hold(&frame.tables.textures)) {
+            self.textures = Some(gpu.guarded(|| Ok(TextureBuffers::new(gpu, &frame.tables.textures)))?);
+        }
+        for volume in frame.volumes.iter().flatten() {
+            if !self.volumes.contains_key(volume.name) {
+                let texture = gpu.guarded(|| upload_volume(gpu, volume))?;
+                self.volumes.insert(volume.name.to_owned(), texture);
+            }
+        }
+        Ok(())
+    }
+
+    fn variant(&self, frame: &Frame) -> Variant {
+        Variant {
+            lookup: match frame.rock.map(|rock| rock.flat) {
+                None => 0,
+                Some(Flat::Exact(_)) => 1,
+                Some(Flat::Packed(_)) => 2,
+            },
+            with_ground: u32::from(frame.relief.is_some()),
+            pool_chunk: self.model.as_ref().map_or(1, |m| m.pool_chunk),
+            pool_chunks: self.model.as_ref().map_or(1, |m| m.pool_chunks() as u32),
+        }
+    }
+
+    fn draw(&mut self, frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        let variant = self.variant(frame);
+        if !self.pipelines.contains_key(&variant) {
+            let pipeline = self.gpu.guarded(|| Ok(self.pipeline(variant)))?;
+            self.pipelines.insert(variant, pipeline);
+        }
+        let pipeline = &self.pipelines[&variant];
+        let [width, height] = frame.scene.size_px;
+        let side = tile_side(frame.scene.samples);
+        let mut image = RgbaImage::new(width, height);
+        let tiles: Vec<[u32; 4]> = (0..height.div_ceil(side))
+            .flat_map(|row| (0..width.div_ceil(side)).map(move |column| [column * side, row * side]))
+            .map(|[x, y]| [x, y, side.min(width - x), side.min(height - y)])
+            .collect();
+        progress.begin("render", tiles.len() as u64);
+        self.gpu.guarded(|| {
+            let target = Target::new(&self.gpu, side);
+            let mut params = FaceParams::of(frame);
+            let params_buffer = self.gpu.uniform("params", bytemuck::bytes_of(&params));
+            let groups = self.bind_groups(frame, &params_buffer, &target.pixels);
+            for tile in tiles {
+                params.tile = tile;
+                self.gpu.queue.write_buffer(&params_buffer, 0, bytemuck::bytes_of(&params));
+                target.draw(&self.gpu, pipeline, &groups, tile, &mut image)?;
+                progress.step(1)?;
+            }
+            Ok(())
+        })?;
+        Ok(image)
+    }
+
+    fn pipeline(&self, variant: Variant) -> wgpu::ComputePipeline {
+        let constants = [
+            ("lookup", f64::from(variant.lookup)),
+            ("with_ground", f64::from(variant.with_ground)),
+            ("pool_chunk", f64::from(variant.pool_chunk)),
+            ("pool_chunks", f64::from(variant.pool_chunks)),
+        ];
+        self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some("faces"),
+            layout: Some(&self.pipeline_layout),
+            module: &self.module,
+            entry_point: Some("draw"),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants: &constants,
+                ..wgpu::PipelineCompilationOptions::default()
+            },
+            cache: None,
+        })
+    }
+
+    fn bind_groups(&self, frame: &Frame, params: &wgpu::Buffer, pixels: &wgpu::Buffer) -> [wgpu::BindGroup; 4] {
+        let gpu = &self.gpu;
+        let tables = &frame.tables;
+        let storage = |label: &str, bytes: &[u8]| gpu.storage(label, bytes);
+        let globals = gpu.uniform("ttf", bytemuck::bytes_of(&tables.globals));
+        let layers = storage("layers", bytemuck::cast_slice(&tables.layers));
+        let intervals = storage("intervals", bytemuck::cast_slice(&tables.intervals));
+        let mut entries = tables.scalars.clone();
+        for entry in &mut entries {
+            // Shaders may not rely on infinities.
+            entry.range = entry.range.map(|end| end.clamp(f32::MIN, f32::MAX));
+        }
+        let scalars = storage("scalar entries", bytemuck::cast_slice(&entries));
+        let stops = storage("stops", bytemuck::cast_slice(&tables.stops));
+        let no_buffer = storage("none", &[]);
+        let none = || no_buffer.as_entire_binding();
+        let (infos, texels) = match &self.textures {
+            Some(textures) => (textures.infos.as_entire_binding(), textures.texels.as_entire_binding()),
+            None => (none(), none()),
+        };
+        let mut volume_infos = [VolumeInfo::default(); MAX_VOLUMES];
+        let views: Vec<wgpu::TextureView> = (0..MAX_VOLUMES)
+            .map(|slot| {
+                let volume = frame.volumes.get(slot).copied().flatten();
+                let texture = volume.and_then(|v| self.volumes.get(v.name)).unwrap_or(&self.no_volume);
+                if let Some(volume) = volume {
+                    volume_infos[slot] = VolumeInfo::of(&volume);
+                }
+                texture.create_view(&wgpu::TextureViewDescriptor::default())
+            })
+            .collect();
+        let volume_infos = gpu.uniform("volumes", bytemuck::cast_slice(&volume_infos));
+        let mut volumes = vec![volume_infos.as_entire_binding()];
+        volumes.extend(views.iter().map(wgpu::BindingResource::TextureView));
+        let packed = self.packed.as_ref().unwrap_or(&self.no_packed);
+        let packed_view = packed.texture.create_view(&wgpu::TextureViewDescriptor::default());
+        let mut model = match &self.model {
+            Some(m) => [&m.info, &m.sheets, &m.faults, &m.rules, &m.grids].map(wgpu::Buffer::as_entire_binding).to_vec(),
+            None => vec![none(), none(), none(), none(), none()],
+        };
+        let pool: &[wgpu::Buffer] = self.model.as_ref().map_or(&[], |m| &m.pool);
+        model.extend((0..POOL_BUFFERS).map(|n| pool.get(n).map_or_else(none, wgpu::Buffer::as_entire_binding)));
+        model.extend([packed.info.as_entire_binding(), wgpu::BindingResource::TextureView(&packed_view)]);
+        let group = |index: usize, resources: Vec<wgpu::BindingResource>| {
+            let entries: Vec<_> = (0u32..)
+                .zip(resources)
+                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
+                .collect();
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some("faces"),
+                layout: &self.layouts[index],
+                entries: &entries,
+            })
+        };
+        let tables = [&globals, &layers, &intervals, &scalars, &stops].map(wgpu::Buffer::as_entire_binding);
+        [
+            group(0, vec![params.as_entire_binding(), pixels.as_entire_binding()]),
+            group(1, [infos, texels].into_iter().chain(tables).collect()),
+            group(2, volumes),
+            group(3, model),
+        ]
+    }
+}
+
+/// Side of a tile at so many samples a pixel along each axis: a multiple of the workgroup.
+fn tile_side(samples: u32) -> u32 {
+    let pixels = SAMPLES_PER_TILE / (samples * samples);
+    (pixels.isqrt() / WORKGROUP * WORKGROUP).clamp(4 * WORKGROUP, 1024)
+}
+
+/// A tile's pixels on the device and their way back.
+struct Target {
+    pixels: wgpu::Buffer,
+    readback: wgpu::Buffer,
+}
+
+impl Target {
+    fn new(gpu: &Gpu, side: u32) -> Self {
+        let buffer = |label, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: u64::from(side) * u64::from(side) * 4,
+                usage,
+                mapped_at_creation: false,
+            })
+        };
+        Self {
+            pixels: buffer("pixels", wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
+            readback: buffer("readback", wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
+        }
+    }
+
+    /// Draws one tile and copies it into the image.
+    fn draw(
+        &self,
+        gpu: &Gpu,
+        pipeline: &wgpu::ComputePipeline,
+        groups: &[wgpu::BindGroup; 4],
+        [x, y, width, height]: [u32; 4],
+        image: &mut RgbaImage,
+    ) -> Result<(), RenderError> {
+        let bytes = u64::from(width) * u64::from(height) * 4;
+        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("faces") });
+        {
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
+            pass.set_pipeline(pipeline);
+            for (index, group) in (0u32..).zip(groups) {
+                pass.set_bind_group(index, group, &[]);
+            }
+            pass.dispatch_workgroups(width.div_ceil(WORKGROUP), height.div_ceil(WORKGROUP), 1);
+        }
+        encoder.copy_buffer_to_buffer(&self.pixels, 0, &self.readback, 0, bytes);
+        gpu.queue.submit([encoder.finish()]);
+        let (sender, receiver) = std::sync::mpsc::channel();
+        self.readback.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
+            // The receiver waits below; it is gone only when this function has failed already.
+            let _ = sender.send(result);
+        });
+        gpu.wait()?;
+        let lost = |reason: String| RenderError::DeviceLost { reason };
+        receiver.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
+        {
+            let mapped = self.readback.get_mapped_range(..bytes).map_err(|e| lost(e.to_string()))?;
+            let stride = image.width() as usize * 4;
+            let row_bytes = width as usize * 4;
+            let to: &mut [u8] = image;
+            for (row, from) in mapped.chunks_exact(row_bytes).enumerate() {
+                let start = (y as usize + row) * stride + x as usize * 4;
+                to[start..start + row_bytes].copy_from_slice(from);
+            }
+        }
+        self.readback.unmap();
+        Ok(())
+    }
+}
+
+/// The four groups: picture, textures and tables, volumes, model.
+fn bind_group_layouts(gpu: &Gpu) -> [wgpu::BindGroupLayout; 4] {
+    let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
+    let uniform = buffer(wgpu::BufferBindingType::Uniform);
+    let read = buffer(wgpu::BufferBindingType::Storage { read_only: true });
+    let write = buffer(wgpu::BufferBindingType::Storage { read_only: false });
+    let volume = wgpu::BindingType::Texture {
+        sample_type: wgpu::TextureSampleType::Float { filterable: false },
+        view_dimension: wgpu::TextureViewDimension::D3,
+        multisampled: false,
+    };
+    let layout = |types: &[wgpu::BindingType]| {
+        let entries: Vec<_> = (0u32..)
+            .zip(types)
+            .map(|(binding, &ty)| wgpu::BindGroupLayoutEntry {
+                binding,
+                visibility: wgpu::ShaderStages::COMPUTE,
+                ty,
+                count: None,
+            })
+            .collect();
+        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("faces"), entries: &entries })
+    };
+    let mut volumes = vec![uniform];
+    volumes.extend([volume; MAX_VOLUMES]);
+    let mut model = vec![uniform, read, read, read, read];
+    model.extend([read; POOL_BUFFERS]);
+    model.extend([uniform, volume]);
+    [
+        layout(&[uniform, write]),
+        layout(&[read, read, uniform, read, read, read, read]),
+        layout(&volumes),
+        layout(&model),
+    ]
+}

@@ -1,0 +1,226 @@
+//! The interpretation and the parameterization on the GPU.
+//!
+//! All heights and offsets lie in one *pool* of floats, split over up to four storage buffers because a binding may be as small as
+//! 128 MiB (the software driver's). Memory: what the CPU holds, once more.
+
+use super::layout::{FaultInfo, GridInfo, ModelInfo, PackedInfo, SheetInfo};
+use crate::error::RenderError;
+use crate::gpu::Gpu;
+use glam::{DVec3, Vec3};
+use param::{PackedVolume, Parameterization, SheetRef};
+use survey::model::{FaultSurface, StructuralModel};
+use survey::stratigraphy::Contact;
+use survey::HeightField;
+use ttf::tables::NONE;
+
+/// Buffers the pool may be split over.
+pub const POOL_BUFFERS: usize = 4;
+
+/// A model on the GPU.
+pub struct ModelBuffers {
+    pub info: wgpu::Buffer,
+    pub sheets: wgpu::Buffer,
+    pub faults: wgpu::Buffer,
+    pub rules: wgpu::Buffer,
+    pub grids: wgpu::Buffer,
+    pub pool: Vec<wgpu::Buffer>,
+    /// Floats in each of the pool's buffers.
+    pub pool_chunk: u32,
+}
+
+/// Gathers floats; addresses are 32-bit.
+#[derive(Default)]
+struct Pool {
+    floats: Vec<f32>,
+}
+
+impl Pool {
+    fn add(&mut self, floats: &[f32]) -> u32 {
+        let offset = self.floats.len() as u32;
+        self.floats.extend_from_slice(floats);
+        offset
+    }
+
+    fn sheet(&mut self, field: &HeightField) -> SheetInfo {
+        SheetInfo {
+            origin: field.origin,
+            size: field.size.map(|n| n as u32),
+            offset: self.add(&field.z),
+            padding: [0; 3],
+        }
+    }
+}
+
+impl ModelBuffers {
+    /// Uploads a model; the parameterization only if the exact lookup needs it.
+    pub fn new(gpu: &Gpu, model: &StructuralModel, param: Option<&Parameterization>) -> Result<Self, RenderError> {
+        let mut pool = Pool::default();
+        let horizons = model.stratigraphy().horizons.len();
+        let blocks = model.block_count();
+        let mut sheets = Vec::new();
+        for horizon in 0..horizons {
+            for block in 0..blocks {
+                sheets.push(pool.sheet(model.sheet(horizon, block as u16)));
+            }
+        }
+        let size = model.size();
+        let centre = Vec3::from_array(size.map(|n| 0.5 * n as f32)).as_dvec3();
+        let surfaces = model.faults().surfaces();
+        let faults: Vec<FaultInfo> = surfaces.iter().map(|s| fault_info(s, centre, pool.sheet(&s.surface))).collect();
+        let grids: Vec<GridInfo> = param.map_or_else(Vec::new, |param| {
+            param
+                .grids
+                .iter()
+                .map(|grid| GridInfo {
+                    origin: grid.origin,
+                    size: grid.size.map(|n| n as u32),
+                    levels: grid.levels as u32,
+                    offset: pool.add(bytemuck::cast_slice(&grid.offsets)),
+                    bottom_horizon: horizon_index(grid.bottom),
+                    top_horizon: horizon_index(grid.top),
+                    bottom_shift: grid.bottom.shift,
+                    top_shift: grid.top.shift,
+                    padding: [0; 2],
+                })
+                .collect()
+        });
+        let info = ModelInfo {
+            centre: centre.as_vec3().extend(0.0).to_array(),
+            horizons: horizons as u32,
+            blocks: blocks as u32,
+            faults: faults.len() as u32,
+            layers: model.layer_count() as u32,
+            unit_from_voxel: [0, 1].map(|axis: usize| 1.0 / size[axis].saturating_sub(1).max(1) as f32),
+            padding: [0.0; 2],
+        };
+        let (buffers, pool_chunk) = split_pool(gpu, &pool.floats)?;
+        Ok(Self {
+            info: gpu.uniform("model", bytemuck::bytes_of(&info)),
+            sheets: gpu.storage("sheets", bytemuck::cast_slice(&sheets)),
+            faults: gpu.storage("faults", bytemuck::cast_slice(&faults)),
+            rules: gpu.storage("rules", bytemuck::cast_slice(&rules(model))),
+            grids: gpu.storage("grids", bytemuck::cast_slice(&grids)),
+            pool: buffers,
+            pool_chunk,
+        })
+    }
+
+    /// Buffers of the pool that hold something.
+    pub fn pool_chunks(&self) -> usize {
+        self.pool.len()
+    }
+}
+
+fn horizon_index(sheet: SheetRef) -> u32 {
+    sheet.horizon.map_or(NONE, |h| h as u32)
+}
+
+/// The frame's rows with the constants for positions relative to `centre`, where single precision is at its best.
+fn fault_info(fault: &FaultSurface, centre: DVec3, surface: SheetInfo) -> FaultInfo {
+    let at_centre = fault.frame_from_voxel * centre + fault.frame_offset;
+    let row = |n: usize| fault.frame_from_voxel.row(n).extend(at_centre[n]).as_vec4().to_array();
+    FaultInfo { u: row(0), v: row(1), w: row(2), surface }
+}
+
+/// Block signatures, then the horizons' contacts.
+fn rules(model: &StructuralModel) -> Vec<[u32; 4]> {
+    let halves = |bits: u64| [bits as u32, (bits >> 32) as u32];
+    let signatures = model.faults().signatures().iter().map(|s| {
+        let ([a, b], [c, d]) = (halves(s.bits), halves(s.care));
+        [a, b, c, d]
+    });
+    let contacts = model.rules().contacts().iter().map(|contact| {
+        let code = match contact {
+            Contact::Conformable => 0,
+            Contact::Erosional => 1,
+            Contact::Onlap => 2,
+            Contact::Intrusive => 3,
+        };
+        [code, 0, 0, 0]
+    });
+    signatures.chain(contacts).collect()
+}
+
+fn split_pool(gpu: &Gpu, floats: &[f32]) -> Result<(Vec<wgpu::Buffer>, u32), RenderError> {
+    let limits = gpu.device.limits();
+    // A whole number of 16-byte units, as buffers are sized.
+    let largest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / 16 * 4;
+    let chunk = (largest as usize).min(u32::MAX as usize);
+    if floats.len() > chunk.saturating_mul(POOL_BUFFERS) || floats.len() > u32::MAX as usize {
+        return Err(RenderError::OutOfMemory {
+            reason: format!("the interpretation takes {} MiB", floats.len() * 4 >> 20),
+        });
+    }
+    let buffers: Vec<_> =
+        floats.chunks(chunk.max(1)).map(|part| gpu.storage("pool", bytemuck::cast_slice(part))).collect();
+    let buffers = if buffers.is_empty() { vec![gpu.storage("pool", &[])] } else { buffers };
+    Ok((buffers, chunk as u32))
+}
+
+/// The packed volume on the GPU.
+pub struct PackedTexture {
+    pub info: wgpu::Buffer,
+    pub texture: wgpu::Texture,
+}
+
+impl PackedTexture {
+    /// Uploads a packed volume: texel (x, y, z) is sample (z, y, x). `None` fills the binding.
+    pub fn new(gpu: &Gpu, packed: Option<&PackedVolume>) -> Result<Self, RenderError> {
+        let [nx, ny, nz] = packed.map_or([1; 3], |p| p.size);
+        let limit = gpu.device.limits().max_texture_dimension_3d as usize;
+        if [nx, ny, nz].into_iter().any(|n| n > limit) {
+            return Err(RenderError::Unsuitable {
+                adapter: gpu.adapter_name.clone(),
+                reason: format!("the packed volume has {nx} x {ny} x {nz} samples, its limit is {limit} a side"),
+            });
+        }
+        let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };
+        let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("packed volume"),
+            size,
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D3,
+            format: wgpu::TextureFormat::Rgba32Float,
+            usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+            view_formats: &[],
+        });
+        let mut info = PackedInfo { size: [1, 1, 1, 0], layers: 1, blocks: 1, ..PackedInfo::default() };
+        if let Some(packed) = packed {
+            info = packed_info(packed);
+            for (x, plane) in packed.values.chunks(ny * nz).enumerate() {
+                let texels: Vec<[f32; 4]> = plane.iter().map(|&[i, j, k]| [i, j, k, 0.0]).collect();
+                gpu.queue.write_texture(
+                    wgpu::TexelCopyTextureInfo {
+                        texture: &texture,
+                        mip_level: 0,
+                        origin: wgpu::Origin3d { x: 0, y: 0, z: x as u32 },
+                        aspect: wgpu::TextureAspect::All,
+                    },
+                    bytemuck::cast_slice(&texels),
+                    wgpu::TexelCopyBufferLayout {
+                        offset: 0,
+                        bytes_per_row: Some(nz as u32 * 16),
+                        rows_per_image: Some(ny as u32),
+                    },
+                    wgpu::Extent3d { depth_or_array_layers: 1, ..size },
+                );
+            }
+        }
+        Ok(Self { info: gpu.uniform("packed", bytemuck::bytes_of(&info)), texture })
+    }
+}
+
+fn packed_info(packed: &PackedVolume) -> PackedInfo {
+    let [x, y, z] = packed.size.map(|n| n as u32);
+    let scale = |axis: usize| (packed.size[axis] - 1) as f32 / packed.voxels[axis].saturating_sub(1).max(1) as f32;
+    PackedInfo {
+        scale: [scale(0), scale(1), scale(2), 0.0],
+        size: [x, y, z, 0],
+        i_range: packed.i_range,
+        j_range: packed.j_range,
+        layers: packed.layers as u32,
+        blocks: packed.blocks as u32,
+        padding: [0; 2],
+    }
+}
