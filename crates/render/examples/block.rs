@@ -1,10 +1,12 @@
-//! Draws a block of the synthetic survey: `cargo run -p petroglyph-render --example block -- OUT_DIR [SIZE] [cpu|gpu]`.
+//! Draws a block of the synthetic survey: `cargo run -p petroglyph-render --example block -- OUT_DIR [SIZE] [PICTURE]`.
 //!
-//! Writes illustrative, raw and half-way pictures, a corner cut, a stair and the ground as relief.
+//! Writes illustrative, raw and half-way pictures, a corner cut, a stair and the ground as relief, each from the CPU reference and
+//! from the GPU, and prints their times and differences.
 
 use glam::DVec3;
 use param::{PackedVolume, ParamSettings, Parameterization};
-use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Scene, VoxelBox};
+use render::compare::compare;
+use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Scene, VoxelBox};
 use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
@@ -77,13 +79,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     let whole = VoxelBox::of_size(geometry.size());
     let base = Scene { size_px: [800, 640], samples: 2, exaggeration: 1.5, ..Scene::default() };
     let nearest = base.view(geometry).nearest_corner(&whole);
+    let mut renderer = Renderer::headless()?;
+    println!("on {}", renderer.adapter_name());
     for (name, scene) in scenes(&base, &whole, nearest) {
-        if only.as_deref() == Some("cpu") || only.is_none() {
-            let started = Instant::now();
-            let image = render::reference::render(&scene, &inputs, &progress)?;
-            println!("{name}: CPU {:.2?}", started.elapsed());
-            image.save(Path::new(&out).join(format!("{name}-cpu.png")))?;
+        if only.as_ref().is_some_and(|only| only != name) {
+            continue;
         }
+        let picture = |kind: &str| Path::new(&out).join(format!("{name}{kind}.png"));
+        let started = Instant::now();
+        let reference = render::reference::render(&scene, &inputs, &progress)?;
+        let cpu = started.elapsed();
+        reference.save(picture("-cpu"))?;
+        renderer.render(&scene, &inputs, &progress)?;
+        let started = Instant::now();
+        let image = renderer.render(&scene, &inputs, &progress)?;
+        println!("{name}: CPU {cpu:.2?}, GPU {:.2?}, {:?}", started.elapsed(), compare(&reference, &image));
+        image.save(picture(""))?;
     }
     Ok(())
 }

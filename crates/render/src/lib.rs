@@ -3,6 +3,7 @@
 //! One declarative [`Scene`] says what a picture shows, [`Inputs`] bring the data. [`reference::render`] draws it on the CPU.
 
 pub mod camera;
+pub mod compare;
 pub mod error;
 pub mod faces;
 mod frame;
