@@ -1,4 +1,4 @@
-//! Which trace header bytes hold the inline and crossline numbers, and X and Y.
+//! Which trace header bytes hold the inline and crossline numbers.
 //!
 //! A pair of fields is a reading when its numbers make a lattice: both vary, (nearly) no place is held twice, and not
 //! too many places are empty; X and Y, where there are any, must then be affine in them. The standard's pair wins when
@@ -10,11 +10,11 @@ use serde::Serialize;
 
 use super::SegyOptions;
 use super::columns::{Column, Columns};
+use super::coordinates::{HOMES, locate};
 use super::error::SegyProblem;
 use super::header::{Field, at};
 use super::info::{Findings, LineSummary};
 use super::lines::{Flaw, Lattice};
-use super::place::{Coordinates, Placement};
 use super::refuse;
 
 /// Known homes of inline and crossline numbers.
@@ -29,9 +29,6 @@ const CONVENTIONS: [(u16, u16, &str); 5] = [
 /// Fields that may hold line numbers outside the conventions. Not among them: trace counters (1, 5, 13), which make a
 /// lattice of any regular file, and coordinates.
 const OTHER_LINE_FIELDS: [u16; 15] = [9, 17, 21, 25, 189, 193, 197, 205, 209, 213, 217, 221, 225, 229, 233];
-
-/// Known homes of X and Y, the standard's first.
-const COORDINATE_FIELDS: [(u16, u16); 3] = [(at::CDP_X, at::CDP_Y), (73, 77), (81, 85)];
 
 /// Repeated places beyond this share mean that the file is no post-stack volume, or the bytes no line numbers.
 const MAX_DUPLICATES: f64 = 0.1;
@@ -59,6 +56,8 @@ pub enum Verdict {
     Repeated,
     /// Every trace has an inline and a crossline number of its own.
     Diagonal,
+    /// One of the numbers is different in every trace: it counts traces.
+    Counter,
 }
 
 /// A pair of trace header bytes that was looked at, and what was found there.
@@ -94,7 +93,8 @@ impl Candidate {
             (Verdict::ConstantInline(number), ..) => format!("the inline number is {number} throughout"),
             (Verdict::ConstantCrossline(number), ..) => format!("the crossline number is {number} throughout"),
             (Verdict::Scattered, ..) => "numbers too scattered for lines".to_owned(),
-            (Verdict::Diagonal, ..) => "both numbers change from trace to trace".to_owned(),
+            (Verdict::Diagonal, ..) => "both numbers are different in every trace".to_owned(),
+            (Verdict::Counter, ..) => "one number is different in every trace, and counts traces".to_owned(),
             (Verdict::Repeated, ..) => format!("{:.0} % of the traces repeat a place", 100.0 * self.repeated),
             (verdict, Some(inlines), Some(crosslines)) => {
                 let contradiction =
@@ -151,7 +151,7 @@ pub(super) struct Detected {
 /// 4-byte fields that detection looks at.
 pub(super) fn fields(options: &SegyOptions) -> Vec<Field> {
     let conventions = CONVENTIONS.iter().flat_map(|&(inline, crossline, _)| [inline, crossline]);
-    let coordinates = COORDINATE_FIELDS.iter().flat_map(|&(x, y)| [x, y]);
+    let coordinates = HOMES.into_iter().flatten();
     let stated = [options.inline_byte, options.crossline_byte, options.x_byte, options.y_byte];
     let mut bytes: Vec<u16> =
         conventions.chain(OTHER_LINE_FIELDS).chain(coordinates).chain(stated.into_iter().flatten()).collect();
@@ -241,7 +241,7 @@ impl Search<'_> {
         candidate.crosslines = Some(lattice.crosslines.into());
         candidate.filled = filled as f64 / lattice.places() as f64;
         candidate.repeated = lattice.duplicates as f64 / traces as f64;
-        let placement = self.placement(&lattice, [inline_byte, crossline_byte]);
+        let placement = locate(&lattice, [inline_byte, crossline_byte], self.columns, self.options);
         candidate.residual_bins = placement.map(|(_, placement)| placement.rms_bins);
         let agreement = match placement {
             Some((_, placement)) if placement.agrees() => 1.0,
@@ -249,11 +249,13 @@ impl Search<'_> {
             None => 0.9,
         };
         candidate.score = candidate.filled * (1.0 - candidate.repeated) * agreement;
-        let shortest = lattice.inlines.count.min(lattice.crosslines.count);
+        let [inlines, crosslines] = lattice.occupied_lines();
         candidate.verdict = if candidate.repeated > MAX_DUPLICATES {
             Verdict::Repeated
-        } else if shortest == filled && filled > 3 {
+        } else if inlines.min(crosslines) == filled {
             Verdict::Diagonal
+        } else if inlines.max(crosslines) == filled {
+            Verdict::Counter
         } else if candidate.filled < min_fill {
             Verdict::Scattered
         } else if agreement < 0.5 {
@@ -262,19 +264,6 @@ impl Search<'_> {
             Verdict::Fits
         };
         candidate
-    }
-
-    /// The first home of X and Y that agrees with the lattice; failing that, the first at all.
-    fn placement(&self, lattice: &Lattice, taken: [u16; 2]) -> Option<([u16; 2], Placement)> {
-        let mut fits = coordinate_bytes(self.options)
-            .into_iter()
-            .filter(|bytes| !bytes.iter().any(|byte| taken.contains(byte)))
-            .filter_map(|bytes| Some((bytes, Placement::fit(lattice, &coordinates(self.columns, bytes))?)));
-        let first = fits.next()?;
-        if first.1.agrees() {
-            return Some(first);
-        }
-        Some(fits.find(|(_, placement)| placement.agrees()).unwrap_or(first))
     }
 
     fn stated(&self, inline: u16, crossline: u16, findings: &mut Findings) -> Result<Detected, SegyProblem> {
@@ -380,25 +369,5 @@ impl Search<'_> {
             }
             _ => Err(SegyProblem::AmbiguousLines { readings }),
         }
-    }
-}
-
-/// Bytes at which X and Y are looked for.
-pub(super) fn coordinate_bytes(options: &SegyOptions) -> Vec<[u16; 2]> {
-    if options.bin_m.is_some() {
-        return Vec::new();
-    }
-    match (options.x_byte, options.y_byte) {
-        (None, None) => COORDINATE_FIELDS.iter().map(|&(x, y)| [x, y]).collect(),
-        (x, y) => vec![[x.unwrap_or(at::CDP_X), y.unwrap_or(at::CDP_Y)]],
-    }
-}
-
-/// X and Y at given bytes.
-pub(super) fn coordinates(columns: &Columns, [x, y]: [u16; 2]) -> Coordinates<'_> {
-    Coordinates {
-        x: columns.get(Field::I32(x)),
-        y: columns.get(Field::I32(y)),
-        scalar: columns.get(Field::I16(at::COORDINATE_SCALAR)),
     }
 }

@@ -49,7 +49,7 @@ pub enum SegyProblem {
     },
     /// No valid format code in either byte order.
     #[error(
-        "bytes 3225-3226 hold {big} (or {little} in little-endian order), which is no SEG-Y sample format; this is not SEG-Y, or its header is damaged: if you know the format, state it"
+        "bytes 3225-3226 hold {big} (or {little} in little-endian order), which is no SEG-Y sample format; this is not SEG-Y, or its header is damaged: if you know the format, state it (--sample-format)"
     )]
     NotSegy {
         /// The code read big-endian.

@@ -7,20 +7,17 @@ use glam::DVec2;
 use memmap2::Mmap;
 
 use super::columns::{Column, Columns};
-use super::detect::{Detected, coordinate_bytes, coordinates, detect, fields};
+use super::coordinates::Place;
+use super::detect::{Detected, detect, fields};
 use super::error::{SegyError, SegyProblem};
 use super::frame::Frame;
 use super::header::{Field, Traces, at};
-use super::info::{BytePositions, Findings, GeometrySummary, LengthUnit, SegyInfo};
+use super::info::{BytePositions, Findings, SegyInfo};
 use super::lines::{Flaw, Lattice, NO_TRACE};
-use super::place::{MAX_RESIDUAL_BINS, Placement};
-use super::vertical::{Vertical, coordinate_unit};
+use super::vertical::{Vertical, coordinate_unit, note_coordinate_unit};
 use super::{SegyOptions, TraceWeight};
 use crate::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
 use crate::progress::Progress;
-
-/// Bin size where a file has no coordinates, m.
-const ASSUMED_BIN_M: f64 = 25.0;
 
 /// Trace weights beyond this are no weights.
 const MAX_WEIGHT: i32 = 50;
@@ -137,8 +134,12 @@ fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyF
     let detected =
         if count == 1 { single_trace(&columns, options)? } else { detect(&columns, options, &mut findings)? };
     let vertical = Vertical::find(&frame, &columns, &dead, options, &mut findings)?;
-    let unit = coordinate_unit(&frame, options, &mut findings);
-    let place = place(&detected, &columns, unit, options, &mut findings)?;
+    let unit = coordinate_unit(&frame, options);
+    let lines = [detected.inline_byte, detected.crossline_byte];
+    let place = Place::find(&detected.lattice, lines, &columns, unit, options, &mut findings)?;
+    if place.bytes.is_some() {
+        note_coordinate_unit(&frame, options, &mut findings);
+    }
     note_lattice(&detected.lattice, &mut findings);
     let weights = weights(&columns, options, &mut findings);
 
@@ -288,111 +289,4 @@ fn weights(columns: &Columns, options: &SegyOptions, findings: &mut Findings) ->
         weights.range[0], weights.range[1]
     ));
     Some(weights.clone())
-}
-
-/// Where the lattice is, and the bytes that say so.
-struct Place {
-    bytes: Option<[u16; 2]>,
-    summary: GeometrySummary,
-}
-
-fn place(
-    detected: &Detected,
-    columns: &Columns,
-    unit: LengthUnit,
-    options: &SegyOptions,
-    findings: &mut Findings,
-) -> Result<Place, SegyProblem> {
-    let homes = coordinate_bytes(options);
-    let lattice = &detected.lattice;
-    let mut fits: Vec<([u16; 2], Placement)> = Vec::new();
-    for &bytes in homes.iter().filter(|b| !b.contains(&detected.inline_byte) && !b.contains(&detected.crossline_byte)) {
-        if !coordinates(columns, bytes).vary() {
-            continue;
-        }
-        let units = columns.get(Field::I16(at::COORDINATE_UNIT)).range;
-        refuse_angles(units[1]).and(refuse_angles(units[0]))?;
-        fits.extend(Placement::fit(lattice, &coordinates(columns, bytes)).map(|fit| (bytes, fit)));
-    }
-    let chosen = fits.iter().find(|(_, fit)| fit.agrees()).or(fits.first());
-    let Some((bytes, fit)) = chosen else {
-        let bin = options.bin_m.unwrap_or(ASSUMED_BIN_M) / unit.metres();
-        if options.bin_m.is_some() {
-            findings.evidence(format!("place: square bins of {bin} {}, as stated, from 0, 0", unit.symbol()));
-        } else {
-            findings.assumption(format!(
-                "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y were found at bytes {} (--x-byte and --y-byte, or --bin, state otherwise)",
-                homes.iter().map(|[x, y]| format!("{x} and {y}")).collect::<Vec<_>>().join(", ")
-            ));
-        }
-        let summary = GeometrySummary {
-            origin: [0.0; 2],
-            inline_vector: [bin, 0.0],
-            crossline_vector: [0.0, bin],
-            residual_rms_bins: None,
-            residual_max_bins: None,
-        };
-        return Ok(Place { bytes: None, summary });
-    };
-    note_placement(*bytes, fit, columns, unit, findings);
-    Ok(Place {
-        bytes: Some(*bytes),
-        summary: GeometrySummary {
-            origin: fit.origin.to_array(),
-            inline_vector: fit.inline_vector.to_array(),
-            crossline_vector: fit.crossline_vector.to_array(),
-            residual_rms_bins: Some(fit.rms_bins),
-            residual_max_bins: Some(fit.max_bins),
-        },
-    })
-}
-
-fn refuse_angles(code: i32) -> Result<(), SegyProblem> {
-    let unit = match code {
-        2 => "seconds of arc",
-        3 => "decimal degrees",
-        4 => "degrees, minutes and seconds",
-        _ => return Ok(()),
-    };
-    Err(SegyProblem::AngularCoordinates { code: code as i16, unit })
-}
-
-fn note_placement(bytes: [u16; 2], fit: &Placement, columns: &Columns, unit: LengthUnit, findings: &mut Findings) {
-    let [low, high] = columns.get(Field::I16(at::COORDINATE_SCALAR)).range;
-    let scalar = if low == high { low.to_string() } else { format!("{low} to {high}") };
-    findings.evidence(format!(
-        "place: X at byte {} and Y at byte {}, scalar {scalar}; bins of {:.2} by {:.2} {}; X and Y of {} traces lie within {:.3} bin of the lattice (root mean square)",
-        bytes[0],
-        bytes[1],
-        fit.inline_vector.length(),
-        fit.crossline_vector.length(),
-        unit.symbol(),
-        fit.traces,
-        fit.rms_bins
-    ));
-    if low != high {
-        findings.warning(format!(
-            "the coordinate scalar (byte 71) differs between traces, {scalar}; each trace's own is used"
-        ));
-    }
-    if fit.max_bins > MAX_RESIDUAL_BINS {
-        findings.warning(format!(
-            "X and Y of {} traces lie more than half a bin off the lattice, trace {} by {:.1} bins: check the line and coordinate bytes",
-            fit.outliers,
-            fit.worst_trace + 1,
-            fit.max_bins
-        ));
-    }
-    if fit.skew() > 1e-3 {
-        findings.warning(format!(
-            "inlines and crosslines are not perpendicular (the cosine of their angle is {:.4})",
-            fit.skew()
-        ));
-    }
-    if fit.without > 0 {
-        findings.evidence(format!(
-            "{} traces have no X and Y (both 0); they are placed by their line numbers",
-            fit.without
-        ));
-    }
 }

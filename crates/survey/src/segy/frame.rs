@@ -112,7 +112,7 @@ fn order_and_format(
             [true, true] => usize::from(scores[1] > scores[0]),
         };
         findings.evidence(format!(
-            "byte order: {} (format code {} big-endian, {} little-endian; headers and length fit {} : {} of 6)",
+            "byte order: {} (the format code reads {} big-endian and {} little-endian; counts, interval and length speak {} : {} for them)",
             orders[k].name(),
             headers[0].format,
             headers[1].format,

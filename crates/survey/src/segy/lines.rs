@@ -110,6 +110,17 @@ impl Lattice {
         self.trace_of.iter().filter(|&&trace| trace != NO_TRACE).count()
     }
 
+    /// Inlines and crosslines that hold a trace at all.
+    pub fn occupied_lines(&self) -> [usize; 2] {
+        let mut inlines = vec![false; self.inlines.count];
+        let mut crosslines = vec![false; self.crosslines.count];
+        for (inline, crossline, _) in self.traces() {
+            inlines[inline] = true;
+            crosslines[crossline] = true;
+        }
+        [inlines, crosslines].map(|lines| lines.into_iter().filter(|&occupied| occupied).count())
+    }
+
     /// Inline and crossline index and trace of every filled place.
     pub fn traces(&self) -> impl Iterator<Item = (usize, usize, usize)> + Clone + '_ {
         self.trace_of

@@ -27,6 +27,7 @@
 //! ```
 
 mod columns;
+mod coordinates;
 mod detect;
 mod error;
 mod file;

@@ -53,9 +53,11 @@ impl SegyInfo {
         )?;
         let length = self.coordinate_unit.symbol();
         let g = &self.geometry;
+        // Without this, rounding shows -0.
+        let [a, b] = [g.inline_vector, g.crossline_vector].map(|v| v.map(|c| (c * 1000.0).round() / 1000.0 + 0.0));
         writeln!(page, "origin      {:.2}, {:.2} {length}", g.origin[0], g.origin[1])?;
-        writeln!(page, "inline +1   {:+.3}, {:+.3} {length}", g.inline_vector[0], g.inline_vector[1])?;
-        writeln!(page, "crossl. +1  {:+.3}, {:+.3} {length}", g.crossline_vector[0], g.crossline_vector[1])?;
+        writeln!(page, "inline +1   {:+.3}, {:+.3} {length}", a[0], a[1])?;
+        writeln!(page, "crossl. +1  {:+.3}, {:+.3} {length}", b[0], b[1])?;
         for (title, notes) in [("Evidence", &self.evidence), ("Assumed", &self.assumptions), ("Beware", &self.warnings)]
         {
             if !notes.is_empty() {

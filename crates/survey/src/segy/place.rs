@@ -6,37 +6,13 @@
 
 use glam::{DMat2, DVec2};
 
-use super::columns::Column;
 use super::lines::Lattice;
-use super::vertical::scaled;
 
 /// Half a bin: beyond it a trace would be nearer to another place of the lattice.
 pub(super) const MAX_RESIDUAL_BINS: f64 = 0.5;
 
 /// The fit takes every n-th trace of files that have more than this: 1 ‰ of a bin needs far fewer.
 const MAX_POINTS: usize = 1 << 20;
-
-/// X, Y and their scalar in every trace.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Coordinates<'a> {
-    pub x: &'a Column,
-    pub y: &'a Column,
-    pub scalar: &'a Column,
-}
-
-impl Coordinates<'_> {
-    /// Whether X or Y varies.
-    pub fn vary(&self) -> bool {
-        self.x.constant().is_none() || self.y.constant().is_none()
-    }
-
-    /// X and Y of a trace; none if both are 0.
-    pub fn of(&self, trace: usize) -> Option<DVec2> {
-        let (x, y) = (self.x.at(trace), self.y.at(trace));
-        let scalar = self.scalar.at(trace);
-        ((x, y) != (0, 0)).then(|| DVec2::new(scaled(x, scalar), scaled(y, scalar)))
-    }
-}
 
 /// A fitted place, in the unit of the coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,10 +34,9 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// Fits; none if the traces with coordinates, or the coordinates, lie on a line.
-    pub fn fit(lattice: &Lattice, coordinates: &Coordinates<'_>) -> Option<Self> {
-        let points =
-            || lattice.traces().map(|(i, j, trace)| (DVec2::new(i as f64, j as f64), coordinates.of(trace), trace));
+    /// Fits X and Y, as `world_of` gives them for a trace; none if those traces, or their coordinates, lie on a line.
+    pub fn fit(lattice: &Lattice, world_of: impl Fn(usize) -> Option<DVec2>) -> Option<Self> {
+        let points = || lattice.traces().map(|(i, j, trace)| (DVec2::new(i as f64, j as f64), world_of(trace), trace));
         let located = || points().filter_map(|(at, world, trace)| world.map(|world| (at, world, trace)));
         let total = located().count();
         let sample = located().step_by(total.div_ceil(MAX_POINTS).max(1)).map(|(at, world, _)| (at, world));

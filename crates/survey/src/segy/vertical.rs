@@ -198,12 +198,14 @@ impl TextWords {
                     contradicted |= found.interval.as_ref().is_some_and(|(other, _)| *other != unit);
                     found.interval.get_or_insert((unit, line.clone()));
                 }
-                let is_time = matches!(*word, "TWT" | "TWTT" | "PSTM" | "MS" | "MSEC" | "MSECS" | "MILLISECONDS")
+                let is_time = matches!(*word, "TWT" | "TWTT" | "PSTM")
+                    // A form that was not filled in has units without numbers.
+                    || (unit_word(word) == Some(FileUnit::Milliseconds) && previous.parse::<f64>().is_ok())
                     || (*word == "TIME" && (next.starts_with("MIGRAT") || next == "DOMAIN" || previous == "WAY"));
                 // Depths of the acquisition say nothing about the axis.
                 let of_gear = ["WATER", "SOURCE", "GUN", "CABLE", "STREAMER", "RECEIVER", "TOW", "TOWING", "SHOT"];
-                let is_depth = matches!(*word, "TVD" | "TVDSS" | "PSDM" | "PREDEPTH")
-                    || (*word == "DEPTH" && !of_gear.contains(&previous));
+                let is_depth =
+                    matches!(*word, "TVD" | "TVDSS" | "PSDM") || (*word == "DEPTH" && !of_gear.contains(&previous));
                 if is_time {
                     found.time.get_or_insert_with(|| line.clone());
                 }
@@ -297,24 +299,24 @@ pub(super) fn scaled(field: i32, scalar: i32) -> f64 {
 }
 
 /// The unit of X and Y: stated, or byte 3255.
-pub(super) fn coordinate_unit(frame: &Frame, options: &SegyOptions, findings: &mut Findings) -> LengthUnit {
+pub(super) fn coordinate_unit(frame: &Frame, options: &SegyOptions) -> LengthUnit {
     match (options.coordinate_unit, frame.binary.measurement) {
-        (Some(unit), _) => {
-            findings.evidence(format!("X and Y in {}, as stated", unit.symbol()));
-            unit
-        }
-        (None, 2) => {
-            findings.assumption(
-                "X and Y are in feet, as byte 3255 is 2; the project converts them to metres (--coordinate-unit m if they are metres)".to_owned(),
-            );
-            LengthUnit::Feet
-        }
-        (None, 1) => LengthUnit::Metres,
-        (None, other) => {
-            findings.assumption(format!(
-                "X and Y are in metres: byte 3255 holds {other}, neither 1 (metres) nor 2 (feet) (--coordinate-unit states another)"
-            ));
-            LengthUnit::Metres
-        }
+        (Some(unit), _) => unit,
+        (None, 2) => LengthUnit::Feet,
+        (None, _) => LengthUnit::Metres,
+    }
+}
+
+/// Says why X and Y are in that unit.
+pub(super) fn note_coordinate_unit(frame: &Frame, options: &SegyOptions, findings: &mut Findings) {
+    match (options.coordinate_unit, frame.binary.measurement) {
+        (Some(unit), _) => findings.evidence(format!("X and Y in {}, as stated", unit.symbol())),
+        (None, 1) => {}
+        (None, 2) => findings.assumption(
+            "X and Y are in feet, as byte 3255 is 2; the project converts them to metres (--coordinate-unit m if they are metres)".to_owned(),
+        ),
+        (None, other) => findings.assumption(format!(
+            "X and Y are in metres: byte 3255 holds {other}, neither 1 (metres) nor 2 (feet) (--coordinate-unit states another)"
+        )),
     }
 }

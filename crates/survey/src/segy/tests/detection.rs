@@ -231,6 +231,32 @@ fn coordinates_elsewhere_or_nowhere() {
 }
 
 #[test]
+fn coordinates_stored_as_floats_are_recognised() {
+    let info = grid().each(|_, t| {
+        let at = [600_000.0 + 12.5 * t.inline as f32, 6_000_000.0 - 25.0 * t.crossline as f32];
+        t.i16(71, 1);
+        t.i32(181, at[0].to_bits().cast_signed());
+        t.i32(185, at[1].to_bits().cast_signed());
+    });
+    let info = info.info();
+    assert!((DVec2::from(info.geometry.inline_vector) - DVec2::new(12.5, 0.0)).length() < 1e-9, "{:?}", info.geometry);
+    assert!((DVec2::from(info.geometry.crossline_vector) - DVec2::new(0.0, -25.0)).length() < 1e-9);
+    assert!(has(&info.assumptions, "IEEE floats"));
+}
+
+#[test]
+fn a_field_that_counts_traces_is_no_line_number() {
+    let file = grid().each(|index, t| {
+        t.i32(5, index as i32 + 1);
+        t.i32(21, t.crossline);
+    });
+    let info = file.info();
+    let counter = info.candidates.iter().find(|c| c.inline_byte == 5).unwrap();
+    assert_eq!(counter.verdict, Verdict::Counter);
+    assert!(!has(&info.evidence, "another reading"), "{:?}", info.evidence);
+}
+
+#[test]
 fn coordinates_that_do_not_fit_are_reported() {
     let points: Vec<i32> = (1..=20).collect();
     let stray = Built::grid(&points, &points).each(|index, t| {
@@ -240,7 +266,7 @@ fn coordinates_that_do_not_fit_are_reported() {
     });
     let info = stray.info();
     assert!(
-        has(&info.warnings, "X and Y of 1 traces lie more than half a bin off the lattice, trace 34"),
+        has(&info.warnings, "X and Y of 1 traces lie more than 0.5 bin off the lattice, trace 34"),
         "{:?}",
         info.warnings
     );
@@ -249,7 +275,7 @@ fn coordinates_that_do_not_fit_are_reported() {
     // Coordinates that are junk do not make the lines junk.
     let junk = grid().each(|index, t| t.i32(181, (index as i32 * 7919) % 1000 * 100_000)).info();
     assert_eq!(counts(&junk), [4, 6]);
-    assert!(has(&junk.warnings, "more than half a bin off"), "{:?}", junk.warnings);
+    assert!(has(&junk.warnings, "more than 0.5 bin off"), "{:?}", junk.warnings);
     let skewed = grid().each(|_, t| {
         t.i32(181, 2500 * t.inline + 500 * t.crossline);
         t.i32(185, 2500 * t.crossline);
