@@ -107,23 +107,23 @@ pub(super) fn build(
     Ok((Fault { name, mesh, truncated_by: None }, report))
 }
 
-/// The mesh without triangles that are degenerate or have a corner without a vertical value, and without unused vertices.
+/// The mesh without triangles that are degenerate or have a corner without a vertical value, and without unused vertices;
+/// the order stays.
 fn clean(mesh: &TriangleMesh) -> TriangleMesh {
-    let mut index = HashMap::new();
-    let mut out = TriangleMesh::default();
-    for (t, corners) in mesh.triangles.iter().enumerate() {
+    let has_area = |t: usize| {
         let [a, b, c] = mesh.corners(t);
         let area = (b - a).cross(c - a).length();
-        if !(area.is_finite() && area > 0.0) {
-            continue;
-        }
-        out.triangles.push(corners.map(|v| {
-            *index.entry(v).or_insert_with(|| {
-                out.vertices.push(mesh.vertices[v as usize]);
-                out.vertices.len() as u32 - 1
-            })
-        }));
+        area.is_finite() && area > 0.0
+    };
+    let kept: Vec<[u32; 3]> = (0..mesh.triangles.len()).filter(|&t| has_area(t)).map(|t| mesh.triangles[t]).collect();
+    let mut index = vec![None; mesh.vertices.len()];
+    kept.iter().flatten().for_each(|&v| index[v as usize] = Some(0));
+    let mut out = TriangleMesh::default();
+    for (slot, vertex) in index.iter_mut().zip(&mesh.vertices).filter(|(slot, _)| slot.is_some()) {
+        *slot = Some(out.vertices.len() as u32);
+        out.vertices.push(*vertex);
     }
+    out.triangles = kept.into_iter().map(|t| t.map(|v| index[v as usize].unwrap_or(0))).collect();
     out
 }
 

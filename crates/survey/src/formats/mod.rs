@@ -12,20 +12,29 @@
 //! | Irap classic ASCII | ✓ | | ✓ | |
 //! | OpendTect ASCII | ✓ | sticks | ✓ | sticks |
 //! | GOCAD TSurf | ✓ | ✓ | ✓ | ✓ |
+//! | Irap binary, ZMAP+, CPS-3, IJXYZ | ✓ | | | |
+//! | EarthVision, Petrel points | ✓ | points | | |
+//! | Charisma | ✓ | sticks | | |
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
 mod bounds;
+mod charisma;
 mod columns;
+mod cps3;
 mod csv;
+mod earthvision;
 mod error;
 mod fault;
 mod horizon;
+mod ijxyz;
 mod irap;
+mod irap_binary;
 mod lattice;
 mod mesh_sticks;
 mod opendtect;
 mod options;
+mod petrel;
 mod placement;
 mod plane_fit;
 mod raster;
@@ -39,6 +48,7 @@ mod text;
 mod tsurf;
 mod vertical;
 mod write;
+mod zmap;
 
 pub use bounds::{Bounds, InterpretationFile, bounds_of, survey_from_points};
 pub use columns::Column;
@@ -71,6 +81,21 @@ pub enum Format {
     OpendTect,
     /// GOCAD TSurf.
     Tsurf,
+    /// Irap binary grid.
+    #[serde(rename = "irapbin")]
+    IrapBinary,
+    /// ZMAP+ grid.
+    Zmap,
+    /// CPS-3 ASCII grid.
+    Cps3,
+    /// EarthVision ASCII points.
+    EarthVision,
+    /// Petrel points with attributes.
+    Petrel,
+    /// Charisma horizon lines and fault sticks.
+    Charisma,
+    /// IJXYZ of OpenWorks.
+    Ijxyz,
 }
 
 /// What a file holds, or is wanted to hold.
@@ -112,7 +137,19 @@ struct Codec {
 }
 
 /// Every format, in the order in which signatures are tried: those that cannot be mistaken first.
-const CODECS: &[Codec] = &[tsurf::CODEC, irap::CODEC, opendtect::CODEC, csv::CODEC];
+const CODECS: &[Codec] = &[
+    tsurf::CODEC,
+    irap_binary::CODEC,
+    irap::CODEC,
+    cps3::CODEC,
+    zmap::CODEC,
+    petrel::CODEC,
+    charisma::CODEC,
+    earthvision::CODEC,
+    ijxyz::CODEC,
+    opendtect::CODEC,
+    csv::CODEC,
+];
 
 impl Format {
     fn codec(self) -> &'static Codec {

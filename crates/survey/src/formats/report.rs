@@ -144,7 +144,11 @@ pub struct ImportReport {
 impl fmt::Display for ImportReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{} '{}' from {}", self.kind, self.name, self.file.display())?;
-        writeln!(f, "  format      {} ({})", self.format.value, self.format.source.phrase())?;
+        let evidence = match &self.format.source {
+            Provenance::File(evidence) => evidence,
+            Provenance::Option | Provenance::Assumed => "as told",
+        };
+        writeln!(f, "  format      {} ({evidence})", self.format.value)?;
         writeln!(f, "  values      {} read, {} null", self.values, self.nulls)?;
         let (file, range) = (self.range_in_file, self.range);
         writeln!(f, "  vertical    {} to {} in the file", file[0], file[1])?;

@@ -1,6 +1,11 @@
 //! Whole files, in and out: the formats' own examples, round trips, bad input, and real data.
 
+mod faults;
+mod random;
+mod real;
+mod refusals;
 mod tables;
+mod vectors;
 
 use super::*;
 use std::path::PathBuf;

@@ -1,0 +1,48 @@
+//! Petrel points with attributes.
+//!
+//! `# Unit in depth: ms`, `VERSION 1`, `BEGIN HEADER`, a column name a line (some with a type, `INT,Inline`), `END HEADER`, rows.
+//! Petrel usually writes Z negative downwards, which the file does not state: the sign is an option.
+
+use super::columns;
+use super::options::ZUnit;
+use super::raw::{RawSurface, ReadContext};
+use super::table::{self, Cut};
+use super::text::{self, SourceFile};
+use super::{Codec, Format, FormatError};
+
+pub(super) const CODEC: Codec = Codec {
+    format: Format::Petrel,
+    name: "petrel",
+    extension: "txt",
+    detect,
+    read_horizon: Some(read),
+    read_fault: Some(read),
+    write_horizon: None,
+    write_fault: None,
+};
+
+fn detect(source: &SourceFile) -> Option<String> {
+    let text = source.text();
+    let header = text::lines(&text).take(20).find(|l| l.text.starts_with("# Petrel") || l.text == "BEGIN HEADER")?;
+    Some(format!("line {} is '{}'", header.number, header.text))
+}
+
+fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
+    let text = source.text();
+    let all: Vec<_> = text::lines(&text).collect();
+    let at = |words: &str| all.iter().position(|l| l.text == words);
+    let (Some(begin), Some(end)) = (at("BEGIN HEADER"), at("END HEADER")) else {
+        return Err(source.syntax(1, "BEGIN HEADER and END HEADER", all.first().map_or("", |l| l.text)));
+    };
+    let names: Vec<&str> = all.get(begin + 1..end).unwrap_or_default().iter().map(|l| l.text).collect();
+    let mut layout = columns::from_header(&names, context.domain());
+    let stated = all[..begin].iter().find_map(|l| Some((l.text, l.text.split_once("depth:")?.1)));
+    if let Some((line, word)) = stated
+        && let Some(unit) = ZUnit::parse(word)
+    {
+        layout.unit = Some((unit, format!("'{}'", line.trim_start_matches(['#', ' ']))));
+    }
+    let rows: Vec<_> = all[end + 1..].iter().copied().filter(|l| !table::is_comment(l.text)).collect();
+    let cut = Cut { delimiter: None, ..Cut::of(rows.first().map_or("", |l| l.text)) };
+    table::surfaces(source, &rows, cut, layout, context)
+}
