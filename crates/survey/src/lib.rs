@@ -23,6 +23,7 @@ pub mod horizon;
 pub mod mesh;
 pub mod model;
 pub mod progress;
+pub mod section;
 pub mod segy;
 pub mod store;
 pub mod stratigraphy;

@@ -7,6 +7,8 @@
 //! # Spaces
 //! Positions are voxel (x, y, z), z down. Distances to faults are metric (m).
 
+#[cfg(test)]
+pub(crate) mod closed_form;
 mod contacts;
 mod extension;
 mod network;
@@ -22,3 +24,6 @@ pub use network::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
 pub use report::{ModelError, ModelNote, ModelReport, Placement};
 pub use settings::ModelSettings;
 pub use structural::{Region, StructuralModel};
+
+#[cfg(test)]
+mod tests;

@@ -171,7 +171,7 @@ pub enum ModelNote {
         /// Traces of the block's part of the horizon that have no data.
         traces: usize,
     },
-    /// A horizon without data in a block was placed there.
+    /// A horizon with no or too few nodes in a block was placed there.
     Placed {
         /// Name of the horizon.
         horizon: String,
@@ -222,11 +222,11 @@ impl fmt::Display for ModelNote {
             }
             Self::Placed { horizon, block, by: Placement::Thickness { donor } } => write!(
                 f,
-                "horizon \"{horizon}\" has no picks in fault block {block} and was placed by the thickness it has in block {donor}"
+                "horizon \"{horizon}\" has no or too few picks in fault block {block} and was placed by the thickness it has in block {donor}"
             ),
             Self::Placed { horizon, block, by: Placement::OtherBlocks } => write!(
                 f,
-                "horizon \"{horizon}\" has no picks in fault block {block} and was continued from the other blocks"
+                "horizon \"{horizon}\" has no or too few picks in fault block {block} and was continued from the other blocks"
             ),
             Self::Clamped { younger, older, block, nodes, worst } => write!(
                 f,

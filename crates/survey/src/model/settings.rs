@@ -9,9 +9,12 @@ pub struct ModelSettings {
     /// Nodes added on every side of the survey lattice, so that traces which leave the volume stay on defined sheets.
     /// `None` (default): the larger of 16 and 12 % of the longer side.
     pub margin: Option<usize>,
-    /// Horizon nodes nearer than this to a real fault are dropped (horizontal distance, voxels), because gridded horizons smear
-    /// across faults. Only sheets whose block is not given are treated. Default 0: nothing is dropped.
+    /// Horizon nodes nearer than this to a real fault are dropped (horizontal distance, voxels): so close, the fault's own
+    /// accuracy decides on which side a node lies, and a node on the wrong side would stand out as a spike. Gridded horizons that smear
+    /// across faults want 2 or 3. Only sheets whose block is not given are treated. Default 0.5.
     pub fault_setback: f32,
+    /// With fewer nodes than this in a block a horizon counts as absent there, and is placed by its thickness elsewhere. Default 24.
+    pub fewest_nodes: usize,
     /// Radius of the neighbourhood whose slope continues a sheet beyond its data, nodes. Larger is steadier under picking
     /// noise, smaller follows curvature better. Default 10.
     pub slope_radius: f32,
@@ -28,7 +31,8 @@ impl Default for ModelSettings {
     fn default() -> Self {
         Self {
             margin: None,
-            fault_setback: 0.0,
+            fault_setback: 0.5,
+            fewest_nodes: 24,
             slope_radius: 10.0,
             rim_tolerance_m: None,
             crossing_tolerance: 0.5,

@@ -8,6 +8,7 @@ use super::extension::{Extension, Plane};
 use super::network::FaultNetwork;
 use super::nodes::{Lattice, Node, Nodes};
 use super::report::{ModelNote, Placement};
+use super::settings::ModelSettings;
 use crate::height_field::HeightField;
 use crate::horizon::Quality;
 use crate::progress::{Cancelled, Progress};
@@ -36,7 +37,7 @@ pub(super) fn extend_all(
     names: &[&str],
     nodes: &[Nodes],
     faults: &FaultNetwork,
-    radius: f32,
+    settings: &ModelSettings,
     progress: &Progress,
 ) -> Result<(Vec<Vec<ExtendedSheet>>, Vec<ModelNote>), Cancelled> {
     let blocks = faults.block_count();
@@ -47,14 +48,15 @@ pub(super) fn extend_all(
         .map(|n| {
             let whole = average(lattice, &n.nodes);
             let slope = Plane::through(lattice.size, &whole, [0.0; 2]).map_or([0.0; 2], |p| p.slope());
-            (whole, Extension { radius, noise: NOISE, slope })
+            (whole, Extension { radius: settings.slope_radius, noise: NOISE, slope })
         })
         .collect();
     let jobs: Vec<(usize, usize)> = (0..nodes.len()).flat_map(|h| (0..blocks).map(move |b| (h, b))).collect();
     let made: Vec<Option<ExtendedSheet>> = jobs
         .par_iter()
         .map(|&(h, b)| {
-            let sheet = extend_one(lattice, &nodes[h].nodes, faults, b, &wholes[h].1);
+            let fewest = if blocks == 1 { 1 } else { settings.fewest_nodes.max(1) };
+            let sheet = extend_one(lattice, &nodes[h].nodes, faults, b, &wholes[h].1, fewest);
             progress.step(1).map(|()| sheet)
         })
         .collect::<Result<_, _>>()?;
@@ -85,13 +87,14 @@ fn average(lattice: Lattice, nodes: &[Node]) -> Vec<f32> {
     sum.into_iter().map(|(z, n)| if n > 0.0 { z / n } else { f32::NAN }).collect()
 }
 
-/// The sheet of `block` from the nodes that count for it; `None` without any.
+/// The sheet of `block` from the nodes that count for it; `None` with fewer than `fewest`.
 fn extend_one(
     lattice: Lattice,
     nodes: &[Node],
     faults: &FaultNetwork,
     block: usize,
     extension: &Extension,
+    fewest: usize,
 ) -> Option<ExtendedSheet> {
     let mut z = vec![f32::NAN; lattice.len()];
     let mut quality = vec![Quality::Hole; lattice.len()];
@@ -110,6 +113,9 @@ fn extend_one(
         }
     }
     let known: Vec<bool> = z.iter().map(|z| z.is_finite()).collect();
+    if known.iter().filter(|&&k| k).count() < fewest {
+        return None;
+    }
     extension.extend(lattice.size, &mut z)?;
     grade(lattice.size, &mut quality);
     Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })

@@ -78,7 +78,7 @@ impl StructuralModel {
         }
         let names: Vec<&str> = ordered.iter().map(|h| h.name.as_str()).collect();
         let rules = ContactRules::new(stratigraphy);
-        let (mut sheets, placed) = extend_all(lattice, &names, &nodes, &faults, settings.slope_radius, progress)?;
+        let (mut sheets, placed) = extend_all(lattice, &names, &nodes, &faults, settings, progress)?;
         report.notes.extend(placed);
         report.notes.extend(extended(lattice, &names, &sheets, &faults));
         let block_at = |p| faults.block_at(p);
@@ -142,6 +142,11 @@ impl StructuralModel {
         sheet.quality[node(x, 0) * size[1] + node(y, 1)]
     }
 
+    /// Count of interpreted nodes that `horizon` has in `block`; 0 when it was placed there.
+    pub fn own_nodes(&self, horizon: usize, block: u16) -> usize {
+        self.sheets[horizon][usize::from(block)].own
+    }
+
     /// The block at voxel position `p`.
     pub fn block_at(&self, p: Vec3) -> u16 {
         self.faults.block_at(p)
@@ -149,8 +154,12 @@ impl StructuralModel {
 
     /// The layer at voxel position `p` by the sheets of `block`, contact rules applied.
     pub fn layer_at(&self, p: Vec3, block: u16) -> u16 {
-        let below = |h: usize| u64::from(p.z >= self.sheet(h, block).z_at(p.x, p.y)) << h;
-        self.rules.layer((0..self.sheets.len()).map(below).sum())
+        self.rules.layer(self.below_at(p, block))
+    }
+
+    /// Bit h set: voxel position `p` lies at or below the unclipped sheet of horizon h in `block`.
+    pub fn below_at(&self, p: Vec3, block: u16) -> u64 {
+        (0..self.sheets.len()).map(|h| u64::from(p.z >= self.sheet(h, block).z_at(p.x, p.y)) << h).sum()
     }
 
     /// Layer and block at voxel position `p`.
