@@ -29,25 +29,37 @@ fn model(n: usize) -> ClosedForm {
     ClosedForm::faulted([n; 3], 3, 3, depth, block_at)
 }
 
+/// Processor seconds of this process so far (Linux; 0 elsewhere): what a busy machine does not spoil.
+fn processor_s() -> f64 {
+    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    let ticks = stat.rsplit(')').next().unwrap_or_default().split_whitespace().skip(11).take(2);
+    ticks.filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / 100.0
+}
+
 fn main() {
     let sizes: Vec<usize> = std::env::args().skip(1).filter_map(|size| size.parse().ok()).collect();
     for n in if sizes.is_empty() { vec![64, 128] } else { sizes } {
         let model = model(n);
         let voxels = (n * n * n) as f64;
-        let report = |stage: &str, seconds: f64| {
-            println!("{n:4}³ {stage:24} {seconds:8.2} s {:8.0} ns a voxel", seconds / voxels * 1e9);
+        let report = |stage: &str, since: (Instant, f64)| {
+            let (wall, processor) = (since.0.elapsed().as_secs_f64(), processor_s() - since.1);
+            println!(
+                "{n:4}³ {stage:16} {wall:8.2} s, {processor:8.2} s of processors, {:8.0} ns a voxel",
+                processor / voxels * 1e9
+            );
         };
-        let start = Instant::now();
+        let now = || (Instant::now(), processor_s());
+        let start = now();
         let param = Parameterization::compute(&model, &ParamSettings::default(), &Progress::silent()).unwrap();
-        report("compute", start.elapsed().as_secs_f64());
-        report("  closest points (CPU)", param.cost.closest_points.as_secs_f64());
-        report("  traces (CPU)", param.cost.traces.as_secs_f64());
-        let start = Instant::now();
+        report("compute", start);
+        let share = param.cost.traces.as_secs_f64() / (param.cost.closest_points + param.cost.traces).as_secs_f64();
+        println!("{n:4}³ of which traces {:.0} %", 100.0 * share);
+        let start = now();
         let volumes = param.voxel_volumes(&model, param.size, &Progress::silent()).unwrap();
-        report("voxel volumes", start.elapsed().as_secs_f64());
-        let start = Instant::now();
+        report("voxel volumes", start);
+        let start = now();
         let packed = PackedVolume::from_voxels(&volumes, param.size, param.layers, param.blocks);
-        report("packing", start.elapsed().as_secs_f64());
+        report("packing", start);
         let nodes: usize = param.grids.iter().map(|grid| grid.offsets.len()).sum();
         let creases: u32 = param.grids.iter().flat_map(|grid| &grid.creases).map(|word| word.count_ones()).sum();
         println!(

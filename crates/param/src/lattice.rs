@@ -44,8 +44,8 @@ pub struct LatticeShape {
 /// The global closest points of one sheet at the nodes of a lattice.
 pub struct FootLattice {
     shape: LatticeShape,
-    /// Voxel (x, y) of the foot, absolute; NaN where it is not wanted.
-    feet: Vec<Vec2>,
+    /// Voxel position of the foot, absolute; NaN where it is not wanted.
+    feet: Vec<Vec3>,
     /// Per cell, whether its corners lie on different branches.
     mixed: Vec<bool>,
 }
@@ -65,7 +65,7 @@ impl FootLattice {
         let finder = NodeFinder::new(surface, metric);
         let [_, ny, nl] = shape.size;
         let nodes = shape.size.iter().product();
-        let mut feet = vec![Vec2::NAN; nodes];
+        let mut feet = vec![Vec3::NAN; nodes];
         let column_of = |column: usize| {
             let at = [column / ny, column % ny].map(|n| (n * COLUMNS) as i32);
             [shape.origin[0] + at[0], shape.origin[1] + at[1]]
@@ -75,7 +75,7 @@ impl FootLattice {
             let origin = Vec2::new(column[0] as f32, column[1] as f32);
             let mut foot = Foot::start(surface, frame, from - origin);
             foot.follow(surface, metric, frame, p);
-            (foot.at + origin, foot.distance)
+            (foot.position() + origin.extend(frame.z), foot.distance)
         };
         let mut distances = vec![f32::INFINITY; nodes];
         feet.par_chunks_mut(nl).zip(distances.par_chunks_mut(nl)).enumerate().try_for_each(
@@ -91,8 +91,8 @@ impl FootLattice {
                         p.as_dvec3() + glam::DVec3::new(f64::from(column[0]), f64::from(column[1]), f64::from(frame.z));
                     let [x, y] = finder.near(in_voxels);
                     (feet[level], distances[level]) = walk(column, level, Vec2::new(x as f32, y as f32));
-                    if level > 0 && (feet[level] - feet[level - 1]).length_squared() > 1.0 {
-                        let (foot, distance) = walk(column, level, feet[level - 1]);
+                    if level > 0 && (feet[level] - feet[level - 1]).truncate().length_squared() > 1.0 {
+                        let (foot, distance) = walk(column, level, feet[level - 1].truncate());
                         if distance < distances[level] {
                             (feet[level], distances[level]) = (foot, distance);
                         }
@@ -104,7 +104,7 @@ impl FootLattice {
         let mut lattice = Self { shape: shape.clone(), feet, mixed: Vec::new() };
         for _ in 0..PASSES {
             progress.check()?;
-            let improved: Vec<(Vec2, f32)> = (0..nodes)
+            let improved: Vec<(Vec3, f32)> = (0..nodes)
                 .into_par_iter()
                 .map(|node| {
                     let mut best = (lattice.feet[node], distances[node]);
@@ -113,9 +113,9 @@ impl FootLattice {
                         return best;
                     }
                     for candidate in lattice.neighbours(index / ny, index % ny, level) {
-                        let foreign = (candidate - best.0).length_squared() > 0.0625 * BRANCH * BRANCH;
+                        let foreign = (candidate - best.0).truncate().length_squared() > 0.0625 * BRANCH * BRANCH;
                         if foreign {
-                            let (foot, distance) = walk(column_of(index), level, candidate);
+                            let (foot, distance) = walk(column_of(index), level, candidate.truncate());
                             if distance < best.1 * (1.0 - 1e-5) {
                                 best = (foot, distance);
                             }
@@ -133,10 +133,10 @@ impl FootLattice {
     }
 
     /// The feet of the (up to six) neighbours of a lattice node.
-    fn neighbours(&self, x: usize, y: usize, level: usize) -> impl Iterator<Item = Vec2> {
+    fn neighbours(&self, x: usize, y: usize, level: usize) -> impl Iterator<Item = Vec3> {
         let [nx, ny, nl] = self.shape.size;
         let at = |x: usize, y: usize, level: usize| {
-            if x < nx && y < ny && level < nl { self.feet[(x * ny + y) * nl + level] } else { Vec2::NAN }
+            if x < nx && y < ny && level < nl { self.feet[(x * ny + y) * nl + level] } else { Vec3::NAN }
         };
         [
             at(x.wrapping_sub(1), y, level),
@@ -159,13 +159,13 @@ impl FootLattice {
                 let mut known = corners.into_iter().filter(|foot| !foot.is_nan());
                 let Some(first) = known.next() else { return false };
                 let (low, high) = known.fold((first, first), |(low, high), foot| (low.min(foot), high.max(foot)));
-                (high - low).max_element() > BRANCH
+                (high - low).truncate().max_element() > BRANCH
             })
             .collect()
     }
 
     /// The eight feet around a cell, the last ones repeated at the upper borders.
-    fn corners(&self, cell: [usize; 3]) -> [Vec2; 8] {
+    fn corners(&self, cell: [usize; 3]) -> [Vec3; 8] {
         let [_, ny, nl] = self.shape.size;
         std::array::from_fn(|corner| {
             let n: [usize; 3] =
@@ -178,7 +178,7 @@ impl FootLattice {
     pub fn start(&self, x: f32, y: f32, level: f32) -> Option<Vec2> {
         let (_, nearest) = self.cell(x, y, level);
         let foot = self.feet[nearest];
-        (!foot.is_nan()).then_some(foot)
+        (!foot.is_nan()).then_some(foot.truncate())
     }
 
     /// The cell that holds a place, and the lattice node nearest to it.
@@ -208,7 +208,7 @@ impl FootLattice {
         p: Vec3,
         level: f32,
     ) -> bool {
-        let column = Vec2::new(frame.column[0] as f32, frame.column[1] as f32);
+        let column = Vec3::new(frame.column[0] as f32, frame.column[1] as f32, frame.z);
         let (cell, nearest) = self.cell(p.x + column.x, p.y + column.y, level);
         let [_, ny, nl] = self.shape.size;
         if self.mixed[(cell[0] * ny + cell[1]) * nl + cell[2]] {
@@ -222,22 +222,23 @@ impl FootLattice {
     }
 }
 
-/// Walks from `start` where that point of the surface is nearer than the foot, give or take `slack` (scaled metric).
+/// Walks from `start` (a point of the surface) where that point of the surface is nearer than the foot, give or take `slack` (scaled metric).
+#[inline]
 fn try_branch(
     foot: &mut Foot,
     surface: &Surface,
     metric: &Metric,
     frame: Frame,
     p: Vec3,
-    start: Vec2,
+    start: Vec3,
     slack: f32,
 ) -> bool {
-    // Also false for the NaN of a lattice node that was not wanted.
-    if (start - foot.at).length_squared() > 0.25 {
-        let mut other = Foot::start(surface, frame, start);
-        let distance_sq = metric.length_squared(p - other.position());
-        let limit = foot.distance + slack;
-        if distance_sq < limit * limit {
+    // False for the NaN of a lattice node that was not wanted.
+    let limit = foot.distance + slack;
+    if metric.length_squared(p - start) < limit * limit {
+        let away = start.truncate() - foot.at;
+        if away.length_squared() > 0.25 {
+            let mut other = Foot::start(surface, frame, start.truncate());
             other.follow(surface, metric, frame, p);
             if other.distance < foot.distance * (1.0 - 1e-5) {
                 let moved = (other.at - foot.at).length_squared() > 0.25;

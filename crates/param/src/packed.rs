@@ -141,8 +141,7 @@ impl PackedVolume {
     pub fn lookup_extrapolated_jacobian(&self, p: Vec3) -> (FlatPoint, [[f32; 3]; 3]) {
         let (corners, fraction, region) = self.extrapolated_cell(p);
         let spread = |range: [f32; 2]| range[1] - range[0];
-        let unpacked =
-            [spread(self.i_range), spread(self.j_range) * self.blocks as f32, self.layers as f32];
+        let unpacked = [spread(self.i_range), spread(self.j_range) * self.blocks as f32, self.layers as f32];
         let slopes: [[f32; 3]; 3] = std::array::from_fn(|axis| {
             let scale = (self.size[axis] - 1) as f32 / self.voxels[axis].saturating_sub(1).max(1) as f32;
             let end = |at: f32| {
