@@ -21,8 +21,13 @@ use survey::{Cancelled, Progress};
 pub const COLUMNS: usize = 4;
 /// Levels from one lattice node to the next.
 pub const LEVELS: usize = 4;
+/// Whether a lattice node asks the kd-tree: every second one along each axis. The others start from the level below.
+fn is_queried(x: usize, y: usize, level: usize) -> bool {
+    x % 2 + y % 2 + level % 2 == 0
+}
+
 /// Passes in which lattice nodes try their neighbours' feet.
-const PASSES: usize = 2;
+const PASSES: usize = 3;
 /// Feet of a lattice cell's corners spread over more than this along x or y (voxels) are taken for different branches:
 /// smaller finds narrower folds, larger walks less. At 8 (with [`SLACK`] 3) no point of 15 000 around a sheet with dips to 66°
 /// was off the brute-force minimum; at 12 (with 1), 3 were.
@@ -85,12 +90,18 @@ impl FootLattice {
                     return Ok(());
                 }
                 let column = column_of(index);
+                let here = Vec2::new(column[0] as f32, column[1] as f32);
                 for level in 0..nl {
                     let (frame, p) = place(column, level);
-                    let in_voxels =
-                        p.as_dvec3() + glam::DVec3::new(f64::from(column[0]), f64::from(column[1]), f64::from(frame.z));
-                    let [x, y] = finder.near(in_voxels);
-                    (feet[level], distances[level]) = walk(column, level, Vec2::new(x as f32, y as f32));
+                    if is_queried(index / ny, index % ny, level) {
+                        let in_voxels = (p + Vec3::new(column[0] as f32, column[1] as f32, frame.z)).as_dvec3();
+                        let [x, y] = finder.near(in_voxels);
+                        (feet[level], distances[level]) = walk(column, level, Vec2::new(x as f32, y as f32));
+                    } else {
+                        let from = if level > 0 { feet[level - 1].truncate() } else { here };
+                        (feet[level], distances[level]) = walk(column, level, from);
+                        continue;
+                    }
                     if level > 0 && (feet[level] - feet[level - 1]).truncate().length_squared() > 1.0 {
                         let (foot, distance) = walk(column, level, feet[level - 1].truncate());
                         if distance < distances[level] {
@@ -213,8 +224,12 @@ impl FootLattice {
         let [_, ny, nl] = self.shape.size;
         if self.mixed[(cell[0] * ny + cell[1]) * nl + cell[2]] {
             let mut changed = false;
-            for corner in self.corners(cell) {
-                changed |= try_branch(foot, surface, metric, frame, p, corner - column, SLACK);
+            let corners = self.corners(cell);
+            for (n, &corner) in corners.iter().enumerate() {
+                // Corners on one branch lead to one place.
+                if corners[..n].iter().all(|other| (corner - *other).truncate().length_squared() > 1.0) {
+                    changed |= try_branch(foot, surface, metric, frame, p, corner - column, SLACK);
+                }
             }
             return changed;
         }

@@ -34,14 +34,14 @@ pub struct ParamSettings {
     /// Vertical exaggeration at which distances and angles are measured: 1 (default) is true space; another value
     /// parameterizes in display space, so that textures look undistorted at that exaggeration.
     pub exaggeration: f64,
-    /// Lateral error allowed per step of a trace, voxels. Default 5e-4, a hundredth of what can be seen in a texture; the
-    /// angle between i, j and k at one voxel is good to about this many radians.
+    /// Error estimate allowed per step of a trace, voxels across. Default 4e-3: the estimate is that of the lower order of the
+    /// pair, the step's own error is several times smaller, and angles do not change by a hundredth of a degree.
     pub trace_tolerance: f32,
 }
 
 impl Default for ParamSettings {
     fn default() -> Self {
-        Self { level_spacing: 2.0, definitions: Vec::new(), exaggeration: 1.0, trace_tolerance: 5e-4 }
+        Self { level_spacing: 2.0, definitions: Vec::new(), exaggeration: 1.0, trace_tolerance: 4e-3 }
     }
 }
 

@@ -20,7 +20,7 @@ use glam::Vec3;
 const MOST_STEPS: usize = 48;
 /// Longest step, voxels.
 const LONGEST_STEP: f32 = 24.0;
-/// Longest step once the trace met a crease, voxels.
+/// Longest step after the trace met a crease, voxels; it doubles with every step that meets none.
 const CREASE_STEP: f32 = 1.5;
 
 /// Where a trace ended.
@@ -89,6 +89,8 @@ impl Tracer<'_> {
             if self.challenge(frame, p, sample.k * self.top_level, &mut feet) {
                 sample = self.layer.ratio(&feet);
                 (crease, longest, trial) = (true, CREASE_STEP, f32::INFINITY);
+            } else {
+                longest = (2.0 * longest).min(LONGEST_STEP);
             }
         }
         Crossing { at: p, crease: true }
