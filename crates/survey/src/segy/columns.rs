@@ -7,7 +7,8 @@ use rayon::prelude::*;
 use super::header::{Field, Traces};
 use crate::progress::{Cancelled, Progress};
 
-const BLOCK_BITS: usize = 14;
+/// Headers of a block (240 bytes each) stay in the cache while its fields are read one after the other.
+const BLOCK_BITS: usize = 10;
 const BLOCK: usize = 1 << BLOCK_BITS;
 
 #[derive(Debug, Clone)]
@@ -68,15 +69,12 @@ impl Columns {
             .into_par_iter()
             .map(|block| {
                 let range = block * BLOCK..((block + 1) * BLOCK).min(count);
-                let mut values = vec![Vec::with_capacity(range.len()); fields.len()];
-                for trace in range.clone() {
-                    let header = traces.header(trace);
-                    for (field, values) in fields.iter().zip(&mut values) {
-                        values.push(field.get(header, traces.order));
-                    }
-                }
+                let column = |field: &Field| {
+                    Block::new(range.clone().map(|trace| field.get(traces.header(trace), traces.order)).collect())
+                };
+                let row = fields.iter().map(column).collect();
                 progress.step(range.len() as u64)?;
-                Ok(values.into_iter().map(Block::new).collect())
+                Ok(row)
             })
             .collect::<Result<_, Cancelled>>()?;
         let mut columns: Vec<Column> =
