@@ -142,9 +142,9 @@ pub enum FormatError {
         /// "X and Y" or "inlines and crosslines".
         axes: &'static str,
         /// Extent of the surface.
-        found: Extent,
+        found: Box<Extent>,
         /// Extent of the survey.
-        survey: Extent,
+        survey: Box<Extent>,
         /// What may be wrong.
         hint: String,
     },
@@ -159,9 +159,9 @@ pub enum FormatError {
         /// The surface.
         name: String,
         /// Range after conversion.
-        found: [f64; 2],
+        found: Box<[f64; 2]>,
         /// Range of the survey.
-        survey: [f64; 2],
+        survey: Box<[f64; 2]>,
         /// The survey's unit.
         unit: &'static str,
         /// Values outside.

@@ -197,11 +197,11 @@ fn from_mesh(
     let (values, _) = NodeValues::group(grid.count[0] * grid.count[1], &pairs, tolerance);
     let sheet_of = sheets::split(&values, &sheets::grid_neighbours(grid.count));
     let count = sheet_of.iter().max().map_or(1, |&s| usize::from(s) + 1);
-    let mut depths = vec![vec![f32::NAN; grid.count[0] * grid.count[1]]; count];
-    for node in 0..grid.count[0] * grid.count[1] {
-        for e in values.offsets[node] as usize..values.offsets[node + 1] as usize {
-            depths[usize::from(sheet_of[e])][node] = values.z[e];
-        }
+    let nodes = grid.count[0] * grid.count[1];
+    let mut depths = vec![vec![f32::NAN; nodes]; count];
+    let values_of = |node: usize| values.offsets[node] as usize..values.offsets[node + 1] as usize;
+    for (node, e) in (0..nodes).flat_map(|node| values_of(node).map(move |e| (node, e))) {
+        depths[usize::from(sheet_of[e])][node] = values.z[e];
     }
     Ok(Nodes {
         sheets: depths.into_iter().map(|d| Sheet::new(grid, d, Quality::Picked)).collect(),

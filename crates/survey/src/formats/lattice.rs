@@ -248,7 +248,8 @@ fn fit(points: &[DVec2], a: DVec2, b: DVec2) -> Option<(DVec2, DMat2)> {
             origin = DVec2::new(x.z, y.z);
             axes = DMat2::from_cols(DVec2::new(x.x, y.x), DVec2::new(x.y, y.y));
         }
-        if !(axes.determinant().abs() > 1e-9) {
+        // NaN is no lattice either.
+        if axes.determinant().is_nan() || axes.determinant().abs() <= 1e-9 {
             return None;
         }
         if used == order.len() {

@@ -136,8 +136,8 @@ pub(super) fn outside_by_world(
         file: file.to_path_buf(),
         name: name.into(),
         axes: "X and Y",
-        found: Extent::of(points),
-        survey,
+        found: Box::new(Extent::of(points)),
+        survey: Box::new(survey),
         hint,
     }
 }
@@ -159,8 +159,8 @@ fn outside_by_lines(file: &Path, name: &str, voxels: &[DVec2], geometry: &Survey
         file: file.to_path_buf(),
         name: name.into(),
         axes: "inlines and crosslines",
-        found,
-        survey: Extent::of([first, last]),
+        found: Box::new(found),
+        survey: Box::new(Extent::of([first, last])),
         hint: hint.into(),
     }
 }

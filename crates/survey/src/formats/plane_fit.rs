@@ -73,7 +73,8 @@ fn eigen(mut m: DMat3) -> ([f64; 3], [DVec3; 3]) {
 pub(super) fn fit(points: &[DVec3], metres: f64) -> Option<(TriangleMesh, f64)> {
     let metric: Vec<DVec3> = points.iter().map(|p| *p * DVec3::new(1.0, 1.0, metres)).collect();
     let frame = Frame::of(&metric);
-    if points.len() < 3 || !(frame.variance[1] > 1e-6 * frame.variance[0]) {
+    let spans = frame.variance[1] > 1e-6 * frame.variance[0];
+    if points.len() < 3 || !spans {
         return None;
     }
     let [u, v, n] = frame.axes;

@@ -1,6 +1,10 @@
 //! Triangles sampled at the integer nodes they lie over.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+
+/// Nodes this far outside a triangle still belong to it: coordinates in files are rounded, and a mesh from a grid has its
+/// rim exactly on nodes.
+const RIM: f64 = 1e-3;
 
 /// Calls `visit(u, v, z)` for every node of a grid of `count` that lies in the triangle's projection along z, its rim
 /// included; z is interpolated linearly. Corners are in node units. Triangles that are vertical or degenerate have no nodes.
@@ -19,18 +23,21 @@ pub(super) fn triangle(corners: [DVec3; 3], count: [usize; 2], visit: &mut dyn F
     }
     let low = a.min(b).min(c);
     let high = a.max(b).max(c);
-    let slack = 1e-6;
+    let slack = RIM;
     let range = |low: f64, high: f64, count: usize| {
         let first = (low - slack).ceil().max(0.0);
         let last = (high + slack).floor().min(count as f64 - 1.0);
         // Both may be far outside; comparing as floats keeps the casts in range.
-        if first > last { 1..=0 } else { first as usize..=last as usize }
+        if first > last { 0..0 } else { first as usize..last as usize + 1 }
     };
+    // A weight falls by 1 over the corner's height above the opposite side; in a sliver that is soon, so it is limited.
+    let share = |side: DVec2| (RIM * side.length() / area.abs()).min(0.05);
+    let (slack_a, slack_b, slack_c) = (share(ac - ab), share(ac), share(ab));
     for u in range(low.x, high.x, count[0]) {
         for v in range(low.y, high.y, count[1]) {
-            let p = glam::DVec2::new(u as f64, v as f64) - a.truncate();
+            let p = DVec2::new(u as f64, v as f64) - a.truncate();
             let (wb, wc) = (p.perp_dot(ac) / area, ab.perp_dot(p) / area);
-            if wb >= -slack && wc >= -slack && wb + wc <= 1.0 + slack {
+            if wb >= -slack_b && wc >= -slack_c && wb + wc <= 1.0 + slack_a {
                 visit(u, v, a.z + wb * (b.z - a.z) + wc * (c.z - a.z));
             }
         }

@@ -171,8 +171,8 @@ impl VerticalRule {
         Err(FormatError::OutsideRange {
             file: file.to_path_buf(),
             name: name.into(),
-            found,
-            survey,
+            found: Box::new(found),
+            survey: Box::new(survey),
             unit: axis.unit.symbol(),
             outside,
             total: values.len(),

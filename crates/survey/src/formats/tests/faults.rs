@@ -99,10 +99,7 @@ fn tsurf_with_all_its_liberties() {
         VRTX 22 7700 900 800\r\nTRGL 20 22 21\r\nBSTONE 10\r\nBORDER 30 10 11\r\nEND\r\n";
     let (fault, report) = fault(text, &ImportOptions::default());
     assert_eq!((fault.name.as_str(), fault.mesh.triangles.len()), ("Big fault", 2));
-    assert_eq!(
-        (report.z_unit.source.clone(), report.z_positive.source.clone()),
-        (Provenance::Assumed, Provenance::Assumed)
-    );
+    assert_eq!((&report.z_unit.source, &report.z_positive.source), (&Provenance::Assumed, &Provenance::Assumed));
     assert!(fault.mesh.vertices.iter().all(|v| off_plane(*v) < 1e-9));
     let up = text.replace("PROPERTIES a b", "GOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT \"m\" \"m\" \"ft\"\nZPOSITIVE Elevation\nEND_ORIGINAL_COORDINATE_SYSTEM").replace(" 800", " -2624.671916");
     let (in_feet, report) = self::fault(&up, &ImportOptions::default());

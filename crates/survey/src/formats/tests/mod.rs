@@ -4,6 +4,7 @@ mod faults;
 mod random;
 mod real;
 mod refusals;
+mod round_trips;
 mod tables;
 mod vectors;
 

@@ -88,7 +88,7 @@ fn nulls_sign_and_factor_as_told() {
         ..ImportOptions::default()
     };
     let (horizon, report) = horizon(&text, &survey(), &options);
-    assert_eq!((report.nulls, report.z_positive.source.clone()), (9, Provenance::Option));
+    assert_eq!((report.nulls, report.z_positive.source), (9, Provenance::Option));
     let sheet = &horizon.sheets[0];
     assert!(sheet.depth[3 * 9].is_nan());
     assert!((f64::from(sheet.depth[4 * 9 + 1]) - depth(4, 1)).abs() < 1e-3);
