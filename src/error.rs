@@ -1,5 +1,6 @@
 //! What can go wrong with a project, with the facts as fields and a hint for what to do next.
 
+use crate::project::placement::PlacementError;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -135,6 +136,62 @@ pub enum ProjectError {
     /// A survey frame that conversions cannot work with.
     #[error("the survey geometry cannot be used: {0}")]
     Geometry(#[from] survey::geometry::GeometryError),
+    /// A volume that does not lie in the project's survey.
+    #[error("volume \"{name}\" does not fit the project: {source}")]
+    Placement {
+        /// Name of the volume.
+        name: String,
+        /// What does not fit.
+        source: PlacementError,
+    },
+    /// A file that holds more than was asked for.
+    #[error("{} holds several: {}", path.display(), names.join(", "))]
+    SeveralInFile {
+        /// The file.
+        path: PathBuf,
+        /// What it holds.
+        names: Vec<String>,
+    },
+    /// Horizons in the wrong order.
+    #[error(
+        "horizon \"{younger}\" runs below \"{older}\" at {:.0} % of their common traces, by up to {worst:.1} {unit} at inline {:.0}, crossline {:.0}",
+        share * 100.0, lines[0], lines[1]
+    )]
+    Crossing {
+        /// The horizon that should be above.
+        younger: String,
+        /// The horizon that should be below.
+        older: String,
+        /// Share of the common traces that cross, 0 to 1.
+        share: f64,
+        /// Largest crossing.
+        worst: f32,
+        /// Its unit.
+        unit: &'static str,
+        /// Inline and crossline of the worst place.
+        lines: [f64; 2],
+    },
+    /// Faults that end at one another.
+    #[error("faults end at one another in a circle: {}", path.join(" ends at "))]
+    CircularTruncation {
+        /// The faults along the circle.
+        path: Vec<String>,
+    },
+    /// A SEG-Y file that could not be read.
+    #[error(transparent)]
+    Segy(#[from] survey::segy::SegyError),
+    /// A horizon or fault file that could not be read or written.
+    #[error(transparent)]
+    Format(#[from] survey::formats::FormatError),
+    /// Data of the project that could not be read or written.
+    #[error(transparent)]
+    Store(#[from] survey::store::StoreError),
+    /// The interpretation does not make a solid model.
+    #[error(transparent)]
+    Model(#[from] survey::model::ModelError),
+    /// The layers could not be parameterized.
+    #[error(transparent)]
+    Param(#[from] param::ParamError),
     /// A transfer function or texture that cannot be drawn.
     #[error(transparent)]
     Style(#[from] ttf::Error),
@@ -199,7 +256,22 @@ impl ProjectError {
             Self::Geometry(_) => "check the header bytes and bounds the geometry is made from",
             Self::Style(_) => "`petroglyph patterns OUT.png` draws every pattern with its name",
             Self::Scene(_) => "`petroglyph scene show` prints a scene; `petroglyph render --help` lists what can be set",
-            Self::Io { .. } | Self::Render(_) => return None,
+            Self::Placement { .. } => {
+                "import it into a project of its own, or check its header bytes with `petroglyph info FILE`"
+            }
+            Self::SeveralInFile { .. } => "choose one with --select NAME",
+            Self::Crossing { .. } => {
+                "check unit, sign and picks there, put it elsewhere with --above or --below, or say --contact erosional, onlap or intrusive"
+            }
+            Self::CircularTruncation { .. } => "take one of these truncations away",
+            // These say what to do in their own words.
+            Self::Io { .. }
+            | Self::Segy(_)
+            | Self::Format(_)
+            | Self::Store(_)
+            | Self::Model(_)
+            | Self::Param(_)
+            | Self::Render(_) => return None,
         })
     }
 }

@@ -4,13 +4,20 @@
 //! whoever asks for it (command line, window, script), so that each can be undone, also by another process later.
 //! What is computed from a project is cached beside it, keyed by what it was computed from.
 
+pub mod bench;
 pub mod cli;
 pub mod command;
+pub mod data;
+pub mod demo;
+pub mod derived;
 pub mod error;
 pub mod library;
+pub mod picture;
+pub mod pipeline;
 pub mod project;
 pub mod scene;
 pub mod style;
+pub mod synth;
 
 pub use command::{Command, Effect};
 pub use error::ProjectError;

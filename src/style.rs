@@ -29,7 +29,7 @@ pub fn raw_colour(
 
 /// The project's transfer functions, with colours for the first volume where none are set.
 pub fn of_project(document: &Document) -> TransferFunctions {
-    let mut functions = document.style.clone();
+    let mut functions = document.style.functions();
     if functions.raw.is_none() {
         functions.raw = raw_colour(document, None, ColourMap::Seismics, None).ok();
     }

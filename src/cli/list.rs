@@ -2,21 +2,91 @@
 
 use super::report::Report;
 use super::request::Listing;
+use crate::data;
 use crate::error::Noun;
 use crate::library;
 use crate::project::Project;
 use crate::scene;
 use serde_json::{Value, json};
+use survey::Progress;
 use ttf::{LayerStyle, LayerTtf};
 
 /// Answers a listing.
 pub(super) fn list(project: &Project, what: Listing) -> anyhow::Result<Report> {
     match what {
+        Listing::Volumes => Ok(volumes(project)),
+        Listing::Horizons => Ok(horizons(project)),
+        Listing::Horizon(name) => show_horizon(project, &name),
+        Listing::Faults => Ok(faults(project)),
         Listing::Layers => layers(project),
         Listing::Scalars => Ok(scalars(project)),
         Listing::Scenes => Ok(scenes(project)),
         Listing::Scene(name) => show_scene(project, name.as_deref()),
     }
+}
+
+fn volumes(project: &Project) -> Report {
+    let document = project.document();
+    let mut report = Report::default();
+    for entry in &document.volumes {
+        let own = if entry.geometry.is_some() { ", on a lattice of its own" } else { "" };
+        report.say(format!("{}: {} polarity, clipped at {}{own}", entry.name, entry.polarity, entry.clip));
+    }
+    if document.volumes.is_empty() {
+        report.say("no volumes");
+    }
+    report.field("volumes", &document.volumes);
+    report
+}
+
+fn horizons(project: &Project) -> Report {
+    let document = project.document();
+    let mut report = Report::default();
+    for entry in &document.horizons {
+        let contact = format!("{:?}", entry.contact).to_lowercase();
+        report.say(format!("{}: {contact}, from {}", entry.name, entry.source.path.display()));
+    }
+    if document.horizons.is_empty() {
+        report.say("no horizons");
+    }
+    report.field("horizons", &document.horizons);
+    report
+}
+
+fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
+    let document = project.document();
+    let entry = &document.horizons[document.position(Noun::Horizon, name)?];
+    let horizon = data::read_horizon(project.root(), entry, &Progress::silent())?;
+    let unit = document.frame()?.vertical.unit.symbol();
+    let mut report = Report::default();
+    report.say(format!("{name}: {:?}, {}", entry.contact, entry.source.reading).to_lowercase());
+    let mut sheets = Vec::new();
+    for sheet in &horizon.sheets {
+        let known = || sheet.depth.iter().copied().filter(|depth| depth.is_finite());
+        let low = known().fold(f32::INFINITY, f32::min);
+        let high = known().fold(f32::NEG_INFINITY, f32::max);
+        let nodes = sheet.node_count();
+        let holes = sheet.depth.len() - nodes;
+        let [u, v] = sheet.grid.count;
+        report.say(format!("  sheet of {u} x {v} nodes: {nodes} with a depth, {low} to {high} {unit}, {holes} holes"));
+        sheets.push(json!({ "count": [u, v], "nodes": nodes, "holes": holes, "range": [low, high] }));
+    }
+    report.field("horizon", entry).field("sheets", sheets).field("unit", unit);
+    Ok(report)
+}
+
+fn faults(project: &Project) -> Report {
+    let document = project.document();
+    let mut report = Report::default();
+    for entry in &document.faults {
+        let ends = entry.truncated_by.as_ref().map_or_else(String::new, |by| format!(", ends at {by}"));
+        report.say(format!("{}: from {}{ends}", entry.name, entry.source.path.display()));
+    }
+    if document.faults.is_empty() {
+        report.say("no faults");
+    }
+    report.field("faults", &document.faults);
+    report
 }
 
 fn layers(project: &Project) -> anyhow::Result<Report> {
@@ -31,7 +101,8 @@ fn layers(project: &Project) -> anyhow::Result<Report> {
         let style = own.cloned().unwrap_or_else(|| LayerTtf::default_style(name, index, &library));
         let by_default = if own.is_none() { " (by default)" } else { "" };
         report.say(format!("{name}: {}{by_default}", describe(&style)));
-        objects.push(json!({ "name": name, "index": index, "assigned": own.is_some(), "style": style }));
+        objects.push(json!({ "name": name, "index": index, "assigned": own.is_some(), "style": style,
+            "k": document.k.get(name).copied().unwrap_or_default() }));
     }
     report.field("layers", objects);
     Ok(report)

@@ -4,8 +4,10 @@
 //! 1 failed, 2 wrong usage.
 
 mod args;
+mod draw;
 mod failure;
 mod info;
+mod interpretation;
 mod list;
 mod report;
 mod request;

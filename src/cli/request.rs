@@ -1,20 +1,36 @@
 //! What was meant: typed text turned into commands and values, or refused as wrong usage.
 
-use super::args::{Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, ScalarAction, SceneAction};
-use super::view::View;
-use crate::command::{
-    AddTexture, Command, RemoveScalar, RemoveScene, ResetLayer, SetLayer, SetScalar, SetVelocity,
+use super::args::{
+    Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs, VolumeAction,
 };
+use super::interpretation;
+use super::view::View;
+use crate::bench;
+use crate::command::{
+    AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer, SetScalar,
+    SetVelocity,
+};
+use crate::picture::Device;
 use glam::DVec2;
+use param::KDefinition;
 use std::path::PathBuf;
+use survey::formats::Format;
+use survey::segy::SegyOptions;
+use survey::synth::SynthSettings;
 use survey::{SurveyGeometry, VerticalUnit};
 use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
 
 /// Something to do.
 #[derive(Debug)]
 pub(super) enum Request {
+    /// Make a synthetic survey and pictures of it.
+    Demo { out: PathBuf },
+    /// Make a synthetic survey.
+    Synth { out: PathBuf, settings: SynthSettings },
     /// Say what a file or project holds.
-    Info(PathBuf),
+    Info { path: PathBuf, segy: SegyOptions },
+    /// Read a volume; the project is made when it is not there.
+    Import { project: PathBuf, command: ImportVolume },
     /// Make a project.
     Create { project: PathBuf, geometry: Option<SurveyGeometry> },
     /// Change a project.
@@ -25,6 +41,16 @@ pub(super) enum Request {
     SetRaw { project: PathBuf, volume: Option<String>, map: ColourMap, range: Option<[f32; 2]> },
     /// Say something about a project.
     List { project: PathBuf, what: Listing },
+    /// Write a horizon to a file.
+    Export { project: PathBuf, out: PathBuf, horizon: String, format: Format },
+    /// Compute i, j, k.
+    Parameterize { project: PathBuf, size: Option<[usize; 3]> },
+    /// Draw a picture.
+    Render(RenderRequest),
+    /// Draw all patterns.
+    Patterns { out: PathBuf, project: Option<PathBuf> },
+    /// Measure stages.
+    Bench { sizes: bench::Sizes, dump: Option<PathBuf> },
     /// Go back.
     Undo(PathBuf),
     /// Go forward.
@@ -33,9 +59,29 @@ pub(super) enum Request {
     Prune(PathBuf),
 }
 
+/// A picture to draw.
+#[derive(Debug)]
+pub(super) struct RenderRequest {
+    pub(super) project: PathBuf,
+    pub(super) out: PathBuf,
+    /// Name of a view, or a TOML file.
+    pub(super) scene: Option<String>,
+    pub(super) view: View,
+    pub(super) dpi: f64,
+    pub(super) device: Device,
+}
+
 /// What to list of a project.
 #[derive(Debug)]
 pub(super) enum Listing {
+    /// Volumes.
+    Volumes,
+    /// Horizons, youngest first.
+    Horizons,
+    /// A horizon in detail.
+    Horizon(String),
+    /// Faults.
+    Faults,
     /// Layers and their styles.
     Layers,
     /// Scalar functions.
@@ -55,7 +101,29 @@ impl TryFrom<Action> for Request {
     fn try_from(action: Action) -> Result<Self, Usage> {
         let change = |project: PathBuf, command: Command| Self::Change { project, command };
         Ok(match action {
-            Action::Info { path } => Self::Info(path),
+            Action::Demo(typed) => Self::Demo { out: typed.out },
+            Action::Synth(typed) => synth(&typed)?,
+            Action::Info { path, segy } => Self::Info { path, segy: interpretation::segy_options(&segy)? },
+            Action::Import(typed) => {
+                Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
+            }
+            Action::Volume(VolumeAction::List { project }) => Self::List { project, what: Listing::Volumes },
+            Action::Volume(VolumeAction::Remove { project, name }) => {
+                change(project, Command::RemoveVolume(RemoveVolume { name }))
+            }
+            Action::Horizon(action) => interpretation::horizon(action)?,
+            Action::Fault(action) => interpretation::fault(action)?,
+            Action::Export(typed) => interpretation::export(typed)?,
+            Action::Parameterize(typed) => {
+                let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;
+                Self::Parameterize { project: typed.project, size }
+            }
+            Action::Render(typed) => Self::Render(render_request(typed)?),
+            Action::Patterns { out, project } => Self::Patterns { out, project },
+            Action::Bench(typed) => {
+                let sizes = if typed.quick { bench::Sizes::Quick } else { bench::Sizes::Full };
+                Self::Bench { sizes, dump: typed.dump }
+            }
             Action::Create(typed) => Self::Create { geometry: frame(&typed)?, project: typed.project },
             Action::Velocity { project, velocity_m_s } => {
                 change(project, Command::SetVelocity(SetVelocity { velocity_m_s }))
@@ -112,11 +180,65 @@ fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
         intervals: typed.interval.iter().map(|text| depth_interval(text)).collect::<Result<_, _>>()?,
         frequency,
         opacity: typed.opacity,
+        k: typed.k.as_deref().map(k_definition).transpose()?,
     };
     if change == (SetLayer { layer: change.layer.clone(), ..SetLayer::default() }) {
         return Err("layer set: nothing to change; give --name, --pattern, --colour or another option".to_owned());
     }
     Ok((typed.project, change))
+}
+
+fn k_definition(text: &str) -> Result<KDefinition, Usage> {
+    match text {
+        "distance-ratio" => Ok(KDefinition::DistanceRatio),
+        "parallel-to-bottom" => Ok(KDefinition::ParallelToBottom),
+        "parallel-to-top" => Ok(KDefinition::ParallelToTop),
+        other => Err(format!("--k {other}: expected distance-ratio, parallel-to-bottom or parallel-to-top")),
+    }
+}
+
+fn synth(typed: &SynthArgs) -> Result<Request, Usage> {
+    let snr = match typed.snr.as_str() {
+        "none" => None,
+        text => match text.parse::<f64>() {
+            Ok(snr) if snr > 0.0 && snr.is_finite() => Some(snr),
+            _ => return Err(format!("--snr {text}: expected a positive number or none")),
+        },
+    };
+    let settings = SynthSettings {
+        size: counts::<3>("--size", &typed.size)?,
+        seed: typed.seed,
+        snr,
+        ..SynthSettings::default()
+    };
+    Ok(Request::Synth { out: typed.out.clone(), settings })
+}
+
+fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
+    if typed.technique != "illustrate" {
+        return Err(format!("--technique {}: expected illustrate", typed.technique));
+    }
+    let device = match typed.device.as_str() {
+        "auto" => Device::Auto,
+        "gpu" => Device::Gpu,
+        "cpu" => Device::Cpu,
+        other => return Err(format!("--device {other}: expected auto, gpu or cpu")),
+    };
+    if !(typed.dpi >= 1.0 && typed.dpi <= 10_000.0) {
+        return Err(format!("--dpi {}: expected 1 to 10000", typed.dpi));
+    }
+    match typed.out.extension().and_then(|extension| extension.to_str()) {
+        Some(extension) if extension.eq_ignore_ascii_case("png") => {}
+        _ => return Err(format!("{}: pictures are written as .png", typed.out.display())),
+    }
+    Ok(RenderRequest {
+        project: typed.project,
+        out: typed.out,
+        scene: typed.scene,
+        view: typed.view.try_into()?,
+        dpi: typed.dpi,
+        device,
+    })
 }
 
 fn colour(text: &str) -> Result<Colour, Usage> {

@@ -3,14 +3,19 @@
 use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
-use super::{info, list};
-use crate::command::{AddScene, Command, SetRaw};
+use super::{draw, info, list};
+use crate::command::{AddScene, Command, ImportVolume, SetRaw};
+use crate::error::Noun;
+use crate::pipeline::Stage;
 use crate::project::Project;
-use crate::{scene, style};
+use crate::{bench, data, demo, derived, library, picture, pipeline, scene, style, synth};
 use anyhow::Context;
 use render::Scene;
 use std::path::Path;
+use std::time::Instant;
 use survey::Progress;
+use survey::formats::{self, Format};
+use ttf::{TextureLibrary, contact_sheet};
 
 /// Why there is no answer.
 #[derive(Debug)]
@@ -31,7 +36,15 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
 pub(super) fn run(request: Request) -> Result<Report, Failure> {
     let (terminal, progress) = Terminal::start();
     let mut report = match request {
-        Request::Info(path) => info::describe(&path)?,
+        Request::Demo { out } => told(demo::run(&out, &progress)?),
+        Request::Synth { out, settings } => told(synth::write(&out, &settings, &progress)?),
+        Request::Info { path, segy } => info::describe(&path, &segy, &progress)?,
+        Request::Import { project, command } => import(&project, command, &progress)?,
+        Request::Export { project, out, horizon, format } => export(&project, &out, &horizon, format, &progress)?,
+        Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
+        Request::Render(request) => draw::draw(&request, &progress)?,
+        Request::Patterns { out, project } => patterns(&out, project.as_deref())?,
+        Request::Bench { sizes, dump } => told(bench::run(sizes, dump.as_deref(), &progress)?),
         Request::Create { project, geometry } => {
             Project::create(&project, geometry)?.publish()?;
             let mut report = Report::line(format!("created {}", project.display()));
@@ -83,13 +96,122 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
 /// Applies a command and tells what it did.
 fn change(mut project: Project, command: &Command, progress: &Progress) -> anyhow::Result<Report> {
     let effect = project.apply(command, progress)?;
-    let mut report = Report::line(effect.summary());
+    let mut report = Report::line(effect.to_string().trim_end());
     report.fields(&effect);
     Ok(report)
 }
 
 /// Reads a scene that a person wrote.
-fn scene_file(path: &Path) -> anyhow::Result<Scene> {
+pub(super) fn scene_file(path: &Path) -> anyhow::Result<Scene> {
     let text = std::fs::read_to_string(path).with_context(|| format!("{} could not be read", path.display()))?;
     toml::from_str(&text).with_context(|| format!("{} is not a scene", path.display()))
 }
+
+/// Something that says what it did: its text for people, its fields for programs.
+fn told(done: impl std::fmt::Display + serde::Serialize) -> Report {
+    let mut report = Report::line(done.to_string().trim_end());
+    report.fields(done);
+    report
+}
+
+/// Imports a volume; a project that is not there is made, and only appears when the import has succeeded.
+fn import(path: &Path, command: ImportVolume, progress: &Progress) -> anyhow::Result<Report> {
+    let command = Command::Import(command);
+    if path.exists() {
+        return change(Project::open(path)?, &command, progress);
+    }
+    let mut project = Project::create(path, None)?;
+    let effect = project.project().apply(&command, progress)?;
+    project.publish()?;
+    let mut report = Report::line(format!("created {}", path.display()));
+    report.say(effect.to_string().trim_end()).fields(&effect).field("project", path);
+    Ok(report)
+}
+
+fn export(
+    project: &Path,
+    out: &Path,
+    horizon: &str,
+    format: Format,
+    progress: &Progress,
+) -> anyhow::Result<Report> {
+    let project = Project::open(project)?;
+    let document = project.document();
+    let entry = &document.horizons[document.position(Noun::Horizon, horizon)?];
+    let horizon = data::read_horizon(project.root(), entry, progress)?;
+    formats::write_horizon(out, &horizon, document.frame()?, format)?;
+    let mut report = Report::line(format!("{} written as {format}", out.display()));
+    report.field("file", out).field("format", format.name()).field("horizon", &entry.name);
+    Ok(report)
+}
+
+/// Computes i, j, k and keeps them, for lookups and as arrays for other programs.
+fn parameterize(path: &Path, size: Option<[usize; 3]>, progress: &Progress) -> anyhow::Result<Report> {
+    let project = Project::open(path)?;
+    let size = match size {
+        Some(size) => size,
+        None => project.document().frame()?.size(),
+    };
+    let Some(mut rock) = pipeline::rock(&project, progress)? else {
+        anyhow::bail!("the project has no horizons, so there are no layers to parameterize; add one with `petroglyph horizon add`");
+    };
+    let fresh = derived::load_volumes(project.root(), &rock.key, Some(size), progress).is_none();
+    if fresh {
+        let start = Instant::now();
+        let voxels = rock.voxels(&project, size, progress)?;
+        derived::write_volumes(project.root(), &rock.key, voxels, progress)?;
+        rock.stages.push(Stage::new("sampling", start.elapsed()));
+    }
+    let out = derived::volumes_path(project.root());
+    let (model, parameterization) = (&rock.model, &rock.parameterization);
+    let mut report = Report::default();
+    report.say(format!(
+        "{} layers in {} fault blocks, i, j, k at {} x {} x {} in {}",
+        model.layer_count(),
+        model.block_count(),
+        size[0],
+        size[1],
+        size[2],
+        out.display()
+    ));
+    for note in &model.report().notes {
+        report.say(format!("  {note}"));
+    }
+    for stage in &rock.stages {
+        report.say(format!("  {}: {:.2} s", stage.stage, stage.seconds));
+    }
+    if !fresh {
+        report.say("nothing has changed since it was last computed");
+    }
+    let notes: Vec<String> = model.report().notes.iter().map(ToString::to_string).collect();
+    report
+        .field("file", out)
+        .field("size", size)
+        .field("layers", model.layer_count())
+        .field("blocks", model.block_count())
+        .field("bytes", parameterization.bytes())
+        .field("key", &rock.key)
+        .field("computed", fresh)
+        .field("stages", &rock.stages)
+        .field("notes", notes);
+    Ok(report)
+}
+
+/// Draws the sheet of patterns.
+fn patterns(out: &Path, project: Option<&Path>) -> anyhow::Result<Report> {
+    let library = match project {
+        Some(path) => {
+            let project = Project::open(path)?;
+            library::of_project(project.root(), project.document())?
+        }
+        None => TextureLibrary::builtin()?,
+    };
+    picture::write_png(out, &contact_sheet(&library)?, SHEET_DPI)?;
+    let names: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();
+    let mut report = Report::line(format!("{} patterns drawn in {}", names.len(), out.display()));
+    report.field("file", out).field("patterns", names);
+    Ok(report)
+}
+
+/// Resolution that the sheet of patterns is drawn at.
+const SHEET_DPI: f64 = 220.0;

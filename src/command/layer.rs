@@ -3,6 +3,7 @@
 use super::{Effect, Noun, ProjectError};
 use crate::library;
 use crate::project::Draft;
+use param::KDefinition;
 use serde::{Deserialize, Serialize};
 use ttf::{Colour, DepthInterval, Frequency, LayerStyle, LayerTtf};
 
@@ -33,6 +34,9 @@ pub struct SetLayer {
     /// Opacity inside a cut-out, 0 to 1.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub opacity: Option<f32>,
+    /// What k means inside the layer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub k: Option<KDefinition>,
 }
 
 /// Takes a layer's style away: it gets the default one again.
@@ -52,7 +56,11 @@ impl SetLayer {
         }
         let names = document.layers();
         let layer = &names[position];
-        if *self != (Self { layer: self.layer.clone(), name: self.name.clone(), ..Self::default() }) {
+        if let Some(k) = self.k {
+            document.k.insert(layer.clone(), k);
+        }
+        let untouched = Self { layer: self.layer.clone(), name: self.name.clone(), k: self.k, ..Self::default() };
+        if *self != untouched {
             let present = document.style.layers.style(layer).cloned();
             let from_bottom = names.len() - 1 - position;
             let mut style = present.unwrap_or_else(|| LayerTtf::default_style(layer, from_bottom, &library));
@@ -85,6 +93,7 @@ impl ResetLayer {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         draft.document.position(Noun::Layer, &self.layer)?;
         draft.document.style.layers.styles.retain(|style| style.layer != self.layer);
+        draft.document.k.remove(&self.layer);
         Ok(Effect::Changed { summary: format!("default style of layer {}", self.layer) })
     }
 }

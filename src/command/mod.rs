@@ -5,13 +5,20 @@
 //! from a command, because every state is remembered.
 
 mod contact;
+mod fault;
+mod horizon;
+mod import;
 mod layer;
+mod order;
 mod scalar;
 mod scene;
 mod survey_frame;
 mod texture;
 
 pub use contact::SetContact;
+pub use fault::{AddFault, FaultAdded, RemoveFault, SetTruncation};
+pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
+pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
@@ -35,6 +42,22 @@ pub enum Command {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         geometry: Option<SurveyGeometry>,
     },
+    /// Read a volume.
+    Import(ImportVolume),
+    /// Take a volume away.
+    RemoveVolume(RemoveVolume),
+    /// Read a horizon.
+    AddHorizon(AddHorizon),
+    /// Give a horizon another name.
+    RenameHorizon(RenameHorizon),
+    /// Take a horizon away.
+    RemoveHorizon(RemoveHorizon),
+    /// Read a fault.
+    AddFault(AddFault),
+    /// Say where a fault ends.
+    SetTruncation(SetTruncation),
+    /// Take a fault away.
+    RemoveFault(RemoveFault),
     /// State the velocity that turns two-way time into metres.
     SetVelocity(SetVelocity),
     /// Say what a horizon does to its neighbours.
@@ -63,6 +86,12 @@ pub enum Command {
 pub enum Effect {
     /// The project exists.
     Created,
+    /// A volume is in the project.
+    VolumeImported(VolumeImported),
+    /// A horizon is in the project.
+    HorizonAdded(Box<HorizonAdded>),
+    /// A fault is in the project.
+    FaultAdded(Box<FaultAdded>),
     /// Something small changed.
     Changed {
         /// What, in a few words.
@@ -72,9 +101,17 @@ pub enum Effect {
 
 impl Command {
     /// Does what it says to the draft.
-    pub(crate) fn execute(&self, draft: &mut Draft, _progress: &Progress) -> Result<Effect, ProjectError> {
+    pub(crate) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         match self {
             Self::Create { .. } => Err(ProjectError::Exists { path: draft.root().to_owned() }),
+            Self::Import(change) => change.execute(draft, progress),
+            Self::RemoveVolume(change) => change.execute(draft),
+            Self::AddHorizon(change) => change.execute(draft, progress),
+            Self::RenameHorizon(change) => change.execute(draft),
+            Self::RemoveHorizon(change) => change.execute(draft),
+            Self::AddFault(change) => change.execute(draft, progress),
+            Self::SetTruncation(change) => change.execute(draft),
+            Self::RemoveFault(change) => change.execute(draft),
             Self::SetVelocity(change) => change.execute(draft),
             Self::SetContact(change) => change.execute(draft),
             Self::SetLayer(change) => change.execute(draft),
@@ -94,6 +131,9 @@ impl Effect {
     pub fn summary(&self) -> String {
         match self {
             Self::Created => "create".to_owned(),
+            Self::VolumeImported(done) => format!("import volume {}", done.volume),
+            Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
+            Self::FaultAdded(done) => format!("fault {}", done.report.name),
             Self::Changed { summary } => summary.clone(),
         }
     }
@@ -103,4 +143,25 @@ impl Effect {
 fn source_of(path: &Path, reading: String) -> Result<Source, ProjectError> {
     let facts = std::fs::metadata(path).map_err(|source| ProjectError::io("read", path, source))?;
     Ok(Source { path: path.to_owned(), bytes: facts.len(), reading })
+}
+
+impl std::fmt::Display for Effect {
+    /// For the user: what was read and assumed, or what changed.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::VolumeImported(done) => {
+                let [inlines, crosslines, samples] = done.size;
+                writeln!(
+                    f,
+                    "volume '{}': {inlines} inlines, {crosslines} crosslines, {samples} samples; {} traces, {} missing; {} polarity",
+                    done.volume, done.traces, done.missing_traces, done.polarity
+                )?;
+                done.evidence.iter().try_for_each(|line| writeln!(f, "  {line}"))?;
+                done.assumptions.iter().try_for_each(|line| writeln!(f, "  assumed: {line}"))
+            }
+            Self::HorizonAdded(done) => write!(f, "{}", done.report),
+            Self::FaultAdded(done) => write!(f, "{}", done.report),
+            Self::Created | Self::Changed { .. } => f.write_str(&self.summary()),
+        }
+    }
 }

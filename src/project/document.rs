@@ -4,11 +4,13 @@
 //! states differ only where the project does.
 
 use crate::error::{Noun, ProjectError};
+use param::KDefinition;
 use render::Scene;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use survey::{Contact, StratigraphicHorizon, Stratigraphy, SurveyGeometry};
-use ttf::TransferFunctions;
+use ttf::{LayerTtf, RawColour, ScalarTtf, TransferFunctions, TtfSettings};
 
 /// The version this program writes, and the newest it reads.
 pub const VERSION: u32 = 1;
@@ -117,6 +119,32 @@ pub struct TextureEntry {
     pub source: Source,
 }
 
+/// How everything is coloured and textured; what is absent gets a default when it is drawn. Blend and frequency
+/// belong to the scenes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Style {
+    /// The volume shown as raw data and its colours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub raw: Option<RawColour>,
+    /// Styles of layers.
+    pub layers: LayerTtf,
+    /// Textures by the values of volumes, composited first to last.
+    pub scalars: Vec<ScalarTtf>,
+}
+
+impl Style {
+    /// The same as transfer functions.
+    pub fn functions(&self) -> TransferFunctions {
+        TransferFunctions {
+            settings: TtfSettings::default(),
+            raw: self.raw.clone(),
+            layers: self.layers.clone(),
+            scalars: self.scalars.clone(),
+        }
+    }
+}
+
 /// A view with a name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -153,9 +181,12 @@ pub struct Document {
     /// The user's own tiles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub textures: Vec<TextureEntry>,
-    /// Textures of layers and volumes, colours of raw data. What is absent gets a default when it is drawn.
+    /// Textures of layers and volumes, colours of raw data.
     #[serde(default)]
-    pub style: TransferFunctions,
+    pub style: Style,
+    /// Definitions of k by layer name; others have the usual one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub k: BTreeMap<String, KDefinition>,
     /// Named views.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneEntry>,
@@ -176,7 +207,8 @@ impl Document {
             horizons: Vec::new(),
             faults: Vec::new(),
             textures: Vec::new(),
-            style: TransferFunctions::default(),
+            style: Style::default(),
+            k: BTreeMap::new(),
             scenes: Vec::new(),
         }
     }
@@ -228,6 +260,7 @@ impl Document {
                 return Err(format!("two {noun}s are named \"{}\"", twice.1));
             }
         }
+        self.check_truncation().map_err(|error| error.to_string())?;
         // A path that leaves the folder would let a project read, and a prune delete, what is not its own.
         for file in self.files() {
             let inside = Path::new(file).components().all(|part| matches!(part, std::path::Component::Normal(_)));
@@ -271,6 +304,26 @@ impl Document {
     /// [`ProjectError::NoGeometry`] while there is none.
     pub fn frame(&self) -> Result<&SurveyGeometry, ProjectError> {
         self.geometry.as_ref().ok_or(ProjectError::NoGeometry)
+    }
+
+    /// Refuses faults that end at one another in a circle, and at faults there are not.
+    ///
+    /// # Errors
+    /// [`ProjectError::Unknown`] or [`ProjectError::CircularTruncation`].
+    pub fn check_truncation(&self) -> Result<(), ProjectError> {
+        for fault in &self.faults {
+            let mut path = vec![fault.name.clone()];
+            let mut next = fault.truncated_by.as_deref();
+            while let Some(name) = next {
+                let index = self.position(Noun::Fault, name)?;
+                path.push(name.to_owned());
+                if path.len() > self.faults.len() + 1 || name == fault.name {
+                    return Err(ProjectError::CircularTruncation { path });
+                }
+                next = self.faults[index].truncated_by.as_deref();
+            }
+        }
+        Ok(())
     }
 
     /// The position of a named thing.

@@ -5,11 +5,21 @@
 
 use super::document::Document;
 use crate::error::{Noun, ProjectError};
+use param::KDefinition;
 
 impl Document {
     /// The layer names, youngest first.
     pub fn layers(&self) -> Vec<String> {
         self.stratigraphy().layer_names_bottom_up().into_iter().rev().collect()
+    }
+
+    /// The definition of k of each layer, deepest first, as the parameterization takes them; empty when all are the usual one.
+    pub fn k_definitions(&self) -> Vec<KDefinition> {
+        if self.k.is_empty() {
+            return Vec::new();
+        }
+        let names = self.stratigraphy().layer_names_bottom_up();
+        names.iter().map(|name| self.k.get(name).copied().unwrap_or_default()).collect()
     }
 
     /// Runs a change that keeps the number of layers, and takes styles along when their layers' names change.
@@ -66,7 +76,7 @@ impl Document {
         })
     }
 
-    /// Moves styles from old to new layer names at once; those without a new name are dropped.
+    /// Moves styles and definitions of k from old to new layer names at once; those without a new name are dropped.
     fn rename_styles<'a>(&mut self, names: impl Iterator<Item = (&'a str, Option<&'a str>)>) {
         let names: Vec<_> = names.collect();
         let styles = std::mem::take(&mut self.style.layers.styles);
@@ -78,6 +88,9 @@ impl Document {
                 Some(style)
             })
             .collect();
+        let k = std::mem::take(&mut self.k);
+        let now = |before: &str| names.iter().find(|(name, _)| *name == before)?.1.map(str::to_owned);
+        self.k = k.into_iter().filter_map(|(name, k)| Some((now(&name)?, k))).collect();
     }
 }
 

@@ -18,6 +18,7 @@ pub mod document;
 mod draft;
 mod history;
 mod layers;
+pub mod placement;
 mod storage;
 
 pub use document::{Document, Polarity};

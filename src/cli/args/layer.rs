@@ -50,6 +50,9 @@ pub(in crate::cli) struct LayerSetArgs {
     /// Opacity inside a cut-out, 0 to 1
     #[arg(long, value_name = "0..1")]
     pub(in crate::cli) opacity: Option<f32>,
+    /// What k means in the layer: distance-ratio, parallel-to-bottom or parallel-to-top
+    #[arg(long, value_name = "DEFINITION")]
+    pub(in crate::cli) k: Option<String>,
     /// Pattern of a part of the layer's depth, 0 at the base to 1 at the top; repeat it for each part
     #[arg(long, value_name = "LOW,HIGH,PATTERN[,OPACITY]")]
     pub(in crate::cli) interval: Vec<String>,

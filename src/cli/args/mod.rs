@@ -1,9 +1,15 @@
 //! What can be typed.
 
+mod interpretation;
 mod layer;
+mod output;
 mod scene;
 
+pub(super) use interpretation::{
+    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, SegyArgs, VolumeAction,
+};
 pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, TextureArgs};
+pub(super) use output::{BenchArgs, DemoArgs, ParameterizeArgs, RenderArgs, SynthArgs};
 pub(super) use scene::{SceneAction, ViewArgs};
 
 use clap::{Args, Parser, Subcommand};
@@ -22,17 +28,42 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Action {
+    /// From a synthetic survey to finished pictures: the whole chain
+    #[command(after_help = "Example:\n  petroglyph demo --out out/demo")]
+    Demo(DemoArgs),
+    /// Make a synthetic survey with its interpretation and its truth
+    #[command(after_help = "Example:\n  petroglyph synth out/synth --size 128x128x128 --seed 7 --snr 3")]
+    Synth(SynthArgs),
     /// Say what a file or project holds
     #[command(after_help = "Example:\n  petroglyph info survey.sgy\n  petroglyph info north.petro --json")]
     Info {
-        /// SEG-Y file, horizon or fault file, or project folder
+        /// SEG-Y file, or project folder
         path: PathBuf,
+        #[command(flatten)]
+        segy: SegyArgs,
     },
     /// Begin a project without seismic
     #[command(
         after_help = "Example:\n  petroglyph create sketch.petro --bounds 0,5000,0,4000,0,2000 --size 201x161x101 --z-unit m"
     )]
     Create(CreateArgs),
+    /// Read a SEG-Y volume into a project
+    #[command(
+        after_help = "Examples:\n  petroglyph import survey.sgy north.petro\n  petroglyph import impedance.sgy north.petro --name impedance --inline-byte 9 --crossline-byte 21"
+    )]
+    Import(ImportArgs),
+    /// Volumes of a project
+    #[command(subcommand)]
+    Volume(VolumeAction),
+    /// Horizons of a project
+    #[command(subcommand)]
+    Horizon(HorizonAction),
+    /// Faults of a project
+    #[command(subcommand)]
+    Fault(FaultAction),
+    /// Write a horizon to a file
+    #[command(after_help = "Example:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap")]
+    Export(ExportArgs),
     /// State the velocity that turns two-way time into metres
     #[command(after_help = "Example:\n  petroglyph velocity north.petro 2500")]
     Velocity {
@@ -56,6 +87,26 @@ pub(super) enum Action {
     /// Named views
     #[command(subcommand)]
     Scene(SceneAction),
+    /// Work out the layer coordinates i, j, k and keep them in the project
+    #[command(after_help = "Example:\n  petroglyph parameterize north.petro --size 128x128x128")]
+    Parameterize(ParameterizeArgs),
+    /// Draw a picture
+    #[command(
+        after_help = "Examples:\n  petroglyph render north.petro block.png\n  petroglyph render north.petro half.png --blend 0.5 --cut nearest,0.5,0.4 --azimuth 30 --size 2400x1800 --dpi 300"
+    )]
+    Render(RenderArgs),
+    /// Draw a sheet of every pattern with its name
+    #[command(after_help = "Example:\n  petroglyph patterns patterns.png")]
+    Patterns {
+        /// PNG file to write
+        out: PathBuf,
+        /// Project whose own tiles are shown too
+        #[arg(long)]
+        project: Option<PathBuf>,
+    },
+    /// Measure how long the stages take on this machine
+    #[command(after_help = "Example:\n  petroglyph bench --quick --json")]
+    Bench(BenchArgs),
     /// Go back by one command
     #[command(after_help = "Example:\n  petroglyph undo north.petro")]
     Undo {

@@ -1,0 +1,48 @@
+# The habits of this project. Everything runs on a fresh Debian that has Rust.
+#
+#   make demo    synthetic survey -> SEG-Y -> import -> layers -> three pictures in out/demo
+#   make test    all tests
+#   make check   formatting, lints and documentation, warnings denied
+#   make bench   how long our stages take on this machine
+
+OUT ?= out/demo
+PETROGLYPH = target/debug/petroglyph
+
+.PHONY: demo test check bench setup build
+
+build: setup
+	cargo build --locked
+
+demo: build
+	$(PETROGLYPH) demo --out $(OUT)
+
+test: setup
+	cargo test --workspace --locked
+
+check: setup
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets --locked -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+
+bench: build
+	$(PETROGLYPH) bench --quick
+
+# What Rust alone does not bring: a C compiler for the compression library, and a Vulkan driver (Mesa's software
+# driver serves where there is no GPU). Skipped at once when all is there.
+setup:
+	@missing=""; \
+	command -v cc >/dev/null || missing="$$missing build-essential"; \
+	PATH="$$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1' || missing="$$missing libvulkan1"; \
+	ls /usr/share/vulkan/icd.d /etc/vulkan/icd.d 2>/dev/null | grep -q json || missing="$$missing mesa-vulkan-drivers"; \
+	[ -z "$$missing" ] && exit 0; \
+	sudo=""; \
+	[ "$$(id -u)" = 0 ] || sudo="sudo"; \
+	if command -v apt-get >/dev/null && { [ -z "$$sudo" ] || command -v sudo >/dev/null; }; then \
+		echo "installing:$$missing"; \
+		$$sudo apt-get update -q && $$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $$missing; \
+	else \
+		echo "These system packages are missing:$$missing"; \
+		echo "On Debian or Ubuntu, as root: apt-get install$$missing"; \
+		echo "Elsewhere: a C compiler, the Vulkan loader, and a Vulkan driver (Mesa's lavapipe serves without a GPU)."; \
+		exit 1; \
+	fi

@@ -1,0 +1,242 @@
+//! What can be typed about volumes, horizons and faults.
+
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ImportArgs {
+    /// SEG-Y file
+    pub(in crate::cli) survey: PathBuf,
+    /// Project folder; made when it is not there
+    pub(in crate::cli) project: PathBuf,
+    /// Name of the volume [default: seismic, for further ones the file's name]
+    #[arg(long)]
+    pub(in crate::cli) name: Option<String>,
+    /// What a positive amplitude means: normal (SEG: more impedance) or reverse
+    #[arg(long, default_value = "normal", value_name = "normal|reverse")]
+    pub(in crate::cli) polarity: String,
+    #[command(flatten)]
+    pub(in crate::cli) segy: SegyArgs,
+}
+
+/// What the user states about a SEG-Y file.
+#[derive(Debug, Default, Args)]
+pub(in crate::cli) struct SegyArgs {
+    /// Trace header byte of the inline number
+    #[arg(long, value_name = "B")]
+    pub(in crate::cli) inline_byte: Option<u16>,
+    /// Trace header byte of the crossline number
+    #[arg(long, value_name = "B")]
+    pub(in crate::cli) crossline_byte: Option<u16>,
+    /// Trace header byte of X
+    #[arg(long, value_name = "B")]
+    pub(in crate::cli) x_byte: Option<u16>,
+    /// Trace header byte of Y
+    #[arg(long, value_name = "B")]
+    pub(in crate::cli) y_byte: Option<u16>,
+    /// Sample interval, in the vertical unit
+    #[arg(long, value_name = "STEP")]
+    pub(in crate::cli) interval: Option<f64>,
+    /// Value of the first sample, in the vertical unit
+    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
+    pub(in crate::cli) start: Option<f64>,
+    /// Vertical unit: ms, m or ft
+    #[arg(long = "vertical-unit", value_name = "UNIT")]
+    pub(in crate::cli) vertical_unit: Option<String>,
+    /// Unit of X and Y: m or ft
+    #[arg(long, value_name = "UNIT")]
+    pub(in crate::cli) coordinate_unit: Option<String>,
+    /// Ignore X and Y: square bins of this size in metres, from 0, 0
+    #[arg(long = "bin", value_name = "M")]
+    pub(in crate::cli) bin_m: Option<f64>,
+    /// Trace weight at byte 169: apply or ignore [default: apply]
+    #[arg(long, value_name = "apply|ignore")]
+    pub(in crate::cli) trace_weight: Option<String>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum VolumeAction {
+    /// List the volumes
+    #[command(after_help = "Example:\n  petroglyph volume list north.petro")]
+    List {
+        /// Project folder
+        project: PathBuf,
+    },
+    /// Take a volume away
+    #[command(after_help = "Example:\n  petroglyph volume remove north.petro impedance")]
+    Remove {
+        /// Project folder
+        project: PathBuf,
+        /// Volume
+        name: String,
+    },
+}
+
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum HorizonAction {
+    /// Read a horizon
+    #[command(
+        after_help = "Examples:\n  petroglyph horizon add north.petro top.irap --name \"Top Chalk\"\n  petroglyph horizon add north.petro a.csv --name A --z-unit ms --z-positive up --z-factor 0.3333 --contact erosional"
+    )]
+    Add(HorizonAddArgs),
+    /// List the horizons, youngest first
+    #[command(after_help = "Example:\n  petroglyph horizon list north.petro")]
+    List {
+        /// Project folder
+        project: PathBuf,
+    },
+    /// Say what a horizon holds: depths, holes, sheets, source
+    #[command(after_help = "Example:\n  petroglyph horizon show north.petro \"Top Chalk\"")]
+    Show {
+        /// Project folder
+        project: PathBuf,
+        /// Horizon
+        name: String,
+    },
+    /// Give a horizon another name
+    #[command(after_help = "Example:\n  petroglyph horizon rename north.petro A \"Top Chalk\"")]
+    Rename {
+        /// Project folder
+        project: PathBuf,
+        /// Horizon
+        from: String,
+        /// New name
+        to: String,
+    },
+    /// Say what a horizon does to its neighbours
+    #[command(after_help = "Example:\n  petroglyph horizon contact north.petro \"Base Tertiary\" erosional")]
+    Contact {
+        /// Project folder
+        project: PathBuf,
+        /// Horizon
+        name: String,
+        /// conformable, erosional, onlap or intrusive
+        contact: String,
+    },
+    /// Take a horizon away
+    #[command(after_help = "Example:\n  petroglyph horizon remove north.petro \"Top Chalk\"")]
+    Remove {
+        /// Project folder
+        project: PathBuf,
+        /// Horizon
+        name: String,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct HorizonAddArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Horizon file
+    pub(in crate::cli) file: PathBuf,
+    /// Name of the horizon
+    #[arg(long)]
+    pub(in crate::cli) name: String,
+    /// What it does to its neighbours: conformable, erosional, onlap or intrusive [default: conformable]
+    #[arg(long)]
+    pub(in crate::cli) contact: Option<String>,
+    /// Put it just above this horizon [default: by its depth]
+    #[arg(long, value_name = "HORIZON", conflicts_with = "below")]
+    pub(in crate::cli) above: Option<String>,
+    /// Put it just below this horizon [default: by its depth]
+    #[arg(long, value_name = "HORIZON")]
+    pub(in crate::cli) below: Option<String>,
+    #[command(flatten)]
+    pub(in crate::cli) reading: ReadingArgs,
+}
+
+/// What the user states about a horizon or fault file.
+#[derive(Debug, Default, Args)]
+pub(in crate::cli) struct ReadingArgs {
+    /// Format of the file [default: recognised]
+    #[arg(long)]
+    pub(in crate::cli) format: Option<String>,
+    /// Vertical unit of the file [default: as the file says, else the project's]
+    #[arg(long, value_name = "ms|s|m|ft")]
+    pub(in crate::cli) z_unit: Option<String>,
+    /// Sign of the file [default: as the file says, else down]
+    #[arg(long, value_name = "down|up")]
+    pub(in crate::cli) z_positive: Option<String>,
+    /// Factor on the file's values, before sign and unit
+    #[arg(long, value_name = "F", allow_hyphen_values = true)]
+    pub(in crate::cli) z_factor: Option<f64>,
+    /// Value that marks nodes without data
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    pub(in crate::cli) null: Option<f64>,
+    /// Name in the file, where it holds several
+    #[arg(long, value_name = "NAME")]
+    pub(in crate::cli) select: Option<String>,
+    /// Columns of a table in order, such as `inline,crossline,z` or `x,y,-,z`
+    #[arg(long, value_name = "LIST")]
+    pub(in crate::cli) columns: Option<String>,
+    /// What places points that have both line numbers and coordinates
+    #[arg(long, value_name = "lines|xy")]
+    pub(in crate::cli) place_by: Option<String>,
+    /// Scattered points: a node further than this from every point is a hole
+    #[arg(long = "gap", value_name = "M")]
+    pub(in crate::cli) gap_m: Option<f64>,
+}
+
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum FaultAction {
+    /// Read a fault
+    #[command(
+        after_help = "Examples:\n  petroglyph fault add north.petro f1.ts --name F1\n  petroglyph fault add north.petro sticks.dat --name F2 --z-unit ms --truncated-by F1"
+    )]
+    Add(FaultAddArgs),
+    /// List the faults
+    #[command(after_help = "Example:\n  petroglyph fault list north.petro")]
+    List {
+        /// Project folder
+        project: PathBuf,
+    },
+    /// Say at which fault another one ends
+    #[command(after_help = "Example:\n  petroglyph fault truncate north.petro F2 --by F1")]
+    Truncate {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        name: String,
+        /// The fault it ends at [default: none]
+        #[arg(long, value_name = "FAULT")]
+        by: Option<String>,
+    },
+    /// Take a fault away
+    #[command(after_help = "Example:\n  petroglyph fault remove north.petro F1")]
+    Remove {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        name: String,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct FaultAddArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Fault file
+    pub(in crate::cli) file: PathBuf,
+    /// Name of the fault
+    #[arg(long)]
+    pub(in crate::cli) name: String,
+    /// The fault it ends at
+    #[arg(long, value_name = "FAULT")]
+    pub(in crate::cli) truncated_by: Option<String>,
+    #[command(flatten)]
+    pub(in crate::cli) reading: ReadingArgs,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ExportArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// File to write
+    pub(in crate::cli) out: PathBuf,
+    /// Horizon
+    #[arg(long, value_name = "NAME")]
+    pub(in crate::cli) horizon: String,
+    /// Format of the file [default: by its extension]
+    #[arg(long)]
+    pub(in crate::cli) format: Option<String>,
+}

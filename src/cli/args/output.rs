@@ -1,0 +1,68 @@
+//! What can be typed about pictures, synthetic surveys and measurements.
+
+use super::ViewArgs;
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct RenderArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// PNG file to write
+    pub(in crate::cli) out: PathBuf,
+    /// Named view of the project, or a TOML file [default: the project's first, else a three-quarter view]
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(in crate::cli) scene: Option<String>,
+    /// Dots per inch, written into the picture: sets its printed size
+    #[arg(long, value_name = "D", default_value_t = 300.0)]
+    pub(in crate::cli) dpi: f64,
+    /// Way of drawing: illustrate
+    #[arg(long, value_name = "illustrate", default_value = "illustrate")]
+    pub(in crate::cli) technique: String,
+    /// What draws: the graphics adapter, or the processor when there is none; or one of them
+    #[arg(long, value_name = "auto|gpu|cpu", default_value = "auto")]
+    pub(in crate::cli) device: String,
+    #[command(flatten)]
+    pub(in crate::cli) view: ViewArgs,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ParameterizeArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Samples of the stored arrays along inlines, crosslines and depth [default: the survey's]
+    #[arg(long, value_name = "NxNxN")]
+    pub(in crate::cli) size: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct SynthArgs {
+    /// Folder to write into; made when it is not there
+    pub(in crate::cli) out: PathBuf,
+    /// Inlines, crosslines and samples
+    #[arg(long, value_name = "NxNxN", default_value = "128x128x128")]
+    pub(in crate::cli) size: String,
+    /// Number that chooses directions, beds and noise
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    pub(in crate::cli) seed: u64,
+    /// RMS signal over RMS noise; `none` for no noise
+    #[arg(long, value_name = "R", default_value = "4")]
+    pub(in crate::cli) snr: String,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct DemoArgs {
+    /// Folder to write into
+    #[arg(long, value_name = "DIR", default_value = "out/demo")]
+    pub(in crate::cli) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct BenchArgs {
+    /// Small sizes: seconds instead of minutes
+    #[arg(long)]
+    pub(in crate::cli) quick: bool,
+    /// Write the model that is measured here as NumPy files, to time other programs on
+    #[arg(long, value_name = "DIR")]
+    pub(in crate::cli) dump: Option<PathBuf>,
+}

@@ -1,0 +1,92 @@
+//! `petroglyph render`: a picture, and what was assumed to make it.
+
+use super::report::Report;
+use super::request::RenderRequest;
+use super::run::scene_file;
+use crate::picture::{self, Painter};
+use crate::project::Project;
+use crate::{pipeline, scene};
+use render::Scene;
+use std::path::Path;
+use survey::{Progress, VerticalUnit};
+
+/// Millimetres in an inch.
+const INCH_MM: f64 = 25.4;
+
+/// Draws the picture.
+pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Result<Report> {
+    let project = Project::open(&request.project)?;
+    let document = project.document();
+    let mut scene = choose(&project, request.scene.as_deref())?;
+    request.view.change(&mut scene, document.frame()?);
+    if document.volumes.is_empty() && scene.blend > 0.0 {
+        progress.warn("the project has no volume to blend to: the picture is illustrative throughout");
+        scene.blend = 0.0;
+    }
+    scene.validate(document.frame()?)?;
+    let loaded = pipeline::load(&project, &scene, progress)?;
+    let mut painter = Painter::new(request.device, progress)?;
+    let (image, stage) = painter.draw(&scene, &loaded, progress)?;
+    picture::write_png(&request.out, &image, request.dpi)?;
+
+    let mut stages = loaded.rock.map(|rock| rock.stages).unwrap_or_default();
+    stages.push(stage);
+    let [width, height] = scene.size_px;
+    let mm = |pixels: u32| f64::from(pixels) / request.dpi * INCH_MM;
+    let mut report = Report::default();
+    report.say(format!(
+        "{}: {width} x {height} pixels, {:.0} x {:.0} mm at {} dpi",
+        request.out.display(),
+        mm(width),
+        mm(height),
+        request.dpi
+    ));
+    let assumed = assumptions(&project, &scene);
+    assumed.iter().for_each(|line| {
+        report.say(format!("  {line}"));
+    });
+    report
+        .field("file", &request.out)
+        .field("size_px", scene.size_px)
+        .field("dpi", request.dpi)
+        .field("exaggeration", scene.exaggeration)
+        .field("blend", scene.blend)
+        .field("assumptions", assumed)
+        .field("stages", stages);
+    Ok(report)
+}
+
+/// A named scene, or a file.
+fn choose(project: &Project, wanted: Option<&str>) -> anyhow::Result<Scene> {
+    match wanted {
+        Some(file) if file.ends_with(".toml") => scene_file(Path::new(file)),
+        name => Ok(scene::choose(project.document(), name)?),
+    }
+}
+
+/// What a reader of the picture must know to trust it.
+fn assumptions(project: &Project, scene: &Scene) -> Vec<String> {
+    let document = project.document();
+    let mut lines = Vec::new();
+    let in_time = document.geometry.as_ref().filter(|frame| frame.vertical.unit == VerticalUnit::Milliseconds);
+    match in_time {
+        Some(frame) => lines.push(format!(
+            "vertical exaggeration {} at {} m/s, the velocity that turns two-way time into metres",
+            scene.exaggeration, frame.velocity_m_s
+        )),
+        None => lines.push(format!("vertical exaggeration {}", scene.exaggeration)),
+    }
+    if scene.blend > 0.0 || document.horizons.is_empty() {
+        let shown = scene.raw.as_ref().or(document.style.raw.as_ref()).map(|raw| raw.volume.as_str());
+        let entry = document.volumes.iter().find(|entry| shown.is_none_or(|name| name == entry.name));
+        if let Some(entry) = entry {
+            lines.push(format!("raw data: volume {}, {} polarity", entry.name, entry.polarity));
+        }
+    }
+    let styled = |name: &String| document.style.layers.style(name).is_some();
+    let by_default: Vec<String> = document.layers().into_iter().filter(|name| !styled(name)).collect();
+    if !document.horizons.is_empty() && !by_default.is_empty() {
+        lines.push(format!("patterns chosen by default: {}", by_default.join(", ")));
+    }
+    lines
+}

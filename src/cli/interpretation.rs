@@ -1,0 +1,176 @@
+//! What was meant by the options of volumes, horizons and faults.
+
+use super::args::{
+    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, SegyArgs,
+};
+use super::request::{Listing, Request, Usage};
+use crate::command::{
+    AddFault, AddHorizon, Age, Command, ImportVolume, RemoveFault, RemoveHorizon, RenameHorizon, SetContact, SetTruncation,
+};
+use crate::project::Polarity;
+use survey::Contact;
+use survey::formats::{Column, Format, ImportOptions, PlaceBy, ZPositive, ZUnit};
+use survey::segy::{FileUnit, LengthUnit, SegyOptions, TraceWeight};
+
+/// One of several words.
+fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {
+    words.iter().find(|(word, _)| word.eq_ignore_ascii_case(text)).map(|(_, value)| *value).ok_or_else(|| {
+        let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+        format!("{option} {text}: expected {}", known.join(", "))
+    })
+}
+
+pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
+    let vertical = [("ms", FileUnit::Milliseconds), ("m", FileUnit::Metres), ("ft", FileUnit::Feet)];
+    let length = [("m", LengthUnit::Metres), ("ft", LengthUnit::Feet)];
+    let weight = [("apply", TraceWeight::Apply), ("ignore", TraceWeight::Ignore)];
+    Ok(SegyOptions {
+        inline_byte: typed.inline_byte,
+        crossline_byte: typed.crossline_byte,
+        x_byte: typed.x_byte,
+        y_byte: typed.y_byte,
+        interval: typed.interval,
+        start: typed.start,
+        vertical_unit: typed.vertical_unit.as_deref().map(|t| word("--vertical-unit", t, &vertical)).transpose()?,
+        coordinate_unit: typed.coordinate_unit.as_deref().map(|t| word("--coordinate-unit", t, &length)).transpose()?,
+        bin_m: typed.bin_m,
+        trace_weight: typed
+            .trace_weight
+            .as_deref()
+            .map(|t| word("--trace-weight", t, &weight))
+            .transpose()?
+            .unwrap_or_default(),
+        ..SegyOptions::default()
+    })
+}
+
+pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
+    let polarity = [("normal", Polarity::Normal), ("reverse", Polarity::Reverse)];
+    Ok(ImportVolume {
+        options: segy_options(&typed.segy)?,
+        path: typed.survey,
+        name: typed.name,
+        polarity: word("--polarity", &typed.polarity, &polarity)?,
+    })
+}
+
+fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage> {
+    let units =
+        [("ms", ZUnit::Milliseconds), ("s", ZUnit::Seconds), ("m", ZUnit::Metres), ("ft", ZUnit::Feet)];
+    let signs = [("down", ZPositive::Down), ("up", ZPositive::Up)];
+    let places = [("lines", PlaceBy::Lines), ("xy", PlaceBy::World)];
+    let z_factor = typed.z_factor.unwrap_or(1.0);
+    if !(z_factor.is_finite() && z_factor != 0.0) {
+        return Err(format!("--z-factor {z_factor}: expected a number other than 0"));
+    }
+    if let Some(gap) = typed.gap_m.filter(|gap| !(*gap > 0.0 && gap.is_finite())) {
+        return Err(format!("--gap {gap}: expected a positive number of metres"));
+    }
+    let columns = typed
+        .columns
+        .as_deref()
+        .map(Column::parse_list)
+        .transpose()
+        .map_err(|unknown| format!("--columns: \"{unknown}\" is no column; expected inline, crossline, x, y, z, name, stick or -"))?;
+    Ok(ImportOptions {
+        format: typed.format.as_deref().map(format).transpose()?,
+        z_unit: typed.z_unit.as_deref().map(|t| word("--z-unit", t, &units)).transpose()?,
+        z_positive: typed.z_positive.as_deref().map(|t| word("--z-positive", t, &signs)).transpose()?,
+        z_factor,
+        null: typed.null,
+        name: None,
+        select: typed.select,
+        columns,
+        place_by: typed.place_by.as_deref().map(|t| word("--place-by", t, &places)).transpose()?,
+        gap_m: typed.gap_m,
+    })
+}
+
+fn format(name: &str) -> Result<Format, Usage> {
+    Format::from_name(name).ok_or_else(|| format!("--format {name}: expected one of {}", formats()))
+}
+
+fn formats() -> String {
+    Format::all().map(Format::name).collect::<Vec<_>>().join(", ")
+}
+
+fn contact(option: &str, text: &str) -> Result<Contact, Usage> {
+    let contacts = [
+        ("conformable", Contact::Conformable),
+        ("erosional", Contact::Erosional),
+        ("onlap", Contact::Onlap),
+        ("intrusive", Contact::Intrusive),
+    ];
+    word(option, text, &contacts)
+}
+
+fn add_horizon(typed: HorizonAddArgs) -> Result<Request, Usage> {
+    let age = match (typed.above, typed.below) {
+        (Some(name), _) => Age::Above(name),
+        (None, Some(name)) => Age::Below(name),
+        (None, None) => Age::ByDepth,
+    };
+    let command = AddHorizon {
+        path: typed.file,
+        name: typed.name,
+        contact: typed.contact.as_deref().map(|t| contact("--contact", t)).transpose()?.unwrap_or_default(),
+        age,
+        options: import_options(typed.reading)?,
+    };
+    Ok(Request::Change { project: typed.project, command: Command::AddHorizon(command) })
+}
+
+pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
+    Ok(match action {
+        HorizonAction::Add(typed) => add_horizon(typed)?,
+        HorizonAction::List { project } => Request::List { project, what: Listing::Horizons },
+        HorizonAction::Show { project, name } => Request::List { project, what: Listing::Horizon(name) },
+        HorizonAction::Rename { project, from, to } => {
+            Request::Change { project, command: Command::RenameHorizon(RenameHorizon { from, to }) }
+        }
+        HorizonAction::Contact { project, name, contact: text } => {
+            let contact = contact("contact", &text)?;
+            Request::Change { project, command: Command::SetContact(SetContact { horizon: name, contact }) }
+        }
+        HorizonAction::Remove { project, name } => {
+            Request::Change { project, command: Command::RemoveHorizon(RemoveHorizon { name }) }
+        }
+    })
+}
+
+fn add_fault(typed: FaultAddArgs) -> Result<Request, Usage> {
+    let command = AddFault {
+        path: typed.file,
+        name: typed.name,
+        truncated_by: typed.truncated_by,
+        options: import_options(typed.reading)?,
+    };
+    Ok(Request::Change { project: typed.project, command: Command::AddFault(command) })
+}
+
+pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
+    Ok(match action {
+        FaultAction::Add(typed) => add_fault(typed)?,
+        FaultAction::List { project } => Request::List { project, what: Listing::Faults },
+        FaultAction::Truncate { project, name, by } => {
+            Request::Change { project, command: Command::SetTruncation(SetTruncation { fault: name, by }) }
+        }
+        FaultAction::Remove { project, name } => {
+            Request::Change { project, command: Command::RemoveFault(RemoveFault { name }) }
+        }
+    })
+}
+
+pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
+    let format = match typed.format.as_deref() {
+        Some(name) => format(name)?,
+        None => {
+            let extension = typed.out.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
+            let found = Format::all().find(|format| format.extension().eq_ignore_ascii_case(extension));
+            found.ok_or_else(|| {
+                format!("{}: the extension names no format; give --format, one of {}", typed.out.display(), formats())
+            })?
+        }
+    };
+    Ok(Request::Export { project: typed.project, out: typed.out, horizon: typed.horizon, format })
+}

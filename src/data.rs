@@ -1,0 +1,109 @@
+//! Bulk data of a project: reading it under the name the project gives it, and the hashes that identify it.
+//!
+//! A hash covers what a computation depends on, values and their place, and nothing else: not names, not files.
+
+use crate::error::ProjectError;
+use crate::project::document::{FaultEntry, HorizonEntry, VolumeEntry};
+use std::path::Path;
+use survey::store::{self, StoredVolume};
+use survey::{Cancelled, Fault, Horizon, Progress, Volume};
+
+/// Samples hashed between two looks at whether the user cancelled.
+const HASH_CHUNK: usize = 1 << 20;
+
+/// BLAKE3 of a volume's size, samples and live-trace mask.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn hash_volume(volume: &Volume<f32>, progress: &Progress) -> Result<String, Cancelled> {
+    let mut hash = blake3::Hasher::new();
+    hash.update(bytemuck::cast_slice(&volume.size().map(|count| count as u64)));
+    for chunk in volume.samples().chunks(HASH_CHUNK) {
+        hash.update(bytemuck::cast_slice(chunk));
+        progress.check()?;
+    }
+    let live: Vec<u8> = volume.live().unwrap_or_default().iter().map(|live| u8::from(*live)).collect();
+    hash.update(&live);
+    Ok(hash.finalize().to_hex().to_string())
+}
+
+/// BLAKE3 of a horizon's sheets.
+pub fn hash_horizon(horizon: &Horizon) -> String {
+    let mut hash = blake3::Hasher::new();
+    for sheet in &horizon.sheets {
+        let block = sheet.block.map_or(u64::MAX, u64::from);
+        let count = sheet.grid.count.map(|count| count as u64);
+        hash.update(bytemuck::cast_slice(&[block, count[0], count[1]]));
+        for place in [sheet.grid.origin, sheet.grid.u_step, sheet.grid.v_step] {
+            hash.update(bytemuck::cast_slice(&place.to_array()));
+        }
+        hash.update(bytemuck::cast_slice(&sheet.depth));
+        let quality: Vec<u8> = sheet.quality.iter().map(|quality| *quality as u8).collect();
+        hash.update(&quality);
+    }
+    hash.finalize().to_hex().to_string()
+}
+
+/// BLAKE3 of a fault's triangles.
+pub fn hash_fault(fault: &Fault) -> String {
+    let mut hash = blake3::Hasher::new();
+    hash.update(&(fault.mesh.vertices.len() as u64).to_le_bytes());
+    for vertex in &fault.mesh.vertices {
+        hash.update(bytemuck::cast_slice(&vertex.to_array()));
+    }
+    hash.update(bytemuck::cast_slice(&fault.mesh.triangles));
+    hash.finalize().to_hex().to_string()
+}
+
+/// Reads a volume of the project in `root`.
+///
+/// # Errors
+/// Missing or damaged data, or cancelled.
+pub fn read_volume(root: &Path, entry: &VolumeEntry, progress: &Progress) -> Result<Volume<f32>, ProjectError> {
+    Ok(StoredVolume::open(&root.join(&entry.file))?.read_f32(0, progress)?)
+}
+
+/// Reads a horizon of the project in `root`.
+///
+/// # Errors
+/// Missing or damaged data, or cancelled.
+pub fn read_horizon(root: &Path, entry: &HorizonEntry, progress: &Progress) -> Result<Horizon, ProjectError> {
+    let horizon = store::read_horizon(&root.join(&entry.file), progress)?;
+    Ok(Horizon { name: entry.name.clone(), ..horizon })
+}
+
+/// Reads a fault of the project in `root`.
+///
+/// # Errors
+/// Missing or damaged data.
+pub fn read_fault(root: &Path, entry: &FaultEntry) -> Result<Fault, ProjectError> {
+    let fault = store::read_fault(&root.join(&entry.file))?;
+    Ok(Fault { name: entry.name.clone(), truncated_by: entry.truncated_by.clone(), ..fault })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::{NodeGrid, Quality, Sheet, SurveyGeometry, VerticalUnit};
+
+    #[test]
+    fn a_hash_sees_values_place_and_mask_but_not_the_name() {
+        let volume = Volume::filled([2, 3, 4], 1.5f32);
+        let mut masked = volume.clone();
+        masked.set_live(Some(vec![true, true, true, true, true, false])).unwrap();
+        let hash = |volume: &Volume<f32>| hash_volume(volume, &Progress::silent()).unwrap();
+        assert_eq!(hash(&volume), hash(&Volume::filled([2, 3, 4], 1.5)));
+        assert_ne!(hash(&volume), hash(&masked));
+        assert_ne!(hash(&volume), hash(&Volume::filled([3, 2, 4], 1.5)));
+
+        let grid = NodeGrid::of_survey(&SurveyGeometry::regular([2, 2, 2], 1.0, 1.0, VerticalUnit::Metres));
+        let horizon = |name: &str, depth: f32, grid: NodeGrid| Horizon {
+            name: name.into(),
+            sheets: vec![Sheet::new(grid, vec![depth; 4], Quality::Picked)],
+        };
+        assert_eq!(hash_horizon(&horizon("a", 1.0, grid)), hash_horizon(&horizon("b", 1.0, grid)));
+        assert_ne!(hash_horizon(&horizon("a", 1.0, grid)), hash_horizon(&horizon("a", 2.0, grid)));
+        let moved = NodeGrid { origin: glam::DVec2::X, ..grid };
+        assert_ne!(hash_horizon(&horizon("a", 1.0, grid)), hash_horizon(&horizon("a", 1.0, moved)));
+    }
+}

@@ -1,0 +1,237 @@
+//! From a project to what renderers take: data read, model built, layers parameterized, styles compiled. Each step is asked for what it
+//! needs and nothing more, and what was computed before is taken from `derived/`.
+
+use crate::error::ProjectError;
+use crate::project::{Document, Project, placement};
+use crate::{data, derived, library, style};
+use glam::Vec3;
+use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
+use render::{Inputs, Lookup, NamedVolume, Scene, VoxelBox};
+use std::time::{Duration, Instant};
+use survey::model::{ModelSettings, StructuralModel};
+use survey::{Progress, SurveyGeometry, Volume};
+use ttf::{BlockExtent, LayerExtent, TtfTables};
+
+/// Printed length of the block's longer side that patterns are sized for, mm: a picture across a page.
+const PRINTED_MM: f64 = 150.0;
+/// Samples along each axis at which mean thicknesses are measured.
+const THICKNESS_SAMPLES: usize = 48;
+
+/// How long something took.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Stage {
+    /// What.
+    pub stage: &'static str,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+impl Stage {
+    pub(crate) fn new(stage: &'static str, took: Duration) -> Self {
+        Self { stage, seconds: took.as_secs_f64() }
+    }
+}
+
+/// The interpretation made solid, with its map to flat space.
+pub struct Rock {
+    /// Regions of every point.
+    pub model: StructuralModel,
+    /// i, j, k.
+    pub parameterization: Parameterization,
+    /// Identifies what it was computed from.
+    pub key: String,
+    /// What was done, and how long it took; nothing for what was kept from before.
+    pub stages: Vec<Stage>,
+}
+
+/// The settings that a project is parameterized with.
+pub fn param_settings(document: &Document) -> ParamSettings {
+    ParamSettings { definitions: document.k_definitions(), ..ParamSettings::default() }
+}
+
+/// Builds the model and its parameterization; `None` for a project without horizons.
+///
+/// # Errors
+/// Damaged data, an interpretation that makes no solid model, or cancelled.
+pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, ProjectError> {
+    let document = project.document();
+    if document.horizons.is_empty() {
+        return Ok(None);
+    }
+    let geometry = document.frame()?;
+    let mut stages = Vec::new();
+    let start = Instant::now();
+    let horizons = document.horizons.iter().map(|entry| data::read_horizon(project.root(), entry, progress));
+    let horizons = horizons.collect::<Result<Vec<_>, _>>()?;
+    let faults = document.faults.iter().map(|entry| data::read_fault(project.root(), entry));
+    let faults = faults.collect::<Result<Vec<_>, _>>()?;
+    let settings = ModelSettings::default();
+    let model =
+        StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
+    stages.push(Stage::new("model", start.elapsed()));
+    let param_settings = param_settings(document);
+    let key = derived::parameterization_key(document, &settings, &param_settings);
+    let parameterization = match derived::load_grids(project.root(), &key) {
+        Some(kept) => kept,
+        None => {
+            let start = Instant::now();
+            let computed = Parameterization::compute(&model, &param_settings, progress)?;
+            stages.push(Stage::new("parameterization", start.elapsed()));
+            derived::keep_grids(project.root(), &key, &computed, progress);
+            computed
+        }
+    };
+    Ok(Some(Rock { model, parameterization, key, stages }))
+}
+
+impl Rock {
+    /// The parameterization sampled on a lattice: the one kept, or sampled now.
+    ///
+    /// # Errors
+    /// A size without samples, or cancelled.
+    pub fn voxels(
+        &self,
+        project: &Project,
+        size: [usize; 3],
+        progress: &Progress,
+    ) -> Result<VoxelParameterization, ProjectError> {
+        match derived::load_volumes(project.root(), &self.key, Some(size), progress) {
+            Some(kept) => Ok(kept),
+            None => Ok(self.parameterization.voxel_volumes(&self.model, size, progress)?),
+        }
+    }
+
+    /// Metres that k = 0 … 1 stands for in each layer, bottom to top: the mean thickness where the layer is there, or the reference
+    /// thickness of an open one.
+    fn thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
+        let size = self.model.size();
+        let counts = size.map(|n| n.min(THICKNESS_SAMPLES));
+        let at = |axis: usize, n: usize| param::corner_aligned(n, counts[axis], size[axis]);
+        let layers = self.model.layer_count();
+        let (mut voxels, mut columns) = (vec![0usize; layers], vec![0usize; layers]);
+        for x in 0..counts[0] {
+            for y in 0..counts[1] {
+                let mut here = vec![0usize; layers];
+                for z in 0..counts[2] {
+                    let region = self.model.region_at(Vec3::new(at(0, x), at(1, y), at(2, z)));
+                    here[usize::from(region.layer)] += 1;
+                }
+                for layer in 0..layers {
+                    voxels[layer] += here[layer];
+                    columns[layer] += usize::from(here[layer] > 0);
+                }
+            }
+        }
+        let step_m = geometry.sample_m() * (size[2] as f64 / counts[2] as f64);
+        let thickness = |layer: usize| {
+            let reference = self.parameterization.grids.iter().filter(|grid| usize::from(grid.region.layer) == layer);
+            let reference = reference.filter_map(|grid| grid.thickness_m).fold(f64::NAN, f64::max);
+            let mean = voxels[layer] as f64 / columns[layer].max(1) as f64 * step_m;
+            (if reference.is_finite() { reference } else { mean }).max(step_m) as f32
+        };
+        (0..layers).map(thickness).collect()
+    }
+}
+
+/// A volume of the project and where it lies.
+pub struct LoadedVolume {
+    /// Its name.
+    pub name: String,
+    /// Its samples.
+    pub volume: Volume<f32>,
+    /// Voxel positions of its first and last sample.
+    pub covers: VoxelBox,
+}
+
+/// Everything a scene of a project is drawn from.
+pub struct Loaded {
+    /// The frame.
+    pub geometry: SurveyGeometry,
+    /// The interpretation, if there is one and the scene shows it.
+    pub rock: Option<Rock>,
+    /// Volumes the scene shows.
+    pub volumes: Vec<LoadedVolume>,
+    /// The packed volume, for that lookup.
+    pub packed: Option<PackedVolume>,
+    /// Compiled styles.
+    pub tables: Option<TtfTables>,
+}
+
+/// Reads and computes what `scene` needs.
+///
+/// # Errors
+/// Damaged data, an interpretation that makes no solid model, styles that cannot be drawn, or cancelled.
+pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
+    let document = project.document();
+    let geometry = document.frame()?.clone();
+    // Raw data alone needs no interpretation, but outlines and ground do.
+    let rock = rock(project, progress)?;
+    let mut functions = style::of_project(document);
+    if let Some(raw) = &scene.raw {
+        functions.raw = Some(raw.clone());
+    }
+    let packed = match (&rock, scene.lookup) {
+        (Some(rock), Lookup::Packed) => {
+            let voxels = rock.voxels(project, geometry.size(), progress)?;
+            let model = &rock.model;
+            Some(PackedVolume::from_voxels(&voxels, geometry.size(), model.layer_count(), model.block_count()))
+        }
+        _ => None,
+    };
+    let tables = match &rock {
+        None => None,
+        Some(rock) => {
+            let library = library::of_project(project.root(), document)?;
+            let block = block_extent(&geometry, rock, document.stratigraphy().layer_names_bottom_up());
+            Some(TtfTables::compile(&functions, &block, &library)?)
+        }
+    };
+    let mut wanted: Vec<&str> = functions.scalars.iter().map(|function| function.volume.as_str()).collect();
+    if let Some(raw) = &functions.raw
+        && (scene.blend > 0.0 || rock.is_none())
+    {
+        wanted.push(&raw.volume);
+    }
+    let mut volumes = Vec::new();
+    for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
+        let covers = placement::covers(&geometry, entry.geometry.as_ref().unwrap_or(&geometry))
+            .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
+        let volume = data::read_volume(project.root(), entry, progress)?;
+        volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
+    }
+    Ok(Loaded { geometry, rock, volumes, packed, tables })
+}
+
+/// What styles are compiled for: sizes in metres, and the layers' names, bottom to top.
+pub(crate) fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>) -> BlockExtent {
+    let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
+    let extent = [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny];
+    let layer = |(name, thickness_m)| LayerExtent { name, thickness_m };
+    BlockExtent {
+        extent_i_m: extent[0] as f32,
+        extent_j_m: extent[1] as f32,
+        layers: names.into_iter().zip(rock.thicknesses_m(geometry)).map(layer).collect(),
+        metres_per_mm: (extent[0].max(extent[1]) / PRINTED_MM) as f32,
+    }
+}
+
+impl Loaded {
+    /// The volumes as renderers take them.
+    pub fn named_volumes(&self) -> Vec<NamedVolume<'_>> {
+        let named = self.volumes.iter();
+        named.map(|loaded| NamedVolume { name: &loaded.name, volume: &loaded.volume, covers: loaded.covers }).collect()
+    }
+
+    /// Everything as renderers take it.
+    pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>]) -> Inputs<'a> {
+        Inputs {
+            geometry: &self.geometry,
+            model: self.rock.as_ref().map(|rock| &rock.model),
+            param: self.rock.as_ref().map(|rock| &rock.parameterization),
+            packed: self.packed.as_ref(),
+            tables: self.tables.as_ref(),
+            volumes,
+            version: 0,
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! Drives the real program in temporary folders: what a user types, what comes out, what is left on disk.
+
+mod bad_input;
+mod chain;
+mod create;
+mod demo;
+mod help;
+mod program;
+mod safety;
