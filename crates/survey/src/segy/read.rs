@@ -66,8 +66,9 @@ impl Sums {
                 let value = f64::from(chunk[lane]);
                 sums[lane] += value;
                 sums_sq[lane] += value * value;
-                mins[lane] = mins[lane].min(chunk[lane]);
-                maxs[lane] = maxs[lane].max(chunk[lane]);
+                // Without the care for NaN of `f32::min`: none are left here.
+                mins[lane] = if chunk[lane] < mins[lane] { chunk[lane] } else { mins[lane] };
+                maxs[lane] = if chunk[lane] > maxs[lane] { chunk[lane] } else { maxs[lane] };
             }
         }
         for &value in rest {
