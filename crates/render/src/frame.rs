@@ -8,7 +8,6 @@ use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
 use glam::{DVec3, Vec3};
 use param::{PackedVolume, Parameterization};
-use survey::SurveyGeometry;
 use survey::model::StructuralModel;
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
 use ttf::{RawColour, TtfTables};
@@ -21,7 +20,6 @@ const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
 /// Everything a picture needs, with names resolved.
 pub(crate) struct Frame<'a> {
     pub scene: &'a Scene,
-    pub geometry: &'a SurveyGeometry,
     pub view: View,
     pub solid: Solid,
     /// The transfer functions with the scene's blend, frequency and raw data.
@@ -74,7 +72,6 @@ impl<'a> Frame<'a> {
         let view = scene.view(inputs.geometry);
         Ok(Self {
             scene,
-            geometry: inputs.geometry,
             tones: tones(&view, &roaming_box.centre(), scene.face_tone),
             view,
             solid: Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry)),

@@ -6,6 +6,7 @@
 use crate::error::RenderError;
 use crate::frame::Frame;
 use crate::inputs::Inputs;
+use crate::outline;
 use crate::scene::Scene;
 use crate::shade::trace;
 use glam::{DVec2, Vec4};
@@ -29,7 +30,9 @@ pub fn render(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Rgb
         })
         .collect::<Result<_, _>>()?;
     // The rows fill the image by construction.
-    Ok(RgbaImage::from_raw(width, height, rows.concat()).unwrap_or_default())
+    let mut image = RgbaImage::from_raw(width, height, rows.concat()).unwrap_or_default();
+    outline::draw(&frame, &mut image);
+    Ok(image)
 }
 
 /// The averaged colour of one pixel, straight 8-bit RGBA.

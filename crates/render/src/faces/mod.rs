@@ -16,6 +16,7 @@ use crate::error::RenderError;
 use crate::frame::{Flat, Frame, MAX_VOLUMES};
 use crate::gpu::Gpu;
 use crate::inputs::Inputs;
+use crate::outline;
 use crate::scene::Scene;
 use image::RgbaImage;
 use layout::FaceParams;
@@ -118,7 +119,8 @@ impl Renderer {
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
         let frame = Frame::new(scene, inputs)?;
         self.upload(&frame, inputs)?;
-        let image = self.draw(&frame, progress)?;
+        let mut image = self.draw(&frame, progress)?;
+        outline::draw(&frame, &mut image);
         Ok(image)
     }
 

@@ -1,7 +1,17 @@
-//! Lines drawn over the faces: their widths, colours and which of them.
+//! Lines drawn over the faces: horizons and faults from the exact sections of the model, and the block's own edges.
+//!
+//! Lines are polylines in voxel space, cut to what is seen by casting rays, and stroked over the finished picture on the CPU,
+//! the same for both renderers.
 //!
 //! Widths are pixels of an image 1000 pixels wide or high (the smaller side) and scale with it, so that a figure looks the same at
 //! any resolution.
+
+mod draw;
+mod hidden;
+mod relief;
+mod solid;
+
+pub(crate) use draw::draw;
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};

@@ -1,0 +1,178 @@
+//! Lines gathered from sections and edges, and stroked over a picture.
+
+use super::hidden::{ASIDE, is_seen, seen_parts};
+use super::relief::relief_lines;
+use super::solid::{EdgeLine, FaceRect, edge_lines, face_rects};
+use super::{NOMINAL_SIDE_PX, Stroke};
+use crate::frame::{Frame, Rock};
+use crate::ground::air_layer;
+use glam::{DVec2, DVec3};
+use image::RgbaImage;
+use rayon::prelude::*;
+use survey::section::{LineKind, Section, SectionPlane};
+use tiny_skia::{LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
+
+/// Seen lines by what they are, pixels.
+#[derive(Debug, Default)]
+pub(crate) struct Lines {
+    pub edges: Vec<Vec<DVec2>>,
+    pub horizons: Vec<Vec<DVec2>>,
+    pub faults: Vec<Vec<DVec2>>,
+}
+
+impl Lines {
+    /// All lines of a picture.
+    pub fn of(frame: &Frame) -> Self {
+        let wanted = frame.scene.outlines;
+        let mut lines = Self::default();
+        if wanted.edges.width_px > 0.0 {
+            let edges = edge_lines(&frame.solid, &frame.view);
+            lines.edges = edges.par_iter().flat_map_iter(|edge| seen_edge(frame, edge)).collect();
+        }
+        if let Some(rock) = frame.rock {
+            for rect in face_rects(&frame.solid, &frame.view) {
+                lines.add_face(frame, rock, &rect);
+            }
+            let relief = relief_lines(frame);
+            lines.faults.extend(relief.faults);
+            lines.horizons.extend(relief.crests);
+        }
+        lines
+    }
+
+    /// The section's lines on one face.
+    fn add_face(&mut self, frame: &Frame, rock: Rock, rect: &FaceRect) {
+        let plane = rect.plane();
+        let section = Section::new(rock.model, &plane);
+        let seen = |points: &[DVec2]| {
+            let points: Vec<DVec3> = points.iter().map(|&st| plane.voxel(st)).collect();
+            seen_parts(&frame.view, &points, |p| seen_on_face(frame, rect, p))
+        };
+        for line in &section.lines {
+            match line.kind {
+                LineKind::Fault { real: true, .. } => self.faults.extend(seen(&line.points)),
+                // Beyond a tip nothing was interpreted, but different layers meet.
+                LineKind::Horizon { .. } | LineKind::Fault { .. } => self.horizons.extend(seen(&line.points)),
+                LineKind::Frame => {}
+            }
+        }
+        if frame.relief.is_some() {
+            let air = section.layers.iter().filter(|area| area.layer == air_layer(rock.model));
+            for ring in air.flat_map(|area| &area.rings) {
+                for rim in rim_parts(ring, plane.extent) {
+                    self.edges.extend(seen(&rim));
+                }
+            }
+        }
+    }
+}
+
+impl FaceRect {
+    fn plane(&self) -> SectionPlane {
+        match self.axis {
+            0 => SectionPlane::inline(self.low.x, self.low, self.high),
+            1 => SectionPlane::crossline(self.low.y, self.low, self.high),
+            _ => SectionPlane::slice(self.low.z, self.low, self.high),
+        }
+    }
+}
+
+/// The runs of a ring that do not lie on the border of its rectangle: where air meets rock.
+fn rim_parts(ring: &[DVec2], extent: [f64; 2]) -> Vec<Vec<DVec2>> {
+    const ON: f64 = 1e-6;
+    let on_border = |a: DVec2, b: DVec2| {
+        (0..2).any(|axis| [0.0, extent[axis]].iter().any(|e| (a[axis] - e).abs() < ON && (b[axis] - e).abs() < ON))
+    };
+    let mut parts: Vec<Vec<DVec2>> = Vec::new();
+    let mut open = false;
+    for n in 0..ring.len() {
+        let (a, b) = (ring[n], ring[(n + 1) % ring.len()]);
+        if on_border(a, b) {
+            open = false;
+            continue;
+        }
+        match parts.last_mut().filter(|_| open) {
+            Some(part) => part.push(b),
+            None => parts.push(vec![a, b]),
+        }
+        open = true;
+    }
+    parts
+}
+
+/// Whether a point of a line on a face is seen: the face itself, on one side of the line at least.
+fn seen_on_face(frame: &Frame, rect: &FaceRect, p: DVec3) -> bool {
+    let (u, v) = (DVec3::AXES[(rect.axis + 1) % 3], DVec3::AXES[(rect.axis + 2) % 3]);
+    // Downwards first: with the ground shown, rock lies there.
+    let beside = if rect.axis == 2 { [u, -u, v, -v] } else { [DVec3::Z, -DVec3::Z, u + v - DVec3::Z, DVec3::Z - u - v] };
+    beside.into_iter().any(|aside| {
+        let q = (p + aside * ASIDE).clamp(rect.low, rect.high);
+        is_seen(frame, q)
+    })
+}
+
+/// The seen parts of an edge: where one of its faces is seen right beside it.
+fn seen_edge(frame: &Frame, edge: &EdgeLine) -> Vec<Vec<DVec2>> {
+    // Not from the very ends, where the ray could pass the block.
+    let inset = (edge.ends[1] - edge.ends[0]).normalize_or_zero() * ASIDE;
+    let along = |p: DVec3| {
+        let length = (edge.ends[1] - edge.ends[0]).length();
+        let t = (p - edge.ends[0]).length().clamp(ASIDE.min(0.5 * length), (length - ASIDE).max(0.5 * length));
+        edge.ends[0] + inset * (t / ASIDE)
+    };
+    let seen = |p: DVec3| edge.faces.iter().flatten().any(|into| is_seen(frame, along(p) + *into * ASIDE));
+    seen_parts(&frame.view, &edge.ends, seen)
+}
+
+/// Strokes a picture's outlines over it, anti-aliased, on sRGB-encoded values.
+pub(crate) fn draw(frame: &Frame, image: &mut RgbaImage) {
+    let outlines = frame.scene.outlines;
+    let lines = Lines::of(frame);
+    for (stroke, lines) in
+        [(outlines.horizons, &lines.horizons), (outlines.faults, &lines.faults), (outlines.edges, &lines.edges)]
+    {
+        stroke_lines(image, &stroke, lines);
+    }
+}
+
+/// Strokes polylines as one shape, so that crossings do not darken.
+fn stroke_lines(image: &mut RgbaImage, stroke: &Stroke, lines: &[Vec<DVec2>]) {
+    let (width, height) = image.dimensions();
+    let scale = width.min(height) as f32 / NOMINAL_SIDE_PX;
+    let mut builder = PathBuilder::new();
+    for line in lines.iter().filter(|line| line.len() > 1) {
+        for (n, point) in line.iter().enumerate() {
+            let (x, y) = (point.x as f32, point.y as f32);
+            if n == 0 { builder.move_to(x, y) } else { builder.line_to(x, y) }
+        }
+    }
+    let (Some(path), Some(mut coverage)) = (builder.finish(), Pixmap::new(width, height)) else { return };
+    if stroke.width_px <= 0.0 {
+        return;
+    }
+    let pen = tiny_skia::Stroke {
+        width: stroke.width_px * scale,
+        line_cap: LineCap::Round,
+        line_join: LineJoin::Round,
+        ..tiny_skia::Stroke::default()
+    };
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(255, 255, 255, 255);
+    coverage.stroke_path(&path, &paint, &pen, Transform::identity(), None);
+    for (pixel, covered) in image.pixels_mut().zip(coverage.pixels()) {
+        if covered.alpha() > 0 {
+            pixel.0 = over(pixel.0, stroke.colour.rgb, f32::from(covered.alpha()) / 255.0);
+        }
+    }
+}
+
+/// An opaque colour at a coverage over a straight RGBA pixel.
+fn over(below: [u8; 4], colour: [u8; 3], coverage: f32) -> [u8; 4] {
+    let alpha_below = f32::from(below[3]) / 255.0;
+    let alpha = coverage + alpha_below * (1.0 - coverage);
+    let mix = |n: usize| {
+        let above = f32::from(colour[n]) * coverage;
+        ((above + f32::from(below[n]) * alpha_below * (1.0 - coverage)) / alpha + 0.5) as u8
+    };
+    [mix(0), mix(1), mix(2), (alpha * 255.0 + 0.5) as u8]
+}

@@ -1,0 +1,101 @@
+//! Which parts of a line on the block are seen.
+//!
+//! A point is seen if the ray through its pixel meets the block there. Faces are analytic, so this needs no depth buffer and is
+//! exact at any resolution; a point is asked a little beside the line, inside the surface it belongs to, because a ray through an
+//! edge itself may pass on either side.
+
+use crate::camera::View;
+use crate::frame::Frame;
+use crate::shade::first_hit;
+use crate::visible::Ray;
+use glam::{DVec2, DVec3};
+
+/// How far beside a line its surface is asked for, voxels.
+pub(super) const ASIDE: f64 = 0.02;
+/// Points nearer than this along a ray are the same, voxels.
+const SAME: f64 = 0.05;
+/// Pixels between two points of a line that are asked.
+const STEP_PX: f64 = 2.0;
+/// Halvings of the last step to where a line disappears: 1/64 pixel.
+const BISECTIONS: usize = 7;
+
+/// How far in front of a point the first hit of the ray through its pixel lies, voxels; negative when the ray meets nothing
+/// until behind the point.
+pub(super) fn covered_by(frame: &Frame, p: DVec3) -> f64 {
+    let view_ray = frame.view.ray(frame.view.project(p));
+    let t = (p - view_ray.origin).dot(view_ray.direction);
+    t - f64::from(first_hit(frame, &Ray::from(view_ray)).t())
+}
+
+/// Whether the block's surface is at `p` and nothing is in front of it.
+pub(super) fn is_seen(frame: &Frame, p: DVec3) -> bool {
+    covered_by(frame, p).abs() < SAME
+}
+
+/// The parts of a polyline (voxel) for which `seen` holds, in pixels.
+pub(super) fn seen_parts(view: &View, points: &[DVec3], seen: impl Fn(DVec3) -> bool) -> Vec<Vec<DVec2>> {
+    let mut parts = Vec::new();
+    let mut part: Vec<DVec2> = Vec::new();
+    let Some(&first) = points.first() else { return parts };
+    let mut last = (first, seen(first));
+    if last.1 {
+        part.push(view.project(first));
+    }
+    for &end in &points[1..] {
+        let start = last.0;
+        let steps = ((view.project(end) - view.project(start)).length() / STEP_PX).ceil().clamp(1.0, 1e5) as usize;
+        for step in 1..=steps {
+            let p = start.lerp(end, step as f64 / steps as f64);
+            let here = (p, seen(p));
+            if here.1 != last.1 {
+                let border = if here.1 { bisect(here.0, last.0, &seen) } else { bisect(last.0, here.0, &seen) };
+                part.push(view.project(border));
+                if !here.1 {
+                    parts.push(std::mem::take(&mut part));
+                }
+            }
+            // Straight runs need their ends only.
+            if here.1 && step == steps {
+                part.push(view.project(p));
+            }
+            last = here;
+        }
+    }
+    if part.len() > 1 {
+        parts.push(part);
+    }
+    parts
+}
+
+/// The last seen point between a seen and a hidden one.
+fn bisect(mut visible: DVec3, mut hidden: DVec3, seen: &impl Fn(DVec3) -> bool) -> DVec3 {
+    for _ in 0..BISECTIONS {
+        let middle = (visible + hidden) * 0.5;
+        if seen(middle) { visible = middle } else { hidden = middle }
+    }
+    visible
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Camera, VoxelBox};
+    use survey::{SurveyGeometry, VerticalUnit};
+
+    #[test]
+    fn a_line_is_cut_where_it_disappears() {
+        let geometry = SurveyGeometry::regular([11, 11, 11], 10.0, 10.0, VerticalUnit::Metres);
+        let view = View::new(&Camera::default(), &geometry, &VoxelBox::of_size([11; 3]), 1.0, [400, 400]);
+        let line = [DVec3::new(0.0, 5.0, 0.0), DVec3::new(4.0, 5.0, 0.0), DVec3::new(10.0, 5.0, 0.0)];
+        let parts = seen_parts(&view, &line, |p| (2.0..3.0).contains(&p.x) || p.x > 7.5);
+        let expected = [[2.0, 3.0], [7.5, 10.0]];
+        assert_eq!(parts.len(), 2);
+        for (part, ends) in parts.iter().zip(expected) {
+            for (found, x) in [part[0], part[part.len() - 1]].into_iter().zip(ends) {
+                assert!((found - view.project(DVec3::new(x, 5.0, 0.0))).length() < 0.05);
+            }
+        }
+        assert!(seen_parts(&view, &line, |_| false).is_empty());
+        assert_eq!(seen_parts(&view, &line, |_| true), vec![line.map(|p| view.project(p)).to_vec()]);
+    }
+}

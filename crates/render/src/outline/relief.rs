@@ -1,0 +1,126 @@
+//! Lines on the ground: fault traces and the crests behind which it disappears.
+//!
+//! Both are zero lines over the map of one block's ground h(x, y): of the fault's side at (x, y, h), and of
+//! (∂h/∂x, ∂h/∂y, −1)·d, d the viewing direction. They are found on cells of a voxel by linear interpolation (marching squares).
+
+use super::hidden::{ASIDE, covered_by, seen_parts};
+use crate::frame::{Frame, Rock};
+use crate::ground::{air_layer, place};
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+/// How far in front of the ground another part of it must be to hide a line, voxels: lines touch what they lie on.
+const IN_FRONT: f64 = 0.6;
+
+/// Seen parts of the ground's lines, pixels.
+#[derive(Debug, Default)]
+pub(super) struct ReliefLines {
+    pub faults: Vec<Vec<DVec2>>,
+    pub crests: Vec<Vec<DVec2>>,
+}
+
+/// Heights of one block's ground at the corners of cells.
+struct Map<'a> {
+    rock: Rock<'a>,
+    block: u16,
+    low: DVec3,
+    counts: [usize; 2],
+    step: DVec2,
+}
+
+impl Map<'_> {
+    fn xy(&self, node: DVec2) -> DVec2 {
+        self.low.truncate() + node * self.step
+    }
+
+    fn ground(&self, node: DVec2) -> DVec3 {
+        let xy = self.xy(node);
+        let z = self.rock.model.horizon_z(0, self.block, xy.x as f32, xy.y as f32);
+        xy.extend(f64::from(z))
+    }
+
+    /// Segments on which a function of the map is zero, as points of the ground.
+    fn zero_lines(&self, f: impl Fn(DVec2) -> f64 + Sync) -> Vec<[DVec3; 2]> {
+        let [nx, ny] = self.counts;
+        let values: Vec<f64> = (0..(nx + 1) * (ny + 1))
+            .into_par_iter()
+            .map(|n| f(DVec2::new((n / (ny + 1)) as f64, (n % (ny + 1)) as f64)))
+            .collect();
+        let mut segments = Vec::new();
+        for x in 0..nx {
+            for y in 0..ny {
+                let corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[a, b]| {
+                    (DVec2::new((x + a) as f64, (y + b) as f64), values[(x + a) * (ny + 1) + y + b])
+                });
+                let mut cuts = Vec::new();
+                for n in 0..4 {
+                    let ((a, at_a), (b, at_b)) = (corners[n], corners[(n + 1) % 4]);
+                    if (at_a >= 0.0) != (at_b >= 0.0) {
+                        cuts.push(a.lerp(b, at_a / (at_a - at_b)));
+                    }
+                }
+                for pair in cuts.chunks_exact(2) {
+                    segments.push([self.ground(pair[0]), self.ground(pair[1])]);
+                }
+            }
+        }
+        segments
+    }
+}
+
+/// The lines of the frame's ground.
+pub(super) fn relief_lines(frame: &Frame) -> ReliefLines {
+    let mut lines = ReliefLines::default();
+    let (Some(_), Some(rock)) = (&frame.relief, frame.rock) else { return lines };
+    let [low, high] = frame.solid.roaming_box.map(|c| c.as_dvec3());
+    let counts = [0, 1].map(|axis: usize| (high[axis] - low[axis]).ceil().max(1.0) as usize);
+    let step = (high - low).truncate() / DVec2::new(counts[0] as f64, counts[1] as f64);
+    for block in 0..rock.model.block_count() as u16 {
+        let map = Map { rock, block, low, counts, step };
+        for fault in 0..rock.model.faults().surfaces().len() {
+            let side = |node: DVec2| f64::from(rock.model.faults().side(fault, map.ground(node).as_vec3()));
+            let segments = map.zero_lines(side);
+            lines.faults.extend(seen(frame, &segments, |p| bounds_block(rock, fault, block, p)));
+        }
+        let facing = |node: DVec2| {
+            let p = map.ground(node);
+            let (dx, dy) = (map.ground(node + DVec2::X) - p, map.ground(node + DVec2::Y) - p);
+            dx.cross(dy).dot(frame.view.towards_camera(p))
+        };
+        let segments = map.zero_lines(facing);
+        lines.crests.extend(seen(frame, &segments, |p| place(rock.model, p.as_vec3()).block == block));
+    }
+    lines
+}
+
+/// Whether a point of a fault is real and a border of the block's own ground.
+fn bounds_block(rock: Rock, fault: usize, block: u16, p: DVec3) -> bool {
+    let faults = rock.model.faults();
+    if !faults.is_real(fault, p.as_vec3()) {
+        return false;
+    }
+    let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
+    let sides = [ASIDE, -ASIDE].map(|aside| place(rock.model, (p + normal * aside).as_vec3()).block);
+    sides[0] != sides[1] && sides.contains(&block)
+}
+
+/// The parts of segments that belong to the drawn ground, lie in the block and have nothing in front.
+fn seen(frame: &Frame, segments: &[[DVec3; 2]], belongs: impl Fn(DVec3) -> bool + Sync) -> Vec<Vec<DVec2>> {
+    let [low, high] = frame.solid.roaming_box.map(|c| c.as_dvec3());
+    let is_seen = |p: DVec3| {
+        p.z >= low.z
+            && p.z <= high.z
+            && belongs(p)
+            && !cut_away(frame, p)
+            && covered_by(frame, p) < IN_FRONT
+            && frame.rock.is_some_and(|rock| {
+                place(rock.model, (p + DVec3::Z * 0.1).as_vec3()).layer != air_layer(rock.model)
+            })
+    };
+    segments.par_iter().flat_map_iter(|segment| seen_parts(&frame.view, segment, is_seen)).collect()
+}
+
+fn cut_away(frame: &Frame, p: DVec3) -> bool {
+    let p = p.as_vec3();
+    frame.solid.cut_outs.iter().any(|[low, high]| p.cmpge(*low).all() && p.cmple(*high).all())
+}
