@@ -13,17 +13,20 @@
 use crate::scene::{Ground, Scene};
 use crate::visible::Ray;
 use glam::{DVec3, Mat3, Vec3};
+use rayon::prelude::*;
 use survey::SurveyGeometry;
 use survey::model::StructuralModel;
 
 /// Shortest step through the air, voxels: ridges thinner than this can be missed.
 pub const SHORTEST_STEP: f32 = 0.25;
-/// Halvings of the last step: 0.25 voxel down to 2⁻¹² voxel.
-pub const BISECTIONS: u32 = 10;
+/// Halvings of the last step: 0.25 voxel down to 2⁻⁸ voxel.
+pub const BISECTIONS: u32 = 6;
 /// Steps after which a ray is taken to miss.
 pub const MAX_STEPS: u32 = 4096;
 /// Steeper sheets than this are stepped over as if they had this slope.
 const STEEPEST: f32 = 3.0;
+/// Nodes from one that is asked for its height to the next.
+const STRIDE: usize = 2;
 /// How far the sheets may reach beyond the heights found at lattice nodes, voxels.
 const HEIGHT_MARGIN: f32 = 1.0;
 
@@ -196,29 +199,31 @@ pub fn place(model: &StructuralModel, p: Vec3) -> Place {
     Place { layer: model.rules().layer(below), block, gap, horizon, fault_m, fault }
 }
 
-/// Range of the ground's heights over the nodes of a box, and the steepest slope of the sheets between nodes.
+/// Range of the ground's heights over the nodes of a box, and its steepest slope between nodes. Of each block only the part that it
+/// owns counts: sheets extended beyond it may be steep.
 fn heights(model: &StructuralModel, low: Vec3, high: Vec3) -> ([f32; 2], f32) {
-    let horizons = model.stratigraphy().horizons.len();
-    let nodes = |axis: usize| low[axis].floor() as i32..=high[axis].ceil() as i32;
-    let mut range = [f32::MAX, f32::MIN];
-    let mut steepest = 0.0f32;
-    for block in 0..model.block_count() as u16 {
-        for x in nodes(0) {
-            for y in nodes(1) {
-                for h in 0..horizons {
-                    let sheet = model.sheet(h, block);
-                    let z = sheet.node(x, y);
-                    let slope = (sheet.node(x + 1, y) - z).abs().max((sheet.node(x, y + 1) - z).abs());
-                    steepest = steepest.max(slope);
-                }
-                if (x + y) % 4 == 0 {
-                    let z = model.horizon_z(0, block, x as f32, y as f32);
+    let nodes = |axis: usize| low[axis].floor() as i32..high[axis].ceil() as i32 + 1;
+    let blocks = model.block_count() as u16;
+    let column = |x: i32| {
+        let (mut range, mut steepest) = ([f32::MAX, f32::MIN], 0.0f32);
+        for block in 0..blocks {
+            for y in nodes(1).step_by(STRIDE) {
+                let ground = |x: i32, y: i32| model.horizon_z(0, block, x as f32, y as f32);
+                let z = ground(x, y);
+                if model.block_at(Vec3::new(x as f32, y as f32, z)) == block {
                     range = [range[0].min(z), range[1].max(z)];
+                    steepest = steepest.max((ground(x + 1, y) - z).hypot(ground(x, y + 1) - z));
                 }
             }
         }
-    }
+        (range, steepest)
+    };
+    let (range, steepest) = nodes(0).step_by(STRIDE).collect::<Vec<_>>().into_par_iter().map(column).reduce(
+        || ([f32::MAX, f32::MIN], 0.0),
+        |(a, s), (b, t)| ([a[0].min(b[0]), a[1].max(b[1])], s.max(t)),
+    );
+    let steepest = (steepest * 1.5).min(STEEPEST);
     // Between the nodes that were asked the ground can rise as the sheets do.
-    let margin = HEIGHT_MARGIN + 2.0 * steepest.min(STEEPEST);
-    ([range[0] - margin, range[1] + margin], (steepest * 1.5).min(STEEPEST))
+    let margin = HEIGHT_MARGIN + STRIDE as f32 * steepest;
+    ([range[0] - margin, range[1] + margin], steepest)
 }

@@ -101,23 +101,30 @@ fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
 }
 
 fn trace(ray: PixelRay) -> vec4<f32> {
-    var start = LOWEST;
-    for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
-        let span = next_span(ray.origin, ray.direction, start);
-        if !span.found {
-            break;
+    var span: SolidSpan;
+    var ground: GroundHit;
+    if with_ground == 0u {
+        span = next_span(ray.origin, ray.direction, LOWEST);
+    } else {
+        var start = LOWEST;
+        for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
+            span = next_span(ray.origin, ray.direction, start);
+            if !span.found || place_at(span.point).layer != model.layers - 1u {
+                break;
+            }
+            span.found = false;
+            ground = march(ray.origin, ray.direction, span.t, span.end);
+            if ground.found {
+                break;
+            }
+            start = span.end;
         }
-        if with_ground == 0u {
-            return vec4(face_colour(ray, span.t, span.point, span.axis), 1.0);
-        }
-        if place_at(span.point).layer != model.layers - 1u {
-            return vec4(face_colour(ray, span.t, span.point, span.axis), 1.0);
-        }
-        let ground = march(ray.origin, ray.direction, span.t, span.end);
-        if ground.found {
-            return vec4(ground_colour(ground), 1.0);
-        }
-        start = span.end;
+    }
+    if span.found {
+        return vec4(face_colour(ray, span.t, span.point, span.axis), 1.0);
+    }
+    if with_ground == 1u && ground.found {
+        return vec4(ground_colour(ground), 1.0);
     }
     return params.background;
 }
@@ -130,10 +137,14 @@ fn draw(@builtin(global_invocation_id) id: vec3<u32>) {
     let corner = vec2<f32>(id.xy + params.tile.xy);
     let n = f32(params.samples);
     var sum = vec4(0.0);
-    for (var sub_y = 0u; sub_y < params.samples; sub_y += 1u) {
-        for (var sub_x = 0u; sub_x < params.samples; sub_x += 1u) {
-            let colour = trace(pixel_ray(corner + (vec2(f32(sub_x), f32(sub_y)) + 0.5) / n));
-            sum += vec4(colour.rgb * colour.a, colour.a);
+    var sample = 0u;
+    loop {
+        let sub = vec2(f32(sample % params.samples), f32(sample / params.samples));
+        let colour = trace(pixel_ray(corner + (sub + 0.5) / n));
+        sum += vec4(colour.rgb * colour.a, colour.a);
+        continuing {
+            sample += 1u;
+            break if sample >= params.samples * params.samples;
         }
     }
     sum /= n * n;

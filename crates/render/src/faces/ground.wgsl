@@ -1,7 +1,7 @@
 // The ground along a ray: the twin of `ground::Relief` (P-illus 5).
 
 const SHORTEST_STEP: f32 = 0.25;
-const BISECTIONS: u32 = 10u;
+const BISECTIONS: u32 = 6u;
 const MAX_STEPS: u32 = 4096u;
 
 struct Place {
@@ -24,27 +24,41 @@ fn place_at(p: vec3<f32>) -> Place {
     var place: Place;
     place.fault_m = HIGHEST;
     var bits = vec2(0u);
-    for (var f = 0u; f < model.faults; f += 1u) {
-        let side = fault_side(f, p);
-        if side >= 0.0 {
-            bits = with_bit(bits, f);
-        }
-        if abs(side) < place.fault_m {
-            place.fault_m = abs(side);
-            place.fault = f;
+    if has_faults == 1u {
+        var f = 0u;
+        loop {
+            let side = fault_side(f, p);
+            if side >= 0.0 {
+                bits = with_bit(bits, f);
+            }
+            if abs(side) < place.fault_m {
+                place.fault_m = abs(side);
+                place.fault = f;
+            }
+            continuing {
+                f += 1u;
+                break if f >= model.faults;
+            }
         }
     }
     place.block = block_of(bits);
     place.gap = HIGHEST;
     var below = vec2(0u);
-    for (var h = 0u; h < model.horizons; h += 1u) {
-        let z = sheet_z(sheets[h * model.blocks + place.block], p.xy);
-        if p.z >= z {
-            below = with_bit(below, h);
-        }
-        if abs(z - p.z) < place.gap {
-            place.gap = abs(z - p.z);
-            place.horizon = h;
+    if has_horizons == 1u {
+        var h = 0u;
+        loop {
+            let z = sheet_z(sheets[h * model.blocks + place.block], p.xy);
+            if p.z >= z {
+                below = with_bit(below, h);
+            }
+            if abs(z - p.z) < place.gap {
+                place.gap = abs(z - p.z);
+                place.horizon = h;
+            }
+            continuing {
+                h += 1u;
+                break if h >= model.horizons;
+            }
         }
     }
     place.layer = layer_of(below);
@@ -73,25 +87,28 @@ fn march(origin: vec3<f32>, direction: vec3<f32>, enter: f32, leave: f32) -> Gro
     var air_t = enter;
     var air_block = place_at(origin + direction * enter).block;
     var t = start;
-    for (var step = 0u; step < MAX_STEPS; step += 1u) {
+    var step = 0u;
+    loop {
         let here = place_at(origin + direction * t);
-        if here.layer != air {
-            hit.found = true;
-            hit.place = here;
-            break;
+        hit.found = here.layer != air;
+        hit.place = here;
+        let done = hit.found || t >= end;
+        if !done {
+            air_t = t;
+            air_block = here.block;
+            let to_fault = 0.8 * here.fault_m / params.relief.w;
+            t = min(t + max(min(here.gap / fall, to_fault), SHORTEST_STEP), end);
         }
-        if t >= end {
-            break;
+        continuing {
+            step += 1u;
+            break if done || step >= MAX_STEPS;
         }
-        air_t = t;
-        air_block = here.block;
-        let to_fault = 0.8 * here.fault_m / params.relief.w;
-        t = min(t + max(min(here.gap / fall, to_fault), SHORTEST_STEP), end);
     }
     if !hit.found {
         return hit;
     }
-    for (var n = 0u; n < BISECTIONS; n += 1u) {
+    var n = 0u;
+    loop {
         let middle = 0.5 * (air_t + t);
         let here = place_at(origin + direction * middle);
         if here.layer == air {
@@ -100,6 +117,10 @@ fn march(origin: vec3<f32>, direction: vec3<f32>, enter: f32, leave: f32) -> Gro
         } else {
             t = middle;
             hit.place = here;
+        }
+        continuing {
+            n += 1u;
+            break if n >= BISECTIONS;
         }
     }
     hit.point = origin + direction * t;

@@ -24,6 +24,7 @@ use model::{ModelBuffers, POOL_BUFFERS, PackedTexture};
 use std::collections::HashMap;
 use survey::Progress;
 use textures::TextureBuffers;
+use ttf::tables::NONE;
 use volumes::{VolumeInfo, no_volume, upload_volume};
 
 /// The shader: the pass first, so that its error lines are true, then the snippets.
@@ -66,6 +67,11 @@ pub struct Renderer {
 struct Variant {
     lookup: u32,
     with_ground: u32,
+    with_raw: u32,
+    with_scalars: u32,
+    volume_count: u32,
+    has_faults: u32,
+    has_horizons: u32,
     pool_chunk: u32,
     pool_chunks: u32,
 }
@@ -166,6 +172,11 @@ impl Renderer {
                 Some(Flat::Packed(_)) => 2,
             },
             with_ground: u32::from(frame.relief.is_some()),
+            with_raw: u32::from(frame.tables.globals.raw_volume != NONE),
+            with_scalars: u32::from(!frame.tables.scalars.is_empty()),
+            volume_count: frame.volumes.len() as u32,
+            has_faults: frame.rock.map_or(0, |rock| u32::from(!rock.model.faults().surfaces().is_empty())),
+            has_horizons: frame.rock.map_or(0, |rock| u32::from(!rock.model.stratigraphy().horizons.is_empty())),
             pool_chunk: self.model.as_ref().map_or(1, |m| m.pool_chunk),
             pool_chunks: self.model.as_ref().map_or(1, |m| m.pool_chunks() as u32),
         }
@@ -206,6 +217,11 @@ impl Renderer {
         let constants = [
             ("lookup", f64::from(variant.lookup)),
             ("with_ground", f64::from(variant.with_ground)),
+            ("with_raw", f64::from(variant.with_raw)),
+            ("with_scalars", f64::from(variant.with_scalars)),
+            ("volume_count", f64::from(variant.volume_count)),
+            ("has_faults", f64::from(variant.has_faults)),
+            ("has_horizons", f64::from(variant.has_horizons)),
             ("pool_chunk", f64::from(variant.pool_chunk)),
             ("pool_chunks", f64::from(variant.pool_chunks)),
         ];

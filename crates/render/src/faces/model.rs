@@ -41,13 +41,18 @@ impl Pool {
         offset
     }
 
-    fn sheet(&mut self, field: &HeightField) -> SheetInfo {
-        SheetInfo {
-            origin: field.origin,
-            size: field.size.map(|n| n as u32),
-            offset: self.add(&field.z),
-            padding: [0; 3],
-        }
+    /// A height field that answers between `low` and `high` (its own x, y) without leaving its grid.
+    fn sheet(&mut self, field: &HeightField, low: [f32; 2], high: [f32; 2]) -> SheetInfo {
+        // The patch around a place reaches one node back and two ahead.
+        let first = [0, 1].map(|n| field.origin[n].min(low[n].floor() as i32 - 1));
+        let last = [0, 1].map(|n| (field.origin[n] + field.size[n] as i32 - 1).max(high[n].floor() as i32 + 2));
+        let size = [0, 1].map(|n| (last[n] - first[n] + 1) as usize);
+        let offset = if size == field.size {
+            self.add(&field.z)
+        } else {
+            self.add(&HeightField::from_fn(first, size, |x, y| field.node(x, y)).z)
+        };
+        SheetInfo { origin: first, size: size.map(|n| n as u32), offset, padding: [0; 3] }
     }
 }
 
@@ -57,16 +62,23 @@ impl ModelBuffers {
         let mut pool = Pool::default();
         let horizons = model.stratigraphy().horizons.len();
         let blocks = model.block_count();
+        let size = model.size();
+        let last = size.map(|n| n.saturating_sub(1) as f32);
         let mut sheets = Vec::new();
         for horizon in 0..horizons {
             for block in 0..blocks {
-                sheets.push(pool.sheet(model.sheet(horizon, block as u16)));
+                sheets.push(pool.sheet(model.sheet(horizon, block as u16), [0.0; 2], [last[0], last[1]]));
             }
         }
-        let size = model.size();
         let centre = Vec3::from_array(size.map(|n| 0.5 * n as f32)).as_dvec3();
         let surfaces = model.faults().surfaces();
-        let faults: Vec<FaultInfo> = surfaces.iter().map(|s| fault_info(s, centre, pool.sheet(&s.surface))).collect();
+        let faults: Vec<FaultInfo> = surfaces
+            .iter()
+            .map(|fault| {
+                let [low, high] = frame_range(fault, last);
+                fault_info(fault, centre, pool.sheet(&fault.surface, low, high))
+            })
+            .collect();
         let grids: Vec<GridInfo> = param.map_or_else(Vec::new, |param| {
             param
                 .grids
@@ -113,6 +125,17 @@ impl ModelBuffers {
 
 fn horizon_index(sheet: SheetRef) -> u32 {
     sheet.horizon.map_or(NONE, |h| h as u32)
+}
+
+/// Smallest and largest (u, v) that a fault's frame has in the volume.
+fn frame_range(fault: &FaultSurface, last: [f32; 3]) -> [[f32; 2]; 2] {
+    let corners = (0..8).map(|n| {
+        let pick = |axis: usize| if n >> axis & 1 == 0 { 0.0 } else { f64::from(last[axis]) };
+        fault.frame(DVec3::new(pick(0), pick(1), pick(2)))
+    });
+    let (low, high) = corners
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| (low.min(corner), high.max(corner)));
+    [[low.x as f32, low.y as f32], [high.x as f32, high.y as f32]]
 }
 
 /// The frame's rows with the constants for positions relative to `centre`, where single precision is at its best.

@@ -1,7 +1,9 @@
 // Which layer and fault block a voxel position lies in: the twin of `StructuralModel::region_at`.
 //
-// Sheets and fault surfaces are height fields, evaluated as `HeightField` does: Catmull–Rom bicubic through
-// the nodes, continued linearly outside.
+// Sheets and fault surfaces are height fields, evaluated as `HeightField` does: Catmull–Rom bicubic through the nodes.
+//
+// Loops whose body is dear test at the end: the software driver runs both sides of every branch and a loop's body once more
+// than it counts when the test comes first.
 
 struct SheetInfo {
     // Voxel (or fault cell) position of node (0, 0).
@@ -51,6 +53,10 @@ struct ModelInfo {
 override pool_chunk: u32 = 0xffffffffu;
 override pool_chunks: u32 = 1u;
 
+// 1 where the model has any.
+override has_faults: u32 = 1u;
+override has_horizons: u32 = 1u;
+
 const CONTACT_EROSIONAL: u32 = 1u;
 const CONTACT_INTRUSIVE: u32 = 3u;
 
@@ -68,31 +74,6 @@ fn pool(index: u32) -> f32 {
     }
 }
 
-fn sheet_inside(info: SheetInfo, u: i32, v: i32) -> f32 {
-    return pool(info.offset + u32(u) * info.size.y + u32(v));
-}
-
-// Height of a node counted from the grid's own (0, 0), continued linearly outside.
-fn sheet_node(info: SheetInfo, u: i32, v: i32) -> f32 {
-    let last = vec2<i32>(info.size) - 1;
-    let cu = clamp(u, 0, last.x);
-    let cv = clamp(v, 0, last.y);
-    let base = sheet_inside(info, cu, cv);
-    if cu == u && cv == v {
-        return base;
-    }
-    var height = base;
-    if cu != u {
-        let inner = select(last.x - 1, 1, u < 0);
-        height += (base - sheet_inside(info, inner, cv)) / f32(cu - inner) * f32(u - cu);
-    }
-    if cv != v {
-        let inner = select(last.y - 1, 1, v < 0);
-        height += (base - sheet_inside(info, cu, inner)) / f32(cv - inner) * f32(v - cv);
-    }
-    return height;
-}
-
 fn cubic_weights(t: f32) -> vec4<f32> {
     let t2 = t * t;
     let t3 = t2 * t;
@@ -104,34 +85,25 @@ fn cubic_slopes(t: f32) -> vec4<f32> {
     return 0.5 * vec4(-3.0 * t2 + 4.0 * t - 1.0, 9.0 * t2 - 10.0 * t, -9.0 * t2 + 8.0 * t + 1.0, 3.0 * t2 - 2.0 * t);
 }
 
-// The four nodes of one row of a 4 × 4 patch.
-fn patch_row(info: SheetInfo, u: i32, v: i32, inside: bool) -> vec4<f32> {
-    if inside {
-        let start = info.offset + u32(u) * info.size.y + u32(v);
-        return vec4(pool(start), pool(start + 1u), pool(start + 2u), pool(start + 3u));
-    }
-    return vec4(
-        sheet_node(info, u, v),
-        sheet_node(info, u, v + 1),
-        sheet_node(info, u, v + 2),
-        sheet_node(info, u, v + 3),
-    );
+// First node of the 4 × 4 patch around a place. Grids are padded on upload to cover the volume; the clamp only keeps strays in.
+fn patch_start(info: SheetInfo, cell: vec2<f32>) -> u32 {
+    let corner = clamp(vec2<i32>(cell) - 1 - info.origin, vec2(0), vec2<i32>(info.size) - 4);
+    return info.offset + u32(corner.x) * info.size.y + u32(corner.y);
 }
 
-fn patch_inside(info: SheetInfo, corner: vec2<i32>) -> bool {
-    return all(corner >= vec2(0)) && all(corner + 4 <= vec2<i32>(info.size));
+fn patch_row(start: u32) -> vec4<f32> {
+    return vec4(pool(start), pool(start + 1u), pool(start + 2u), pool(start + 3u));
 }
 
 fn sheet_z(info: SheetInfo, at: vec2<f32>) -> f32 {
     let cell = floor(at);
     let f = at - cell;
-    let corner = vec2<i32>(cell) - 1 - info.origin;
-    let inside = patch_inside(info, corner);
+    let start = patch_start(info, cell);
     let wx = cubic_weights(f.x);
     let wy = cubic_weights(f.y);
     var z = 0.0;
-    for (var a = 0; a < 4; a += 1) {
-        z += dot(patch_row(info, corner.x + a, corner.y, inside), wy) * wx[a];
+    for (var a = 0u; a < 4u; a += 1u) {
+        z += dot(patch_row(start + a * info.size.y), wy) * wx[a];
     }
     return z;
 }
@@ -140,15 +112,14 @@ fn sheet_z(info: SheetInfo, at: vec2<f32>) -> f32 {
 fn sheet_sample(info: SheetInfo, at: vec2<f32>) -> vec3<f32> {
     let cell = floor(at);
     let f = at - cell;
-    let corner = vec2<i32>(cell) - 1 - info.origin;
-    let inside = patch_inside(info, corner);
+    let start = patch_start(info, cell);
     let wx = cubic_weights(f.x);
     let wy = cubic_weights(f.y);
     let sx = cubic_slopes(f.x);
     let sy = cubic_slopes(f.y);
     var result = vec3(0.0);
-    for (var a = 0; a < 4; a += 1) {
-        let row = patch_row(info, corner.x + a, corner.y, inside);
+    for (var a = 0u; a < 4u; a += 1u) {
+        let row = patch_row(start + a * info.size.y);
         let along = dot(row, wy);
         result += vec3(along * wx[a], along * sx[a], dot(row, sy) * wx[a]);
     }
@@ -190,9 +161,16 @@ fn has_bit(bits: vec2<u32>, n: u32) -> bool {
 
 fn block_at(p: vec3<f32>) -> u32 {
     var bits = vec2(0u);
-    for (var f = 0u; f < model.faults; f += 1u) {
-        if fault_side(f, p) >= 0.0 {
-            bits = with_bit(bits, f);
+    if has_faults == 1u {
+        var f = 0u;
+        loop {
+            if fault_side(f, p) >= 0.0 {
+                bits = with_bit(bits, f);
+            }
+            continuing {
+                f += 1u;
+                break if f >= model.faults;
+            }
         }
     }
     return block_of(bits);
@@ -226,9 +204,16 @@ fn layer_of(below: vec2<u32>) -> u32 {
 
 fn layer_at(p: vec3<f32>, block: u32) -> u32 {
     var below = vec2(0u);
-    for (var h = 0u; h < model.horizons; h += 1u) {
-        if p.z >= sheet_z(sheets[h * model.blocks + block], p.xy) {
-            below = with_bit(below, h);
+    if has_horizons == 1u {
+        var h = 0u;
+        loop {
+            if p.z >= sheet_z(sheets[h * model.blocks + block], p.xy) {
+                below = with_bit(below, h);
+            }
+            continuing {
+                h += 1u;
+                break if h >= model.horizons;
+            }
         }
     }
     return layer_of(below);

@@ -56,6 +56,10 @@ struct StopEntry {
 @group(1) @binding(5) var<storage, read> scalar_entries: array<ScalarEntry>;
 @group(1) @binding(6) var<storage, read> stops: array<StopEntry>;
 
+// 1 where raw data are blended in, and where there are scalar textures.
+override with_raw: u32 = 1u;
+override with_scalars: u32 = 1u;
+
 const NONE: u32 = 0xffffffffu;
 const MAP_ONLY_SIN_SQ: f32 = 0.03015369;
 const NO_MAP_SIN_SQ: f32 = 0.1786062;
@@ -131,16 +135,21 @@ fn map_flat(mappings: Mappings, mapping: u32, flat: vec3<f32>) -> vec2<f32> {
 fn sample_mapped(texture: u32, frequency: vec2<f32>, point: FlatPoint, mappings: Mappings) -> vec4<f32> {
     let scale = frequency * ttf.global_frequency;
     var sum = vec4(0.0);
-    for (var mapping = 0u; mapping < 3u; mapping += 1u) {
-        let weight = mappings.weights[mapping];
-        if weight > 0.0 {
-            let factor = select(scale, scale.xx, mapping == 2u);
-            sum += weight * sample_texture(
-                texture,
-                map_flat(mappings, mapping, point.ijk) * factor,
-                map_flat(mappings, mapping, point.dx) * factor,
-                map_flat(mappings, mapping, point.dy) * factor,
-            );
+    // As many rounds as mappings have a weight: mostly one.
+    var left = mappings.weights;
+    loop {
+        let mapping = select(select(2u, 1u, left.y > 0.0), 0u, left.x > 0.0);
+        let weight = left[mapping];
+        left[mapping] = 0.0;
+        let factor = select(scale, scale.xx, mapping == 2u);
+        sum += weight * sample_texture(
+            texture,
+            map_flat(mappings, mapping, point.ijk) * factor,
+            map_flat(mappings, mapping, point.dx) * factor,
+            map_flat(mappings, mapping, point.dy) * factor,
+        );
+        continuing {
+            break if all(left <= vec3(0.0));
         }
     }
     return sum;
@@ -187,7 +196,7 @@ fn raw_colour(value: f32) -> vec4<f32> {
 
 // Blends from the illustration to the raw colour at a voxel position.
 fn blend_raw(colour: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
-    if ttf.raw_volume == NONE || ttf.blend == 0.0 {
+    if with_raw == 0u {
         return colour;
     }
     let value = sample_volume(ttf.raw_volume, p);
@@ -211,12 +220,19 @@ fn shade(point: FlatPoint, axis: u32, p: vec3<f32>) -> vec3<f32> {
             let ink = inked(sample_mapped(interval.texture, frequency, point, mappings), interval.ink);
             colour = over(interval.colour.rgb, ink, interval.colour.a);
         }
-        for (var n = 0u; n < ttf.scalar_count; n += 1u) {
-            let entry = scalar_entries[n];
-            let value = sample_volume(entry.volume, p);
-            if !is_no_data(value) && value >= entry.range.x && value < entry.range.y {
-                let ink = inked(sample_mapped(entry.texture, frequency * entry.factor, point, mappings), entry.ink);
-                colour = over(colour, on_background(ink, entry.colour), entry.opacity);
+        if with_scalars == 1u {
+            var n = 0u;
+            loop {
+                let entry = scalar_entries[n];
+                let value = sample_volume(entry.volume, p);
+                if !is_no_data(value) && value >= entry.range.x && value < entry.range.y {
+                    let ink = inked(sample_mapped(entry.texture, frequency * entry.factor, point, mappings), entry.ink);
+                    colour = over(colour, on_background(ink, entry.colour), entry.opacity);
+                }
+                continuing {
+                    n += 1u;
+                    break if n >= ttf.scalar_count;
+                }
             }
         }
     }

@@ -42,12 +42,8 @@ fn bilinear_texel(info: TextureInfo, uv: vec2<f32>, level: u32) -> vec4<f32> {
 fn trilinear_texel(info: TextureInfo, uv: vec2<f32>, lod: f32) -> vec4<f32> {
     let lower = floor(lod);
     let near = bilinear_texel(info, uv, u32(lower));
-    let fraction = lod - lower;
-    if fraction == 0.0 {
-        return near;
-    }
     let far = bilinear_texel(info, uv, min(u32(lower) + 1u, info.levels - 1u));
-    return near + (far - near) * fraction;
+    return near + (far - near) * (lod - lower);
 }
 
 fn sample_texture(slot: u32, uv: vec2<f32>, duv_dx: vec2<f32>, duv_dy: vec2<f32>) -> vec4<f32> {
@@ -73,8 +69,13 @@ fn sample_texture(slot: u32, uv: vec2<f32>, duv_dx: vec2<f32>, duv_dy: vec2<f32>
     let axis = select(vec2(1.0, 0.0), longer * inverseSqrt(max(length_sq, 1e-37)), length_sq > 0.0) * (major / side);
     let lod = min(log2(width), f32(info.levels - 1u));
     var sum = vec4(0.0);
-    for (var tap = 0.0; tap < taps; tap += 1.0) {
+    var tap = 0.0;
+    loop {
         sum += trilinear_texel(info, uv + axis * ((tap + 0.5) / taps - 0.5), lod);
+        continuing {
+            tap += 1.0;
+            break if tap >= taps;
+        }
     }
     return sum / taps;
 }

@@ -26,7 +26,19 @@ fn is_no_data(value: f32) -> bool {
     return value < -1.0e38;
 }
 
+// Volumes in use, so that nothing is read from the others.
+override volume_count: u32 = 6u;
+
 fn load_volume(slot: u32, at: vec3<u32>) -> f32 {
+    if volume_count <= 1u {
+        return textureLoad(volume_0, at.zyx, 0).r;
+    }
+    if volume_count == 2u {
+        if slot == 0u {
+            return textureLoad(volume_0, at.zyx, 0).r;
+        }
+        return textureLoad(volume_1, at.zyx, 0).r;
+    }
     switch slot {
         case 0u: { return textureLoad(volume_0, at.zyx, 0).r; }
         case 1u: { return textureLoad(volume_1, at.zyx, 0).r; }

@@ -1,11 +1,11 @@
 //! Lines gathered from sections and edges, and stroked over a picture.
 
-use super::hidden::{ASIDE, is_seen, seen_parts};
+use super::hidden::{ASIDE, IN_FRONT, covered_by, is_seen, seen_parts};
 use super::relief::relief_lines;
 use super::solid::{EdgeLine, FaceRect, edge_lines, face_rects};
 use super::{NOMINAL_SIDE_PX, Stroke};
 use crate::frame::{Frame, Rock};
-use crate::ground::air_layer;
+use crate::ground::{air_layer, place};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use rayon::prelude::*;
@@ -42,13 +42,19 @@ impl Lines {
 
     /// The section's lines on one face.
     fn add_face(&mut self, frame: &Frame, rock: Rock, rect: &FaceRect) {
+        if !rect.faces_camera && (frame.relief.is_none() || rect.axis == 2) {
+            return;
+        }
         let plane = rect.plane();
         let section = Section::new(rock.model, &plane);
         let seen = |points: &[DVec2]| {
             let points: Vec<DVec3> = points.iter().map(|&st| plane.voxel(st)).collect();
-            seen_parts(&frame.view, &points, |p| seen_on_face(frame, rect, p))
+            seen_parts(&frame.view, &points, |p| match rect.faces_camera {
+                true => seen_on_face(frame, rect, p),
+                false => seen_over_rim(frame, rock, rect, p),
+            })
         };
-        for line in &section.lines {
+        for line in section.lines.iter().filter(|_| rect.faces_camera) {
             match line.kind {
                 LineKind::Fault { real: true, .. } => self.faults.extend(seen(&line.points)),
                 // Beyond a tip nothing was interpreted, but different layers meet.
@@ -109,6 +115,18 @@ fn seen_on_face(frame: &Frame, rect: &FaceRect, p: DVec3) -> bool {
         let q = (p + aside * ASIDE).clamp(rect.low, rect.high);
         is_seen(frame, q)
     })
+}
+
+/// Whether a point of the ground's rim on a face that looks away is seen: nothing in front, and rock beside it (not so for a fault
+/// between air and air).
+fn seen_over_rim(frame: &Frame, rock: Rock, rect: &FaceRect, p: DVec3) -> bool {
+    let along = DVec3::AXES[1 - rect.axis];
+    let into_rock = DVec3::AXES[rect.axis] * rect.rock;
+    let is_rock = |aside: DVec3| {
+        let q = (p + (aside + into_rock) * ASIDE).as_vec3();
+        frame.solid.contains(q) && place(rock.model, q).layer != air_layer(rock.model)
+    };
+    [DVec3::Z, along, -along].into_iter().any(is_rock) && covered_by(frame, p) < IN_FRONT
 }
 
 /// The seen parts of an edge: where one of its faces is seen right beside it.

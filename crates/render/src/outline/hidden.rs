@@ -14,6 +14,8 @@ use glam::{DVec2, DVec3};
 pub(super) const ASIDE: f64 = 0.02;
 /// Points nearer than this along a ray are the same, voxels.
 const SAME: f64 = 0.05;
+/// How far in front of a line on the ground another part of it must be to hide it, voxels: lines touch what they lie on.
+pub(super) const IN_FRONT: f64 = 0.6;
 /// Pixels between two points of a line that are asked.
 const STEP_PX: f64 = 2.0;
 /// Halvings of the last step to where a line disappears: 1/64 pixel.

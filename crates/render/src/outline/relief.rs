@@ -3,14 +3,14 @@
 //! Both are zero lines over the map of one block's ground h(x, y): of the fault's side at (x, y, h), and of
 //! (∂h/∂x, ∂h/∂y, −1)·d, d the viewing direction. They are found on cells of a voxel by linear interpolation (marching squares).
 
-use super::hidden::{ASIDE, covered_by, seen_parts};
+use super::hidden::{ASIDE, IN_FRONT, covered_by, seen_parts};
 use crate::frame::{Frame, Rock};
 use crate::ground::{air_layer, place};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// How far in front of the ground another part of it must be to hide a line, voxels: lines touch what they lie on.
-const IN_FRONT: f64 = 0.6;
+/// How far from a fault its block's ground is asked for, voxels: far enough that the rock below an overhanging scarp is met.
+const INTO_BLOCK: f64 = 0.3;
 
 /// Seen parts of the ground's lines, pixels.
 #[derive(Debug, Default)]
@@ -80,7 +80,7 @@ pub(super) fn relief_lines(frame: &Frame) -> ReliefLines {
         for fault in 0..rock.model.faults().surfaces().len() {
             let side = |node: DVec2| f64::from(rock.model.faults().side(fault, map.ground(node).as_vec3()));
             let segments = map.zero_lines(side);
-            lines.faults.extend(seen(frame, &segments, |p| bounds_block(rock, fault, block, p)));
+            lines.faults.extend(seen(frame, rock, &segments, |p| beside_fault(rock, fault, block, p)));
         }
         let facing = |node: DVec2| {
             let p = map.ground(node);
@@ -88,34 +88,43 @@ pub(super) fn relief_lines(frame: &Frame) -> ReliefLines {
             dx.cross(dy).dot(frame.view.towards_camera(p))
         };
         let segments = map.zero_lines(facing);
-        lines.crests.extend(seen(frame, &segments, |p| place(rock.model, p.as_vec3()).block == block));
+        lines.crests.extend(seen(frame, rock, &segments, |p| {
+            (place(rock.model, p.as_vec3()).block == block).then_some(p)
+        }));
     }
     lines
 }
 
-/// Whether a point of a fault is real and a border of the block's own ground.
-fn bounds_block(rock: Rock, fault: usize, block: u16, p: DVec3) -> bool {
+/// A point of the block's own ground right beside a real fault; `None` where the fault does not end that ground.
+fn beside_fault(rock: Rock, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
     let faults = rock.model.faults();
     if !faults.is_real(fault, p.as_vec3()) {
-        return false;
+        return None;
     }
     let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
-    let sides = [ASIDE, -ASIDE].map(|aside| place(rock.model, (p + normal * aside).as_vec3()).block);
-    sides[0] != sides[1] && sides.contains(&block)
+    let holds_block = |aside: f64| place(rock.model, (p + normal * aside).as_vec3()).block == block;
+    match (holds_block(ASIDE), holds_block(-ASIDE)) {
+        (true, false) => Some(p + normal * INTO_BLOCK),
+        (false, true) => Some(p - normal * INTO_BLOCK),
+        _ => None,
+    }
 }
 
-/// The parts of segments that belong to the drawn ground, lie in the block and have nothing in front.
-fn seen(frame: &Frame, segments: &[[DVec3; 2]], belongs: impl Fn(DVec3) -> bool + Sync) -> Vec<Vec<DVec2>> {
+/// The parts of segments that lie on drawn ground and have nothing in front. `ground` gives the point of the block's ground that a
+/// point of the line stands for.
+fn seen(
+    frame: &Frame,
+    rock: Rock,
+    segments: &[[DVec3; 2]],
+    ground: impl Fn(DVec3) -> Option<DVec3> + Sync,
+) -> Vec<Vec<DVec2>> {
     let [low, high] = frame.solid.roaming_box.map(|c| c.as_dvec3());
     let is_seen = |p: DVec3| {
         p.z >= low.z
             && p.z <= high.z
-            && belongs(p)
             && !cut_away(frame, p)
+            && ground(p).is_some_and(|q| place(rock.model, (q + DVec3::Z * 0.1).as_vec3()).layer != air_layer(rock.model))
             && covered_by(frame, p) < IN_FRONT
-            && frame.rock.is_some_and(|rock| {
-                place(rock.model, (p + DVec3::Z * 0.1).as_vec3()).layer != air_layer(rock.model)
-            })
     };
     segments.par_iter().flat_map_iter(|segment| seen_parts(&frame.view, segment, is_seen)).collect()
 }

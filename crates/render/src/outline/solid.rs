@@ -7,7 +7,7 @@ use crate::camera::View;
 use crate::visible::Solid;
 use glam::{DVec3, Vec3};
 
-/// A side of the box or a wall of a cut-out that faces the camera. Parts of it may be cut away or hidden.
+/// A side of the box or a wall of a cut-out. Parts of it may be cut away or hidden.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct FaceRect {
     /// Axis of its normal.
@@ -16,6 +16,10 @@ pub(super) struct FaceRect {
     pub low: DVec3,
     /// Largest corner; equal to `low` along `axis`.
     pub high: DVec3,
+    /// Where the rock is: +1 at larger, −1 at smaller coordinates along `axis`.
+    pub rock: f64,
+    /// Whether it faces the camera; of the others only the rim of the ground can be seen.
+    pub faces_camera: bool,
 }
 
 /// A stretch of an edge of the block.
@@ -27,18 +31,18 @@ pub(super) struct EdgeLine {
     pub faces: [Option<DVec3>; 4],
 }
 
-/// All face rectangles that face the camera.
+/// All face rectangles.
 pub(super) fn face_rects(solid: &Solid, view: &View) -> Vec<FaceRect> {
     let outer = solid.roaming_box;
     let mut rects = Vec::new();
     for axis in 0..3 {
         for end in 0..2 {
             let normal = unit(axis) * if end == 0 { -1.0 } else { 1.0 };
-            add_facing(&mut rects, view, axis, outer, end, normal);
+            rects.push(face_rect(view, axis, outer, end, normal));
             for cut in &solid.cut_outs {
                 // A wall on the box's own side has no rock behind it. Its normal points into the cut-out.
                 if cut[end][axis] != outer[end][axis] {
-                    add_facing(&mut rects, view, axis, *cut, end, -normal);
+                    rects.push(face_rect(view, axis, *cut, end, -normal));
                 }
             }
         }
@@ -46,13 +50,11 @@ pub(super) fn face_rects(solid: &Solid, view: &View) -> Vec<FaceRect> {
     rects
 }
 
-fn add_facing(rects: &mut Vec<FaceRect>, view: &View, axis: usize, corners: [Vec3; 2], end: usize, normal: DVec3) {
+fn face_rect(view: &View, axis: usize, corners: [Vec3; 2], end: usize, normal: DVec3) -> FaceRect {
     let [mut low, mut high] = corners.map(|c| c.as_dvec3());
     low[axis] = f64::from(corners[end][axis]);
     high[axis] = low[axis];
-    if view.towards_camera(low).dot(normal) > 0.0 {
-        rects.push(FaceRect { axis, low, high });
-    }
+    FaceRect { axis, low, high, rock: -normal[axis], faces_camera: view.towards_camera(low).dot(normal) > 0.0 }
 }
 
 fn unit(axis: usize) -> DVec3 {
@@ -126,6 +128,10 @@ mod tests {
         View::new(&Camera { azimuth_deg: Some(35.0), ..Camera::default() }, &geometry, block, 1.0, [100, 100])
     }
 
+    fn facing(solid: &Solid, block: &VoxelBox) -> usize {
+        face_rects(solid, &view(block)).iter().filter(|rect| rect.faces_camera).count()
+    }
+
     fn length(edges: &[EdgeLine]) -> f64 {
         edges.iter().map(|e| (e.ends[1] - e.ends[0]).length()).sum()
     }
@@ -134,7 +140,7 @@ mod tests {
     fn a_box_shows_nine_edges_and_three_faces() {
         let block = VoxelBox::of_size([11, 11, 11]);
         let solid = Solid::new(&block, &[]);
-        assert_eq!(face_rects(&solid, &view(&block)).len(), 3);
+        assert_eq!(facing(&solid, &block), 3);
         assert!((length(&edge_lines(&solid, &view(&block))) - 90.0).abs() < 1e-3);
     }
 
@@ -144,7 +150,7 @@ mod tests {
         let corner = view(&block).nearest_corner(&block);
         assert_eq!(corner, Corner::MinMin);
         let solid = Solid::new(&block, &[block.corner_cut(corner, [0.4, 0.3])]);
-        assert_eq!(face_rects(&solid, &view(&block)).len(), 5);
+        assert_eq!(facing(&solid, &block), 5);
         // 3 × 10 at the back of the top and the side and bottom rims, shortened by the cut, plus its own rims: the outline
         // of an L on top (40), the same at the bottom but for the two hidden sides (40 − 20), verticals: 3 of the cut, 2 outer ones.
         assert!((length(&edge_lines(&solid, &view(&block))) - (40.0 + 20.0 + 50.0)).abs() < 1e-3);
