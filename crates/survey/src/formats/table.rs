@@ -59,7 +59,7 @@ impl Cut {
 
 /// Whether a line is a comment or a mark of the end.
 pub(super) fn is_comment(line: &str) -> bool {
-    line.starts_with(['#', '!', '%', '@']) || line.starts_with("//") || matches!(line, "END" | "EOD")
+    line.starts_with(['#', '!', '%', '@']) || line.starts_with("//") || matches!(line, "END" | "EOD" | "EOB" | "EOF")
 }
 
 /// The numbers of up to 2000 rows spread over the table, to tell columns apart, and whether a name stands before them.
