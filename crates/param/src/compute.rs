@@ -46,6 +46,9 @@ impl Clock {
     }
 }
 
+/// Isocurves of neighbouring columns that end farther apart than this (voxels) have a crease between them.
+const JUMP: f32 = 3.0;
+
 /// What one column of a grid is filled with.
 struct Column<'a> {
     offsets: &'a mut [[f32; 3]],
@@ -82,6 +85,7 @@ pub fn fill(
             progress.step(1)
         },
     )?;
+    flag_jumps(touched, levels, &offsets, &mut creases);
     extend_over_pinch_outs(layer, touched, levels, &mut offsets);
     grid.creases = creases
         .par_chunks(64)
@@ -261,6 +265,31 @@ fn lattice_shape(grid: &RegionGrid, touched: &Touched) -> LatticeShape {
         }
     }
     LatticeShape { origin: grid.origin, size, wanted }
+}
+
+/// Flags the nodes of neighbouring columns whose isocurves end farther apart than [`JUMP`].
+fn flag_jumps(touched: &Touched, levels: usize, offsets: &[[f32; 3]], creases: &mut [bool]) {
+    let [nx, ny] = touched.size;
+    for x in 0..nx {
+        for (along_x, step) in [(1, ny), (0, 1)] {
+            for y in 0..ny {
+                let n = x * ny + y;
+                let inside = if along_x == 1 { x + 1 < nx } else { y + 1 < ny };
+                if !(inside && touched.is_wanted(n) && touched.is_wanted(n + step)) {
+                    continue;
+                }
+                for level in 0..levels {
+                    let (a, b) = (n * levels + level, (n + step) * levels + level);
+                    let gap_x = offsets[b][0] - offsets[a][0] + along_x as f32;
+                    let gap_y = offsets[b][1] - offsets[a][1] + (1 - along_x) as f32;
+                    if gap_x.abs().max(gap_y.abs()) > JUMP {
+                        creases[a] = true;
+                        creases[b] = true;
+                    }
+                }
+            }
+        }
+    }
 }
 
 /// Columns without thickness take the offsets of the nearest column that has one, two columns far at most.
