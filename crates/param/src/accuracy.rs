@@ -10,7 +10,7 @@
 //! Positions come from a Halton sequence: the same on every machine, and never on the lattice.
 
 use crate::metric::Metric;
-use crate::{FlatPoint, LayerModel, ParamError, Parameterization, Region};
+use crate::{FlatPoint, LayerModel, PackedVolume, ParamError, Parameterization, Region};
 use glam::Vec3;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -54,6 +54,49 @@ pub struct AngleAccuracy {
     pub at_creases: usize,
 }
 
+/// Everything measured of one lookup.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct PathAccuracy {
+    /// |k − {0, 1}| on the horizons, voxels of depth.
+    pub k_on_horizons: Spread,
+    /// Degrees off 90.
+    pub angles: AngleAccuracy,
+}
+
+/// The exact lookup and the paper's packed one, measured at the same places.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Comparison {
+    /// [`Parameterization::lookup`].
+    pub exact: PathAccuracy,
+    /// [`PackedVolume::lookup_extrapolated`] (P-illus 3.4).
+    pub packed: PathAccuracy,
+}
+
+/// Measures both paths at `count` places per horizon and block and ten times as many inside.
+///
+/// # Errors
+/// [`ParamError::DegenerateMetric`].
+pub fn compare<M: LayerModel + ?Sized>(
+    model: &M,
+    param: &Parameterization,
+    packed: &PackedVolume,
+    count: usize,
+) -> Result<Comparison, ParamError> {
+    let points = horizon_points(model, |horizon, block, x, y| model.sheet(horizon, block).z_at(x, y), count);
+    let exact = |p| param.lookup(model, p);
+    let paper = |p| packed.lookup_extrapolated(p);
+    Ok(Comparison {
+        exact: PathAccuracy {
+            k_on_horizons: k_on_horizons(model, param, exact, &points),
+            angles: angles(model, param, exact, 10 * count)?,
+        },
+        packed: PathAccuracy {
+            k_on_horizons: k_on_horizons(model, param, paper, &points),
+            angles: angles(model, param, paper, 10 * count)?,
+        },
+    })
+}
+
 /// The radical inverse of `n` in a base: the Halton sequence's coordinate, in [0, 1).
 fn halton(mut n: usize, base: usize) -> f64 {
     let (mut value, mut unit) = (0.0, 1.0);
@@ -65,44 +108,69 @@ fn halton(mut n: usize, base: usize) -> f64 {
     value
 }
 
-/// |k − {0, 1}| in voxels of depth at `count` places per horizon and block, walls among them (every 16th place is moved
-/// onto one). Only places where the horizon bounds its two layers count: not where it is cut off or in another block.
+/// A place on a horizon that bounds its two layers there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HorizonPoint {
+    /// Horizon, 0 = youngest.
+    pub horizon: usize,
+    /// Fault block.
+    pub block: u16,
+    /// Voxel position.
+    pub p: Vec3,
+}
+
+/// Up to `count` places per horizon and block, walls among them (every 16th is moved onto one), at heights
+/// `depth(horizon, block, x, y)`. Only places count where the horizon bounds its two layers: not where it is cut off,
+/// in another block or outside the volume.
+pub fn horizon_points<M: LayerModel + ?Sized>(
+    model: &M,
+    depth: impl Fn(usize, u16, f32, f32) -> f32 + Sync,
+    count: usize,
+) -> Vec<HorizonPoint> {
+    let [nx, ny, nz] = model.size().map(|n| n.saturating_sub(1) as f32);
+    let horizons = model.layer_count() - 1;
+    let blocks = model.block_count();
+    let point = |case: usize, n: usize| {
+        let (horizon, block) = (case / blocks, (case % blocks) as u16);
+        let (mut x, mut y) = (halton(n, 2) as f32 * nx, halton(n, 3) as f32 * ny);
+        match n % 64 {
+            0 => x = 0.0,
+            16 => x = nx,
+            32 => y = 0.0,
+            48 => y = ny,
+            _ => {}
+        }
+        let p = Vec3::new(x, y, depth(horizon, block, x, y));
+        let layer_above = (horizons - horizon) as u16;
+        // Wide enough for a true depth that the model's sheet misses by a little.
+        let near = Vec3::new(0.0, 0.0, 0.5);
+        let bounds = model.region_at(p - near) == Region { layer: layer_above, block }
+            && model.region_at(p + near) == Region { layer: layer_above - 1, block };
+        (bounds && p.z >= 0.0 && p.z <= nz).then_some(HorizonPoint { horizon, block, p })
+    };
+    (0..horizons * blocks)
+        .into_par_iter()
+        .flat_map_iter(|case| (1..=count).filter_map(move |n| point(case, n)))
+        .collect()
+}
+
+/// |k − {0, 1}| in voxels of depth at places on horizons.
 pub fn k_on_horizons<M: LayerModel + ?Sized>(
     model: &M,
     param: &Parameterization,
     lookup: impl Fn(Vec3) -> FlatPoint + Sync,
-    count: usize,
+    points: &[HorizonPoint],
 ) -> Spread {
-    let [nx, ny, nz] = model.size().map(|n| (n - 1) as f32);
     let horizons = model.layer_count() - 1;
-    let cases: Vec<(usize, usize)> =
-        (0..horizons).flat_map(|h| (0..model.block_count()).map(move |b| (h, b))).collect();
-    let errors = cases
+    let errors = points
         .par_iter()
-        .flat_map_iter(|&(horizon, block)| {
-            let lookup = &lookup;
-            (1..=count).filter_map(move |n| {
-                let (mut x, mut y) = (halton(n, 2) as f32 * nx, halton(n, 3) as f32 * ny);
-                match n % 64 {
-                    0 => x = 0.0,
-                    16 => x = nx,
-                    32 => y = 0.0,
-                    48 => y = ny,
-                    _ => {}
-                }
-                let p = Vec3::new(x, y, model.sheet(horizon, block as u16).z_at(x, y));
-                let above = Region { layer: (horizons - horizon) as u16, block: block as u16 };
-                let below = Region { layer: above.layer - 1, ..above };
-                let near = Vec3::new(0.0, 0.0, 0.01);
-                let bounds = model.region_at(p - near) == above && model.region_at(p + near) == below;
-                if !(bounds && p.z >= 0.0 && p.z <= nz) {
-                    return None;
-                }
-                let found = lookup(p);
-                let error = f32::from(found.region.layer) + found.k - f32::from(above.layer);
-                let (_, jacobian) = param.lookup_in(model, p, if error >= 0.0 { above } else { below });
-                Some(error.abs() / jacobian[2][2].abs())
-            })
+        .map(|&HorizonPoint { horizon, block, p }| {
+            let above = Region { layer: (horizons - horizon) as u16, block };
+            let below = Region { layer: above.layer - 1, block };
+            let found = lookup(p);
+            let error = f32::from(found.region.layer) + found.k - f32::from(above.layer);
+            let (_, jacobian) = param.lookup_in(model, p, if error >= 0.0 { above } else { below });
+            error.abs() / jacobian[2][2].abs()
         })
         .collect();
     Spread::of(errors)

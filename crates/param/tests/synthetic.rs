@@ -1,0 +1,35 @@
+//! The synthetic survey with its faults and its unconformity: k on the true horizons, angles, blocks.
+
+use param::{PackedVolume, ParamSettings, Parameterization, accuracy};
+use survey::Progress;
+use survey::model::{ModelSettings, StructuralModel};
+use survey::synth::{SynthSettings, Synthetic};
+
+#[test]
+fn the_synthetic_survey_holds_the_designs_figures() {
+    let silent = Progress::silent();
+    let settings = SynthSettings { size: [96, 96, 96], snr: None, ..Default::default() };
+    let survey = Synthetic::generate(&settings, &silent).unwrap();
+    let model = StructuralModel::build(
+        &survey.geometry,
+        &survey.stratigraphy,
+        &survey.horizons,
+        &survey.faults,
+        &ModelSettings::default(),
+        &silent,
+    )
+    .unwrap();
+    let param = Parameterization::compute(&model, &ParamSettings::default(), &silent).unwrap();
+    let volumes = param.voxel_volumes(&model, param.size, &silent).unwrap();
+    assert!(volumes.k.samples().iter().all(|k| k.is_finite()));
+    let packed = PackedVolume::from_voxels(&volumes, param.size, param.layers, param.blocks);
+    let found = accuracy::compare(&model, &param, &packed, 2000).unwrap();
+    eprintln!("{} blocks, {} layers; {found:#?}", param.blocks, param.layers);
+    assert!(param.blocks > 1);
+    let k = found.exact.k_on_horizons;
+    assert!(k.count > 3000 && k.median <= 0.02 && k.p95 <= 0.1, "{k:?}");
+    let angles = found.exact.angles;
+    for spread in [angles.k_to_i, angles.k_to_j] {
+        assert!(spread.count > 10_000 && spread.median <= 0.2 && spread.p95 <= 1.0, "{angles:?}");
+    }
+}
