@@ -120,7 +120,7 @@ impl<'a> Filler<'a> {
             (layer.frame(column), Vec3::new(0.0, 0.0, -v * layer.thickness(column)))
         };
         let clock = Instant::now();
-        let make = |surface| FootLattice::new(shape.clone(), surface, &layer.metric, place, progress).map(Some);
+        let make = |surface| FootLattice::new(&shape, surface, &layer.metric, place, progress).map(Some);
         let (bottom, top) = match layer.kind {
             LayerKind::Ratio => (make(&layer.bottom)?, make(&layer.top)?),
             LayerKind::AboveBottom(_) => (make(&layer.bottom)?, None),

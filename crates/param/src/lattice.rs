@@ -61,7 +61,7 @@ impl FootLattice {
     /// # Errors
     /// [`Cancelled`].
     pub fn new(
-        shape: LatticeShape,
+        shape: &LatticeShape,
         surface: &Surface,
         metric: &Metric,
         place: impl Fn([i32; 2], usize) -> (Frame, Vec3) + Sync,
@@ -322,7 +322,7 @@ mod tests {
             let place =
                 |column: [i32; 2], level: f32| (Frame { column, z: 65.0 }, Vec3::new(0.0, 0.0, 26.0 - 2.0 * level));
             let lattice = FootLattice::new(
-                shape,
+                &shape,
                 &surface,
                 &metric,
                 |column, level| place(column, (level * LEVELS) as f32),

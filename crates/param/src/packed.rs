@@ -92,9 +92,12 @@ impl PackedVolume {
         (0..3).all(|axis| p[axis] >= 0 && p[axis] < self.size[axis] as i32)
     }
 
-    /// The ids that a value carries: floors on half-open intervals, clamped.
+    /// The ids that a value carries: floors on half-open intervals, clamped; [`NO_REGION`] for the NaN of no region.
     #[inline]
     pub fn region_of(&self, value: [f32; 3]) -> Region {
+        if value[2].is_nan() {
+            return Region { layer: NO_REGION, block: NO_REGION };
+        }
         let id = |packed: f32, count: usize| ((packed * count as f32).floor().max(0.0) as usize).min(count - 1) as u16;
         Region { layer: id(value[2], self.layers), block: id(value[1], self.blocks) }
     }
@@ -196,4 +199,89 @@ fn trilinear(corners: &[[f32; 3]; 8], fraction: [f32; 3]) -> [f32; 3] {
         let along_x = |c: usize| mix(corners[c][n], corners[c + 1][n], fraction[0]);
         mix(mix(along_x(0), along_x(2), fraction[1]), mix(along_x(4), along_x(6), fraction[1]), fraction[2])
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::Volume;
+
+    /// i, j, k linear in voxels; layer 1 above z = 3.5, block 1 from x = 4.
+    fn volumes(size: [usize; 3]) -> VoxelParameterization {
+        let fill = |value: fn([f32; 3]) -> f32| {
+            let samples = (0..size.iter().product::<usize>())
+                .map(|n| value([n / size[2] / size[1], n / size[2] % size[1], n % size[2]].map(|at| at as f32)));
+            Volume::from_samples(size, samples.collect()).unwrap()
+        };
+        let id = |value: fn([f32; 3]) -> bool| {
+            let samples = (0..size.iter().product::<usize>()).map(|n| {
+                u16::from(value([n / size[2] / size[1], n / size[2] % size[1], n % size[2]].map(|at| at as f32)))
+            });
+            Volume::from_samples(size, samples.collect()).unwrap()
+        };
+        VoxelParameterization {
+            size,
+            i: fill(|p| 0.1 * p[0] + if p[0] < 4.0 { 0.0 } else { 0.3 }),
+            j: fill(|p| 0.1 * p[1] - 0.02 * p[0]),
+            k: fill(|p| if p[2] <= 3.0 { 1.0 - 0.25 * (p[2] + 0.25) } else { 1.0 - 0.2 * (p[2] - 3.5) }),
+            layer: id(|p| p[2] <= 3.0),
+            block: id(|p| p[0] >= 4.0),
+        }
+    }
+
+    #[test]
+    fn packing_keeps_values_and_ids() {
+        let volumes = volumes([8, 8, 8]);
+        let packed = PackedVolume::from_voxels(&volumes, [8, 8, 8], 2, 2);
+        for (x, y, z) in [(0, 0, 0), (7, 7, 7), (3, 5, 4), (4, 2, 3)] {
+            let found = packed.lookup_extrapolated(Vec3::new(x as f32, y as f32, z as f32));
+            assert_eq!(
+                (found.region.layer, found.region.block),
+                (volumes.layer.at(x, y, z), volumes.block.at(x, y, z))
+            );
+            assert!((found.i - volumes.i.at(x, y, z)).abs() < 1e-5);
+            assert!((found.j - volumes.j.at(x, y, z)).abs() < 1e-5);
+            assert!((found.k - volumes.k.at(x, y, z)).abs() < 1e-5);
+        }
+    }
+
+    #[test]
+    fn extrapolation_continues_a_linear_field_up_to_the_fault() {
+        let packed = PackedVolume::from_voxels(&volumes([8, 8, 8]), [8, 8, 8], 2, 2);
+        // In cells that straddle the fault or the horizon, on either side.
+        for (x, z) in [(3.2f32, 1.3), (3.7, 6.1), (1.3, 3.8), (6.9, 3.3), (3.9, 5.6)] {
+            let found = packed.lookup_extrapolated(Vec3::new(x, 4.4, z));
+            let block = u16::from(x >= 3.5);
+            let k = if z < 3.5 { 1.0 - 0.25 * (z + 0.25) } else { 1.0 - 0.2 * (z - 3.5) };
+            assert_eq!(found.region, Region { layer: u16::from(z < 3.5), block });
+            assert!((found.i - 0.1 * x - 0.3 * f32::from(block)).abs() < 1e-4, "i at {x}, {z}: {}", found.i);
+            assert!((found.j - 0.44 + 0.02 * x).abs() < 1e-4, "j at {x}, {z}: {}", found.j);
+            assert!((found.k - k).abs() < 1e-4, "k at {x}, {z}: {} and not {k}", found.k);
+            // Plain interpolation mixes in the other side.
+            let plain = packed.lookup_linear(Vec3::new(x, 4.4, z));
+            assert!((plain.i - found.i).abs() > 0.01 || (plain.k - found.k).abs() > 0.01, "{plain:?} at {x}, {z}");
+        }
+        // Where the fault meets the horizon the corner across both has no neighbour of the own region: 3.4's failure.
+        let junction = packed.lookup_extrapolated(Vec3::new(3.2, 4.4, 3.3));
+        assert!((junction.i - 0.32).abs() > 0.01);
+    }
+
+    #[test]
+    fn where_nothing_can_be_extrapolated_the_wrong_value_stays() {
+        // Block 1 is the last column alone: it has no two neighbours along x, but those along y are its own.
+        let mut volumes = volumes([5, 1, 2]);
+        volumes.layer.samples_mut().fill(0);
+        let packed = PackedVolume::from_voxels(&volumes, [5, 1, 2], 1, 2);
+        let found = packed.lookup_extrapolated(Vec3::new(3.6, 0.0, 0.0));
+        let expected = 0.4 * volumes.i.at(3, 0, 0) + 0.6 * volumes.i.at(4, 0, 0);
+        assert_eq!(found.region.block, 1);
+        assert!((found.i - expected).abs() < 1e-5, "{} and not {expected}", found.i);
+    }
+
+    #[test]
+    fn another_size_is_corner_aligned() {
+        let packed = PackedVolume::from_voxels(&volumes([8, 8, 8]), [15, 15, 15], 2, 2);
+        let found = packed.lookup_extrapolated(Vec3::new(4.0, 4.0, 2.0));
+        assert!((found.i - 0.2).abs() < 1e-5 && (found.k - (1.0 - 0.25 * 1.25)).abs() < 1e-5);
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::ParamError;
 use serde::{Deserialize, Serialize};
+use survey::{Contact, Stratigraphy};
 
 /// What k means inside a layer. k is 0 at the bottom sheet and grows upwards in all of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -19,6 +20,18 @@ pub enum KDefinition {
     /// k = 1 − d_top / T: beds parallel to the top that end on the bottom, as above an onlap surface. i, j are those of
     /// the closest point on the top sheet.
     ParallelToTop,
+}
+
+impl KDefinition {
+    /// The definitions that contacts ask for, index 0 = deepest layer: an intrusion that cuts through the horizon below it has
+    /// no bottom, so its layer is measured from its outline; every other layer keeps the distance ratio.
+    pub fn for_contacts(stratigraphy: &Stratigraphy) -> Vec<Self> {
+        let layer = |layer: usize| match stratigraphy.top_of(layer) {
+            Some(top) if stratigraphy.horizons[top].contact == Contact::Intrusive => Self::ParallelToTop,
+            _ => Self::DistanceRatio,
+        };
+        (0..stratigraphy.layer_count()).map(layer).collect()
+    }
 }
 
 /// Settings of [`crate::Parameterization::compute`].
@@ -76,5 +89,33 @@ impl ParamSettings {
             (false, true) => Some(KDefinition::ParallelToBottom),
             (false, false) => Some(stated),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::StratigraphicHorizon;
+
+    #[test]
+    fn an_intrusion_is_measured_from_its_outline() {
+        let horizon = |name: &str, contact| StratigraphicHorizon { name: name.into(), contact };
+        let horizons = vec![
+            horizon("a", Contact::Conformable),
+            horizon("salt", Contact::Intrusive),
+            horizon("b", Contact::Erosional),
+        ];
+        let definitions = KDefinition::for_contacts(&Stratigraphy { horizons, layer_names: Vec::new() });
+        use KDefinition::{DistanceRatio, ParallelToTop};
+        assert_eq!(definitions, [DistanceRatio, ParallelToTop, DistanceRatio, DistanceRatio]);
+    }
+
+    #[test]
+    fn open_layers_are_parallel_whatever_is_asked() {
+        let settings = ParamSettings::default();
+        assert_eq!(settings.definition(0, 3), Some(KDefinition::ParallelToTop));
+        assert_eq!(settings.definition(1, 3), Some(KDefinition::DistanceRatio));
+        assert_eq!(settings.definition(2, 3), Some(KDefinition::ParallelToBottom));
+        assert_eq!(settings.definition(0, 1), None);
     }
 }
