@@ -134,7 +134,7 @@ pub enum StoreError {
 
 impl StoreError {
     /// A failure of the file system while `path` was being `action` ("read", "written", …).
-    pub(super) fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+    pub(crate) fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::DiskFull { path },

@@ -32,6 +32,6 @@ pub use header::VERSION;
 pub use horizon::{read_horizon, write_horizon};
 pub use layout::{BRICK, Layout};
 pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
-pub use replacement::{Replacement, clean};
+pub use replacement::{Replacement, clean, replace_file};
 pub use sample::StoredSample;
 pub use volume::{SourceError, StoredVolume, VolumeInfo, write_volume, write_volume_slabs};

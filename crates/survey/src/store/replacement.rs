@@ -148,8 +148,11 @@ pub fn clean(folder: &Path) -> Vec<PathBuf> {
     touched
 }
 
-/// Replaces a file by `bytes`.
-pub(super) fn replace_file(target: &Path, bytes: &[u8]) -> Result<(), StoreError> {
+/// Replaces a file by `bytes`; creates its parent folders.
+///
+/// # Errors
+/// When it cannot be written; the file is then what it was.
+pub fn replace_file(target: &Path, bytes: &[u8]) -> Result<(), StoreError> {
     use std::io::Write;
     let replacement = Replacement::of(target)?;
     File::create(replacement.path())

@@ -7,6 +7,7 @@
 //! | parameters for a size and a seed | `design` |
 //! | convolutional seismic, noise, impedance | `seismic` |
 //! | horizons and faults an exact interpreter would pick | `interpretation` |
+//! | the survey as SEG-Y, horizon and fault files | `files` |
 //! | small models with exact k for tests | [`closed_form`] |
 //!
 //! Everything depends on the settings alone: the same bytes at any number of threads.
@@ -15,6 +16,7 @@ pub mod closed_form;
 mod column;
 mod design;
 mod faulting;
+mod files;
 mod fold;
 mod interpretation;
 mod random;
@@ -25,6 +27,7 @@ mod truth;
 
 pub use column::Column;
 pub use faulting::{Tip, TruthFault};
+pub use files::{SynthFileError, SynthFiles};
 pub use fold::{FoldedBeds, Undulation, Wave};
 pub use seismic::AMPLITUDE;
 pub use truth::{Sequence, SynthTruth, TruthHorizon};

@@ -301,3 +301,52 @@ fn what_cannot_be_made_is_refused() {
     progress.cancel();
     assert_eq!(Synthetic::generate(&small(1), &progress), Err(SynthError::Cancelled(Cancelled)));
 }
+
+#[test]
+fn the_written_survey_reads_back_as_it_was_made() {
+    let dir = tempfile::tempdir().unwrap();
+    let survey = Synthetic::generate(&small(1), &Progress::silent()).unwrap();
+    let files = survey.write_dir(&dir.path().join("new"), &Progress::silent()).unwrap();
+    for (path, geometry, volume) in [
+        (&files.survey, &survey.geometry, &survey.seismic),
+        (&files.attribute, &survey.attribute.geometry, &survey.attribute.volume),
+    ] {
+        let read = crate::segy::read(path, &crate::segy::SegyOptions::default(), &Progress::silent()).unwrap();
+        assert!(read.volume.samples() == volume.samples(), "{}", path.display());
+        let (place, there) = (DVec3::new(3.0, 5.0, 7.0), &read.geometry);
+        assert!((there.world_from_voxel(place) - geometry.world_from_voxel(place)).length() < 0.02);
+    }
+    let options = crate::formats::ImportOptions::default();
+    for (path, horizon) in files.horizons.iter().zip(&survey.horizons) {
+        let (read, _) = &crate::formats::read_horizons(path, &survey.geometry, &options).unwrap()[0];
+        assert_eq!(read.name, horizon.name);
+        let depths = |h: &Horizon| {
+            let mut all: Vec<f32> = h.sheets.iter().flat_map(|s| s.depth.iter().copied()).collect();
+            all.retain(|depth| depth.is_finite());
+            all.sort_by(f32::total_cmp);
+            all
+        };
+        let (a, b) = (depths(read), depths(horizon));
+        assert_eq!(a.len(), b.len(), "{}", horizon.name);
+        assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 0.01));
+    }
+    for (path, fault) in files.faults.iter().zip(&survey.faults) {
+        let index = survey.faults.iter().position(|f| f.name == fault.name).unwrap();
+        for path in [path.clone(), path.with_extension("dat")] {
+            let (read, _) = &crate::formats::read_fault(&path, &survey.geometry, &options).unwrap()[0];
+            assert!(!read.mesh.triangles.is_empty(), "{}", path.display());
+            for &vertex in &read.mesh.vertices {
+                let voxel = survey.geometry.voxel_from_world(vertex);
+                assert!(survey.truth.fault_side_m(index, voxel).abs() < 0.15, "{}", path.display());
+            }
+        }
+        let (triangles, _) = &crate::formats::read_fault(path, &survey.geometry, &options).unwrap()[0];
+        assert_eq!((&triangles.name, &triangles.mesh.triangles), (&fault.name, &fault.mesh.triangles));
+    }
+    let text = std::fs::read_to_string(&files.truth).unwrap();
+    let truth: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let truth: SynthTruth = serde_json::from_value(truth["truth"].clone()).unwrap();
+    for &(h, b, x, y) in nodes(&truth).iter().step_by(101) {
+        assert!((truth.sheet_z(h, b, x, y) - survey.truth.sheet_z(h, b, x, y)).abs() < 1e-9);
+    }
+}
