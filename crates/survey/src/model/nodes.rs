@@ -1,11 +1,12 @@
 //! What was interpreted, on the voxel lattice: the nodes of a horizon with the fault block each belongs to.
 //!
 //! Sheets on other grids are resampled by the Catmull–Rom bicubic of their own nodes; a cell takes part only when its four corners are of one
-//! block, so that nothing is interpolated across a fault.
+//! block, so that nothing is interpolated across a fault. Nodes too close to a fault, or picked on the wrong side of it, are left out.
 
 use super::network::FaultNetwork;
 use super::report::{ModelNote, ModelReport};
 use super::settings::ModelSettings;
+use super::strays;
 use crate::geometry::SurveyGeometry;
 use crate::horizon::{Horizon, Quality, Sheet};
 use glam::{DMat2, DVec2, Vec3};
@@ -56,7 +57,12 @@ pub(super) struct Node {
     pub bits: u64,
     /// Faults that are virtual beside it: it lies beyond their tip.
     pub beyond: u64,
+    /// Close enough to a real fault that it may have been picked on its other side.
+    pub doubtful: bool,
 }
+
+/// Nodes within this many voxels of a real fault are doubtful when the interpretation does not say which block they belong to.
+const DOUBTFUL_VOXELS: f64 = 4.0;
 
 /// All nodes of one horizon, at most one per block and lattice node; by block, then lattice node.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -86,21 +92,22 @@ pub(super) fn gather(
         for n in 0..lattice.len() {
             native.sample(lattice.voxel(n), |z, quality, block| {
                 let p = lattice.place(n, z);
-                let (bits, mut beyond, mut near) = (faults.bits_at(p), 0, false);
+                let (bits, mut beyond, mut distance) = (faults.bits_at(p), 0, f64::INFINITY);
                 for (f, surface) in faults.surfaces().iter().enumerate() {
                     let at = p.as_dvec3();
                     let real = surface.extent_at(at) >= 0.0;
                     beyond |= u64::from(!real) << f;
-                    if settings.fault_setback > 0.0 && sheet.block.is_none() && real {
+                    if sheet.block.is_none() && real && faults.existing(bits) >> f & 1 == 1 {
+                        // Horizontal distance, to first order.
                         let steep = surface.side_gradient(at).truncate().length();
-                        near |= faults.existing(bits) >> f & 1 == 1
-                            && surface.side(at).abs() < f64::from(settings.fault_setback) * steep;
+                        distance = distance.min(surface.side(at).abs() / steep.max(1e-9));
                     }
                 }
-                if near {
+                if distance < f64::from(settings.fault_setback) {
                     set_back += 1;
                 } else {
-                    out.nodes.push(Node { at: n as u32, z, quality, block, bits, beyond });
+                    let doubtful = distance < DOUBTFUL_VOXELS;
+                    out.nodes.push(Node { at: n as u32, z, quality, block, bits, beyond, doubtful });
                 }
             });
         }
@@ -121,6 +128,10 @@ pub(super) fn gather(
         report.notes.push(ModelNote::Overlap { horizon: horizon.name.clone(), nodes, worst });
     }
     out.nodes.dedup_by_key(|n| (n.block, n.at));
+    let strays = strays::take_out(lattice, &mut out.nodes, settings.slope_radius);
+    if strays > 0 {
+        report.notes.push(ModelNote::Strays { horizon: horizon.name.clone(), nodes: strays });
+    }
     out
 }
 

@@ -153,6 +153,13 @@ pub enum ModelNote {
         /// How many.
         nodes: usize,
     },
+    /// Nodes were picked on the wrong side of a fault and left out.
+    Strays {
+        /// Name of the horizon.
+        horizon: String,
+        /// How many.
+        nodes: usize,
+    },
     /// Two sheets of one block lie over one another; the better one was used.
     Overlap {
         /// Name of the horizon.
@@ -212,6 +219,9 @@ impl fmt::Display for ModelNote {
             }
             Self::SetBack { horizon, nodes } => {
                 write!(f, "{nodes} nodes of horizon \"{horizon}\" close to a fault were dropped")
+            }
+            Self::Strays { horizon, nodes } => {
+                write!(f, "{nodes} nodes of horizon \"{horizon}\" lie on the wrong side of a fault and were left out")
             }
             Self::Overlap { horizon, nodes, worst } => write!(
                 f,

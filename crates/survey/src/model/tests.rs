@@ -6,6 +6,7 @@ use crate::geometry::{LineAxis, SurveyGeometry, VerticalUnit};
 use crate::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use crate::progress::Progress;
 use crate::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
+use crate::synth::{SynthSettings, Synthetic};
 use glam::{DVec2, DVec3, Vec3};
 use std::collections::BTreeMap;
 
@@ -228,6 +229,113 @@ fn bad_input_is_named() {
     let h = horizons(&g, &[&flat(20.0)]);
     let cancelled = StructuralModel::build(&g, &one, &h, &[], &ModelSettings::default(), &progress);
     assert!(matches!(cancelled, Err(ModelError::Cancelled(_))));
+}
+
+#[test]
+fn a_node_on_the_wrong_side_of_a_fault_is_left_out() {
+    let form = closed_form::dipping_normal();
+    let mut horizons = form.horizons(|_, _| 0.0);
+    // Move both sheets two voxels along x, the fault stays: two nodes a line end up on the wrong side of it.
+    for sheet in horizons.iter_mut().flat_map(|h| &mut h.sheets) {
+        sheet.grid.origin.x += 50.0;
+    }
+    let model = StructuralModel::build(
+        &form.geometry,
+        &form.stratigraphy(),
+        &horizons,
+        &form.fault_inputs(),
+        &ModelSettings::default(),
+        &Progress::silent(),
+    )
+    .unwrap();
+    assert!(model.report().notes.iter().any(|n| matches!(n, ModelNote::Strays { nodes, .. } if *nodes > 50)));
+    let mut worst = 0.0f32;
+    for h in 0..3 {
+        for bits in 0..2 {
+            for n in 0..64 * 48 {
+                let (x, y) = ((n / 48) as f64, (n % 48) as f64);
+                let z = (form.sheet)(h, bits, x - 2.0, y);
+                let p = DVec3::new(x, y, z);
+                if (0.0..71.0).contains(&z) && form.bits(p) == bits {
+                    let block = model.block_at(p.as_vec3());
+                    worst = worst.max((model.sheet(h, block).z_at(x as f32, y as f32) - z as f32).abs());
+                }
+            }
+        }
+    }
+    assert!(worst < 0.02, "{worst}");
+}
+
+#[test]
+fn the_synthetic_survey_is_rebuilt_from_its_interpretation() {
+    let settings = SynthSettings { size: [96, 88, 96], snr: None, ..SynthSettings::default() };
+    let synthetic = Synthetic::generate(&settings, &Progress::silent()).unwrap();
+    let (geometry, truth) = (&synthetic.geometry, &synthetic.truth);
+    let model = StructuralModel::build(
+        geometry,
+        &synthetic.stratigraphy,
+        &synthetic.horizons,
+        &synthetic.faults,
+        &ModelSettings::default(),
+        &Progress::silent(),
+    )
+    .unwrap();
+    for note in &model.report().notes {
+        println!("{note}");
+    }
+    assert_eq!(model.block_count(), truth.block_count());
+    let mut random = Random(17);
+    let mut block_of: BTreeMap<u16, u16> = BTreeMap::new();
+    let (mut on_sheets, mut on_faults) = (Vec::new(), Vec::new());
+    let mut wrong = 0;
+    for _ in 0..40_000 {
+        let p = random.place(geometry.size());
+        let block = truth.block_at(p);
+        let near_fault = (0..truth.faults.len())
+            .map(|f| (truth.fault_side_m(f, p) / truth.step_m.min_element()).abs())
+            .fold(f64::INFINITY, f64::min);
+        // Beyond a tip the blocks' boundary is nobody's truth; layers are.
+        if near_fault > 0.2 && (0..truth.faults.len()).all(|f| truth.fault_is_real(f, p)) {
+            let found = model.block_at(p.as_vec3());
+            assert_eq!(*block_of.entry(block).or_insert(found), found, "block at {p}");
+        }
+        // Boundary errors, vertical for horizons and perpendicular for faults.
+        let mut near_horizon = f64::INFINITY;
+        for h in 0..truth.horizons.len() {
+            let z = truth.horizon_z(h, block, p.x, p.y);
+            near_horizon = near_horizon.min((z - p.z).abs());
+            let on = DVec3::new(p.x, p.y, z);
+            if z > 0.0 && z < 95.0 && truth.block_at(on) == block && truth.exists(h, block, p.x, p.y) {
+                let found = block_of.get(&block).map(|&b| model.horizon_z(h, b, p.x as f32, p.y as f32));
+                on_sheets.extend(found.map(|found| (f64::from(found) - z).abs()));
+            }
+        }
+        for f in 0..truth.faults.len() {
+            let x = truth.faults[f].surface_u(p.y * truth.step_m.y, p.z * truth.step_m.z) / truth.step_m.x;
+            let on = DVec3::new(x, p.y, p.z);
+            if (0.0..95.0).contains(&x) {
+                let side = model.faults().surfaces()[f].side(on);
+                let gradient = model.faults().surfaces()[f].side_gradient(on).length();
+                on_faults.push(((side / gradient).abs(), truth.fault_is_real(f, on)));
+            }
+        }
+        if near_fault > 0.2 && near_horizon > 0.2 {
+            wrong += usize::from(model.region_at(p.as_vec3()).layer != truth.layer_at(p));
+        }
+    }
+    let percentile = |values: &mut Vec<f64>, share: f64| {
+        values.sort_by(f64::total_cmp);
+        values[((values.len() - 1) as f64 * share) as usize]
+    };
+    let mut real: Vec<f64> = on_faults.iter().filter(|f| f.1).map(|f| f.0).collect();
+    let mut tip: Vec<f64> = on_faults.iter().filter(|f| !f.1).map(|f| f.0).collect();
+    for (name, values) in [("horizons", &mut on_sheets), ("faults", &mut real), ("faults beyond the tip", &mut tip)] {
+        let [median, most, max] = [0.5, 0.99, 1.0].map(|s| percentile(values, s));
+        println!("{name}: {} places, error median {median:.4}, 99 % {most:.4}, max {max:.4} voxels", values.len());
+    }
+    println!("wrong layers away from boundaries: {wrong} of 40000");
+    assert!(percentile(&mut on_sheets, 0.99) < 0.05 && percentile(&mut real, 1.0) < 0.05);
+    assert!(wrong < 40, "{wrong}");
 }
 
 #[test]

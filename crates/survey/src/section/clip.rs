@@ -206,7 +206,8 @@ impl Clipper<'_> {
             return v;
         }
         let (p, q) = (self.positions[low as usize], self.positions[high as usize]);
-        let t = root(|t| self.value(p.lerp(q, t), cut));
+        let positive = self.is_positive(low, cut);
+        let t = root(|t| self.value(p.lerp(q, t), cut), positive);
         let v = self.positions.len() as u32;
         let st = p.lerp(q, t);
         self.positions.push(st);
@@ -333,12 +334,16 @@ impl Clipper<'_> {
     }
 }
 
-/// Where `f` changes sign in [0, 1]: secant steps that keep the bracket (Illinois), then halving.
-fn root(f: impl Fn(f64) -> f64) -> f64 {
+/// Where `f` changes sign in [0, 1]: secant steps that keep the bracket (Illinois), then halving. `positive` is the side that 0 was found to
+/// lie on; an end that is on the surface but for rounding is the root.
+fn root(f: impl Fn(f64) -> f64, positive: bool) -> f64 {
     let (mut a, mut b) = (0.0, 1.0);
     let (mut fa, mut fb) = (f(a), f(b));
-    if (fa >= 0.0) == (fb >= 0.0) {
-        return 0.5;
+    if (fa >= 0.0) != positive {
+        return a;
+    }
+    if (fb >= 0.0) == positive {
+        return b;
     }
     let mut kept = 0;
     for step in 0..60 {

@@ -14,6 +14,27 @@ pub struct Fit {
     pub z: f32,
     /// Slope per node along x and y.
     pub gradient: [f32; 2],
+    /// Curvature: ∂²/∂x², ∂²/∂x∂y, ∂²/∂y² per node².
+    pub hessian: [f32; 3],
+}
+
+impl Fit {
+    /// The quadratic (dx, dy) nodes away.
+    pub fn curved(&self, dx: f32, dy: f32) -> f32 {
+        let [xx, xy, yy] = self.hessian;
+        self.straight(dx, dy) + 0.5 * (xx * dx * dx + yy * dy * dy) + xy * dx * dy
+    }
+
+    /// The tangent plane (dx, dy) nodes away.
+    pub fn straight(&self, dx: f32, dy: f32) -> f32 {
+        self.z + self.gradient[0] * dx + self.gradient[1] * dy
+    }
+
+    /// Slope of the quadratic (dx, dy) nodes away.
+    fn slope(&self, dx: f32, dy: f32) -> [f32; 2] {
+        let [xx, xy, yy] = self.hessian;
+        [self.gradient[0] + xx * dx + xy * dy, self.gradient[1] + xy * dx + yy * dy]
+    }
 }
 
 /// Ridges relative to the sum of weights. Larger damps noise in thin strips; smaller lets slope and curvature speak there. At a straight
@@ -24,6 +45,10 @@ const CURVATURE_RIDGE: f64 = 1e-4;
 const OUTLIER: f32 = 6.0;
 /// A fit wants at least this many nodes; its neighbourhood grows until it has them.
 const FEWEST_NODES: usize = 12;
+
+/// How far beyond the data its curvature is kept, nodes. A fault between two lattice nodes is met on the curve, not on its tangent;
+/// farther off, curvature would run away.
+pub const COLLAR: f32 = 2.3;
 
 /// Fits at the nodes of a grid, made when asked for.
 pub struct LocalFits<'a> {
@@ -57,6 +82,47 @@ impl<'a> LocalFits<'a> {
         fit
     }
 
+    /// Continues the data with its curvature onto the nodes closer than [`COLLAR`] to it, and counts them as fitted from now on;
+    /// returns which nodes they are.
+    ///
+    /// Each takes the quadratics of the known nodes around it with weights 1/d⁴.
+    pub fn collar(&self) -> Vec<usize> {
+        let [nx, ny] = self.size;
+        let reach = COLLAR.ceil() as i32 + 1;
+        let mut made: Vec<(usize, Fit)> = Vec::new();
+        for n in (0..self.known.len()).filter(|&n| !self.known[n]) {
+            let (x, y) = ((n / ny) as i32, (n % ny) as i32);
+            let mut near: Vec<(f32, usize, f32, f32)> = Vec::new();
+            for i in (x - reach).max(0)..=(x + reach).min(nx as i32 - 1) {
+                for j in (y - reach).max(0)..=(y + reach).min(ny as i32 - 1) {
+                    let m = i as usize * ny + j as usize;
+                    if self.known[m] {
+                        let (dx, dy) = ((x - i) as f32, (y - j) as f32);
+                        near.push((dx * dx + dy * dy, m, dx, dy));
+                    }
+                }
+            }
+            let closest = near.iter().map(|k| k.0).fold(f32::INFINITY, f32::min);
+            if closest > COLLAR * COLLAR {
+                continue;
+            }
+            let mut sum = (0.0f32, [0.0f32; 3]);
+            // Those a node behind the closest ones have hardly a say; leaving them out saves their fits.
+            for &(d, m, dx, dy) in near.iter().filter(|k| k.0.sqrt() < closest.sqrt() + 1.0) {
+                let fit = self.at(m);
+                let (w, slope) = (1.0 / (d * d), fit.slope(dx, dy));
+                sum.0 += w;
+                for (total, value) in sum.1.iter_mut().zip([fit.curved(dx, dy), slope[0], slope[1]]) {
+                    *total += w * value;
+                }
+            }
+            let [z, a, b] = sum.1.map(|v| v / sum.0);
+            made.push((n, Fit { z, gradient: [a, b], hessian: [0.0; 3] }));
+        }
+        self.cache.borrow_mut().extend(made.iter().copied());
+        made.into_iter().map(|(n, _)| n).collect()
+    }
+
     /// Offsets (in radii) and values of the data within `radius` of node `n`.
     fn gather(&self, n: usize, radius: f32) -> Vec<[f32; 3]> {
         let (x, y) = ((n / self.size[1]) as i32, (n % self.size[1]) as i32);
@@ -88,7 +154,8 @@ impl<'a> LocalFits<'a> {
         let c =
             if nodes.iter().any(|n| off(&c, n) > limit) { least_squares(nodes, |n| off(&c, n) <= limit) } else { c };
         let r = f64::from(radius);
-        Fit { z: c[0] as f32, gradient: [(c[1] / r) as f32, (c[2] / r) as f32] }
+        let hessian = [c[3], c[4], c[5]].map(|c| (c / (r * r)) as f32);
+        Fit { z: c[0] as f32, gradient: [(c[1] / r) as f32, (c[2] / r) as f32], hessian }
     }
 }
 

@@ -3,17 +3,18 @@
 //! 1. The least-squares plane is taken off, so that planes stay exact planes.
 //! 2. [`local_fit`]: the data near the rim is replaced by robust local quadratics; their slope is what the surface is continued with,
 //!    so that picking noise is not amplified.
-//! 3. [`plate`]: between and beyond, the surface of least bending, min ∫ h_xx² + 2h_xy² + h_yy², that takes up value and slope of
-//!    the fits (clamped) and is free at the grid's border: a hole is filled by a thin plate, an edge is continued linearly, and both
+//! 3. Over the next two nodes the quadratics go on with their curvature, so that a fault between nodes is met on the curve.
+//! 4. [`plate`]: between and beyond, the surface of least bending, min ∫ h_xx² + 2h_xy² + h_yy², that takes up value and slope there (clamped) and is free at the grid's border: a hole is filled by a thin plate, an edge is continued linearly, and both
 //!    join C¹. Coarse to fine: a direct solution on a coarse grid, then relaxation in a band around the data on each finer one.
-//! 4. What the fits smoothed off the rim (data − fit) fades out over a few nodes, so that the data itself stays exact.
+//! 5. What the fits smoothed off the rim (data − fit) fades out over a few nodes, so that the data itself stays exact.
 //!
 //! "Extended linearly" is P-illus 3.2; a plate is our choice because it is also right for holes and corners.
 
 mod local_fit;
 mod plate;
 
-use local_fit::{Fit, LocalFits};
+pub(super) use local_fit::LocalFits;
+
 use plate::Level;
 
 /// How to continue data.
@@ -29,6 +30,9 @@ pub(super) struct Extension {
 
 /// Where along a chain of nodes data − fit has faded out, and its factor from one node to the next.
 const FADE: (usize, f32) = (8, 0.6);
+
+/// Clean data takes its slope from this share of the radius.
+const LEAST_RADIUS: f32 = 0.6;
 
 /// The plane z = z0 + a·x + b·y over node indices.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,6 +94,31 @@ impl Plane {
 }
 
 impl Extension {
+    /// The share of the radius that the data's noise asks for. A slope fitted over r nodes is off by about 10 σ/r² through noise and by r²
+    /// times the third derivative through the shape, so clean data is better served by a smaller neighbourhood. σ is taken from third differences, which
+    /// see no curvature.
+    fn steadiness(&self, size: [usize; 2], flat: &[f32]) -> f32 {
+        let mut differences: Vec<f32> = Vec::new();
+        for (n, &z) in flat.iter().enumerate() {
+            let (x, y) = (n / size[1], n % size[1]);
+            for (fits, step) in [(x + 3 < size[0], size[1]), (y + 3 < size[1], 1)] {
+                if fits {
+                    let third = flat[n + 3 * step] - z + 3.0 * (flat[n + step] - flat[n + 2 * step]);
+                    if third.is_finite() {
+                        differences.push(third.abs());
+                    }
+                }
+            }
+        }
+        if differences.is_empty() {
+            return 1.0;
+        }
+        let half = differences.len() / 2;
+        // The standard deviation of white noise: a third difference has variance 20 σ², its median modulus is 0.6745 of its deviation.
+        let deviation = *differences.select_nth_unstable_by(half, f32::total_cmp).1 / (0.6745 * 20.0f32.sqrt());
+        (deviation / (0.5 * self.noise)).sqrt().clamp(LEAST_RADIUS, 1.0)
+    }
+
     /// Replaces the NaN nodes of `values`, `[x][y]` of `size`, and leaves the others as they are; `None` when all are NaN.
     pub fn extend(&self, size: [usize; 2], values: &mut [f32]) -> Option<()> {
         let plane = Plane::through(size, values, self.slope)?;
@@ -102,9 +131,14 @@ impl Extension {
             .enumerate()
             .map(|(n, &z)| (f64::from(z) - plane.at(n / size[1], n % size[1])) as f32)
             .collect();
-        let fits = LocalFits::new(size, &flat, &known, self.radius, self.noise);
-        let smooth = plate::solve(size, &known, &fits);
+        let radius = self.radius * self.steadiness(size, &flat);
+        let fits = LocalFits::new(size, &flat, &known, radius, self.noise);
         let rest = fade_out(size, &known, &fits, &flat);
+        let collar = fits.collar();
+        let mut held = known.clone();
+        collar.iter().for_each(|&n| held[n] = true);
+        let mut smooth = plate::solve(size, &held, &fits);
+        collar.iter().for_each(|&n| smooth[n] = fits.at(n).z);
         for n in 0..values.len() {
             if !known[n] {
                 let flat = f64::from(smooth[n]) + f64::from(rest[n]);
@@ -151,11 +185,6 @@ fn fade_out(size: [usize; 2], known: &[bool], fits: &LocalFits, flat: &[f32]) ->
         front = next;
     }
     rest
-}
-
-/// Continues `fit` linearly by (dx, dy) nodes.
-fn continued(fit: Fit, dx: f32, dy: f32) -> f32 {
-    fit.z + fit.gradient[0] * dx + fit.gradient[1] * dy
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 //! Energy on a grid: Σ (δ²ₓh)² + 2(δₓδ_yh)² + (δ²_yh)² over every stencil that fits in the grid, so that its border is free and planes cost
 //! nothing. Two rings of known nodes around the unknown carry the fits' values: the plate is clamped. Level l has every 2^l-th node.
 
-use super::continued;
 use super::local_fit::LocalFits;
 
 /// A grid whose longer side has no more nodes than this is solved directly. Larger is more exact far from data and slower (fourth power).
@@ -97,7 +96,7 @@ impl Level {
                 let (dx, dy) =
                     ((m / fine[1]) as f32 - (rim / fine[1]) as f32, (m % fine[1]) as f32 - (rim % fine[1]) as f32);
                 if dx * dx + dy * dy < (1u32 << (2 * l)) as f32 {
-                    h[n] = continued(fits.at(rim), dx, dy);
+                    h[n] = fits.at(rim).straight(dx, dy);
                     fixed[n] = true;
                 }
             }
