@@ -28,6 +28,8 @@ pub(crate) struct Frame<'a> {
     pub volumes: Vec<Option<NamedVolume<'a>>>,
     /// What illustrates; `None` shows raw data alone.
     pub rock: Option<Rock<'a>>,
+    /// Whether textures show at all: there is an interpretation and the blend is not wholly raw.
+    pub illustrated: bool,
     /// The ground, if the scene has one.
     pub relief: Option<Relief>,
     /// Metres between voxels along x, y, z.
@@ -68,6 +70,7 @@ impl<'a> Frame<'a> {
                 });
             }
         };
+        let hidden = tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
         let view = scene.view(inputs.geometry);
         Ok(Self {
@@ -78,6 +81,7 @@ impl<'a> Frame<'a> {
             tables,
             volumes,
             rock,
+            illustrated: rock.is_some() && !hidden,
             relief,
             voxel_m: DVec3::new(metric.x_axis.length(), metric.y_axis.length(), metric.z_axis.length()).as_vec3(),
         })

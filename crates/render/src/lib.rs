@@ -2,6 +2,7 @@
 //!
 //! One declarative [`Scene`] says what a picture shows, [`Inputs`] bring the data. [`reference::render`] draws it on the CPU.
 
+pub mod accuracy;
 pub mod camera;
 pub mod compare;
 pub mod error;

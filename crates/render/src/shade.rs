@@ -64,7 +64,7 @@ fn face_colour(frame: &Frame, view_ray: &ViewRay, hit: &FaceHit) -> Vec3 {
     let scalars = scalar_values(frame, hit.point);
     let mut normal = [0.0; 3];
     normal[hit.axis] = 1.0;
-    let point = match frame.rock {
+    let point = match frame.rock.filter(|_| frame.illustrated) {
         None => ShadePoint {
             flat: FlatPoint { i: f32::NAN, j: f32::NAN, k: f32::NAN, layer: 0 },
             footprint: FlatFootprint::default(),
@@ -92,8 +92,13 @@ fn face_colour(frame: &Frame, view_ray: &ViewRay, hit: &FaceHit) -> Vec3 {
 fn ground_colour(frame: &Frame, hit: &GroundHit) -> Vec3 {
     let (Some(relief), Some(rock)) = (&frame.relief, frame.rock) else { return Vec3::ZERO };
     let region = Region { layer: hit.place.layer, block: hit.place.block };
-    let (flat, _) = rock.flat_at(hit.point, Some(region));
-    let average = Vec3::from_array(frame.tables.average_colour(u32::from(flat.region.layer), flat.k));
+    let (layer, k) = if frame.illustrated {
+        let (flat, _) = rock.flat_at(hit.point, Some(region));
+        (flat.region.layer, flat.k)
+    } else {
+        (region.layer, 1.0)
+    };
+    let average = Vec3::from_array(frame.tables.average_colour(u32::from(layer), k));
     let lit = (average * relief.shade(hit.normal)).min(Vec3::ONE);
     let slot = frame.tables.globals.raw_volume as usize;
     let value = frame.volumes.get(slot).copied().flatten().map_or(f32::NAN, |volume| volume.sample(hit.point));

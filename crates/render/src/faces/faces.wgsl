@@ -42,6 +42,7 @@ struct FaceParams {
 override lookup: u32 = 1u;
 const LOOKUP_RAW: u32 = 0u;
 const LOOKUP_EXACT: u32 = 1u;
+const LOOKUP_PACKED: u32 = 2u;
 
 // 1 where the ground is shown.
 override with_ground: u32 = 0u;

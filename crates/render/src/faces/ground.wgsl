@@ -139,7 +139,7 @@ fn ground_colour(hit: GroundHit) -> vec3<f32> {
     var k = 1.0;
     if lookup == LOOKUP_EXACT {
         k = flat_exact(hit.point, layer, hit.place.block).ijk.z;
-    } else {
+    } else if lookup == LOOKUP_PACKED {
         let packed = flat_packed(hit.point);
         layer = packed.layer;
         k = packed.flat.ijk.z;

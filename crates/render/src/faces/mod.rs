@@ -9,6 +9,8 @@
 
 mod layout;
 mod model;
+#[cfg(test)]
+mod tests;
 mod textures;
 mod volumes;
 
@@ -139,7 +141,8 @@ impl Renderer {
             self.version = Some(inputs.version);
         }
         let gpu = &self.gpu;
-        let exact = matches!(frame.rock.map(|rock| rock.flat), Some(Flat::Exact(_)));
+        let flat = frame.rock.filter(|_| frame.illustrated).map(|rock| rock.flat);
+        let exact = matches!(flat, Some(Flat::Exact(_)));
         if let Some(rock) = frame.rock
             && (self.model.is_none() || (exact && !self.model_has_grids))
         {
@@ -147,7 +150,7 @@ impl Renderer {
             self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, rock.model, param))?);
             self.model_has_grids = exact;
         }
-        if let Some(Flat::Packed(packed)) = frame.rock.map(|rock| rock.flat)
+        if let Some(Flat::Packed(packed)) = flat
             && self.packed.is_none()
         {
             self.packed = Some(gpu.guarded(|| PackedTexture::new(gpu, Some(packed)))?);
@@ -166,14 +169,14 @@ impl Renderer {
 
     fn variant(&self, frame: &Frame) -> Variant {
         Variant {
-            lookup: match frame.rock.map(|rock| rock.flat) {
+            lookup: match frame.rock.filter(|_| frame.illustrated).map(|rock| rock.flat) {
                 None => 0,
                 Some(Flat::Exact(_)) => 1,
                 Some(Flat::Packed(_)) => 2,
             },
             with_ground: u32::from(frame.relief.is_some()),
             with_raw: u32::from(frame.tables.globals.raw_volume != NONE),
-            with_scalars: u32::from(!frame.tables.scalars.is_empty()),
+            with_scalars: u32::from(frame.illustrated && !frame.tables.scalars.is_empty()),
             volume_count: frame.volumes.len() as u32,
             has_faults: frame.rock.map_or(0, |rock| u32::from(!rock.model.faults().surfaces().is_empty())),
             has_horizons: frame.rock.map_or(0, |rock| u32::from(!rock.model.stratigraphy().horizons.is_empty())),

@@ -1,0 +1,107 @@
+//! The shader is valid, and Rust and WGSL agree on every shared struct and constant.
+
+use super::SHADER;
+use super::layout::{FaceParams, FaultInfo, GridInfo, ModelInfo, PackedInfo, SheetInfo};
+use super::textures::TextureInfo;
+use super::volumes::VolumeInfo;
+use crate::{ground, inputs, visible};
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use std::mem::offset_of;
+use ttf::tables::{IntervalEntry, LayerEntry, ScalarEntry, StopEntry, TtfGlobals};
+
+fn module() -> naga::Module {
+    naga::front::wgsl::parse_str(SHADER).unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)))
+}
+
+#[test]
+fn the_shader_is_valid() {
+    let module = module();
+    Validator::new(ValidationFlags::all(), Capabilities::default())
+        .validate(&module)
+        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)));
+    assert!(module.entry_points.iter().any(|entry| entry.name == "draw"));
+}
+
+/// Compares a struct's members with Rust's fields: same names, same order, same offsets, same size. Padding is Rust's own business.
+fn same_layout(module: &naga::Module, name: &str, size: usize, fields: &[(&str, usize)]) {
+    let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
+    let Some((_, naga::Type { inner: naga::TypeInner::Struct { members, span }, .. })) = found else {
+        panic!("the shader has no struct {name}")
+    };
+    let members: Vec<(&str, usize)> = members
+        .iter()
+        .map(|member| (member.name.as_deref().unwrap_or_default(), member.offset as usize))
+        .filter(|(member, _)| !member.starts_with("padding"))
+        .collect();
+    assert_eq!(members, fields, "{name}");
+    assert_eq!(*span as usize, size, "size of {name}");
+}
+
+macro_rules! check {
+    ($module:expr, $name:ident: $($field:ident),+) => {
+        same_layout(
+            $module,
+            stringify!($name),
+            size_of::<$name>(),
+            &[$((stringify!($field), offset_of!($name, $field))),+],
+        )
+    };
+}
+
+#[test]
+fn structs_have_the_same_layout() {
+    let m = &module();
+    check!(m, FaceParams: origin, origin_dx, origin_dy, direction, direction_dx, direction_dy, box_low, box_high,
+        background, voxel_m, tones, light, display_normal_x, display_normal_y, display_normal_z, relief, reference_px,
+        samples, cut_count, tile, cut_outs);
+    check!(m, SheetInfo: origin, size, offset);
+    check!(m, FaultInfo: u, v, w, surface);
+    check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);
+    check!(m, GridInfo: origin, size, levels, offset, bottom_horizon, top_horizon, bottom_shift, top_shift);
+    check!(m, PackedInfo: scale, size, i_range, j_range, layers, blocks);
+    check!(m, TextureInfo: mean, offset, side, levels);
+    check!(m, VolumeInfo: scale, offset, size);
+    check!(m, TtfGlobals: no_data, raw_domain, blend, global_frequency, aspect_j, raw_volume, scalar_count, stop_count);
+    check!(m, LayerEntry: colour, frequency, first_interval, interval_count);
+    check!(m, IntervalEntry: colour, ink, k, frequency, texture);
+    check!(m, ScalarEntry: colour, ink, range, factor, texture, volume, opacity);
+    check!(m, StopEntry: colour, at);
+}
+
+#[test]
+#[should_panic(expected = "GridInfo")]
+fn a_field_out_of_place_is_noticed() {
+    check!(&module(), GridInfo: size, origin, levels, offset, bottom_horizon, top_horizon, bottom_shift, top_shift);
+}
+
+/// The value of a constant of the shader.
+fn constant(module: &naga::Module, name: &str) -> f64 {
+    let found = module.constants.iter().find(|(_, c)| c.name.as_deref() == Some(name));
+    let Some((_, constant)) = found else { panic!("the shader has no constant {name}") };
+    match module.global_expressions[constant.init] {
+        naga::Expression::Literal(naga::Literal::F32(value)) => f64::from(value),
+        naga::Expression::Literal(naga::Literal::U32(value)) => f64::from(value),
+        ref other => panic!("{name} is {other:?}"),
+    }
+}
+
+#[test]
+fn constants_are_the_same() {
+    let m = module();
+    for (name, value) in [
+        ("TOUCH", f64::from(visible::TOUCH)),
+        ("SHORTEST_STEP", f64::from(ground::SHORTEST_STEP)),
+        ("BISECTIONS", f64::from(ground::BISECTIONS)),
+        ("MAX_STEPS", f64::from(ground::MAX_STEPS)),
+        ("NO_WEIGHT", f64::from(inputs::NO_WEIGHT)),
+        ("SLACK", f64::from(inputs::SLACK)),
+        ("MAX_TAPS", f64::from(ttf::texture::MAX_TAPS)),
+        ("MAP_ONLY_SIN_SQ", f64::from(ttf::coordinates::MAP_ONLY_SIN_SQ)),
+        ("NO_MAP_SIN_SQ", f64::from(ttf::coordinates::NO_MAP_SIN_SQ)),
+        ("ACROSS_ONLY_SHARE", f64::from(ttf::coordinates::ACROSS_ONLY_SHARE)),
+        ("ALONG_ONLY_SHARE", f64::from(ttf::coordinates::ALONG_ONLY_SHARE)),
+        ("NONE", f64::from(ttf::tables::NONE)),
+    ] {
+        assert_eq!(constant(&m, name), value, "{name}");
+    }
+}

@@ -1,0 +1,262 @@
+//! Pictures whose every pixel is known.
+
+mod support;
+
+use glam::{DVec2, DVec3, Vec3};
+use image::{Rgba, RgbaImage};
+use render::accuracy::boundaries;
+use render::reference::render;
+use render::{Camera, Corner, Inputs, Lookup, NamedVolume, Outlines, Scene, VoxelBox};
+use support::Block;
+use survey::section::SectionPlane;
+use survey::synth::closed_form::ClosedForm;
+use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+use ttf::{
+    Colour, ColourMap, DepthInterval, Frequency, LayerStyle, LayerTtf, RawColour, RgbaFunction, TextureLibrary,
+    TransferFunctions,
+};
+
+const RED: Colour = Colour::new(220, 40, 40);
+const GREEN: Colour = Colour::new(40, 200, 60);
+const BLUE: Colour = Colour::new(40, 60, 210);
+
+fn geometry() -> SurveyGeometry {
+    SurveyGeometry::regular([41, 31, 41], 25.0, 10.0, VerticalUnit::Metres)
+}
+
+/// Layers of plain colours, deepest first.
+fn plain(closed: &ClosedForm, colours: &[Colour]) -> TransferFunctions {
+    let names = closed.stratigraphy.layer_names_bottom_up();
+    let styles = names.iter().zip(colours).map(|(name, &colour)| LayerStyle::plain(name, colour)).collect();
+    TransferFunctions { layers: LayerTtf { styles }, ..TransferFunctions::default() }
+}
+
+/// Straight at the face of smallest y from the south.
+fn from_the_side(size_px: [u32; 2]) -> Scene {
+    let camera = Camera { azimuth_deg: Some(0.0), elevation_deg: 0.0, margin: 0.1, ..Camera::default() };
+    Scene { size_px, samples: 4, camera, outlines: Outlines::none(), ..Scene::default() }
+}
+
+fn draw(scene: &Scene, inputs: &Inputs) -> RgbaImage {
+    render(scene, inputs, &Progress::silent()).unwrap()
+}
+
+/// How far down a column a colour begins, from the coverage of its pixels below `top`.
+fn share_below(image: &RgbaImage, x: u32, colour: Colour) -> f64 {
+    (0..image.height()).filter(|&y| image.get_pixel(x, y).0[..3] == colour.rgb).count() as f64
+}
+
+#[test]
+fn flat_layers_lie_where_the_projection_says() {
+    let closed = ClosedForm::flat(&geometry(), &[10.0, 27.0]);
+    let library = TextureLibrary::builtin().unwrap();
+    let block = Block::of(&closed, &plain(&closed, &[RED, GREEN, BLUE]), &library);
+    let scene = Scene { exaggeration: 1.7, ..from_the_side([200, 160]) };
+    let image = draw(&scene, &block.inputs(&[]));
+    let view = scene.view(&closed.geometry);
+    let row = |z: f64| view.project(DVec3::new(20.0, 0.0, z)).y;
+    // 25 m bins against 10 m samples, exaggerated.
+    let per_sample = (row(40.0) - row(0.0)) / 40.0;
+    let per_inline = (view.project(DVec3::new(40.0, 0.0, 0.0)) - view.project(DVec3::ZERO)).x / 40.0;
+    assert!((per_sample / per_inline - 10.0 * 1.7 / 25.0).abs() < 1e-9);
+    for y in 0..160 {
+        let middle = f64::from(y) + 0.5;
+        let expected = [(0.0, 10.0, BLUE), (10.0, 27.0, GREEN), (27.0, 40.0, RED)]
+            .into_iter()
+            .find(|(top, base, _)| middle - 0.5 >= row(*top) && middle + 0.5 <= row(*base));
+        let found = image.get_pixel(100, y).0;
+        match expected {
+            Some((_, _, colour)) => assert_eq!(found[..3], colour.rgb, "row {y}"),
+            None if middle + 0.5 <= row(0.0) || middle - 0.5 >= row(40.0) => assert_eq!(found, [255; 4], "row {y}"),
+            None => {}
+        }
+    }
+}
+
+#[test]
+fn a_striped_tile_repeats_as_often_as_its_frequency_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("stripes.png");
+    let stripes = RgbaImage::from_fn(64, 64, |x, _| Rgba(if x < 32 { [0, 0, 0, 255] } else { [255; 4] }));
+    stripes.save(&path).unwrap();
+    let mut library = TextureLibrary::builtin().unwrap();
+    library.add_user(&path).unwrap();
+    let closed = ClosedForm::flat(&geometry(), &[8.0, 32.0]);
+    let mut functions = plain(&closed, &[RED, GREEN, BLUE]);
+    functions.layers.styles[1].intervals = vec![DepthInterval {
+        k: [0.0, 1.0],
+        texture: "stripes".to_owned(),
+        frequency: Some(Frequency { horizontal: 10.0, vertical: 1.0 }),
+        opacity: 1.0,
+        colour: None,
+    }];
+    let block = Block::of(&closed, &functions, &library);
+    let changes = |scene: &Scene| {
+        let image = draw(scene, &block.inputs(&[]));
+        let row = scene.view(&closed.geometry).project(DVec3::new(20.0, 0.0, 20.0)).y as u32;
+        let dark: Vec<bool> = (0..image.width()).map(|x| image.get_pixel(x, row).0[1] < 128).collect();
+        dark.windows(2).filter(|pair| pair[0] != pair[1]).count()
+    };
+    let scene = from_the_side([420, 200]);
+    // White, ten dark stripes, white.
+    assert_eq!(changes(&scene), 20);
+    assert_eq!(changes(&Scene { global_frequency: 1.5, ..scene.clone() }), 30);
+    assert_eq!(changes(&Scene { lookup: Lookup::Packed, ..scene }), 20);
+}
+
+fn ramp_along_x(geometry: &SurveyGeometry) -> Volume<f32> {
+    let [nx, ny, nz] = geometry.size();
+    Volume::from_samples(geometry.size(), (0..nx * ny * nz).map(|n| (n / (ny * nz)) as f32).collect()).unwrap()
+}
+
+fn grey(high: f32) -> RawColour {
+    RawColour::new("ramp", RgbaFunction::over(ColourMap::Grey, [0.0, high]))
+}
+
+#[test]
+fn the_ends_of_the_blend_are_pure() {
+    let closed = ClosedForm::dipping(&geometry(), &[14.0, 27.0], 12.0, 30.0);
+    let library = TextureLibrary::builtin().unwrap();
+    let illustrated = TransferFunctions::default();
+    let both = TransferFunctions { raw: Some(grey(40.0)), ..illustrated.clone() };
+    let volume = ramp_along_x(&closed.geometry);
+    let volumes = [NamedVolume::whole("ramp", &volume)];
+    let scene = Scene { size_px: [120, 100], outlines: Outlines::none(), ..Scene::default() };
+    let (block, without_raw) = (Block::of(&closed, &both, &library), Block::of(&closed, &illustrated, &library));
+    assert!(draw(&scene, &block.inputs(&volumes)) == draw(&scene, &without_raw.inputs(&[])));
+    let raw_only = Scene { raw: Some(grey(40.0)), ..scene.clone() };
+    let raw = draw(&raw_only, &Inputs::raw(&closed.geometry, &volumes));
+    assert!(draw(&Scene { blend: 1.0, ..scene.clone() }, &block.inputs(&volumes)) == raw);
+    let half = draw(&Scene { blend: 0.5, ..scene.clone() }, &block.inputs(&volumes));
+    let illustration = draw(&scene, &without_raw.inputs(&[]));
+    for ((half, a), b) in half.pixels().zip(illustration.pixels()).zip(raw.pixels()) {
+        for n in 0..4 {
+            assert!((f32::from(half.0[n]) - 0.5 * (f32::from(a.0[n]) + f32::from(b.0[n]))).abs() <= 1.0);
+        }
+    }
+}
+
+#[test]
+fn a_cut_out_shows_its_back_faces() {
+    let geometry = geometry();
+    let volume = ramp_along_x(&geometry);
+    let volumes = [NamedVolume::whole("ramp", &volume)];
+    let inputs = Inputs::raw(&geometry, &volumes);
+    // From the west one looks at faces of constant x: one grey each.
+    let camera = Camera { azimuth_deg: Some(90.0), elevation_deg: 0.0, ..Camera::default() };
+    let whole = VoxelBox::of_size(geometry.size());
+    let mut scene = Scene {
+        size_px: [100, 80],
+        camera,
+        raw: Some(grey(40.0)),
+        outlines: Outlines::none(),
+        cut_outs: vec![whole.corner_cut(Corner::MinMin, [0.25, 0.5])],
+        ..Scene::default()
+    };
+    let at = |scene: &Scene, y: f64| {
+        let p = scene.view(&geometry).project(DVec3::new(0.0, y, 20.0));
+        draw(scene, &inputs).get_pixel(p.x as u32, p.y as u32).0[0]
+    };
+    let grey_of = |x: f32| (x / 40.0 * 255.0 + 0.5) as u8;
+    assert_eq!([at(&scene, 7.0), at(&scene, 22.0)], [grey_of(10.0), grey_of(0.0)]);
+    // A second one behind the first: the wall moves back.
+    scene.cut_outs.push(VoxelBox { min: [10.0, 0.0, 0.0], max: [30.0, 10.0, 40.0] });
+    assert_eq!([at(&scene, 7.0), at(&scene, 12.0)], [grey_of(30.0), grey_of(10.0)]);
+}
+
+#[test]
+fn one_place_looks_the_same_whatever_way_its_survey_runs() {
+    let straight = SurveyGeometry::regular([31, 31, 21], 20.0, 10.0, VerticalUnit::Metres);
+    let value = |world: DVec3| (0.002 * world.x + 0.004 * world.y + 0.5 * (0.01 * world.z).sin()) as f32;
+    let picture = |geometry: &SurveyGeometry| {
+        let [nx, ny, nz] = geometry.size();
+        let samples = (0..nx * ny * nz).map(|n| {
+            let voxel = DVec3::new((n / (ny * nz)) as f64, (n / nz % ny) as f64, (n % nz) as f64);
+            value(geometry.world_from_voxel(voxel))
+        });
+        let volume = Volume::from_samples(geometry.size(), samples.collect()).unwrap();
+        let volumes = [NamedVolume::whole("field", &volume)];
+        let raw = RawColour::new("field", RgbaFunction::over(ColourMap::Seismics, [-0.5, 4.0]));
+        let camera = Camera { azimuth_deg: Some(30.0), ..Camera::default() };
+        let scene =
+            Scene { size_px: [120, 90], camera, raw: Some(raw), outlines: Outlines::none(), ..Scene::default() };
+        draw(&scene, &Inputs::raw(geometry, &volumes))
+    };
+    let expected = picture(&straight);
+    let mut mirrored = straight.clone();
+    mirrored.origin = DVec2::new(600.0, 0.0);
+    mirrored.inline_vector = DVec2::new(-20.0, 0.0);
+    let mut swapped = straight.clone();
+    (swapped.inline_vector, swapped.crossline_vector) = (straight.crossline_vector, straight.inline_vector);
+    for geometry in [mirrored, swapped] {
+        let found = render::compare::compare(&expected, &picture(&geometry)).unwrap();
+        assert!(found.agrees(), "{found:?}");
+    }
+    let flipped = image::imageops::flip_horizontal(&expected);
+    assert!(!render::compare::compare(&expected, &flipped).unwrap().agrees());
+}
+
+#[test]
+fn boundaries_at_four_pixels_a_voxel_are_within_a_tenth_of_a_voxel() {
+    let closed = ClosedForm::dipping(&geometry(), &[12.0, 28.0], 14.0, 0.0).with_fault(60.0, 5.0);
+    let library = TextureLibrary::builtin().unwrap();
+    let block = Block::of(&closed, &plain(&closed, &[RED, GREEN, BLUE]), &library);
+    let [low, high] = [DVec3::new(4.0, 11.3, 4.0), DVec3::new(36.0, 11.3, 36.0)];
+    let plane = SectionPlane::crossline(11.3, low, high);
+    let truth = |p: DVec3| u32::from(closed.layer_at(p)) | u32::from(closed.block_at(p)) << 16;
+    // Blocks of the model may be numbered the other way round.
+    let swap = block.model.block_at(Vec3::new(36.0, 11.0, 4.0)) != closed.block_at(DVec3::new(36.0, 11.0, 4.0));
+    let label = |layer: u16, b: u16| u32::from(layer) | u32::from(if swap { 1 - b } else { b }) << 16;
+    let exact = |p: DVec3| {
+        let region = block.model.region_at(p.as_vec3());
+        label(region.layer, region.block)
+    };
+    let packed = |p: DVec3| {
+        let region = block.packed.lookup_extrapolated(p.as_vec3()).region;
+        label(region.layer, region.block)
+    };
+    let ours = boundaries(&plane, 4.0, exact, truth).unwrap();
+    let papers = boundaries(&plane, 4.0, packed, truth).unwrap();
+    println!("exact {ours:?}\npacked {papers:?}");
+    assert!(ours.worst <= 0.1, "{ours:?}");
+    assert!(papers.worst > 0.3, "{papers:?}");
+}
+
+/// The same in a picture: the fault's place in each row of pixels, from their coverage.
+#[test]
+fn a_fault_in_a_picture_is_where_it_is_in_truth() {
+    let closed = ClosedForm::flat(&geometry(), &[-30.0, 20.0]).with_fault(60.0, 100.0);
+    let library = TextureLibrary::builtin().unwrap();
+    let block = Block::of(&closed, &plain(&closed, &[RED, GREEN, BLUE]), &library);
+    let roaming_box = VoxelBox { min: [14.0, 0.0, 24.0], max: [30.0, 30.0, 38.0] };
+    let mut scene = Scene { roaming_box: Some(roaming_box), samples: 8, ..from_the_side([80, 80]) };
+    scene.camera.margin = 0.0;
+    let view = scene.view(&closed.geometry);
+    let pixels_per_voxel = (view.project(DVec3::new(21.0, 0.0, 30.0)) - view.project(DVec3::new(20.0, 0.0, 30.0))).x;
+    let image = draw(&scene, &block.inputs(&[]));
+    let left = view.project(DVec3::new(14.0, 0.0, 30.0)).x;
+    let mut worst = 0.0f64;
+    for z in 25..38 {
+        let row = view.project(DVec3::new(20.0, 0.0, f64::from(z))).y as u32;
+        let at_row = |p: f64| (f64::from(row) + 0.5 - view.project(DVec3::new(20.0, 0.0, 0.0)).y) / p;
+        let per_sample = view.project(DVec3::new(20.0, 0.0, 1.0)).y - view.project(DVec3::new(20.0, 0.0, 0.0)).y;
+        let depth = at_row(per_sample);
+        // The fault: from block 0 to block 1 along x, by bisection of the truth.
+        let (mut a, mut b) = (14.0, 30.0);
+        for _ in 0..40 {
+            let middle = 0.5 * (a + b);
+            if closed.block_at(DVec3::new(middle, 0.0, depth)) == 0 { a = middle } else { b = middle }
+        }
+        let reds: f64 = (0..80)
+            .map(|x| {
+                let red = f64::from(image.get_pixel(x, row).0[0]);
+                (red - f64::from(BLUE.rgb[0])) / f64::from(RED.rgb[0]) * f64::from(RED.rgb[0])
+                    / f64::from(RED.rgb[0] - BLUE.rgb[0])
+            })
+            .filter(|share| *share <= 1.0)
+            .sum();
+        worst = worst.max(((left + reds) / pixels_per_voxel - (left / pixels_per_voxel + (a - 14.0))).abs());
+    }
+    assert!(worst <= 0.1, "{worst} voxels");
+    assert!(share_below(&image, 0, RED) > 0.0);
+}

@@ -1,0 +1,149 @@
+//! The GPU draws what the CPU reference draws: at most 2/255 apart off the edges (DESIGN 6).
+//!
+//! `PETROGLYPH_GPU_TESTS=skip` leaves these out; without it a machine that has no graphics driver fails.
+
+mod support;
+
+use glam::DVec3;
+use render::compare::compare;
+use render::{
+    Background, Camera, Ground, Inputs, Lookup, NamedVolume, Outlines, Projection, RenderError, Renderer, Scene, VoxelBox,
+};
+use support::Block;
+use survey::Progress;
+use survey::synth::{SynthSettings, Synthetic};
+use ttf::{
+    Colour, ColourMap, RawColour, RgbaFunction, ScalarInterval, ScalarTtf, TextureLibrary, TransferFunctions,
+    symmetric_clip,
+};
+
+fn skipped() -> bool {
+    let skip = std::env::var("PETROGLYPH_GPU_TESTS").is_ok_and(|value| value == "skip");
+    if skip {
+        eprintln!("skipped: PETROGLYPH_GPU_TESTS=skip");
+    }
+    skip
+}
+
+fn functions(synthetic: &Synthetic) -> TransferFunctions {
+    let clip = symmetric_clip(synthetic.seismic.samples(), 0.99).unwrap();
+    let mut values = synthetic.attribute.volume.samples().to_vec();
+    values.sort_by(f32::total_cmp);
+    let middle = values[values.len() / 2];
+    TransferFunctions {
+        raw: Some(RawColour::new("seismic", RgbaFunction::centred(ColourMap::Grey, clip))),
+        scalars: vec![ScalarTtf {
+            volume: "impedance".to_owned(),
+            intervals: vec![ScalarInterval {
+                range: [middle, f32::INFINITY],
+                texture: "dolostone".to_owned(),
+                factor: [1.5, 0.7],
+                opacity: 0.8,
+                colour: Some(Colour::new(220, 120, 110)),
+                ink: None,
+            }],
+        }],
+        ..TransferFunctions::default()
+    }
+}
+
+fn scenes(base: &Scene, whole: &VoxelBox, corner: render::Corner) -> Vec<(&'static str, Scene)> {
+    let cut = whole.corner_cut(corner, [0.45, 0.5]);
+    let perspective = Camera {
+        projection: Projection::Perspective { fov_deg: 45.0 },
+        azimuth_deg: Some(130.0),
+        elevation_deg: 50.0,
+        ..Camera::default()
+    };
+    let clear = Scene { background: Background::Transparent, outlines: Outlines::none(), ..base.clone() };
+    vec![
+        ("exact", Scene { cut_outs: vec![cut], ..base.clone() }),
+        ("packed", Scene { cut_outs: vec![cut], lookup: Lookup::Packed, ..base.clone() }),
+        ("half raw", Scene { blend: 0.5, camera: perspective, face_tone: 0.2, ..clear.clone() }),
+        ("raw", Scene { blend: 1.0, cut_outs: whole.stair(corner, [0.6, 0.7], 0.8, 3), ..clear }),
+        ("ground", Scene { cut_outs: vec![cut], ground: Some(Ground::default()), ..base.clone() }),
+        ("raw ground", Scene { blend: 1.0, ground: Some(Ground::default()), camera: perspective, ..base.clone() }),
+    ]
+}
+
+#[test]
+fn gpu_and_cpu_agree() {
+    if skipped() {
+        return;
+    }
+    let quiet = Progress::silent();
+    let settings = SynthSettings { size: [36, 32, 48], ..SynthSettings::default() };
+    let synthetic = Synthetic::generate(&settings, &quiet).unwrap();
+    let library = TextureLibrary::builtin().unwrap();
+    let block = Block::new(
+        &synthetic.geometry,
+        &synthetic.stratigraphy,
+        &synthetic.horizons,
+        &synthetic.faults,
+        &functions(&synthetic),
+        &library,
+    );
+    let covers = VoxelBox {
+        min: synthetic.attribute.origin.to_array(),
+        max: (synthetic.attribute.origin + synthetic.attribute.extent).to_array(),
+    };
+    let volumes = [
+        NamedVolume::whole("seismic", &synthetic.seismic),
+        NamedVolume { name: "impedance", volume: &synthetic.attribute.volume, covers },
+    ];
+    let inputs = block.inputs(&volumes);
+    let whole = VoxelBox::of_size(synthetic.geometry.size());
+    let base = Scene { size_px: [160, 120], samples: 2, ..Scene::default() };
+    let corner = base.view(&synthetic.geometry).nearest_corner(&whole);
+    let mut renderer = Renderer::headless().expect("a Vulkan driver, or PETROGLYPH_GPU_TESTS=skip");
+    let mut earlier = Vec::new();
+    for (name, scene) in scenes(&base, &whole, corner) {
+        let reference = render::reference::render(&scene, &inputs, &quiet).unwrap();
+        let picture = renderer.render(&scene, &inputs, &quiet).unwrap();
+        let found = compare(&reference, &picture).unwrap();
+        assert!(found.agrees(), "{name}: {found:?}");
+        // The comparison would notice another scene's picture.
+        for other in &earlier {
+            assert!(!compare(&reference, other).unwrap().agrees(), "{name}");
+        }
+        earlier.push(picture);
+    }
+    // The same from what is already uploaded, pixel for pixel.
+    let (_, first) = scenes(&base, &whole, corner).swap_remove(0);
+    assert!(renderer.render(&first, &inputs, &quiet).unwrap() == earlier[0]);
+    cancelled_and_new_data(&mut renderer, &base, &inputs, &synthetic);
+}
+
+/// Cancelling ends a picture, and a new version of the data is uploaded.
+fn cancelled_and_new_data(renderer: &mut Renderer, base: &Scene, inputs: &Inputs, synthetic: &Synthetic) {
+    let quiet = Progress::silent();
+    quiet.cancel();
+    assert!(matches!(renderer.render(base, inputs, &quiet), Err(RenderError::Cancelled(_))));
+    let raw = Scene { blend: 1.0, ..base.clone() };
+    let before = renderer.render(&raw, inputs, &Progress::silent()).unwrap();
+    let mut upside_down = synthetic.seismic.clone();
+    upside_down.samples_mut().iter_mut().for_each(|value| *value = -*value);
+    let volumes = [NamedVolume::whole("seismic", &upside_down), inputs.volumes[1]];
+    let changed = Inputs { volumes: &volumes, version: 2, ..*inputs };
+    let after = renderer.render(&raw, &changed, &Progress::silent()).unwrap();
+    assert!(!compare(&before, &after).unwrap().agrees());
+}
+
+#[test]
+fn a_model_without_horizons_or_faults_and_an_odd_size() {
+    if skipped() {
+        return;
+    }
+    let quiet = Progress::silent();
+    let geometry = survey::SurveyGeometry::regular([12, 9, 15], 25.0, 10.0, survey::VerticalUnit::Metres);
+    let library = TextureLibrary::builtin().unwrap();
+    let block = Block::new(&geometry, &survey::Stratigraphy::default(), &[], &[], &TransferFunctions::default(), &library);
+    let inputs = block.inputs(&[]);
+    let roaming_box = VoxelBox { min: [1.5, 0.0, 2.25], max: [9.75, 7.0, 14.0] };
+    let camera = Camera { target: Some(DVec3::splat(6.0).to_array()), zoom: 1.7, ..Camera::default() };
+    let scene = Scene { size_px: [131, 77], samples: 3, roaming_box: Some(roaming_box), camera, ..Scene::default() };
+    let reference = render::reference::render(&scene, &inputs, &quiet).unwrap();
+    let picture = Renderer::headless().unwrap().render(&scene, &inputs, &quiet).unwrap();
+    let found = compare(&reference, &picture).unwrap();
+    assert!(found.agrees(), "{found:?}");
+}

@@ -1,0 +1,63 @@
+//! Small models to draw in tests.
+
+use glam::DVec3;
+use param::{PackedVolume, ParamSettings, Parameterization};
+use render::{Inputs, NamedVolume, VoxelBox};
+use survey::model::{ModelSettings, StructuralModel};
+use survey::synth::closed_form::ClosedForm;
+use survey::{Fault, Horizon, Progress, Stratigraphy, SurveyGeometry};
+use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
+
+/// A model with everything derived from it.
+pub struct Block {
+    pub geometry: SurveyGeometry,
+    pub model: StructuralModel,
+    pub param: Parameterization,
+    pub packed: PackedVolume,
+    pub tables: TtfTables,
+}
+
+impl Block {
+    pub fn new(
+        geometry: &SurveyGeometry,
+        stratigraphy: &Stratigraphy,
+        horizons: &[Horizon],
+        faults: &[Fault],
+        functions: &TransferFunctions,
+        library: &TextureLibrary,
+    ) -> Self {
+        let quiet = Progress::silent();
+        let settings = ModelSettings::default();
+        let model = StructuralModel::build(geometry, stratigraphy, horizons, faults, &settings, &quiet).unwrap();
+        let param = Parameterization::compute(&model, &ParamSettings::default(), &quiet).unwrap();
+        let voxels = param.voxel_volumes(&model, model.size(), &quiet).unwrap();
+        let packed = PackedVolume::from_voxels(&voxels, model.size(), model.layer_count(), model.block_count());
+        let extent = geometry.metric_from_voxel() * DVec3::from_array(VoxelBox::of_size(geometry.size()).max);
+        let names = stratigraphy.layer_names_bottom_up();
+        let thickness_m = extent.z as f32 / names.len() as f32;
+        let block = BlockExtent {
+            extent_i_m: extent.x.abs() as f32,
+            extent_j_m: extent.y.abs() as f32,
+            layers: names.into_iter().map(|name| LayerExtent { name, thickness_m }).collect(),
+            metres_per_mm: extent.x.abs() as f32 / 100.0,
+        };
+        let tables = TtfTables::compile(functions, &block, library).unwrap();
+        Self { geometry: geometry.clone(), model, param, packed, tables }
+    }
+
+    pub fn of(closed: &ClosedForm, functions: &TransferFunctions, library: &TextureLibrary) -> Self {
+        Self::new(&closed.geometry, &closed.stratigraphy, &closed.horizons, &closed.faults, functions, library)
+    }
+
+    pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>]) -> Inputs<'a> {
+        Inputs {
+            geometry: &self.geometry,
+            model: Some(&self.model),
+            param: Some(&self.param),
+            packed: Some(&self.packed),
+            tables: Some(&self.tables),
+            volumes,
+            version: 1,
+        }
+    }
+}
