@@ -48,10 +48,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let library = TextureLibrary::builtin()?;
     let extent = geometry.metric_from_voxel() * DVec3::from_array(VoxelBox::of_size(geometry.size()).max);
     let names = synthetic.stratigraphy.layer_names_bottom_up();
-    let layers = names.iter().map(|name| LayerExtent {
-        name: name.clone(),
-        thickness_m: extent.z as f32 / names.len() as f32,
-    });
+    let layers =
+        names.iter().map(|name| LayerExtent { name: name.clone(), thickness_m: extent.z as f32 / names.len() as f32 });
     let block = BlockExtent {
         extent_i_m: extent.x as f32,
         extent_j_m: extent.y as f32,

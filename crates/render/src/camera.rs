@@ -155,7 +155,8 @@ impl View {
         exaggeration: f64,
         size_px: [u32; 2],
     ) -> Self {
-        let display_from_voxel = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -exaggeration)) * geometry.metric_from_voxel();
+        let display_from_voxel =
+            DMat3::from_diagonal(DVec3::new(1.0, 1.0, -exaggeration)) * geometry.metric_from_voxel();
         let centre_voxel = roaming_box.centre();
         let (sin_a, cos_a) = camera.azimuth_for(geometry, roaming_box).to_radians().sin_cos();
         let (sin_h, cos_h) = camera.elevation_deg.to_radians().sin_cos();
@@ -277,7 +278,8 @@ mod tests {
     fn a_pixels_ray_projects_back_to_it() {
         let block = VoxelBox::of_size([41, 31, 21]);
         for projection in [Projection::Orthographic, Projection::Perspective { fov_deg: 40.0 }] {
-            let camera = Camera { azimuth_deg: Some(33.0), projection, zoom: 1.3, pan: [0.1, -0.05], ..Camera::default() };
+            let camera =
+                Camera { azimuth_deg: Some(33.0), projection, zoom: 1.3, pan: [0.1, -0.05], ..Camera::default() };
             let view = View::new(&camera, &geometry(), &block, 2.5, [320, 200]);
             let pixel = DVec2::new(123.25, 77.5);
             let ray = view.ray(pixel);
@@ -317,11 +319,10 @@ mod tests {
                 geometry.crossline_vector = inline.perp() * side * 12.5;
                 let camera = Camera { azimuth_deg: Some(0.0), elevation_deg: 40.0, ..Camera::default() };
                 let view = View::new(&camera, &geometry, &VoxelBox::of_size([41, 31, 21]), 1.0, [400, 300]);
-                let at = |x: f64, y: f64, depth: f64| {
-                    view.project(geometry.voxel_from_world(DVec3::new(x, y, depth)))
-                };
+                let at = |x: f64, y: f64, depth: f64| view.project(geometry.voxel_from_world(DVec3::new(x, y, depth)));
                 let base = at(5000.0, -300.0, 100.0);
-                let (east, north, deeper) = (at(5010.0, -300.0, 100.0), at(5000.0, -290.0, 100.0), at(5000.0, -300.0, 110.0));
+                let (east, north, deeper) =
+                    (at(5010.0, -300.0, 100.0), at(5000.0, -290.0, 100.0), at(5000.0, -300.0, 110.0));
                 assert!(east.x > base.x && (east.y - base.y).abs() < 1e-9);
                 assert!(north.y < base.y && (north.x - base.x).abs() < 1e-9);
                 assert!(deeper.y > base.y && (deeper.x - base.x).abs() < 1e-9);

@@ -38,7 +38,9 @@ pub enum SceneError {
         max: [f64; 3],
     },
     /// The roaming box leaves the survey.
-    #[error("the roaming box {min:?} to {max:?} leaves the survey, whose samples run from 0 to {last:?} (inline, crossline, sample index)")]
+    #[error(
+        "the roaming box {min:?} to {max:?} leaves the survey, whose samples run from 0 to {last:?} (inline, crossline, sample index)"
+    )]
     OutsideSurvey {
         /// Its smallest corner.
         min: [f64; 3],
@@ -48,7 +50,9 @@ pub enum SceneError {
         last: [f64; 3],
     },
     /// A cut-out that cuts nothing.
-    #[error("cut-out {index} ({min:?} to {max:?}) lies outside the roaming box {box_min:?} to {box_max:?}; move it or remove it")]
+    #[error(
+        "cut-out {index} ({min:?} to {max:?}) lies outside the roaming box {box_min:?} to {box_max:?}; move it or remove it"
+    )]
     CutOutOutside {
         /// Position in the list, from 1.
         index: usize,

@@ -70,7 +70,8 @@ impl<'a> Frame<'a> {
                 });
             }
         };
-        let hidden = tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
+        let hidden =
+            tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
         let view = scene.view(inputs.geometry);
         Ok(Self {

@@ -101,9 +101,9 @@ impl Gpu {
     pub fn wait(&self) -> Result<(), RenderError> {
         match self.device.poll(wgpu::PollType::wait_indefinitely()) {
             Ok(_) => Ok(()),
-            Err(error) => Err(RenderError::DeviceLost {
-                reason: self.lost_reason().unwrap_or_else(|| error.to_string()),
-            }),
+            Err(error) => {
+                Err(RenderError::DeviceLost { reason: self.lost_reason().unwrap_or_else(|| error.to_string()) })
+            }
         }
     }
 }

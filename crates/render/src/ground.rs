@@ -218,10 +218,12 @@ fn heights(model: &StructuralModel, low: Vec3, high: Vec3) -> ([f32; 2], f32) {
         }
         (range, steepest)
     };
-    let (range, steepest) = nodes(0).step_by(STRIDE).collect::<Vec<_>>().into_par_iter().map(column).reduce(
-        || ([f32::MAX, f32::MIN], 0.0),
-        |(a, s), (b, t)| ([a[0].min(b[0]), a[1].max(b[1])], s.max(t)),
-    );
+    let (range, steepest) = nodes(0)
+        .step_by(STRIDE)
+        .collect::<Vec<_>>()
+        .into_par_iter()
+        .map(column)
+        .reduce(|| ([f32::MAX, f32::MIN], 0.0), |(a, s), (b, t)| ([a[0].min(b[0]), a[1].max(b[1])], s.max(t)));
     let steepest = (steepest * 1.5).min(STEEPEST);
     // Between the nodes that were asked the ground can rise as the sheets do.
     let margin = HEIGHT_MARGIN + STRIDE as f32 * steepest;

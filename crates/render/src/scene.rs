@@ -162,11 +162,7 @@ impl Scene {
             return Err(SceneError::ImageSize { width, height, limit: MAX_SIDE_PX });
         }
         let number = |what: &'static str, found: f64, low: f64, high: f64| {
-            if found >= low && found <= high {
-                Ok(())
-            } else {
-                Err(SceneError::OutOfRange { what, found, low, high })
-            }
+            if found >= low && found <= high { Ok(()) } else { Err(SceneError::OutOfRange { what, found, low, high }) }
         };
         number("the samples a pixel", f64::from(self.samples), 1.0, f64::from(MAX_SAMPLES))?;
         number("the vertical exaggeration", self.exaggeration, 1e-3, 1e3)?;
@@ -197,7 +193,11 @@ impl Scene {
         }
         for (index, cut) in self.cut_outs.iter().enumerate() {
             if !cut.is_solid() {
-                return Err(SceneError::EmptyBox { what: format!("cut-out {}", index + 1), min: cut.min, max: cut.max });
+                return Err(SceneError::EmptyBox {
+                    what: format!("cut-out {}", index + 1),
+                    min: cut.min,
+                    max: cut.max,
+                });
             }
             if cut.intersection(&roaming_box).is_none() {
                 return Err(SceneError::CutOutOutside {

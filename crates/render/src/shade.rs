@@ -121,9 +121,7 @@ impl Rock<'_> {
     /// Flat coordinates and their Jacobian per voxel. The exact path takes the region that is known, or asks the model.
     pub fn flat_at(&self, p: Vec3, region: Option<Region>) -> (param::FlatPoint, [[f32; 3]; 3]) {
         match self.flat {
-            Flat::Exact(param) => {
-                param.lookup_in(self.model, p, region.unwrap_or_else(|| self.model.region_at(p)))
-            }
+            Flat::Exact(param) => param.lookup_in(self.model, p, region.unwrap_or_else(|| self.model.region_at(p))),
             Flat::Packed(packed) => packed.lookup_extrapolated_jacobian(p),
         }
     }

@@ -164,7 +164,10 @@ mod tests {
     #[test]
     fn the_front_face_without_cut_outs() {
         let span = block().next_span(&along_x(4.0, 6.0), f32::MIN).unwrap();
-        assert_eq!((span.entry.t, span.entry.point, span.entry.axis, span.end), (5.0, Vec3::new(0.0, 4.0, 6.0), 0, 15.0));
+        assert_eq!(
+            (span.entry.t, span.entry.point, span.entry.axis, span.end),
+            (5.0, Vec3::new(0.0, 4.0, 6.0), 0, 15.0)
+        );
         assert_eq!(block().next_span(&along_x(10.5, 6.0), f32::MIN), None);
         assert_eq!(block().next_span(&along_x(4.0, 6.0), 15.0), None);
     }
@@ -204,7 +207,8 @@ mod tests {
         for n in 0..500 {
             let turn = n as f32 * 0.61;
             let direction = Vec3::new(turn.cos(), turn.sin(), 0.4 * (turn * 1.7).sin() + 0.05).normalize();
-            let through = Vec3::new(3.0 + (n % 7) as f32 * 0.7, 2.0 + (n % 5) as f32 * 1.3, 1.0 + (n % 11) as f32 * 0.7);
+            let through =
+                Vec3::new(3.0 + (n % 7) as f32 * 0.7, 2.0 + (n % 5) as f32 * 1.3, 1.0 + (n % 11) as f32 * 0.7);
             let ray = Ray { origin: through - direction * 30.0, direction };
             // Rock shorter than the tolerance (an edge just grazed) does not count.
             let rock = |t: f32| (0..5).all(|step| solid.contains(ray.at(t + step as f32 * 1e-3)));

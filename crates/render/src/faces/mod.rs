@@ -278,17 +278,17 @@ impl Renderer {
         let packed = self.packed.as_ref().unwrap_or(&self.no_packed);
         let packed_view = packed.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut model = match &self.model {
-            Some(m) => [&m.info, &m.sheets, &m.faults, &m.rules, &m.grids].map(wgpu::Buffer::as_entire_binding).to_vec(),
+            Some(m) => {
+                [&m.info, &m.sheets, &m.faults, &m.rules, &m.grids].map(wgpu::Buffer::as_entire_binding).to_vec()
+            }
             None => vec![none(), none(), none(), none(), none()],
         };
         let pool: &[wgpu::Buffer] = self.model.as_ref().map_or(&[], |m| &m.pool);
         model.extend((0..POOL_BUFFERS).map(|n| pool.get(n).map_or_else(none, wgpu::Buffer::as_entire_binding)));
         model.extend([packed.info.as_entire_binding(), wgpu::BindingResource::TextureView(&packed_view)]);
         let group = |index: usize, resources: Vec<wgpu::BindingResource>| {
-            let entries: Vec<_> = (0u32..)
-                .zip(resources)
-                .map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource })
-                .collect();
+            let entries: Vec<_> =
+                (0u32..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
                 label: Some("faces"),
                 layout: &self.layouts[index],
@@ -398,7 +398,8 @@ fn bind_group_layouts(gpu: &Gpu) -> [wgpu::BindGroupLayout; 4] {
                 count: None,
             })
             .collect();
-        gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("faces"), entries: &entries })
+        gpu.device
+            .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("faces"), entries: &entries })
     };
     let mut volumes = vec![uniform];
     volumes.extend([volume; MAX_VOLUMES]);

@@ -8,9 +8,9 @@ use crate::error::RenderError;
 use crate::gpu::Gpu;
 use glam::{DVec3, Vec3};
 use param::{PackedVolume, Parameterization, SheetRef};
+use survey::HeightField;
 use survey::model::{FaultSurface, StructuralModel};
 use survey::stratigraphy::Contact;
-use survey::HeightField;
 use ttf::tables::NONE;
 
 /// Buffers the pool may be split over.
@@ -133,8 +133,8 @@ fn frame_range(fault: &FaultSurface, last: [f32; 3]) -> [[f32; 2]; 2] {
         let pick = |axis: usize| if n >> axis & 1 == 0 { 0.0 } else { f64::from(last[axis]) };
         fault.frame(DVec3::new(pick(0), pick(1), pick(2)))
     });
-    let (low, high) = corners
-        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| (low.min(corner), high.max(corner)));
+    let (low, high) =
+        corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| (low.min(corner), high.max(corner)));
     [[low.x as f32, low.y as f32], [high.x as f32, high.y as f32]]
 }
 

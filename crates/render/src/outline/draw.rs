@@ -110,7 +110,8 @@ fn rim_parts(ring: &[DVec2], extent: [f64; 2]) -> Vec<Vec<DVec2>> {
 fn seen_on_face(frame: &Frame, rect: &FaceRect, p: DVec3) -> bool {
     let (u, v) = (DVec3::AXES[(rect.axis + 1) % 3], DVec3::AXES[(rect.axis + 2) % 3]);
     // Downwards first: with the ground shown, rock lies there.
-    let beside = if rect.axis == 2 { [u, -u, v, -v] } else { [DVec3::Z, -DVec3::Z, u + v - DVec3::Z, DVec3::Z - u - v] };
+    let beside =
+        if rect.axis == 2 { [u, -u, v, -v] } else { [DVec3::Z, -DVec3::Z, u + v - DVec3::Z, DVec3::Z - u - v] };
     beside.into_iter().any(|aside| {
         let q = (p + aside * ASIDE).clamp(rect.low, rect.high);
         is_seen(frame, q)

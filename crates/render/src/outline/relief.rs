@@ -49,9 +49,8 @@ impl Map<'_> {
         let mut segments = Vec::new();
         for x in 0..nx {
             for y in 0..ny {
-                let corners = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|[a, b]| {
-                    (DVec2::new((x + a) as f64, (y + b) as f64), values[(x + a) * (ny + 1) + y + b])
-                });
+                let corners = [[0, 0], [1, 0], [1, 1], [0, 1]]
+                    .map(|[a, b]| (DVec2::new((x + a) as f64, (y + b) as f64), values[(x + a) * (ny + 1) + y + b]));
                 let mut cuts = Vec::new();
                 for n in 0..4 {
                     let ((a, at_a), (b, at_b)) = (corners[n], corners[(n + 1) % 4]);
@@ -88,9 +87,9 @@ pub(super) fn relief_lines(frame: &Frame) -> ReliefLines {
             dx.cross(dy).dot(frame.view.towards_camera(p))
         };
         let segments = map.zero_lines(facing);
-        lines.crests.extend(seen(frame, rock, &segments, |p| {
-            (place(rock.model, p.as_vec3()).block == block).then_some(p)
-        }));
+        lines
+            .crests
+            .extend(seen(frame, rock, &segments, |p| (place(rock.model, p.as_vec3()).block == block).then_some(p)));
     }
     lines
 }
@@ -123,7 +122,8 @@ fn seen(
         p.z >= low.z
             && p.z <= high.z
             && !cut_away(frame, p)
-            && ground(p).is_some_and(|q| place(rock.model, (q + DVec3::Z * 0.1).as_vec3()).layer != air_layer(rock.model))
+            && ground(p)
+                .is_some_and(|q| place(rock.model, (q + DVec3::Z * 0.1).as_vec3()).layer != air_layer(rock.model))
             && covered_by(frame, p) < IN_FRONT
     };
     segments.par_iter().flat_map_iter(|segment| seen_parts(&frame.view, segment, is_seen)).collect()

@@ -2,14 +2,13 @@
 //!
 //! `PETROGLYPH_GPU_TESTS=skip` leaves these out; without it a machine that has no graphics driver fails.
 
-mod support;
-
+use crate::block::Block;
 use glam::DVec3;
 use render::compare::compare;
 use render::{
-    Background, Camera, Ground, Inputs, Lookup, NamedVolume, Outlines, Projection, RenderError, Renderer, Scene, VoxelBox,
+    Background, Camera, Ground, Inputs, Lookup, NamedVolume, Outlines, Projection, RenderError, Renderer, Scene,
+    VoxelBox,
 };
-use support::Block;
 use survey::Progress;
 use survey::synth::{SynthSettings, Synthetic};
 use ttf::{
@@ -137,7 +136,8 @@ fn a_model_without_horizons_or_faults_and_an_odd_size() {
     let quiet = Progress::silent();
     let geometry = survey::SurveyGeometry::regular([12, 9, 15], 25.0, 10.0, survey::VerticalUnit::Metres);
     let library = TextureLibrary::builtin().unwrap();
-    let block = Block::new(&geometry, &survey::Stratigraphy::default(), &[], &[], &TransferFunctions::default(), &library);
+    let block =
+        Block::new(&geometry, &survey::Stratigraphy::default(), &[], &[], &TransferFunctions::default(), &library);
     let inputs = block.inputs(&[]);
     let roaming_box = VoxelBox { min: [1.5, 0.0, 2.25], max: [9.75, 7.0, 14.0] };
     let camera = Camera { target: Some(DVec3::splat(6.0).to_array()), zoom: 1.7, ..Camera::default() };

@@ -1,0 +1,5 @@
+//! Pictures drawn by both renderers: closed forms on the CPU, and the GPU beside it.
+
+mod block;
+mod closed_form;
+mod gpu;
