@@ -60,7 +60,7 @@ impl Gpu {
         if let Some(reason) = self.lost_reason() {
             return Err(RenderError::DeviceLost { reason });
         }
-        for error in errors.into_iter().flatten() {
+        if let Some(error) = errors.into_iter().flatten().next() {
             let reason = error.to_string();
             return Err(match error {
                 wgpu::Error::OutOfMemory { .. } => RenderError::OutOfMemory { reason },

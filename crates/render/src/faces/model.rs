@@ -171,7 +171,7 @@ fn split_pool(gpu: &Gpu, floats: &[f32]) -> Result<(Vec<wgpu::Buffer>, u32), Ren
     let chunk = (largest as usize).min(u32::MAX as usize);
     if floats.len() > chunk.saturating_mul(POOL_BUFFERS) || floats.len() > u32::MAX as usize {
         return Err(RenderError::OutOfMemory {
-            reason: format!("the interpretation takes {} MiB", floats.len() * 4 >> 20),
+            reason: format!("the interpretation takes {} MiB", (floats.len() * 4) >> 20),
         });
     }
     let buffers: Vec<_> =
