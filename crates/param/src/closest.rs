@@ -102,10 +102,9 @@ impl Foot {
 /// The damped Newton step for the residual covector w at a jet.
 #[inline]
 fn newton_step(jet: &Jet, w: Vec3, metric: &Metric) -> Vec2 {
-    let (sx, sy) = (Vec3::new(1.0, 0.0, jet.gradient.x), Vec3::new(0.0, 1.0, jet.gradient.y));
-    let (gx, gy) = (sx.dot(w), sy.dot(w));
-    let (lx, ly) = (metric.lower(sx), metric.lower(sy));
-    let (axx, axy, ayy) = (sx.dot(lx), sx.dot(ly), sy.dot(ly));
+    let (hx, hy) = (jet.gradient.x, jet.gradient.y);
+    let (gx, gy) = (w.x + hx * w.z, w.y + hy * w.z);
+    let (axx, axy, ayy) = metric.tangents(hx, hy);
     let [hxx, hxy, hyy] = jet.hessian;
     let (mut xx, mut xy, mut yy) = (axx - hxx * w.z, axy - hxy * w.z, ayy - hyy * w.z);
     let mut determinant = xx * yy - xy * xy;

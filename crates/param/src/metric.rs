@@ -52,6 +52,14 @@ impl Metric {
         self.inverse * c
     }
 
+    /// The first fundamental form of a surface of slopes (h_x, h_y): products of (1, 0, h_x) and (0, 1, h_y) as (xx, xy, yy).
+    #[inline]
+    pub fn tangents(&self, hx: f32, hy: f32) -> (f32, f32, f32) {
+        let (x, y, z) = (self.g.x_axis, self.g.y_axis, self.g.z_axis);
+        let (zx, zy) = (z.x + hx * z.z, z.y + hy * z.z);
+        (x.x + hx * (z.x + zx), x.y + hx * z.y + hy * zx, y.y + hy * (z.y + zy))
+    }
+
     /// Squared scaled length of a voxel vector.
     #[inline]
     pub fn length_squared(&self, u: Vec3) -> f32 {

@@ -5,7 +5,7 @@
 //! and a height (`Frame`), so that f32 keeps its precision far from the origin: differences of nearby numbers are formed
 //! first, on the nodes, where they are exact.
 
-use glam::{Vec2, Vec4};
+use glam::{Mat4, Vec2, Vec4};
 use survey::HeightField;
 
 /// Nodes continued past each side of the height field, voxels.
@@ -116,14 +116,17 @@ impl Surface {
             self.outer_rows(u + self.origin[0], v + self.origin[1])
         };
         let base = Vec4::splat(frame.z);
-        let rows = rows.map(|row| row - base);
+        let rows = [rows[0] - base, rows[1] - base, rows[2] - base, rows[3] - base];
         let (wx, wy) = (weights(fx), weights(fy));
         let along = |w: Vec4| rows[0] * w.x + rows[1] * w.y + rows[2] * w.z + rows[3] * w.w;
         let (value, slope, curve) = (along(wx[0]), along(wx[1]), along(wx[2]));
+        // Six sums over four products each; a transposition turns four of them into three additions.
+        let sums = Mat4::from_cols(value * wy[0], slope * wy[0], value * wy[1], curve * wy[0]).transpose();
+        let first = (sums.x_axis + sums.y_axis) + (sums.z_axis + sums.w_axis);
         Jet {
-            h: value.dot(wy[0]),
-            gradient: Vec2::new(slope.dot(wy[0]), value.dot(wy[1])),
-            hessian: [curve.dot(wy[0]), slope.dot(wy[1]), value.dot(wy[2])],
+            h: first.x,
+            gradient: Vec2::new(first.y, first.z),
+            hessian: [first.w, slope.dot(wy[1]), value.dot(wy[2])],
         }
     }
 
