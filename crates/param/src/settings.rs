@@ -38,8 +38,9 @@ impl KDefinition {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ParamSettings {
-    /// Distance between two levels of the stratigraphic grid where the layer is thickest, voxels. Default 2: memory and
-    /// time go with its inverse, the interpolation error of k between levels with its square.
+    /// Distance between two levels of the stratigraphic grid where the layer is thickest, voxels (a layer has five
+    /// levels at least). Default 3: memory and time go with its inverse. On folds 80 voxels long with dips above 30° the angles'
+    /// median and 95 % are 0.04° and 0.25° at 3, 0.03° and 0.17° at 2.
     pub level_spacing: f32,
     /// Definition of k per layer, index 0 = deepest. Layers beyond the list take [`KDefinition::DistanceRatio`].
     /// Default empty.
@@ -54,7 +55,7 @@ pub struct ParamSettings {
 
 impl Default for ParamSettings {
     fn default() -> Self {
-        Self { level_spacing: 2.0, definitions: Vec::new(), exaggeration: 1.0, trace_tolerance: 4e-3 }
+        Self { level_spacing: 3.0, definitions: Vec::new(), exaggeration: 1.0, trace_tolerance: 4e-3 }
     }
 }
 
