@@ -28,10 +28,12 @@ fn is_queried(x: usize, y: usize, level: usize) -> bool {
 
 /// Passes in which lattice nodes try their neighbours' feet.
 const PASSES: usize = 3;
-/// Feet of a lattice cell's corners spread over more than this along x or y (voxels) are taken for different branches:
-/// smaller finds narrower folds, larger walks less. At 8 (with [`SLACK`] 3) no point of 15 000 around a sheet with dips to 66°
-/// was off the brute-force minimum; at 12 (with 1), 3 were.
-const BRANCH: f32 = 8.0;
+/// A neighbour's foot farther away than this (voxels) is tried.
+const FOREIGN: f32 = 2.0;
+/// Feet of a lattice cell's corners spread over more than this along x or y (voxels) may belong to different branches even if every
+/// edge of the cell is whole. With [`SLACK`] 3, of 15 000 points around a sheet with dips to 66° none was off the
+/// brute-force minimum at 12; two were when only torn edges counted, three at 12 with a slack of 1.
+const BRANCH: f32 = 12.0;
 /// A corner's foot is worth a walk when it is farther than the point's own by less than this (scaled metric).
 const SLACK: f32 = 3.0;
 
@@ -124,7 +126,7 @@ impl FootLattice {
                         return best;
                     }
                     for candidate in lattice.neighbours(index / ny, index % ny, level) {
-                        let foreign = (candidate - best.0).truncate().length_squared() > 0.0625 * BRANCH * BRANCH;
+                        let foreign = (candidate - best.0).truncate().length_squared() > FOREIGN * FOREIGN;
                         if foreign {
                             let (foot, distance) = walk(column_of(index), level, candidate.truncate());
                             if distance < best.1 * (1.0 - 1e-5) {
@@ -139,7 +141,25 @@ impl FootLattice {
                 (lattice.feet[node], distances[node]) = (foot, distance);
             }
         }
-        lattice.mixed = lattice.find_mixed();
+        progress.check()?;
+        let torn: Vec<[bool; 3]> = (0..nodes)
+            .into_par_iter()
+            .map(|node| {
+                [ny * nl, nl, 1].map(|step| {
+                    let ends = [node, (node + step).min(nodes - 1)];
+                    let feet = ends.map(|end| lattice.feet[end]);
+                    let apart = (feet[1] - feet[0]).truncate().length_squared() > 1.0;
+                    // Comparisons with the NaN of unwanted nodes are false.
+                    apart
+                        && [(0, 1), (1, 0)].into_iter().any(|(here, there)| {
+                            let column = column_of(ends[here] / nl);
+                            let (foot, _) = walk(column, ends[here] % nl, feet[there].truncate());
+                            (foot - feet[here]).truncate().length_squared() > 0.25
+                        })
+                })
+            })
+            .collect();
+        lattice.mixed = lattice.find_mixed(&torn);
         Ok(lattice)
     }
 
@@ -161,16 +181,27 @@ impl FootLattice {
         .filter(|foot| !foot.is_nan())
     }
 
-    fn find_mixed(&self) -> Vec<bool> {
-        let [_, ny, nl] = self.shape.size;
+    /// Cells with a torn edge, along which the closest point jumps, or with corners whose feet are far apart.
+    fn find_mixed(&self, torn: &[[bool; 3]]) -> Vec<bool> {
+        let [nx, ny, nl] = self.shape.size;
         (0..self.feet.len())
             .into_par_iter()
             .map(|node| {
-                let corners = self.corners([node / nl / ny, node / nl % ny, node % nl]);
-                let mut known = corners.into_iter().filter(|foot| !foot.is_nan());
+                let cell = [node / nl / ny, node / nl % ny, node % nl];
+                let mut known = self.corners(cell).into_iter().filter(|foot| !foot.is_nan());
                 let Some(first) = known.next() else { return false };
                 let (low, high) = known.fold((first, first), |(low, high), foot| (low.min(foot), high.max(foot)));
-                (high - low).truncate().max_element() > BRANCH
+                if (high - low).truncate().max_element() > BRANCH {
+                    return true;
+                }
+                // Edges along `axis` start at the four corners that lie low along it.
+                (0..3).any(|axis| {
+                    (0..8).filter(|corner| corner >> axis & 1 == 0).any(|corner| {
+                        let n: [usize; 3] = std::array::from_fn(|axis| cell[axis] + (corner >> axis & 1));
+                        let inside = n[0] < nx && n[1] < ny && n[2] < nl && n[axis] + 1 < self.shape.size[axis];
+                        inside && torn[(n[0] * ny + n[1]) * nl + n[2]][axis]
+                    })
+                })
             })
             .collect()
     }

@@ -50,6 +50,8 @@ impl Jet {
 pub struct Surface {
     origin: [i32; 2],
     size: [i32; 2],
+    /// Counts of 4 × 4 patches along x and y.
+    inner: [u32; 2],
     z: Vec<f32>,
     field: HeightField,
     shift: f32,
@@ -84,7 +86,8 @@ impl Surface {
         let z = (0..size[0])
             .flat_map(|x| (0..size[1]).map(move |y| field.node(origin[0] + x, origin[1] + y) + shift))
             .collect();
-        Self { origin, size, z, field: field.clone(), shift }
+        let inner = size.map(|n| (n - 3) as u32);
+        Self { origin, size, inner, z, field: field.clone(), shift }
     }
 
     /// Voxel z of the node at an integer column.
@@ -107,11 +110,14 @@ impl Surface {
     pub fn jet(&self, frame: Frame, at: Vec2) -> Jet {
         let ((cell_x, fx), (cell_y, fy)) = (split(at.x), split(at.y));
         let (u, v) = (frame.column[0] + cell_x - 1 - self.origin[0], frame.column[1] + cell_y - 1 - self.origin[1]);
-        let rows: [Vec4; 4] = if u >= 0 && v >= 0 && u + 4 <= self.size[0] && v + 4 <= self.size[1] {
-            let start = (u * self.size[1] + v) as usize;
+        let inside = (u as u32) < self.inner[0] && (v as u32) < self.inner[1];
+        let rows = if inside {
             let stride = self.size[1] as usize;
-            let nodes = &self.z[start..start + 3 * stride + 4];
-            [0, 1, 2, 3].map(|a| Vec4::from_slice(&nodes[a * stride..a * stride + 4]))
+            let nodes = &self.z[u as usize * stride + v as usize..];
+            // Four loads of four nodes; the compiler sees one check for the last.
+            let row = |a: usize| Vec4::from_slice(&nodes[a * stride..]);
+            let last = row(3);
+            [row(0), row(1), row(2), last]
         } else {
             self.outer_rows(u + self.origin[0], v + self.origin[1])
         };
