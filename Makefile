@@ -6,6 +6,8 @@
 #   make bench   how long our stages take on this machine
 
 OUT ?= out/demo
+# The Vulkan loader complains where no desktop session has set this.
+export XDG_RUNTIME_DIR ?= /tmp
 PETROGLYPH = target/debug/petroglyph
 
 .PHONY: demo test check bench setup build

@@ -228,7 +228,13 @@ fn read_grids(path: &Path) -> io::Result<Parameterization> {
     if expected != found {
         return Err(bad());
     }
-    Ok(Parameterization { size: header.size, layers: header.layers, blocks: header.blocks, grids, cost: ComputeCost::default() })
+    Ok(Parameterization {
+        size: header.size,
+        layers: header.layers,
+        blocks: header.blocks,
+        grids,
+        cost: ComputeCost::default(),
+    })
 }
 
 /// Where the sampled parameterization is.
@@ -319,12 +325,10 @@ mod tests {
 
     #[test]
     fn the_key_sees_what_matters_and_no_names() {
-        let geometry =
-            survey::SurveyGeometry::regular([4, 5, 6], 25.0, 4.0, survey::VerticalUnit::Milliseconds);
+        let geometry = survey::SurveyGeometry::regular([4, 5, 6], 25.0, 4.0, survey::VerticalUnit::Milliseconds);
         let document = Document::empty(Some(geometry));
-        let key = |document: &Document| {
-            parameterization_key(document, &ModelSettings::default(), &ParamSettings::default())
-        };
+        let key =
+            |document: &Document| parameterization_key(document, &ModelSettings::default(), &ParamSettings::default());
         let mut faster = document.clone();
         faster.geometry.as_mut().unwrap().velocity_m_s = 3000.0;
         assert_ne!(key(&document), key(&faster));

@@ -255,7 +255,9 @@ impl ProjectError {
             Self::Cancelled(_) => "nothing was changed",
             Self::Geometry(_) => "check the header bytes and bounds the geometry is made from",
             Self::Style(_) => "`petroglyph patterns OUT.png` draws every pattern with its name",
-            Self::Scene(_) => "`petroglyph scene show` prints a scene; `petroglyph render --help` lists what can be set",
+            Self::Scene(_) => {
+                "`petroglyph scene show` prints a scene; `petroglyph render --help` lists what can be set"
+            }
             Self::Placement { .. } => {
                 "import it into a project of its own, or check its header bytes with `petroglyph info FILE`"
             }

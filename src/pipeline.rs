@@ -66,8 +66,7 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
     let faults = document.faults.iter().map(|entry| data::read_fault(project.root(), entry));
     let faults = faults.collect::<Result<Vec<_>, _>>()?;
     let settings = ModelSettings::default();
-    let model =
-        StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
+    let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
     stages.push(Stage::new("model", start.elapsed()));
     let param_settings = param_settings(document);
     let key = derived::parameterization_key(document, &settings, &param_settings);

@@ -63,7 +63,8 @@ mod tests {
 
     #[test]
     fn exaggerations_are_round() {
-        for (wanted, said) in [(0.2, 1.0), (1.2, 1.0), (1.3, 1.5), (2.8, 3.0), (9.5, 10.0), (23.0, 25.0), (70.0, 80.0)] {
+        for (wanted, said) in [(0.2, 1.0), (1.2, 1.0), (1.3, 1.5), (2.8, 3.0), (9.5, 10.0), (23.0, 25.0), (70.0, 80.0)]
+        {
             assert_eq!(whole_exaggeration(wanted), said, "{wanted}");
         }
     }

@@ -112,11 +112,8 @@ pub fn write(out: &Path, settings: &SynthSettings, progress: &Progress) -> anyho
         horizons: &'a [InterpretedHorizon],
         faults: &'a [InterpretedFault],
     }
-    let interpretation = Interpretation {
-        layer_names: &files.layer_names,
-        horizons: &files.horizons,
-        faults: &files.faults,
-    };
+    let interpretation =
+        Interpretation { layer_names: &files.layer_names, horizons: &files.horizons, faults: &files.faults };
     write_text(&out.join("interpretation.toml"), &toml::to_string_pretty(&interpretation)?)?;
     write_text(&files.truth.join("settings.toml"), &toml::to_string_pretty(settings)?)?;
     write_text(&files.truth.join("truth.json"), &serde_json::to_string_pretty(&made.truth)?)?;

@@ -143,7 +143,11 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
     let start = Instant::now();
     let parameterization = Parameterization::compute(&model, &ParamSettings::default(), progress)?;
     let took = start.elapsed();
-    stages.push(Stage::new("parameterization", took));
+    // Both run in every thread side by side: their shares of the processor time are shares of the wall time.
+    let cost = parameterization.cost;
+    let share = cost.closest_points.as_secs_f64() / (cost.closest_points + cost.traces).as_secs_f64().max(1e-9);
+    stages.push(Stage::new("k (closest points)", took.mul_f64(share)));
+    stages.push(Stage::new("i, j (traces)", took.mul_f64(1.0 - share)));
     let peak = before.and_then(|before| before.peak());
     let start = Instant::now();
     let voxels = parameterization.voxel_volumes(&model, [side; 3], progress)?;

@@ -19,6 +19,11 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let document = project.document();
     let mut scene = choose(&project, request.scene.as_deref())?;
     request.view.change(&mut scene, document.frame()?);
+    if document.volumes.is_empty() && document.horizons.is_empty() {
+        anyhow::bail!(
+            "the project has neither horizons nor a volume, so there is nothing to draw; add a horizon or import a volume"
+        );
+    }
     if document.volumes.is_empty() && scene.blend > 0.0 {
         progress.warn("the project has no volume to blend to: the picture is illustrative throughout");
         scene.blend = 0.0;

@@ -7,17 +7,34 @@ use std::process::ExitCode;
 /// Prints a failure: the error's chain in one sentence and what to do next.
 pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
     let (code, reason, hint) = match failure {
-        Failure::Usage(reason) => (2, reason.clone(), Some("`petroglyph COMMAND --help` shows an example")),
-        Failure::Failed(error) => (1, sentence(error), hint(error)),
+        Failure::Usage(reason) => (2, reason.clone(), GENERAL_HINT.to_owned()),
+        Failure::Failed(error) => {
+            let sentence = sentence(error);
+            match hint(error) {
+                Some(hint) => (1, sentence, hint.to_owned()),
+                None => advice(sentence),
+            }
+        }
     };
     if json {
         println!("{}", serde_json::json!({ "error": reason, "hint": hint }));
     }
     eprintln!("error: {reason}");
-    if let Some(hint) = hint {
-        eprintln!("hint: {hint}");
-    }
+    eprintln!("hint: {hint}");
     ExitCode::from(code)
+}
+
+/// What to do when nothing better is known.
+const GENERAL_HINT: &str = "`petroglyph COMMAND --help` shows an example";
+
+/// Errors of the other crates end in what to do, after a semicolon or in a sentence of its own: that part is the hint.
+fn advice(sentence: String) -> (u8, String, String) {
+    let own_sentence = |at: &usize| sentence[at + 2..].starts_with(char::is_uppercase);
+    let stop = sentence.match_indices(". ").map(|(at, _)| at).filter(own_sentence).last();
+    match stop.max(sentence.rfind("; ")) {
+        Some(at) => (1, sentence[..at].to_owned(), sentence[at + 2..].to_owned()),
+        None => (1, sentence, GENERAL_HINT.to_owned()),
+    }
 }
 
 /// The chain of causes, each said once: many errors already quote what caused them.
@@ -41,6 +58,17 @@ fn hint(error: &anyhow::Error) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn advice_is_told_from_the_reason() {
+        let parts = |text: &str| {
+            let (_, reason, hint) = advice(text.to_owned());
+            (reason, hint)
+        };
+        assert_eq!(parts("a.b is cut; in two; copy it"), ("a.b is cut; in two".into(), "copy it".into()));
+        assert_eq!(parts("it is 3. at 4. Check the unit"), ("it is 3. at 4".into(), "Check the unit".into()));
+        assert_eq!(parts("it is gone").1, GENERAL_HINT);
+    }
 
     #[test]
     fn a_cause_that_is_already_quoted_is_not_said_twice() {

@@ -5,7 +5,8 @@ use super::args::{
 };
 use super::request::{Listing, Request, Usage};
 use crate::command::{
-    AddFault, AddHorizon, Age, Command, ImportVolume, RemoveFault, RemoveHorizon, RenameHorizon, SetContact, SetTruncation,
+    AddFault, AddHorizon, Age, Command, ImportVolume, RemoveFault, RemoveHorizon, RenameHorizon, SetContact,
+    SetTruncation,
 };
 use crate::project::Polarity;
 use survey::Contact;
@@ -55,8 +56,7 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
 }
 
 fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage> {
-    let units =
-        [("ms", ZUnit::Milliseconds), ("s", ZUnit::Seconds), ("m", ZUnit::Metres), ("ft", ZUnit::Feet)];
+    let units = [("ms", ZUnit::Milliseconds), ("s", ZUnit::Seconds), ("m", ZUnit::Metres), ("ft", ZUnit::Feet)];
     let signs = [("down", ZPositive::Down), ("up", ZPositive::Up)];
     let places = [("lines", PlaceBy::Lines), ("xy", PlaceBy::World)];
     let z_factor = typed.z_factor.unwrap_or(1.0);
@@ -66,12 +66,9 @@ fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage> {
     if let Some(gap) = typed.gap_m.filter(|gap| !(*gap > 0.0 && gap.is_finite())) {
         return Err(format!("--gap {gap}: expected a positive number of metres"));
     }
-    let columns = typed
-        .columns
-        .as_deref()
-        .map(Column::parse_list)
-        .transpose()
-        .map_err(|unknown| format!("--columns: \"{unknown}\" is no column; expected inline, crossline, x, y, z, name, stick or -"))?;
+    let columns = typed.columns.as_deref().map(Column::parse_list).transpose().map_err(|unknown| {
+        format!("--columns: \"{unknown}\" is no column; expected inline, crossline, x, y, z, name, stick or -")
+    })?;
     Ok(ImportOptions {
         format: typed.format.as_deref().map(format).transpose()?,
         z_unit: typed.z_unit.as_deref().map(|t| word("--z-unit", t, &units)).transpose()?,

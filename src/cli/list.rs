@@ -127,7 +127,10 @@ fn scalars(project: &Project) -> Report {
     for function in stack {
         for interval in &function.intervals {
             let [low, high] = interval.range;
-            report.say(format!("{}: {} from {low} to {high}, opacity {}", function.volume, interval.texture, interval.opacity));
+            report.say(format!(
+                "{}: {} from {low} to {high}, opacity {}",
+                function.volume, interval.texture, interval.opacity
+            ));
         }
     }
     if stack.is_empty() {

@@ -1,7 +1,8 @@
 //! What was meant: typed text turned into commands and values, or refused as wrong usage.
 
 use super::args::{
-    Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs, VolumeAction,
+    Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs,
+    VolumeAction,
 };
 use super::interpretation;
 use super::view::View;
@@ -205,12 +206,8 @@ fn synth(typed: &SynthArgs) -> Result<Request, Usage> {
             _ => return Err(format!("--snr {text}: expected a positive number or none")),
         },
     };
-    let settings = SynthSettings {
-        size: counts::<3>("--size", &typed.size)?,
-        seed: typed.seed,
-        snr,
-        ..SynthSettings::default()
-    };
+    let settings =
+        SynthSettings { size: counts::<3>("--size", &typed.size)?, seed: typed.seed, snr, ..SynthSettings::default() };
     Ok(Request::Synth { out: typed.out.clone(), settings })
 }
 
@@ -261,7 +258,9 @@ fn depth_interval(text: &str) -> Result<DepthInterval, Usage> {
 /// `LOW,HIGH,PATTERN[,OPACITY[,H,V]]`
 fn scalar_interval(text: &str) -> Result<ScalarInterval, Usage> {
     let usage = || {
-        format!("--interval {text}: expected LOW,HIGH,PATTERN, LOW,HIGH,PATTERN,OPACITY or LOW,HIGH,PATTERN,OPACITY,H,V")
+        format!(
+            "--interval {text}: expected LOW,HIGH,PATTERN, LOW,HIGH,PATTERN,OPACITY or LOW,HIGH,PATTERN,OPACITY,H,V"
+        )
     };
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     let number = |part: &str| part.parse::<f32>().map_err(|_| usage());

@@ -51,9 +51,7 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             report.field("project", project);
             report
         }
-        Request::Change { project, command } => {
-            change(Project::open(&project)?, &command, &progress)?
-        }
+        Request::Change { project, command } => change(Project::open(&project)?, &command, &progress)?,
         Request::AddScene { project, name, from, view } => {
             let project = Project::open(&project)?;
             let mut scene = match from {
@@ -128,13 +126,7 @@ fn import(path: &Path, command: ImportVolume, progress: &Progress) -> anyhow::Re
     Ok(report)
 }
 
-fn export(
-    project: &Path,
-    out: &Path,
-    horizon: &str,
-    format: Format,
-    progress: &Progress,
-) -> anyhow::Result<Report> {
+fn export(project: &Path, out: &Path, horizon: &str, format: Format, progress: &Progress) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
     let document = project.document();
     let entry = &document.horizons[document.position(Noun::Horizon, horizon)?];
@@ -153,7 +145,9 @@ fn parameterize(path: &Path, size: Option<[usize; 3]>, progress: &Progress) -> a
         None => project.document().frame()?.size(),
     };
     let Some(mut rock) = pipeline::rock(&project, progress)? else {
-        anyhow::bail!("the project has no horizons, so there are no layers to parameterize; add one with `petroglyph horizon add`");
+        anyhow::bail!(
+            "the project has no horizons, so there are no layers to parameterize; add one with `petroglyph horizon add`"
+        );
     };
     let fresh = derived::load_volumes(project.root(), &rock.key, Some(size), progress).is_none();
     if fresh {

@@ -114,7 +114,11 @@ fn corner_cut(text: &str) -> Result<Cut, Usage> {
         None => [CUT_SHARE; 2],
         Some(shares) => numbers::<2>("--cut", shares, ',').map_err(|_| usage())?,
     };
-    if share.iter().all(|share| *share > 0.0 && *share < 1.0) { Ok(Cut::Corner { corner, share }) } else { Err(usage()) }
+    if share.iter().all(|share| *share > 0.0 && *share < 1.0) {
+        Ok(Cut::Corner { corner, share })
+    } else {
+        Err(usage())
+    }
 }
 
 impl View {
@@ -179,8 +183,7 @@ mod tests {
     #[test]
     fn the_nearest_corner_depends_on_the_camera() {
         let cut = |azimuth| {
-            let typed =
-                ViewArgs { cut: vec!["nearest,0.5,0.5".into()], azimuth: Some(azimuth), ..ViewArgs::default() };
+            let typed = ViewArgs { cut: vec!["nearest,0.5,0.5".into()], azimuth: Some(azimuth), ..ViewArgs::default() };
             let mut scene = Scene::default();
             View::try_from(typed).unwrap().change(&mut scene, &geometry());
             scene.cut_outs[0]

@@ -6,8 +6,8 @@ use crate::project::Draft;
 use crate::project::document::FaultEntry;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use survey::formats::{self, ImportOptions, ImportReport};
 use survey::Progress;
+use survey::formats::{self, ImportOptions, ImportReport};
 use survey::store;
 
 /// Reads a fault into the project.

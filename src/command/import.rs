@@ -83,7 +83,11 @@ impl ImportVolume {
                 None
             }
             // The velocity is the project's to state, wherever the lattice is from.
-            Some(frame) if *frame == (survey::SurveyGeometry { velocity_m_s: frame.velocity_m_s, ..geometry.clone() }) => None,
+            Some(frame)
+                if *frame == (survey::SurveyGeometry { velocity_m_s: frame.velocity_m_s, ..geometry.clone() }) =>
+            {
+                None
+            }
             Some(_) => Some(geometry),
         };
         let clip = clip_of(&read.volume);
@@ -137,7 +141,8 @@ fn reading(info: &survey::segy::SegyInfo) -> String {
 /// The value that most samples of live traces do not exceed in size; 1 where all are zero.
 fn clip_of(volume: &Volume<f32>) -> f32 {
     let [inlines, crosslines, _] = volume.size();
-    let live = (0..inlines * crosslines).map(|n| (n / crosslines, n % crosslines)).filter(|&(x, y)| volume.is_live(x, y));
+    let live =
+        (0..inlines * crosslines).map(|n| (n / crosslines, n % crosslines)).filter(|&(x, y)| volume.is_live(x, y));
     let mut samples: Vec<f32> = live.flat_map(|(x, y)| volume.trace(x, y)).copied().collect();
     if samples.len() > SAMPLES_ENOUGH {
         let step = samples.len() / SAMPLES_ENOUGH;

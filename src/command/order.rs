@@ -132,14 +132,10 @@ mod tests {
     /// Two depths across a reverse fault: the lower sheet of the younger lies below the upper one of the older.
     #[test]
     fn a_reverse_fault_is_no_crossing() {
-        let young: [fn(f32, f32) -> f32; 2] = [
-            |x, _| if x < 12.0 { 100.0 } else { f32::NAN },
-            |x, _| if x >= 8.0 { 40.0 } else { f32::NAN },
-        ];
-        let old: [fn(f32, f32) -> f32; 2] = [
-            |x, _| if x < 14.0 { 130.0 } else { f32::NAN },
-            |x, _| if x >= 10.0 { 70.0 } else { f32::NAN },
-        ];
+        let young: [fn(f32, f32) -> f32; 2] =
+            [|x, _| if x < 12.0 { 100.0 } else { f32::NAN }, |x, _| if x >= 8.0 { 40.0 } else { f32::NAN }];
+        let old: [fn(f32, f32) -> f32; 2] =
+            [|x, _| if x < 14.0 { 130.0 } else { f32::NAN }, |x, _| if x >= 10.0 { 70.0 } else { f32::NAN }];
         check(&horizon("young", &young), &horizon("old", &old), &geometry()).unwrap();
     }
 }

@@ -3,9 +3,7 @@
 //! Synthetic survey → SEG-Y and interpretation files → import → layers → parameterization → three pictures: illustrative, raw, and half-way between.
 //! The look is in `look.toml`.
 
-use crate::command::{
-    AddFault, AddHorizon, AddScene, Age, Command, ImportVolume, SetLayer,
-};
+use crate::command::{AddFault, AddHorizon, AddScene, Age, Command, ImportVolume, SetLayer};
 use crate::picture::{self, Device, Painter};
 use crate::pipeline::{self, Stage};
 use crate::project::{Polarity, Project};

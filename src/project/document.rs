@@ -3,157 +3,16 @@
 //! The text is made for people: it can be read, compared and edited. Every command rewrites it in one fixed order, so that two
 //! states differ only where the project does.
 
+pub use super::entries::{FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry};
 use crate::error::{Noun, ProjectError};
 use param::KDefinition;
-use render::Scene;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use survey::{Contact, StratigraphicHorizon, Stratigraphy, SurveyGeometry};
-use ttf::{LayerTtf, RawColour, ScalarTtf, TransferFunctions, TtfSettings};
+use std::path::Path;
+use survey::{StratigraphicHorizon, Stratigraphy, SurveyGeometry};
 
 /// The version this program writes, and the newest it reads.
 pub const VERSION: u32 = 1;
-
-/// What a positive amplitude means.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Polarity {
-    /// SEG normal: an increase of impedance is a positive number.
-    #[default]
-    Normal,
-    /// An increase of impedance is a negative number.
-    Reverse,
-}
-
-impl std::fmt::Display for Polarity {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::Normal => "normal",
-            Self::Reverse => "reverse",
-        })
-    }
-}
-
-/// Where data came from.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Source {
-    /// The file as it was named when it was read.
-    pub path: PathBuf,
-    /// Its length in bytes.
-    pub bytes: u64,
-    /// How it was read: format, units, sign, byte positions.
-    pub reading: String,
-}
-
-/// A volume of the project.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct VolumeEntry {
-    /// Unique name.
-    pub name: String,
-    /// Data, relative to the project's folder.
-    pub file: String,
-    /// BLAKE3 of the samples and the live-trace mask.
-    pub hash: String,
-    /// What a positive amplitude means.
-    #[serde(default)]
-    pub polarity: Polarity,
-    /// The value that 99 % of the samples do not exceed in size: where colours are clipped.
-    pub clip: f32,
-    /// The smallest sample; not negative: an attribute without a natural zero.
-    pub lowest: f32,
-    /// Where it came from.
-    pub source: Source,
-    /// Its own lattice, where that is not the project's.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub geometry: Option<SurveyGeometry>,
-}
-
-/// A horizon of the project.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct HorizonEntry {
-    /// Unique name.
-    pub name: String,
-    /// What it does to its neighbours.
-    #[serde(default)]
-    pub contact: Contact,
-    /// Data, relative to the project's folder.
-    pub file: String,
-    /// BLAKE3 of its sheets.
-    pub hash: String,
-    /// Where it came from.
-    pub source: Source,
-}
-
-/// A fault of the project.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct FaultEntry {
-    /// Unique name.
-    pub name: String,
-    /// The fault it ends at.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub truncated_by: Option<String>,
-    /// Data, relative to the project's folder.
-    pub file: String,
-    /// BLAKE3 of its triangles.
-    pub hash: String,
-    /// Where it came from.
-    pub source: Source,
-}
-
-/// A tile of the user's own.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct TextureEntry {
-    /// Unique name, by which layers call it: the file's name without its ending.
-    pub name: String,
-    /// The picture, relative to the project's folder.
-    pub file: String,
-    /// Printed width and height, mm.
-    pub tile_mm: [f32; 2],
-    /// Where it came from.
-    pub source: Source,
-}
-
-/// How everything is coloured and textured; what is absent gets a default when it is drawn. Blend and frequency
-/// belong to the scenes.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Style {
-    /// The volume shown as raw data and its colours.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub raw: Option<RawColour>,
-    /// Styles of layers.
-    pub layers: LayerTtf,
-    /// Textures by the values of volumes, composited first to last.
-    pub scalars: Vec<ScalarTtf>,
-}
-
-impl Style {
-    /// The same as transfer functions.
-    pub fn functions(&self) -> TransferFunctions {
-        TransferFunctions {
-            settings: TtfSettings::default(),
-            raw: self.raw.clone(),
-            layers: self.layers.clone(),
-            scalars: self.scalars.clone(),
-        }
-    }
-}
-
-/// A view with a name.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct SceneEntry {
-    /// Unique name.
-    pub name: String,
-    /// What it shows.
-    pub scene: Scene,
-}
 
 /// The state of a project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -369,7 +228,7 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::VerticalUnit;
+    use survey::{Contact, VerticalUnit};
 
     fn horizon(name: &str) -> HorizonEntry {
         HorizonEntry {

@@ -16,6 +16,7 @@
 
 pub mod document;
 mod draft;
+mod entries;
 mod history;
 mod layers;
 pub mod placement;
@@ -229,19 +230,21 @@ impl NewProject {
         fs::create_dir_all(&root).map_err(fail)?;
         // Two processes may want to create the same project; the one in the making is locked under another name than its own commands use.
         let lock = Lock::take_named(&root, "creating")?;
-        for folder in ["history", "volumes", "horizons", "faults", "textures"] {
-            storage::remove(&root.join(folder));
-            fs::create_dir(root.join(folder)).map_err(fail)?;
-        }
         let path = root.join("project.toml");
         let document = Document::empty(geometry);
         let text = document.to_text(&path)?;
+        // From here on, whatever fails removes the folder.
         let begun = Self {
             project: Project { root, text: text.clone(), document: document.clone() },
             destination: destination.to_owned(),
             published: false,
             _lock: lock,
         };
+        for folder in ["history", "volumes", "horizons", "faults", "textures"] {
+            let folder = begun.project.root.join(folder);
+            storage::remove(&folder);
+            fs::create_dir(folder).map_err(fail)?;
+        }
         let step = Step {
             summary: "create".to_owned(),
             command: Some(Command::Create { geometry: document.geometry }),

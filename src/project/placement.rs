@@ -80,11 +80,7 @@ pub fn covers(frame: &SurveyGeometry, other: &SurveyGeometry) -> Result<VoxelBox
         let sideways = (end - axis * along).length();
         let one_line = last.dot(axis) == 0.0;
         if !one_line && (along < 0.0 || sideways > MAX_SHIFT_BINS) {
-            return Err(PlacementError::Turned {
-                lines,
-                expected_deg: degrees(expected),
-                found_deg: degrees(found),
-            });
+            return Err(PlacementError::Turned { lines, expected_deg: degrees(expected), found_deg: degrees(found) });
         }
     }
     let block = VoxelBox { min: low.to_array(), max: high.to_array() };

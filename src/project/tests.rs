@@ -145,3 +145,76 @@ fn what_is_no_project_is_said_to_be_none() {
     fs::write(&path, "version = 2\n").unwrap();
     assert!(matches!(Project::open(project.root()), Err(ProjectError::Newer { found: 2, .. })));
 }
+
+/// Numbers that look random (the multiplicative congruential generator of Park and Miller).
+struct Dice(u64);
+
+impl Dice {
+    fn throw(&mut self, sides: u64) -> u64 {
+        self.0 = self.0 * 48_271 % 2_147_483_647;
+        self.0 % sides
+    }
+}
+
+/// Everything a state consists of: its text and the bytes of the data it refers to.
+fn whole(project: &Project) -> (String, Vec<Vec<u8>>) {
+    let project = Project::open(project.root()).unwrap();
+    let data = project.document().files().map(|file| fs::read(project.root().join(file)).unwrap()).collect();
+    (bytes(&project), data)
+}
+
+/// Any sequence of commands, undos, redos and cancelled commands walks along one line of states, and each comes back with its data.
+#[test]
+fn any_walk_through_the_history_meets_the_same_states() {
+    for seed in 1..6 {
+        let mut dice = Dice(seed);
+        let folder = tempfile::tempdir().unwrap();
+        let mut project = begun(folder.path());
+        let (mut line, mut at) = (vec![whole(&project)], 0);
+        for turn in 0..60u64 {
+            match dice.throw(4) {
+                0 if at > 0 => {
+                    project.undo().unwrap();
+                    at -= 1;
+                }
+                1 if at + 1 < line.len() => {
+                    project.redo().unwrap();
+                    at += 1;
+                }
+                2 => {
+                    let cancelled = Progress::silent();
+                    cancelled.cancel();
+                    assert!(project.apply(&command_of(&mut dice, turn, folder.path()), &cancelled).is_err());
+                }
+                _ => {
+                    if project.apply(&command_of(&mut dice, turn, folder.path()), &Progress::silent()).is_ok() {
+                        line.truncate(at + 1);
+                        line.push(whole(&project));
+                        at += 1;
+                    }
+                }
+            }
+            assert_eq!(whole(&project), line[at], "seed {seed}, turn {turn}");
+        }
+        let kept = storage::entries(&project.root().join("textures")).len();
+        let known: std::collections::BTreeSet<&Vec<u8>> = line.iter().flat_map(|(_, data)| data).collect();
+        assert_eq!(kept, known.len(), "data that no state refers to is gone, and no other");
+    }
+}
+
+/// A command of any kind; some are refused.
+fn command_of(dice: &mut Dice, turn: u64, folder: &Path) -> Command {
+    match dice.throw(4) {
+        0 => velocity(1000.0 + dice.throw(2000) as f64),
+        1 => Command::AddScene(crate::command::AddScene {
+            name: format!("s{}", dice.throw(5)),
+            scene: render::Scene { exaggeration: 1.0 + turn as f64, ..render::Scene::default() },
+        }),
+        2 => Command::RemoveScene(crate::command::RemoveScene { name: format!("s{}", dice.throw(5)) }),
+        _ => {
+            let path = folder.join(format!("t{turn}.png"));
+            image::RgbImage::from_pixel(2, 2, image::Rgb([turn as u8, 0, 0])).save(&path).unwrap();
+            Command::AddTexture(crate::command::AddTexture { path, width_mm: None })
+        }
+    }
+}

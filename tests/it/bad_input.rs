@@ -120,13 +120,14 @@ fn horizons_that_do_not_fit() {
     table(at, "km.csv", |_, _| bottom * 0.97 / 1000.0);
     table(at, "mm.csv", |_, _| bottom * 970.0);
     table(at, "through.csv", |x, _| bottom * (0.05 + 0.9 * x as f64 / SIZE[0] as f64));
-    fs::write(at.join("outside.csv"), "x,y,z\n9e6,9e6,100\n9.001e6,9e6,101\n9e6,9.001e6,102\n9.001e6,9.001e6,99\n").unwrap();
+    fs::write(at.join("outside.csv"), "x,y,z\n9e6,9e6,100\n9.001e6,9e6,101\n9e6,9.001e6,102\n9.001e6,9.001e6,99\n")
+        .unwrap();
     fs::write(at.join("empty.csv"), "inline,crossline,z\n").unwrap();
     fs::write(at.join("noise.dat"), [0u8, 159, 146, 150, 7, 200].repeat(300)).unwrap();
 
     refused(at, "horizon add p.petro outside.csv --name O", &["outside.csv"]);
-    refused(at, "horizon add p.petro up.csv --name U", &["sign"]);
-    refused(at, "horizon add p.petro mm.csv --name M", &["unit"]);
+    refused(at, "horizon add p.petro up.csv --name U", &["vertical range", "--z-positive up"]);
+    refused(at, "horizon add p.petro mm.csv --name M", &["vertical range"]);
     refused(at, "horizon add p.petro empty.csv --name E", &["empty.csv"]);
     refused(at, "horizon add p.petro noise.dat --name N", &["noise.dat"]);
     refused(at, "horizon add p.petro through.csv --name T", &["runs below"]);

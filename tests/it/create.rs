@@ -24,7 +24,9 @@ fn layered(at: &Path) {
         level(&at.join(format!("{name}.csv")), depth_m);
         run_in(at, &format!("horizon add c.petro {name}.csv --name {name}")).done();
     }
-    for (layer, colour) in [("'above A'", "#ff0000"), ("'A - B'", "#00ff00"), ("'B - C'", "#0000ff"), ("'below C'", "#ffff00")] {
+    for (layer, colour) in
+        [("'above A'", "#ff0000"), ("'A - B'", "#00ff00"), ("'B - C'", "#0000ff"), ("'below C'", "#ffff00")]
+    {
         run_in(at, &format!("layer set c.petro {layer} --pattern plain --colour {colour}")).done();
     }
 }
@@ -72,10 +74,11 @@ fn a_project_renders_before_anything_is_assigned() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     run_in(at, "create c.petro --bounds 0,1000,0,1000,0,1000 --size 21x21x21").done();
-    run_in(at, "render c.petro c.png --size 80x60").failed(&["needs something to show"]);
+    run_in(at, "render c.petro c.png --size 80x60").failed(&["nothing to draw"]);
     level(&at.join("A.csv"), 500.0);
     run_in(at, "horizon add c.petro A.csv --name A").done();
-    let drawn = run_in(at, "render c.petro c.png --size 160x120 --samples 1 --device cpu --dpi 254 --json").done().json();
+    let drawn =
+        run_in(at, "render c.petro c.png --size 160x120 --samples 1 --device cpu --dpi 254 --json").done().json();
     assert_eq!(drawn["size_px"], serde_json::json!([160, 120]));
     assert!(drawn["assumptions"].to_string().contains("by default"), "{drawn}");
     let png = fs::read(at.join("c.png")).unwrap();

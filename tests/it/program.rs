@@ -91,7 +91,8 @@ fn finished() -> &'static Path {
             run_in(at, "import s/survey.sgy p.petro").done();
             run_in(at, "import s/attribute.sgy p.petro --name impedance").done();
             for (name, contact) in HORIZONS {
-                run_in(at, &format!("horizon add p.petro s/horizons/{name}.csv --name {name} --contact {contact}")).done();
+                run_in(at, &format!("horizon add p.petro s/horizons/{name}.csv --name {name} --contact {contact}"))
+                    .done();
             }
             for name in FAULTS {
                 run_in(at, &format!("fault add p.petro 's/faults/{name}.ts' --name '{name}'")).done();

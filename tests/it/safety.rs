@@ -51,7 +51,8 @@ fn a_full_disk_costs_nothing() {
     assert!(bytes(&disk) == before, "the full disk changed the project");
     run_in(at, "import s/survey.sgy disk/new.petro").failed(&["disk is full"]);
     assert!(bytes(&disk) == before, "a project was left half-written");
-    run_in(at, "render disk/p.petro disk/a.png --size 2400x2400 --samples 1 --device cpu --blend 1").failed(&["disk is full"]);
+    run_in(at, "render disk/p.petro disk/a.png --size 2400x2400 --samples 1 --device cpu --blend 1")
+        .failed(&["disk is full"]);
     assert!(!disk.join("a.png").exists());
     // What fits still goes.
     run_in(at, "velocity disk/p.petro 2500").done();

@@ -76,12 +76,7 @@ pub(in crate::cli) enum ScalarAction {
         /// Volume
         volume: String,
         /// Range of values, pattern, its opacity, and factors on the layer's frequencies; repeat it for each range
-        #[arg(
-            long,
-            value_name = "LOW,HIGH,PATTERN[,OPACITY[,H,V]]",
-            required = true,
-            allow_hyphen_values = true
-        )]
+        #[arg(long, value_name = "LOW,HIGH,PATTERN[,OPACITY[,H,V]]", required = true, allow_hyphen_values = true)]
         interval: Vec<String>,
     },
     /// Take the textures of a volume away

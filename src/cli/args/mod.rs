@@ -6,7 +6,8 @@ mod output;
 mod scene;
 
 pub(super) use interpretation::{
-    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, SegyArgs, VolumeAction,
+    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, SegyArgs,
+    VolumeAction,
 };
 pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, TextureArgs};
 pub(super) use output::{BenchArgs, DemoArgs, ParameterizeArgs, RenderArgs, SynthArgs};
@@ -70,6 +71,7 @@ pub(super) enum Action {
         /// Project folder
         project: PathBuf,
         /// Velocity, m/s
+        #[arg(allow_negative_numbers = true)]
         velocity_m_s: f64,
     },
     /// The look of layers: names, colours, patterns
