@@ -114,7 +114,7 @@ pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> Result<Mea
             if let (Some(folder), Some(rock)) = (dump, &loaded.rock) {
                 dump::write(folder, &rock.model, progress)?;
             }
-            pictures = draw(loaded, progress)?;
+            pictures = draw(&loaded, progress)?;
         }
         cubes.push(cube);
     }
@@ -168,12 +168,12 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
 }
 
 /// Seconds for a picture by each lookup, the second time it is drawn: compiling shaders and uploading is not counted.
-fn draw(loaded: Loaded, progress: &Progress) -> Result<(f64, f64), ProjectError> {
+fn draw(loaded: &Loaded, progress: &Progress) -> Result<(f64, f64), ProjectError> {
     let mut painter = Painter::new(Device::Auto, progress)?;
     let mut seconds = |lookup| {
         let scene = Scene { size_px: [800, 600], samples: 2, lookup, ..Scene::default() };
-        painter.draw(&scene, &loaded, progress)?;
-        Ok::<f64, ProjectError>(painter.draw(&scene, &loaded, progress)?.1.seconds)
+        painter.draw(&scene, loaded, progress)?;
+        Ok::<f64, ProjectError>(painter.draw(&scene, loaded, progress)?.1.seconds)
     };
     Ok((seconds(Lookup::Exact)?, seconds(Lookup::Packed)?))
 }

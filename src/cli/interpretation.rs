@@ -119,7 +119,7 @@ fn add_horizon(typed: HorizonAddArgs) -> Result<Request, Usage> {
 
 pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
     Ok(match action {
-        HorizonAction::Add(typed) => add_horizon(typed)?,
+        HorizonAction::Add(typed) => add_horizon(*typed)?,
         HorizonAction::List { project } => Request::List { project, what: Listing::Horizons },
         HorizonAction::Show { project, name } => Request::List { project, what: Listing::Horizon(name) },
         HorizonAction::Rename { project, from, to } => {
@@ -147,7 +147,7 @@ fn add_fault(typed: FaultAddArgs) -> Result<Request, Usage> {
 
 pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
     Ok(match action {
-        FaultAction::Add(typed) => add_fault(typed)?,
+        FaultAction::Add(typed) => add_fault(*typed)?,
         FaultAction::List { project } => Request::List { project, what: Listing::Faults },
         FaultAction::Truncate { project, name, by } => {
             Request::Change { project, command: Command::SetTruncation(SetTruncation { fault: name, by }) }

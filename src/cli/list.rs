@@ -95,6 +95,7 @@ fn layers(project: &Project) -> anyhow::Result<Report> {
     let names = document.layers();
     let mut report = Report::default();
     let mut objects = Vec::new();
+    let definitions = document.k_definitions();
     for (position, name) in names.iter().enumerate() {
         let index = names.len() - 1 - position;
         let own = document.style.layers.style(name);
@@ -102,7 +103,7 @@ fn layers(project: &Project) -> anyhow::Result<Report> {
         let by_default = if own.is_none() { " (by default)" } else { "" };
         report.say(format!("{name}: {}{by_default}", describe(&style)));
         objects.push(json!({ "name": name, "index": index, "assigned": own.is_some(), "style": style,
-            "k": document.k.get(name).copied().unwrap_or_default() }));
+            "k": definitions[index] }));
     }
     report.field("layers", objects);
     Ok(report)

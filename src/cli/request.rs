@@ -151,9 +151,12 @@ impl TryFrom<Action> for Request {
             }
             Action::Scene(SceneAction::List { project }) => Self::List { project, what: Listing::Scenes },
             Action::Scene(SceneAction::Show { project, name }) => Self::List { project, what: Listing::Scene(name) },
-            Action::Scene(SceneAction::Add { project, name, from, view }) => {
-                Self::AddScene { project, name, from, view: view.try_into()? }
-            }
+            Action::Scene(SceneAction::Add(typed)) => Self::AddScene {
+                project: typed.project,
+                name: typed.name,
+                from: typed.from,
+                view: typed.view.try_into()?,
+            },
             Action::Scene(SceneAction::Remove { project, name }) => {
                 change(project, Command::RemoveScene(RemoveScene { name }))
             }

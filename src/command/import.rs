@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::segy::{SegyFile, SegyOptions};
 use survey::store::{self, VolumeInfo};
-use survey::{Progress, Volume};
+use survey::{Progress, SurveyGeometry, Volume};
 
 /// Reads a SEG-Y volume into the project. The first one gives the survey frame; others must lie in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -83,11 +83,7 @@ impl ImportVolume {
                 None
             }
             // The velocity is the project's to state, wherever the lattice is from.
-            Some(frame)
-                if *frame == (survey::SurveyGeometry { velocity_m_s: frame.velocity_m_s, ..geometry.clone() }) =>
-            {
-                None
-            }
+            Some(frame) if is_same_lattice(frame, &geometry) => None,
             Some(_) => Some(geometry),
         };
         let clip = clip_of(&read.volume);
@@ -120,6 +116,12 @@ impl ImportVolume {
             None => self.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
         }
     }
+}
+
+/// Whether two lattices are one but for the velocity.
+fn is_same_lattice(a: &SurveyGeometry, b: &SurveyGeometry) -> bool {
+    let velocity_m_s = a.velocity_m_s;
+    *a == (SurveyGeometry { velocity_m_s, ..b.clone() })
 }
 
 /// Byte positions and units in one line, for the record.

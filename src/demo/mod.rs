@@ -7,7 +7,7 @@ use crate::command::{AddFault, AddHorizon, AddScene, Age, Command, ImportVolume,
 use crate::picture::{self, Device, Painter};
 use crate::pipeline::{self, Stage};
 use crate::project::{Polarity, Project};
-use crate::synth::{self, SynthFiles};
+use crate::synth::{self, SynthSurvey};
 use anyhow::Context;
 use render::Scene;
 use serde::{Deserialize, Serialize};
@@ -110,7 +110,7 @@ pub fn run(out: &Path, progress: &Progress) -> anyhow::Result<Demonstration> {
 }
 
 /// Imports everything through the same commands as the command line.
-fn build_project(path: &Path, files: &SynthFiles, look: &Look, progress: &Progress) -> anyhow::Result<Project> {
+fn build_project(path: &Path, files: &SynthSurvey, look: &Look, progress: &Progress) -> anyhow::Result<Project> {
     // A former demonstration is replaced; anything else of that name is not ours to remove.
     if path.join("project.toml").exists() {
         fs::remove_dir_all(path).with_context(|| format!("{} could not be replaced", path.display()))?;

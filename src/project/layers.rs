@@ -13,13 +13,12 @@ impl Document {
         self.stratigraphy().layer_names_bottom_up().into_iter().rev().collect()
     }
 
-    /// The definition of k of each layer, deepest first, as the parameterization takes them; empty when all are the usual one.
+    /// The definition of k of each layer, deepest first: the one stated, or the one its contacts ask for.
     pub fn k_definitions(&self) -> Vec<KDefinition> {
-        if self.k.is_empty() {
-            return Vec::new();
-        }
-        let names = self.stratigraphy().layer_names_bottom_up();
-        names.iter().map(|name| self.k.get(name).copied().unwrap_or_default()).collect()
+        let stratigraphy = self.stratigraphy();
+        let names = stratigraphy.layer_names_bottom_up();
+        let by_contact = KDefinition::for_contacts(&stratigraphy);
+        names.iter().zip(by_contact).map(|(name, usual)| self.k.get(name).copied().unwrap_or(usual)).collect()
     }
 
     /// Runs a change that keeps the number of layers, and takes styles along when their layers' names change.

@@ -61,8 +61,8 @@ fn undo_and_redo_restore_the_project_and_its_data() {
     let folder = project();
     let at = folder.path();
     let data = |name: &str| run_in(at, &format!("horizon show p.petro {name} --json")).done().stdout;
-    let (first, bravo) = (state(at), data("Bravo"));
-    let mut states = vec![first.clone()];
+    let bravo = data("Bravo");
+    let mut states = vec![state(at)];
     for change in [
         "horizon remove p.petro Bravo",
         "horizon add p.petro s/horizons/Bravo.csv --name Bravo",

@@ -22,7 +22,7 @@ fn a_synthetic_survey_is_the_same_for_the_same_seed() {
     let survey = |out: &str| std::fs::read(at.join(out).join("survey.sgy")).unwrap();
     assert!(survey("a") == survey("b"));
     assert!(survey("a") != survey("c"));
-    for file in ["attribute.sgy", "interpretation.toml", "truth/truth.json", "truth/settings.toml"] {
+    for file in ["attribute.sgy", "truth.json", "horizons/Alpha.csv", "faults/Dying fault.ts"] {
         assert!(at.join("a").join(file).exists(), "{file}");
     }
     run_in(at, "synth d --size 4x4x4").failed(&["too small"]);

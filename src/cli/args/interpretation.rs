@@ -78,7 +78,7 @@ pub(in crate::cli) enum HorizonAction {
     #[command(
         after_help = "Examples:\n  petroglyph horizon add north.petro top.irap --name \"Top Chalk\"\n  petroglyph horizon add north.petro a.csv --name A --z-unit ms --z-positive up --z-factor 0.3333 --contact erosional"
     )]
-    Add(HorizonAddArgs),
+    Add(Box<HorizonAddArgs>),
     /// List the horizons, youngest first
     #[command(after_help = "Example:\n  petroglyph horizon list north.petro")]
     List {
@@ -183,7 +183,7 @@ pub(in crate::cli) enum FaultAction {
     #[command(
         after_help = "Examples:\n  petroglyph fault add north.petro f1.ts --name F1\n  petroglyph fault add north.petro sticks.dat --name F2 --z-unit ms --truncated-by F1"
     )]
-    Add(FaultAddArgs),
+    Add(Box<FaultAddArgs>),
     /// List the faults
     #[command(after_help = "Example:\n  petroglyph fault list north.petro")]
     List {

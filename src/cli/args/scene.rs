@@ -15,17 +15,7 @@ pub(in crate::cli) enum SceneAction {
     #[command(
         after_help = "Examples:\n  petroglyph scene add north.petro corner --cut nearest,0.5,0.4 --azimuth 30 --exaggeration 2\n  petroglyph scene add north.petro figure3 --from figure3.toml"
     )]
-    Add {
-        /// Project folder
-        project: PathBuf,
-        /// Its name
-        name: String,
-        /// TOML file to start from, as `scene show` prints it
-        #[arg(long, value_name = "FILE.toml")]
-        from: Option<PathBuf>,
-        #[command(flatten)]
-        view: ViewArgs,
-    },
+    Add(Box<SceneAddArgs>),
     /// Print a view as TOML, to edit and give to `render --scene` or `scene add --from`
     #[command(after_help = "Example:\n  petroglyph scene show north.petro corner > corner.toml")]
     Show {
@@ -42,6 +32,19 @@ pub(in crate::cli) enum SceneAction {
         /// Its name
         name: String,
     },
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct SceneAddArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Its name
+    pub(in crate::cli) name: String,
+    /// TOML file to start from, as `scene show` prints it
+    #[arg(long, value_name = "FILE.toml")]
+    pub(in crate::cli) from: Option<PathBuf>,
+    #[command(flatten)]
+    pub(in crate::cli) view: ViewArgs,
 }
 
 /// Changes to a view.
