@@ -3,6 +3,12 @@
 //! Every [`STRIDE`]th node of a sheet, placed in metres, goes into an immutable `kiddo` tree. The walk over the surface
 //! ([`crate::closest`]) makes the answer exact, so the set can be sparse, and a sparse set is also what keeps the tree fast.
 //! Nodes of a height field differ in (x, y), so there are no duplicates by construction.
+//!
+//! # Flat sheets
+//! A flat sheet never splits along z, so the tree looks at all nodes within the distance itself. Measured on a busy machine
+//! (µs a query, sheet of N × N voxels): 3 and 14 at distances N/4 and N/2 for N = 256, 27 and 67 for N = 512, 86 and
+//! 117 for N = 1024; a third of that on a gentle fold. With one query per 1500 voxels ([`crate::lattice`]) the
+//! worst of these is 0.1 µs a voxel, a sixth of the whole: no second tree is needed.
 
 use crate::metric::Metric;
 use crate::surface::Surface;

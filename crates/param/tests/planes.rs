@@ -239,6 +239,25 @@ fn beds_parallel_to_the_bottom_are_cut_by_an_unconformity() {
 }
 
 #[test]
+fn volumes_of_another_size_are_evaluated_where_their_samples_lie() {
+    let model = ClosedForm::new([24, 18, 40], 2, |h, x, y| 12.0 + 15.0 * h as f64 + 0.4 * x - 0.2 * y);
+    let param = compute(&model);
+    let size = [9, 35, 14];
+    let volumes = param.voxel_volumes(&model, size, &Progress::silent()).unwrap();
+    for (a, b, c) in [(0, 0, 0), (8, 34, 13), (3, 11, 6), (5, 30, 9), (7, 2, 12)] {
+        let scaled = |n: usize, samples: usize, voxels: usize| n as f32 * (voxels - 1) as f32 / (samples - 1) as f32;
+        let p = Vec3::new(scaled(a, 9, 24), scaled(b, 35, 18), scaled(c, 14, 40));
+        let found = param.lookup(&model, p);
+        assert_eq!(volumes.layer.at(a, b, c), found.region.layer);
+        let volumes = [&volumes.i, &volumes.j, &volumes.k].map(|volume| volume.at(a, b, c));
+        for (sampled, looked_up) in volumes.into_iter().zip([found.i, found.j, found.k]) {
+            assert!((sampled - looked_up).abs() < 1e-5, "{volumes:?} and {found:?} at {p}");
+        }
+    }
+    assert!(param.voxel_volumes(&model, [4, 0, 4], &Progress::silent()).is_err());
+}
+
+#[test]
 fn the_jacobian_is_that_of_differences() {
     let model = ClosedForm::new([40, 40, 60], 2, |h, x, y| {
         18.0 + 22.0 * h as f64 + 3.0 * (0.2 * x + 0.1 * h as f64).sin() + 0.2 * y

@@ -28,6 +28,13 @@ fn the_synthetic_survey_holds_the_designs_figures() {
     assert!(param.blocks > 1);
     let k = found.exact.k_on_horizons;
     assert!(k.count > 3000 && k.median <= 0.02 && k.p95 <= 0.1, "{k:?}");
+    // The same at the true depths: what the sheets of the model miss counts too.
+    let truth =
+        |h: usize, block: u16, x: f32, y: f32| survey.truth.sheet_z(h, block, f64::from(x), f64::from(y)) as f32;
+    let points = accuracy::horizon_points(&model, truth, 2000);
+    let k = accuracy::k_on_horizons(&model, &param, |p| param.lookup(&model, p), &points);
+    eprintln!("at the true depths: {k:?}");
+    assert!(k.count > 3000 && k.median <= 0.02 && k.p95 <= 0.1, "{k:?}");
     let angles = found.exact.angles;
     for spread in [angles.k_to_i, angles.k_to_j] {
         assert!(spread.count > 10_000 && spread.median <= 0.2 && spread.p95 <= 1.0, "{angles:?}");
