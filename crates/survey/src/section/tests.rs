@@ -1,8 +1,10 @@
 //! Sections of closed-form models: areas, curves, junctions, lines.
 
 use super::*;
+use crate::fault::Fault;
 use crate::geometry::{SurveyGeometry, VerticalUnit};
 use crate::horizon::{Horizon, NodeGrid, Quality, Sheet};
+use crate::mesh::TriangleMesh;
 use crate::model::ModelSettings;
 use crate::model::closed_form::{self, ClosedForm, Random};
 use crate::progress::Progress;
@@ -149,6 +151,81 @@ fn a_fault_is_drawn_to_its_tip_and_its_layers_are_joined_beyond() {
     assert_eq!(horizons, [1, 1, 1]);
 }
 
+/// Random folds and random planar faults, some of them truncated by others.
+fn tangle(seed: u32, faults: usize) -> StructuralModel {
+    let g = SurveyGeometry::regular([40, 36, 44], 10.0, 10.0, VerticalUnit::Metres);
+    let mut random = Random(seed);
+    let mut given: Vec<Fault> = Vec::new();
+    for f in 0..faults {
+        let n = random.direction();
+        let (u, v) = n.any_orthonormal_pair();
+        let centre = random.place(g.size()) * 0.6 + DVec3::new(8.0, 7.0, 9.0);
+        // Some go right through, some end inside.
+        let reach = if random.next() < 0.5 { 100.0 } else { 15.0 };
+        let corner = |a: f64, b: f64| g.world_from_voxel(centre + reach * (a * u + b * v));
+        let mesh = TriangleMesh {
+            vertices: vec![corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+        };
+        let truncated_by = (f > 0 && random.next() < 0.4).then(|| format!("F{}", f - 1));
+        given.push(Fault { name: format!("F{f}"), mesh, truncated_by });
+    }
+    let contacts = [Contact::Conformable, Contact::Erosional, Contact::Conformable, Contact::Intrusive];
+    let horizons: Vec<Horizon> = (0..4)
+        .map(|h| {
+            let (a, b, c) = (random.next(), random.next(), random.next());
+            let depth = (0..40 * 36)
+                .map(|n| {
+                    let (x, y) = ((n / 36) as f64, (n % 36) as f64);
+                    let z = 8.0
+                        + 9.0 * h as f64
+                        + 4.0 * (x * 0.2 * a + 6.0 * b).sin()
+                        + 3.0 * (y * 0.3 * c + x * 0.1).cos();
+                    (10.0 * z) as f32
+                })
+                .collect();
+            let sheet = Sheet::new(NodeGrid::of_survey(&g), depth, Quality::Picked);
+            Horizon { name: format!("H{h}"), sheets: vec![sheet] }
+        })
+        .collect();
+    let named = |(h, &contact): (usize, &Contact)| StratigraphicHorizon { name: format!("H{h}"), contact };
+    let s = Stratigraphy { horizons: contacts.iter().enumerate().map(named).collect(), layer_names: Vec::new() };
+    let settings = ModelSettings { margin: Some(4), crossing_nodes: usize::MAX, ..ModelSettings::default() };
+    StructuralModel::build(&g, &s, &horizons, &given, &settings, &Progress::silent()).unwrap()
+}
+
+#[test]
+fn any_tangle_of_faults_and_horizons_is_covered_once() {
+    for (seed, faults) in [(1, 2), (2, 3), (3, 4), (4, 5), (5, 6), (6, 7)] {
+        let model = tangle(seed, faults);
+        for plane in planes(model.size()).into_iter().step_by(2) {
+            let section = Section::new(&model, &plane);
+            let full = plane.extent[0] * plane.extent[1];
+            let by_region: f64 = section.polygons.iter().map(|p| area(&p.rings)).sum();
+            let by_layer: f64 = section.layers.iter().map(|p| area(&p.rings)).sum();
+            assert!((by_region / full - 1.0).abs() < 1e-6 && (by_layer / full - 1.0).abs() < 1e-6, "{seed}");
+            let mut random = Random(seed);
+            for _ in 0..200 {
+                let st = closed_form::inside(&mut random, plane.extent);
+                let at = |d: DVec2| model.region_at(plane.voxel(st + 0.03 * d).as_vec3());
+                let expected = at(DVec2::ZERO);
+                if [DVec2::X, DVec2::Y, -DVec2::X, -DVec2::Y, DVec2::ONE, -DVec2::ONE]
+                    .iter()
+                    .all(|&d| at(d) == expected)
+                {
+                    let holding: Vec<_> = section
+                        .polygons
+                        .iter()
+                        .filter(|p| trace::winding(&p.rings, st) != 0)
+                        .map(|p| p.region)
+                        .collect();
+                    assert_eq!(holding, [expected], "{seed}, {st}");
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn threads_do_not_matter() {
     let form = closed_form::crossing_x();
@@ -162,8 +239,11 @@ fn threads_do_not_matter() {
     }
 }
 
-/// A model without faults from closed forms z(x).
-fn layered(forms: &[(Contact, fn(f64) -> f64)]) -> StructuralModel {
+/// A contact and z(x).
+type Layered = (Contact, fn(f64) -> f64);
+
+/// A model without faults from closed forms.
+fn layered(forms: &[Layered]) -> StructuralModel {
     let g = SurveyGeometry::regular([81, 20, 60], 10.0, 10.0, VerticalUnit::Metres);
     let horizons: Vec<Horizon> = forms
         .iter()
@@ -174,8 +254,7 @@ fn layered(forms: &[(Contact, fn(f64) -> f64)]) -> StructuralModel {
             Horizon { name: format!("H{h}"), sheets: vec![sheet] }
         })
         .collect();
-    let named =
-        |(h, f): (usize, &(Contact, fn(f64) -> f64))| StratigraphicHorizon { name: format!("H{h}"), contact: f.0 };
+    let named = |(h, f): (usize, &Layered)| StratigraphicHorizon { name: format!("H{h}"), contact: f.0 };
     let s = Stratigraphy { horizons: forms.iter().enumerate().map(named).collect(), layer_names: Vec::new() };
     StructuralModel::build(&g, &s, &horizons, &[], &ModelSettings::default(), &Progress::silent()).unwrap()
 }

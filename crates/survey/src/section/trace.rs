@@ -38,7 +38,8 @@ pub(super) fn polygons<A: Ord + Copy>(
     sorted.sort_by_key(|(a, _)| *a);
     let mut out = Vec::new();
     for group in sorted.chunk_by(|x, y| x.0 == y.0) {
-        let rings = rings(group.iter().map(|(_, e)| *e).collect(), positions);
+        let edges: Vec<Edge> = group.iter().map(|(_, e)| *e).collect();
+        let rings = rings(&edges, positions);
         let (outer, holes): (Vec<_>, Vec<_>) = rings.into_iter().partition(|r| signed_area(r) > 0.0);
         let mut made: Vec<Vec<Vec<DVec2>>> = outer.into_iter().map(|r| vec![r]).collect();
         for hole in holes {
@@ -57,7 +58,7 @@ pub(super) fn polygons<A: Ord + Copy>(
 }
 
 /// Walks the edges into closed rings with the area on the left.
-fn rings(edges: Vec<Edge>, positions: &[DVec2]) -> Vec<Vec<DVec2>> {
+fn rings(edges: &[Edge], positions: &[DVec2]) -> Vec<Vec<DVec2>> {
     let mut leaving: HashMap<u32, Vec<usize>> = HashMap::new();
     for (i, edge) in edges.iter().enumerate() {
         leaving.entry(edge.from).or_default().push(i);
@@ -90,7 +91,7 @@ fn rings(edges: Vec<Edge>, positions: &[DVec2]) -> Vec<Vec<DVec2>> {
                 None => break,
             }
         }
-        let points = corners(&ring, &edges, positions);
+        let points = corners(&ring, edges, positions);
         if points.len() >= 3 && signed_area(&points).abs() > 1e-14 {
             out.push(points);
         }

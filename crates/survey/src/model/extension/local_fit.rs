@@ -172,10 +172,10 @@ fn least_squares(nodes: &[[f32; 3]], keep: impl Fn(&[f32; 3]) -> bool) -> [f64; 
         let (x, y, z) = (f64::from(node[0]), f64::from(node[1]), f64::from(node[2]));
         let w = (1.0 - x * x - y * y).powi(2);
         let basis = [1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y];
-        for i in 0..6 {
+        for (i, row) in a.iter_mut().enumerate() {
             let wb = w * basis[i];
-            for j in i..6 {
-                a[i][j] += wb * basis[j];
+            for (entry, b) in row.iter_mut().zip(&basis).skip(i) {
+                *entry += wb * b;
             }
             rhs[i] += wb * z;
         }

@@ -291,7 +291,7 @@ impl Level {
 /// Value at fine index `j` of a line of `count` coarse values, by cubic interpolation; linear beyond the ends.
 fn halved(at: impl Fn(usize) -> f32, count: usize, j: usize) -> f32 {
     let k = j / 2;
-    if j % 2 == 0 {
+    if j.is_multiple_of(2) {
         return at(k);
     }
     let (p, q) = (at(k), at(k + 1));

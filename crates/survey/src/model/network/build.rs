@@ -148,9 +148,8 @@ fn smallest_eigenvector(m: DMat3) -> DVec3 {
             }
             let theta = 0.5 * (2.0 * a[p][q]).atan2(a[q][q] - a[p][p]);
             let (s, c) = theta.sin_cos();
-            for k in 0..3 {
-                let (akp, akq) = (a[k][p], a[k][q]);
-                (a[k][p], a[k][q]) = (c * akp - s * akq, s * akp + c * akq);
+            for row in &mut a {
+                (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
             }
             for k in 0..3 {
                 let (apk, aqk) = (a[p][k], a[q][k]);

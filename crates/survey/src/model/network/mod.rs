@@ -20,8 +20,8 @@ use crate::model::report::ModelError;
 use crate::model::settings::ModelSettings;
 use crate::progress::Progress;
 use build::Built;
-use glam::{DVec2, DVec3, Vec3};
-use outline::Reach;
+use glam::{DVec3, Vec3};
+use outline::{Reach, Target};
 
 /// Most faults: one bit each.
 const MOST_FAULTS: usize = 64;
@@ -243,7 +243,7 @@ fn extent(
         let steep = gradient.length();
         (steep > 1e-9).then(|| (-gradient / steep, value / steep)).filter(|&(_, cells)| cells <= tolerance)
     };
-    let mut walls: Vec<Box<dyn Fn(DVec3) -> Option<(DVec2, f64)>>> = Vec::new();
+    let mut walls: Vec<Box<dyn Fn(DVec3) -> Target>> = Vec::new();
     for axis in 0..3 {
         let last = geometry.size()[axis] as f64 - 1.0;
         walls.push(Box::new(move |q| towards(voxel(q)[axis], DVec3::AXES[axis])));

@@ -19,7 +19,10 @@ pub(super) struct Patch {
 }
 
 /// Something a rim may end at: the cells to go from a rim point and the direction, `None` when it is too far or lies aside.
-pub(super) type Reach<'a> = &'a dyn Fn(DVec3) -> Option<(DVec2, f64)>;
+pub(super) type Reach<'a> = &'a dyn Fn(DVec3) -> Target;
+
+/// Direction and cells to go, if the target is near.
+pub(super) type Target = Option<(DVec2, f64)>;
 
 impl Patch {
     pub fn new(points: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
