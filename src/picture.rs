@@ -48,7 +48,7 @@ impl Painter {
         Ok(Self { renderer })
     }
 
-    /// Draws a scene.
+    /// Draws a scene; raw data in the project's colours where the scene states none.
     ///
     /// # Errors
     /// A scene that shows nothing, or a device that fails.
@@ -59,6 +59,7 @@ impl Painter {
         progress: &Progress,
     ) -> Result<(RgbaImage, Stage), RenderError> {
         let start = Instant::now();
+        let scene = &Scene { raw: scene.raw.clone().or_else(|| loaded.raw.clone()), ..scene.clone() };
         let volumes = loaded.named_volumes();
         let inputs = loaded.inputs(&volumes);
         let image = match &mut self.renderer {

@@ -7,10 +7,11 @@ use crate::{data, derived, library, style};
 use glam::Vec3;
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
 use render::{Inputs, Lookup, NamedVolume, Scene, VoxelBox};
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use survey::model::{ModelSettings, StructuralModel};
 use survey::{Progress, SurveyGeometry, Volume};
-use ttf::{BlockExtent, LayerExtent, TtfTables};
+use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
 
 /// Printed length of the block's longer side that patterns are sized for, mm: a picture across a page.
 const PRINTED_MM: f64 = 150.0;
@@ -152,8 +153,18 @@ pub struct Loaded {
     pub volumes: Vec<LoadedVolume>,
     /// The packed volume, for that lookup.
     pub packed: Option<PackedVolume>,
+    /// The volume shown as raw data and its colours.
+    pub raw: Option<RawColour>,
     /// Compiled styles.
     pub tables: Option<TtfTables>,
+    /// Unlike that of anything else loaded by this process: renderers keep what they uploaded while it stays the same.
+    pub version: u64,
+}
+
+/// A number not given before.
+pub(crate) fn new_version() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(1);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 /// Reads and computes what `scene` needs.
@@ -181,7 +192,8 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
         None => None,
         Some(rock) => {
             let library = library::of_project(project.root(), document)?;
-            let block = block_extent(&geometry, rock, document.stratigraphy().layer_names_bottom_up());
+            let block =
+                block_extent(&geometry, rock, document.stratigraphy().layer_names_bottom_up(), scene.exaggeration);
             Some(TtfTables::compile(&functions, &block, &library)?)
         }
     };
@@ -198,14 +210,21 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
         let volume = data::read_volume(project.root(), entry, progress)?;
         volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
     }
-    Ok(Loaded { geometry, rock, volumes, packed, tables })
+    Ok(Loaded { geometry, rock, volumes, packed, raw: functions.raw, tables, version: new_version() })
 }
 
-/// What styles are compiled for: sizes in metres, and the layers' names, bottom to top.
-pub(crate) fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>) -> BlockExtent {
+/// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so
+/// that tiles print in their own shape.
+pub(crate) fn block_extent(
+    geometry: &SurveyGeometry,
+    rock: &Rock,
+    names: Vec<String>,
+    exaggeration: f64,
+) -> BlockExtent {
     let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
     let extent = [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny];
-    let layer = |(name, thickness_m)| LayerExtent { name, thickness_m };
+    let layer =
+        |(name, thickness_m): (String, f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
     BlockExtent {
         extent_i_m: extent[0] as f32,
         extent_j_m: extent[1] as f32,
@@ -230,7 +249,7 @@ impl Loaded {
             packed: self.packed.as_ref(),
             tables: self.tables.as_ref(),
             volumes,
-            version: 0,
+            version: self.version,
         }
     }
 }

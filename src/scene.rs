@@ -19,8 +19,8 @@ pub fn choose(document: &Document, name: Option<&str>) -> Result<Scene, ProjectE
     }
 }
 
-/// A three-quarter view with the nearest corner cut off, exaggerated so that flat surveys read as blocks; the topmost horizon as
-/// ground. Without a volume it is illustrative, without horizons raw.
+/// A three-quarter view with the nearest corner cut off, exaggerated so that flat surveys read as blocks; the topmost of several horizons
+/// as ground. Without a volume it is illustrative, without horizons raw.
 ///
 /// # Errors
 /// [`ProjectError::NoGeometry`].
@@ -34,7 +34,8 @@ pub fn default_view(document: &Document) -> Result<Scene, ProjectError> {
     if document.horizons.is_empty() {
         scene.blend = 1.0;
     } else {
-        scene.ground = Some(Ground::default());
+        // Above a single horizon is half of what there is to see.
+        scene.ground = (document.horizons.len() > 1).then(Ground::default);
         let block = scene.box_in(geometry);
         let corner = scene.view(geometry).nearest_corner(&block);
         scene.cut_outs = vec![block.corner_cut(corner, CUT_SHARE)];

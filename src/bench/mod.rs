@@ -10,7 +10,7 @@ mod model;
 
 use crate::error::ProjectError;
 use crate::picture::{Device, Painter};
-use crate::pipeline::{Loaded, Rock, Stage};
+use crate::pipeline::{self, Loaded, Rock, Stage};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::{Lookup, Scene};
 use serde::Serialize;
@@ -164,7 +164,18 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
     let packed = PackedVolume::from_voxels(&voxels, [side; 3], model.layer_count(), model.block_count());
     let rock = Rock { model, parameterization, key: String::new(), stages: Vec::new() };
     let tables = model::tables(&geometry, &rock)?;
-    Ok((cube, Loaded { geometry, rock: Some(rock), volumes: Vec::new(), packed: Some(packed), tables: Some(tables) }))
+    Ok((
+        cube,
+        Loaded {
+            geometry,
+            rock: Some(rock),
+            volumes: Vec::new(),
+            packed: Some(packed),
+            raw: None,
+            tables: Some(tables),
+            version: pipeline::new_version(),
+        },
+    ))
 }
 
 /// Seconds for a picture by each lookup, the second time it is drawn: compiling shaders and uploading is not counted.

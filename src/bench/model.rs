@@ -113,6 +113,6 @@ pub(super) fn build(geometry: &SurveyGeometry, progress: &Progress) -> Result<St
 /// Default styles.
 pub(super) fn tables(geometry: &SurveyGeometry, rock: &Rock) -> Result<TtfTables, ProjectError> {
     let names = rock.model.stratigraphy().layer_names_bottom_up();
-    let block = pipeline::block_extent(geometry, rock, names);
+    let block = pipeline::block_extent(geometry, rock, names, 1.0);
     Ok(TtfTables::compile(&TransferFunctions::default(), &block, &TextureLibrary::builtin()?)?)
 }

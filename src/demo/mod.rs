@@ -94,12 +94,12 @@ pub fn run(out: &Path, progress: &Progress) -> anyhow::Result<Demonstration> {
     done.steps.push(format!("imported them into {}", done.project.display()));
     done.stages.push(stage.lap("import"));
 
+    // What the half-way picture needs is what all of them need.
+    let loaded = pipeline::load(&project, &Scene { blend: 0.5, ..scene.clone() }, progress)?;
+    done.stages.extend(loaded.rock.iter().flat_map(|rock| rock.stages.clone()));
     let mut painter = Painter::new(Device::Auto, progress)?;
     for (name, blend) in PICTURES {
-        let scene = Scene { blend, ..scene.clone() };
-        let loaded = pipeline::load(&project, &scene, progress)?;
-        done.stages.extend(loaded.rock.iter().flat_map(|rock| rock.stages.clone()).filter(|s| s.stage != "model"));
-        let (image, drawn) = painter.draw(&scene, &loaded, progress)?;
+        let (image, drawn) = painter.draw(&Scene { blend, ..scene.clone() }, &loaded, progress)?;
         let path = out.join(format!("{name}.png"));
         picture::write_png(&path, &image, DPI)?;
         done.stages.push(drawn);

@@ -157,6 +157,23 @@ fn pictures_are_illustrative_raw_and_between() {
 }
 
 #[test]
+fn a_volume_alone_is_drawn_as_raw_faces() {
+    let folder = survey();
+    let at = folder.path();
+    run_in(at, "import s/survey.sgy p.petro").done();
+    let draw = |name: &str| {
+        run_in(at, &format!("render p.petro {name}.png --size 160x120 --samples 1 --device cpu")).done();
+        image::open(at.join(format!("{name}.png"))).unwrap().to_rgb8()
+    };
+    let colourful = draw("colour");
+    run_in(at, "raw p.petro --map grey").done();
+    let grey = draw("grey");
+    let spread = |image: &image::RgbImage| image.pixels().filter(|p| p.0[0].abs_diff(p.0[2]) > 40).count();
+    assert!(spread(&colourful) > 500, "seismic colours have reds and blues");
+    assert_eq!(spread(&grey), 0);
+}
+
+#[test]
 fn scenes_are_kept_shown_and_drawn() {
     let folder = project();
     let at = folder.path();
