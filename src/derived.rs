@@ -335,7 +335,7 @@ mod tests {
         let mut named = document.clone();
         named.layer_names = vec!["Rock".into()];
         assert_eq!(key(&document), key(&named));
-        let settings = ParamSettings { level_spacing: 3.0, ..ParamSettings::default() };
+        let settings = ParamSettings { level_spacing: 7.0, ..ParamSettings::default() };
         assert_ne!(key(&document), parameterization_key(&document, &ModelSettings::default(), &settings));
     }
 }
