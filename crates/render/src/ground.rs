@@ -1,33 +1,43 @@
 //! The ground: the relief of the topmost horizon, found along a ray (P-illus 5).
 //!
-//! Everything in the topmost (open) layer is air. In the air a ray advances by a step that cannot cross a sheet: with
-//! `gap` the vertical distance to the nearest sheet and s the steepest slope of the sheets,
-//! `step = gap / (|d_z| + s·|d_xy|)`, never over a fault in one go and never shorter than [`SHORTEST_STEP`].
-//! The first step that ends in rock is bisected. Crossing a fault into rock gives the fault scarp, whose normal is the
-//! fault's.
+//! Everything in the topmost (open) layer is air. A coarse map holds, for cells of a few voxels, a height above which there is only
+//! air, so a ray skips most of the block cell by cell. Below that height it advances by a step that cannot cross a sheet: with
+//! `gap` the vertical distance to the nearest sheet and s the ground's steepest slope,
+//! `step = gap / (|d_z| + s·|d_xy|)`, not over a fault in one go and never shorter than [`SHORTEST_STEP`].
+//! The step that ends in rock is cut by the secant where one sheet of one block lies across it, and bisected elsewhere.
+//! Crossing a fault into rock gives the fault scarp, whose normal is the fault's.
 //!
-//! Departure: the paper marches a volume with empty-space skipping; the height fields themselves are exact and need none.
+//! Only horizons that form the ground somewhere in the box are asked on the way ([`Relief::horizons`]): deeper ones cannot, and those cut off
+//! below an erosion surface do not change what is air.
+//!
+//! Departure: the paper marches a volume with empty-space skipping; the height fields themselves are exact.
 //!
 //! Voxel space, f32; the shader `ground.wgsl` computes the same.
 
 use crate::scene::{Ground, Scene};
 use crate::visible::Ray;
-use glam::{DVec3, Mat3, Vec3};
+use glam::{DVec3, Mat3, Vec2, Vec3};
 use rayon::prelude::*;
 use survey::SurveyGeometry;
-use survey::model::StructuralModel;
+use survey::model::{Region, StructuralModel};
 
-/// Shortest step through the air, voxels: ridges thinner than this can be missed.
-pub const SHORTEST_STEP: f32 = 0.25;
-/// Halvings of the last step: 0.25 voxel down to 2⁻⁸ voxel.
-pub const BISECTIONS: u32 = 6;
+/// Shortest step near the ground, voxels: ridges thinner than this can be missed.
+pub const SHORTEST_STEP: f32 = 0.5;
+/// Halvings of a last step that the secant cannot cut: half a voxel down to 2⁻⁸ voxel.
+pub const BISECTIONS: u32 = 7;
 /// Steps after which a ray is taken to miss.
 pub const MAX_STEPS: u32 = 4096;
-/// Steeper sheets than this are stepped over as if they had this slope.
+/// Side of a cell of the coarse map, voxels.
+pub const CELL: f32 = 4.0;
+/// How far a skipping ray goes into the next cell, voxels.
+pub const INTO_CELL: f32 = 0.01;
+/// Depth below the ground at which its layer is asked, voxels: more than rounding.
+pub const INTO_ROCK: f32 = 0.05;
+/// Steeper ground than this is stepped over as if it had this slope.
 const STEEPEST: f32 = 3.0;
 /// Nodes from one that is asked for its height to the next.
 const STRIDE: usize = 2;
-/// How far the sheets may reach beyond the heights found at lattice nodes, voxels.
+/// How far the ground may reach beyond the heights found at nodes, voxels, besides what its slope allows.
 const HEIGHT_MARGIN: f32 = 1.0;
 
 /// The relief in a roaming box.
@@ -35,8 +45,16 @@ const HEIGHT_MARGIN: f32 = 1.0;
 pub struct Relief {
     /// Heights between which the ground lies, voxel z.
     pub z_range: [f32; 2],
-    /// Steepest slope of the sheets, voxels per voxel.
+    /// Steepest slope of the ground, voxels per voxel, with a margin.
     pub steepest: f32,
+    /// Horizons that form the ground somewhere in the box.
+    pub horizons: Vec<usize>,
+    /// Smallest x, y of the coarse map, voxel.
+    pub map_low: Vec2,
+    /// Cells of the map along x and y.
+    pub map_cells: [usize; 2],
+    /// Voxel z above which (smaller z) a cell is only air, `[x][y]`.
+    pub map_tops: Vec<f32>,
     /// Longest voxel edge, m.
     pub longest_m: f32,
     /// Direction to the light in display space.
@@ -47,21 +65,17 @@ pub struct Relief {
     pub display_normal_from_voxel: Mat3,
 }
 
-/// What a place in the block is, and how far the next thing is.
+/// What the march asks of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Place {
-    /// Layer, 0 = deepest; the topmost one is air.
-    pub layer: u16,
-    /// Fault block.
-    pub block: u16,
-    /// Vertical distance to the nearest sheet, voxels.
-    pub gap: f32,
-    /// The horizon of that sheet.
-    pub horizon: usize,
-    /// Offset from the nearest fault, m.
-    pub fault_m: f32,
-    /// That fault.
-    pub fault: usize,
+struct Probe {
+    is_rock: bool,
+    block: u16,
+    /// Vertical distance to the nearest sheet of [`Relief::horizons`], voxels, and its horizon.
+    gap: f32,
+    horizon: usize,
+    /// Offset from the nearest fault, m, and which.
+    fault_m: f32,
+    fault: usize,
 }
 
 /// A point of the ground.
@@ -69,10 +83,10 @@ pub struct Place {
 pub struct GroundHit {
     /// Distance along the ray, voxels.
     pub t: f32,
-    /// Where, just inside the rock.
+    /// Where.
     pub point: Vec3,
     /// What is there.
-    pub place: Place,
+    pub region: Region,
     /// Normal as a voxel covector, pointing into the air.
     pub normal: Vec3,
 }
@@ -82,13 +96,17 @@ impl Relief {
     pub fn new(ground: &Ground, scene: &Scene, geometry: &SurveyGeometry, model: &StructuralModel) -> Self {
         let view = scene.view(geometry);
         let roaming_box = scene.box_in(geometry);
-        let (z_range, steepest) = heights(model, roaming_box.low().as_vec3(), roaming_box.high().as_vec3());
+        let heights = Heights::of(model, roaming_box.low().as_vec3(), roaming_box.high().as_vec3());
         let bearing = (scene.camera.azimuth_for(geometry, &roaming_box) + f64::from(ground.light_deg)).to_radians();
         let metric = geometry.metric_from_voxel();
         let longest = metric.x_axis.length().max(metric.y_axis.length()).max(metric.z_axis.length());
         Self {
-            z_range,
-            steepest,
+            z_range: heights.z_range,
+            steepest: heights.steepest,
+            horizons: heights.horizons,
+            map_low: roaming_box.low().as_vec3().truncate(),
+            map_cells: heights.cells,
+            map_tops: heights.tops,
             longest_m: longest as f32,
             light: DVec3::new(bearing.sin(), bearing.cos(), 1.0).normalize().as_vec3(),
             hill_shade: ground.hill_shade,
@@ -96,28 +114,62 @@ impl Relief {
         }
     }
 
+    /// Whether a point of the box is air.
+    pub fn is_air(&self, model: &StructuralModel, p: Vec3) -> bool {
+        !self.probe(model, p).is_rock
+    }
+
     /// The first ground between distances `from` (in the air) and `to` along a ray.
     pub fn march(&self, model: &StructuralModel, ray: &Ray, from: f32, to: f32) -> Option<GroundHit> {
-        let air = air_layer(model);
         let (start, end) = self.clip(ray, from, to)?;
-        let d = ray.direction;
-        let fall = d.z.abs() + self.steepest * d.truncate().length();
-        let mut last_air = from;
-        let mut air_block = place(model, ray.at(from)).block;
+        let fall = ray.direction.z.abs() + self.steepest * ray.direction.truncate().length();
+        let (mut air_t, mut air) = (from, None);
         let mut t = start;
         for _ in 0..MAX_STEPS {
-            let here = place(model, ray.at(t));
-            if here.layer != air {
-                return Some(self.refine(model, ray, (last_air, air_block), (t, here)));
+            let skipped = self.skip(ray, t, end);
+            if skipped > t {
+                (air_t, air) = ((skipped - 2.0 * INTO_CELL).max(air_t), None);
+            }
+            t = skipped;
+            let here = self.probe(model, ray.at(t));
+            if here.is_rock {
+                return Some(self.refine(model, ray, (air_t, air), (t, here)));
             }
             if t >= end {
                 return None;
             }
-            (last_air, air_block) = (t, here.block);
+            (air_t, air) = (t, Some(here));
             let to_fault = 0.8 * here.fault_m / self.longest_m;
             t = (t + (here.gap / fall).min(to_fault).max(SHORTEST_STEP)).min(end);
         }
         None
+    }
+
+    /// The first distance from `t` on at which the coarse map does not rule rock out.
+    fn skip(&self, ray: &Ray, mut t: f32, end: f32) -> f32 {
+        let d = ray.direction;
+        for _ in 0..MAX_STEPS {
+            let p = ray.at(t);
+            let place = (p.truncate() - self.map_low) / CELL;
+            let last = Vec2::new(self.map_cells[0] as f32, self.map_cells[1] as f32) - 1.0;
+            let cell = place.floor().clamp(Vec2::ZERO, last);
+            let top = self.map_tops[cell.x as usize * self.map_cells[1] + cell.y as usize];
+            if p.z >= top || t >= end {
+                break;
+            }
+            let mut step = f32::MAX;
+            for axis in 0..2 {
+                if d[axis].abs() > 1e-6 {
+                    let border = self.map_low[axis] + (cell[axis] + if d[axis] > 0.0 { 1.0 } else { 0.0 }) * CELL;
+                    step = step.min(((border - p[axis]) / d[axis]).max(0.0) + INTO_CELL);
+                }
+            }
+            if d.z > 1e-6 {
+                step = step.min((top - p.z) / d.z + 1e-4);
+            }
+            t = (t + step).min(end);
+        }
+        t
     }
 
     /// The part of a stretch in which the ground can be.
@@ -132,33 +184,58 @@ impl Relief {
         (start < end).then_some((start, end))
     }
 
-    /// Bisects between air and rock.
+    /// Cuts a step from air to rock.
     fn refine(
         &self,
         model: &StructuralModel,
         ray: &Ray,
-        (mut air_t, mut air_block): (f32, u16),
-        (mut t, mut inside): (f32, Place),
+        (mut air_t, air): (f32, Option<Probe>),
+        (mut t, mut inside): (f32, Probe),
     ) -> GroundHit {
-        let air = air_layer(model);
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (air_t + t);
-            let here = place(model, ray.at(middle));
-            if here.layer == air {
-                (air_t, air_block) = (middle, here.block);
-            } else {
-                (t, inside) = (middle, here);
+        let mut air_block = air.map_or_else(|| self.probe(model, ray.at(air_t)).block, |air| air.block);
+        match air {
+            Some(air) if air.block == inside.block && air.horizon == inside.horizon => {
+                t = air_t + (t - air_t) * air.gap / (air.gap + inside.gap).max(1e-12);
+            }
+            _ => {
+                for _ in 0..BISECTIONS {
+                    let middle = 0.5 * (air_t + t);
+                    let here = self.probe(model, ray.at(middle));
+                    if here.is_rock {
+                        (t, inside) = (middle, here);
+                    } else {
+                        (air_t, air_block) = (middle, here.block);
+                    }
+                }
             }
         }
         let point = ray.at(t);
-        let normal = if inside.block == air_block {
+        let normal = if air_block == inside.block {
             let slope = model.sheet(inside.horizon, inside.block).sample(point.x, point.y).gradient;
             slope.extend(-1.0)
         } else {
             let normal = model.faults().surfaces()[inside.fault].frame_from_voxel.row(2).as_vec3();
-            normal * -normal.dot(ray.direction).signum()
+            if normal.dot(ray.direction) > 0.0 { -normal } else { normal }
         };
-        GroundHit { t, point, place: inside, normal }
+        let below = point + Vec3::Z * INTO_ROCK;
+        let region = Region { layer: model.layer_at(below, inside.block), block: inside.block };
+        GroundHit { t, point, region, normal }
+    }
+
+    /// What is at a point, as far as the ground is concerned.
+    fn probe(&self, model: &StructuralModel, p: Vec3) -> Probe {
+        let (block, fault, fault_m) = block_and_fault(model, p);
+        let mut below = 0u64;
+        let (mut horizon, mut gap) = (0, f32::MAX);
+        for &h in &self.horizons {
+            let z = model.sheet(h, block).z_at(p.x, p.y);
+            below |= u64::from(p.z >= z) << h;
+            if (z - p.z).abs() < gap {
+                (horizon, gap) = (h, (z - p.z).abs());
+            }
+        }
+        let is_rock = model.rules().layer(below) != air_layer(model);
+        Probe { is_rock, block, gap, horizon, fault_m, fault }
     }
 
     /// The hill-shading factor of a slope: 1 where it is flat.
@@ -174,8 +251,13 @@ pub fn air_layer(model: &StructuralModel) -> u16 {
     (model.layer_count() - 1) as u16
 }
 
-/// What is at a voxel position.
-pub fn place(model: &StructuralModel, p: Vec3) -> Place {
+/// Whether a voxel position is air when the ground is shown, by all horizons.
+pub fn is_air(model: &StructuralModel, p: Vec3) -> bool {
+    model.region_at(p).layer == air_layer(model)
+}
+
+/// The block at a voxel position, the nearest fault and the offset from it, m.
+fn block_and_fault(model: &StructuralModel, p: Vec3) -> (u16, usize, f32) {
     let faults = model.faults();
     let mut bits = 0u64;
     let (mut fault, mut fault_m) = (0, f32::MAX);
@@ -186,46 +268,130 @@ pub fn place(model: &StructuralModel, p: Vec3) -> Place {
             (fault, fault_m) = (f, side.abs());
         }
     }
-    let block = faults.block_of(bits);
-    let mut below = 0u64;
-    let (mut horizon, mut gap) = (0, f32::MAX);
-    for h in 0..model.stratigraphy().horizons.len() {
-        let z = model.sheet(h, block).z_at(p.x, p.y);
-        below |= u64::from(p.z >= z) << h;
-        if (z - p.z).abs() < gap {
-            (horizon, gap) = (h, (z - p.z).abs());
-        }
-    }
-    Place { layer: model.rules().layer(below), block, gap, horizon, fault_m, fault }
+    (faults.block_of(bits), fault, fault_m)
 }
 
-/// Range of the ground's heights over the nodes of a box, and its steepest slope between nodes. Of each block only the part that it
-/// owns counts: sheets extended beyond it may be steep.
-fn heights(model: &StructuralModel, low: Vec3, high: Vec3) -> ([f32; 2], f32) {
-    let nodes = |axis: usize| low[axis].floor() as i32..high[axis].ceil() as i32 + 1;
-    let blocks = model.block_count() as u16;
-    let column = |x: i32| {
-        let (mut range, mut steepest) = ([f32::MAX, f32::MIN], 0.0f32);
-        for block in 0..blocks {
-            for y in nodes(1).step_by(STRIDE) {
-                let ground = |x: i32, y: i32| model.horizon_z(0, block, x as f32, y as f32);
+/// Heights of the ground in a box.
+struct Heights {
+    z_range: [f32; 2],
+    steepest: f32,
+    horizons: Vec<usize>,
+    cells: [usize; 2],
+    tops: Vec<f32>,
+}
+
+/// The same over a row of nodes along y.
+struct HeightRow {
+    /// Smallest and largest voxel z per node.
+    ranges: Vec<[f32; 2]>,
+    steepest: f32,
+    /// Bit h: horizon h is or nearly is the ground.
+    horizons: u64,
+}
+
+impl HeightRow {
+    /// Asks the nodes at `x`. Of each block only the part that it owns counts: sheets extended beyond it may be steep.
+    fn of(model: &StructuralModel, x: f32, ys: &[f32]) -> Self {
+        let mut row = Self { ranges: vec![[f32::MAX, f32::MIN]; ys.len()], steepest: 0.0, horizons: 0 };
+        for block in 0..model.block_count() as u16 {
+            for (&y, range) in ys.iter().zip(&mut row.ranges) {
+                let ground = |x: f32, y: f32| model.horizon_z(0, block, x, y);
                 let z = ground(x, y);
-                if model.block_at(Vec3::new(x as f32, y as f32, z)) == block {
-                    range = [range[0].min(z), range[1].max(z)];
-                    steepest = steepest.max((ground(x + 1, y) - z).hypot(ground(x, y + 1) - z));
+                if model.block_at(Vec3::new(x, y, z)) != block {
+                    continue;
+                }
+                *range = [range[0].min(z), range[1].max(z)];
+                let slope = (ground(x + 1.0, y) - z).hypot(ground(x, y + 1.0) - z);
+                row.steepest = row.steepest.max(slope);
+                for h in 0..model.stratigraphy().horizons.len() {
+                    let near = HEIGHT_MARGIN + STRIDE as f32 * slope;
+                    row.horizons |= u64::from((model.sheet(h, block).z_at(x, y) - z).abs() <= near) << h;
                 }
             }
         }
-        (range, steepest)
-    };
-    let (range, steepest) = nodes(0)
-        .step_by(STRIDE)
-        .collect::<Vec<_>>()
-        .into_par_iter()
-        .map(column)
-        .reduce(|| ([f32::MAX, f32::MIN], 0.0), |(a, s), (b, t)| ([a[0].min(b[0]), a[1].max(b[1])], s.max(t)));
-    let steepest = (steepest * 1.5).min(STEEPEST);
-    // Between the nodes that were asked the ground can rise as the sheets do.
-    let margin = HEIGHT_MARGIN + STRIDE as f32 * steepest;
-    ([range[0] - margin, range[1] + margin], steepest)
+        row
+    }
+}
+
+impl Heights {
+    fn of(model: &StructuralModel, low: Vec3, high: Vec3) -> Self {
+        let nodes = |axis: usize| -> Vec<f32> {
+            let count = ((high[axis] - low[axis]) / STRIDE as f32).ceil() as usize;
+            (0..=count).map(|n| (low[axis] + (n * STRIDE) as f32).min(high[axis])).collect()
+        };
+        let (xs, ys) = (nodes(0), nodes(1));
+        let rows: Vec<HeightRow> = xs.par_iter().map(|&x| HeightRow::of(model, x, &ys)).collect();
+        let steepest = rows.iter().map(|row| row.steepest).fold(0.0, f32::max);
+        let steepest = (steepest * 1.5).min(STEEPEST);
+        // Between the nodes that were asked the ground can rise as its slope allows.
+        let margin = HEIGHT_MARGIN + STRIDE as f32 * steepest;
+        let cells = [xs.len(), ys.len()].map(|nodes| ((nodes - 1) * STRIDE).div_ceil(CELL as usize).max(1));
+        let mut own = vec![f32::MAX; cells[0] * cells[1]];
+        let mut z_range = [f32::MAX, f32::MIN];
+        for (x, row) in rows.iter().enumerate() {
+            for (y, [top, base]) in row.ranges.iter().enumerate() {
+                let cell = |node: usize, axis: usize| (node * STRIDE / CELL as usize).min(cells[axis] - 1);
+                let own = &mut own[cell(x, 0) * cells[1] + cell(y, 1)];
+                *own = own.min(*top);
+                z_range = [z_range[0].min(*top), z_range[1].max(*base)];
+            }
+        }
+        let around = |x: usize, axis: usize| x.saturating_sub(1)..=(x + 1).min(cells[axis] - 1);
+        let tops = (0..own.len())
+            .map(|n| {
+                let columns = around(n / cells[1], 0);
+                let lowest = columns.flat_map(|x| around(n % cells[1], 1).map(move |y| [x, y]));
+                lowest.map(|[x, y]| own[x * cells[1] + y]).fold(f32::MAX, f32::min) - margin
+            })
+            .collect();
+        let mask = rows.iter().fold(0, |mask, row| mask | row.horizons);
+        let mut horizons: Vec<usize> =
+            (0..model.stratigraphy().horizons.len()).filter(|h| mask >> h & 1 == 1).collect();
+        if horizons.is_empty() && !model.stratigraphy().horizons.is_empty() {
+            horizons.push(0);
+        }
+        Self { z_range: [z_range[0] - margin, z_range[1] + margin], steepest, horizons, cells, tops }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::VoxelBox;
+    use survey::Progress;
+    use survey::model::ModelSettings;
+    use survey::synth::{SynthSettings, Synthetic};
+
+    /// Walks rays in short steps and asks the model itself.
+    #[test]
+    fn it_agrees_with_walking() {
+        let quiet = Progress::silent();
+        let settings = SynthSettings { size: [40, 36, 48], ..SynthSettings::default() };
+        let s = Synthetic::generate(&settings, &quiet).unwrap();
+        let settings = ModelSettings::default();
+        let model =
+            StructuralModel::build(&s.geometry, &s.stratigraphy, &s.horizons, &s.faults, &settings, &quiet).unwrap();
+        let relief = Relief::new(&Ground::default(), &Scene::default(), &s.geometry, &model);
+        let whole = VoxelBox::of_size(s.geometry.size());
+        let (mut hits, mut far) = (0, 0);
+        for n in 0..400 {
+            let turn = n as f32 * 0.7;
+            let direction = Vec3::new(turn.cos(), turn.sin(), 0.15 + 0.9 * (n % 7) as f32 / 7.0).normalize();
+            let through = whole.low().as_vec3().lerp(whole.high().as_vec3(), (n % 23) as f32 / 23.0);
+            let from = Vec3::new(through.x, through.y, 0.0);
+            let ray = Ray { origin: from, direction };
+            if is_air(&model, from) {
+                let inside =
+                    |t: f32| whole.high().as_vec3().cmpge(ray.at(t)).all() && ray.at(t).cmpge(Vec3::ZERO).all();
+                let end = (0..).map(|s| s as f32 * 0.01).find(|t| !inside(*t)).unwrap();
+                let walked = (0..(end * 50.0) as usize).map(|s| s as f32 * 0.02).find(|t| !is_air(&model, ray.at(*t)));
+                let found = relief.march(&model, &ray, 0.0, end).map(|hit| hit.t);
+                hits += usize::from(walked.is_some());
+                // A ray may slip through less rock than the shortest step.
+                far += usize::from((walked.unwrap_or(end) - found.unwrap_or(end)).abs() > 0.1);
+            }
+        }
+        assert!(hits > 100, "{hits}");
+        assert!(far * 100 <= hits, "{far} of {hits}");
+    }
 }

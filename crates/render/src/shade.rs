@@ -5,7 +5,7 @@
 
 use crate::camera::ViewRay;
 use crate::frame::{Flat, Frame, Rock};
-use crate::ground::{GroundHit, air_layer, place};
+use crate::ground::GroundHit;
 use crate::inputs::NamedVolume;
 use crate::visible::{FaceHit, Ray};
 use glam::{Vec3, Vec4};
@@ -48,7 +48,7 @@ pub(crate) fn first_hit(frame: &Frame, ray: &Ray) -> Hit {
         let (Some(relief), Some(Rock { model, .. })) = (&frame.relief, frame.rock) else {
             return Hit::Face(span.entry);
         };
-        if place(model, span.entry.point).layer != air_layer(model) {
+        if !relief.is_air(model, span.entry.point) {
             return Hit::Face(span.entry);
         }
         if let Some(hit) = relief.march(model, ray, span.entry.t, span.end) {
@@ -91,7 +91,7 @@ fn face_colour(frame: &Frame, view_ray: &ViewRay, hit: &FaceHit) -> Vec3 {
 /// The colour of the ground: the average of the texture just below it, hill-shaded, blended to the raw data (P-illus 5, 5.2).
 fn ground_colour(frame: &Frame, hit: &GroundHit) -> Vec3 {
     let (Some(relief), Some(rock)) = (&frame.relief, frame.rock) else { return Vec3::ZERO };
-    let region = Region { layer: hit.place.layer, block: hit.place.block };
+    let region = hit.region;
     let (layer, k) = if frame.illustrated {
         let (flat, _) = rock.flat_at(hit.point, Some(region));
         (flat.region.layer, flat.k)

@@ -28,6 +28,13 @@ struct FaceParams {
     reference_px: vec2<f32>,
     samples: u32,
     cut_count: u32,
+    // The ground's coarse map: smallest x, y; cells along x and y; entries of `relief_map` before it.
+    map_low: vec2<f32>,
+    map_cells: vec2<u32>,
+    ground_horizons: u32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
     // Pixels of the tile: left, top, width, height.
     tile: vec4<u32>,
     // Smallest and largest corner of each cut-out.
@@ -110,7 +117,7 @@ fn trace(ray: PixelRay) -> vec4<f32> {
         var start = LOWEST;
         for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
             span = next_span(ray.origin, ray.direction, start);
-            if !span.found || place_at(span.point).layer != model.layers - 1u {
+            if !span.found || probe_at(span.point).is_rock {
                 break;
             }
             span.found = false;

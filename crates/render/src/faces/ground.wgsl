@@ -1,11 +1,17 @@
 // The ground along a ray: the twin of `ground::Relief` (P-illus 5).
 
-const SHORTEST_STEP: f32 = 0.25;
-const BISECTIONS: u32 = 6u;
+const SHORTEST_STEP: f32 = 0.5;
+const BISECTIONS: u32 = 7u;
 const MAX_STEPS: u32 = 4096u;
+const CELL: f32 = 4.0;
+const INTO_CELL: f32 = 0.01;
+const INTO_ROCK: f32 = 0.05;
 
-struct Place {
-    layer: u32,
+// First the horizons that form the ground, then the cells' tops as the bits of floats, [x][y].
+@group(0) @binding(2) var<storage, read> relief_map: array<u32>;
+
+struct Probe {
+    is_rock: bool,
     block: u32,
     gap: f32,
     horizon: u32,
@@ -16,13 +22,14 @@ struct Place {
 struct GroundHit {
     point: vec3<f32>,
     normal: vec3<f32>,
-    place: Place,
+    layer: u32,
+    block: u32,
     found: bool,
 }
 
-fn place_at(p: vec3<f32>) -> Place {
-    var place: Place;
-    place.fault_m = HIGHEST;
+fn probe_at(p: vec3<f32>) -> Probe {
+    var probe: Probe;
+    probe.fault_m = HIGHEST;
     var bits = vec2(0u);
     if has_faults == 1u {
         var f = 0u;
@@ -31,9 +38,9 @@ fn place_at(p: vec3<f32>) -> Place {
             if side >= 0.0 {
                 bits = with_bit(bits, f);
             }
-            if abs(side) < place.fault_m {
-                place.fault_m = abs(side);
-                place.fault = f;
+            if abs(side) < probe.fault_m {
+                probe.fault_m = abs(side);
+                probe.fault = f;
             }
             continuing {
                 f += 1u;
@@ -41,32 +48,60 @@ fn place_at(p: vec3<f32>) -> Place {
             }
         }
     }
-    place.block = block_of(bits);
-    place.gap = HIGHEST;
+    probe.block = block_of(bits);
+    probe.gap = HIGHEST;
     var below = vec2(0u);
     if has_horizons == 1u {
-        var h = 0u;
+        var n = 0u;
         loop {
-            let z = sheet_z(sheets[h * model.blocks + place.block], p.xy);
+            let h = relief_map[n];
+            let z = sheet_z(sheets[h * model.blocks + probe.block], p.xy);
             if p.z >= z {
                 below = with_bit(below, h);
             }
-            if abs(z - p.z) < place.gap {
-                place.gap = abs(z - p.z);
-                place.horizon = h;
+            if abs(z - p.z) < probe.gap {
+                probe.gap = abs(z - p.z);
+                probe.horizon = h;
             }
             continuing {
-                h += 1u;
-                break if h >= model.horizons;
+                n += 1u;
+                break if n >= params.ground_horizons;
             }
         }
     }
-    place.layer = layer_of(below);
-    return place;
+    probe.is_rock = layer_of(below) != model.layers - 1u;
+    return probe;
+}
+
+// The first distance from t on at which the coarse map does not rule rock out.
+fn skip_air(origin: vec3<f32>, direction: vec3<f32>, start: f32, end: f32) -> f32 {
+    var t = start;
+    let last = vec2<f32>(params.map_cells) - 1.0;
+    for (var n = 0u; n < MAX_STEPS; n += 1u) {
+        let p = origin + direction * t;
+        let cell = clamp(floor((p.xy - params.map_low) / CELL), vec2(0.0), last);
+        let index = params.ground_horizons + u32(cell.x) * params.map_cells.y + u32(cell.y);
+        let top = bitcast<f32>(relief_map[index]);
+        if p.z >= top || t >= end {
+            break;
+        }
+        var step = HIGHEST;
+        for (var axis = 0u; axis < 2u; axis += 1u) {
+            let d = direction[axis];
+            if abs(d) > 1e-6 {
+                let border = params.map_low[axis] + (cell[axis] + select(0.0, 1.0, d > 0.0)) * CELL;
+                step = min(step, max((border - p[axis]) / d, 0.0) + INTO_CELL);
+            }
+        }
+        if direction.z > 1e-6 {
+            step = min(step, (top - p.z) / direction.z + 1e-4);
+        }
+        t = min(t + step, end);
+    }
+    return t;
 }
 
 fn march(origin: vec3<f32>, direction: vec3<f32>, enter: f32, leave: f32) -> GroundHit {
-    let air = model.layers - 1u;
     var hit: GroundHit;
     var start = enter;
     var end = leave;
@@ -85,60 +120,76 @@ fn march(origin: vec3<f32>, direction: vec3<f32>, enter: f32, leave: f32) -> Gro
     }
     let fall = abs(direction.z) + params.relief.z * length(direction.xy);
     var air_t = enter;
-    var air_block = place_at(origin + direction * enter).block;
+    var air: Probe;
+    air.block = NONE;
+    var inside: Probe;
     var t = start;
     var step = 0u;
     loop {
-        let here = place_at(origin + direction * t);
-        hit.found = here.layer != air;
-        hit.place = here;
-        let done = hit.found || t >= end;
+        let skipped = skip_air(origin, direction, t, end);
+        if skipped > t {
+            air_t = max(skipped - 2.0 * INTO_CELL, air_t);
+            air.block = NONE;
+        }
+        t = skipped;
+        inside = probe_at(origin + direction * t);
+        let done = inside.is_rock || t >= end;
         if !done {
             air_t = t;
-            air_block = here.block;
-            let to_fault = 0.8 * here.fault_m / params.relief.w;
-            t = min(t + max(min(here.gap / fall, to_fault), SHORTEST_STEP), end);
+            air = inside;
+            let to_fault = 0.8 * inside.fault_m / params.relief.w;
+            t = min(t + max(min(inside.gap / fall, to_fault), SHORTEST_STEP), end);
         }
         continuing {
             step += 1u;
             break if done || step >= MAX_STEPS;
         }
     }
+    hit.found = inside.is_rock;
     if !hit.found {
         return hit;
     }
-    var n = 0u;
-    loop {
-        let middle = 0.5 * (air_t + t);
-        let here = place_at(origin + direction * middle);
-        if here.layer == air {
-            air_t = middle;
-            air_block = here.block;
-        } else {
-            t = middle;
-            hit.place = here;
+    if air.block == inside.block && air.horizon == inside.horizon {
+        t = air_t + (t - air_t) * air.gap / max(air.gap + inside.gap, 1e-12);
+    } else {
+        if air.block == NONE {
+            air.block = probe_at(origin + direction * air_t).block;
         }
-        continuing {
-            n += 1u;
-            break if n >= BISECTIONS;
+        var n = 0u;
+        loop {
+            let middle = 0.5 * (air_t + t);
+            let here = probe_at(origin + direction * middle);
+            if here.is_rock {
+                t = middle;
+                inside = here;
+            } else {
+                air_t = middle;
+                air.block = here.block;
+            }
+            continuing {
+                n += 1u;
+                break if n >= BISECTIONS;
+            }
         }
     }
     hit.point = origin + direction * t;
-    if hit.place.block == air_block {
-        let slope = sheet_sample(sheets[hit.place.horizon * model.blocks + hit.place.block], hit.point.xy).yz;
+    hit.block = inside.block;
+    hit.layer = layer_at(hit.point + vec3(0.0, 0.0, INTO_ROCK), hit.block);
+    if air.block == inside.block {
+        let slope = sheet_sample(sheets[inside.horizon * model.blocks + inside.block], hit.point.xy).yz;
         hit.normal = vec3(slope, -1.0);
     } else {
-        let normal = faults[hit.place.fault].w.xyz;
+        let normal = faults[inside.fault].w.xyz;
         hit.normal = select(normal, -normal, dot(normal, direction) > 0.0);
     }
     return hit;
 }
 
 fn ground_colour(hit: GroundHit) -> vec3<f32> {
-    var layer = hit.place.layer;
+    var layer = hit.layer;
     var k = 1.0;
     if lookup == LOOKUP_EXACT {
-        k = flat_exact(hit.point, layer, hit.place.block).ijk.z;
+        k = flat_exact(hit.point, layer, hit.block).ijk.z;
     } else if lookup == LOOKUP_PACKED {
         let packed = flat_packed(hit.point);
         layer = packed.layer;

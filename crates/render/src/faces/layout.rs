@@ -30,6 +30,10 @@ pub struct FaceParams {
     pub reference_px: [f32; 2],
     pub samples: u32,
     pub cut_count: u32,
+    pub map_low: [f32; 2],
+    pub map_cells: [u32; 2],
+    pub ground_horizons: u32,
+    pub padding: [u32; 3],
     pub tile: [u32; 4],
     pub cut_outs: [[f32; 4]; 2 * MAX_CUT_OUTS],
 }
@@ -95,6 +99,13 @@ pub struct PackedInfo {
     pub padding: [u32; 2],
 }
 
+/// The ground's horizons and coarse map, as the shader has them.
+pub fn relief_map(frame: &Frame) -> Vec<u32> {
+    let Some(relief) = &frame.relief else { return Vec::new() };
+    let horizons = relief.horizons.iter().map(|&h| h as u32);
+    horizons.chain(relief.map_tops.iter().map(|top| top.to_bits())).collect()
+}
+
 impl FaceParams {
     /// The parameters of a picture, without its tile.
     pub fn of(frame: &Frame) -> Self {
@@ -127,6 +138,10 @@ impl FaceParams {
             reference_px: reference.as_vec2().to_array(),
             samples: frame.scene.samples,
             cut_count: frame.solid.cut_outs.len() as u32,
+            map_low: [0.0; 2],
+            map_cells: [1; 2],
+            ground_horizons: 0,
+            padding: [0; 3],
             tile: [0; 4],
             cut_outs,
         };
@@ -135,6 +150,9 @@ impl FaceParams {
             params.display_normal_x = plain(relief.display_normal_from_voxel.x_axis);
             params.display_normal_y = plain(relief.display_normal_from_voxel.y_axis);
             params.display_normal_z = plain(relief.display_normal_from_voxel.z_axis);
+            params.map_low = relief.map_low.to_array();
+            params.map_cells = relief.map_cells.map(|n| n as u32);
+            params.ground_horizons = relief.horizons.len() as u32;
             params.relief = [relief.z_range[0], relief.z_range[1], relief.steepest, relief.longest_m];
         }
         params

@@ -255,6 +255,7 @@ impl Renderer {
         }
         let scalars = storage("scalar entries", bytemuck::cast_slice(&entries));
         let stops = storage("stops", bytemuck::cast_slice(&tables.stops));
+        let relief_map = storage("relief map", bytemuck::cast_slice(&layout::relief_map(frame)));
         let no_buffer = storage("none", &[]);
         let none = || no_buffer.as_entire_binding();
         let (infos, texels) = match &self.textures {
@@ -297,7 +298,7 @@ impl Renderer {
         };
         let tables = [&globals, &layers, &intervals, &scalars, &stops].map(wgpu::Buffer::as_entire_binding);
         [
-            group(0, vec![params.as_entire_binding(), pixels.as_entire_binding()]),
+            group(0, [params, pixels, &relief_map].map(wgpu::Buffer::as_entire_binding).to_vec()),
             group(1, [infos, texels].into_iter().chain(tables).collect()),
             group(2, volumes),
             group(3, model),
@@ -407,7 +408,7 @@ fn bind_group_layouts(gpu: &Gpu) -> [wgpu::BindGroupLayout; 4] {
     model.extend([read; POOL_BUFFERS]);
     model.extend([uniform, volume]);
     [
-        layout(&[uniform, write]),
+        layout(&[uniform, write, read]),
         layout(&[read, read, uniform, read, read, read, read]),
         layout(&volumes),
         layout(&model),

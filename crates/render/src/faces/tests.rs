@@ -53,7 +53,7 @@ fn structs_have_the_same_layout() {
     let m = &module();
     check!(m, FaceParams: origin, origin_dx, origin_dy, direction, direction_dx, direction_dy, box_low, box_high,
         background, voxel_m, tones, light, display_normal_x, display_normal_y, display_normal_z, relief, reference_px,
-        samples, cut_count, tile, cut_outs);
+        samples, cut_count, map_low, map_cells, ground_horizons, tile, cut_outs);
     check!(m, SheetInfo: origin, size, offset);
     check!(m, FaultInfo: u, v, w, surface);
     check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);
@@ -93,6 +93,9 @@ fn constants_are_the_same() {
         ("SHORTEST_STEP", f64::from(ground::SHORTEST_STEP)),
         ("BISECTIONS", f64::from(ground::BISECTIONS)),
         ("MAX_STEPS", f64::from(ground::MAX_STEPS)),
+        ("CELL", f64::from(ground::CELL)),
+        ("INTO_CELL", f64::from(ground::INTO_CELL)),
+        ("INTO_ROCK", f64::from(ground::INTO_ROCK)),
         ("NO_WEIGHT", f64::from(inputs::NO_WEIGHT)),
         ("SLACK", f64::from(inputs::SLACK)),
         ("MAX_TAPS", f64::from(ttf::texture::MAX_TAPS)),

@@ -5,7 +5,7 @@ use super::relief::relief_lines;
 use super::solid::{EdgeLine, FaceRect, edge_lines, face_rects};
 use super::{NOMINAL_SIDE_PX, Stroke};
 use crate::frame::{Frame, Rock};
-use crate::ground::{air_layer, place};
+use crate::ground::{air_layer, is_air};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use rayon::prelude::*;
@@ -125,7 +125,7 @@ fn seen_over_rim(frame: &Frame, rock: Rock, rect: &FaceRect, p: DVec3) -> bool {
     let into_rock = DVec3::AXES[rect.axis] * rect.rock;
     let is_rock = |aside: DVec3| {
         let q = (p + (aside + into_rock) * ASIDE).as_vec3();
-        frame.solid.contains(q) && place(rock.model, q).layer != air_layer(rock.model)
+        frame.solid.contains(q) && !is_air(rock.model, q)
     };
     [DVec3::Z, along, -along].into_iter().any(is_rock) && covered_by(frame, p) < IN_FRONT
 }

@@ -5,7 +5,7 @@
 
 use super::hidden::{ASIDE, IN_FRONT, covered_by, seen_parts};
 use crate::frame::{Frame, Rock};
-use crate::ground::{air_layer, place};
+use crate::ground::is_air;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -87,9 +87,7 @@ pub(super) fn relief_lines(frame: &Frame) -> ReliefLines {
             dx.cross(dy).dot(frame.view.towards_camera(p))
         };
         let segments = map.zero_lines(facing);
-        lines
-            .crests
-            .extend(seen(frame, rock, &segments, |p| (place(rock.model, p.as_vec3()).block == block).then_some(p)));
+        lines.crests.extend(seen(frame, rock, &segments, |p| (rock.model.block_at(p.as_vec3()) == block).then_some(p)));
     }
     lines
 }
@@ -101,7 +99,7 @@ fn beside_fault(rock: Rock, fault: usize, block: u16, p: DVec3) -> Option<DVec3>
         return None;
     }
     let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
-    let holds_block = |aside: f64| place(rock.model, (p + normal * aside).as_vec3()).block == block;
+    let holds_block = |aside: f64| rock.model.block_at((p + normal * aside).as_vec3()) == block;
     match (holds_block(ASIDE), holds_block(-ASIDE)) {
         (true, false) => Some(p + normal * INTO_BLOCK),
         (false, true) => Some(p - normal * INTO_BLOCK),
@@ -122,8 +120,7 @@ fn seen(
         p.z >= low.z
             && p.z <= high.z
             && !cut_away(frame, p)
-            && ground(p)
-                .is_some_and(|q| place(rock.model, (q + DVec3::Z * 0.1).as_vec3()).layer != air_layer(rock.model))
+            && ground(p).is_some_and(|q| !is_air(rock.model, (q + DVec3::Z * 0.1).as_vec3()))
             && covered_by(frame, p) < IN_FRONT
     };
     segments.par_iter().flat_map_iter(|segment| seen_parts(&frame.view, segment, is_seen)).collect()
