@@ -5,14 +5,14 @@
 //! sheets and resolved by the contact rules (the younger horizon ends at the older).
 
 use super::contacts::ContactRules;
+use super::network::FaultNetwork;
 use super::nodes::Lattice;
 use super::report::{ModelError, ModelNote};
 use super::settings::ModelSettings;
 use super::sheets::ExtendedSheet;
 use crate::geometry::SurveyGeometry;
-use glam::Vec3;
 
-/// Checks the picks and pulls back continued nodes, `[horizon][block]`; `block_at` tells where a clamped node matters.
+/// Checks the picks and pulls back continued nodes, `[horizon][block]`; `faults` tell where a moved node matters.
 pub(super) fn keep_order(
     geometry: &SurveyGeometry,
     lattice: Lattice,
@@ -20,7 +20,7 @@ pub(super) fn keep_order(
     names: &[&str],
     sheets: &mut [Vec<ExtendedSheet>],
     settings: &ModelSettings,
-    block_at: impl Fn(Vec3) -> u16,
+    faults: &FaultNetwork,
 ) -> Result<Vec<ModelNote>, ModelError> {
     let mut notes = Vec::new();
     let blocks = sheets.first().map_or(0, Vec::len);
@@ -51,7 +51,7 @@ pub(super) fn keep_order(
                     sheets[h][b].field.z[n] = meet;
                     sheets[g][b].field.z[n] = meet;
                     moved = true;
-                    if lattice.is_inside(n) && usize::from(block_at(lattice.place(n, meet))) == b {
+                    if lattice.is_inside(n) && faults.holds(b as u16, lattice.place(n, meet)) {
                         clamped[pair].0 += 1;
                         clamped[pair].1 = clamped[pair].1.max(top - base);
                     }

@@ -31,6 +31,29 @@ pub(super) struct ExtendedSheet {
     pub own: usize,
 }
 
+impl ExtendedSheet {
+    /// Which nodes are data or within a few nodes of it.
+    pub fn near_data(&self, lattice: Lattice) -> Vec<bool> {
+        let mut near = self.known.clone();
+        for _ in 0..SOLID_NODES {
+            let before = near.clone();
+            for n in (0..near.len()).filter(|&n| !before[n]) {
+                near[n] = beside(lattice.size, n).any(|m| before[m]);
+            }
+        }
+        near
+    }
+}
+
+/// The four neighbours of node `n`.
+fn beside(size: [usize; 2], n: usize) -> impl Iterator<Item = usize> {
+    let [nx, ny] = size;
+    let (x, y) = (n / ny, n % ny);
+    [(x > 0, n.wrapping_sub(ny)), (x + 1 < nx, n + ny), (y > 0, n.wrapping_sub(1)), (y + 1 < ny, n + 1)]
+        .into_iter()
+        .filter_map(|(inside, m)| inside.then_some(m))
+}
+
 /// The sheets of all horizons, `[horizon][block]`.
 pub(super) fn extend_all(
     lattice: Lattice,
@@ -121,20 +144,16 @@ fn extend_one(
     Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })
 }
 
-/// Gives the nodes without data a quality: as their neighbours close to data, filled in enclosed holes, extrapolated elsewhere.
+/// Gives the nodes without data a quality: as their neighbours close to data, filled in enclosed holes, extrapolated elsewhere. Nodes
+/// filled between close picks count as picked.
 fn grade(size: [usize; 2], quality: &mut [Quality]) {
     let [nx, ny] = size;
-    let beside = |n: usize| {
-        let (x, y) = (n / ny, n % ny);
-        [(x > 0, n.wrapping_sub(ny)), (x + 1 < nx, n + ny), (y > 0, n.wrapping_sub(1)), (y + 1 < ny, n + 1)]
-            .into_iter()
-            .filter_map(|(inside, m)| inside.then_some(m))
-    };
+    let rank = |q: Quality| if q == Quality::Hole { u8::MAX } else { q as u8 };
     for _ in 0..SOLID_NODES {
         let before = quality.to_vec();
         for n in 0..quality.len() {
-            if before[n] == Quality::Hole {
-                let best = beside(n).map(|m| before[m]).filter(|&q| q != Quality::Hole).min();
+            if rank(before[n]) > Quality::Tracked as u8 {
+                let best = beside(size, n).map(|m| before[m]).chain([before[n]]).min_by_key(|&q| rank(q));
                 quality[n] = best.unwrap_or(Quality::Hole);
             }
         }
@@ -145,7 +164,7 @@ fn grade(size: [usize; 2], quality: &mut [Quality]) {
         .collect();
     stack.iter().for_each(|&n| quality[n] = Quality::Extrapolated);
     while let Some(n) = stack.pop() {
-        for m in beside(n) {
+        for m in beside(size, n) {
             if quality[m] == Quality::Hole {
                 quality[m] = Quality::Extrapolated;
                 stack.push(m);

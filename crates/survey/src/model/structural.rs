@@ -14,6 +14,7 @@ use crate::horizon::{Horizon, Quality};
 use crate::progress::Progress;
 use crate::stratigraphy::Stratigraphy;
 use glam::{DMat3, Vec3};
+use rayon::prelude::*;
 
 /// Most horizons: one bit each.
 const MOST_HORIZONS: usize = 64;
@@ -81,8 +82,7 @@ impl StructuralModel {
         let (mut sheets, placed) = extend_all(lattice, &names, &nodes, &faults, settings, progress)?;
         report.notes.extend(placed);
         report.notes.extend(extended(lattice, &names, &sheets, &faults));
-        let block_at = |p| faults.block_at(p);
-        report.notes.extend(keep_order(geometry, lattice, &rules, &names, &mut sheets, settings, block_at)?);
+        report.notes.extend(keep_order(geometry, lattice, &rules, &names, &mut sheets, settings, &faults)?);
         Ok(Self {
             size,
             metric: geometry.metric_from_voxel(),
@@ -204,21 +204,24 @@ fn in_order<'a>(stratigraphy: &Stratigraphy, horizons: &'a [Horizon]) -> Result<
         .collect()
 }
 
-/// A note for each sheet that has traces without data inside its own block and the volume.
+/// A note for each sheet that was continued by more than a few nodes inside its own block and the volume.
 fn extended(lattice: Lattice, names: &[&str], sheets: &[Vec<ExtendedSheet>], faults: &FaultNetwork) -> Vec<ModelNote> {
-    let mut notes = Vec::new();
-    for (horizon, of_block) in names.iter().zip(sheets) {
-        for (block, sheet) in of_block.iter().enumerate().filter(|(_, s)| s.own > 0) {
-            let traces = (0..lattice.len())
-                .filter(|&n| !sheet.known[n] && lattice.is_inside(n))
-                .filter(|&n| usize::from(faults.block_at(lattice.place(n, sheet.field.z[n]))) == block)
-                .count();
-            if traces > 0 {
-                notes.push(ModelNote::Extended { horizon: (*horizon).to_owned(), block: block as u16, traces });
-            }
+    let jobs: Vec<(usize, usize)> = (0..sheets.len()).flat_map(|h| (0..sheets[h].len()).map(move |b| (h, b))).collect();
+    let count = |&(h, b): &(usize, usize)| {
+        let sheet = &sheets[h][b];
+        if sheet.own == 0 {
+            return 0;
         }
-    }
-    notes
+        let near = sheet.near_data(lattice);
+        let bare = |&n: &usize| !near[n] && lattice.is_inside(n);
+        let own = |&n: &usize| faults.holds(b as u16, lattice.place(n, sheet.field.z[n]));
+        (0..lattice.len()).filter(bare).filter(own).count()
+    };
+    let traces: Vec<usize> = jobs.par_iter().map(count).collect();
+    let note = |(&(h, b), traces): (&(usize, usize), usize)| {
+        (traces > 0).then(|| ModelNote::Extended { horizon: names[h].to_owned(), block: b as u16, traces })
+    };
+    jobs.iter().zip(traces).filter_map(note).collect()
 }
 
 #[cfg(test)]

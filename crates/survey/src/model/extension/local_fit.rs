@@ -191,9 +191,10 @@ fn least_squares(nodes: &[[f32; 3]], keep: impl Fn(&[f32; 3]) -> bool) -> [f64; 
 fn cholesky6(mut a: [[f64; 6]; 6], mut b: [f64; 6]) -> [f64; 6] {
     for i in 0..6 {
         for k in 0..i {
-            let f = a[k][i] / a[k][k];
-            for j in i..6 {
-                a[i][j] -= f * a[k][j];
+            let above = a[k];
+            let f = above[i] / above[k];
+            for (entry, value) in a[i].iter_mut().zip(above).skip(i) {
+                *entry -= f * value;
             }
             b[i] -= f * b[k];
         }

@@ -179,6 +179,12 @@ impl FaultNetwork {
         self.block_of(self.bits_at(p))
     }
 
+    /// Whether voxel position `p` is on the sides of all faults that bound `block`; stops at the first one that says no.
+    pub fn holds(&self, block: u16, p: Vec3) -> bool {
+        let (p, BlockSignature { bits, care }) = (p.as_dvec3(), self.signatures[usize::from(block)]);
+        self.surfaces.iter().enumerate().all(|(f, s)| care >> f & 1 == 0 || (s.side(p) >= 0.0) == (bits >> f & 1 == 1))
+    }
+
     /// The block of a set of side bits.
     pub fn block_of(&self, bits: u64) -> u16 {
         match self.table.get(bits as usize) {
