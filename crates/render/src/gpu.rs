@@ -11,6 +11,8 @@ pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub adapter_name: String,
+    /// Floats that one storage buffer can hold and bind.
+    pub buffer_floats: usize,
     lost: Arc<Mutex<Option<String>>>,
 }
 
@@ -40,6 +42,10 @@ impl Gpu {
             ..wgpu::DeviceDescriptor::default()
         }))
         .map_err(|error| unsuitable(error.to_string()))?;
+        // A whole number of 16-byte units, as buffers are sized, that a shader can count.
+        let limits = device.limits();
+        let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
+        let buffer_floats = (bytes / 16 * 4).min(u64::from(u32::MAX)) as usize;
         let lost = Arc::new(Mutex::new(None));
         let report = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, reason| {
@@ -47,7 +53,7 @@ impl Gpu {
                 *lost = Some(reason);
             }
         });
-        Ok(Self { device, queue, adapter_name, lost })
+        Ok(Self { device, queue, adapter_name, buffer_floats, lost })
     }
 
     /// Runs commands and turns what the graphics library says about them into an error.

@@ -97,7 +97,11 @@ impl<'a> NamedVolume<'a> {
             if !self.volume.is_live(at[0], at[1]) {
                 return f32::NAN;
             }
-            sum += weight * self.volume.at(at[0], at[1], at[2]);
+            let value = self.volume.at(at[0], at[1], at[2]);
+            if !value.is_finite() {
+                return f32::NAN;
+            }
+            sum += weight * value;
         }
         sum
     }

@@ -1,6 +1,18 @@
 //! Rendering of illustrated and raw seismic blocks.
 //!
-//! One declarative [`Scene`] says what a picture shows, [`Inputs`] bring the data. [`reference::render`] draws it on the CPU.
+//! One declarative [`Scene`] says what a picture shows, [`Inputs`] bring the data. Two renderers draw it by the same algorithm:
+//! [`reference::render`] on the CPU, written for clarity, and [`Renderer`] on the GPU, without a window. [`compare`] tells whether they
+//! agree.
+//!
+//! One ray per sample finds the first face of the block ([`visible`]) or the ground ([`ground`]); the point is looked up in flat
+//! space, textured, blended to the raw data; outlines ([`outline`]) are stroked over the finished picture.
+//!
+//! # Spaces
+//! Everything is voxel space (x = inline index, y = crossline index, z = sample index downwards), but for the camera's
+//! display space (X east, Y north, Z up, m, exaggerated) and pixels (x right, y down, centres at halves).
+//!
+//! Deliberately absent: no volume is rendered inside cut-outs yet; the loop over the solid stretches of a ray ([`visible::Solid::next_span`])
+//! is the place where it will go.
 
 pub mod accuracy;
 pub mod camera;

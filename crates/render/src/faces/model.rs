@@ -165,17 +165,13 @@ fn rules(model: &StructuralModel) -> Vec<[u32; 4]> {
 }
 
 fn split_pool(gpu: &Gpu, floats: &[f32]) -> Result<(Vec<wgpu::Buffer>, u32), RenderError> {
-    let limits = gpu.device.limits();
-    // A whole number of 16-byte units, as buffers are sized.
-    let largest = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size) / 16 * 4;
-    let chunk = (largest as usize).min(u32::MAX as usize);
+    let chunk = gpu.buffer_floats;
     if floats.len() > chunk.saturating_mul(POOL_BUFFERS) || floats.len() > u32::MAX as usize {
         return Err(RenderError::OutOfMemory {
             reason: format!("the interpretation takes {} MiB", (floats.len() * 4) >> 20),
         });
     }
-    let buffers: Vec<_> =
-        floats.chunks(chunk.max(1)).map(|part| gpu.storage("pool", bytemuck::cast_slice(part))).collect();
+    let buffers: Vec<_> = floats.chunks(chunk).map(|part| gpu.storage("pool", bytemuck::cast_slice(part))).collect();
     let buffers = if buffers.is_empty() { vec![gpu.storage("pool", &[])] } else { buffers };
     Ok((buffers, chunk as u32))
 }

@@ -1,13 +1,18 @@
 //! The shader is valid, and Rust and WGSL agree on every shared struct and constant.
 
-use super::SHADER;
 use super::layout::{FaceParams, FaultInfo, GridInfo, ModelInfo, PackedInfo, SheetInfo};
 use super::textures::TextureInfo;
 use super::volumes::VolumeInfo;
-use crate::{ground, inputs, visible};
+use super::{Renderer, SHADER};
+use crate::{Inputs, RenderError, Scene, ground, inputs, visible};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
+use param::{ParamSettings, Parameterization};
 use std::mem::offset_of;
+use survey::model::{ModelSettings, StructuralModel};
+use survey::synth::closed_form::ClosedForm;
+use survey::{Progress, SurveyGeometry, VerticalUnit};
 use ttf::tables::{IntervalEntry, LayerEntry, ScalarEntry, StopEntry, TtfGlobals};
+use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 
 fn module() -> naga::Module {
     naga::front::wgsl::parse_str(SHADER).unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)))
@@ -107,4 +112,59 @@ fn constants_are_the_same() {
     ] {
         assert_eq!(constant(&m, name), value, "{name}");
     }
+}
+
+/// A model that does not fit one buffer is split over several, and refused when it does not fit those.
+#[test]
+fn a_split_pool_draws_the_same() {
+    if std::env::var("PETROGLYPH_GPU_TESTS").is_ok_and(|value| value == "skip") {
+        eprintln!("skipped: PETROGLYPH_GPU_TESTS=skip");
+        return;
+    }
+    let quiet = Progress::silent();
+    let geometry = SurveyGeometry::regular([21, 17, 25], 25.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::dipping(&geometry, &[8.0, 16.0], 10.0, 40.0).with_fault(60.0, 3.0);
+    let settings = ModelSettings::default();
+    let model = StructuralModel::build(
+        &closed.geometry,
+        &closed.stratigraphy,
+        &closed.horizons,
+        &closed.faults,
+        &settings,
+        &quiet,
+    )
+    .unwrap();
+    let param = Parameterization::compute(&model, &ParamSettings::default(), &quiet).unwrap();
+    let names = closed.stratigraphy.layer_names_bottom_up();
+    let block = BlockExtent {
+        extent_i_m: 500.0,
+        extent_j_m: 400.0,
+        layers: names.into_iter().map(|name| LayerExtent { name, thickness_m: 80.0 }).collect(),
+        metres_per_mm: 5.0,
+    };
+    let library = TextureLibrary::builtin().unwrap();
+    let tables = TtfTables::compile(&TransferFunctions::default(), &block, &library).unwrap();
+    let inputs = Inputs {
+        geometry: &closed.geometry,
+        model: Some(&model),
+        param: Some(&param),
+        packed: None,
+        tables: Some(&tables),
+        volumes: &[],
+        version: 1,
+    };
+    let scene = Scene { size_px: [90, 70], samples: 1, ..Scene::default() };
+    let mut renderer = Renderer::headless().unwrap();
+    let whole = renderer.render(&scene, &inputs, &quiet).unwrap();
+    let grids: usize = param.grids.iter().map(|grid| 3 * grid.offsets.len()).sum();
+    for parts in [3, 4] {
+        renderer.gpu.buffer_floats = grids / (parts - 1);
+        renderer.version = None;
+        let split = renderer.render(&scene, &inputs, &quiet).unwrap();
+        assert!(renderer.model.as_ref().is_some_and(|model| model.pool_chunks() >= 2));
+        assert!(split == whole, "{parts} parts");
+    }
+    renderer.gpu.buffer_floats = grids / 8;
+    renderer.version = None;
+    assert!(matches!(renderer.render(&scene, &inputs, &quiet), Err(RenderError::OutOfMemory { .. })));
 }
