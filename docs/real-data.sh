@@ -22,7 +22,7 @@ done
 "$petroglyph" layer set "$project" "B - C" --name "Sandstone" --pattern sandstone-bedded
 "$petroglyph" layer set "$project" "C - D" --name "Lower shale" --pattern shale-sandy
 "$petroglyph" layer set "$project" "below D" --name "Limestone" --pattern limestone
-"$petroglyph" render "$project" "$pictures/claudius-block.png" --cut nearest,0.45,0.45 --exaggeration 2.5 --azimuth 315 --elevation 25 --ground off --size 1600x1200
+"$petroglyph" render "$project" "$pictures/claudius-block.png" --cut min-min,0.45,0.6 --exaggeration 2 --azimuth 35 --elevation 25 --ground off --size 1600x1100
 
 # Penobscot: the volume with Horizon B, two open layers, blended to the raw data.
 project=$out/penobscot.petro
@@ -32,11 +32,11 @@ project=$out/penobscot.petro
 "$petroglyph" layer set "$project" "below Horizon B" --pattern sandstone-bedded
 "$petroglyph" raw "$project" --volume seismic --map grey
 for blend in 0 0.5 1; do
-    "$petroglyph" render "$project" "$pictures/penobscot-blend-$blend.png" --blend $blend --exaggeration 6 --ground off --cut nearest,0.4,0.5 --size 1400x1000
+    "$petroglyph" render "$project" "$pictures/penobscot-blend-$blend.png" --blend $blend --exaggeration 5 --azimuth 225 --ground off --cut nearest,0.4,0.5 --size 1400x900
 done
 
 # F3: the salt dome, raw.
 project=$out/f3.petro
 "$petroglyph" import "$data/volumes/f3_depth_il300-427_xl720-975_int16.sgy" "$project"
 "$petroglyph" raw "$project" --volume seismic --map grey
-"$petroglyph" render "$project" "$pictures/f3-raw.png" --exaggeration 3 --cut nearest,0.5,0.4 --size 1400x1000
+"$petroglyph" render "$project" "$pictures/f3-raw.png" --blend 1 --exaggeration 3 --cut nearest,0.5,0.4 --size 1400x1000
