@@ -21,7 +21,7 @@ done
 "$petroglyph" layer set "$project" "A - B" --name "Marl" --pattern marl
 "$petroglyph" layer set "$project" "B - C" --name "Sandstone" --pattern sandstone-bedded
 "$petroglyph" layer set "$project" "C - D" --name "Lower shale" --pattern shale-sandy
-"$petroglyph" layer set "$project" "below D" --name "Limestone" --pattern limestone
+"$petroglyph" layer set "$project" "below D" --name "Basement" --pattern granite
 "$petroglyph" render "$project" "$pictures/claudius-block.png" --cut min-min,0.45,0.6 --exaggeration 2 --azimuth 35 --elevation 25 --ground off --size 1600x1100
 
 # Penobscot: the volume with Horizon B, two open layers, blended to the raw data.

@@ -257,6 +257,7 @@ impl Renderer {
         let stops = storage("stops", bytemuck::cast_slice(&tables.stops));
         let relief_map = storage("relief map", bytemuck::cast_slice(&layout::relief_map(frame)));
         let no_buffer = storage("none", &[]);
+        let no_info = gpu.uniform("no model", &[]);
         let none = || no_buffer.as_entire_binding();
         let (infos, texels) = match &self.textures {
             Some(textures) => (textures.infos.as_entire_binding(), textures.texels.as_entire_binding()),
@@ -282,7 +283,7 @@ impl Renderer {
             Some(m) => {
                 [&m.info, &m.sheets, &m.faults, &m.rules, &m.grids].map(wgpu::Buffer::as_entire_binding).to_vec()
             }
-            None => vec![none(), none(), none(), none(), none()],
+            None => vec![no_info.as_entire_binding(), none(), none(), none(), none()],
         };
         let pool: &[wgpu::Buffer] = self.model.as_ref().map_or(&[], |m| &m.pool);
         model.extend((0..POOL_BUFFERS).map(|n| pool.get(n).map_or_else(none, wgpu::Buffer::as_entire_binding)));

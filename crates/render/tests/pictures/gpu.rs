@@ -147,3 +147,23 @@ fn a_model_without_horizons_or_faults_and_an_odd_size() {
     let found = compare(&reference, &picture).unwrap();
     assert!(found.agrees(), "{found:?}");
 }
+
+#[test]
+fn a_volume_without_an_interpretation() {
+    if skipped() {
+        return;
+    }
+    let quiet = Progress::silent();
+    let geometry = survey::SurveyGeometry::regular([14, 11, 12], 25.0, 10.0, survey::VerticalUnit::Metres);
+    let values = (0..14 * 11 * 12).map(|n| (n as f32 * 0.37).sin()).collect();
+    let volume = survey::Volume::from_samples(geometry.size(), values).unwrap();
+    let volumes = [NamedVolume::whole("seismic", &volume)];
+    let raw = RawColour::new("seismic", RgbaFunction::centred(ColourMap::Grey, 1.0));
+    let scene = Scene { size_px: [120, 90], samples: 2, blend: 1.0, raw: Some(raw), ..Scene::default() };
+    let inputs = Inputs::raw(&geometry, &volumes);
+    let reference = render::reference::render(&scene, &inputs, &quiet).unwrap();
+    let picture = Renderer::headless().unwrap().render(&scene, &inputs, &quiet).unwrap();
+    let found = compare(&reference, &picture).unwrap();
+    assert!(found.agrees(), "{found:?}");
+    assert!(found.edge_share > 0.05, "the data shows: {found:?}");
+}
