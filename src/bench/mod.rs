@@ -70,6 +70,8 @@ pub struct Measured {
     pub cubes: Vec<Cube>,
     /// Time per voxel of the largest cube over that of the smallest.
     pub growth: f64,
+    /// What drew the pictures.
+    pub device: String,
     /// Seconds for a picture by the exact lookup.
     pub exact_picture_seconds: f64,
     /// Seconds for the same picture by the packed lookup.
@@ -95,8 +97,8 @@ impl fmt::Display for Measured {
         writeln!(f, "time per voxel, largest over smallest cube: {:.2}", self.growth)?;
         writeln!(
             f,
-            "picture of three faces: {:.2} s exact, {:.2} s packed, ratio {:.2}",
-            self.exact_picture_seconds, self.packed_picture_seconds, self.exact_over_packed
+            "picture of three faces on the {}: {:.2} s exact, {:.2} s packed, ratio {:.2}",
+            self.device, self.exact_picture_seconds, self.packed_picture_seconds, self.exact_over_packed
         )
     }
 }
@@ -107,14 +109,16 @@ impl fmt::Display for Measured {
 /// Cancelled, or files that could not be written.
 pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> Result<Measured, ProjectError> {
     let mut cubes = Vec::new();
-    let mut pictures = (0.0, 0.0);
+    let (mut device, mut pictures) = (String::new(), (0.0, 0.0));
     for &side in sizes.sides() {
         let (cube, loaded) = measure(side, progress)?;
         if side == sizes.middle() {
             if let (Some(folder), Some(rock)) = (dump, &loaded.rock) {
                 dump::write(folder, &rock.model, progress)?;
             }
-            pictures = draw(&loaded, progress)?;
+            let mut painter = Painter::new(Device::Auto, progress)?;
+            pictures = draw(&mut painter, &loaded, progress)?;
+            device = painter.device().to_owned();
         }
         cubes.push(cube);
     }
@@ -127,6 +131,7 @@ pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> Result<Mea
         threads: rayon::current_num_threads(),
         cubes,
         growth,
+        device,
         exact_picture_seconds: exact,
         packed_picture_seconds: packed,
         exact_over_packed: exact / packed,
@@ -179,8 +184,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
 }
 
 /// Seconds for a picture by each lookup, the second time it is drawn: compiling shaders and uploading is not counted.
-fn draw(loaded: &Loaded, progress: &Progress) -> Result<(f64, f64), ProjectError> {
-    let mut painter = Painter::new(Device::Auto, progress)?;
+fn draw(painter: &mut Painter, loaded: &Loaded, progress: &Progress) -> Result<(f64, f64), ProjectError> {
     let mut seconds = |lookup| {
         let scene = Scene { size_px: [800, 600], samples: 2, lookup, ..Scene::default() };
         painter.draw(&scene, loaded, progress)?;

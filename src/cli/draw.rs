@@ -56,6 +56,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         .field("dpi", request.dpi)
         .field("exaggeration", scene.exaggeration)
         .field("blend", scene.blend)
+        .field("device", painter.device())
         .field("assumptions", assumed)
         .field("stages", stages);
     Ok(report)
