@@ -4,13 +4,15 @@
 #   make test    all tests
 #   make check   formatting, lints and documentation, warnings denied
 #   make bench   how long our stages take on this machine
+#   make accuracy   measures accuracy anew into docs/accuracy.md
 
 OUT ?= out/demo
+OUT_ACCURACY ?= docs/accuracy.md
 # The Vulkan loader complains where no desktop session has set this.
 export XDG_RUNTIME_DIR ?= /tmp
 PETROGLYPH = target/debug/petroglyph
 
-.PHONY: demo test check bench setup build
+.PHONY: demo test check bench accuracy setup build
 
 build: setup
 	cargo build --locked
@@ -25,6 +27,9 @@ check: setup
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets --locked -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+
+accuracy: setup
+	cargo run --locked --example accuracy > $(OUT_ACCURACY).part && mv $(OUT_ACCURACY).part $(OUT_ACCURACY)
 
 bench: build
 	$(PETROGLYPH) bench --quick

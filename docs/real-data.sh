@@ -39,4 +39,4 @@ done
 project=$out/f3.petro
 "$petroglyph" import "$data/volumes/f3_depth_il300-427_xl720-975_int16.sgy" "$project"
 "$petroglyph" raw "$project" --volume seismic --map grey
-"$petroglyph" render "$project" "$pictures/f3-raw.png" --blend 1 --exaggeration 3 --cut nearest,0.5,0.4 --size 1400x1000
+"$petroglyph" render "$project" "$pictures/f3-raw.png" --blend 1 --exaggeration 3 --box 300,427,720,975,1202.4,1826.4 --cut nearest,0.5,0.4 --size 1400x950

@@ -152,9 +152,14 @@ impl View {
     }
 }
 
-/// The voxel box between two inlines, two crosslines and two vertical values, in any order.
+/// The voxel box between two inlines, two crosslines and two vertical values, in any order. Decimals as people type them
+/// mean the sample they name: what is within a millionth of one is on it.
 fn voxel_box([il0, il1, xl0, xl1, z0, z1]: LineBox, geometry: &SurveyGeometry) -> VoxelBox {
-    let corner = |il, xl, z| geometry.voxel_from_lines(il, xl).extend(geometry.vertical.index_of(z));
+    let on_sample = |voxel: DVec3| {
+        let near = voxel.round();
+        DVec3::select((voxel - near).abs().cmplt(DVec3::splat(1e-6)), near, voxel)
+    };
+    let corner = |il, xl, z| on_sample(geometry.voxel_from_lines(il, xl).extend(geometry.vertical.index_of(z)));
     let (a, b): (DVec3, DVec3) = (corner(il0, xl0, z0), corner(il1, xl1, z1));
     VoxelBox { min: a.min(b).to_array(), max: a.max(b).to_array() }
 }
@@ -169,6 +174,18 @@ mod tests {
         geometry.inlines.first = 140;
         geometry.inlines.step = -1;
         geometry
+    }
+
+    #[test]
+    fn typed_decimals_mean_the_sample_they_name() {
+        let mut geometry = SurveyGeometry::regular([4, 4, 255], 25.0, 2.6, VerticalUnit::Metres);
+        geometry.vertical.first = 1166.0;
+        let whole = voxel_box([1.0, 4.0, 1.0, 4.0, 1202.4, 1826.4], &geometry);
+        assert_eq!((whole.min[2], whole.max[2]), (14.0, 254.0));
+        assert_eq!(
+            voxel_box([1.0, 4.0, 1.0, 4.0, 1167.3, 1826.4], &geometry).min[2],
+            geometry.vertical.index_of(1167.3)
+        );
     }
 
     #[test]
