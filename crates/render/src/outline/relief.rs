@@ -3,7 +3,7 @@
 //! Both are zero lines over the map of one block's ground h(x, y): of the fault's side at (x, y, h), and of
 //! (∂h/∂x, ∂h/∂y, −1)·d, d the viewing direction. They are found on cells of a voxel by linear interpolation (marching squares).
 
-use super::hidden::{ASIDE, IN_FRONT, covered_by, seen_parts};
+use super::hidden::{IN_FRONT, covered_by, seen_parts};
 use crate::frame::{Frame, Rock};
 use crate::ground::is_air;
 use glam::{DVec2, DVec3};
@@ -11,6 +11,8 @@ use rayon::prelude::*;
 
 /// How far from a fault its block's ground is asked for, voxels: far enough that the rock below an overhanging scarp is met.
 const INTO_BLOCK: f64 = 0.3;
+/// How far beside a line its blocks are told apart, voxels: beyond the sagitta that a bowed fault has over one cell.
+const ACROSS: f64 = 0.12;
 
 /// Seen parts of the ground's lines, pixels.
 #[derive(Debug, Default)]
@@ -100,7 +102,7 @@ fn beside_fault(rock: Rock, fault: usize, block: u16, p: DVec3) -> Option<DVec3>
     }
     let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
     let holds_block = |aside: f64| rock.model.block_at((p + normal * aside).as_vec3()) == block;
-    match (holds_block(ASIDE), holds_block(-ASIDE)) {
+    match (holds_block(ACROSS), holds_block(-ACROSS)) {
         (true, false) => Some(p + normal * INTO_BLOCK),
         (false, true) => Some(p - normal * INTO_BLOCK),
         _ => None,
