@@ -26,7 +26,7 @@ const SYNTHETIC_SIDE: usize = 128;
 
 /// Where horizons, layers and blocks really are.
 enum Truth {
-    Closed(ClosedForm),
+    Closed(Box<ClosedForm>),
     Synthetic(Box<SynthTruth>),
 }
 
@@ -88,7 +88,7 @@ impl Case {
     fn closed(name: &'static str, form: ClosedForm) -> Result<Self> {
         let (geometry, stratigraphy) = (form.geometry.clone(), form.stratigraphy.clone());
         let (horizons, faults) = (form.horizons.clone(), form.faults.clone());
-        Self::new(name, geometry, stratigraphy, &horizons, &faults, Truth::Closed(form))
+        Self::new(name, geometry, stratigraphy, &horizons, &faults, Truth::Closed(Box::new(form)))
     }
 
     fn synthetic(name: &'static str, seed: u64) -> Result<Self> {
