@@ -5,8 +5,8 @@ struct GridInfo {
     origin: vec2<i32>,
     size: vec2<u32>,
     levels: u32,
-    // First float of the first node in the pool; a node is (dx, dy, dk).
-    offset: u32,
+    // Entry of column (0, 0) in `columns`.
+    first_column: u32,
     // Horizons at v = 0 and v = 1, NONE for the plane z = 0; both shifted downwards.
     bottom_horizon: u32,
     top_horizon: u32,
@@ -17,7 +17,11 @@ struct GridInfo {
 }
 
 // Index block · layers + layer.
-@group(3) @binding(4) var<storage, read> grids: array<GridInfo>;
+@group(3) @binding(8) var<storage, read> grids: array<GridInfo>;
+// Per column, [x][y]: its first node in `offsets`; its first level, and the count of levels that are seen in the upper half.
+@group(3) @binding(9) var<storage, read> columns: array<vec2<u32>>;
+// Three floats a node: dx, dy (voxels), dk.
+@group(3) @binding(10) var<storage, read> offsets: array<f32>;
 
 // Layers thinner than this have no inside, voxels.
 const PINCHED: f32 = 1e-3;
@@ -38,7 +42,7 @@ fn shifted_sheet(horizon: u32, shift: f32, block: u32, at: vec2<f32>) -> vec3<f3
 }
 
 fn grid_node(start: u32) -> vec3<f32> {
-    return vec3(pool(start), pool(start + 1u), pool(start + 2u));
+    return vec3(offsets[start], offsets[start + 1u], offsets[start + 2u]);
 }
 
 // Value and slope per level of a column's curve.
@@ -48,8 +52,16 @@ struct ColumnSample {
 }
 
 // Catmull–Rom through four levels; beyond the ends, a level that continues the parabola through the last three.
-fn grid_column(start: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
-    let at = start + cell * 3u;
+fn grid_column(index: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
+    let entry = columns[index];
+    let first = entry.y & 0xffffu;
+    let count = entry.y >> 16u;
+    var column: ColumnSample;
+    if count < 3u {
+        return column;
+    }
+    // Within what is there; what is seen is there.
+    let at = (entry.x + clamp(cell, first, first + count - 2u) - first) * 3u;
     let b = grid_node(at);
     let c = grid_node(at + 3u);
     var a: vec3<f32>;
@@ -67,7 +79,6 @@ fn grid_column(start: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
     let linear = c - a;
     let square = 2.0 * a - 5.0 * b + 4.0 * c - d;
     let cube = 3.0 * (b - c) + d - a;
-    var column: ColumnSample;
     column.value = b + 0.5 * t * (linear + t * (square + t * cube));
     column.rise = 0.5 * (linear + t * (2.0 * square + 3.0 * t * cube));
     return column;
@@ -96,13 +107,11 @@ fn flat_exact(p: vec3<f32>, layer: u32, block: u32) -> FlatSample {
         let at = clamp(vec3(p.xy - vec2<f32>(grid.origin), v * scale), vec3(0.0), last);
         let cell = min(vec3<u32>(at), vec3(grid.size, grid.levels) - 2u);
         let f = at - vec3<f32>(cell);
-        let stride_y = grid.levels * 3u;
-        let stride_x = grid.size.y * stride_y;
-        let start = grid.offset + cell.x * stride_x + cell.y * stride_y;
-        let c00 = grid_column(start, cell.z, grid.levels, f.z);
-        let c01 = grid_column(start + stride_y, cell.z, grid.levels, f.z);
-        let c10 = grid_column(start + stride_x, cell.z, grid.levels, f.z);
-        let c11 = grid_column(start + stride_x + stride_y, cell.z, grid.levels, f.z);
+        let index = grid.first_column + cell.x * grid.size.y + cell.y;
+        let c00 = grid_column(index, cell.z, grid.levels, f.z);
+        let c01 = grid_column(index + 1u, cell.z, grid.levels, f.z);
+        let c10 = grid_column(index + grid.size.y, cell.z, grid.levels, f.z);
+        let c11 = grid_column(index + grid.size.y + 1u, cell.z, grid.levels, f.z);
         let low = c00.value + (c01.value - c00.value) * f.y;
         let high = c10.value + (c11.value - c10.value) * f.y;
         value = low + (high - low) * f.x;

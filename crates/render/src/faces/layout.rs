@@ -71,14 +71,14 @@ pub struct ModelInfo {
     pub padding: [f32; 2],
 }
 
-/// A region's stratigraphic grid in the pool.
+/// A region's stratigraphic grid.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct GridInfo {
     pub origin: [i32; 2],
     pub size: [u32; 2],
     pub levels: u32,
-    pub offset: u32,
+    pub first_column: u32,
     pub bottom_horizon: u32,
     pub top_horizon: u32,
     pub bottom_shift: f32,

@@ -2,11 +2,12 @@
 //!
 //! One compute shader, assembled from the pass and the snippets it uses; each has a CPU twin that it names. A picture is drawn in
 //! tiles, so that no dispatch runs long enough for a driver's watchdog, cancelling is quick, and an image may be larger than any
-//! limit of the device. Everything uploaded is kept while [`Inputs::version`] stays the same.
+//! limit of the device. Everything uploaded is kept while [`Inputs::version`] stays the same; of the parameterization only what is seen is there.
 //!
 //! Compute, not fragments: on data-centre cards compute has been seen far faster, and on the software driver both are the
 //! same.
 
+mod grids;
 mod layout;
 mod model;
 #[cfg(test)]
@@ -20,6 +21,7 @@ use crate::gpu::Gpu;
 use crate::inputs::Inputs;
 use crate::outline;
 use crate::scene::Scene;
+use grids::{GridBuffers, Seen};
 use image::RgbaImage;
 use layout::FaceParams;
 use model::{ModelBuffers, POOL_BUFFERS, PackedTexture};
@@ -56,7 +58,7 @@ pub struct Renderer {
     pipelines: HashMap<Variant, wgpu::ComputePipeline>,
     version: Option<u64>,
     model: Option<ModelBuffers>,
-    model_has_grids: bool,
+    grids: Option<GridBuffers>,
     packed: Option<PackedTexture>,
     no_packed: PackedTexture,
     textures: Option<TextureBuffers>,
@@ -106,7 +108,7 @@ impl Renderer {
             pipelines: HashMap::new(),
             version: None,
             model: None,
-            model_has_grids: false,
+            grids: None,
             packed: None,
             no_packed,
             textures: None,
@@ -136,19 +138,24 @@ impl Renderer {
     fn upload(&mut self, frame: &Frame, inputs: &Inputs) -> Result<(), RenderError> {
         if self.version != Some(inputs.version) {
             self.model = None;
+            self.grids = None;
             self.packed = None;
             self.volumes.clear();
             self.version = Some(inputs.version);
         }
         let gpu = &self.gpu;
         let flat = frame.rock.filter(|_| frame.illustrated).map(|rock| rock.flat);
-        let exact = matches!(flat, Some(Flat::Exact(_)));
         if let Some(rock) = frame.rock
-            && (self.model.is_none() || (exact && !self.model_has_grids))
+            && self.model.is_none()
         {
-            let param = if exact { inputs.param } else { None };
-            self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, rock.model, param))?);
-            self.model_has_grids = exact;
+            self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, rock.model))?);
+        }
+        if let (Some(rock), Some(Flat::Exact(param))) = (frame.rock, flat) {
+            let seen = Seen::of(frame);
+            if !self.grids.as_ref().is_some_and(|grids| grids.seen == seen) {
+                self.grids = None;
+                self.grids = Some(gpu.guarded(|| GridBuffers::new(gpu, rock.model, param, seen))?);
+            }
         }
         if let Some(Flat::Packed(packed)) = flat
             && self.packed.is_none()
@@ -280,14 +287,16 @@ impl Renderer {
         let packed = self.packed.as_ref().unwrap_or(&self.no_packed);
         let packed_view = packed.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut model = match &self.model {
-            Some(m) => {
-                [&m.info, &m.sheets, &m.faults, &m.rules, &m.grids].map(wgpu::Buffer::as_entire_binding).to_vec()
-            }
-            None => vec![no_info.as_entire_binding(), none(), none(), none(), none()],
+            Some(m) => [&m.info, &m.sheets, &m.faults, &m.rules].map(wgpu::Buffer::as_entire_binding).to_vec(),
+            None => vec![no_info.as_entire_binding(), none(), none(), none()],
         };
         let pool: &[wgpu::Buffer] = self.model.as_ref().map_or(&[], |m| &m.pool);
         model.extend((0..POOL_BUFFERS).map(|n| pool.get(n).map_or_else(none, wgpu::Buffer::as_entire_binding)));
         model.extend([packed.info.as_entire_binding(), wgpu::BindingResource::TextureView(&packed_view)]);
+        model.extend(match &self.grids {
+            Some(grids) => [&grids.infos, &grids.columns, &grids.offsets].map(wgpu::Buffer::as_entire_binding),
+            None => [none(), none(), none()],
+        });
         let group = |index: usize, resources: Vec<wgpu::BindingResource>| {
             let entries: Vec<_> =
                 (0u32..).zip(resources).map(|(binding, resource)| wgpu::BindGroupEntry { binding, resource }).collect();
@@ -405,9 +414,9 @@ fn bind_group_layouts(gpu: &Gpu) -> [wgpu::BindGroupLayout; 4] {
     };
     let mut volumes = vec![uniform];
     volumes.extend([volume; MAX_VOLUMES]);
-    let mut model = vec![uniform, read, read, read, read];
+    let mut model = vec![uniform, read, read, read];
     model.extend([read; POOL_BUFFERS]);
-    model.extend([uniform, volume]);
+    model.extend([uniform, volume, read, read, read]);
     [
         layout(&[uniform, write, read]),
         layout(&[read, read, uniform, read, read, read, read]),

@@ -1,20 +1,19 @@
-//! The interpretation and the parameterization on the GPU.
+//! The interpretation on the GPU: sheets, fault surfaces, blocks and contact rules; and the packed volume.
 //!
-//! All heights and offsets lie in one *pool* of floats, split over up to four storage buffers because a binding may be as small as
-//! 128 MiB (the software driver's). Memory: what the CPU holds, once more.
+//! All heights lie in one *pool* of floats, split over two storage buffers where a binding is small (128 MiB on the software
+//! driver). Memory: what the CPU holds, once more.
 
-use super::layout::{FaultInfo, GridInfo, ModelInfo, PackedInfo, SheetInfo};
+use super::layout::{FaultInfo, ModelInfo, PackedInfo, SheetInfo};
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use glam::{DVec3, Vec3};
-use param::{PackedVolume, Parameterization, SheetRef};
+use param::PackedVolume;
 use survey::HeightField;
 use survey::model::{FaultSurface, StructuralModel};
 use survey::stratigraphy::Contact;
-use ttf::tables::NONE;
 
 /// Buffers the pool may be split over.
-pub const POOL_BUFFERS: usize = 4;
+pub const POOL_BUFFERS: usize = 2;
 
 /// A model on the GPU.
 pub struct ModelBuffers {
@@ -22,7 +21,6 @@ pub struct ModelBuffers {
     pub sheets: wgpu::Buffer,
     pub faults: wgpu::Buffer,
     pub rules: wgpu::Buffer,
-    pub grids: wgpu::Buffer,
     pub pool: Vec<wgpu::Buffer>,
     /// Floats in each of the pool's buffers.
     pub pool_chunk: u32,
@@ -57,8 +55,8 @@ impl Pool {
 }
 
 impl ModelBuffers {
-    /// Uploads a model; the parameterization only if the exact lookup needs it.
-    pub fn new(gpu: &Gpu, model: &StructuralModel, param: Option<&Parameterization>) -> Result<Self, RenderError> {
+    /// Uploads a model.
+    pub fn new(gpu: &Gpu, model: &StructuralModel) -> Result<Self, RenderError> {
         let mut pool = Pool::default();
         let horizons = model.stratigraphy().horizons.len();
         let blocks = model.block_count();
@@ -79,23 +77,6 @@ impl ModelBuffers {
                 fault_info(fault, centre, pool.sheet(&fault.surface, low, high))
             })
             .collect();
-        let grids: Vec<GridInfo> = param.map_or_else(Vec::new, |param| {
-            param
-                .grids
-                .iter()
-                .map(|grid| GridInfo {
-                    origin: grid.origin,
-                    size: grid.size.map(|n| n as u32),
-                    levels: grid.levels as u32,
-                    offset: pool.add(bytemuck::cast_slice(&grid.offsets)),
-                    bottom_horizon: horizon_index(grid.bottom),
-                    top_horizon: horizon_index(grid.top),
-                    bottom_shift: grid.bottom.shift,
-                    top_shift: grid.top.shift,
-                    padding: [0; 2],
-                })
-                .collect()
-        });
         let info = ModelInfo {
             centre: centre.as_vec3().extend(0.0).to_array(),
             horizons: horizons as u32,
@@ -111,7 +92,6 @@ impl ModelBuffers {
             sheets: gpu.storage("sheets", bytemuck::cast_slice(&sheets)),
             faults: gpu.storage("faults", bytemuck::cast_slice(&faults)),
             rules: gpu.storage("rules", bytemuck::cast_slice(&rules(model))),
-            grids: gpu.storage("grids", bytemuck::cast_slice(&grids)),
             pool: buffers,
             pool_chunk,
         })
@@ -121,10 +101,6 @@ impl ModelBuffers {
     pub fn pool_chunks(&self) -> usize {
         self.pool.len()
     }
-}
-
-fn horizon_index(sheet: SheetRef) -> u32 {
-    sheet.horizon.map_or(NONE, |h| h as u32)
 }
 
 /// Smallest and largest (u, v) that a fault's frame has in the volume.

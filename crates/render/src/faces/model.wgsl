@@ -43,13 +43,11 @@ struct ModelInfo {
 @group(3) @binding(2) var<storage, read> faults: array<FaultInfo>;
 // Blocks first: side bits (low, high) and care bits (low, high); then horizons: contact in x.
 @group(3) @binding(3) var<storage, read> rules: array<vec4<u32>>;
-// One address space of floats over several buffers, because a binding may be as small as 128 MiB.
-@group(3) @binding(5) var<storage, read> pool_0: array<f32>;
-@group(3) @binding(6) var<storage, read> pool_1: array<f32>;
-@group(3) @binding(7) var<storage, read> pool_2: array<f32>;
-@group(3) @binding(8) var<storage, read> pool_3: array<f32>;
+// One address space of floats over two buffers, because a binding may be as small as 128 MiB.
+@group(3) @binding(4) var<storage, read> pool_0: array<f32>;
+@group(3) @binding(5) var<storage, read> pool_1: array<f32>;
 
-// Floats in each of the pool's buffers.
+// Floats in the first of the pool's buffers.
 override pool_chunk: u32 = 0xffffffffu;
 override pool_chunks: u32 = 1u;
 
@@ -61,17 +59,10 @@ const CONTACT_EROSIONAL: u32 = 1u;
 const CONTACT_INTRUSIVE: u32 = 3u;
 
 fn pool(index: u32) -> f32 {
-    if pool_chunks == 1u {
+    if pool_chunks == 1u || index < pool_chunk {
         return pool_0[index];
     }
-    let chunk = index / pool_chunk;
-    let place = index - chunk * pool_chunk;
-    switch chunk {
-        case 0u: { return pool_0[place]; }
-        case 1u: { return pool_1[place]; }
-        case 2u: { return pool_2[place]; }
-        default: { return pool_3[place]; }
-    }
+    return pool_1[index - pool_chunk];
 }
 
 fn cubic_weights(t: f32) -> vec4<f32> {

@@ -13,9 +13,9 @@ struct PackedInfo {
     padding_1: u32,
 }
 
-@group(3) @binding(9) var<uniform> packed: PackedInfo;
+@group(3) @binding(6) var<uniform> packed: PackedInfo;
 // Texel (x, y, z) is sample (z, y, x): (i', j', k').
-@group(3) @binding(10) var packed_volume: texture_3d<f32>;
+@group(3) @binding(7) var packed_volume: texture_3d<f32>;
 
 struct PackedSample {
     flat: FlatSample,

@@ -12,6 +12,7 @@ mod relief;
 mod solid;
 
 pub(crate) use draw::draw;
+pub(crate) use solid::{FaceRect, face_rects};
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};

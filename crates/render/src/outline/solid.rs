@@ -9,7 +9,7 @@ use glam::{DVec3, Vec3};
 
 /// A side of the box or a wall of a cut-out. Parts of it may be cut away or hidden.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct FaceRect {
+pub(crate) struct FaceRect {
     /// Axis of its normal.
     pub axis: usize,
     /// Smallest corner, voxel.
@@ -32,7 +32,7 @@ pub(super) struct EdgeLine {
 }
 
 /// All face rectangles.
-pub(super) fn face_rects(solid: &Solid, view: &View) -> Vec<FaceRect> {
+pub(crate) fn face_rects(solid: &Solid, view: &View) -> Vec<FaceRect> {
     let outer = solid.roaming_box;
     let mut rects = Vec::new();
     for axis in 0..3 {

@@ -1,0 +1,197 @@
+//! The part of the stratigraphic grids that a picture looks at, on the GPU.
+//!
+//! Faces are planes and the ground is a surface, so of each column only the levels around them are asked for; a whole
+//! parameterization may be larger than what a device can bind. Each column has an entry in a table: its first node in the
+//! offsets, its first level and their count (0: not seen). Levels come with those that the cubic along a column needs
+//! beyond them, and windows around a horizontal plane or the ground are as wide as the neighbouring columns', because between
+//! columns the plane crosses other levels.
+//!
+//! Memory: 8 bytes a column of each region, 12 a node that is seen: a few per cent of the parameterization.
+
+use super::layout::GridInfo;
+use crate::error::RenderError;
+use crate::frame::Frame;
+use crate::gpu::Gpu;
+use crate::outline::{FaceRect, face_rects};
+use glam::DVec3;
+use param::{Parameterization, RegionGrid, SheetRef};
+use rayon::prelude::*;
+use survey::model::StructuralModel;
+use ttf::tables::NONE;
+
+/// Thickness below which a layer has no inside, voxels, as `param` and the shader have it.
+pub(super) const PINCHED: f32 = 1e-3;
+/// Levels beyond a window that are kept for rounding and for curved sheets between columns.
+const SPARE_LEVELS: f32 = 1.0;
+/// A plane this many levels outside a layer is not seen in it.
+const FAR_LEVELS: f32 = 3.0;
+
+/// What of the grids is seen: faces towards the camera, and the ground of a box.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Seen {
+    faces: Vec<FaceRect>,
+    ground: Option<[DVec3; 2]>,
+}
+
+impl Seen {
+    /// What a frame looks at.
+    pub fn of(frame: &Frame) -> Self {
+        let mut faces = face_rects(&frame.solid, &frame.view);
+        faces.retain(|face| face.faces_camera);
+        let ground = frame.relief.as_ref().map(|_| frame.solid.roaming_box.map(|corner| corner.as_dvec3()));
+        Self { faces, ground }
+    }
+}
+
+/// Seen parts of the grids on the GPU.
+pub struct GridBuffers {
+    pub infos: wgpu::Buffer,
+    pub columns: wgpu::Buffer,
+    pub offsets: wgpu::Buffer,
+    pub seen: Seen,
+}
+
+impl GridBuffers {
+    /// Uploads what is seen.
+    pub fn new(gpu: &Gpu, model: &StructuralModel, param: &Parameterization, seen: Seen) -> Result<Self, RenderError> {
+        let windows: Vec<Vec<Window>> = param.grids.par_iter().map(|grid| windows(model, grid, &seen)).collect();
+        let mut infos = Vec::new();
+        let mut columns: Vec<[u32; 2]> = Vec::new();
+        let mut offsets: Vec<[f32; 3]> = Vec::new();
+        for (grid, windows) in param.grids.iter().zip(&windows) {
+            infos.push(GridInfo {
+                origin: grid.origin,
+                size: grid.size.map(|n| n as u32),
+                levels: grid.levels as u32,
+                first_column: columns.len() as u32,
+                bottom_horizon: grid.bottom.horizon.map_or(NONE, |h| h as u32),
+                top_horizon: grid.top.horizon.map_or(NONE, |h| h as u32),
+                bottom_shift: grid.bottom.shift,
+                top_shift: grid.top.shift,
+                padding: [0; 2],
+            });
+            for (column, window) in windows.iter().enumerate() {
+                let count = window.end.saturating_sub(window.first);
+                columns.push([offsets.len() as u32, u32::from(window.first) | u32::from(count) << 16]);
+                let start = column * grid.levels + usize::from(window.first);
+                offsets.extend_from_slice(&grid.offsets[start..start + usize::from(count)]);
+            }
+        }
+        if offsets.len() * 3 > gpu.buffer_floats || columns.len() * 2 > gpu.buffer_floats {
+            return Err(RenderError::OutOfMemory {
+                reason: format!("the faces look at {} MiB of the parameterization", (offsets.len() * 12) >> 20),
+            });
+        }
+        Ok(Self {
+            infos: gpu.storage("grids", bytemuck::cast_slice(&infos)),
+            columns: gpu.storage("columns", bytemuck::cast_slice(&columns)),
+            offsets: gpu.storage("offsets", bytemuck::cast_slice(&offsets)),
+            seen,
+        })
+    }
+}
+
+/// Levels of a column that are seen: `first..end`, none where they are equal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Window {
+    first: u16,
+    end: u16,
+}
+
+impl Window {
+    const NONE: Self = Self { first: 0, end: 0 };
+
+    fn join(&mut self, other: Self) {
+        if self.first == self.end {
+            *self = other;
+        } else if other.first != other.end {
+            *self = Self { first: self.first.min(other.first), end: self.end.max(other.end) };
+        }
+    }
+}
+
+/// The window of each column of a grid, `[x][y]`.
+fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &Seen) -> Vec<Window> {
+    let [nx, ny] = grid.size;
+    let mut windows = vec![Window::NONE; nx * ny];
+    if windows.is_empty() || grid.offsets.is_empty() {
+        return windows;
+    }
+    let whole = Window { first: 0, end: grid.levels.min(usize::from(u16::MAX)) as u16 };
+    // The columns around an interval of positions along an axis, as the lookup clamps them.
+    let around = |low: f64, high: f64, axis: usize| {
+        let cell = |at: f64| {
+            let last = (grid.size[axis] - 1) as f64;
+            ((at - f64::from(grid.origin[axis])).clamp(0.0, last) as usize).min(grid.size[axis] - 2)
+        };
+        cell(low)..=cell(high) + 1
+    };
+    for face in &seen.faces {
+        let columns = |axis| around(face.low[axis], face.high[axis], axis);
+        if face.axis == 2 {
+            let levels = plane_levels(model, grid, |_, _| face.low.z as f32);
+            add_windows(&mut windows, grid, &levels, columns(0), columns(1));
+        } else {
+            for x in columns(0) {
+                for y in columns(1) {
+                    windows[x * ny + y].join(whole);
+                }
+            }
+        }
+    }
+    if let Some([low, high]) = seen.ground {
+        let levels = plane_levels(model, grid, |x, y| model.horizon_z(0, grid.region.block, x, y));
+        add_windows(&mut windows, grid, &levels, around(low.x, high.x, 0), around(low.y, high.y, 1));
+    }
+    windows
+}
+
+/// The (unclamped) level at which a surface crosses each column; NaN where the layer has no inside.
+fn plane_levels(model: &StructuralModel, grid: &RegionGrid, z: impl Fn(f32, f32) -> f32) -> Vec<f32> {
+    let [_, ny] = grid.size;
+    let sheet = |sheet: SheetRef, x: f32, y: f32| sheet.z(model, grid.region.block, x, y);
+    (0..grid.size[0] * ny)
+        .map(|n| {
+            let x = (grid.origin[0] + (n / ny) as i32) as f32;
+            let y = (grid.origin[1] + (n % ny) as i32) as f32;
+            let (bottom, top) = (sheet(grid.bottom, x, y), sheet(grid.top, x, y));
+            let thickness = bottom - top;
+            if thickness < PINCHED { f32::NAN } else { (bottom - z(x, y)) / thickness * (grid.levels - 1) as f32 }
+        })
+        .collect()
+}
+
+/// Opens the windows of columns to the levels that a surface crosses in them and in their neighbours.
+fn add_windows(
+    windows: &mut [Window],
+    grid: &RegionGrid,
+    levels: &[f32],
+    xs: std::ops::RangeInclusive<usize>,
+    ys: std::ops::RangeInclusive<usize>,
+) {
+    let [nx, ny] = grid.size;
+    let last = (grid.levels - 1) as f32;
+    for x in xs {
+        for y in ys.clone() {
+            let (mut low, mut high) = (f32::MAX, f32::MIN);
+            for nx in x.saturating_sub(1)..=(x + 1).min(nx - 1) {
+                for ny_ in y.saturating_sub(1)..=(y + 1).min(ny - 1) {
+                    let level = levels[nx * ny + ny_];
+                    // Where the layer has no inside, the lookup takes the middle.
+                    let level = if level.is_nan() { 0.5 * last } else { level };
+                    (low, high) = (low.min(level), high.max(level));
+                }
+            }
+            if high < -FAR_LEVELS || low > last + FAR_LEVELS {
+                continue;
+            }
+            // The cell, one level below it and two above.
+            let first = (low - SPARE_LEVELS).clamp(0.0, last).floor() - 1.0;
+            let end = (high + SPARE_LEVELS).clamp(0.0, last).floor() + 3.0;
+            // At the ends the cubic leans on the three levels there.
+            let first = first.min(last - 2.0).max(0.0);
+            let end = end.max(3.0).min(last + 1.0);
+            windows[x * ny + y].join(Window { first: first as u16, end: end as u16 });
+        }
+    }
+}
