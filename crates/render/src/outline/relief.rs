@@ -102,11 +102,13 @@ fn beside_fault(rock: Rock, fault: usize, block: u16, p: DVec3) -> Option<DVec3>
     }
     let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
     let holds_block = |aside: f64| rock.model.block_at((p + normal * aside).as_vec3()) == block;
-    match (holds_block(ACROSS), holds_block(-ACROSS)) {
-        (true, false) => Some(p + normal * INTO_BLOCK),
-        (false, true) => Some(p - normal * INTO_BLOCK),
-        _ => None,
-    }
+    let inwards = match (holds_block(ACROSS), holds_block(-ACROSS)) {
+        (true, false) => normal,
+        (false, true) => -normal,
+        _ => return None,
+    };
+    let q = p + inwards * INTO_BLOCK;
+    Some(q.with_z(rock.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
 }
 
 /// The parts of segments that lie on drawn ground and have nothing in front. `ground` gives the point of the block's ground that a
