@@ -22,6 +22,13 @@ pub trait LayerModel: Sync {
     fn sheet(&self, horizon: usize, block: u16) -> &HeightField;
     /// The region at a voxel position.
     fn region_at(&self, p: Vec3) -> Region;
+    /// The regions at all depths (voxel z) of the trace at (x, y): `found(n, region)` for `depths[n]`. A model that can share work down a
+    /// trace says so here.
+    fn regions_down(&self, x: f32, y: f32, depths: &[f32], found: &mut dyn FnMut(usize, Region)) {
+        for (n, &z) in depths.iter().enumerate() {
+            found(n, self.region_at(Vec3::new(x, y, z)));
+        }
+    }
 }
 
 impl LayerModel for StructuralModel {
@@ -47,5 +54,9 @@ impl LayerModel for StructuralModel {
 
     fn region_at(&self, p: Vec3) -> Region {
         self.region_at(p)
+    }
+
+    fn regions_down(&self, x: f32, y: f32, depths: &[f32], found: &mut dyn FnMut(usize, Region)) {
+        self.regions_down(x, y, depths, found);
     }
 }

@@ -59,6 +59,7 @@ impl Parameterization {
             block: Volume::filled(size, NO_REGION),
         };
         progress.begin("sampling i, j, k", size[0] as u64);
+        let depths: Vec<f32> = (0..size[2]).map(|pz| corner_aligned(pz, size[2], self.size[2])).collect();
         let slab = size[1] * size[2];
         let values = out.i.samples_mut().par_chunks_mut(slab).zip(out.j.samples_mut().par_chunks_mut(slab));
         let values = values.zip(out.k.samples_mut().par_chunks_mut(slab));
@@ -68,17 +69,15 @@ impl Parameterization {
             for py in 0..size[1] {
                 let y = corner_aligned(py, size[1], self.size[1]);
                 let mut trace = Trace::default();
-                for pz in 0..size[2] {
-                    let p = Vec3::new(x, y, corner_aligned(pz, size[2], self.size[2]));
-                    let region = model.region_at(p);
+                model.regions_down(x, y, &depths, &mut |pz, region| {
                     if usize::from(region.layer) >= self.layers || usize::from(region.block) >= self.blocks {
-                        continue;
+                        return;
                     }
-                    let value = trace.at(self, model, region, p);
+                    let value = trace.at(self, model, region, Vec3::new(x, y, depths[pz]));
                     let n = py * size[2] + pz;
                     (i[n], j[n], k[n]) = (value[0], value[1], value[2]);
                     (layer[n], block[n]) = (region.layer, region.block);
-                }
+                });
             }
             progress.step(1)
         })?;

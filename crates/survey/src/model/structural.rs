@@ -168,6 +168,19 @@ impl StructuralModel {
         Region { layer: self.layer_at(p, block), block }
     }
 
+    /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n, region)` for `depths[n]`. The sheets are
+    /// evaluated once a block instead of once a depth.
+    pub fn regions_down(&self, x: f32, y: f32, depths: &[f32], mut found: impl FnMut(usize, Region)) {
+        let mut sheets_z: Vec<Option<Vec<f32>>> = vec![None; self.block_count()];
+        for (n, &z) in depths.iter().enumerate() {
+            let block = self.block_at(Vec3::new(x, y, z));
+            let sheets_z = sheets_z[usize::from(block)]
+                .get_or_insert_with(|| (0..self.sheets.len()).map(|h| self.sheet(h, block).z_at(x, y)).collect());
+            let below = sheets_z.iter().enumerate().map(|(h, &sheet_z)| u64::from(z >= sheet_z) << h).sum();
+            found(n, Region { layer: self.rules.layer(below), block });
+        }
+    }
+
     /// Height of `horizon` in `block` as it is drawn, voxel z: cut by the contact rules, so that a horizon which has ended lies on
     /// the one it ended at.
     pub fn horizon_z(&self, horizon: usize, block: u16, x: f32, y: f32) -> f32 {

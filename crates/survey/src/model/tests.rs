@@ -346,24 +346,19 @@ fn thread_count_does_not_matter() {
 }
 
 #[test]
-#[ignore = "prints how long a build takes"]
-fn build_speed() {
-    let fault = |at| closed_form::FaultForm { at, y: [-2.0, 260.0], z: [-2.0, 260.0], truncated_by: None };
-    let faults = vec![fault(|y, z| 80.0 + 0.4 * z + 0.1 * y), fault(|y, z| 160.0 + 0.3 * z - 0.05 * y)];
-    let form = ClosedForm::new([256; 3], faults, vec![Contact::Conformable; 4], |h, bits, x, y| {
-        let fold = 8.0 * (x / 25.0).sin() * (y / 31.0).cos();
-        40.0 + 50.0 * h as f64 + fold + 9.0 * f64::from(bits & 1) - 7.0 * f64::from(bits >> 1)
-    });
-    let (h, f, s) = (form.horizons(|_, _| 0.0), form.fault_inputs(), form.stratigraphy());
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
-    let start = std::time::Instant::now();
-    let model = one.install(|| {
-        StructuralModel::build(&form.geometry, &s, &h, &f, &ModelSettings::default(), &Progress::silent()).unwrap()
-    });
-    println!("{} blocks in {:?}", model.block_count(), start.elapsed());
-    let start = std::time::Instant::now();
-    let [low, high] = [DVec3::ZERO, DVec3::splat(255.0)];
-    let plane = crate::section::SectionPlane::crossline(100.0, low, high);
-    let section = one.install(|| crate::section::Section::new(&model, &plane));
-    println!("section of {} polygons, {} lines in {:?}", section.polygons.len(), section.lines.len(), start.elapsed());
+fn a_trace_has_the_regions_of_its_points() {
+    let form = closed_form::truncated_y();
+    let model = form.model();
+    let mut random = Random(11);
+    let depths: Vec<f32> = (0..60).map(|n| 0.7 * n as f32).collect();
+    for _ in 0..200 {
+        let at = random.place(form.geometry.size()).as_vec3();
+        let mut regions = Vec::new();
+        model.regions_down(at.x, at.y, &depths, |n, region| {
+            assert_eq!(n, regions.len());
+            regions.push(region);
+        });
+        let expected: Vec<Region> = depths.iter().map(|&z| model.region_at(Vec3::new(at.x, at.y, z))).collect();
+        assert_eq!(regions, expected, "at {at}");
+    }
 }
