@@ -30,6 +30,7 @@ const SOFTWARE_DRIVERS: [&str; 2] = ["llvmpipe", "SwiftShader"];
 /// Draws pictures one after the other; an adapter is looked for once.
 pub struct Painter {
     renderer: Option<Renderer>,
+    device: Device,
 }
 
 impl Painter {
@@ -52,7 +53,7 @@ impl Painter {
                 }
             },
         };
-        Ok(Self { renderer })
+        Ok(Self { renderer, device })
     }
 
     /// What draws, by name.
@@ -60,7 +61,8 @@ impl Painter {
         self.renderer.as_ref().map_or("processor", Renderer::adapter_name)
     }
 
-    /// Draws a scene; raw data in the project's colours where the scene states none.
+    /// Draws a scene; raw data in the project's colours where the scene states none. A picture that the adapter cannot hold, or was lost over, is
+    /// drawn on the processor unless the adapter was asked for; this warns, and stays so.
     ///
     /// # Errors
     /// A scene that shows nothing, or a device that fails.
@@ -74,8 +76,16 @@ impl Painter {
         let scene = &Scene { raw: scene.raw.clone().or_else(|| loaded.raw.clone()), ..scene.clone() };
         let volumes = loaded.named_volumes();
         let inputs = loaded.inputs(&volumes);
-        let image = match &mut self.renderer {
-            Some(renderer) => renderer.render(scene, &inputs, progress)?,
+        let drawn = self.renderer.as_mut().map(|renderer| renderer.render(scene, &inputs, progress));
+        let image = match drawn {
+            Some(Err(error @ (RenderError::OutOfMemory { .. } | RenderError::DeviceLost { .. })))
+                if self.device == Device::Auto =>
+            {
+                progress.warn(&format!("drawing on the processor, which is slower: {error}"));
+                self.renderer = None;
+                reference::render(scene, &inputs, progress)?
+            }
+            Some(drawn) => drawn?,
             None => reference::render(scene, &inputs, progress)?,
         };
         Ok((image, Stage::new("picture", start.elapsed())))
