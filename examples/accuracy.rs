@@ -219,6 +219,9 @@ fn boundaries(cases: &[Case]) -> Result<()> {
             worst(paper, |b| b.percentile_99)
         );
     }
+    println!(
+        "\nThe synthetic survey's worst places lie beside a fault, where a horizon is continued from its last node over a fraction of a voxel: an error of 0.05 voxel in depth there is 0.2 along a gently dipping horizon in a slice."
+    );
     Ok(())
 }
 
