@@ -80,6 +80,27 @@ impl Gpu {
         self.lost.lock().ok().and_then(|lost| lost.clone())
     }
 
+    /// Writes the texels of the plane at depth `plane` of a 3D texture, row by row.
+    pub fn write_plane(&self, texture: &wgpu::Texture, plane: u32, bytes: &[u8]) {
+        let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
+        let texel_bytes = texture.format().block_copy_size(None).unwrap_or(1);
+        self.queue.write_texture(
+            wgpu::TexelCopyTextureInfo {
+                texture,
+                mip_level: 0,
+                origin: wgpu::Origin3d { x: 0, y: 0, z: plane },
+                aspect: wgpu::TextureAspect::All,
+            },
+            bytes,
+            wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(size.width * texel_bytes),
+                rows_per_image: Some(size.height),
+            },
+            size,
+        );
+    }
+
     /// A storage buffer with these bytes; never empty, since a binding may not be.
     pub fn storage(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
         self.filled(label, bytes, wgpu::BufferUsages::STORAGE)

@@ -185,21 +185,7 @@ impl PackedTexture {
             info = packed_info(packed);
             for (x, plane) in packed.values.chunks(ny * nz).enumerate() {
                 let texels: Vec<[f32; 4]> = plane.iter().map(|&[i, j, k]| [i, j, k, 0.0]).collect();
-                gpu.queue.write_texture(
-                    wgpu::TexelCopyTextureInfo {
-                        texture: &texture,
-                        mip_level: 0,
-                        origin: wgpu::Origin3d { x: 0, y: 0, z: x as u32 },
-                        aspect: wgpu::TextureAspect::All,
-                    },
-                    bytemuck::cast_slice(&texels),
-                    wgpu::TexelCopyBufferLayout {
-                        offset: 0,
-                        bytes_per_row: Some(nz as u32 * 16),
-                        rows_per_image: Some(ny as u32),
-                    },
-                    wgpu::Extent3d { depth_or_array_layers: 1, ..size },
-                );
+                gpu.write_plane(&texture, x as u32, bytemuck::cast_slice(&texels));
             }
         }
         Ok(Self { info: gpu.uniform("packed", bytemuck::bytes_of(&info)), texture })

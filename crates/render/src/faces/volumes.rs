@@ -56,21 +56,7 @@ pub fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Texture, R
                 trace.fill(NO_DATA);
             }
         }
-        gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo {
-                texture: &texture,
-                mip_level: 0,
-                origin: wgpu::Origin3d { x: 0, y: 0, z: x as u32 },
-                aspect: wgpu::TextureAspect::All,
-            },
-            bytemuck::cast_slice(&plane),
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(nz as u32 * 4),
-                rows_per_image: Some(ny as u32),
-            },
-            wgpu::Extent3d { depth_or_array_layers: 1, ..size },
-        );
+        gpu.write_plane(&texture, x as u32, bytemuck::cast_slice(&plane));
     }
     Ok(texture)
 }
