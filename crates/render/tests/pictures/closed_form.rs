@@ -6,8 +6,10 @@ use image::{Rgba, RgbaImage};
 use render::accuracy::boundaries;
 use render::reference::render;
 use render::{Camera, Corner, Inputs, Lookup, NamedVolume, Outlines, Scene, VoxelBox};
+use survey::model::{ModelSettings, StructuralModel};
 use survey::section::SectionPlane;
 use survey::synth::closed_form::ClosedForm;
+use survey::synth::{SynthSettings, Synthetic};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use ttf::{
     Colour, ColourMap, DepthInterval, Frequency, LayerStyle, LayerTtf, RawColour, RgbaFunction, TextureLibrary,
@@ -217,6 +219,28 @@ fn boundaries_at_four_pixels_a_voxel_are_within_a_tenth_of_a_voxel() {
 }
 
 /// The same in a picture: the fault's place in each row of pixels, from their coverage.
+#[test]
+fn boundaries_of_folds_and_of_the_synthetic_survey_are_within_a_tenth_of_a_voxel() {
+    let quiet = Progress::silent();
+    let size = [64; 3];
+    let geometry = SurveyGeometry::regular(size, 25.0, 20.0, VerticalUnit::Metres);
+    let folds = ClosedForm::folded(&geometry, &[18.0, 33.0, 48.0], 32.0, 0.3).with_fault(60.0, 5.0);
+    let made = Synthetic::generate(&SynthSettings { size, ..SynthSettings::default() }, &quiet).unwrap();
+    let build = |geometry, stratigraphy, horizons, faults| {
+        StructuralModel::build(geometry, stratigraphy, horizons, faults, &ModelSettings::default(), &quiet).unwrap()
+    };
+    let of_folds = build(&folds.geometry, &folds.stratigraphy, &folds.horizons, &folds.faults);
+    let of_made = build(&made.geometry, &made.stratigraphy, &made.horizons, &made.faults);
+    let high = DVec3::splat(63.0);
+    for plane in [SectionPlane::crossline(23.3, DVec3::ZERO, high), SectionPlane::inline(38.4, DVec3::ZERO, high)] {
+        let layer = |model: &StructuralModel, p: DVec3| u32::from(model.region_at(p.as_vec3()).layer);
+        let folded = boundaries(&plane, 4.0, |p| layer(&of_folds, p), |p| folds.layer_at(p).into()).unwrap();
+        let synthetic = boundaries(&plane, 4.0, |p| layer(&of_made, p), |p| made.truth.layer_at(p).into()).unwrap();
+        println!("folds {folded:?}\nsynthetic {synthetic:?}");
+        assert!(folded.worst <= 0.1 && synthetic.percentile_99 <= 0.1, "{folded:?} {synthetic:?}");
+    }
+}
+
 #[test]
 fn a_fault_in_a_picture_is_where_it_is_in_truth() {
     let closed = ClosedForm::flat(&geometry(), &[20.0]).with_fault(60.0, 19.0);
