@@ -1,0 +1,9 @@
+//! Rapid interpretation: from a raw volume to interpreted horizons (P-horiz 4 and 5.3).
+//!
+//! Everything here is in voxel space: x = inline index, y = crossline index, z = sample index, z down; distances are in voxels.
+
+pub mod forest;
+pub mod surfaces;
+
+pub use forest::{Forest, Node};
+pub use surfaces::{Extremum, Surface, Surfaces, Vertex};
