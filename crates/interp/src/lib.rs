@@ -2,8 +2,10 @@
 //!
 //! Everything here is in voxel space: x = inline index, y = crossline index, z = sample index, z down; distances are in voxels.
 
+pub mod evaluate;
 pub mod forest;
 pub mod surfaces;
 
+pub use evaluate::{EvaluateSettings, Evaluation, evaluate};
 pub use forest::{Forest, Node};
 pub use surfaces::{Extremum, Surface, Surfaces, Vertex};

@@ -9,7 +9,7 @@
 //! truth.json                  the closed form, the age order and where the attribute lies
 //! ```
 
-use super::Synthetic;
+use super::{SynthTruth, Synthetic};
 use crate::formats::{self, Format, FormatError};
 use crate::horizon::Horizon;
 use crate::progress::{Cancelled, Progress};
@@ -46,9 +46,35 @@ pub enum SynthFileError {
     /// A folder or the truth.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// A folder without a truth.
+    #[error("{} is not the truth of a synthetic survey ({fact}); give the folder that `petroglyph synth` wrote", path.display())]
+    Truth {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fact: String,
+    },
     /// Stopped by the user.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+impl SynthTruth {
+    /// Reads the truth that [`Synthetic::write_dir`] left in a folder (or its `truth.json` itself).
+    ///
+    /// # Errors
+    /// [`SynthFileError::Truth`] when there is none or it is not one.
+    pub fn read(path: &Path) -> Result<Self, SynthFileError> {
+        #[derive(serde::Deserialize)]
+        struct File {
+            truth: SynthTruth,
+        }
+        let path = if path.is_dir() { path.join("truth.json") } else { path.to_owned() };
+        let unusable = |fact: String| SynthFileError::Truth { path: path.clone(), fact };
+        let text = fs::read_to_string(&path).map_err(|error| unusable(error.to_string()))?;
+        let File { truth } = serde_json::from_str(&text).map_err(|error| unusable(error.to_string()))?;
+        Ok(truth)
+    }
 }
 
 impl Synthetic {

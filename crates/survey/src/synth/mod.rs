@@ -15,6 +15,7 @@
 pub mod closed_form;
 mod column;
 mod design;
+mod events;
 mod faulting;
 mod files;
 mod fold;
@@ -26,6 +27,7 @@ mod tests;
 mod truth;
 
 pub use column::Column;
+pub use events::{Event, Reflector};
 pub use faulting::{Tip, TruthFault};
 pub use files::{SynthFileError, SynthFiles};
 pub use fold::{FoldedBeds, Undulation, Wave};

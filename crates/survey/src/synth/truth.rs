@@ -8,7 +8,7 @@
 //! the volume. Beyond its tip a fault is extended (with throw 0), so the blocks on both sides keep their numbers there.
 //! Positions are fractional voxels; quantities that end in `_m` are metric.
 
-use super::column::{Column, reflectivity};
+use super::column::Column;
 use super::faulting::TruthFault;
 use super::fold::FoldedBeds;
 use glam::{DVec2, DVec3};
@@ -175,56 +175,5 @@ impl SynthTruth {
     /// Whether a fault exists at voxel `p`'s crossline: false beyond its tip, where it is only extended.
     pub fn fault_is_real(&self, fault: usize, p: DVec3) -> bool {
         self.faults[fault].is_real(p.y * self.step_m.y)
-    }
-
-    /// The reflectors along a vertical line, from 1.5 wavelengths above the volume to as far below: (voxel z, reflectivity), top first.
-    pub fn reflectors(&self, x: f64, y: f64) -> Vec<(f64, f64)> {
-        let place = DVec2::new(x, y) * self.step_m.truncate();
-        let margin_m = 1.5 * self.wavelength_m;
-        let range = [-margin_m, (self.size[2] - 1) as f64 * self.step_m.z + margin_m];
-        // The line leaves hanging walls from high x to low x on its way down.
-        let crossings: Vec<f64> = self.faults.iter().map(|fault| fault.crossing_m(place)).collect();
-        let mut found = Vec::new();
-        for block in (0..self.block_count()).rev() {
-            let top = crossings.get(block).map_or(range[0], |&z| z.max(range[0]));
-            let bottom = if block == 0 { range[1] } else { crossings[block - 1].min(range[1]) };
-            if top < bottom {
-                self.reflectors_in(block as u16, place, [top, bottom], &mut found);
-            }
-        }
-        for event in &mut found {
-            event.0 /= self.step_m.z;
-        }
-        found
-    }
-
-    /// Adds the reflectors of one block between two depths: (depth in m, reflectivity).
-    fn reflectors_in(&self, block: u16, place: DVec2, [top, bottom]: [f64; 2], found: &mut Vec<(f64, f64)>) {
-        let moved = self.displacement_m(block, place);
-        let base_m = self.horizons[self.unconformity].strat_m;
-        let base_depth = self.young_beds.depth_m(base_m, place) + moved;
-        let (top_strat, base) = (self.young_beds.strat_m(top - moved, place), self.young_column.reflectors_m.len() - 1);
-        for index in self.young_column.reflectors_m.partition_point(|&s| s < top_strat)..base {
-            let depth = self.young_beds.depth_m(self.young_column.reflectors_m[index], place) + moved;
-            if depth >= bottom {
-                break;
-            }
-            found.push((depth, self.young_column.reflectivity(index)));
-        }
-        if base_depth >= top && base_depth < bottom {
-            let strat_below = self.old_beds.strat_m(base_depth - moved, place);
-            let below = self.old_column.impedance_at(strat_below);
-            found.push((base_depth, reflectivity(self.young_column.impedance[base], below)));
-        }
-        let first_strat = self.old_beds.strat_m(top.max(base_depth) - moved, place);
-        for index in
-            self.old_column.reflectors_m.partition_point(|&s| s <= first_strat)..self.old_column.reflectors_m.len()
-        {
-            let depth = self.old_beds.depth_m(self.old_column.reflectors_m[index], place) + moved;
-            if depth >= bottom {
-                break;
-            }
-            found.push((depth, self.old_column.reflectivity(index)));
-        }
     }
 }

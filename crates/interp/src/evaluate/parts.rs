@@ -1,0 +1,115 @@
+//! The parts of a true horizon that can be walked over without a jump.
+//!
+//! A node is the horizon on one trace in one fault block. Nodes of neighbouring traces (sharing an edge of the lattice) are connected in one
+//! block, and across the boundary of two blocks where the fault between them is only the continuation of one that has died out. What
+//! erosion, faults and walls leave unconnected are different parts.
+
+use rayon::prelude::*;
+use serde::Serialize;
+use survey::synth::SynthTruth;
+
+/// A connected part of a true horizon.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Part {
+    /// Fault blocks it lies in.
+    pub blocks: Vec<u16>,
+    /// Traces, counted once a block.
+    pub nodes: usize,
+    /// Those with a vertex within the tolerance.
+    pub covered: usize,
+}
+
+impl Part {
+    /// Share of its nodes that are covered.
+    pub fn coverage(&self) -> f64 {
+        super::share(self.covered, self.nodes)
+    }
+}
+
+/// Which part each node belongs to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parts {
+    traces: usize,
+    /// Part of node block·traces + trace; `NONE` where the horizon is not.
+    part: Vec<u32>,
+    blocks: Vec<Vec<u16>>,
+}
+
+/// No node here.
+const NONE: u32 = u32::MAX;
+
+impl Parts {
+    /// Finds the parts of horizon `horizon` (index into [`SynthTruth::horizons`]).
+    pub fn of(truth: &SynthTruth, horizon: usize) -> Self {
+        let [nx, ny, _] = truth.size;
+        let (traces, blocks) = (nx * ny, truth.block_count());
+        let exists: Vec<bool> = (0..blocks * traces)
+            .into_par_iter()
+            .map(|node| {
+                let (block, trace) = (node / traces, node % traces);
+                truth.exists(horizon, block as u16, (trace / ny) as f64, (trace % ny) as f64)
+            })
+            .collect();
+        let mut parent: Vec<u32> = (0..(blocks * traces) as u32).collect();
+        let open = |fault: usize, y: usize| !truth.fault_is_real(fault, glam::DVec3::new(0.0, y as f64, 0.0));
+        for (node, _) in exists.iter().enumerate().filter(|(_, exists)| **exists) {
+            let (block, trace) = (node / traces, node % traces);
+            let (x, y) = (trace / ny, trace % ny);
+            let neighbours = [(x + 1 < nx).then(|| (trace + ny, y)), (y + 1 < ny).then(|| (trace + 1, y + 1))];
+            for (next, next_y) in neighbours.into_iter().flatten() {
+                // Blocks b and b + 1 are on the two sides of fault b.
+                let above = (block + 1 < blocks && open(block, y) && open(block, next_y)).then_some(block + 1);
+                let below = (block > 0 && open(block - 1, y) && open(block - 1, next_y)).then(|| block - 1);
+                for other in [Some(block), above, below].into_iter().flatten() {
+                    if exists[other * traces + next] {
+                        unite(&mut parent, node as u32, (other * traces + next) as u32);
+                    }
+                }
+            }
+        }
+        let mut part = vec![NONE; exists.len()];
+        let mut found: Vec<Vec<u16>> = Vec::new();
+        for node in 0..exists.len() {
+            if !exists[node] {
+                continue;
+            }
+            let root = root_of(&mut parent, node as u32) as usize;
+            if part[root] == NONE {
+                part[root] = found.len() as u32;
+                found.push(Vec::new());
+            }
+            part[node] = part[root];
+            let blocks = &mut found[part[node] as usize];
+            let block = (node / traces) as u16;
+            if blocks.last() != Some(&block) {
+                blocks.push(block);
+            }
+        }
+        Self { traces, part, blocks: found }
+    }
+
+    /// All parts, with nothing counted yet.
+    pub fn empty(&self) -> Vec<Part> {
+        self.blocks.iter().map(|blocks| Part { blocks: blocks.clone(), ..Part::default() }).collect()
+    }
+
+    /// The part of the node on `trace` (x·crosslines + y) in `block`.
+    pub fn at(&self, trace: usize, block: u16) -> Option<usize> {
+        let part = *self.part.get(usize::from(block) * self.traces + trace)?;
+        (part != NONE).then_some(part as usize)
+    }
+}
+
+fn root_of(parent: &mut [u32], mut node: u32) -> u32 {
+    while parent[node as usize] != node {
+        parent[node as usize] = parent[parent[node as usize] as usize];
+        node = parent[node as usize];
+    }
+    node
+}
+
+fn unite(parent: &mut [u32], a: u32, b: u32) {
+    let (a, b) = (root_of(parent, a), root_of(parent, b));
+    // The smaller number wins, so that roots come first in the order of nodes.
+    parent[a.max(b) as usize] = a.min(b);
+}

@@ -1,0 +1,115 @@
+use super::*;
+use crate::surfaces::{Extremum, Surface, Vertex};
+use survey::Progress;
+use survey::synth::{SynthSettings, Synthetic};
+
+fn truth() -> SynthTruth {
+    let settings = SynthSettings { size: [48, 40, 64], snr: None, ..SynthSettings::default() };
+    Synthetic::generate(&settings, &Progress::silent()).unwrap().truth
+}
+
+/// A surface over given nodes, each moved by `shift`; triangles are of no concern here but for their number.
+fn surface_of(all: &mut Surfaces, nodes: impl Iterator<Item = (usize, usize, f64)>, triangles: u32) {
+    let first = all.vertices.len() as u32;
+    all.vertices.extend(nodes.map(|(x, y, z)| Vertex { x: x as u16, y: y as u16, z: z as f32 }));
+    let start = all.triangles.len() as u32;
+    all.triangles.extend((0..triangles).map(|_| [first; 3]));
+    let last = all.vertices.len() as u32;
+    all.surfaces.push(Surface { extremum: Extremum::Peak, vertices: first..last, triangles: start..start + triangles });
+}
+
+/// The nodes of a horizon in one block.
+fn nodes(truth: &SynthTruth, h: usize, block: u16) -> Vec<(usize, usize, f64)> {
+    let [nx, ny, _] = truth.size;
+    let traces = (0..nx).flat_map(|x| (0..ny).map(move |y| (x, y)));
+    traces
+        .filter(|&(x, y)| truth.exists(h, block, x as f64, y as f64))
+        .map(|(x, y)| (x, y, truth.sheet_z(h, block, x as f64, y as f64)))
+        .collect()
+}
+
+fn empty(truth: &SynthTruth) -> Surfaces {
+    Surfaces { size: truth.size, ..Surfaces::default() }
+}
+
+#[test]
+fn the_truth_itself_has_full_marks() {
+    let truth = truth();
+    let mut surfaces = empty(&truth);
+    for h in 0..truth.horizons.len() {
+        for block in 0..truth.block_count() as u16 {
+            surface_of(&mut surfaces, nodes(&truth, h, block).into_iter().map(|(x, y, z)| (x, y, z + 0.9)), 600);
+        }
+    }
+    let found = evaluate(&surfaces, &truth, &EvaluateSettings::default());
+    for score in &found.horizons {
+        assert!(score.nodes > 500 && !score.parts.is_empty(), "{}", score.name);
+        assert_eq!((score.coverage(), score.precision()), (1.0, 1.0), "{}", score.name);
+        assert_eq!((score.purity, score.least_part()), (1.0, 1.0), "{}", score.name);
+    }
+    assert!(found.all.coverage() < 0.9, "other reflectors are not covered");
+}
+
+#[test]
+fn more_than_a_sample_off_is_nowhere() {
+    let truth = truth();
+    let mut surfaces = empty(&truth);
+    surface_of(&mut surfaces, nodes(&truth, 0, 0).into_iter().map(|(x, y, z)| (x, y, z - 1.1)), 1);
+    let found = evaluate(&surfaces, &truth, &EvaluateSettings::default());
+    assert_eq!((found.horizons[0].covered, found.horizons[0].surfaces), (0, 0));
+}
+
+/// A surface that leaks from Alpha to Bravo: a third of it is impure, and Bravo is covered nevertheless.
+#[test]
+fn a_leak_lowers_purity_and_precision_but_not_coverage() {
+    let truth = truth();
+    let (alpha, bravo) = (nodes(&truth, 0, 0), nodes(&truth, 1, 0));
+    let leaked = alpha.len() / 2;
+    assert!(leaked < bravo.len());
+    let mut surfaces = empty(&truth);
+    surface_of(&mut surfaces, alpha.iter().chain(&bravo[..leaked]).copied(), 600);
+    let found = evaluate(&surfaces, &truth, &EvaluateSettings::default());
+    let expected = alpha.len() as f64 / (alpha.len() + leaked) as f64;
+    let score = &found.horizons[0];
+    assert!((score.purity - expected).abs() < 1e-12 && (score.precision() - expected).abs() < 1e-12);
+    assert_eq!(score.worst.unwrap().surface, 0);
+    assert_eq!(found.horizons[1].covered, leaked);
+    assert_eq!(found.horizons[1].surfaces, 0);
+    assert_eq!(score.covered, alpha.len());
+}
+
+/// Vertices on no reflector lower the precision, not the purity.
+#[test]
+fn off_every_reflector_is_imprecise_but_pure() {
+    let truth = truth();
+    let alpha = nodes(&truth, 0, 0);
+    let off = alpha.iter().map(|&(x, y, z)| (x, y, z + 3.0));
+    let mut surfaces = empty(&truth);
+    surface_of(&mut surfaces, alpha.iter().copied().chain(off), 1);
+    let found = evaluate(&surfaces, &truth, &EvaluateSettings::default());
+    assert_eq!(found.horizons[0].purity, 1.0);
+    assert!((found.horizons[0].precision() - 0.5).abs() < 1e-12);
+}
+
+/// The normal and the reverse fault separate; around the tip of the dying fault blocks 1 and 2 are one part.
+#[test]
+fn parts_are_what_faults_separate() {
+    let truth = truth();
+    let parts = Parts::of(&truth, 0).empty();
+    let mut blocks: Vec<Vec<u16>> = parts.into_iter().map(|part| part.blocks).collect();
+    blocks.sort();
+    assert_eq!(blocks, [vec![0], vec![1, 2], vec![3]]);
+}
+
+#[test]
+fn named_horizons_are_reflectors_of_the_index() {
+    let truth = truth();
+    let index = TruthIndex::new(&truth);
+    for h in 0..truth.horizons.len() {
+        let wanted = index.reflector_index(truth.reflector_of(h)).unwrap();
+        for (x, y, z) in nodes(&truth, h, 1) {
+            let near = index.near(x, y, z as f32, 0.01);
+            assert!(near.iter().any(|event| usize::from(event.reflector) == wanted && event.block == 1));
+        }
+    }
+}
