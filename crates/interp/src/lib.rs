@@ -2,8 +2,11 @@
 //!
 //! Everything here is in voxel space: x = inline index, y = crossline index, z = sample index, z down; distances are in voxels.
 
+pub mod assembly;
 pub mod evaluate;
 pub mod forest;
+pub mod holes;
+pub mod reassembly;
 pub mod surfaces;
 
 pub use evaluate::{EvaluateSettings, Evaluation, evaluate};

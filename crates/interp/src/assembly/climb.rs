@@ -1,0 +1,79 @@
+//! Up the tree: by levels, or to the highest node that is still one sheet.
+
+use super::error::AssemblyError;
+use super::occupancy::{Occupancy, Overlap};
+use super::selection::Selection;
+use crate::forest::Forest;
+use survey::model::FaultNetwork;
+
+/// How far a climb may go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ClimbSettings {
+    /// Share of a node's vertices that may lie over others in one fault block. A few do in noise, where a front passes above or below a
+    /// speckle and meets again; a reflector merged with another overlaps by far more. Default 0.002.
+    pub tolerated_share: f64,
+}
+
+impl Default for ClimbSettings {
+    fn default() -> Self {
+        Self { tolerated_share: 0.002 }
+    }
+}
+
+/// Where a climb ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Climbed {
+    /// Index of the node.
+    pub node: u32,
+    /// Levels above the leaf.
+    pub up: u32,
+    /// Overlap of the next higher node, which stopped the climb; `None` at the root.
+    pub stopped_by: Option<Overlap>,
+}
+
+/// The node `up` levels above a leaf.
+///
+/// # Errors
+/// [`AssemblyError::BeyondRoot`].
+pub fn node_above(forest: &Forest, leaf: u32, up: u32) -> Result<u32, AssemblyError> {
+    let mut node = forest.leaves[leaf as usize - 1];
+    for levels in 0..up {
+        node = forest.nodes[node as usize].parent.ok_or(AssemblyError::BeyondRoot { leaf, levels, up })?;
+    }
+    Ok(node)
+}
+
+/// The highest node above `leaf` that does not lie twice over a trace of one fault block, by itself or with what is `selected` already. The leaf
+/// itself when even that overlaps.
+///
+/// An overlap only grows on the way up, so the first node that has too much of it ends the climb. Cost: the triangles of that node.
+pub fn highest_valid(
+    forest: &Forest,
+    leaf: u32,
+    selected: &Selection,
+    blocks: &FaultNetwork,
+    settings: &ClimbSettings,
+) -> Climbed {
+    let mut occupancy = Occupancy::new(&forest.surfaces, blocks);
+    for range in selected.ranges() {
+        occupancy.add(range.clone());
+    }
+    // What overlaps already is not this node's doing.
+    let before = (occupancy.vertices(), occupancy.overlap().traces);
+    let mut node = forest.leaves[leaf as usize - 1];
+    let mut added = forest.nodes[node as usize].triangles.clone();
+    occupancy.add(added.clone());
+    let mut up = 0;
+    while let Some(parent) = forest.nodes[node as usize].parent {
+        let wider = forest.nodes[parent as usize].triangles.clone();
+        occupancy.add(wider.start..added.start);
+        occupancy.add(added.end..wider.end);
+        let overlap = occupancy.overlap();
+        let (vertices, traces) = (occupancy.vertices() - before.0, overlap.traces - before.1);
+        if traces as f64 > settings.tolerated_share * vertices as f64 {
+            return Climbed { node, up, stopped_by: Some(Overlap { traces, ..overlap }) };
+        }
+        (node, added, up) = (parent, wider, up + 1);
+    }
+    Climbed { node, up, stopped_by: None }
+}

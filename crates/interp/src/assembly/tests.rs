@@ -1,0 +1,265 @@
+//! Closed-form forests: surfaces over rectangles of traces, their trees halved along the inlines.
+
+use super::*;
+use crate::forest::Node;
+use crate::holes::find_holes;
+use crate::reassembly::{from_horizon, reassemble, to_horizon};
+use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
+use glam::Vec3;
+use survey::model::{FaultNetwork, ModelSettings};
+use survey::synth::closed_form::ClosedForm;
+use survey::{Progress, SurveyGeometry, VerticalUnit};
+
+/// One surface: z over traces; a cell has two triangles where its four corners have a vertex.
+pub(crate) type Height<'a> = &'a dyn Fn(usize, usize) -> Option<f32>;
+
+/// A forest of surfaces that may hold several vertices a trace: each surface is a list of branches, joined along the traces at which their
+/// heights agree.
+pub(crate) fn forest_of(size: [usize; 3], surfaces: &[&[Height]], leaf_triangles: u32) -> Forest {
+    let mut all = Surfaces { size, ..Surfaces::default() };
+    for branches in surfaces {
+        add_surface(&mut all, branches);
+    }
+    let mut forest = Forest { surfaces: all, ..Forest::default() };
+    for n in 0..forest.surfaces.surfaces.len() {
+        let range = forest.surfaces.surfaces[n].triangles.clone();
+        let root = forest.nodes.len() as u32;
+        forest.roots.push(root);
+        grow(&mut forest, n as u32, None, range, leaf_triangles);
+    }
+    forest
+}
+
+fn add_surface(all: &mut Surfaces, branches: &[Height]) {
+    let [nx, ny, _] = all.size;
+    let (first, start) = (all.vertices.len() as u32, all.triangles.len() as u32);
+    let mut found: Vec<(u16, u16, f32)> = Vec::new();
+    for (x, y) in (0..nx).flat_map(|x| (0..ny).map(move |y| (x, y))) {
+        found.extend(branches.iter().filter_map(|height| height(x, y)).map(|z| (x as u16, y as u16, z)));
+    }
+    found.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    found.dedup();
+    let index = |x: usize, y: usize, z: f32| {
+        let at = found
+            .partition_point(|v| (v.0, v.1) < (x as u16, y as u16) || ((v.0, v.1) == (x as u16, y as u16) && v.2 < z));
+        first + at as u32
+    };
+    for x in 0..nx - 1 {
+        for branch in branches {
+            for y in 0..ny - 1 {
+                let corners =
+                    [(x, y), (x, y + 1), (x + 1, y), (x + 1, y + 1)].map(|(x, y)| Some(index(x, y, branch(x, y)?)));
+                if let [Some(a), Some(b), Some(c), Some(d)] = corners {
+                    all.triangles.extend([[a, c, b], [b, c, d]]);
+                }
+            }
+        }
+    }
+    all.vertices.extend(found.iter().map(|&(x, y, z)| Vertex { x, y, z }));
+    all.surfaces.push(Surface {
+        extremum: Extremum::Peak,
+        vertices: first..all.vertices.len() as u32,
+        triangles: start..all.triangles.len() as u32,
+    });
+}
+
+fn grow(forest: &mut Forest, surface: u32, parent: Option<u32>, triangles: std::ops::Range<u32>, leaf: u32) -> u32 {
+    let node = forest.nodes.len() as u32;
+    forest.nodes.push(Node { parent, children: None, surface, triangles: triangles.clone() });
+    if triangles.len() as u32 >= 2 * leaf {
+        let middle = triangles.start + triangles.len() as u32 / 2;
+        let first = grow(forest, surface, Some(node), triangles.start..middle, leaf);
+        let second = grow(forest, surface, Some(node), middle..triangles.end, leaf);
+        forest.nodes[node as usize].children = Some([first, second]);
+    } else {
+        forest.leaves.push(node);
+    }
+    node
+}
+
+const SIZE: [usize; 3] = [33, 17, 64];
+
+/// A plane at 20 and one at 40, each of 8 leaves of 128 triangles.
+fn two_planes() -> Forest {
+    forest_of(SIZE, &[&[&|_, _| Some(20.25)], &[&|x, _| Some(40.0 + 0.25 * x as f32)]], 128)
+}
+
+#[test]
+fn a_pick_finds_the_closest_leaf_and_says_what_is_nearest_when_none_is_near() {
+    let forest = two_planes();
+    assert_eq!(forest.leaves.len(), 16);
+    let hit = leaf_at(&forest, Vec3::new(2.0, 8.0, 21.0), 10.0).unwrap();
+    assert_eq!((hit.leaf, hit.distance), (1, 0.75));
+    let hit = leaf_at(&forest, Vec3::new(30.0, 3.0, 47.0), 10.0).unwrap();
+    assert_eq!(hit.leaf, 16);
+    // The distance to a plane of slope 1/4.
+    assert!((hit.distance - 0.5 / (1.0f32 + 0.0625).sqrt()).abs() < 1e-4, "{}", hit.distance);
+    let far = leaf_at(&forest, Vec3::new(2.0, 8.0, 0.0), 10.0).unwrap_err();
+    assert!(matches!(far, AssemblyError::NothingNear { leaf: 1, distance, .. } if (distance - 20.25).abs() < 1e-5));
+    assert!(matches!(leaf_at(&forest, Vec3::new(2.0, 17.0, 0.0), 10.0), Err(AssemblyError::Outside { .. })));
+    assert_eq!(leaf_at(&forest_of(SIZE, &[], 1), Vec3::ONE, 10.0), Err(AssemblyError::Empty));
+}
+
+#[test]
+fn climbing_widens_to_the_root_and_no_further() {
+    let forest = two_planes();
+    let triangles = |up| forest.nodes[node_above(&forest, 3, up).unwrap() as usize].triangles.len();
+    assert_eq!([0, 1, 2, 3].map(triangles), [128, 256, 512, 1024]);
+    assert_eq!(node_above(&forest, 3, 4), Err(AssemblyError::BeyondRoot { leaf: 3, levels: 3, up: 4 }));
+}
+
+#[test]
+fn picks_add_and_take_away_in_order() {
+    let forest = two_planes();
+    let node = |leaf, up| node_above(&forest, leaf, up).unwrap();
+    let selection = assemble(
+        &forest,
+        [(node(1, 3), Operation::Add), (node(3, 1), Operation::Remove), (node(9, 0), Operation::Add)],
+    );
+    assert_eq!(selection.ranges(), [0..256, 512..1152]);
+    // The same picks in another order: what is added last stays.
+    let selection = assemble(&forest, [(node(3, 1), Operation::Remove), (node(1, 3), Operation::Add)]);
+    assert_eq!(selection.len(), 1024);
+}
+
+/// A surface that folds back under itself: the left half belongs to z = 20, the right half runs back below the left.
+#[test]
+fn the_highest_valid_node_is_the_last_one_without_overlap() {
+    let ramp = |x: usize, _: usize| Some(20.0 + 0.1 * x as f32);
+    let back = |x: usize, _: usize| (x >= 16).then(|| 23.2 + 0.5 * (32 - x) as f32);
+    let forest = forest_of(SIZE, &[&[&ramp, &back]], 128);
+    // Both branches meet at x = 32; ordered by x, the tree's right half holds both of them.
+    let none = FaultNetwork::none();
+    let settings = ClimbSettings::default();
+    let climbed = highest_valid(&forest, 1, &Selection::default(), &none, &settings);
+    let stopped = climbed.stopped_by.unwrap();
+    assert!(stopped.traces > 50 && stopped.apart > 5.0, "{stopped:?}");
+    let node = &forest.nodes[climbed.node as usize];
+    assert_eq!(node_above(&forest, 1, climbed.up), Ok(climbed.node));
+    assert!(node.parent.is_some() && node.triangles.start == 0);
+
+    // Two sheets that do not overlap climb to the root, unless the horizon has something over the same traces already.
+    let forest = two_planes();
+    let climbed = highest_valid(&forest, 5, &Selection::default(), &none, &settings);
+    assert_eq!((climbed.up, climbed.stopped_by), (3, None));
+    let mut selected = Selection::default();
+    selected.insert(0..128);
+    let climbed = highest_valid(&forest, 16, &selected, &none, &settings);
+    assert_eq!(climbed.up, 2, "the half of the lower plane that lies under no part of the upper one");
+    assert_eq!(climbed.stopped_by.unwrap().apart, 20.75);
+    // What is selected of the same surface does not overlap with it.
+    assert_eq!(highest_valid(&forest, 8, &selected, &none, &settings).up, 3);
+}
+
+fn network() -> (SurveyGeometry, FaultNetwork) {
+    let geometry = SurveyGeometry::regular(SIZE, 10.0, 10.0, VerticalUnit::Metres);
+    let model = ClosedForm::flat(&geometry, &[20.0]).with_fault(45.0, 6.0);
+    let network =
+        FaultNetwork::build(&geometry, &model.faults, &ModelSettings::default(), &Progress::silent()).unwrap();
+    (geometry, network)
+}
+
+/// Two sheets that overlap across a reverse fault: one block over the other once the fault is known.
+#[test]
+fn a_fault_turns_an_overlap_into_two_sheets_of_their_own_blocks() {
+    let (geometry, faulted) = network();
+    // The fault is x = 16 + (z − 31.5); the hanging wall (x beyond it) at 26 reaches back to x = 11, the footwall at 36 on to x = 20.
+    let footwall = |x: usize, _: usize| (x <= 20).then_some(36.0);
+    let hanging = |x: usize, _: usize| (x >= 11).then_some(26.0);
+    let forest = forest_of(SIZE, &[&[&footwall], &[&hanging]], 128);
+    let mut all = Selection::default();
+    all.insert(0..forest.surfaces.triangles.len() as u32);
+
+    let open = reassemble(&forest, &all, &[0], &FaultNetwork::none());
+    assert_eq!(open.sheets.len(), 2);
+    assert_eq!((open.overlap.traces, open.overlap.apart), (10 * 17, 10.0));
+    assert_eq!(open.sheets[0].z[0], 36.0, "the seed's side comes first");
+    let other = reassemble(&forest, &all, &[forest.surfaces.triangles.len() as u32 - 1], &FaultNetwork::none());
+    assert_eq!(other.sheets[0].z[32 * 17], 26.0);
+
+    let closed = reassemble(&forest, &all, &[0], &faulted);
+    assert_eq!(closed.overlap.traces, 0);
+    assert_eq!(closed.sheets.iter().map(|sheet| sheet.block).collect::<Vec<_>>(), [0, 1]);
+    assert_eq!(closed.sheets.iter().map(|sheet| sheet.nodes()).sum::<usize>(), (21 + 22) * 17);
+    // A climb that stopped at the overlap no longer does.
+    let mut selected = Selection::default();
+    selected.insert(forest.surfaces.surfaces[0].triangles.clone());
+    let leaf = leaf_at(&forest, Vec3::new(14.0, 8.0, 26.0), 1.0).unwrap().leaf;
+    let settings = ClimbSettings::default();
+    assert!(highest_valid(&forest, leaf, &selected, &FaultNetwork::none(), &settings).stopped_by.is_some());
+    assert!(highest_valid(&forest, leaf, &selected, &faulted, &settings).stopped_by.is_none());
+
+    // To the vertical unit and back.
+    let horizon = to_horizon("H", &closed.sheets, &geometry);
+    assert!(horizon.sheets.iter().any(|sheet| sheet.depth[0] == 360.0 && sheet.depth[32 * 17].is_nan()));
+    let back = from_horizon(&horizon, &geometry, &faulted);
+    assert_eq!(back.len(), 2);
+    for (back, sheet) in back.iter().zip(&closed.sheets) {
+        assert!(back.block == sheet.block && back.quality == sheet.quality);
+        assert!(back.z.iter().zip(&sheet.z).all(|(a, b)| a == b || a.is_nan() && b.is_nan()));
+    }
+}
+
+#[test]
+fn every_vertex_lands_on_exactly_one_sheet() {
+    let forest = forest_of(SIZE, &[&[&|x, _| Some(20.0 + 0.1 * x as f32), &|x, y| (x + y > 20).then_some(30.0)]], 64);
+    let mut all = Selection::default();
+    all.insert(0..forest.surfaces.triangles.len() as u32);
+    let found = reassemble(&forest, &all, &[], &FaultNetwork::none());
+    let used: std::collections::BTreeSet<u32> = forest.surfaces.triangles.iter().flatten().copied().collect();
+    assert_eq!(found.sheets.iter().map(|sheet| sheet.nodes()).sum::<usize>(), used.len());
+    assert!(find_holes(&found.sheets, [SIZE[0], SIZE[1]]).is_empty());
+}
+
+#[test]
+fn a_fingerprint_knows_the_same_the_similar_and_the_different() {
+    let forest = two_planes();
+    let print = |forest: &Forest, leaf, up| Fingerprint::of(forest, node_above(forest, leaf, up).unwrap());
+    let plane = print(&forest, 1, 3);
+    assert_eq!((plane.triangles, plane.low, plane.high, plane.mean_z), (1024, [0, 0], [32, 16], 20.25));
+    assert_eq!(plane.compare(&print(&two_planes(), 2, 3)), Fit::Same);
+    let shifted = forest_of(SIZE, &[&[&|_, _| Some(20.5)]], 128);
+    assert_eq!(plane.compare(&print(&shifted, 1, 3)), Fit::Similar);
+    assert_eq!(plane.compare(&print(&forest, 1, 2)), Fit::Different);
+    assert_eq!(plane.compare(&print(&forest, 9, 3)), Fit::Different);
+}
+
+#[test]
+fn contradictions_between_horizons_are_found() {
+    let forest = two_planes();
+    let none = FaultNetwork::none();
+    let size = [SIZE[0], SIZE[1]];
+    let selection = |range| {
+        let mut selection = Selection::default();
+        selection.insert(range);
+        selection
+    };
+    let (upper, lower) = (selection(0..1024), selection(1024..2048));
+    let both = selection(512..1536);
+    let sheets = |selection: &Selection| reassemble(&forest, selection, &[], &none).sheets;
+    let (upper_sheets, lower_sheets) = (sheets(&upper), sheets(&lower));
+    let named = |name, selection, sheets| NamedSheets { name, sheets, selection: Some(selection) };
+    let find =
+        |horizons: &[NamedSheets]| conflicts(Some(&forest), size, horizons, |_, _| false, &ConflictSettings::default());
+    assert!(find(&[named("u", &upper, &upper_sheets), named("l", &lower, &lower_sheets)]).is_empty());
+    let swapped = find(&[named("l", &lower, &lower_sheets), named("u", &upper, &upper_sheets)]);
+    assert_eq!(swapped, [Conflict::Swapped { horizons: ["l".into(), "u".into()], traces: 33 * 17 }]);
+    let both_sheets = sheets(&both);
+    let shared = find(&[named("u", &upper, &upper_sheets), named("b", &both, &both_sheets)]);
+    assert!(
+        matches!(&shared[0], Conflict::SharedLeaves { leaves, triangles: 512, .. } if *leaves == [5, 6, 7, 8]),
+        "{shared:?}"
+    );
+    // A plane from 30 down to 62 crosses the one that falls from 40 to 48.
+    let steep = forest_of(SIZE, &[&[&|x, _| Some(30.0 + x as f32)]], 128);
+    let steep_sheets = reassemble(&steep, &upper, &[], &none).sheets;
+    let steep = NamedSheets { name: "s", sheets: &steep_sheets, selection: None };
+    let crossing = find(&[steep.clone(), named("l", &lower, &lower_sheets)]);
+    let [Conflict::Crossing { horizons, above, below, worst, at }] = &crossing[..] else { panic!("{crossing:?}") };
+    assert_eq!((horizons, *worst, at[0]), (&["l".to_owned(), "s".to_owned()], 10.0, 0));
+    assert_eq!((*above, *below), (18 * 17, 13 * 17));
+    assert!(
+        conflicts(None, size, &[steep, named("l", &lower, &lower_sheets)], |_, _| true, &ConflictSettings::default())
+            .is_empty()
+    );
+}

@@ -1,0 +1,218 @@
+//! From selected triangles back to horizons (P-horiz 5.3): sheets on the survey's lattice, one or more for each fault block.
+//!
+//! A vertex is an extremum of one trace, so a sheet's node is its z: nothing is interpolated. Vertices go to the fault block they lie in, and
+//! edges between blocks are cut. In each block the mesh is walked breadth first from the picked triangles; the first vertex to reach a trace takes it.
+//! What finds its trace taken is left for a walk of its own and lands on a further sheet of that block: an overlap is kept in sight, and
+//! without interpreted faults that is how the second side of a reverse fault survives. Space: voxels.
+
+use crate::assembly::{Overlap, Selection};
+use crate::forest::Forest;
+use crate::surfaces::Vertex;
+use glam::Vec3;
+use std::collections::VecDeque;
+use survey::model::FaultNetwork;
+use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry};
+
+/// A sheet on the survey's lattice.
+#[derive(Debug, Clone, PartialEq)]
+pub struct VoxelSheet {
+    /// The fault block it lies in.
+    pub block: u16,
+    /// Fractional sample of each trace, `[inline][crossline]`; NaN = hole.
+    pub z: Vec<f32>,
+    /// How each node came about.
+    pub quality: Vec<Quality>,
+}
+
+impl VoxelSheet {
+    /// A sheet without nodes.
+    pub fn empty(block: u16, traces: usize) -> Self {
+        Self { block, z: vec![f32::NAN; traces], quality: vec![Quality::Hole; traces] }
+    }
+
+    /// Count of nodes.
+    pub fn nodes(&self) -> usize {
+        self.z.iter().filter(|z| z.is_finite()).count()
+    }
+}
+
+/// What triangles became.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reassembled {
+    /// Sheets by block; of several in one block the first is the one that was picked, the others lie over it.
+    pub sheets: Vec<VoxelSheet>,
+    /// Where sheets of one block lie over one another.
+    pub overlap: Overlap,
+}
+
+/// No vertex, or none yet.
+const NONE: u32 = u32::MAX;
+
+/// Makes sheets of the selected triangles. `seeds` are triangles to start from, in order of importance.
+///
+/// Cost: time and memory proportional to the triangles, and 5 bytes a trace for each sheet.
+pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks: &FaultNetwork) -> Reassembled {
+    let surfaces = &forest.surfaces;
+    let [nx, ny, _] = surfaces.size;
+    let mesh = Mesh::of(forest, selection);
+    let of = |v: u32| surfaces.vertices[mesh.vertices[v as usize] as usize];
+    let place = |vertex: Vertex| Vec3::new(f32::from(vertex.x), f32::from(vertex.y), vertex.z);
+    let block: Vec<u16> = (0..mesh.vertices.len() as u32).map(|v| blocks.block_at(place(of(v)))).collect();
+    let picked = seeds.iter().filter(|&&t| selection.contains(t)).flat_map(|&t| surfaces.triangles[t as usize]);
+    let starts = picked.filter_map(|v| mesh.local(v)).chain(0..mesh.vertices.len() as u32);
+
+    let mut sheets: Vec<VoxelSheet> = Vec::new();
+    let mut placed = vec![false; mesh.vertices.len()];
+    // Walk that took a trace last.
+    let mut taken = vec![NONE; nx * ny];
+    let trace_of = |v: u32| usize::from(of(v).x) * ny + usize::from(of(v).y);
+    let mut queue = VecDeque::new();
+    for (walk, start) in starts.enumerate() {
+        if placed[start as usize] {
+            continue;
+        }
+        let own = block[start as usize];
+        let mut patch = Vec::new();
+        placed[start as usize] = true;
+        taken[trace_of(start)] = walk as u32;
+        queue.push_back(start);
+        while let Some(v) = queue.pop_front() {
+            patch.push(v);
+            for &next in mesh.neighbours(v) {
+                let trace = trace_of(next);
+                if !placed[next as usize] && block[next as usize] == own && taken[trace] != walk as u32 {
+                    placed[next as usize] = true;
+                    taken[trace] = walk as u32;
+                    queue.push_back(next);
+                }
+            }
+        }
+        let free = |sheet: &VoxelSheet| sheet.block == own && patch.iter().all(|&v| sheet.z[trace_of(v)].is_nan());
+        let sheet = sheets.iter().position(free).unwrap_or_else(|| {
+            sheets.push(VoxelSheet::empty(own, nx * ny));
+            sheets.len() - 1
+        });
+        for v in patch {
+            sheets[sheet].z[trace_of(v)] = of(v).z;
+            sheets[sheet].quality[trace_of(v)] = Quality::Tracked;
+        }
+    }
+    // Stable: of one block, the sheet that was begun first stays first.
+    sheets.sort_by_key(|sheet| sheet.block);
+    let overlap = overlap_of(&sheets, ny);
+    Reassembled { sheets, overlap }
+}
+
+/// Where further sheets of a block lie over its first.
+fn overlap_of(sheets: &[VoxelSheet], ny: usize) -> Overlap {
+    let mut overlap = Overlap::default();
+    for of_block in sheets.chunk_by(|a, b| a.block == b.block) {
+        for (n, sheet) in of_block.iter().enumerate().skip(1) {
+            for (trace, &z) in sheet.z.iter().enumerate().filter(|(_, z)| z.is_finite()) {
+                let others = of_block[..n].iter().map(|other| (other.z[trace] - z).abs());
+                let apart = others.filter(|apart| apart.is_finite()).fold(f32::NAN, f32::max);
+                if apart.is_finite() {
+                    overlap.traces += 1;
+                    if apart > overlap.apart {
+                        overlap.apart = apart;
+                        overlap.at = [(trace / ny) as f32, (trace % ny) as f32, z];
+                    }
+                }
+            }
+        }
+    }
+    overlap
+}
+
+/// Selected vertices and their neighbours, numbered from 0.
+struct Mesh {
+    /// Vertices of the forest, ascending.
+    vertices: Vec<u32>,
+    starts: Vec<u32>,
+    next: Vec<u32>,
+}
+
+impl Mesh {
+    fn of(forest: &Forest, selection: &Selection) -> Self {
+        let triangles = || selection.iter().map(|t| forest.surfaces.triangles[t as usize]);
+        let mut vertices: Vec<u32> = triangles().flatten().collect();
+        vertices.sort_unstable();
+        vertices.dedup();
+        let mut mesh = Self { vertices, starts: Vec::new(), next: Vec::new() };
+        let local = |v: u32| mesh.local(v).unwrap_or(NONE);
+        let mut edges: Vec<[u32; 2]> = Vec::with_capacity(6 * selection.len());
+        for [a, b, c] in triangles().map(|corners| corners.map(local)) {
+            edges.extend([[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]]);
+        }
+        edges.sort_unstable();
+        edges.dedup();
+        mesh.starts = vec![0; mesh.vertices.len() + 1];
+        for &[from, to] in &edges {
+            mesh.starts[from as usize + 1] += 1;
+            mesh.next.push(to);
+        }
+        for n in 1..mesh.starts.len() {
+            mesh.starts[n] += mesh.starts[n - 1];
+        }
+        mesh
+    }
+
+    fn local(&self, vertex: u32) -> Option<u32> {
+        self.vertices.binary_search(&vertex).ok().map(|n| n as u32)
+    }
+
+    fn neighbours(&self, v: u32) -> &[u32] {
+        &self.next[self.starts[v as usize] as usize..self.starts[v as usize + 1] as usize]
+    }
+}
+
+/// Sheets as a horizon in the survey's vertical unit.
+///
+/// Blocks are not written down: a tracked sheet reaches up to a fault from both sides and a little beyond, and the structural model only sorts out
+/// nodes beside a fault of sheets that leave their block open.
+pub fn to_horizon(name: &str, sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> Horizon {
+    let grid = NodeGrid::of_survey(geometry);
+    let sheet = |sheet: &VoxelSheet| Sheet {
+        block: None,
+        grid,
+        depth: sheet
+            .z
+            .iter()
+            .map(|&z| if z.is_nan() { z } else { geometry.vertical.value_at(f64::from(z)) as f32 })
+            .collect(),
+        quality: sheet.quality.clone(),
+    };
+    Horizon { name: name.to_owned(), sheets: sheets.iter().map(sheet).collect() }
+}
+
+/// The nodes of a horizon that lie on the survey's lattice, in samples, sorted into fault blocks; the way back from [`to_horizon`]. Sheets on
+/// other grids are sampled at the traces.
+pub fn from_horizon(horizon: &Horizon, geometry: &SurveyGeometry, blocks: &FaultNetwork) -> Vec<VoxelSheet> {
+    let [nx, ny, _] = geometry.size();
+    let mut sheets: Vec<VoxelSheet> = Vec::new();
+    let survey = NodeGrid::of_survey(geometry);
+    for sheet in &horizon.sheets {
+        for trace in 0..nx * ny {
+            let voxel = glam::DVec2::new((trace / ny) as f64, (trace % ny) as f64);
+            let node = sheet.grid.node_at(survey.world_at(voxel));
+            let depth = sheet.depth_at_node(node);
+            if !depth.is_finite() {
+                continue;
+            }
+            let z = geometry.vertical.index_of(f64::from(depth)) as f32;
+            let [u, v] = [node.x.round() as usize, node.y.round() as usize];
+            let quality =
+                sheet.quality[u.min(sheet.grid.count[0] - 1) * sheet.grid.count[1] + v.min(sheet.grid.count[1] - 1)];
+            let block = blocks.block_at(voxel.as_vec2().extend(z));
+            let free = |sheet: &VoxelSheet| sheet.block == block && sheet.z[trace].is_nan();
+            let at = sheets.iter().position(free).unwrap_or_else(|| {
+                sheets.push(VoxelSheet::empty(block, nx * ny));
+                sheets.len() - 1
+            });
+            sheets[at].z[trace] = z;
+            sheets[at].quality[trace] = quality;
+        }
+    }
+    sheets.sort_by_key(|sheet| sheet.block);
+    sheets
+}
