@@ -3,12 +3,14 @@
 //! Everything here is in voxel space: x = inline index, y = crossline index, z = sample index, z down; distances are in voxels.
 
 pub mod assembly;
+pub mod error;
 pub mod evaluate;
 pub mod forest;
 pub mod holes;
 pub mod reassembly;
 pub mod surfaces;
 
+pub use error::Error;
 pub use evaluate::{EvaluateSettings, Evaluation, evaluate};
-pub use forest::{Forest, Node};
+pub use forest::{Forest, ForestSettings, Node, Subtree};
 pub use surfaces::{Extremum, Surface, Surfaces, Vertex};
