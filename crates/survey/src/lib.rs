@@ -15,6 +15,7 @@
 //!
 //! Only [`geometry::SurveyGeometry`] converts between them.
 
+pub mod attribute;
 pub mod fault;
 pub mod formats;
 pub mod geometry;
