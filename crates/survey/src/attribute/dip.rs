@@ -80,9 +80,8 @@ pub fn dip(volume: &Volume<f32>, settings: &DipSettings, progress: &Progress) ->
 
 /// Samples on the lattice of another volume, with its mask.
 pub(super) fn like(volume: &Volume<f32>, samples: Vec<f32>) -> Volume<f32> {
-    let mut out = Volume::filled(volume.size(), 0.0);
-    out.samples_mut().copy_from_slice(&samples);
-    // The mask fits: it is that of a volume of this size.
+    // Samples and mask fit: they were made for a volume of this size.
+    let mut out = Volume::from_samples(volume.size(), samples).unwrap_or_else(|_| Volume::filled(volume.size(), 0.0));
     let _ = out.set_live(volume.live().map(<[bool]>::to_vec));
     out
 }

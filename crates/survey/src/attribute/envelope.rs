@@ -86,7 +86,7 @@ impl Hilbert {
         for (n, value) in work.signal.iter_mut().enumerate() {
             *value *= match n {
                 0 => scale,
-                n if n == half && self.length % 2 == 0 => scale,
+                n if n == half && self.length.is_multiple_of(2) => scale,
                 n if n < half + self.length % 2 => 2.0 * scale,
                 _ => 0.0,
             };
