@@ -12,11 +12,13 @@
 //! reflector: surfaces along them count nowhere. Space: voxels.
 
 mod parts;
+mod picks;
 #[cfg(test)]
 mod tests;
 mod truth;
 
 pub use parts::{Part, Parts};
+pub use picks::{PickCount, PickScore, PickSettings, count_picks};
 pub use truth::{TruthEvent, TruthIndex};
 
 use crate::surfaces::Surfaces;

@@ -1,6 +1,7 @@
 use super::*;
 use crate::surfaces::{Extremum, Surface, Vertex};
 use survey::Progress;
+use survey::model::FaultNetwork;
 use survey::synth::{SynthSettings, Synthetic};
 
 fn truth() -> SynthTruth {
@@ -112,4 +113,30 @@ fn named_horizons_are_reflectors_of_the_index() {
             assert!(near.iter().any(|event| usize::from(event.reflector) == wanted && event.block == 1));
         }
     }
+}
+
+/// Whole true sheets as surfaces: each part takes one pick, and the climb stops at no overlap but that of the reverse fault.
+#[test]
+fn true_sheets_take_a_pick_a_part() {
+    let truth = truth();
+    let index = TruthIndex::new(&truth);
+    let height = |h: usize, block: u16, x: usize, y: usize| {
+        let (x, y) = (x as f64, y as f64);
+        truth.exists(h, block, x, y).then(|| truth.sheet_z(h, block, x, y) as f32)
+    };
+    // Blocks 1 and 2 are one part around the tip of the fault between them: two picks here, since the sheets are not joined.
+    let sheets: Vec<_> = (0..4u16).map(|block| move |x: usize, y: usize| height(0, block, x, y)).collect();
+    let sheets: Vec<[crate::assembly::tests::Height; 1]> = sheets.iter().map(|sheet| [sheet as _]).collect();
+    let sheets: Vec<&[crate::assembly::tests::Height]> = sheets.iter().map(|sheet| sheet.as_slice()).collect();
+    let forest = crate::assembly::tests::forest_of(truth.size, &sheets, 50);
+    let play = |blocks: &FaultNetwork| {
+        let (evaluate, settings) = (EvaluateSettings::default(), PickSettings::default());
+        count_picks(&forest, &truth, &index, blocks, &evaluate, &settings, &Progress::silent()).unwrap()
+    };
+    let open = play(&FaultNetwork::none());
+    assert_eq!(open[0].parts, 3);
+    assert_eq!((open[0].oracle.picks, open[0].oracle.reached), (4, true));
+    assert!(open[0].oracle.coverage > 0.95 && open[0].oracle.precision == 1.0, "{:?}", open[0].oracle);
+    assert!(open[0].replay.reached, "{:?}", open[0].replay);
+    assert!(!open[1].oracle.reached && open[1].oracle.picks == 0, "nothing of Bravo is there");
 }

@@ -80,6 +80,11 @@ impl TruthIndex {
         self.starts.windows(2).enumerate().map(|(trace, ends)| (trace, ends[0]..ends[1]))
     }
 
+    /// Trace (x·crosslines + y) of an event.
+    pub fn trace_of(&self, event: usize) -> usize {
+        self.starts.partition_point(|&start| start <= event) - 1
+    }
+
     /// Range of the events of trace (x, y) within `tolerance` samples of `z`; empty outside the survey.
     pub fn range_near(&self, x: usize, y: usize, z: f32, tolerance: f32) -> Range<usize> {
         if x >= self.size[0] || y >= self.size[1] {
