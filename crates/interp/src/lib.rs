@@ -5,12 +5,16 @@
 pub mod assembly;
 pub mod error;
 pub mod evaluate;
+pub mod extrema;
 pub mod forest;
+pub mod grow;
 pub mod holes;
 pub mod reassembly;
 pub mod surfaces;
 
 pub use error::Error;
 pub use evaluate::{EvaluateSettings, Evaluation, evaluate};
+pub use extrema::{Extrema, SlabSource};
 pub use forest::{Forest, ForestSettings, Node, Subtree};
+pub use grow::{GrowError, GrowSettings, Method, grow_slabs, grow_surfaces};
 pub use surfaces::{Extremum, Surface, Surfaces, Vertex};

@@ -1,0 +1,266 @@
+//! Extrema of every trace, refined below the sample (P-horiz 4).
+//!
+//! A peak is a positive sample greater than both neighbours, a trough a negative one smaller than both, a zero crossing
+//! the change from negative above to positive below. A plateau (common in 8-bit data) counts once, at its middle. The place
+//! between samples is the analytic maximum (or zero) of a polynomial through the nearest samples: see [`refine`].
+//! A sample that is not finite ends the trace there; a dead trace has no extrema.
+//!
+//! Growing sees nothing of a volume but this, about one extremum in six samples, so a volume that does not fit
+//! into memory is read once, slab by slab, and forgotten ([`SlabSource`]). Space: voxels. Memory: 8 bytes an extremum, 4 a trace.
+
+pub mod refine;
+
+use crate::surfaces::Extremum;
+use rayon::prelude::*;
+use std::ops::Range;
+use survey::{Progress, Volume};
+
+/// Where traces come from: a volume in memory, or a store that is read slab by slab.
+pub trait SlabSource: Sync {
+    /// Why a slab could not be read.
+    type Error: Send;
+
+    /// `[inlines, crosslines, samples]`.
+    fn size(&self) -> [usize; 3];
+
+    /// Calls `visit(x, y, trace)` for every live trace with x in `inlines`, in the order (x, y).
+    ///
+    /// # Errors
+    /// What the source says.
+    fn read(&self, inlines: Range<usize>, visit: &mut dyn FnMut(usize, usize, &[f32])) -> Result<(), Self::Error>;
+}
+
+impl SlabSource for Volume<f32> {
+    type Error = std::convert::Infallible;
+
+    fn size(&self) -> [usize; 3] {
+        Self::size(self)
+    }
+
+    fn read(&self, inlines: Range<usize>, visit: &mut dyn FnMut(usize, usize, &[f32])) -> Result<(), Self::Error> {
+        for x in inlines {
+            for y in 0..self.size()[1] {
+                if self.is_live(x, y) {
+                    visit(x, y, self.trace(x, y));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The extrema of one kind, trace by trace in the order (x, y), top first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extrema {
+    /// `[inlines, crosslines, samples]` of the volume.
+    pub size: [usize; 3],
+    /// What they are.
+    pub kind: Extremum,
+    /// The first extremum of each trace, and their count: `[x·crosslines + y]`, one entry more than traces.
+    pub offsets: Vec<u32>,
+    /// Fractional sample index.
+    pub z: Vec<f32>,
+    /// Height of the extremum (positive for troughs too); of a zero crossing its slope, an amplitude a sample.
+    pub amplitude: Vec<f32>,
+}
+
+impl Extrema {
+    /// Count of extrema.
+    pub fn len(&self) -> usize {
+        self.z.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.z.is_empty()
+    }
+
+    /// Indices of the extrema on the trace at (x, y).
+    pub fn on_trace(&self, x: usize, y: usize) -> Range<usize> {
+        let trace = x * self.size[1] + y;
+        self.offsets[trace] as usize..self.offsets[trace + 1] as usize
+    }
+
+    /// Indices of the extrema on inline index x.
+    pub fn on_inline(&self, x: usize) -> Range<usize> {
+        let ny = self.size[1];
+        self.offsets[x * ny] as usize..self.offsets[(x + 1) * ny] as usize
+    }
+
+    /// One part of `values` for each inline, to write in parallel.
+    pub(crate) fn split_inlines<'v, T>(&self, values: &'v mut [T]) -> Vec<&'v mut [T]> {
+        let mut parts = Vec::with_capacity(self.size[0]);
+        let mut rest = values;
+        for x in 0..self.size[0] {
+            let (part, after) = rest.split_at_mut(self.on_inline(x).len());
+            parts.push(part);
+            rest = after;
+        }
+        parts
+    }
+}
+
+/// Why extrema could not be found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ExtremaError<E> {
+    /// The source could not be read.
+    #[error("the volume could not be read")]
+    Source(E),
+    /// Stopped by the user.
+    #[error(transparent)]
+    Cancelled(#[from] survey::Cancelled),
+    /// Indices have 32 bits.
+    #[error("{found} extrema of one kind are more than {} can be numbered; extract a part of the volume", u32::MAX - 1)]
+    TooMany {
+        /// Extrema found.
+        found: usize,
+    },
+}
+
+/// What one slab has: per kind, the counts of its traces and their extrema.
+#[derive(Default)]
+struct SlabExtrema {
+    counts: Vec<u32>,
+    z: Vec<f32>,
+    amplitude: Vec<f32>,
+}
+
+/// Finds the extrema of each kind in `kinds`, reading `slab_inlines` inlines at a time. The result depends neither on that
+/// nor on the number of threads. Cost: one pass over the samples.
+///
+/// # Errors
+/// [`ExtremaError`] when the source fails, the user cancels, or there are more than 2³² extrema of a kind.
+pub fn find_extrema<S: SlabSource>(
+    source: &S,
+    kinds: &[Extremum],
+    slab_inlines: usize,
+    progress: &Progress,
+) -> Result<Vec<Extrema>, ExtremaError<S::Error>> {
+    let size = source.size();
+    let [nx, ny, _] = size;
+    let slab_inlines = slab_inlines.max(1);
+    progress.begin("extrema", nx as u64);
+    let slabs: Vec<Vec<SlabExtrema>> = (0..nx.div_ceil(slab_inlines))
+        .into_par_iter()
+        .map(|slab| {
+            let inlines = slab * slab_inlines..((slab + 1) * slab_inlines).min(nx);
+            let mut found: Vec<SlabExtrema> = kinds.iter().map(|_| SlabExtrema::default()).collect();
+            for part in &mut found {
+                part.counts = vec![0; inlines.len() * ny];
+            }
+            let first = inlines.start;
+            let read = source.read(inlines.clone(), &mut |x, y, trace| {
+                for (kind, part) in kinds.iter().zip(&mut found) {
+                    let before = part.z.len();
+                    extrema_of_trace(trace, *kind, &mut |z, amplitude| {
+                        part.z.push(z);
+                        part.amplitude.push(amplitude);
+                    });
+                    part.counts[(x - first) * ny + y] = (part.z.len() - before) as u32;
+                }
+            });
+            read.map_err(ExtremaError::Source)?;
+            progress.step(inlines.len() as u64)?;
+            Ok(found)
+        })
+        .collect::<Result<_, ExtremaError<S::Error>>>()?;
+    let mut slabs: Vec<_> = slabs.into_iter().map(Vec::into_iter).collect();
+    kinds
+        .iter()
+        .map(|&kind| {
+            let parts: Vec<SlabExtrema> = slabs.iter_mut().filter_map(Iterator::next).collect();
+            let found = parts.iter().map(|part| part.z.len()).sum::<usize>();
+            if found >= u32::MAX as usize {
+                return Err(ExtremaError::TooMany { found });
+            }
+            let mut extrema = Extrema {
+                size,
+                kind,
+                offsets: Vec::with_capacity(nx * ny + 1),
+                z: Vec::with_capacity(found),
+                amplitude: Vec::with_capacity(found),
+            };
+            extrema.offsets.push(0);
+            let mut reached = 0;
+            for part in parts {
+                for count in part.counts {
+                    reached += count;
+                    extrema.offsets.push(reached);
+                }
+                extrema.z.extend(part.z);
+                extrema.amplitude.extend(part.amplitude);
+            }
+            Ok(extrema)
+        })
+        .collect()
+}
+
+/// Calls `found(z, amplitude)` for each extremum of a trace, top first.
+pub fn extrema_of_trace(trace: &[f32], kind: Extremum, found: &mut impl FnMut(f32, f32)) {
+    match kind {
+        Extremum::Peak => maxima(trace, 1.0, found),
+        Extremum::Trough => maxima(trace, -1.0, found),
+        Extremum::Zero => crossings(trace, found),
+    }
+}
+
+/// Positive maxima of `sign`·trace.
+fn maxima(trace: &[f32], sign: f32, found: &mut impl FnMut(f32, f32)) {
+    let count = trace.len();
+    let mut z = 1;
+    while z + 1 < count {
+        let [before, here, after] = [trace[z - 1] * sign, trace[z] * sign, trace[z + 1] * sign];
+        if !(here > 0.0 && here > before && here >= after) {
+            z += 1;
+            continue;
+        }
+        if here > after {
+            if here.is_finite() && before.is_finite() && after.is_finite() {
+                let (t, height) = refine::maximum(trace, z, sign);
+                found(z as f32 + t, height);
+            }
+            z += 2;
+            continue;
+        }
+        // A plateau: its end decides whether it is a maximum.
+        let mut end = z + 1;
+        while end + 1 < count && trace[end + 1] * sign == here {
+            end += 1;
+        }
+        if end + 1 < count && trace[end + 1] * sign < here && here.is_finite() && before.is_finite() {
+            // Two equal samples have their maximum between them, higher than both.
+            let height = if end == z + 1 { refine::maximum(trace, z, sign).1 } else { here };
+            found(0.5 * (z + end) as f32, height);
+        }
+        z = end + 1;
+    }
+}
+
+/// Changes from negative to positive.
+fn crossings(trace: &[f32], found: &mut impl FnMut(f32, f32)) {
+    let count = trace.len();
+    let mut z = 0;
+    while z + 1 < count {
+        if !(trace[z] < 0.0 && trace[z + 1] >= 0.0 && trace[z].is_finite() && trace[z + 1].is_finite()) {
+            z += 1;
+            continue;
+        }
+        let mut end = z + 1;
+        while end < count && trace[end] == 0.0 {
+            end += 1;
+        }
+        if end < count && trace[end] > 0.0 && trace[end].is_finite() {
+            if end == z + 1 {
+                let (t, slope) = refine::crossing(trace, z);
+                found(z as f32 + t, slope);
+            } else {
+                let rise = f64::from(trace[end]) - f64::from(trace[z]);
+                found(0.5 * (z + end) as f32, (rise / (end - z) as f64) as f32);
+            }
+        }
+        z = end;
+    }
+}
+
+#[cfg(test)]
+mod tests;

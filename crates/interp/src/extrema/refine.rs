@@ -1,0 +1,79 @@
+//! Places between samples: the analytic maximum of a polynomial through the nearest samples (P-horiz 4).
+//!
+//! A maximum: the quartic p(t) = Σ aₙtⁿ through the five samples around it; its stationary point is found by Newton's method on the cubic p′ from
+//! the vertex of the parabola through three. Where five samples are not there (ends of a trace, samples that are not finite) the
+//! parabola stands. A zero crossing: the cubic through four samples, by Newton's method from the straight line.
+//!
+//! Largest error over all phases, samples, in brackets the parabola's: a sinusoid of 8 samples a period 0.0015 (0.010), of 5 samples
+//! 0.009 (0.028); a Ricker wavelet of peak period 8: 0.010 (0.025), and 1 % of its height (3 %).
+
+/// Farthest a maximum may lie from its sample: the parabola's stays within 0.5, the quartic's may pass it a little.
+const MAX_SHIFT: f64 = 0.75;
+
+/// Newton steps: the start is within 0.05 of the answer, two steps bring it to single precision.
+const STEPS: usize = 3;
+
+/// Offset (−0.75 … 0.75) and height of the maximum of `sign`·trace at sample z, which is greater than its two neighbours.
+pub fn maximum(trace: &[f32], z: usize, sign: f32) -> (f32, f32) {
+    let at = |index: usize| f64::from(trace[index] * sign);
+    let [before, here, after] = [at(z - 1), at(z), at(z + 1)];
+    let bend = before - 2.0 * here + after;
+    let start = 0.5 * (before - after) / bend;
+    let parabola = (start as f32, (here - 0.25 * (before - after) * start).min(f64::from(f32::MAX)) as f32);
+    if z < 2 || z + 2 >= trace.len() {
+        return parabola;
+    }
+    let [first, last] = [at(z - 2), at(z + 2)];
+    let a = [
+        here,
+        (first - 8.0 * before + 8.0 * after - last) / 12.0,
+        (-first + 16.0 * before - 30.0 * here + 16.0 * after - last) / 24.0,
+        (-first + 2.0 * before - 2.0 * after + last) / 12.0,
+        (first - 4.0 * before + 6.0 * here - 4.0 * after + last) / 24.0,
+    ];
+    let mut t = start;
+    for _ in 0..STEPS {
+        let slope = a[1] + t * (2.0 * a[2] + t * (3.0 * a[3] + t * 4.0 * a[4]));
+        let curvature = 2.0 * a[2] + t * (6.0 * a[3] + t * 12.0 * a[4]);
+        if curvature >= 0.0 || !curvature.is_finite() {
+            return parabola;
+        }
+        t -= slope / curvature;
+    }
+    if !(t.abs() <= MAX_SHIFT) {
+        return parabola;
+    }
+    let height = a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * a[4])));
+    (t as f32, height.min(f64::from(f32::MAX)) as f32)
+}
+
+/// Offset (0 … 1) and slope of the zero crossing between samples z (negative) and z + 1 (positive).
+pub fn crossing(trace: &[f32], z: usize) -> (f32, f32) {
+    let at = |index: usize| f64::from(trace[index]);
+    let [here, after] = [at(z), at(z + 1)];
+    let start = here / (here - after);
+    let line = (start as f32, (after - here) as f32);
+    if z < 1 || z + 2 >= trace.len() {
+        return line;
+    }
+    let [before, last] = [at(z - 1), at(z + 2)];
+    let a = [
+        here,
+        -before / 3.0 - 0.5 * here + after - last / 6.0,
+        0.5 * (before + after) - here,
+        (last - before) / 6.0 + 0.5 * (here - after),
+    ];
+    let mut t = start;
+    for _ in 0..STEPS {
+        let value = a[0] + t * (a[1] + t * (a[2] + t * a[3]));
+        let slope = a[1] + t * (2.0 * a[2] + t * 3.0 * a[3]);
+        if !(slope > 0.0) {
+            return line;
+        }
+        t -= value / slope;
+    }
+    if !(0.0..=1.0).contains(&t) {
+        return line;
+    }
+    (t as f32, (a[1] + t * (2.0 * a[2] + t * 3.0 * a[3])) as f32)
+}

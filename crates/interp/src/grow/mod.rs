@@ -1,0 +1,138 @@
+//! Growing surfaces over extrema (P-horiz 4), the paper's way and ours.
+//!
+//! The paper grows from every voxel in turn, so its result depends on the order of seeds. Ours defines the surfaces as a *set*:
+//! which extrema are linked, which links are cut, which cells are complete and which are connected is decided
+//! from the extrema alone, never from who came first, so threads, slabs and tiles cannot matter.
+//!
+//! | step | ours, in |
+//! |---|---|
+//! | extrema, refined below the sample | [`crate::extrema`] |
+//! | mutual best links between neighbouring traces | `links` |
+//! | closed cells, the opening of the least width, connected windows | `cells` |
+//! | triangles | `assemble` |
+//!
+//! Peaks, troughs and zero crossings never link to one another. Space: voxels.
+
+mod assemble;
+mod cells;
+mod links;
+mod union_find;
+
+use crate::extrema::{ExtremaError, SlabSource, find_extrema};
+use crate::surfaces::{Extremum, Surfaces};
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use survey::{Progress, Volume};
+
+/// How surfaces are grown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Method {
+    /// As a set: independent of order, threads and tiles.
+    #[default]
+    Ours,
+    /// Fronts from every voxel in turn, each visited once (P-horiz 4).
+    Paper,
+}
+
+/// What to grow, and how.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct GrowSettings {
+    /// Ours by default.
+    pub method: Method,
+    /// What surfaces follow; peaks and troughs by default. They never link to one another.
+    pub extrema: Vec<Extremum>,
+    /// Traces: surfaces and connections narrower than this are not grown. Default 4 (P-horiz 4); at least 2.
+    pub min_front_width: usize,
+    /// Inlines read at a time; does not change the result. Default 16.
+    pub slab_inlines: usize,
+}
+
+impl Default for GrowSettings {
+    fn default() -> Self {
+        Self {
+            method: Method::Ours,
+            extrema: vec![Extremum::Peak, Extremum::Trough],
+            min_front_width: 4,
+            slab_inlines: 16,
+        }
+    }
+}
+
+/// Why no surfaces could be grown.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GrowError<E = std::convert::Infallible> {
+    /// The front width makes no sense.
+    #[error("the least front width is {found} traces; give at least 2 (4 is a good choice)")]
+    FrontWidth {
+        /// Asked for.
+        found: usize,
+    },
+    /// Nothing to follow.
+    #[error("no kind of extremum to grow on; ask for peaks, troughs or zero crossings")]
+    NoExtrema,
+    /// The lattice is too large for its surfaces.
+    #[error("{lines} lines are more than {} that surfaces can number; extract a part of the volume", u16::MAX)]
+    TooManyLines {
+        /// Inlines or crosslines.
+        lines: usize,
+    },
+    /// The extrema could not be found.
+    #[error(transparent)]
+    Extrema(#[from] ExtremaError<E>),
+    /// Stopped by the user.
+    #[error(transparent)]
+    Cancelled(#[from] survey::Cancelled),
+}
+
+/// Grows all surfaces of a volume in memory; see [`grow_slabs`].
+///
+/// # Errors
+/// [`GrowError`] when the settings make no sense or the user cancels.
+pub fn grow_surfaces(
+    volume: &Volume<f32>,
+    settings: &GrowSettings,
+    progress: &Progress,
+) -> Result<Surfaces, GrowError> {
+    grow_slabs(volume, settings, progress)
+}
+
+/// Grows all surfaces of a volume that is read slab by slab. A volume in which nothing is to be followed (constant, dead, one
+/// trace, thinner than the front width) has no surfaces.
+///
+/// # Errors
+/// [`GrowError`] when the settings make no sense, the source fails or the user cancels.
+pub fn grow_slabs<S: SlabSource>(
+    source: &S,
+    settings: &GrowSettings,
+    progress: &Progress,
+) -> Result<Surfaces, GrowError<S::Error>> {
+    if settings.min_front_width < 2 {
+        return Err(GrowError::FrontWidth { found: settings.min_front_width });
+    }
+    let mut kinds = settings.extrema.clone();
+    kinds.sort_unstable();
+    kinds.dedup();
+    if kinds.is_empty() {
+        return Err(GrowError::NoExtrema);
+    }
+    let size = source.size();
+    let lines = size[0].max(size[1]);
+    if lines > usize::from(u16::MAX) {
+        return Err(GrowError::TooManyLines { lines });
+    }
+    let extrema = find_extrema(source, &kinds, settings.slab_inlines, progress)?;
+    let links: Vec<links::Links> = extrema.par_iter().map(links::mutual_links).collect();
+    progress.check()?;
+    let grown: Vec<Surfaces> = extrema
+        .par_iter()
+        .zip(&links)
+        .map(|(extrema, links)| {
+            let labels = cells::label(extrema, links, settings.min_front_width);
+            assemble::surfaces(extrema, links, &labels)
+        })
+        .collect();
+    progress.check()?;
+    Ok(assemble::joined(size, grown))
+}
