@@ -27,7 +27,7 @@ mod moments;
 mod prune;
 mod split;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 
 use crate::error::Error;
 use crate::surfaces::{Surfaces, Vertex};
@@ -39,8 +39,8 @@ use survey::{Cancelled, Progress};
 
 pub use split::Subtree;
 
-/// Most triangles a forest can hold: the distance search keeps two bits of a triangle's number for itself.
-pub const MAX_TRIANGLES: usize = 1 << 30;
+/// Most triangles a forest can hold: the distance search keeps two bits of a leaf id for itself.
+pub const MAX_TRIANGLES: usize = (1 << 30) - 1;
 
 /// How trees are built.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

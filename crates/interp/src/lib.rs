@@ -3,6 +3,7 @@
 //! Everything here is in voxel space: x = inline index, y = crossline index, z = sample index, z down; distances are in voxels.
 
 pub mod assembly;
+pub mod distance;
 pub mod error;
 pub mod evaluate;
 pub mod extrema;
@@ -12,6 +13,7 @@ pub mod holes;
 pub mod reassembly;
 pub mod surfaces;
 
+pub use distance::{CandidateColumns, DistanceSettings, LeafDistances};
 pub use error::Error;
 pub use evaluate::{EvaluateSettings, Evaluation, evaluate};
 pub use extrema::{Extrema, SlabSource};

@@ -1,0 +1,105 @@
+//! The distance of samples of one column to one triangle of a surface.
+//!
+//! A triangle lies within one cell and its corners on three of the cell's four traces, so seen from the corner R between the other two
+//! its edges are u = (1, 0, u_z) and v = (0, 1, v_z), after flipping x and y where they point the other way. With w = p − R the foot on its plane
+//! is s·u + t·v,
+//!
+//! ```text
+//! s = (v·v · u·w − u·v · v·w) / D,   t = (u·u · v·w − u·v · u·w) / D,   D = 1 + u_z² + v_z²,
+//! d² = (w_z − u_z w_x − v_z w_y)² / D    where s, t ≥ 0 and s + t ≤ 1,
+//! ```
+//!
+//! and the least distance to the three edges elsewhere. Straight-line code, so that the compiler does several samples at once.
+
+/// Samples done at once.
+pub(super) const LANES: usize = 4;
+
+/// A triangle as the index keeps it: 16 bytes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct CellTriangle {
+    /// z of the corner between the two others, of its neighbour along x, of its neighbour along y.
+    pub(super) z: [f32; 3],
+    /// Leaf id · 4 + which of the cell's corners that corner is: bit 1 = far in x, bit 0 = far in y.
+    pub(super) code: u32,
+}
+
+impl CellTriangle {
+    pub(super) fn leaf(&self) -> u32 {
+        self.code >> 2
+    }
+
+    pub(super) fn z_range(&self) -> [f32; 2] {
+        let [a, b, c] = self.z;
+        [a.min(b).min(c), a.max(b).max(c)]
+    }
+
+    /// z of the corner at `far` (x, y: 0 near, 1 far), if the triangle has one there.
+    pub(super) fn z_at(&self, far: [u32; 2]) -> Option<f32> {
+        let [x, y] = [(self.code >> 1) & 1, self.code & 1];
+        match [far[0] ^ x, far[1] ^ y] {
+            [0, 0] => Some(self.z[0]),
+            [1, 0] => Some(self.z[1]),
+            [0, 1] => Some(self.z[2]),
+            _ => None,
+        }
+    }
+}
+
+/// A triangle seen from one column.
+pub(super) struct FromColumn {
+    w: [f32; 2],
+    z: f32,
+    u: f32,
+    v: f32,
+    inverse: f32,
+    inverse_u: f32,
+    inverse_v: f32,
+    inverse_h: f32,
+}
+
+impl FromColumn {
+    /// `dx`, `dy`: the column less the cell's near corner.
+    pub(super) fn new(triangle: &CellTriangle, dx: f32, dy: f32) -> Self {
+        let x = if triangle.code & 2 == 0 { dx } else { 1.0 - dx };
+        let y = if triangle.code & 1 == 0 { dy } else { 1.0 - dy };
+        let [z, a, b] = triangle.z;
+        let (u, v) = (a - z, b - z);
+        Self {
+            w: [x, y],
+            z,
+            u,
+            v,
+            inverse: 1.0 / (1.0 + u * u + v * v),
+            inverse_u: 1.0 / (1.0 + u * u),
+            inverse_v: 1.0 / (1.0 + v * v),
+            inverse_h: 1.0 / (2.0 + (v - u) * (v - u)),
+        }
+    }
+
+    /// Squared distances of the samples `first`, `first` + 1, …
+    #[inline(always)]
+    pub(super) fn distances_sq(&self, first: f32) -> [f32; LANES] {
+        let Self { w: [x, y], u, v, inverse, inverse_u, inverse_v, inverse_h, .. } = *self;
+        let h = v - u;
+        let mut out = [0.0; LANES];
+        for (lane, out) in out.iter_mut().enumerate() {
+            let z = (first + lane as f32) - self.z;
+            let (uw, vw) = (x + u * z, y + v * z);
+            let s = ((1.0 + v * v) * uw - u * v * vw) * inverse;
+            let t = ((1.0 + u * u) * vw - u * v * uw) * inverse;
+            let off = z - u * x - v * y;
+            let plane = off * off * inverse;
+            let along_u = (uw * inverse_u).clamp(0.0, 1.0);
+            let to_u = [x - along_u, y, z - along_u * u];
+            let along_v = (vw * inverse_v).clamp(0.0, 1.0);
+            let to_v = [x, y - along_v, z - along_v * v];
+            let along_h = ((y - x + 1.0 + h * (z - u)) * inverse_h).clamp(0.0, 1.0);
+            let to_h = [x - 1.0 + along_h, y - along_h, z - u - along_h * h];
+            let sq = |d: [f32; 3]| d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+            let edge = sq(to_u).min(sq(to_v)).min(sq(to_h));
+            let inside = s.min(t).min(1.0 - s - t) >= 0.0;
+            *out = if inside { plane } else { edge };
+        }
+        out
+    }
+}
