@@ -30,6 +30,7 @@ pub mod store;
 pub mod stratigraphy;
 pub mod synth;
 pub mod volume;
+pub mod well;
 
 pub use fault::Fault;
 pub use geometry::{LineAxis, SurveyGeometry, VerticalAxis, VerticalUnit};
@@ -39,3 +40,4 @@ pub use mesh::TriangleMesh;
 pub use progress::{Cancelled, Progress};
 pub use stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 pub use volume::Volume;
+pub use well::Well;

@@ -12,7 +12,7 @@ pub(super) const UNDEFINED: f64 = 1e29;
 
 /// How the lines of a table are cut into numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cut {
+pub(crate) struct Cut {
     /// What stands between fields; `None` = blanks.
     pub delimiter: Option<char>,
     /// Whether numbers have a decimal comma.
@@ -58,7 +58,7 @@ impl Cut {
 }
 
 /// Whether a line is a comment or a mark of the end.
-pub(super) fn is_comment(line: &str) -> bool {
+pub(crate) fn is_comment(line: &str) -> bool {
     line.starts_with(['#', '!', '%', '@']) || line.starts_with("//") || matches!(line, "END" | "EOD" | "EOB" | "EOF")
 }
 

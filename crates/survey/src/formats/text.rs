@@ -8,7 +8,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 /// A file's bytes and where they come from.
-pub(super) struct SourceFile {
+pub(crate) struct SourceFile {
     /// The file.
     pub path: PathBuf,
     /// All of it.
@@ -17,7 +17,7 @@ pub(super) struct SourceFile {
 
 /// One line of text.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line<'a> {
+pub(crate) struct Line<'a> {
     /// Number, from 1.
     pub number: usize,
     /// Text without its end and without surrounding blanks.
@@ -62,7 +62,7 @@ impl SourceFile {
 }
 
 /// The lines of a text, trimmed, blank ones left out.
-pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     // A CR alone ends a line too; in a CRLF file the empty piece between the two must not count as a line.
     let lone_cr = text.contains('\r') && !text.contains('\n');
     text.split(if lone_cr { '\r' } else { '\n' })
@@ -75,7 +75,7 @@ pub(super) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
 }
 
 /// The beginning of a text, quoted, for an error message.
-pub(super) fn excerpt(text: &str) -> String {
+pub(crate) fn excerpt(text: &str) -> String {
     let text = text.trim();
     if text.is_empty() {
         return "nothing".into();
@@ -88,7 +88,7 @@ pub(super) fn excerpt(text: &str) -> String {
 }
 
 /// A number as programs write them: also with a Fortran exponent (`1.5D+03`).
-pub(super) fn number(token: &str) -> Option<f64> {
+pub(crate) fn number(token: &str) -> Option<f64> {
     let token = token.trim();
     if let Ok(value) = token.parse() {
         return Some(value);
@@ -102,7 +102,7 @@ pub(super) fn number(token: &str) -> Option<f64> {
 /// Splits a line at a delimiter, or at blanks; double quotes hold a field together.
 ///
 /// Quoted fields come without their quotes. Blanks around a field are left out.
-pub(super) fn fields(text: &str, delimiter: Option<char>) -> Vec<Field<'_>> {
+pub(crate) fn fields(text: &str, delimiter: Option<char>) -> Vec<Field<'_>> {
     let mut fields = Vec::new();
     let mut rest = text.trim();
     while !rest.is_empty() {
@@ -134,7 +134,7 @@ pub(super) fn fields(text: &str, delimiter: Option<char>) -> Vec<Field<'_>> {
 
 /// One field of a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Field<'a> {
+pub(crate) struct Field<'a> {
     /// Its text, unquoted and trimmed.
     pub text: &'a str,
     /// Whether it was quoted.

@@ -1,0 +1,155 @@
+//! What can go wrong with a well's files, with the facts a user needs to put it right.
+
+use std::path::PathBuf;
+
+/// Why a well was not read.
+#[derive(Debug, thiserror::Error)]
+pub enum WellError {
+    /// A file cannot be read.
+    #[error("cannot read {file}: {source}")]
+    Io {
+        /// The file.
+        file: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// A line does not hold what it should.
+    #[error("{file}, line {line}: expected {expected}, found {found}")]
+    Syntax {
+        /// The file.
+        file: PathBuf,
+        /// Line number, from 1.
+        line: usize,
+        /// What should be there.
+        expected: String,
+        /// What is there.
+        found: String,
+    },
+    /// The columns do not say where the well is.
+    #[error("{file}: {why}; name the columns in a header line, for example {example}")]
+    Columns {
+        /// The file.
+        file: PathBuf,
+        /// What is missing.
+        why: String,
+        /// A header that would do.
+        example: &'static str,
+    },
+    /// There are no rows.
+    #[error("{file} holds no {what}; check that it is the file meant")]
+    Empty {
+        /// The file.
+        file: PathBuf,
+        /// What was looked for.
+        what: &'static str,
+    },
+    /// The well head is not known.
+    #[error("{file} gives no X, Y of the well head; say --head X,Y in metres")]
+    NoHead {
+        /// The file.
+        file: PathBuf,
+    },
+    /// A file of several wells has none of the name.
+    #[error("{file} has no well named '{wanted}'; it has: {available}. Choose one with --well-in-file")]
+    NoSuchWell {
+        /// The file.
+        file: PathBuf,
+        /// The name.
+        wanted: String,
+        /// The names there are.
+        available: String,
+    },
+    /// Values that must increase do not.
+    #[error("the {what} must increase, but {after} follows {before}; sort the file or remove the row")]
+    NotIncreasing {
+        /// Which values.
+        what: &'static str,
+        /// The value before.
+        before: f64,
+        /// The value after.
+        after: f64,
+    },
+    /// An angle is none of a hole's.
+    #[error(
+        "at {md_m} m the inclination is {inclination_deg} and the azimuth {azimuth_deg} degrees; inclinations are 0 to 180 from the vertical, azimuths 0 to 360 from north"
+    )]
+    Angle {
+        /// Measured depth.
+        md_m: f64,
+        /// The inclination.
+        inclination_deg: f64,
+        /// The azimuth.
+        azimuth_deg: f64,
+    },
+    /// The hole turns round between two stations.
+    #[error(
+        "the hole turns by {dogleg_deg:.0} degrees before {md_m} m, which cannot be drilled; check inclination and azimuth"
+    )]
+    Dogleg {
+        /// Measured depth.
+        md_m: f64,
+        /// The turn.
+        dogleg_deg: f64,
+    },
+    /// Two stations are further apart than the hole between them is long.
+    #[error(
+        "before {md_m} m the hole is {along_m:.2} m long but its ends are {straight_m:.2} m apart; check the units of measured depth and of X, Y (--md-unit m or ft)"
+    )]
+    ShorterThanStraight {
+        /// Measured depth.
+        md_m: f64,
+        /// Along the hole.
+        along_m: f64,
+        /// In a straight line.
+        straight_m: f64,
+    },
+    /// A path needs two stations.
+    #[error("a path needs two stations, found {stations}; check that the file's rows are the deviation")]
+    TooShort {
+        /// How many there are.
+        stations: usize,
+    },
+    /// A coordinate is infinite or no number.
+    #[error("a coordinate is no number or beyond 1e12; check the units")]
+    NotANumber,
+    /// The unit is not known.
+    #[error("{file}: {what} could be in {candidates}; say which with {option}")]
+    UnclearUnit {
+        /// The file.
+        file: PathBuf,
+        /// What has no unit.
+        what: String,
+        /// Units that would fit.
+        candidates: &'static str,
+        /// The option that settles it.
+        option: &'static str,
+    },
+    /// A LAS file of a version that is not read.
+    #[error("{file} is LAS {version}; LAS 1.2 and 2.0 are read: export it as LAS 2.0")]
+    LasVersion {
+        /// The file.
+        file: PathBuf,
+        /// Its version.
+        version: String,
+    },
+    /// A LAS file that lacks something.
+    #[error("{file}: {why}; check that it is a LAS 2.0 file that was copied in full")]
+    Las {
+        /// The file.
+        file: PathBuf,
+        /// What is missing or wrong.
+        why: String,
+    },
+    /// The index of a LAS file cannot be laid along the well.
+    #[error("{file}: the index {mnemonic} is in '{unit}'; {instead}")]
+    LasIndex {
+        /// The file.
+        file: PathBuf,
+        /// The index curve.
+        mnemonic: String,
+        /// Its unit.
+        unit: String,
+        /// What to do.
+        instead: &'static str,
+    },
+}

@@ -1,0 +1,80 @@
+//! Wells: where they run, what they met (tops), what was measured along them (logs).
+//!
+//! A well's axis is measured depth (MD, m, 0 at its datum, usually the kelly bushing). Its path lies in the world: X east,
+//! Y north, TVDSS = true vertical depth below mean sea level, m, positive down; a datum 25 m above the sea is at
+//! TVDSS = −25. Files in feet are converted when read, with the international foot.
+//!
+//! Between two surveyed stations with directions the path is the circular arc that touches both (minimum curvature); between
+//! stations that are places alone it is straight. In a time survey TVDSS becomes TWT through the well's checkshots, else
+//! through the survey's constant velocity ([`TimeDepth`] says which).
+//!
+//! ```
+//! # use survey::well::{Survey, Well, WellPath};
+//! # use glam::{DVec2, DVec3};
+//! let vertical = [0.0, 1000.0].map(|md_m| Survey { md_m, inclination_deg: 0.0, azimuth_deg: 0.0 });
+//! let path = WellPath::minimum_curvature(DVec2::new(500.0, 700.0), 25.0, &vertical)?;
+//! let well = Well::new("A-1", path);
+//! assert_eq!(well.position_at_md(425.0), Some(DVec3::new(500.0, 700.0, 400.0)));
+//! assert_eq!(well.position_at_md(1000.5), None);
+//! # Ok::<(), survey::well::WellError>(())
+//! ```
+
+mod checkshot;
+mod columns;
+mod deviation;
+mod error;
+mod las;
+mod log;
+mod path;
+mod place;
+mod read;
+mod table;
+#[cfg(test)]
+mod tests;
+mod tops;
+
+pub use checkshot::{Checkshot, TimeDepth, parse_checkshot};
+pub use deviation::{Deviation, parse_deviation};
+pub use error::WellError;
+pub use las::{Las, LasItem, parse_las};
+pub use log::{Curve, LogSet};
+pub use path::{Station, Survey, WellPath};
+pub use place::{TopPlace, WellPlacement};
+pub use read::{WellFiles, WellOptions, WellReport, read_well};
+pub use tops::{TopRow, parse_tops};
+
+use serde::{Deserialize, Serialize};
+
+/// A well.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Well {
+    /// Unique within a project.
+    pub name: String,
+    /// Where it runs.
+    pub path: WellPath,
+    /// What it met, in order of measured depth.
+    #[serde(default)]
+    pub tops: Vec<Top>,
+    /// What was measured along it.
+    #[serde(default)]
+    pub logs: Vec<LogSet>,
+    /// Its own time–depth table.
+    #[serde(default)]
+    pub checkshot: Option<Checkshot>,
+}
+
+/// A named surface where the well met it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Top {
+    /// Name of the surface.
+    pub name: String,
+    /// Measured depth, m.
+    pub md_m: f64,
+}
+
+impl Well {
+    /// A well without tops and logs.
+    pub fn new(name: impl Into<String>, path: WellPath) -> Self {
+        Self { name: name.into(), path, tops: Vec::new(), logs: Vec::new(), checkshot: None }
+    }
+}
