@@ -5,7 +5,7 @@ use crate::error::Noun;
 use crate::project::Project;
 use serde_json::json;
 use std::path::Path;
-use survey::segy::{self, SegyInfo, SegyOptions};
+use survey::segy::{SegyFile, SegyOptions};
 use survey::{Progress, SurveyGeometry};
 
 /// Describes whatever is at `path`: a project when it is a folder, else a SEG-Y file.
@@ -13,36 +13,12 @@ pub(super) fn describe(path: &Path, options: &SegyOptions, progress: &Progress) 
     if path.is_dir() || !path.exists() {
         return project(&Project::open(path)?);
     }
-    let info = segy::scan(path, options, progress)?;
-    Ok(volume(&info))
-}
-
-/// What a SEG-Y file holds, and how that was found.
-fn volume(info: &SegyInfo) -> Report {
-    let unit = info.vertical_unit.symbol();
-    let mut report = Report::default();
-    report
-        .say(format!("{}: SEG-Y revision {}, {} bytes", info.file.display(), info.revision, info.bytes))
-        .say(format!("inlines {}, crosslines {}", info.inlines, info.crosslines))
-        .say(format!(
-            "{} samples from {} {unit} every {} {unit}, format code {}",
-            info.samples, info.start, info.interval, info.format_code
-        ))
-        .say(format!(
-            "{} traces, {} missing, {} dead, {} duplicate",
-            info.traces, info.missing_traces, info.dead_traces, info.duplicate_traces
-        ));
-    for line in &info.evidence {
-        report.say(format!("  {line}"));
-    }
-    for line in &info.assumptions {
-        report.say(format!("  assumed: {line}"));
-    }
-    for line in &info.warnings {
-        report.say(format!("  warning: {line}"));
-    }
-    report.fields(info);
-    report
+    let file = SegyFile::open(path, options, progress)?;
+    let statistics = file.statistics(progress)?;
+    let mut report = Report::line(file.page(&statistics).trim_end());
+    report.fields(file.info());
+    report.field("amplitudes", &statistics);
+    Ok(report)
 }
 
 fn project(project: &Project) -> anyhow::Result<Report> {

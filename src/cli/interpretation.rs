@@ -1,9 +1,8 @@
 //! What was meant by the options of volumes, horizons and faults.
 
-use super::args::{
-    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, SegyArgs,
-};
+use super::args::{ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs};
 use super::request::{Listing, Request, Usage};
+use super::segy::segy_options;
 use crate::command::{
     AddFault, AddHorizon, Age, Command, ImportVolume, RemoveFault, RemoveHorizon, RenameHorizon, SetContact,
     SetTruncation,
@@ -11,37 +10,12 @@ use crate::command::{
 use crate::project::Polarity;
 use survey::Contact;
 use survey::formats::{Column, Format, ImportOptions, PlaceBy, ZPositive, ZUnit};
-use survey::segy::{FileUnit, LengthUnit, SegyOptions, TraceWeight};
 
 /// One of several words.
-fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {
+pub(super) fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {
     words.iter().find(|(word, _)| word.eq_ignore_ascii_case(text)).map(|(_, value)| *value).ok_or_else(|| {
         let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
         format!("{option} {text}: expected {}", known.join(", "))
-    })
-}
-
-pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
-    let vertical = [("ms", FileUnit::Milliseconds), ("m", FileUnit::Metres), ("ft", FileUnit::Feet)];
-    let length = [("m", LengthUnit::Metres), ("ft", LengthUnit::Feet)];
-    let weight = [("apply", TraceWeight::Apply), ("ignore", TraceWeight::Ignore)];
-    Ok(SegyOptions {
-        inline_byte: typed.inline_byte,
-        crossline_byte: typed.crossline_byte,
-        x_byte: typed.x_byte,
-        y_byte: typed.y_byte,
-        interval: typed.interval,
-        start: typed.start,
-        vertical_unit: typed.vertical_unit.as_deref().map(|t| word("--vertical-unit", t, &vertical)).transpose()?,
-        coordinate_unit: typed.coordinate_unit.as_deref().map(|t| word("--coordinate-unit", t, &length)).transpose()?,
-        bin_m: typed.bin_m,
-        trace_weight: typed
-            .trace_weight
-            .as_deref()
-            .map(|t| word("--trace-weight", t, &weight))
-            .transpose()?
-            .unwrap_or_default(),
-        ..SegyOptions::default()
     })
 }
 

@@ -12,6 +12,7 @@ mod list;
 mod report;
 mod request;
 mod run;
+mod segy;
 mod terminal;
 mod view;
 

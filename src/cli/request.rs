@@ -104,7 +104,7 @@ impl TryFrom<Action> for Request {
         Ok(match action {
             Action::Demo(typed) => Self::Demo { out: typed.out },
             Action::Synth(typed) => synth(&typed)?,
-            Action::Info { path, segy } => Self::Info { path, segy: interpretation::segy_options(&segy)? },
+            Action::Info { path, segy } => Self::Info { path, segy: super::segy::segy_options(&segy)? },
             Action::Import(typed) => {
                 Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
             }

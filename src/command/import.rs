@@ -131,13 +131,11 @@ fn reading(info: &survey::segy::SegyInfo) -> String {
         (Some(x), Some(y)) => format!("X at {x}, Y at {y}"),
         _ => "no coordinates".to_owned(),
     };
-    format!(
-        "SEG-Y format code {}, inline at {}, crossline at {}, {place}, vertical in {}",
-        info.format_code,
-        bytes.inline,
-        bytes.crossline,
-        info.vertical_unit.symbol()
-    )
+    let lines = match (bytes.inline, bytes.crossline) {
+        (Some(inline), Some(crossline)) => format!("inline at {inline}, crossline at {crossline}"),
+        _ => "lines numbered by X and Y".to_owned(),
+    };
+    format!("SEG-Y format code {}, {lines}, {place}, vertical in {}", info.format_code, info.vertical_unit.symbol())
 }
 
 /// The value that most samples of live traces do not exceed in size; 1 where all are zero.

@@ -1,5 +1,6 @@
 //! What can be typed about volumes, horizons and faults.
 
+use super::SegyArgs;
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -17,41 +18,6 @@ pub(in crate::cli) struct ImportArgs {
     pub(in crate::cli) polarity: String,
     #[command(flatten)]
     pub(in crate::cli) segy: SegyArgs,
-}
-
-/// What the user states about a SEG-Y file.
-#[derive(Debug, Default, Args)]
-pub(in crate::cli) struct SegyArgs {
-    /// Trace header byte of the inline number
-    #[arg(long, value_name = "B")]
-    pub(in crate::cli) inline_byte: Option<u16>,
-    /// Trace header byte of the crossline number
-    #[arg(long, value_name = "B")]
-    pub(in crate::cli) crossline_byte: Option<u16>,
-    /// Trace header byte of X
-    #[arg(long, value_name = "B")]
-    pub(in crate::cli) x_byte: Option<u16>,
-    /// Trace header byte of Y
-    #[arg(long, value_name = "B")]
-    pub(in crate::cli) y_byte: Option<u16>,
-    /// Sample interval, in the vertical unit
-    #[arg(long, value_name = "STEP")]
-    pub(in crate::cli) interval: Option<f64>,
-    /// Value of the first sample, in the vertical unit
-    #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
-    pub(in crate::cli) start: Option<f64>,
-    /// Vertical unit: ms, m or ft
-    #[arg(long = "vertical-unit", value_name = "UNIT")]
-    pub(in crate::cli) vertical_unit: Option<String>,
-    /// Unit of X and Y: m or ft
-    #[arg(long, value_name = "UNIT")]
-    pub(in crate::cli) coordinate_unit: Option<String>,
-    /// Ignore X and Y: square bins of this size in metres, from 0, 0
-    #[arg(long = "bin", value_name = "M")]
-    pub(in crate::cli) bin_m: Option<f64>,
-    /// Trace weight at byte 169: apply or ignore [default: apply]
-    #[arg(long, value_name = "apply|ignore")]
-    pub(in crate::cli) trace_weight: Option<String>,
 }
 
 #[derive(Debug, Subcommand)]

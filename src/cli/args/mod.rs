@@ -4,14 +4,15 @@ mod interpretation;
 mod layer;
 mod output;
 mod scene;
+mod segy;
 
 pub(super) use interpretation::{
-    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, SegyArgs,
-    VolumeAction,
+    ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
 };
 pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, TextureArgs};
 pub(super) use output::{BenchArgs, DemoArgs, ParameterizeArgs, RenderArgs, SynthArgs};
 pub(super) use scene::{SceneAction, ViewArgs};
+pub(super) use segy::SegyArgs;
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -36,7 +37,9 @@ pub(super) enum Action {
     #[command(after_help = "Example:\n  petroglyph synth out/synth --size 128x128x128 --seed 7 --snr 3")]
     Synth(SynthArgs),
     /// Say what a file or project holds
-    #[command(after_help = "Example:\n  petroglyph info survey.sgy\n  petroglyph info north.petro --json")]
+    #[command(
+        after_help = "Example:\n  petroglyph info survey.sgy\n  petroglyph info survey.sgy --inline-byte 193 --crossline-byte 189\n  petroglyph info north.petro --json"
+    )]
     Info {
         /// SEG-Y file, or project folder
         path: PathBuf,

@@ -2,9 +2,12 @@
 //!
 //! Memory: 4 bytes a trace for a field that varies within a block of traces, none for a block in which it is constant.
 
+use std::borrow::Cow;
+
 use rayon::prelude::*;
 
-use super::header::{Field, Traces};
+use super::header::{Field, NumberType, Traces, reinterpret};
+use super::sample::ByteOrder;
 use crate::progress::{Cancelled, Progress};
 
 /// Headers of a block (240 bytes each) stay in the cache while its fields are read one after the other.
@@ -45,6 +48,13 @@ impl Column {
         (self.range[0] == self.range[1]).then_some(self.range[0])
     }
 
+    /// Of numbers that were worked out, not read.
+    pub fn of(values: &[i32]) -> Self {
+        let blocks: Vec<Block> = values.chunks(BLOCK).map(|values| Block::new(values.to_vec())).collect();
+        let range = values.iter().fold([i32::MAX, i32::MIN], |[low, high], &v| [low.min(v), high.max(v)]);
+        Self { blocks, count: values.len(), range }
+    }
+
     /// Whether every trace holds the same value in both.
     pub fn same_as(&self, other: &Self) -> bool {
         self.range == other.range && self.iter().eq(other.iter())
@@ -56,6 +66,8 @@ impl Column {
 pub(super) struct Columns {
     fields: Vec<Field>,
     columns: Vec<Column>,
+    order: ByteOrder,
+    header_bytes: usize,
     /// What stands for a field that was not asked for: 0 throughout.
     absent: Column,
 }
@@ -87,7 +99,46 @@ impl Columns {
             }
         }
         let absent = Column { blocks: vec![Block::Constant(0); count.div_ceil(BLOCK)], count, range: [0, 0] };
-        Ok(Self { fields: fields.to_vec(), columns, absent })
+        Ok(Self { fields: fields.to_vec(), columns, order: traces.order, header_bytes: traces.header_bytes, absent })
+    }
+
+    /// Traces in the file.
+    pub fn count(&self) -> usize {
+        self.absent.count
+    }
+
+    /// Line numbers of any type, from the field that was read for it, or from the 4-byte field that starts there.
+    pub fn numbers(&self, byte: u16, number_type: NumberType) -> Cow<'_, Column> {
+        match number_type {
+            NumberType::F64 => Cow::Borrowed(self.get(Field::F64(byte))),
+            NumberType::I32 => Cow::Borrowed(self.get(Field::I32(byte))),
+            NumberType::I16 if self.fields.contains(&Field::I16(byte)) => Cow::Borrowed(self.get(Field::I16(byte))),
+            NumberType::U16 if self.fields.contains(&Field::U16(byte)) => Cow::Borrowed(self.get(Field::U16(byte))),
+            _ => {
+                let values = self.get(Field::I32(byte)).iter().map(|v| reinterpret(v, number_type, self.order));
+                Cow::Owned(Column::of(&values.collect::<Vec<_>>()))
+            }
+        }
+    }
+
+    /// An IEEE float of 8 bytes, from the two 4-byte fields it is made of.
+    pub fn double(&self, byte: u16, trace: usize) -> f64 {
+        let [first, second] = [byte, byte + 4].map(|byte| self.get(Field::I32(byte)).at(trace).cast_unsigned());
+        let (high, low) = match self.order {
+            ByteOrder::Big => (first, second),
+            ByteOrder::Little => (second, first),
+        };
+        f64::from_bits(u64::from(high) << 32 | u64::from(low))
+    }
+
+    /// The number of another type that starts where a 4-byte field starts.
+    pub fn reinterpret(&self, field: i32, number_type: NumberType) -> i32 {
+        reinterpret(field, number_type, self.order)
+    }
+
+    /// Bytes of a trace header, extensions included.
+    pub fn header_bytes(&self) -> usize {
+        self.header_bytes
     }
 
     /// The column of a field that was read; zeros for one that was not.

@@ -5,14 +5,15 @@ use glam::DVec2;
 use super::SegyOptions;
 use super::columns::{Column, Columns};
 use super::error::SegyProblem;
-use super::header::{Field, at};
+use super::header::{Field, NumberType, at};
 use super::info::{Findings, GeometrySummary, LengthUnit};
 use super::lines::Lattice;
 use super::place::{MAX_RESIDUAL_BINS, Placement};
+use super::sample::f32_from_ibm;
 use super::vertical::scaled;
 
 /// Known homes of X and Y: CDP (the standard's), source, receiver.
-pub(super) const HOMES: [[u16; 2]; 3] = [[at::CDP_X, at::CDP_Y], [73, 77], [81, 85]];
+const HOMES: [[u16; 2]; 3] = [[at::CDP_X, at::CDP_Y], [73, 77], [81, 85]];
 
 /// Bin size where a file has no coordinates, m.
 const ASSUMED_BIN_M: f64 = 25.0;
@@ -23,48 +24,84 @@ const MAX_COORDINATE: f64 = 1e8;
 /// The cosine of the angle between the axes from which they are called skewed.
 const MAX_SKEW: f64 = 1e-3;
 
-/// How X and Y are stored.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Storage {
-    /// Integers with the scalar at byte 71, the standard's way.
-    Scaled,
-    /// IEEE floats without a scalar; some writers do so.
-    Float,
+/// What integers are multiplied by.
+#[derive(Debug, Clone, Copy)]
+enum Scalar<'a> {
+    /// The field of each trace.
+    OfTrace(&'a Column),
+    Stated(i16),
 }
 
-/// X and Y of every trace.
+impl Scalar<'_> {
+    fn at(self, trace: usize) -> i32 {
+        match self {
+            Self::OfTrace(column) => column.at(trace),
+            Self::Stated(scalar) => i32::from(scalar),
+        }
+    }
+
+    fn range(self) -> [i32; 2] {
+        match self {
+            Self::OfTrace(column) => column.range,
+            Self::Stated(scalar) => [i32::from(scalar); 2],
+        }
+    }
+}
+
+/// X and Y of every trace. Integers are scaled; floats are not, by usage and by revision 2.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Coordinates<'a> {
     pub bytes: [u16; 2],
-    pub storage: Storage,
+    pub number_type: NumberType,
+    columns: &'a Columns,
     x: &'a Column,
     y: &'a Column,
-    scalar: &'a Column,
+    scalar: Scalar<'a>,
 }
 
+/// X and Y at two bytes; the type if it is known.
+type Home = ([u16; 2], Option<NumberType>);
+
 impl<'a> Coordinates<'a> {
-    fn new(columns: &'a Columns, bytes: [u16; 2], storage: Storage) -> Self {
+    fn new(columns: &'a Columns, (bytes, number_type): Home, options: &SegyOptions) -> Self {
         let [x, y] = bytes.map(|byte| columns.get(Field::I32(byte)));
-        Self { bytes, storage, x, y, scalar: columns.get(Field::I16(at::COORDINATE_SCALAR)) }
+        let scalar = match options.coordinate_scalar {
+            Some(scalar) => Scalar::Stated(scalar),
+            None => Scalar::OfTrace(columns.get(Field::I16(scalar_byte(options)))),
+        };
+        let mut coordinates = Self { bytes, number_type: number_type.unwrap_or_default(), columns, x, y, scalar };
+        if number_type.is_none() && coordinates.look_like_floats() {
+            coordinates.number_type = NumberType::F32;
+        }
+        coordinates
     }
 
     /// X and Y of a trace; none if both are 0.
     pub fn of(&self, trace: usize) -> Option<DVec2> {
         let (x, y) = (self.x.at(trace), self.y.at(trace));
-        if (x, y) == (0, 0) {
-            return None;
-        }
-        let world = match self.storage {
-            Storage::Scaled => {
-                let scalar = self.scalar.at(trace);
-                DVec2::new(scaled(x, scalar), scaled(y, scalar))
+        let world = match self.number_type {
+            NumberType::F64 => {
+                let [x, y] = self.bytes.map(|byte| self.columns.double(byte, trace));
+                DVec2::new(x, y)
             }
-            Storage::Float => {
-                let float = |bits: i32| f64::from(f32::from_bits(bits.cast_unsigned()));
+            NumberType::F32 | NumberType::Ibm32 => {
+                let float = |field: i32| {
+                    let bits = field.cast_unsigned();
+                    f64::from(if self.number_type == NumberType::F32 {
+                        f32::from_bits(bits)
+                    } else {
+                        f32_from_ibm(bits)
+                    })
+                };
                 DVec2::new(float(x), float(y))
             }
+            NumberType::I32 | NumberType::I16 | NumberType::U16 => {
+                let scalar = self.scalar.at(trace);
+                let [x, y] = [x, y].map(|field| scaled(self.columns.reinterpret(field, self.number_type), scalar));
+                DVec2::new(x, y)
+            }
         };
-        world.is_finite().then_some(world)
+        (world.is_finite() && world != DVec2::ZERO).then_some(world)
     }
 
     /// Whether the integers are too large for places on Earth, and would be reasonable as floats. A fit cannot tell:
@@ -78,8 +115,47 @@ impl<'a> Coordinates<'a> {
 
     /// Whether X or Y varies.
     fn vary(&self) -> bool {
-        self.x.constant().is_none() || self.y.constant().is_none()
+        self.x.constant().is_none() || self.y.constant().is_none() || self.number_type == NumberType::F64
     }
+
+    /// How they are stored, for a list of evidence.
+    fn storage(&self) -> String {
+        match (self.number_type, self.scalar) {
+            (NumberType::F32 | NumberType::F64 | NumberType::Ibm32, _) => {
+                format!("floats ({})", self.number_type.name())
+            }
+            (_, Scalar::Stated(scalar)) => format!("scalar {scalar}, as stated"),
+            (_, Scalar::OfTrace(column)) if column.range[0] == column.range[1] => format!("scalar {}", column.range[0]),
+            (_, Scalar::OfTrace(column)) => format!("scalar {} to {}", column.range[0], column.range[1]),
+        }
+    }
+}
+
+/// Byte of the coordinate scalar.
+fn scalar_byte(options: &SegyOptions) -> u16 {
+    options.scalar_byte.unwrap_or(at::COORDINATE_SCALAR)
+}
+
+/// Fields that X and Y may need.
+pub(super) fn coordinate_fields(options: &SegyOptions, header_bytes: usize) -> Vec<Field> {
+    let mut fields = vec![Field::I16(scalar_byte(options))];
+    for (bytes, number_type) in homes(options, header_bytes) {
+        for byte in bytes {
+            fields.push(Field::I32(byte));
+            if number_type == Some(NumberType::F64) {
+                fields.push(Field::I32(byte + 4));
+            }
+        }
+    }
+    fields
+}
+
+/// The first X and Y that vary, whatever they make.
+pub(super) fn varying<'a>(columns: &'a Columns, options: &SegyOptions) -> Option<Coordinates<'a>> {
+    homes(options, columns.header_bytes())
+        .into_iter()
+        .map(|home| Coordinates::new(columns, home, options))
+        .find(|coordinates| coordinates.vary() && (0..columns.count()).any(|trace| coordinates.of(trace).is_some()))
 }
 
 /// The first home and storage whose X and Y are affine in the lattice; failing that, the first that spans an area.
@@ -90,12 +166,11 @@ pub(super) fn locate<'a>(
     columns: &'a Columns,
     options: &SegyOptions,
 ) -> Option<(Coordinates<'a>, Placement)> {
-    let homes = homes(options).into_iter().filter(|bytes| !bytes.iter().any(|byte| lines.contains(byte)));
+    let homes = homes(options, columns.header_bytes());
     let mut fits = homes
-        .map(|bytes| {
-            let scaled = Coordinates::new(columns, bytes, Storage::Scaled);
-            if scaled.look_like_floats() { Coordinates { storage: Storage::Float, ..scaled } } else { scaled }
-        })
+        .into_iter()
+        .filter(|(bytes, _)| !bytes.iter().any(|byte| lines.contains(byte)))
+        .map(|home| Coordinates::new(columns, home, options))
         .filter(Coordinates::vary)
         .filter_map(|coordinates| Some((coordinates, Placement::fit(lattice, |trace| coordinates.of(trace))?)));
     let first = fits.next()?;
@@ -106,11 +181,22 @@ pub(super) fn locate<'a>(
 }
 
 /// Bytes at which X and Y are looked for.
-fn homes(options: &SegyOptions) -> Vec<[u16; 2]> {
+fn homes(options: &SegyOptions, header_bytes: usize) -> Vec<Home> {
+    let stated = options.coordinate_type;
     match (options.bin_m, options.x_byte, options.y_byte) {
         (Some(_), ..) => Vec::new(),
-        (None, None, None) => HOMES.to_vec(),
-        (None, x, y) => vec![[x.unwrap_or(at::CDP_X), y.unwrap_or(at::CDP_Y)]],
+        (None, None, None) => {
+            let [_, extended_y] = at::EXTENDED_CDP;
+            let has_extension = header_bytes >= usize::from(extended_y) + 7 && stated.is_none();
+            let extended = has_extension.then_some((at::EXTENDED_CDP, Some(NumberType::F64)));
+            let usual = HOMES.into_iter().map(|bytes| (bytes, stated));
+            // The standard's two places first.
+            let (mut homes, rest): (Vec<Home>, Vec<Home>) = usual.partition(|(bytes, _)| bytes[0] == at::CDP_X);
+            homes.extend(extended);
+            homes.extend(rest);
+            homes
+        }
+        (None, x, y) => vec![([x.unwrap_or(at::CDP_X), y.unwrap_or(at::CDP_Y)], stated)],
     }
 }
 
@@ -135,9 +221,9 @@ impl Place {
         let Some((coordinates, fit)) = locate(lattice, lines, columns, options) else {
             return Ok(Self::assumed(lattice, columns, unit, options, findings));
         };
-        let codes = columns.get(Field::I16(at::COORDINATE_UNIT)).range;
-        codes.into_iter().try_for_each(refuse_angles)?;
-        note_fit(&coordinates, &fit, unit, findings);
+        columns.get(Field::I16(at::COORDINATE_UNIT)).iter().try_for_each(refuse_angles)?;
+        note_unknown_units(columns.get(Field::I16(at::COORDINATE_UNIT)), findings);
+        note_fit(&coordinates, &fit, unit, options, findings);
         Ok(Self {
             bytes: Some(coordinates.bytes),
             summary: GeometrySummary {
@@ -158,7 +244,7 @@ impl Place {
         findings: &mut Findings,
     ) -> Self {
         let bin = options.bin_m.unwrap_or(ASSUMED_BIN_M) / unit.metres();
-        let homes = homes(options);
+        let homes = homes(options, columns.header_bytes());
         let mut place = Self {
             bytes: None,
             summary: GeometrySummary {
@@ -173,14 +259,14 @@ impl Place {
             findings.evidence(format!("place: square bins of {bin_m} m at 0, 0, as stated"));
         } else if lattice.places() == 1
             && let Some((bytes, world)) =
-                homes.iter().find_map(|&bytes| Some((bytes, Coordinates::new(columns, bytes, Storage::Scaled).of(0)?)))
+                homes.iter().find_map(|&home| Some((home.0, Coordinates::new(columns, home, options).of(0)?)))
         {
             place.bytes = Some(bytes);
             place.summary.origin = world.to_array();
         } else {
             findings.assumption(format!(
                 "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y that span an area were found at bytes {} (--x-byte and --y-byte, or --bin, state otherwise)",
-                homes.iter().map(|[x, y]| format!("{x} and {y}")).collect::<Vec<_>>().join(", ")
+                homes.iter().map(|([x, y], _)| format!("{x} and {y}")).collect::<Vec<_>>().join(", ")
             ));
         }
         place
@@ -197,13 +283,25 @@ fn refuse_angles(code: i32) -> Result<(), SegyProblem> {
     Err(SegyProblem::AngularCoordinates { code: code as i16, unit })
 }
 
-fn note_fit(coordinates: &Coordinates<'_>, fit: &Placement, unit: LengthUnit, findings: &mut Findings) {
-    let [low, high] = coordinates.scalar.range;
-    let scalar = match (coordinates.storage, low == high) {
-        (Storage::Scaled, true) => format!("scalar {low}"),
-        (Storage::Scaled, false) => format!("scalar {low} to {high}"),
-        (Storage::Float, _) => "IEEE floats".to_owned(),
-    };
+/// Codes that the standard does not have.
+fn note_unknown_units(codes: &Column, findings: &mut Findings) {
+    if let Some(code) = codes.iter().find(|code| !(0..=1).contains(code)) {
+        findings.warning(format!(
+            "byte 89 holds {code}, which is no unit of coordinates (1 is length); X and Y are taken as lengths"
+        ));
+    }
+}
+
+fn note_fit(
+    coordinates: &Coordinates<'_>,
+    fit: &Placement,
+    unit: LengthUnit,
+    options: &SegyOptions,
+    findings: &mut Findings,
+) {
+    let is_found = options.coordinate_type.is_none();
+    let [low, high] = coordinates.scalar.range();
+    let scalar = coordinates.storage();
     findings.evidence(format!(
         "place: X at byte {} and Y at byte {}, {scalar}; bins of {:.2} by {:.2} {}; X and Y of {} traces lie within {:.3} bin of the lattice (root mean square)",
         coordinates.bytes[0],
@@ -214,15 +312,20 @@ fn note_fit(coordinates: &Coordinates<'_>, fit: &Placement, unit: LengthUnit, fi
         fit.traces,
         fit.rms_bins
     ));
-    if coordinates.storage == Storage::Float {
-        findings.assumption(
-            "X and Y are IEEE floats without a scalar: as the integers that the standard has, they are no places on Earth".to_owned(),
-        );
-    } else if low != high {
+    let is_float = matches!(coordinates.number_type, NumberType::F32 | NumberType::F64 | NumberType::Ibm32);
+    if is_float && is_found {
+        findings.assumption(format!(
+            "X and Y are IEEE floats without a scalar{} (--coordinate-type i32, f32, f64 or ibm32 states another type)",
+            match coordinates.number_type {
+                NumberType::F32 => ": as the integers that the standard has, they are no places on Earth",
+                _ => ", in the trace header extension of revision 2",
+            }
+        ));
+    } else if !is_float && low != high {
         findings.warning(format!(
             "the coordinate scalar (byte 71) differs between traces, {low} to {high}; each trace's own is used"
         ));
-    } else if !matches!(low.abs(), 0 | 1 | 10 | 100 | 1000 | 10_000) {
+    } else if !is_float && !matches!(low.abs(), 0 | 1 | 10 | 100 | 1000 | 10_000) {
         findings.warning(format!("the coordinate scalar (byte 71) is {low}, which is no power of ten; it is applied"));
     }
     if fit.outliers > 0 {

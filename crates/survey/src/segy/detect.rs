@@ -6,15 +6,19 @@
 //! is an error that lists the readings. Which of two axes is called inline cannot be seen in a file: the convention of
 //! the pair decides, and the swapped reading is shown beside it.
 
+use std::borrow::Cow;
+
 use serde::Serialize;
 
 use super::SegyOptions;
+use super::bins::{self, Bins};
 use super::columns::{Column, Columns};
-use super::coordinates::{HOMES, locate};
+use super::coordinates::{coordinate_fields, locate};
 use super::error::SegyProblem;
-use super::header::{Field, at};
+use super::header::{Field, NO_INTEGER, NumberType, at};
 use super::info::{Findings, LineSummary};
 use super::lines::{Flaw, Lattice};
+use super::options::LineSource;
 use super::refuse;
 
 /// Known homes of inline and crossline numbers.
@@ -26,9 +30,19 @@ const CONVENTIONS: [(u16, u16, &str); 5] = [
     (221, 225, "header extension"),
 ];
 
+/// What a pair of bytes is called that the user stated.
+const STATED: &str = "stated";
+
 /// Fields that may hold line numbers outside the conventions. Not among them: trace counters (1, 5, 13), which make a
 /// lattice of any regular file, and coordinates.
 const OTHER_LINE_FIELDS: [u16; 15] = [9, 17, 21, 25, 189, 193, 197, 205, 209, 213, 217, 221, 225, 229, 233];
+
+/// Other types of number that writers use, and pairs of 2-byte fields.
+const OTHER_TYPES: [NumberType; 4] = [NumberType::I16, NumberType::U16, NumberType::F32, NumberType::Ibm32];
+const NARROW_PAIRS: [(u16, u16); 2] = [(189, 191), (181, 183)];
+
+/// No survey counts so far; the bits of floats, read as integers, do.
+const MAX_LINE_NUMBER: u32 = 100_000_000;
 
 /// Repeated places beyond this share mean that the file is no post-stack volume, or the bytes no line numbers.
 const MAX_DUPLICATES: f64 = 0.1;
@@ -50,6 +64,8 @@ pub enum Verdict {
     ConstantInline(i32),
     /// The crossline number is constant.
     ConstantCrossline(i32),
+    /// The numbers are too large for lines.
+    TooLarge,
     /// Too many places are empty.
     Scattered,
     /// Many traces repeat the numbers of another one.
@@ -67,6 +83,8 @@ pub struct Candidate {
     pub inline_byte: u16,
     /// Byte of the crossline number.
     pub crossline_byte: u16,
+    /// How both are stored.
+    pub number_type: NumberType,
     /// Who writes it so; empty if no convention known here does.
     pub convention: &'static str,
     /// What it is.
@@ -92,6 +110,7 @@ impl Candidate {
             (Verdict::AllZero, ..) => "all zero".to_owned(),
             (Verdict::ConstantInline(number), ..) => format!("the inline number is {number} throughout"),
             (Verdict::ConstantCrossline(number), ..) => format!("the crossline number is {number} throughout"),
+            (Verdict::TooLarge, ..) => "numbers too large for lines".to_owned(),
             (Verdict::Scattered, ..) => "numbers too scattered for lines".to_owned(),
             (Verdict::Diagonal, ..) => "both numbers are different in every trace".to_owned(),
             (Verdict::Counter, ..) => "one number is different in every trace, and counts traces".to_owned(),
@@ -108,16 +127,22 @@ impl Candidate {
             }
             _ => "nothing".to_owned(),
         };
-        format!("bytes {} and {}: {found}", self.inline_byte, self.crossline_byte)
+        format!("bytes {} and {}{}: {found}", self.inline_byte, self.crossline_byte, self.in_type(" as "))
+    }
+
+    /// The type of the numbers behind `words`; nothing for the standard's.
+    fn in_type(&self, words: &str) -> String {
+        if self.number_type == NumberType::I32 { String::new() } else { format!("{words}{}", self.number_type.name()) }
     }
 
     /// The options that choose it, and what it gives.
     pub fn as_choice(&self) -> String {
         let size = |lines: &Option<LineSummary>| lines.map_or_else(String::new, |l| format!("{} ({l})", l.count));
         format!(
-            "--inline-byte {} --crossline-byte {} for {} inlines and {} crosslines",
+            "--inline-byte {} --crossline-byte {}{} for {} inlines and {} crosslines",
             self.inline_byte,
             self.crossline_byte,
+            self.in_type(" --line-type "),
             size(&self.inlines),
             size(&self.crosslines)
         )
@@ -142,22 +167,35 @@ impl Candidate {
 /// The reading that was chosen.
 #[derive(Debug)]
 pub(super) struct Detected {
-    pub inline_byte: u16,
-    pub crossline_byte: u16,
+    /// Bytes of the line numbers; none if X and Y number the lines.
+    pub bytes: Option<[u16; 2]>,
     pub lattice: Lattice,
     pub candidates: Vec<Candidate>,
 }
 
-/// 4-byte fields that detection looks at.
-pub(super) fn fields(options: &SegyOptions) -> Vec<Field> {
+/// Fields that detection looks at.
+pub(super) fn fields(options: &SegyOptions, header_bytes: usize) -> Vec<Field> {
     let conventions = CONVENTIONS.iter().flat_map(|&(inline, crossline, _)| [inline, crossline]);
-    let coordinates = HOMES.into_iter().flatten();
-    let stated = [options.inline_byte, options.crossline_byte, options.x_byte, options.y_byte];
-    let mut bytes: Vec<u16> =
-        conventions.chain(OTHER_LINE_FIELDS).chain(coordinates).chain(stated.into_iter().flatten()).collect();
+    let narrow = NARROW_PAIRS.into_iter().flat_map(|(inline, crossline)| [inline, crossline]);
+    let mut bytes: Vec<u16> = conventions.chain(narrow).chain(OTHER_LINE_FIELDS).collect();
+    let stated = [options.inline_byte, options.crossline_byte].into_iter().flatten();
+    let mut fields = coordinate_fields(options, header_bytes);
+    match options.line_type {
+        Some(NumberType::F64) => fields.extend(stated.map(Field::F64)),
+        Some(NumberType::I16) => fields.extend(stated.map(Field::I16)),
+        Some(NumberType::U16) => fields.extend(stated.map(Field::U16)),
+        _ => bytes.extend(stated),
+    }
     bytes.sort_unstable();
     bytes.dedup();
-    bytes.into_iter().map(Field::I32).collect()
+    fields.extend(bytes.into_iter().map(Field::I32));
+    let mut once: Vec<Field> = Vec::with_capacity(fields.len());
+    for field in fields {
+        if !once.contains(&field) {
+            once.push(field);
+        }
+    }
+    once
 }
 
 /// Finds the line numbers.
@@ -167,16 +205,23 @@ pub(super) fn detect(
     findings: &mut Findings,
 ) -> Result<Detected, SegyProblem> {
     let search = Search { columns, options };
+    if options.line_source != LineSource::Headers {
+        return match bins::find(columns, options, bins::MIN_FILL_STATED) {
+            Ok(bins) => search.by_coordinates(bins, Vec::new(), findings),
+            Err(reason) => Err(SegyProblem::NoLattice { reason, tried: Vec::new() }),
+        };
+    }
     if let (Some(inline), Some(crossline)) = (options.inline_byte, options.crossline_byte) {
         return search.stated(inline, crossline, findings);
     }
     let is_open = |stated: Option<u16>, byte: u16| stated.is_none_or(|stated| stated == byte);
+    let number_type = options.line_type.unwrap_or_default();
     let candidates: Vec<Candidate> = CONVENTIONS
         .iter()
         .filter(|(i, x, _)| is_open(options.inline_byte, *i) && is_open(options.crossline_byte, *x))
-        .map(|&(inline, crossline, convention)| search.evaluate(inline, crossline, convention, MIN_FILL))
+        .map(|&(inline, crossline, convention)| search.evaluate([inline, crossline], number_type, convention, MIN_FILL))
         .collect();
-    refuse::pre_stack(columns, &candidates)?;
+    refuse::pre_stack(columns, options, &candidates)?;
     let standard = candidates.iter().find(|c| c.inline_byte == at::INLINE && c.crossline_byte == at::CROSSLINE);
     if let Some(standard) = standard.filter(|c| c.fits()) {
         let chosen = standard.clone();
@@ -209,11 +254,27 @@ impl Search<'_> {
         self.columns.get(Field::I32(byte))
     }
 
-    fn evaluate(&self, inline_byte: u16, crossline_byte: u16, convention: &'static str, min_fill: f64) -> Candidate {
-        let (inline, crossline) = (self.column(inline_byte), self.column(crossline_byte));
+    /// Inline and crossline numbers of a candidate.
+    fn numbers(&self, candidate: &Candidate) -> [Cow<'_, Column>; 2] {
+        [candidate.inline_byte, candidate.crossline_byte].map(|byte| self.columns.numbers(byte, candidate.number_type))
+    }
+
+    fn are_same(&self, a: &Candidate, b: &Candidate) -> bool {
+        let ([a_inline, a_crossline], [b_inline, b_crossline]) = (self.numbers(a), self.numbers(b));
+        a_inline.same_as(&b_inline) && a_crossline.same_as(&b_crossline)
+    }
+
+    fn evaluate(
+        &self,
+        [inline_byte, crossline_byte]: [u16; 2],
+        number_type: NumberType,
+        convention: &'static str,
+        min_fill: f64,
+    ) -> Candidate {
         let mut candidate = Candidate {
             inline_byte,
             crossline_byte,
+            number_type,
             convention,
             verdict: Verdict::Scattered,
             inlines: None,
@@ -223,7 +284,8 @@ impl Search<'_> {
             residual_bins: None,
             score: 0.0,
         };
-        let lattice = match Lattice::build(inline, crossline) {
+        let [inline, crossline] = self.numbers(&candidate);
+        let lattice = match Lattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default()) {
             Ok(lattice) => lattice,
             Err(flaw) => {
                 candidate.verdict = match flaw {
@@ -250,7 +312,10 @@ impl Search<'_> {
         };
         candidate.score = candidate.filled * (1.0 - candidate.repeated) * agreement;
         let [inlines, crosslines] = lattice.occupied_lines();
-        candidate.verdict = if candidate.repeated > MAX_DUPLICATES {
+        let is_large = |column: &Column| column.range.iter().all(|number| number.unsigned_abs() > MAX_LINE_NUMBER);
+        candidate.verdict = if convention != STATED && (is_large(&inline) || is_large(&crossline)) {
+            Verdict::TooLarge
+        } else if candidate.repeated > MAX_DUPLICATES && self.options.duplicates.is_none() {
             Verdict::Repeated
         } else if inlines.min(crosslines) == filled {
             Verdict::Diagonal
@@ -267,14 +332,15 @@ impl Search<'_> {
     }
 
     fn stated(&self, inline: u16, crossline: u16, findings: &mut Findings) -> Result<Detected, SegyProblem> {
-        let chosen = self.evaluate(inline, crossline, "stated", 0.0);
+        let number_type = self.options.line_type.unwrap_or_default();
+        let chosen = self.evaluate([inline, crossline], number_type, STATED, 0.0);
         let others = || {
             CONVENTIONS
                 .iter()
                 .filter(|(i, x, _)| (*i, *x) != (inline, crossline))
-                .map(|&(i, x, convention)| self.evaluate(i, x, convention, MIN_FILL))
+                .map(|&(i, x, convention)| self.evaluate([i, x], NumberType::I32, convention, MIN_FILL))
         };
-        refuse::pre_stack(self.columns, std::slice::from_ref(&chosen))?;
+        refuse::pre_stack(self.columns, self.options, std::slice::from_ref(&chosen))?;
         match chosen.verdict {
             Verdict::Fits | Verdict::ContradictsCoordinates => {
                 let candidates = std::iter::once(chosen.clone()).chain(others()).collect();
@@ -294,7 +360,8 @@ impl Search<'_> {
         mut candidates: Vec<Candidate>,
         findings: &mut Findings,
     ) -> Result<Detected, SegyProblem> {
-        let lattice = Lattice::build(self.column(chosen.inline_byte), self.column(chosen.crossline_byte))
+        let [inline, crossline] = self.numbers(chosen);
+        let lattice = Lattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default())
             .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
         findings.evidence(format!("line numbers: {} ({})", chosen.as_sentence(), chosen.convention));
         findings.evidence(format!(
@@ -303,27 +370,63 @@ impl Search<'_> {
             chosen.swapped().as_choice()
         ));
         for other in candidates.iter().filter(|c| c.fits() && *c != chosen) {
-            let is_same = self.column(other.inline_byte).same_as(self.column(chosen.inline_byte))
-                && self.column(other.crossline_byte).same_as(self.column(chosen.crossline_byte));
-            findings.evidence(if is_same {
+            findings.evidence(if self.are_same(other, chosen) {
                 format!("bytes {} and {} hold the same numbers", other.inline_byte, other.crossline_byte)
             } else {
                 format!("another reading fits too: {}", other.as_choice())
             });
         }
         candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
-        Ok(Detected { inline_byte: chosen.inline_byte, crossline_byte: chosen.crossline_byte, lattice, candidates })
+        Ok(Detected { bytes: Some([chosen.inline_byte, chosen.crossline_byte]), lattice, candidates })
+    }
+
+    /// The lattice of X and Y, where no header numbers lines or the user wants it.
+    fn by_coordinates(
+        &self,
+        bins: Bins,
+        mut candidates: Vec<Candidate>,
+        findings: &mut Findings,
+    ) -> Result<Detected, SegyProblem> {
+        let [inline, crossline] = match self.options.line_source {
+            LineSource::CoordinatesSwapped => [&bins.along_crossline, &bins.along_inline],
+            _ => [&bins.along_inline, &bins.along_crossline],
+        };
+        let kept = self.options.duplicates.unwrap_or_default();
+        let lattice = Lattice::place(inline, crossline, Some((NO_INTEGER, NO_INTEGER)), kept)
+            .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
+        let repeated = lattice.duplicates as f64 / (lattice.duplicates + lattice.filled()) as f64;
+        if repeated > MAX_DUPLICATES && self.options.duplicates.is_none() {
+            return Err(SegyProblem::PreStack { evidence: refuse::repeated_places(self.columns, &lattice) });
+        }
+        let why = match self.options.line_source {
+            LineSource::Headers => "no trace header bytes hold line numbers: ",
+            _ => "as stated, ",
+        };
+        let note = format!(
+            "{why}lines are numbered from 1 along the lattice of X and Y (bytes {} and {}), which {}; {} (--line-numbers coordinates-swapped exchanges them, --inline-byte and --crossline-byte state others)",
+            bins.bytes[0],
+            bins.bytes[1],
+            bins.fit,
+            if bins.is_in_order {
+                "traces follow one another along inlines"
+            } else {
+                "the order of the traces does not tell which axis is the inline"
+            },
+        );
+        if self.options.line_source == LineSource::Headers {
+            findings.assumption(note);
+        } else {
+            findings.evidence(note);
+        }
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        Ok(Detected { bytes: None, lattice, candidates })
     }
 
     /// One of each set of candidates that hold the same numbers.
     fn distinct<'c>(&self, candidates: impl Iterator<Item = &'c Candidate>) -> Vec<Candidate> {
         let mut distinct: Vec<Candidate> = Vec::new();
         for candidate in candidates {
-            let is_known = distinct.iter().any(|known| {
-                self.column(known.inline_byte).same_as(self.column(candidate.inline_byte))
-                    && self.column(known.crossline_byte).same_as(self.column(candidate.crossline_byte))
-            });
-            if !is_known {
+            if !distinct.iter().any(|known| self.are_same(known, candidate)) {
                 distinct.push(candidate.clone());
             }
         }
@@ -347,27 +450,63 @@ impl Search<'_> {
         };
         let fitting: Vec<Candidate> = pairs
             .into_iter()
-            .map(|(inline, crossline)| self.evaluate(inline, crossline, "", MIN_FILL_UNKNOWN))
+            .map(|(inline, crossline)| {
+                self.evaluate([inline, crossline], self.options.line_type.unwrap_or_default(), "", MIN_FILL_UNKNOWN)
+            })
             .filter(Candidate::fits)
             .collect();
+        let fitting = if fitting.is_empty() { self.in_other_types() } else { fitting };
         let mut readings = self.distinct(fitting.iter());
         if inline.is_none() && crossline.is_none() {
-            readings = readings.iter().flat_map(|reading| [reading.clone(), reading.swapped()]).collect();
+            let both = |reading: &Candidate| match reading.convention {
+                "" => vec![reading.clone(), reading.swapped()],
+                _ => vec![reading.clone()],
+            };
+            readings = readings.iter().flat_map(both).collect();
         }
         // Lines that X and Y contradict are still lines, if nothing else is there: coordinates may be wrong.
         let contradicted = candidates.iter().find(|c| c.verdict == Verdict::ContradictsCoordinates).cloned();
         readings.splice(0..0, contradicted);
         match readings.as_slice() {
-            [] => {
-                refuse::two_dimensional(self.columns, &candidates)?;
-                Err(SegyProblem::NoLineNumbers { tried: candidates })
-            }
+            [] => match bins::find(self.columns, self.options, MIN_FILL_UNKNOWN) {
+                Ok(bins) => self.by_coordinates(bins, candidates, findings),
+                Err(reason) => {
+                    refuse::two_dimensional(self.columns, &candidates)?;
+                    Err(if reason.is_empty() {
+                        SegyProblem::NoLineNumbers { tried: candidates }
+                    } else {
+                        SegyProblem::NoLattice { reason, tried: candidates }
+                    })
+                }
+            },
             [only] => {
                 let chosen = only.clone();
-                let candidates = if chosen.convention.is_empty() { readings } else { candidates };
+                let is_usual = !chosen.convention.is_empty() && chosen.number_type == NumberType::I32;
+                let candidates = if is_usual { candidates } else { readings };
                 self.choose(&chosen, candidates, findings)
             }
             _ => Err(SegyProblem::AmbiguousLines { readings }),
         }
+    }
+
+    /// The conventions' fields read as 2-byte integers and floats.
+    fn in_other_types(&self) -> Vec<Candidate> {
+        if self.options.line_type.is_some() {
+            return Vec::new();
+        }
+        let is_open = |stated: Option<u16>, byte: u16| stated.is_none_or(|stated| stated == byte);
+        let pairs = CONVENTIONS.iter().copied().chain(NARROW_PAIRS.map(|(i, x)| (i, x, "2-byte fields")));
+        let open: Vec<(u16, u16, &'static str)> = pairs
+            .filter(|(i, x, _)| is_open(self.options.inline_byte, *i) && is_open(self.options.crossline_byte, *x))
+            .collect();
+        let candidates = OTHER_TYPES.into_iter().flat_map(|number_type| {
+            open.iter().map(move |&(inline, crossline, convention)| (inline, crossline, number_type, convention))
+        });
+        candidates
+            .map(|(inline, crossline, number_type, convention)| {
+                self.evaluate([inline, crossline], number_type, convention, MIN_FILL)
+            })
+            .filter(Candidate::fits)
+            .collect()
     }
 }

@@ -126,7 +126,7 @@ pub enum SegyProblem {
         /// What was given.
         found: String,
         /// What would do.
-        expected: &'static str,
+        expected: String,
     },
     /// Coordinates are angles.
     #[error(
@@ -164,9 +164,20 @@ pub enum SegyProblem {
         /// The pairs that were looked at.
         tried: Vec<Candidate>,
     },
+    /// No header bytes hold line numbers, and X and Y make no lattice either.
+    #[error(
+        "no trace header bytes hold usable inline and crossline numbers{}, and X and Y make no lattice that could be numbered: {reason}; state where the numbers are (--inline-byte, --crossline-byte, --line-type)",
+        if tried.is_empty() { String::new() } else { format!(" ({})", list(tried)) }
+    )]
+    NoLattice {
+        /// What is wrong with the lattice.
+        reason: String,
+        /// The pairs that were looked at.
+        tried: Vec<Candidate>,
+    },
     /// More than one reading, and nothing to decide by.
     #[error(
-        "inline and crossline numbers can be read in {} ways: {}; choose one by stating --inline-byte and --crossline-byte",
+        "inline and crossline numbers can be read in {} ways: {}; choose one by stating its options",
         readings.len(),
         readings.iter().map(Candidate::as_choice).collect::<Vec<_>>().join("; or ")
     )]

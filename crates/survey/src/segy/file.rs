@@ -12,10 +12,10 @@ use super::detect::{Detected, detect, fields};
 use super::error::{SegyError, SegyProblem};
 use super::frame::Frame;
 use super::header::{Field, Traces, at};
-use super::info::{BytePositions, Findings, SegyInfo};
+use super::info::{BytePositions, Findings, SegyInfo, corners};
 use super::lines::{Flaw, Lattice, NO_TRACE};
+use super::options::{KeptDuplicate, SegyOptions, TraceWeight};
 use super::vertical::{Vertical, coordinate_unit, note_coordinate_unit};
-use super::{SegyOptions, TraceWeight};
 use crate::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
 use crate::progress::Progress;
 
@@ -28,15 +28,16 @@ const MAX_WEIGHT: i32 = 50;
 #[derive(Debug)]
 pub struct SegyFile {
     pub(super) path: PathBuf,
-    map: Mmap,
+    bytes: Bytes,
     frame: Frame,
     info: SegyInfo,
     geometry: SurveyGeometry,
     lattice: Lattice,
     dead: Vec<bool>,
     shifts: Option<Vec<u32>>,
-    /// Trace weighting factors that apply.
+    /// Trace weighting factors N that apply, by 2^(`factor_2`·N).
     weights: Option<Column>,
+    factor_2: i32,
 }
 
 impl SegyFile {
@@ -45,7 +46,21 @@ impl SegyFile {
     /// # Errors
     /// [`SegyError`] when the file is not a post-stack 3D volume.
     pub fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<Self, SegyError> {
-        open(path, options, progress).map_err(|problem| problem.in_file(path))
+        let opened = map(path).and_then(|map| understand(path, Bytes::Mapped(map), options, progress));
+        opened.map_err(|problem| problem.in_file(path))
+    }
+
+    /// Understands a file that is held in memory; `path` is named in errors.
+    ///
+    /// # Errors
+    /// As [`SegyFile::open`].
+    pub fn from_bytes(
+        path: &Path,
+        bytes: Vec<u8>,
+        options: &SegyOptions,
+        progress: &Progress,
+    ) -> Result<Self, SegyError> {
+        understand(path, Bytes::Held(bytes), options, progress).map_err(|problem| problem.in_file(path))
     }
 
     /// What the file holds.
@@ -68,6 +83,11 @@ impl SegyFile {
     /// `[inlines, crosslines, samples]`.
     pub fn size(&self) -> [usize; 3] {
         self.geometry.size()
+    }
+
+    /// Places of the lattice.
+    pub(super) fn places(&self) -> usize {
+        self.lattice.places()
     }
 
     /// Whether a trace that is not flagged dead stands at inline index `x`, crossline index `y`.
@@ -98,7 +118,7 @@ impl SegyFile {
         if let Some(weights) = &self.weights
             && (1..=MAX_WEIGHT).contains(&weights.at(trace).abs())
         {
-            let factor = 2.0_f32.powi(weights.at(trace));
+            let factor = 2.0_f32.powi(self.factor_2 * weights.at(trace));
             values.iter_mut().for_each(|value| *value *= factor);
         }
         let non_finite = values.iter().filter(|value| !value.is_finite()).count();
@@ -109,17 +129,35 @@ impl SegyFile {
     }
 
     fn traces(&self) -> Traces<'_> {
-        self.frame.traces(&self.map)
+        self.frame.traces(&self.bytes)
     }
 }
 
-fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyFile, SegyProblem> {
-    check_bytes(options)?;
-    let map = map(path)?;
+/// Where the bytes of a file are.
+#[derive(Debug)]
+enum Bytes {
+    Mapped(Mmap),
+    Held(Vec<u8>),
+}
+
+impl std::ops::Deref for Bytes {
+    type Target = [u8];
+
+    fn deref(&self) -> &[u8] {
+        match self {
+            Self::Mapped(map) => map,
+            Self::Held(bytes) => bytes,
+        }
+    }
+}
+
+fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progress) -> Result<SegyFile, SegyProblem> {
+    check_options(options)?;
     let mut findings = Findings::default();
-    let frame = Frame::read(&map, options, &mut findings)?;
-    let traces = frame.traces(&map);
-    let mut wanted = fields(options);
+    let frame = Frame::read(&bytes, options, &mut findings)?;
+    check_bytes(options, frame.header_bytes)?;
+    let traces = frame.traces(&bytes);
+    let mut wanted = fields(options, frame.header_bytes);
     wanted.push(Field::I32(at::TRACE_IN_RECORD));
     wanted.push(Field::I32(at::OFFSET));
     wanted.push(Field::U16(at::INTERVAL));
@@ -134,13 +172,15 @@ fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyF
         if count == 1 { single_trace(&columns, options)? } else { detect(&columns, options, &mut findings)? };
     let vertical = Vertical::find(&frame, &columns, &dead, options, &mut findings)?;
     let unit = coordinate_unit(&frame, options);
-    let lines = [detected.inline_byte, detected.crossline_byte];
+    // Coordinates may number the lines, but line numbers are no coordinates.
+    let lines = detected.bytes.unwrap_or_default();
     let place = Place::find(&detected.lattice, lines, &columns, unit, options, &mut findings)?;
     if place.bytes.is_some() {
         note_coordinate_unit(&frame, options, &mut findings);
     }
-    note_lattice(&detected.lattice, &mut findings);
+    note_lattice(&detected, options, &mut findings);
     let weights = weights(&columns, options, &mut findings);
+    let factor_2 = if options.trace_weight == TraceWeight::Inverse { 1 } else { -1 };
 
     let lattice = detected.lattice;
     let metres = unit.metres();
@@ -156,7 +196,7 @@ fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyF
     let (major, minor) = frame.binary.revision;
     let info = SegyInfo {
         file: path.to_owned(),
-        bytes: map.len() as u64,
+        bytes: bytes.len() as u64,
         inlines: lattice.inlines.into(),
         crosslines: lattice.crosslines.into(),
         samples: vertical.samples,
@@ -171,14 +211,15 @@ fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyF
         duplicate_traces: lattice.duplicates,
         sorted_by: if lattice.inline_sorted { "inline" } else { "crossline" },
         byte_positions: BytePositions {
-            inline: detected.inline_byte,
-            crossline: detected.crossline_byte,
+            inline: detected.bytes.map(|bytes| bytes[0]),
+            crossline: detected.bytes.map(|bytes| bytes[1]),
             x: place.bytes.map(|bytes| bytes[0]),
             y: place.bytes.map(|bytes| bytes[1]),
         },
         coordinate_unit: unit,
         coordinate_scalar: columns.get(Field::I16(at::COORDINATE_SCALAR)).range,
         geometry: place.summary,
+        corners: corners(&lattice.inlines, &lattice.crosslines, &place.summary),
         revision: format!("{major}.{minor}"),
         byte_order: frame.order,
         polarity_code: frame.binary.polarity,
@@ -190,28 +231,57 @@ fn open(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyF
         assumptions: findings.assumptions,
         warnings: findings.warnings,
     };
-    Ok(SegyFile { path: path.to_owned(), map, frame, info, geometry, lattice, dead, shifts: vertical.shifts, weights })
+    Ok(SegyFile {
+        path: path.to_owned(),
+        bytes,
+        frame,
+        info,
+        geometry,
+        lattice,
+        dead,
+        shifts: vertical.shifts,
+        weights,
+        factor_2,
+    })
 }
 
-fn check_bytes(options: &SegyOptions) -> Result<(), SegyProblem> {
-    for (option, byte) in [
-        ("--inline-byte", options.inline_byte),
-        ("--crossline-byte", options.crossline_byte),
-        ("--x-byte", options.x_byte),
-        ("--y-byte", options.y_byte),
+/// Whether the stated bytes lie in a trace header of that length.
+fn check_bytes(options: &SegyOptions, header_bytes: usize) -> Result<(), SegyProblem> {
+    let line = options.line_type.unwrap_or_default().bytes();
+    let coordinate = options.coordinate_type.unwrap_or_default().bytes();
+    for (option, byte, length) in [
+        ("--inline-byte", options.inline_byte, line),
+        ("--crossline-byte", options.crossline_byte, line),
+        ("--x-byte", options.x_byte, coordinate),
+        ("--y-byte", options.y_byte, coordinate),
+        ("--scalar-byte", options.scalar_byte, 2),
     ] {
+        let last = header_bytes + 1 - length;
         if let Some(byte) = byte
-            && !(1..=237).contains(&byte)
+            && !(1..=last).contains(&usize::from(byte))
         {
-            let expected = "1 to 237, the first of 4 bytes in the 240-byte trace header";
+            let expected = format!("1 to {last}, the first of {length} bytes in the {header_bytes}-byte trace header");
             return Err(SegyProblem::BadOption { option, found: byte.to_string(), expected });
         }
     }
+    // X and Y of 2 bytes are read from the 4 bytes that begin there.
+    for (option, byte) in [("--x-byte", options.x_byte), ("--y-byte", options.y_byte)] {
+        if let Some(byte) = byte
+            && usize::from(byte) + 3 > header_bytes
+        {
+            let expected = format!("at most {}", header_bytes - 3);
+            return Err(SegyProblem::BadOption { option, found: byte.to_string(), expected });
+        }
+    }
+    Ok(())
+}
+
+fn check_options(options: &SegyOptions) -> Result<(), SegyProblem> {
     match options.bin_m {
         Some(bin) if !(bin > 0.0 && bin.is_finite()) => Err(SegyProblem::BadOption {
             option: "--bin",
             found: bin.to_string(),
-            expected: "a positive number of metres",
+            expected: "a positive number of metres".to_owned(),
         }),
         _ => Ok(()),
     }
@@ -254,22 +324,33 @@ fn dead_traces(columns: &Columns, count: usize, findings: &mut Findings) -> Vec<
 fn single_trace(columns: &Columns, options: &SegyOptions) -> Result<Detected, SegyProblem> {
     let inline_byte = options.inline_byte.unwrap_or(at::INLINE);
     let crossline_byte = options.crossline_byte.unwrap_or(at::CROSSLINE);
-    let column = |byte| columns.get(Field::I32(byte));
-    let lattice = Lattice::place(column(inline_byte), column(crossline_byte))
+    let number_type = options.line_type.unwrap_or_default();
+    let [inline, crossline] = [inline_byte, crossline_byte].map(|byte| columns.numbers(byte, number_type));
+    let lattice = Lattice::place(&inline, &crossline, None, KeptDuplicate::First)
         .map_err(|_: Flaw| SegyProblem::NoLineNumbers { tried: Vec::new() })?;
-    Ok(Detected { inline_byte, crossline_byte, lattice, candidates: Vec::new() })
+    Ok(Detected { bytes: Some([inline_byte, crossline_byte]), lattice, candidates: Vec::new() })
 }
 
-fn note_lattice(lattice: &Lattice, findings: &mut Findings) {
+fn note_lattice(detected: &Detected, options: &SegyOptions, findings: &mut Findings) {
+    let lattice = &detected.lattice;
+    let by = if detected.bytes.is_some() { "line numbers" } else { "place" };
     if let Some(example) = lattice.first_duplicate {
+        let (kept, hint) = match options.duplicates {
+            None => ("first", " (--duplicates last keeps the last)"),
+            Some(KeptDuplicate::First) => ("first", ""),
+            Some(KeptDuplicate::Last) => ("last", ""),
+        };
         findings.warning(format!(
-            "{} traces repeat the line numbers of an earlier one (the first is trace {}); the first of each is kept",
+            "{} traces repeat the {by} of an earlier one (the first is trace {}); the {kept} of each is kept{hint}",
             lattice.duplicates,
             example + 1
         ));
     }
     if lattice.unnumbered > 0 {
-        findings.warning(format!("{} traces have both line numbers 0 and are left out", lattice.unnumbered));
+        findings.warning(match detected.bytes {
+            Some(_) => format!("{} traces have both line numbers 0 and are left out", lattice.unnumbered),
+            None => format!("{} traces have no X and Y and are left out", lattice.unnumbered),
+        });
     }
     let missing = lattice.places() - lattice.filled();
     if missing > 0 {
@@ -283,8 +364,12 @@ fn weights(columns: &Columns, options: &SegyOptions, findings: &mut Findings) ->
     if options.trace_weight == TraceWeight::Ignore || !weights.iter().any(is_used) {
         return None;
     }
+    let (sign, others) = match options.trace_weight {
+        TraceWeight::Inverse => ("", "apply divides by 2^N as the standard says, ignore leaves them as stored"),
+        _ => ("-", "inverse multiplies by 2^N, ignore leaves them as stored"),
+    };
     findings.assumption(format!(
-        "samples are multiplied by 2^N, N the trace weight at byte 169, {} to {} (--trace-weight ignore leaves them as stored)",
+        "samples are multiplied by 2^({sign}N), N the trace weight at byte 169, {} to {} (--trace-weight {others})",
         weights.range[0], weights.range[1]
     ));
     Some(weights.clone())

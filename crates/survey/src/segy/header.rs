@@ -1,6 +1,8 @@
 //! Fields of the binary and trace headers. Positions are the standard's: 1-based bytes of the file or trace header.
 
-use super::sample::ByteOrder;
+use serde::{Deserialize, Serialize};
+
+use super::sample::{ByteOrder, f32_from_ibm};
 
 /// Bytes of the textual and binary file headers together.
 pub(super) const FILE_HEADER_BYTES: usize = 3600;
@@ -43,6 +45,8 @@ pub(super) mod at {
     pub const INTERVAL: u16 = 117;
     /// Trace weighting factor, i16.
     pub const WEIGHT: u16 = 169;
+    /// Extended CDP X and Y in the first trace header extension of revision 2: IEEE floats of 8 bytes.
+    pub const EXTENDED_CDP: [u16; 2] = [401, 409];
     /// CDP X.
     pub const CDP_X: u16 = 181;
     /// CDP Y.
@@ -130,15 +134,69 @@ impl<'a> Traces<'a> {
         self.bytes.len() / self.stride
     }
 
-    /// The first 240 bytes of a trace.
+    /// The header of a trace, extensions included.
     pub fn header(&self, trace: usize) -> &'a [u8] {
-        &self.bytes[trace * self.stride..][..TRACE_HEADER_BYTES]
+        &self.bytes[trace * self.stride..][..self.header_bytes]
     }
 
     /// The encoded samples of a trace.
     pub fn samples(&self, trace: usize) -> &'a [u8] {
         &self.bytes[trace * self.stride + self.header_bytes..(trace + 1) * self.stride]
     }
+}
+
+/// How a number is stored in a trace header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum NumberType {
+    /// Two's complement integer, 4 bytes; the standard's.
+    #[default]
+    I32,
+    /// Two's complement integer, 2 bytes.
+    I16,
+    /// Unsigned integer, 2 bytes.
+    U16,
+    /// IEEE float, 4 bytes.
+    F32,
+    /// IEEE float, 8 bytes.
+    F64,
+    /// IBM float, 4 bytes.
+    Ibm32,
+}
+
+impl NumberType {
+    /// Every type.
+    pub const ALL: [Self; 6] = [Self::I32, Self::I16, Self::U16, Self::F32, Self::F64, Self::Ibm32];
+
+    /// The word of `--line-type` and `--coordinate-type`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::I32 => "i32",
+            Self::I16 => "i16",
+            Self::U16 => "u16",
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+            Self::Ibm32 => "ibm32",
+        }
+    }
+
+    /// Bytes it takes.
+    pub fn bytes(self) -> usize {
+        match self {
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::F32 | Self::Ibm32 => 4,
+            Self::F64 => 8,
+        }
+    }
+}
+
+/// What a field holds in place of a line number that is no integer.
+pub(super) const NO_INTEGER: i32 = i32::MIN;
+
+/// A float that counts lines, as the integer it is.
+pub(super) fn integer(value: f64) -> i32 {
+    let is_integer = (value - value.round()).abs() < 1e-3 && value.abs() < f64::from(i32::MAX);
+    if is_integer { value.round() as i32 } else { NO_INTEGER }
 }
 
 /// A number in a trace header.
@@ -150,22 +208,68 @@ pub(super) enum Field {
     I16(u16),
     /// 2 bytes, unsigned.
     U16(u16),
+    /// An IEEE float of 8 bytes that holds an integer.
+    F64(u16),
 }
 
 impl Field {
-    /// Its value in a 240-byte header.
+    /// Its value in a trace header, which must reach that far.
     pub fn get(self, header: &[u8], order: ByteOrder) -> i32 {
         match self {
             Self::I32(byte) => i32::from_be_bytes(order.get(header, usize::from(byte) - 1)),
             Self::I16(byte) => i32::from(i16::from_be_bytes(order.get(header, usize::from(byte) - 1))),
             Self::U16(byte) => i32::from(u16::from_be_bytes(order.get(header, usize::from(byte) - 1))),
+            Self::F64(byte) => integer(f64::from_be_bytes(order.get(header, usize::from(byte) - 1))),
         }
+    }
+}
+
+/// The number that starts where a 4-byte field starts, from that field: every type but [`NumberType::F64`].
+pub(super) fn reinterpret(field: i32, number_type: NumberType, order: ByteOrder) -> i32 {
+    let bits = field.cast_unsigned();
+    let half = match order {
+        ByteOrder::Big => (bits >> 16) as u16,
+        ByteOrder::Little => bits as u16,
+    };
+    match number_type {
+        NumberType::I32 | NumberType::F64 => field,
+        NumberType::I16 => i32::from(half.cast_signed()),
+        NumberType::U16 => i32::from(half),
+        NumberType::F32 => integer(f64::from(f32::from_bits(bits))),
+        NumberType::Ibm32 => integer(f64::from(f32_from_ibm(bits))),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_of_any_type_is_found_in_the_four_bytes_where_it_starts() {
+        for order in [ByteOrder::Big, ByteOrder::Little] {
+            let field = |bytes: [u8; 4]| {
+                let mut stored = [0; 4];
+                order.put(&mut stored, 0, bytes);
+                Field::I32(1).get(&stored, order)
+            };
+            let halves = |first: u16| {
+                let mut stored = [0; 4];
+                order.put(&mut stored, 0, first.to_be_bytes());
+                order.put(&mut stored, 2, 777_u16.to_be_bytes());
+                Field::I32(1).get(&stored, order)
+            };
+            assert_eq!(reinterpret(halves(40_000), NumberType::U16, order), 40_000);
+            assert_eq!(reinterpret(halves(40_000), NumberType::I16, order), 40_000 - 65_536);
+            assert_eq!(reinterpret(field(1207.0_f32.to_be_bytes()), NumberType::F32, order), 1207);
+            assert_eq!(reinterpret(field(1207.5_f32.to_be_bytes()), NumberType::F32, order), NO_INTEGER);
+            assert_eq!(reinterpret(field(0x4264_0000_u32.to_be_bytes()), NumberType::Ibm32, order), 100);
+            let mut stored = [0; 8];
+            order.put(&mut stored, 0, (-12.0_f64).to_be_bytes());
+            assert_eq!(Field::F64(1).get(&stored, order), -12);
+        }
+        assert_eq!(integer(f64::NAN), NO_INTEGER);
+        assert_eq!(integer(1e300), NO_INTEGER);
+    }
 
     #[test]
     fn revisions_in_both_conventions() {

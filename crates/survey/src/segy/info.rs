@@ -104,10 +104,10 @@ impl fmt::Display for LineSummary {
 /// Where the trace header fields are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct BytePositions {
-    /// Inline number.
-    pub inline: u16,
-    /// Crossline number.
-    pub crossline: u16,
+    /// Inline number; none if X and Y number the lines.
+    pub inline: Option<u16>,
+    /// Crossline number; none if X and Y number the lines.
+    pub crossline: Option<u16>,
     /// X; none if the file has no coordinates.
     pub x: Option<u16>,
     /// Y; none if the file has no coordinates.
@@ -127,6 +127,35 @@ pub struct GeometrySummary {
     pub residual_rms_bins: Option<f64>,
     /// Largest such distance.
     pub residual_max_bins: Option<f64>,
+}
+
+/// A corner of the lattice.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Corner {
+    /// Inline number.
+    pub inline: i32,
+    /// Crossline number.
+    pub crossline: i32,
+    /// X in the file's own length unit.
+    pub x: f64,
+    /// Y in the file's own length unit.
+    pub y: f64,
+}
+
+/// The corners in order around the lattice, from the first inline and crossline along the first inline.
+pub(super) fn corners(inlines: &LineAxis, crosslines: &LineAxis, place: &GeometrySummary) -> [Corner; 4] {
+    let [last_inline, last_crossline] = [inlines.count.max(1) - 1, crosslines.count.max(1) - 1];
+    [(0, 0), (0, last_crossline), (last_inline, last_crossline), (last_inline, 0)].map(|(i, x)| {
+        let along = |axis: usize| {
+            place.origin[axis] + i as f64 * place.inline_vector[axis] + x as f64 * place.crossline_vector[axis]
+        };
+        Corner {
+            inline: if i == 0 { inlines.first } else { inlines.last() },
+            crossline: if x == 0 { crosslines.first } else { crosslines.last() },
+            x: along(0),
+            y: along(1),
+        }
+    })
 }
 
 /// What a SEG-Y file holds, how that was found, and what had to be assumed.
@@ -170,6 +199,8 @@ pub struct SegyInfo {
     pub coordinate_scalar: [i32; 2],
     /// The lattice in the world, in `coordinate_unit`.
     pub geometry: GeometrySummary,
+    /// Its corners, in order around it.
+    pub corners: [Corner; 4],
     /// `0`, `1.0`, `2.0` or `2.1`.
     pub revision: String,
     /// Byte order of the numbers.

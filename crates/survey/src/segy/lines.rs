@@ -4,6 +4,8 @@
 //! lines need no hint and a missing line stays a gap. The direction is the order in which the file counts.
 
 use super::columns::Column;
+use super::header::NO_INTEGER;
+use super::options::KeptDuplicate;
 use crate::geometry::LineAxis;
 
 /// Marks a place of the lattice without a trace.
@@ -23,7 +25,7 @@ pub(super) struct Lattice {
     pub duplicates: usize,
     /// An example of such a trace.
     pub first_duplicate: Option<usize>,
-    /// Traces with both numbers 0 among others that are far from it: not placed.
+    /// Traces without numbers (both 0 among others that are far from it, or no X and Y where those number them): not placed.
     pub unnumbered: usize,
     /// Whether the inline number changes less often than the crossline number along the file.
     pub inline_sorted: bool,
@@ -44,24 +46,34 @@ pub(super) enum Flaw {
 
 impl Lattice {
     /// Places every trace by its two numbers.
-    pub fn build(inline: &Column, crossline: &Column) -> Result<Self, Flaw> {
+    pub fn build(inline: &Column, crossline: &Column, kept: KeptDuplicate) -> Result<Self, Flaw> {
         match (inline.constant(), crossline.constant()) {
             (Some(0), Some(0)) => return Err(Flaw::AllZero),
             (Some(number), None) => return Err(Flaw::OneInline(number)),
             (None, Some(number)) => return Err(Flaw::OneCrossline(number)),
             _ => {}
         }
-        Self::place(inline, crossline)
+        // A float that is no integer is no line number.
+        if inline.range[0] == NO_INTEGER || crossline.range[0] == NO_INTEGER {
+            return Err(Flaw::Scattered(u64::MAX));
+        }
+        let skip = unnumbered(inline, crossline).then_some((0, 0));
+        Self::place(inline, crossline, skip, kept)
     }
 
-    /// Places every trace, also on a single line.
-    pub fn place(inline: &Column, crossline: &Column) -> Result<Self, Flaw> {
+    /// Places every trace whose numbers are not `skip`, also on a single line.
+    pub fn place(
+        inline: &Column,
+        crossline: &Column,
+        skip: Option<(i32, i32)>,
+        kept: KeptDuplicate,
+    ) -> Result<Self, Flaw> {
         let pairs = || inline.iter().zip(crossline.iter());
-        let skip = unnumbered(inline, crossline);
+        let is_numbered = |pair: &(i32, i32)| Some(*pair) != skip;
         let count = pairs().count();
         let limit = MAX_PLACES_PER_TRACE * count as u64 + 1024;
-        let inlines = Axis::find(pairs().filter(|&pair| !(skip && pair == (0, 0))), limit)?;
-        let crosslines = Axis::find(pairs().filter(|&pair| !(skip && pair == (0, 0))).map(|(i, x)| (x, i)), limit)?;
+        let inlines = Axis::find(pairs().filter(is_numbered), limit)?;
+        let crosslines = Axis::find(pairs().filter(is_numbered).map(|(i, x)| (x, i)), limit)?;
         let places = (inlines.count as u64).saturating_mul(crosslines.count as u64);
         if places > limit {
             return Err(Flaw::Scattered(places));
@@ -79,7 +91,7 @@ impl Lattice {
         let mut changes = [0_usize; 2];
         let mut last = None;
         for (trace, pair) in pairs().enumerate() {
-            if skip && pair == (0, 0) {
+            if Some(pair) == skip {
                 lattice.unnumbered += 1;
                 continue;
             }
@@ -94,6 +106,9 @@ impl Lattice {
             } else {
                 lattice.duplicates += 1;
                 lattice.first_duplicate.get_or_insert(trace);
+                if kept == KeptDuplicate::Last {
+                    *place = trace as u32;
+                }
             }
         }
         lattice.inline_sorted = changes[0] <= changes[1];

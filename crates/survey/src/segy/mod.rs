@@ -26,6 +26,7 @@
 //! # Ok::<(), segy::SegyError>(())
 //! ```
 
+mod bins;
 mod columns;
 mod coordinates;
 mod detect;
@@ -35,11 +36,15 @@ mod frame;
 mod header;
 mod info;
 mod lines;
+mod map;
+mod neighbours;
+mod options;
 mod page;
 mod place;
 mod read;
 mod refuse;
 mod sample;
+mod statistics;
 mod text;
 mod vertical;
 mod write;
@@ -49,59 +54,19 @@ mod tests;
 
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
 pub use detect::{Candidate, Verdict};
 pub use error::{SegyError, SegyProblem};
 pub use file::SegyFile;
-pub use info::{BytePositions, FileUnit, GeometrySummary, LengthUnit, LineSummary, SegyInfo};
+pub use header::NumberType;
+pub use info::{BytePositions, Corner, FileUnit, GeometrySummary, LengthUnit, LineSummary, SegyInfo};
+pub use options::{KeptDuplicate, LineSource, SegyOptions, TraceWeight};
 pub use read::{Amplitudes, SegyVolume};
 pub use sample::{ByteOrder, SampleFormat, f32_from_ibm, ibm_from_f32};
+pub use statistics::{Histogram, Statistics};
 pub use text::TextEncoding;
 pub use write::{WriteFormat, WriteOptions, WriteReport};
 
 use crate::progress::Progress;
-
-/// What the trace weighting factor at byte 169 does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum TraceWeight {
-    /// A factor N of 1 to 50, or −50 to −1, multiplies the trace by 2^N; others are ignored.
-    #[default]
-    Apply,
-    /// It is ignored.
-    Ignore,
-}
-
-/// What the user states about a file. Everything left out is found in the file.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct SegyOptions {
-    /// Trace header byte (1 to 237) of the inline number, a 4-byte integer.
-    pub inline_byte: Option<u16>,
-    /// Trace header byte of the crossline number.
-    pub crossline_byte: Option<u16>,
-    /// Trace header byte of X.
-    pub x_byte: Option<u16>,
-    /// Trace header byte of Y.
-    pub y_byte: Option<u16>,
-    /// Byte order of all numbers.
-    pub byte_order: Option<ByteOrder>,
-    /// Sample format, whatever byte 3225 holds.
-    pub format: Option<SampleFormat>,
-    /// Sample interval in the vertical unit.
-    pub interval: Option<f64>,
-    /// Value of the first sample in the vertical unit.
-    pub start: Option<f64>,
-    /// Unit of the vertical axis.
-    pub vertical_unit: Option<FileUnit>,
-    /// Unit of X and Y.
-    pub coordinate_unit: Option<LengthUnit>,
-    /// Ignore X and Y, and place the lattice at the origin with square bins of this size in metres.
-    pub bin_m: Option<f64>,
-    /// What byte 169 does.
-    pub trace_weight: TraceWeight,
-}
 
 /// Reads all headers of a file: what it holds, without its samples.
 ///

@@ -105,14 +105,26 @@ fn robust_fit(points: &[(DVec2, DVec2)]) -> Option<Affine> {
 }
 
 /// World from index.
-struct Affine {
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Affine {
     origin: DVec2,
-    linear: DMat2,
+    pub linear: DMat2,
     inverse: DMat2,
 }
 
 impl Affine {
-    fn fit(points: &[(DVec2, DVec2)]) -> Option<Self> {
+    /// From the place of index 0, 0 and the two steps, which must span an area.
+    pub fn new(origin: DVec2, linear: DMat2) -> Self {
+        Self { origin, linear, inverse: linear.inverse() }
+    }
+
+    /// The fractional index of a place.
+    pub fn index_of(&self, world: DVec2) -> DVec2 {
+        self.inverse * (world - self.origin)
+    }
+
+    /// Least squares over (index, world).
+    pub fn fit(points: &[(DVec2, DVec2)]) -> Option<Self> {
         let mut count = 0.0;
         let (mut mean_at, mut mean_world) = (DVec2::ZERO, DVec2::ZERO);
         for &(at, world) in points {
@@ -133,12 +145,12 @@ impl Affine {
         let linear = mixed * moment.inverse();
         let sides = linear.x_axis.length() * linear.y_axis.length();
         let is_proper = linear.determinant().abs() > 1e-6 * sides;
-        is_proper.then(|| Self { origin: mean_world - linear * mean_at, linear, inverse: linear.inverse() })
+        is_proper.then(|| Self::new(mean_world - linear * mean_at, linear))
     }
 
     /// Distance from the lattice place along its farther axis, in bins.
     fn residual_bins(&self, at: DVec2, world: DVec2) -> f64 {
-        (self.inverse * (world - self.origin) - at).abs().max_element()
+        (self.index_of(world) - at).abs().max_element()
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is not a post-stack 3D volume, told by its trace headers.
 
+use super::SegyOptions;
 use super::columns::Columns;
 use super::detect::{Candidate, Verdict};
 use super::error::SegyProblem;
@@ -7,18 +8,15 @@ use super::header::{Field, at};
 use super::lines::Lattice;
 
 /// Several traces a bin: the line numbers of the standard (or the stated ones) repeat, or gathers are numbered.
-pub(super) fn pre_stack(columns: &Columns, candidates: &[Candidate]) -> Result<(), SegyProblem> {
+pub(super) fn pre_stack(columns: &Columns, options: &SegyOptions, candidates: &[Candidate]) -> Result<(), SegyProblem> {
     let repeated = candidates.first().filter(|c| c.verdict == Verdict::Repeated);
     let Some(candidate) = repeated else { return Ok(()) };
-    let (inline, crossline) =
-        (columns.get(Field::I32(candidate.inline_byte)), columns.get(Field::I32(candidate.crossline_byte)));
-    let Ok(lattice) = Lattice::build(inline, crossline) else { return Ok(()) };
+    let [inline, crossline] =
+        [candidate.inline_byte, candidate.crossline_byte].map(|byte| columns.numbers(byte, candidate.number_type));
+    let kept = options.duplicates.unwrap_or_default();
+    let Ok(lattice) = Lattice::build(&inline, &crossline, kept) else { return Ok(()) };
     let Some(example) = lattice.first_duplicate else { return Ok(()) };
-    let offset = columns.get(Field::I32(at::OFFSET));
-    let offsets = match offset.constant() {
-        None => format!("offsets at byte 37 run from {} to {}", offset.range[0], offset.range[1]),
-        Some(_) => "their offsets at byte 37 do not differ".to_owned(),
-    };
+    let offsets = offsets(columns);
     Err(SegyProblem::PreStack {
         evidence: format!(
             "{} traces stand in {} bins (trace {} repeats inline {}, crossline {}, read at bytes {} and {}) and {offsets}",
@@ -31,6 +29,28 @@ pub(super) fn pre_stack(columns: &Columns, candidates: &[Candidate]) -> Result<(
             candidate.crossline_byte
         ),
     })
+}
+
+fn offsets(columns: &Columns) -> String {
+    let offset = columns.get(Field::I32(at::OFFSET));
+    match offset.constant() {
+        None => format!("offsets at byte 37 run from {} to {}", offset.range[0], offset.range[1]),
+        Some(_) => {
+            "their offsets at byte 37 do not differ (if they are mere repetitions, state which to keep: --duplicates first or last)"
+                .to_owned()
+        }
+    }
+}
+
+/// What makes traces at the same X and Y pre-stack.
+pub(super) fn repeated_places(columns: &Columns, lattice: &Lattice) -> String {
+    format!(
+        "{} traces stand at {} places (trace {} repeats the X and Y of an earlier one) and {}",
+        lattice.filled() + lattice.duplicates,
+        lattice.filled(),
+        lattice.first_duplicate.unwrap_or(0) + 1,
+        offsets(columns)
+    )
 }
 
 /// Gathers without line numbers: by shot, or by CDP.

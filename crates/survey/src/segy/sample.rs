@@ -1,7 +1,7 @@
 //! Sample formats: what the codes at byte 3225 mean, decoded to and encoded from `f32`.
 //!
-//! IBM float: `(-1)^s · 16^(e-64) · f/2^24`, s 1 bit, e 7 bits, f 24 bits. The product of f (24 bits) and a power of
-//! two is exact in `f64`, so the only rounding is the last one to `f32`, and there is none in the range of `f32`.
+//! IBM float: `(-1)^s · 16^(e-64) · f/2^24`, s 1 bit, e 7 bits, f 24 bits, which fit those of `f32`: only values below its
+//! normal range are rounded.
 //! Integers of more than 24 bits and `f64` are rounded to `f32`.
 
 use serde::{Deserialize, Serialize};
@@ -108,6 +108,11 @@ impl SampleFormat {
         }
     }
 
+    /// Every format that can be read.
+    pub fn all() -> impl Iterator<Item = Self> {
+        FORMATS.iter().map(|row| row.2)
+    }
+
     fn row(self) -> &'static (u16, usize, Self, &'static str) {
         FORMATS.iter().find(|row| row.2 == self).unwrap_or(&FORMATS[0])
     }
@@ -161,16 +166,20 @@ fn each<const N: usize>(order: ByteOrder, bytes: &[u8], out: &mut [f32], convert
 
 /// The value of an IBM float; infinite where it exceeds the range of `f32`.
 ///
+/// In `f32` alone and without a branch, so that it becomes vector instructions: f · 2^(2e−140) · 2^(2e−140). f has 24 bits and
+/// is exact; the first product is exact or beyond the range for good; the second one rounds once. Below e = 7 every value is 0 in `f32`.
+///
 /// ```
 /// assert_eq!(survey::segy::f32_from_ibm(0xC276_A000), -118.625);
 /// ```
+#[inline]
 pub fn f32_from_ibm(bits: u32) -> f32 {
-    let fraction = f64::from(bits & 0x00ff_ffff);
-    let exponent = u64::from((bits >> 24) & 0x7f);
-    // 2^(4(e-64) - 24) has the biased f64 exponent 1023 + 4e - 280, which is always normal.
-    let scale = f64::from_bits((743 + 4 * exponent) << 52);
-    let value = (fraction * scale) as f32;
-    if bits >> 31 == 1 { -value } else { value }
+    let fraction = (bits & 0x00ff_ffff).cast_signed() as f32;
+    let exponent = ((bits >> 24) & 0x7f).cast_signed().max(7);
+    // The biased exponent of 2^(2e−140).
+    let scale = f32::from_bits((2 * exponent - 13).cast_unsigned() << 23);
+    let magnitude = fraction * scale * scale;
+    f32::from_bits(magnitude.to_bits() | bits & 0x8000_0000)
 }
 
 /// The nearest IBM float: exact to 21 bits at least, since its leading hexadecimal digit may begin with three zeros.
@@ -202,6 +211,22 @@ mod tests {
         for (bits, value) in [(0x4110_0000, 1.0), (0x4264_0000, 100.0), (0xC276_A000, -118.625), (0, 0.0)] {
             assert_eq!(f32_from_ibm(bits), value);
             assert_eq!(ibm_from_f32(value), bits);
+        }
+    }
+
+    #[test]
+    fn ibm_is_what_double_precision_makes_of_it() {
+        // Every exponent, fractions at and between the powers of two.
+        for exponent in 0..=127_u32 {
+            for bit in 0..24 {
+                for low in [0, 1, 0x5555, 0x00ab_cdef & ((1 << bit) - 1)] {
+                    let fraction = (1 << bit | low) & 0x00ff_ffff;
+                    let exact = f64::from(fraction) * 2.0_f64.powi(4 * exponent as i32 - 280);
+                    let bits = exponent << 24 | fraction;
+                    assert_eq!(f32_from_ibm(bits), exact as f32, "{bits:#x}");
+                    assert_eq!(f32_from_ibm(bits | 1 << 31), -exact as f32, "{bits:#x}");
+                }
+            }
         }
     }
 

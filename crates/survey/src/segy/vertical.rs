@@ -43,7 +43,7 @@ impl Vertical {
                 return Err(SegyProblem::BadOption {
                     option: "--interval",
                     found: interval.to_string(),
-                    expected: "a positive number",
+                    expected: "a positive number".to_owned(),
                 });
             }
             None => interval_field(frame, columns, findings)?,

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::super::{Candidate, SegyInfo, SegyOptions, SegyProblem, Verdict};
+use super::super::{Candidate, KeptDuplicate, SegyInfo, SegyOptions, SegyProblem, Verdict};
 use super::built::{Built, Trace};
 
 fn has(notes: &[String], words: &str) -> bool {
@@ -29,7 +29,7 @@ fn moved(inline: usize, crossline: usize) -> Built {
 }
 
 fn bytes(info: &SegyInfo) -> [u16; 2] {
-    [info.byte_positions.inline, info.byte_positions.crossline]
+    [info.byte_positions.inline, info.byte_positions.crossline].map(Option::unwrap)
 }
 
 fn counts(info: &SegyInfo) -> [usize; 2] {
@@ -178,6 +178,13 @@ fn the_first_of_a_few_duplicates_is_kept() {
     assert_eq!(found.info.duplicate_traces, 1);
     assert_eq!(found.volume.at(0, 2, 0), 101_009.0);
     assert!(has(&found.info.warnings, "trace 11"), "{:?}", found.info.warnings);
+    let last = SegyOptions { duplicates: Some(KeptDuplicate::Last), ..SegyOptions::default() };
+    assert_eq!(file.read(&last).unwrap().volume.at(0, 2, 0), 9.0);
+    // A file that is there twice is refused, until it is stated which half to keep.
+    let mut twice = grid();
+    twice.traces.extend(twice.traces.clone());
+    assert!(twice.refusal().1.contains("--duplicates first or last"), "{}", twice.refusal().1);
+    assert_eq!(twice.scan(&last).unwrap().duplicate_traces, 24);
 }
 
 #[test]
@@ -334,10 +341,7 @@ fn gathers_are_pre_stack() {
 
 #[test]
 fn all_zero_line_headers_list_what_was_tried() {
-    let file = grid().each(|_, t| {
-        t.i32(189, 0);
-        t.i32(193, 0);
-    });
+    let file = grid().each(|_, t| [181, 185, 189, 193].iter().for_each(|&byte| t.i32(byte, 0)));
     let (problem, sentence) = file.refusal();
     assert!(matches!(problem, SegyProblem::NoLineNumbers { .. }), "{sentence}");
     for words in ["bytes 189 and 193: all zero", "bytes 9 and 21: all zero", "--inline-byte"] {
@@ -350,6 +354,7 @@ fn numbers_at_random_are_not_lines() {
     let file = grid().each(|index, t| {
         t.i32(189, (index as i32).wrapping_mul(1_103_515_245) ^ 0x3512);
         t.i32(193, (index as i32).wrapping_mul(1_664_525) ^ 0x77);
+        [181, 185].iter().for_each(|&byte| t.i32(byte, 0));
     });
     assert!(matches!(file.refusal().0, SegyProblem::NoLineNumbers { .. } | SegyProblem::TwoDimensional { .. }));
     let error = file.scan(&lines(189, 193)).unwrap_err();

@@ -1,7 +1,8 @@
 //! File headers: byte order, revisions, lengths, the vertical axis.
 
 use super::super::{
-    ByteOrder, FileUnit, LengthUnit, SampleFormat, SegyOptions, SegyProblem, TextEncoding, TraceWeight,
+    ByteOrder, FileUnit, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, SegyProblem, TextEncoding,
+    TraceWeight,
 };
 use super::built::{Built, SAMPLES};
 
@@ -107,6 +108,40 @@ fn revision_2_trace_header_extensions_are_skipped() {
     file.binary(3507, 1);
     let expected = built().read(&SegyOptions::default()).unwrap().volume;
     assert_eq!(file.read(&SegyOptions::default()).unwrap().volume, expected);
+}
+
+#[test]
+fn revision_2_coordinates_in_the_trace_header_extension_are_found() {
+    for order in [ByteOrder::Big, ByteOrder::Little] {
+        let lines = [[1, 2, 3, 4], [5, 6, 7, 8]];
+        let mut file = Built::grid_in(order, &lines[0], &lines[1]).each(|_, trace| {
+            let samples = trace.samples.clone();
+            let mut extension = vec![0; 240];
+            let place = [600_000.125 + 12.5 * f64::from(trace.inline), 6e6 - 25.0 * f64::from(trace.crossline)];
+            order.put(&mut extension, 160, place[0].to_be_bytes());
+            order.put(&mut extension, 168, place[1].to_be_bytes());
+            trace.samples = [extension, samples].concat();
+            trace.i32(181, 0);
+            trace.i32(185, 0);
+        });
+        file.binary(3501, 0x0200);
+        file.binary(3507, 1);
+        let info = file.info();
+        assert_eq!((info.byte_positions.x, info.byte_positions.y), (Some(401), Some(409)));
+        assert_eq!(info.geometry.origin, [600_012.625, 5_999_875.0]);
+        assert_eq!((info.geometry.inline_vector, info.geometry.crossline_vector), ([12.5, 0.0], [0.0, -25.0]));
+        // Stated, also without line numbers.
+        let stated = SegyOptions {
+            x_byte: Some(401),
+            y_byte: Some(409),
+            coordinate_type: Some(NumberType::F64),
+            line_source: LineSource::Coordinates,
+            ..SegyOptions::default()
+        };
+        assert_eq!(file.scan(&stated).unwrap().geometry.inline_vector, [12.5, 0.0]);
+        let beyond = SegyOptions { x_byte: Some(474), ..stated };
+        assert!(matches!(file.scan(&beyond).unwrap_err().problem, SegyProblem::BadOption { option: "--x-byte", .. }));
+    }
 }
 
 #[test]
@@ -229,13 +264,16 @@ fn feet_become_metres_in_the_geometry_only() {
 
 #[test]
 fn trace_weights_are_powers_of_two() {
-    let file = built().each(|index, t| t.i16(169, [3, -2, 0, 51][index % 4]));
+    // The standard: N is 2^-N volts for the least significant bit.
+    let file = built().each(|index, t| t.i16(169, [-3, 2, 0, 51][index % 4]));
     let found = file.read(&SegyOptions::default()).unwrap();
     let first = |y: usize| found.volume.at(0, y, 0);
     assert_eq!([first(0), first(1), first(2), first(3)], [8.0 * 1010.0, 1011.0 / 4.0, 1012.0, 1013.0]);
     assert!(has(&found.info.assumptions, "byte 169"));
     let ignore = SegyOptions { trace_weight: TraceWeight::Ignore, ..SegyOptions::default() };
     assert_eq!(file.read(&ignore).unwrap().volume.at(0, 0, 0), 1010.0);
+    let inverse = SegyOptions { trace_weight: TraceWeight::Inverse, ..SegyOptions::default() };
+    assert_eq!(file.read(&inverse).unwrap().volume.at(0, 0, 0), 1010.0 / 8.0);
 }
 
 #[test]

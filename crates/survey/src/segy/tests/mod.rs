@@ -5,4 +5,5 @@ mod built;
 mod detection;
 mod expected;
 mod headers;
+mod numberless;
 mod round_trip;

@@ -1,0 +1,81 @@
+//! Writes the inputs that fuzzing starts from, by our own writers: `fuzz-seeds CORPUS` makes a folder for each target.
+
+use std::fs;
+use std::path::Path;
+
+use survey::formats::{Format, write_fault, write_horizon};
+use survey::segy::{self, ByteOrder, WriteFormat, WriteOptions};
+use survey::{Progress, Volume};
+
+type Done = Result<(), Box<dyn std::error::Error>>;
+
+fn main() -> Done {
+    let Some(corpus) = std::env::args_os().nth(1) else {
+        return Err("give the folder to write into".into());
+    };
+    let corpus = Path::new(&corpus);
+    segy_seeds(corpus)?;
+    surface_seeds(corpus)
+}
+
+fn segy_seeds(corpus: &Path) -> Done {
+    let (whole, headers) = (corpus.join("segy"), corpus.join("segy-headers"));
+    fs::create_dir_all(&whole)?;
+    fs::create_dir_all(&headers)?;
+    let mut geometry = fuzz::survey();
+    geometry.inlines.count = 3;
+    geometry.crosslines.count = 4;
+    geometry.vertical.count = 3;
+    let mut volume = Volume::filled([3, 4, 3], 1.5_f32);
+    volume.samples_mut().iter_mut().enumerate().for_each(|(k, sample)| *sample = k as f32 * 0.5 - 4.0);
+    for (name, format, byte_order) in [
+        ("ieee", WriteFormat::Ieee32, ByteOrder::Big),
+        ("ibm", WriteFormat::Ibm32, ByteOrder::Big),
+        ("int16-little", WriteFormat::Int16, ByteOrder::Little),
+        ("int8", WriteFormat::Int8, ByteOrder::Big),
+    ] {
+        let path = whole.join(name);
+        let options = WriteOptions { format, byte_order, ..WriteOptions::default() };
+        segy::write(&path, &geometry, &volume, &options, &Progress::silent())?;
+        let bytes = fs::read(&path)?;
+        fs::write(headers.join(name), [&[0; 12], &bytes[3200..]].concat())?;
+        // Without line numbers, and with a missing trace: what the place of traces alone has to tell.
+        let mut numberless = bytes.clone();
+        let stride = 240 + 3 * format.sample_format().bytes();
+        for trace in numberless[3600..].chunks_exact_mut(stride) {
+            trace[20..24].fill(0);
+            trace[188..196].fill(0);
+        }
+        numberless.truncate(bytes.len() - stride);
+        fs::write(headers.join(format!("{name}-numberless")), [&[0; 12], &numberless[3200..]].concat())?;
+    }
+    Ok(())
+}
+
+fn surface_seeds(corpus: &Path) -> Done {
+    let geometry = fuzz::survey();
+    let (horizon, fault) = fuzz::interpretation(&geometry);
+    let detected = corpus.join("surface-detected");
+    fs::create_dir_all(&detected)?;
+    for format in Format::all() {
+        let folder = corpus.join(format!("surface-{}", format.name()));
+        fs::create_dir_all(&folder)?;
+        // A format that is only read starts from the plain table of another.
+        let own = [
+            write_horizon(&folder.join("horizon"), &horizon, &geometry, format).is_ok(),
+            write_fault(&folder.join("fault"), &fault, &geometry, format).is_ok(),
+        ];
+        for (name, text) in fuzz::HAND_WRITTEN {
+            if *name == format.name() {
+                fs::write(folder.join("hand-written"), text)?;
+                fs::write(detected.join(*name), text)?;
+            }
+        }
+        for (name, is_written) in ["horizon", "fault"].into_iter().zip(own) {
+            if is_written {
+                fs::copy(folder.join(name), detected.join(format!("{}-{name}", format.name())))?;
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,51 @@
+//! What seeds are made of: an interpretation for our writers, and one small file of each format that we do not write.
+
+use glam::DVec3;
+use survey::{Fault, Horizon, NodeGrid, Quality, Sheet, SurveyGeometry, TriangleMesh};
+
+/// A dipping horizon with a hole, and a fault of four triangles.
+pub fn interpretation(geometry: &SurveyGeometry) -> (Horizon, Fault) {
+    let grid = NodeGrid::of_survey(geometry);
+    let [columns, rows] = grid.count;
+    let depth = (0..columns * rows).map(|k| if k == 7 { f32::NAN } else { 40.0 + (k / rows) as f32 * 1.5 }).collect();
+    let horizon = Horizon { name: "Top A".to_owned(), sheets: vec![Sheet::new(grid, depth, Quality::Picked)] };
+    let vertices =
+        [[50.0, 0.0, 20.0], [70.0, 0.0, 160.0], [50.0, 100.0, 20.0], [70.0, 100.0, 160.0], [50.0, 180.0, 20.0]];
+    let mesh = TriangleMesh {
+        vertices: vertices.into_iter().map(DVec3::from_array).collect(),
+        triangles: vec![[0, 1, 2], [2, 1, 3], [2, 3, 4]],
+    };
+    (horizon, Fault { name: "F1".to_owned(), mesh, truncated_by: None })
+}
+
+/// Format and content.
+pub const HAND_WRITTEN: &[(&str, &str)] = &[
+    ("csv", "inline,crossline,x,y,twt_ms\n1,1,0,0,40\n1,2,0,25,44\n2,1,25,0,48\n2,2,25,25,52\n"),
+    ("irap", "-996 2 25 25\n0 50 0 25\n3 0 0 0\n0 0 0 0 0 0 0\n40 41 42 43 9999900.0 44\n"),
+    ("opendtect", "\"F\"\t0\t0\t40\t0\t0\n\"F\"\t5\t0\t80\t0\t1\n\"F\"\t0\t25\t40\t1\t0\n\"F\"\t5\t25\t80\t1\t1\n"),
+    (
+        "tsurf",
+        "GOCAD TSurf 1\nHEADER {\nname: A\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT m m ms\nZPOSITIVE Elevation\nEND_ORIGINAL_COORDINATE_SYSTEM\nPROPERTIES a\nTFACE\nVRTX 1 0 0 -40\nPVRTX 2 50 0 -44 1.5\nVRTX 3 0 50 -48\nATOM 4 3\nTRGL 1 2 3\nTRGL 2 4 1\nBSTONE 1\nBORDER 5 1 2\nEND\n",
+    ),
+    (
+        "zmap",
+        "! made\n@A, GRID, 5\n15, -99999.0, , 4, 1\n2, 3, 0, 50, 0, 25\n0.0, 0.0, 0.0\n@\n40 41\n42 43\n44 -99999.0\n",
+    ),
+    (
+        "cps3",
+        "FSASCI 0 1 COMPUTED 0 1E30\nFSATTR 0 0\nFSLIMI 0 50 0 25 40 45\nFSNROW 2 3\nFSXINC 25 25\n->A\n40 41\n42 43\n44 1E30\n",
+    ),
+    (
+        "earthvision",
+        "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z milliseconds\n# Grid_size: 2 x 2\n# Null_value: 1.0e30\n# End:\n0 0 40 1 1\n25 0 44 2 1\n0 25 48 1 2\n",
+    ),
+    (
+        "petrel",
+        "# Petrel Points with attributes\n# Unit in depth: ms\nVERSION 1\nBEGIN HEADER\nX\nY\nZ\nEND HEADER\n0 0 -40\n25 0 -44\n0 25 -48\n",
+    ),
+    ("charisma", "INLINE :   1 XLINE :   1   0.0   0.0   40.0\nINLINE :   1 XLINE :   2   0.0   25.0   44.0\n"),
+    (
+        "ijxyz",
+        "@File\n#Horizon_name___-> A\n#End_of_Horizon_ASCII_Header_\n1.0 1 0 0 40\n2.0 1 25 0 44\n1.0 2 0 25 48\n",
+    ),
+];
