@@ -7,6 +7,7 @@ pub mod distance;
 pub mod error;
 pub mod evaluate;
 pub mod extrema;
+pub mod faults;
 pub mod forest;
 pub mod grow;
 pub mod holes;

@@ -59,6 +59,7 @@ pub use report::{Gridding, ImportReport, Provenance, Settled};
 use crate::fault::Fault;
 use crate::geometry::SurveyGeometry;
 use crate::horizon::Horizon;
+use glam::DVec3;
 use raw::{RawSurface, ReadContext};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -307,6 +308,20 @@ pub fn read_fault(
             fault::build(path, name, format.clone(), raw, geometry, options)
         })
         .collect()
+}
+
+/// The surface through sticks (world X, Y and vertical value) of at least two places each; `None` when they span no area.
+pub fn fault_of_sticks(name: &str, sticks: &[Vec<DVec3>], geometry: &SurveyGeometry) -> Option<Fault> {
+    if sticks.len() < 2 || sticks.iter().any(|stick| stick.len() < 2) {
+        return None;
+    }
+    let mesh = sticks::join(sticks, geometry.metres_per_vertical_unit());
+    let has_area = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        (b - a).cross(c - a).length() > 0.0
+    };
+    let any = (0..mesh.triangles.len()).any(has_area);
+    any.then(|| Fault { name: name.to_owned(), mesh, truncated_by: None })
 }
 
 /// Writes a fault; beside the target first, then renamed.

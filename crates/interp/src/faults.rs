@@ -1,0 +1,180 @@
+//! Faults proposed where none are interpreted, from the horizons assembled so far.
+//!
+//! A tracked horizon ends at a fault and goes on behind it, higher or lower. So:
+//!
+//! 1. [`edges`]: the rims of each horizon's pieces, with the way out and the plane the piece lies in there.
+//! 2. [`pairs`]: rims that face one another with an offset. The middle of a pair lies on the fault; the offset of the two planes there is the
+//!    throw. Rims without an offset are those of holes.
+//! 3. [`traces`]: pairs of one horizon that follow one another along strike, with throws of one sign, are the fault's trace on it; traces on several
+//!    horizons that lie one above the other on one steep surface are one fault.
+//! 4. [`surface`]: a smooth surface through them, the least squares quadratic of the distance across strike over strike and depth.
+//!    It goes on to where the throw, continued linearly, is nothing; to the walls that its traces reach; up and down to the next
+//!    horizon that passes it unbroken, or through the volume.
+//!
+//! Semblance is evidence, not a source: its mean on the surface is told beside that on both sides of it. Spaces: rims and pairs are voxel, surfaces
+//! metric (m).
+
+mod edges;
+mod pairs;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod traces;
+
+pub use pairs::Pair;
+
+use crate::reassembly::VoxelSheet;
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+use survey::{Cancelled, Fault, Progress, SurveyGeometry, TriangleMesh, Volume};
+
+/// How faults are looked for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ProposeSettings {
+    /// Farthest that two facing rims may be apart, traces; default 14. The heave of a flat fault with a large throw is the limit.
+    pub reach: usize,
+    /// Smallest throw, samples; default 2. Smaller ones are lost in the noise of tracked rims.
+    pub min_throw: f32,
+    /// Shortest trace on a horizon, traces; default 12.
+    pub min_length: f32,
+    /// Smallest dip, degrees (in metres); default 30.
+    pub min_dip_deg: f64,
+}
+
+impl Default for ProposeSettings {
+    fn default() -> Self {
+        Self { reach: 14, min_throw: 2.0, min_length: 12.0, min_dip_deg: 30.0 }
+    }
+}
+
+/// A horizon as evidence.
+#[derive(Debug, Clone, Copy)]
+pub struct Evidence<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// Its sheets, assembled without faults or with them.
+    pub sheets: &'a [VoxelSheet],
+}
+
+/// A fault that horizons speak for.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Proposal {
+    /// Number by which it is accepted, from 1; the best supported first.
+    pub id: u32,
+    /// A name to begin with.
+    pub name: String,
+    /// Its surface in the world.
+    pub mesh: TriangleMesh,
+    /// Direction it strikes in, degrees clockwise from north, below 180.
+    pub strike_deg: f64,
+    /// Mean dip, degrees.
+    pub dip_deg: f64,
+    /// Whether the hanging wall has moved up.
+    pub reverse: bool,
+    /// Median throw and the one that 95 % do not exceed, vertical units.
+    pub throw: [f64; 2],
+    /// Inline and crossline numbers of the two ends of its trace at middle depth.
+    pub ends: [[f64; 2]; 2],
+    /// Shallowest and deepest vertical value of its surface.
+    pub depth: [f64; 2],
+    /// Names of the horizons that it offsets.
+    pub horizons: Vec<String>,
+    /// Facing pairs of rim nodes that speak for it.
+    pub support: usize,
+    /// RMS distance of these from its surface, m.
+    pub misfit_m: f64,
+    /// Mean semblance on it and on both sides of it, if there was a volume.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub semblance: Option<[f32; 2]>,
+}
+
+impl Proposal {
+    /// The fault, under the name it is accepted by.
+    pub fn fault(&self, name: &str) -> Fault {
+        Fault { name: name.to_owned(), mesh: self.mesh.clone(), truncated_by: None }
+    }
+}
+
+/// Looks for faults that offset `horizons`. `semblance` is a volume of the survey's size.
+///
+/// Cost: a window of [`ProposeSettings::reach`] around each rim node.
+///
+/// # Errors
+/// [`Cancelled`].
+pub fn propose_faults(
+    horizons: &[Evidence],
+    geometry: &SurveyGeometry,
+    semblance: Option<&Volume<f32>>,
+    settings: &ProposeSettings,
+    progress: &Progress,
+) -> Result<Vec<Proposal>, Cancelled> {
+    let [nx, ny, _] = geometry.size();
+    let metric = geometry.metric_from_voxel();
+    progress.begin("looking for faults", horizons.len() as u64);
+    let mut found = Vec::new();
+    for (h, horizon) in horizons.iter().enumerate() {
+        let pieces = edges::Pieces::of(horizon.sheets, [nx, ny]);
+        let pairs = pairs::facing(&pieces, h, settings);
+        found.extend(traces::along_strike(pairs, settings));
+        progress.step(1)?;
+    }
+    let clusters = traces::across_horizons(found, metric, settings);
+    let mut proposals = Vec::new();
+    for cluster in clusters {
+        progress.check()?;
+        let Some(surface) = surface::Surface::through(&cluster, geometry, settings) else { continue };
+        let surface = surface.extended(&cluster, horizons, geometry);
+        proposals.push(describe(&surface, &cluster, horizons, geometry, semblance));
+    }
+    proposals.sort_by_key(|proposal| std::cmp::Reverse((proposal.horizons.len(), proposal.support)));
+    for (n, proposal) in proposals.iter_mut().enumerate() {
+        proposal.id = n as u32 + 1;
+        proposal.name = format!("Fault {}", n + 1);
+    }
+    Ok(proposals)
+}
+
+/// Everything to be said of a surface.
+fn describe(
+    surface: &surface::Surface,
+    cluster: &[Pair],
+    horizons: &[Evidence],
+    geometry: &SurveyGeometry,
+    semblance: Option<&Volume<f32>>,
+) -> Proposal {
+    let mut throws: Vec<f64> = cluster.iter().map(|pair| f64::from(pair.throw.abs())).collect();
+    throws.sort_by(f64::total_cmp);
+    let interval = geometry.vertical.interval;
+    let mut names: Vec<usize> = cluster.iter().map(|pair| pair.horizon).collect();
+    names.sort_unstable();
+    names.dedup();
+    let (dips_to_positive, run) = surface.run();
+    let side = cluster.iter().map(|pair| surface.throw_across(pair)).sum::<f64>();
+    let strike = surface.strike();
+    let bearing = strike.x.atan2(strike.y).to_degrees().rem_euclid(180.0);
+    Proposal {
+        id: 0,
+        name: String::new(),
+        mesh: surface.mesh(geometry),
+        strike_deg: bearing,
+        dip_deg: (1.0 / run.max(1e-9)).atan().to_degrees(),
+        // The hanging wall is the side it dips to.
+        reverse: (side > 0.0) != dips_to_positive,
+        throw: [throws[throws.len() / 2] * interval, throws[throws.len() * 95 / 100] * interval],
+        ends: surface.ends().map(|p| {
+            let voxel = geometry.metric_from_voxel().inverse() * p;
+            geometry.lines_from_voxel(DVec2::new(voxel.x, voxel.y)).to_array()
+        }),
+        depth: surface.depths_m().map(|z| geometry.vertical.value_at(z / geometry.sample_m())),
+        horizons: names.iter().map(|&h| horizons[h].name.to_owned()).collect(),
+        support: cluster.len(),
+        misfit_m: surface.misfit_m,
+        semblance: semblance.map(|volume| surface::semblance_on(surface, geometry, volume)),
+    }
+}
+
+/// A voxel position in metres.
+fn metres(metric: glam::DMat3, p: [f32; 3]) -> DVec3 {
+    metric * DVec3::new(f64::from(p[0]), f64::from(p[1]), f64::from(p[2]))
+}

@@ -1,0 +1,348 @@
+//! The smooth surface of a fault: distance across strike as a quadratic of strike and depth.
+//!
+//! `c(s, z) = c₀ + c₁s + c₂z + c₃s² + c₄sz + c₅z²`, least squares, twice with the farthest left out. With horizons at fewer than three depths c₅ is
+//! left out, with one horizon c₂ is the median of heave over throw and c₄ is left out too. Metric space, s and z from the middle.
+
+use super::pairs::Pair;
+use super::traces::across_m;
+use super::{Evidence, ProposeSettings, metres};
+use glam::{DVec2, DVec3};
+use survey::{SurveyGeometry, TriangleMesh, Volume};
+
+/// Places farther off the fit than this many times its RMS are left out of the next.
+const OUTLIER: f64 = 2.5;
+/// Distance between the nodes of the mesh along strike, traces, and down dip, samples.
+const MESH: [f64; 2] = [4.0, 6.0];
+/// Ends nearer than this to a wall reach it, traces.
+const TO_WALL: f64 = 8.0;
+/// Farthest that a fault goes on beyond its last pair, in traces.
+const BEYOND: f64 = 30.0;
+/// Most coefficients.
+const TERMS: usize = 6;
+
+/// A fault's surface.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Surface {
+    middle: DVec3,
+    along: DVec2,
+    across: DVec2,
+    c: [f64; TERMS],
+    /// Extent along strike and in depth, m from the middle.
+    s: [f64; 2],
+    z: [f64; 2],
+    /// RMS distance of its places, m.
+    pub misfit_m: f64,
+}
+
+impl Surface {
+    /// Fits a fault's pairs; `None` when it would be flatter than a fault may be.
+    pub fn through(pairs: &[Pair], geometry: &SurveyGeometry, settings: &ProposeSettings) -> Option<Self> {
+        let metric = geometry.metric_from_voxel();
+        let across = across_m(pairs, metric);
+        let along = across.perp();
+        let places: Vec<DVec3> = pairs.iter().map(|pair| metres(metric, pair.at)).collect();
+        let middle = places.iter().copied().sum::<DVec3>() / places.len() as f64;
+        let local = |p: &DVec3| {
+            let q = (*p - middle).truncate();
+            [q.dot(along), q.dot(across), p.z - middle.z]
+        };
+        let mut points: Vec<[f64; 3]> = places.iter().map(local).collect();
+        let mut levels: Vec<usize> = pairs.iter().map(|pair| pair.horizon).collect();
+        levels.sort_unstable();
+        levels.dedup();
+        let mut surface = Self { middle, along, across, c: [0.0; TERMS], s: [0.0; 2], z: [0.0; 2], misfit_m: 0.0 };
+        surface.c[2] = run_of_pairs(pairs, metric);
+        let used: &[usize] = match levels.len() {
+            1 => &[0, 1, 3],
+            2 => &[0, 1, 2, 3, 4],
+            _ => &[0, 1, 2, 3, 4, 5],
+        };
+        for _ in 0..3 {
+            surface.fit(&points, used)?;
+            let limit = OUTLIER * surface.misfit_m;
+            let near: Vec<[f64; 3]> =
+                points.iter().copied().filter(|p| (p[1] - surface.c_at(p[0], p[2])).abs() <= limit).collect();
+            if near.len() == points.len() || near.len() < 3 * used.len() {
+                break;
+            }
+            points = near;
+        }
+        for p in &points {
+            surface.s = [surface.s[0].min(p[0]), surface.s[1].max(p[0])];
+            surface.z = [surface.z[0].min(p[2]), surface.z[1].max(p[2])];
+        }
+        (surface.run().1 <= 1.0 / settings.min_dip_deg.to_radians().tan()).then_some(surface)
+    }
+
+    fn fit(&mut self, points: &[[f64; 3]], used: &[usize]) -> Option<()> {
+        // Scaled, so that the normal equations are well conditioned.
+        let scale = |axis: usize| points.iter().map(|p| p[axis].abs()).fold(1.0, f64::max);
+        let scales = scales_of(scale(0), scale(2));
+        let mut matrix = [[0.0; TERMS]; TERMS];
+        let mut right = [0.0; TERMS];
+        for p in points {
+            let terms = terms_of(p[0], p[2]);
+            let known: f64 = (0..TERMS).filter(|n| !used.contains(n)).map(|n| self.c[n] * terms[n]).sum();
+            for (a, &i) in used.iter().enumerate() {
+                right[a] += terms[i] / scales[i] * (p[1] - known);
+                for (b, &j) in used.iter().enumerate() {
+                    matrix[a][b] += terms[i] / scales[i] * (terms[j] / scales[j]);
+                }
+            }
+        }
+        // A little stiffness where the places say nothing: quadratic terms fade first.
+        for (a, &i) in used.iter().enumerate() {
+            matrix[a][a] += points.len() as f64 * if i >= 3 { 1e-4 } else { 1e-9 };
+        }
+        let solution = solve(&mut matrix, &mut right, used.len())?;
+        for (a, &i) in used.iter().enumerate() {
+            self.c[i] = solution[a] / scales[i];
+        }
+        let sum: f64 = points.iter().map(|p| (p[1] - self.c_at(p[0], p[2])).powi(2)).sum();
+        self.misfit_m = (sum / points.len() as f64).sqrt();
+        Some(())
+    }
+
+    fn c_at(&self, s: f64, z: f64) -> f64 {
+        terms_of(s, z).iter().zip(self.c).map(|(term, c)| term * c).sum()
+    }
+
+    /// Metric place on the surface.
+    fn at(&self, s: f64, z: f64) -> DVec3 {
+        self.middle + (self.along * s + self.across * self.c_at(s, z)).extend(z)
+    }
+
+    /// Whether it dips towards `across`, and cot(dip) at its middle.
+    pub fn run(&self) -> (bool, f64) {
+        let [low, high] = self.z;
+        let depth = (high - low).max(1.0);
+        let run = (self.c_at(0.0, low + depth) - self.c_at(0.0, low)) / depth;
+        // Across is normal to strike at the middle of the fit only.
+        let strike = self.c[1];
+        (run > 0.0, run.abs() / (1.0 + strike * strike).sqrt())
+    }
+
+    /// Horizontal direction of strike.
+    pub fn strike(&self) -> DVec2 {
+        (self.along + self.across * self.c[1]).normalize()
+    }
+
+    /// The throw of a pair, counted towards `across`.
+    pub fn throw_across(&self, pair: &Pair) -> f64 {
+        f64::from(pair.throw)
+    }
+
+    /// The two ends at middle depth, metric.
+    pub fn ends(&self) -> [DVec3; 2] {
+        let z = 0.5 * (self.z[0] + self.z[1]);
+        self.s.map(|s| self.at(s, z))
+    }
+
+    /// Shallowest and deepest place, m.
+    pub fn depths_m(&self) -> [f64; 2] {
+        self.z.map(|z| z + self.middle.z)
+    }
+
+    /// The surface continued to where it ends: along strike to the walls its places nearly reach, or to where the throw has gone;
+    /// in depth to the next unbroken horizon, or through the volume.
+    pub fn extended(mut self, pairs: &[Pair], horizons: &[Evidence], geometry: &SurveyGeometry) -> Self {
+        let metric = geometry.metric_from_voxel();
+        let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
+        let inverse = metric.inverse();
+        let [nx, ny, nz] = geometry.size();
+        let inside = |p: DVec3| {
+            let v = inverse * p;
+            v.x >= 0.0 && v.y >= 0.0 && v.x <= (nx - 1) as f64 && v.y <= (ny - 1) as f64
+        };
+        let throw: Vec<(f64, f64)> = pairs
+            .iter()
+            .map(|pair| {
+                ((metres(metric, pair.at) - self.middle).truncate().dot(self.along), f64::from(pair.throw.abs()))
+            })
+            .collect();
+        let reach = self.s;
+        for (end, sign) in [(0, -1.0), (1, 1.0)] {
+            let last = reach[end];
+            let z = 0.5 * (self.z[0] + self.z[1]);
+            let wall = (1..=TO_WALL as usize).any(|k| !inside(self.at(last + sign * k as f64 * bin_m, z)));
+            let by = if wall { 2.0 * TO_WALL * bin_m } else { dies_out(&throw, reach, end).min(BEYOND * bin_m) };
+            self.s[end] = last + sign * by;
+        }
+        let mut used: Vec<usize> = pairs.iter().map(|pair| pair.horizon).collect();
+        used.sort_unstable();
+        used.dedup();
+        let mut limits = [-self.middle.z, (nz - 1) as f64 * metric.z_axis.z - self.middle.z];
+        for (h, horizon) in horizons.iter().enumerate() {
+            if used.contains(&h) {
+                continue;
+            }
+            if let Some(z) = self.unbroken(horizon, geometry) {
+                if z < self.z[0] {
+                    limits[0] = limits[0].max(0.5 * (z + self.z[0]));
+                } else if z > self.z[1] {
+                    limits[1] = limits[1].min(0.5 * (z + self.z[1]));
+                }
+            }
+        }
+        self.z = limits;
+        self
+    }
+
+    /// The mean depth (m from the middle) at which a horizon passes the surface without an offset over most of its length.
+    fn unbroken(&self, horizon: &Evidence, geometry: &SurveyGeometry) -> Option<f64> {
+        const STATIONS: usize = 24;
+        let metric = geometry.metric_from_voxel();
+        let inverse = metric.inverse();
+        let [nx, ny, _] = geometry.size();
+        let sample = |p: DVec2| {
+            let v = inverse * p.extend(0.0);
+            let (x, y) = (v.x.round(), v.y.round());
+            let inside = x >= 0.0 && y >= 0.0 && x < nx as f64 && y < ny as f64;
+            let n = inside.then(|| x as usize * ny + y as usize)?;
+            horizon.sheets.iter().map(|sheet| sheet.z[n]).find(|z| z.is_finite()).map(f64::from)
+        };
+        let bin_m = metric.x_axis.length();
+        let (mut whole, mut depth) = (0, 0.0);
+        for k in 0..STATIONS {
+            let s = self.s[0] + (self.s[1] - self.s[0]) * (k as f64 + 0.5) / STATIONS as f64;
+            // Where the horizon meets the surface, by a few steps of fixed-point iteration.
+            let mut z = 0.0;
+            let mut met = None;
+            for _ in 0..6 {
+                let Some(found) = sample(self.at(s, z).truncate()) else { break };
+                z = found * metric.z_axis.z - self.middle.z;
+                met = Some(found);
+            }
+            let Some(met) = met else { continue };
+            let place = self.at(s, z).truncate();
+            let side = |by: f64| sample(place + self.across * (by * bin_m));
+            if let (Some(a), Some(b)) = (side(-3.0), side(3.0))
+                && (0.5 * (a + b) - met).abs() < 1.5
+            {
+                whole += 1;
+                depth += z;
+            }
+        }
+        (2 * whole > STATIONS).then(|| depth / f64::from(whole as u32))
+    }
+
+    /// The mesh in the world: strips of equal steps along strike and in depth.
+    pub fn mesh(&self, geometry: &SurveyGeometry) -> TriangleMesh {
+        let metric = geometry.metric_from_voxel();
+        let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
+        let count = |range: [f64; 2], step: f64| ((range[1] - range[0]) / step).ceil().max(1.0) as usize;
+        let cells = [count(self.s, MESH[0] * bin_m), count(self.z, MESH[1] * metric.z_axis.z)];
+        let inverse = metric.inverse();
+        let mut mesh = TriangleMesh::default();
+        for a in 0..=cells[0] {
+            for b in 0..=cells[1] {
+                let part =
+                    |range: [f64; 2], n: usize, of: usize| range[0] + (range[1] - range[0]) * n as f64 / of as f64;
+                let p = self.at(part(self.s, a, cells[0]), part(self.z, b, cells[1]));
+                mesh.vertices.push(geometry.world_from_voxel(inverse * p));
+            }
+        }
+        let row = cells[1] as u32 + 1;
+        for a in 0..cells[0] as u32 {
+            for b in 0..cells[1] as u32 {
+                let corner = a * row + b;
+                mesh.triangles.push([corner, corner + row, corner + 1]);
+                mesh.triangles.push([corner + 1, corner + row, corner + row + 1]);
+            }
+        }
+        mesh
+    }
+}
+
+/// Mean semblance on the surface, and eight traces off it on both sides.
+pub(super) fn semblance_on(surface: &Surface, geometry: &SurveyGeometry, volume: &Volume<f32>) -> [f32; 2] {
+    const STATIONS: usize = 64;
+    const OFF_TRACES: f64 = 8.0;
+    let metric = geometry.metric_from_voxel();
+    let inverse = metric.inverse();
+    let size = volume.size();
+    let mut sums = [(0.0f64, 0usize); 2];
+    for a in 0..STATIONS {
+        for b in 0..STATIONS {
+            let part =
+                |range: [f64; 2], n: usize| range[0] + (range[1] - range[0]) * (n as f64 + 0.5) / STATIONS as f64;
+            let p = surface.at(part(surface.s, a), part(surface.z, b));
+            for (kind, off) in [(0, 0.0), (1, -OFF_TRACES), (1, OFF_TRACES)] {
+                let q = inverse * (p + (surface.across * (off * metric.x_axis.length())).extend(0.0));
+                let voxel = q.round();
+                let inside = (0..3).all(|axis| voxel[axis] >= 0.0 && voxel[axis] < size[axis] as f64);
+                if inside {
+                    let value = volume.at(voxel.x as usize, voxel.y as usize, voxel.z as usize);
+                    if value.is_finite() {
+                        sums[kind].0 += f64::from(value);
+                        sums[kind].1 += 1;
+                    }
+                }
+            }
+        }
+    }
+    sums.map(|(sum, count)| (sum / count.max(1) as f64) as f32)
+}
+
+/// How far beyond an end of the trace the throw, continued from the last third, is nothing, m.
+fn dies_out(throw: &[(f64, f64)], reach: [f64; 2], end: usize) -> f64 {
+    let third = (reach[1] - reach[0]) / 3.0;
+    let from_end = |s: f64| (s - reach[end]).abs();
+    let near: Vec<(f64, f64)> =
+        throw.iter().map(|&(s, t)| (from_end(s), t)).filter(|(distance, _)| *distance <= third).collect();
+    let count = near.len() as f64;
+    if count < 4.0 {
+        return 0.0;
+    }
+    let (ms, mt) = near.iter().fold((0.0, 0.0), |sum, p| (sum.0 + p.0 / count, sum.1 + p.1 / count));
+    let (ss, st) = near.iter().fold((0.0, 0.0), |sum, p| (sum.0 + (p.0 - ms).powi(2), sum.1 + (p.0 - ms) * (p.1 - mt)));
+    let slope = st / ss.max(1e-9);
+    let at_end = mt - slope * ms;
+    // Throw that does not fall towards the end says nothing about where it is gone.
+    if slope <= 0.0 || at_end <= 0.0 { 0.0 } else { at_end / slope }
+}
+
+/// Median of heave over throw: the cotangent of the dip as the rims of one horizon have it, positive when dipping towards `across`.
+fn run_of_pairs(pairs: &[Pair], metric: glam::DMat3) -> f64 {
+    let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
+    let mut runs: Vec<f64> = pairs
+        .iter()
+        .map(|pair| f64::from(pair.heave) * bin_m / (f64::from(pair.throw) * metric.z_axis.z))
+        .filter(|run| run.is_finite())
+        .collect();
+    runs.sort_by(f64::total_cmp);
+    runs.get(runs.len() / 2).copied().unwrap_or(0.0)
+}
+
+fn terms_of(s: f64, z: f64) -> [f64; TERMS] {
+    [1.0, s, z, s * s, s * z, z * z]
+}
+
+fn scales_of(s: f64, z: f64) -> [f64; TERMS] {
+    terms_of(s, z)
+}
+
+/// Gaussian elimination with pivots of the first `count` rows and columns.
+fn solve(matrix: &mut [[f64; TERMS]; TERMS], right: &mut [f64; TERMS], count: usize) -> Option<[f64; TERMS]> {
+    for column in 0..count {
+        let pivot = (column..count).max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))?;
+        if matrix[pivot][column].abs() < 1e-12 {
+            return None;
+        }
+        matrix.swap(column, pivot);
+        right.swap(column, pivot);
+        for row in column + 1..count {
+            let factor = matrix[row][column] / matrix[column][column];
+            for k in column..count {
+                matrix[row][k] -= factor * matrix[column][k];
+            }
+            right[row] -= factor * right[column];
+        }
+    }
+    let mut solution = [0.0; TERMS];
+    for row in (0..count).rev() {
+        let rest: f64 = (row + 1..count).map(|k| matrix[row][k] * solution[k]).sum();
+        solution[row] = (right[row] - rest) / matrix[row][row];
+    }
+    Some(solution)
+}
