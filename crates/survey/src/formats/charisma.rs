@@ -47,6 +47,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
         shape: RawShape::Points(points),
         vertical: VerticalFacts::default(),
         notes: Vec::new(),
+        warnings: Vec::new(),
     };
     Ok(order.into_iter().map(surface).collect())
 }

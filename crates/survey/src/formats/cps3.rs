@@ -2,13 +2,20 @@
 //!
 //! `FSASCI 0 1 "COMPUTED" 0 null`, `FSATTR …`, `FSLIMI xmin xmax ymin ymax zmin zmax`, `FSNROW nrow ncol`, `FSXINC dx dy`,
 //! `->name`, then values; `!` lines are comments. Most programs write columns from the west, each from the north down; some write
-//! rows from the south. The file does not say which: the usual order is taken unless the other is at least
-//! three times smoother, and the report says so.
+//! rows from the south. The file does not say which: `--value-order` does, else the smoother one is taken when it is at least
+//! twice as smooth, else the usual one with a warning. The report has the evidence either way.
+//!
+//! Written in columns from the north, five values a line.
 
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, SourceFile};
-use super::zmap::{from_columns, unrotated};
-use super::{Codec, Format, FormatError};
+use super::options::ValueOrder;
+use super::write::Failure;
+use super::zmap::{from_columns, in_columns, unrotated};
+use super::{Codec, Format, FormatError, irap};
+use crate::geometry::SurveyGeometry;
+use crate::horizon::{Horizon, NodeGrid};
+use std::io::Write;
 
 pub(super) const CODEC: Codec = Codec {
     format: Format::Cps3,
@@ -17,7 +24,7 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: None,
-    write_horizon: None,
+    write_horizon: Some(write_horizon),
     write_fault: None,
 };
 
@@ -27,7 +34,7 @@ fn detect(source: &SourceFile) -> Option<String> {
     first.starts_with("FSASCI").then(|| "it begins with FSASCI".to_string())
 }
 
-fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
+fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
     let (mut null, mut limits, mut counts, mut name) = (None, None, None, None);
     let mut values = Vec::new();
@@ -73,16 +80,52 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let columns = from_columns(&file, grid.count);
     let rows = super::irap::transposed(&file, grid.count);
     let (usual, other) = (roughness(&columns, grid.count[1]), roughness(&rows, grid.count[1]));
-    let (z, order, so, otherwise) = if 3.0 * other < usual {
-        (rows, "rows from the south", other, usual)
-    } else {
-        (columns, "columns from the north", usual, other)
+    let evidence =
+        format!("the mean bend from node to node is {usual:.3} in columns from the north, {other:.3} in rows from the south");
+    let clear = usual.max(other) >= CLEAR * usual.min(other);
+    let told = context.options.value_order;
+    let order = told.unwrap_or(if clear && other < usual { ValueOrder::Rows } else { ValueOrder::Columns });
+    let (z, word) = match order {
+        ValueOrder::Columns => (columns, "columns from the north"),
+        ValueOrder::Rows => (rows, "rows from the south"),
     };
-    let notes = vec![format!(
-        "values taken as {order}: the mean bend from node to node is {so:.3}, read the other way {otherwise:.3}"
-    )];
+    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+    match told {
+        Some(_) => notes.push(format!("values taken as {word}, as told: {evidence}")),
+        None if clear => notes.push(format!("values taken as {word}, the smoother order: {evidence}")),
+        None => warnings.push(format!(
+            "the file does not say the order of its values and both are about as smooth: {evidence}. Taken as {word}; look at the map, and say --value-order rows or columns"
+        )),
+    }
     let shape = RawShape::Grid { grid, z };
-    Ok(vec![RawSurface { name, shape, vertical: VerticalFacts::default(), notes }])
+    Ok(vec![RawSurface { name, shape, vertical: VerticalFacts::default(), notes, warnings }])
+}
+
+/// So many times smoother is one order than the other when it is believed.
+const CLEAR: f64 = 2.0;
+
+/// Writes a horizon whose grid is unrotated.
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> Result<(), Failure> {
+    let sheet = irap::only_sheet(horizon)?;
+    let NodeGrid { origin, u_step, v_step, count: [nu, nv] } = sheet.grid;
+    let far = origin + u_step * (nu as f64 - 1.0) + v_step * (nv as f64 - 1.0);
+    let known = || sheet.depth.iter().copied().filter(|z| z.is_finite());
+    let (low, high) = (known().fold(f32::INFINITY, f32::min), known().fold(f32::NEG_INFINITY, f32::max));
+    let (low, high) = if low <= high { (low, high) } else { (0.0, 0.0) };
+    writeln!(out, "FSASCI 0 1 \"COMPUTED\" 0 1.0000000E+30 0")?;
+    writeln!(out, "FSATTR 0 0")?;
+    writeln!(out, "FSLIMI {:.6} {:.6} {:.6} {:.6} {low:.6} {high:.6}", origin.x, far.x, origin.y, far.y)?;
+    writeln!(out, "FSNROW {nv} {nu}")?;
+    writeln!(out, "FSXINC {:.8} {:.8}", u_step.x, v_step.y)?;
+    writeln!(out, "->{}", horizon.name.replace(['\n', '\r'], " "))?;
+    for column in in_columns(&sheet.depth, nv) {
+        for line in column.chunks(5) {
+            let words: Vec<String> =
+                line.iter().map(|z| if z.is_finite() { format!("{z:.7}") } else { "1.0000000E+30".into() }).collect();
+            writeln!(out, "{}", words.join(" "))?;
+        }
+    }
+    Ok(())
 }
 
 /// Mean second difference along rows and columns; infinite when no three nodes in line have values.

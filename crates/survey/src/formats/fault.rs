@@ -30,6 +30,7 @@ pub(super) fn build(
     let counts = rule.apply(&mut raw.shape);
     let metres = geometry.metres_per_vertical_unit();
     let mut notes = raw.notes;
+    let warnings = raw.warnings;
     let none = |why: String| FormatError::NoSurface { file: file.to_path_buf(), name: name.clone(), why };
     let mut outside = 0;
     let (mesh, gridding) = match raw.shape {
@@ -103,6 +104,7 @@ pub(super) fn build(
         sheets: 1,
         multivalued: 0,
         notes,
+        warnings,
     };
     Ok((Fault { name, mesh, truncated_by: None }, report))
 }

@@ -27,6 +27,7 @@ struct Nodes {
     outside: usize,
     multivalued: usize,
     notes: Vec<String>,
+    warnings: Vec<String>,
 }
 
 /// Makes the horizon.
@@ -57,6 +58,8 @@ pub(super) fn build(
     let outside_range = rule.check(file, &name, &values, &geometry.vertical, SurfaceKind::Horizon)?;
     let mut notes = raw.notes;
     notes.extend(nodes.notes);
+    let mut warnings = raw.warnings;
+    warnings.extend(nodes.warnings);
     let report = ImportReport {
         file: file.to_path_buf(),
         kind: SurfaceKind::Horizon,
@@ -76,6 +79,7 @@ pub(super) fn build(
         sheets: nodes.sheets.len(),
         multivalued: nodes.multivalued,
         notes,
+        warnings,
     };
     Ok((Horizon { name, sheets: nodes.sheets }, report))
 }
@@ -101,6 +105,7 @@ fn from_grid(
         outside,
         multivalued: 0,
         notes: Vec::new(),
+        warnings: Vec::new(),
     })
 }
 
@@ -124,6 +129,13 @@ fn from_points(
             }
             let pairs: Vec<_> = placed.voxels.iter().zip(points).map(|(v, p)| (*v, p.z as f32)).collect();
             let gridded = scatter::grid(&pairs, geometry, options.gap_m, tolerance);
+            if gridded.repeated > 0 {
+                notes.push(format!(
+                    "{} points share their place with another of the same depth and were averaged with it",
+                    gridded.repeated
+                ));
+            }
+            let warnings = gridded.outliers.iter().map(|o| o.sentence(geometry.vertical.unit)).collect();
             let count = |q| gridded.sheets.iter().flat_map(|s| &s.quality).filter(|k| **k == q).count();
             let (picked, filled) = (count(Quality::Picked), count(Quality::Filled));
             return Ok(Nodes {
@@ -132,6 +144,7 @@ fn from_points(
                 sheets: gridded.sheets,
                 outside: placed.outside,
                 notes,
+                warnings,
             });
         };
         let (u, v) = (lattice.grid.u_step, lattice.grid.v_step);
@@ -146,7 +159,7 @@ fn from_points(
     if twice > 0 {
         notes.push(format!("{twice} points repeat the depth of another at the same node and were averaged with it"));
     }
-    Ok(Nodes { sheets, gridding, outside: placed.outside, multivalued, notes })
+    Ok(Nodes { sheets, gridding, outside: placed.outside, multivalued, notes, warnings: Vec::new() })
 }
 
 /// Points on their nodes; with several depths at a node, several sheets. Also counts such nodes, and repeated depths.
@@ -209,5 +222,6 @@ fn from_mesh(
         outside,
         multivalued: values.multivalued(),
         notes: Vec::new(),
+        warnings: Vec::new(),
     })
 }

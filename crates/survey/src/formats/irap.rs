@@ -12,6 +12,7 @@ use super::{Codec, Format, FormatError};
 use crate::geometry::SurveyGeometry;
 use crate::horizon::{Horizon, NodeGrid, Sheet};
 use glam::DVec2;
+use std::borrow::Cow;
 use std::io::Write;
 
 pub(super) const CODEC: Codec = Codec {
@@ -103,17 +104,38 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     }
     let z = transposed(&values, grid.count);
     let shape = RawShape::Grid { grid, z };
-    Ok(vec![RawSurface { name: None, shape, vertical: VerticalFacts::default(), notes: Vec::new() }])
+    Ok(vec![RawSurface { name: None, shape, vertical: VerticalFacts::default(), notes: Vec::new(), warnings: Vec::new() }])
+}
+
+/// All sheets as one: possible where they lie on one grid and no node has two depths.
+pub(super) fn one_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, Failure> {
+    let several = |why: String| {
+        Failure::NotRepresentable(
+            format!("it has {} sheets, {why}, and the format holds one depth a node", horizon.sheets.len()),
+            "write csv, opendtect or tsurf, which hold several",
+        )
+    };
+    let Some((first, others)) = horizon.sheets.split_first() else { return Err(several("so no depth at all".into())) };
+    let mut merged = Cow::Borrowed(first);
+    for sheet in others {
+        if sheet.grid != first.grid {
+            return Err(several("on different grids".into()));
+        }
+        let target = merged.to_mut();
+        for (n, z) in sheet.depth.iter().enumerate().filter(|(_, z)| z.is_finite()) {
+            if target.depth[n].is_finite() {
+                return Err(several("two of them over one node".into()));
+            }
+            target.depth[n] = *z;
+            target.quality[n] = sheet.quality[n];
+        }
+    }
+    Ok(merged)
 }
 
 /// The single sheet a one-depth grid format can hold, on an orthogonal grid.
-pub(super) fn only_sheet(horizon: &Horizon) -> Result<&Sheet, Failure> {
-    let [sheet] = horizon.sheets.as_slice() else {
-        return Err(Failure::NotRepresentable(
-            format!("it has {} sheets and the format holds one depth a node", horizon.sheets.len()),
-            "write csv, opendtect or tsurf, which hold several",
-        ));
-    };
+pub(super) fn only_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, Failure> {
+    let sheet = one_sheet(horizon)?;
     let (u, v) = (sheet.grid.u_step, sheet.grid.v_step);
     if u.dot(v).abs() > 1e-4 * u.length() * v.length() {
         return Err(Failure::NotRepresentable(

@@ -12,9 +12,11 @@
 //! | Irap classic ASCII | ✓ | | ✓ | |
 //! | OpendTect ASCII | ✓ | sticks | ✓ | sticks |
 //! | GOCAD TSurf | ✓ | ✓ | ✓ | ✓ |
-//! | Irap binary, ZMAP+, CPS-3, IJXYZ | ✓ | | | |
-//! | EarthVision, Petrel points | ✓ | points | | |
+//! | ZMAP+, CPS-3 (unrotated: others are resampled) | ✓ | | ✓ | |
+//! | Irap binary, PetroMod binary, IJXYZ, IESX, DUG | ✓ | | | |
+//! | EarthVision, Petrel points and well tops | ✓ | points | | |
 //! | Charisma | ✓ | sticks | | |
+//! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators) | ✓ | outlines, sticks | | |
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
@@ -23,10 +25,14 @@ mod charisma;
 mod columns;
 mod cps3;
 mod csv;
+mod describe;
+mod dug;
 mod earthvision;
 mod error;
+mod export;
 mod fault;
 mod horizon;
+mod iesx;
 mod ijxyz;
 mod irap;
 mod irap_binary;
@@ -34,7 +40,9 @@ mod lattice;
 mod mesh_sticks;
 mod opendtect;
 mod options;
+mod outline;
 mod petrel;
+mod petromod;
 mod placement;
 mod plane_fit;
 mod raster;
@@ -46,22 +54,27 @@ mod sticks;
 pub(crate) mod table;
 pub(crate) mod text;
 mod tsurf;
+mod unrotated;
 mod vertical;
 mod write;
 mod zmap;
+mod zmap_points;
 
 pub use bounds::{Bounds, InterpretationFile, bounds_of, survey_from_points};
 pub use columns::Column;
+pub use describe::{FileDescription, SurfaceDescription, describe};
 pub use error::{Extent, FormatError};
-pub use options::{ImportOptions, PlaceBy, ZPositive, ZUnit};
+pub use export::{ExportOptions, ExportReport, WhenRotated};
+pub use options::{ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
 
 use crate::fault::Fault;
 use crate::geometry::SurveyGeometry;
-use crate::horizon::Horizon;
+use crate::horizon::{Horizon, Sheet};
 use glam::DVec3;
 use raw::{RawSurface, ReadContext};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::fmt;
 use std::io::Write;
 use std::path::Path;
@@ -97,6 +110,14 @@ pub enum Format {
     Charisma,
     /// IJXYZ of OpenWorks.
     Ijxyz,
+    /// PetroMod binary map.
+    PetroMod,
+    /// GeoFrame IESX (3d_ci7m).
+    Iesx,
+    /// DUG Insight points.
+    Dug,
+    /// ZMAP+ points and polygons.
+    ZmapPoints,
 }
 
 /// What a file holds, or is wanted to hold.
@@ -141,12 +162,16 @@ struct Codec {
 const CODECS: &[Codec] = &[
     tsurf::CODEC,
     irap_binary::CODEC,
+    petromod::CODEC,
     irap::CODEC,
     cps3::CODEC,
     zmap::CODEC,
+    zmap_points::CODEC,
     petrel::CODEC,
     charisma::CODEC,
     earthvision::CODEC,
+    iesx::CODEC,
+    dug::CODEC,
     ijxyz::CODEC,
     opendtect::CODEC,
     csv::CODEC,
@@ -197,12 +222,28 @@ fn read_raw(
     kind: SurfaceKind,
 ) -> Result<(SourceFile, Settled<Format>, Vec<RawSurface>), FormatError> {
     let source = SourceFile::open(path)?;
+    let (format, surfaces) = read_source(&source, geometry, options, kind)?;
+    Ok((source, format, surfaces))
+}
+
+/// Settles the format of a file in memory and reads its surfaces as they are, of those asked for.
+fn read_source(
+    source: &SourceFile,
+    geometry: Option<&SurveyGeometry>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<(Settled<Format>, Vec<RawSurface>), FormatError> {
+    let path = source.path.as_path();
     let format = match options.format {
         Some(format) => Settled { value: format, source: Provenance::Option },
         None => {
-            let found = CODECS.iter().find_map(|c| Some((c.format, (c.detect)(&source)?)));
+            let found = CODECS.iter().find_map(|c| Some((c.format, (c.detect)(source)?)));
             let (value, evidence) = found.ok_or_else(|| {
                 let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(80)]);
+                if source.bytes.starts_with(b"\x93NUMPY") {
+                    let found = "it is a NumPy array, which has values but no places: write x, y, z as csv".into();
+                    return FormatError::UnknownFormat { file: path.to_path_buf(), found, known: names(|_| true) };
+                }
                 let found = text::lines(&start)
                     .next()
                     .map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)));
@@ -216,9 +257,12 @@ fn read_raw(
         let instead = names(|c| reader_of(c).is_some());
         return Err(FormatError::Unsupported { format: format.value, action: "read", kind, instead });
     };
-    let surfaces = reader(&source, &ReadContext { geometry, options, kind })?;
-    let surfaces = selected(&source, surfaces, options, kind)?;
-    Ok((source, format, surfaces))
+    let mut surfaces = reader(source, &ReadContext { geometry, options, kind })?;
+    if kind == SurfaceKind::Fault {
+        surfaces = surfaces.into_iter().flat_map(outline::split).collect();
+    }
+    let surfaces = selected(source, surfaces, options, kind)?;
+    Ok((format, surfaces))
 }
 
 /// The surfaces asked for: of the name selected; of several, the one of the name given; else all.
@@ -264,17 +308,38 @@ pub fn read_horizons(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
 ) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
-    let (source, format, surfaces) = read_raw(path, Some(geometry), options, SurfaceKind::Horizon)?;
+    horizons_of(&SourceFile::open(path)?, geometry, options)
+}
+
+/// As [`read_horizons`], of bytes in memory; `path` gives the extension and is named in errors.
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn parse_horizons(
+    path: &Path,
+    bytes: &[u8],
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    horizons_of(&SourceFile { path: path.to_path_buf(), bytes: bytes.to_vec() }, geometry, options)
+}
+
+fn horizons_of(
+    source: &SourceFile,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    let (format, surfaces) = read_source(source, Some(geometry), options, SurfaceKind::Horizon)?;
     surfaces
         .into_iter()
         .map(|raw| {
-            let name = name_of(&raw, &source, options);
-            horizon::build(path, name, format.clone(), raw, geometry, options)
+            let name = name_of(&raw, source, options);
+            horizon::build(&source.path, name, format.clone(), raw, geometry, options)
         })
         .collect()
 }
 
-/// Writes a horizon; beside the target first, then renamed.
+/// Writes a horizon; beside the target first, then renamed. A rotated grid is resampled for formats that hold none.
 ///
 /// # Errors
 /// [`FormatError::NotRepresentable`] when the format cannot hold it, [`FormatError::Io`].
@@ -283,12 +348,31 @@ pub fn write_horizon(
     horizon: &Horizon,
     geometry: &SurveyGeometry,
     format: Format,
-) -> Result<(), FormatError> {
+) -> Result<ExportReport, FormatError> {
+    write_horizon_as(path, horizon, geometry, format, &ExportOptions::default())
+}
+
+/// As [`write_horizon`], as told.
+///
+/// # Errors
+/// As [`write_horizon`].
+pub fn write_horizon_as(
+    path: &Path,
+    horizon: &Horizon,
+    geometry: &SurveyGeometry,
+    format: Format,
+    options: &ExportOptions,
+) -> Result<ExportReport, FormatError> {
     let Some(writer) = format.codec().write_horizon else {
         let instead = names(|c| c.write_horizon.is_some());
         return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Horizon, instead });
     };
-    write::beside(path, &horizon.name, format, |out| writer(out, horizon, geometry))
+    let (horizon, notes) = match format {
+        Format::Zmap | Format::Cps3 => unrotated::of(horizon, format, options)?,
+        _ => (Cow::Borrowed(horizon), Vec::new()),
+    };
+    write::beside(path, &horizon.name, format, |out| writer(out, &horizon, geometry))?;
+    Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum(), notes })
 }
 
 /// Reads the faults of a file as triangulated surfaces: TSurf as it is, sticks joined by triangles, points fitted.
@@ -300,12 +384,33 @@ pub fn read_fault(
     geometry: &SurveyGeometry,
     options: &ImportOptions,
 ) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
-    let (source, format, surfaces) = read_raw(path, Some(geometry), options, SurfaceKind::Fault)?;
+    faults_of(&SourceFile::open(path)?, geometry, options)
+}
+
+/// As [`read_fault`], of bytes in memory; `path` gives the extension and is named in errors.
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn parse_fault(
+    path: &Path,
+    bytes: &[u8],
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    faults_of(&SourceFile { path: path.to_path_buf(), bytes: bytes.to_vec() }, geometry, options)
+}
+
+fn faults_of(
+    source: &SourceFile,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    let (format, surfaces) = read_source(source, Some(geometry), options, SurfaceKind::Fault)?;
     surfaces
         .into_iter()
         .map(|raw| {
-            let name = name_of(&raw, &source, options);
-            fault::build(path, name, format.clone(), raw, geometry, options)
+            let name = name_of(&raw, source, options);
+            fault::build(&source.path, name, format.clone(), raw, geometry, options)
         })
         .collect()
 }

@@ -93,6 +93,16 @@ pub enum PlaceBy {
     World,
 }
 
+/// The order in which a grid's values stand in a file that does not say it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ValueOrder {
+    /// Columns from the west, each from the north down: what most programs write.
+    Columns,
+    /// Rows from the south, each from the west.
+    Rows,
+}
+
 /// What the user says about a file; everything has a default.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -115,8 +125,10 @@ pub struct ImportOptions {
     pub columns: Option<Vec<Column>>,
     /// What places points that have both line numbers and X, Y; `None` = lines, after a check that both agree.
     pub place_by: Option<PlaceBy>,
-    /// Scattered points: a node further than this from every point is a hole, m; `None` = twice the typical distance of neighbouring points.
+    /// Scattered points: where no circle smaller than this, m, reaches three of them, the surface has a hole; `None` = twice the typical distance of neighbouring points.
     pub gap_m: Option<f64>,
+    /// CPS-3: the order of the values; `None` = the smoother of the two, with the evidence in the report.
+    pub value_order: Option<ValueOrder>,
 }
 
 impl Default for ImportOptions {
@@ -132,6 +144,7 @@ impl Default for ImportOptions {
             columns: None,
             place_by: None,
             gap_m: None,
+            value_order: None,
         }
     }
 }

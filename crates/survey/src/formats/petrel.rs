@@ -1,7 +1,7 @@
-//! Petrel points with attributes.
+//! Petrel points with attributes, and well tops as points.
 //!
 //! `# Unit in depth: ms`, `VERSION 1`, `BEGIN HEADER`, a column name a line (some with a type, `INT,Inline`), `END HEADER`, rows.
-//! Petrel usually writes Z negative downwards, which the file does not state: the sign is an option.
+//! Petrel usually writes Z negative downwards, which the file does not state: the sign is an option. −999 is its null.
 
 use super::columns;
 use super::options::ZUnit;
@@ -44,5 +44,12 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     }
     let rows: Vec<_> = all[end + 1..].iter().copied().filter(|l| !table::is_comment(l.text)).collect();
     let cut = Cut { delimiter: None, ..Cut::of(rows.first().map_or("", |l| l.text)) };
-    table::surfaces(source, &rows, cut, layout, context)
+    let mut surfaces = table::surfaces(source, &rows, cut, layout, context)?;
+    for surface in &mut surfaces {
+        let nulls = surface.shape.values_mut().filter(|z| **z == -999.0).map(|z| *z = f64::NAN).count();
+        if nulls > 0 {
+            surface.notes.push(format!("{nulls} values of -999, Petrel's null, are holes"));
+        }
+    }
+    Ok(surfaces)
 }

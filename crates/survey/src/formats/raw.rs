@@ -91,4 +91,6 @@ pub(super) struct RawSurface {
     pub shape: RawShape,
     pub vertical: VerticalFacts,
     pub notes: Vec<String>,
+    /// What the user should check.
+    pub warnings: Vec<String>,
 }

@@ -74,7 +74,7 @@ pub enum Gridding {
     },
     /// Scattered points, interpolated onto the survey's traces.
     Interpolated {
-        /// Nodes further than this from every point are holes, m.
+        /// Gaps that hold a circle of this radius without a point in it stay holes, m.
         gap_m: f64,
         /// Nodes at a point.
         picked: usize,
@@ -139,6 +139,8 @@ pub struct ImportReport {
     pub multivalued: usize,
     /// Whatever else the user should know, one sentence each.
     pub notes: Vec<String>,
+    /// What the user should check, one sentence each.
+    pub warnings: Vec<String>,
 }
 
 impl fmt::Display for ImportReport {
@@ -169,7 +171,8 @@ impl fmt::Display for ImportReport {
                 self.outside_survey, self.outside_range
             )?;
         }
-        self.notes.iter().try_for_each(|note| writeln!(f, "  note        {note}"))
+        self.notes.iter().try_for_each(|note| writeln!(f, "  note        {note}"))?;
+        self.warnings.iter().try_for_each(|warning| writeln!(f, "  warning     {warning}"))
     }
 }
 
@@ -186,7 +189,8 @@ impl fmt::Display for Gridding {
             ),
             Self::Interpolated { gap_m, picked, filled } => write!(
                 f,
-                "scattered points interpolated onto the survey's traces: {picked} at points, {filled} between, holes further than {gap_m:.1} m from every point"
+                "scattered points interpolated onto the survey's traces: {picked} at points, {filled} between, gaps wider than {:.1} m stay holes",
+                2.0 * gap_m"
             ),
             Self::Rasterised { triangles } => write!(f, "{triangles} triangles sampled at the survey's traces"),
             Self::Sticks { sticks } => write!(f, "{sticks} sticks joined by triangles"),

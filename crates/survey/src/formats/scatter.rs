@@ -6,17 +6,19 @@
 //! (weighted 1/d², reweighted by the residual): neighbours beyond a fault are outvoted instead of averaged in.
 //! Planes are reproduced exactly.
 //!
-//! A trace further than `gap` from all three corners of its triangle is a hole, as is everything outside the points' convex
-//! hull: nothing is extrapolated here. A trace with a point within half a bin is `Picked`, others are `Filled`.
+//! A triangle whose circumcircle is larger than `gap` in radius is left out (an alpha shape; Edelsbrunner, Kirkpatrick & Seidel
+//! 1983): so are bays of the points' outline, and gaps in their middle, and the slivers along their convex hull. Nothing is
+//! extrapolated. A trace with a point within half a bin is `Picked`, others are `Filled`.
 //! The default gap is twice the median length of a triangle's side, which bridges random thinning and keeps real gaps.
 
 use super::placement::world_xy;
 use super::raster;
 use super::sheets::{self, NodeValues};
-use crate::geometry::SurveyGeometry;
+use crate::geometry::{SurveyGeometry, VerticalUnit};
 use crate::horizon::{NodeGrid, Quality, Sheet};
 use delaunator::{Point, triangulate};
 use glam::{DMat2, DVec2};
+use rayon::prelude::*;
 use std::collections::HashMap;
 
 /// How far the surface may leave the range of a triangle's corners, as a share of that range: enough for the crest of a fold, and
@@ -29,6 +31,64 @@ pub(super) struct Gridded {
     pub gap_m: f64,
     /// Points that share their place with another of clearly different depth.
     pub multivalued: usize,
+    /// Points that repeat another's place and depth.
+    pub repeated: usize,
+    /// Points that stand out from their neighbours; they are kept.
+    pub outliers: Option<Outliers>,
+}
+
+/// Points that stand out from their neighbours.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Outliers {
+    pub count: usize,
+    /// World X, Y, depth and height above its neighbours' median of the one that stands out most.
+    pub worst: [f64; 4],
+    /// From this height on a point stands out.
+    pub limit: f64,
+}
+
+impl Outliers {
+    /// For the user.
+    pub fn sentence(&self, unit: VerticalUnit) -> String {
+        let [x, y, z, off] = self.worst;
+        let unit = unit.symbol();
+        format!(
+            "{} points lie more than {:.1} {unit} off their neighbours, where most lie within a tenth of that: mis-picks? The worst, {off:+.1} {unit}, is {z:.1} at {x:.1}, {y:.1}. They were kept",
+            self.count, self.limit
+        )
+    }
+}
+
+/// How many times the usual deviation (1.4826 · median |residual|) an outlier stands out.
+const OUTLIER: f64 = 10.0;
+
+/// Points further from the median of their neighbours than [`OUTLIER`] times what is usual; also than ten tolerances.
+fn outliers(world: &[DVec2], values: &NodeValues, neighbours: &[Vec<usize>], tolerance: f32) -> Option<Outliers> {
+    let z = |n: usize| f64::from(values.z[values.offsets[n] as usize]);
+    let residual = |n: usize| {
+        let mut near: Vec<f64> = neighbours[n].iter().map(|&m| z(m)).collect();
+        if near.len() < 6 || values.offsets[n + 1] - values.offsets[n] != 1 {
+            return 0.0;
+        }
+        near.sort_by(f64::total_cmp);
+        z(n) - 0.5 * (near[(near.len() - 1) / 2] + near[near.len() / 2])
+    };
+    let residuals: Vec<f64> = (0..world.len()).into_par_iter().map(residual).collect();
+    let mut sizes: Vec<f64> = residuals.iter().map(|r| r.abs()).filter(|r| *r > 0.0).collect();
+    if sizes.len() < 30 {
+        return None;
+    }
+    sizes.sort_by(f64::total_cmp);
+    let limit = (OUTLIER * 1.4826 * sizes[sizes.len() / 2]).max(10.0 * f64::from(tolerance));
+    let count = sizes.iter().filter(|r| **r > limit).count();
+    let worst = (0..world.len()).max_by(|a, b| residuals[*a].abs().total_cmp(&residuals[*b].abs()))?;
+    (count > 0).then(|| Outliers { count, worst: [world[worst].x, world[worst].y, z(worst), residuals[worst]], limit })
+}
+
+/// The radius of the circle through three points; infinite for points in line.
+fn circumradius([a, b, c]: [DVec2; 3]) -> f64 {
+    let area = 0.5 * (b - a).perp_dot(c - a).abs();
+    a.distance(b) * b.distance(c) * c.distance(a) / (4.0 * area)
 }
 
 /// Points with the same place, to a hundredth of a bin, as one node.
@@ -83,13 +143,15 @@ pub(super) fn grid(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: Op
 
     let pairs: Vec<(usize, f32)> = places.node.iter().zip(points).map(|(&n, p)| (n, p.1)).collect();
     let (values, _) = NodeValues::group(places.voxels.len(), &pairs, tolerance);
-    let mut neighbours = vec![Vec::new(); places.voxels.len()];
+    let repeated = pairs.len() - values.z.len();
+    let mut neighbours: Vec<Vec<usize>> = vec![Vec::new(); places.voxels.len()];
     for t in &triangles {
         for n in 0..3 {
             neighbours[t[n]].push(t[(n + 1) % 3]);
             neighbours[t[n]].push(t[(n + 2) % 3]);
         }
     }
+    let outliers = outliers(&world, &values, &neighbours, tolerance);
     let sheet = sheets::split(&values, &|n| neighbours[n].clone());
     let count = sheet.iter().max().map_or(1, |&s| usize::from(s) + 1);
     let sheets = (0..count)
@@ -102,7 +164,7 @@ pub(super) fn grid(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: Op
             interpolate(&own, geometry, gap_m)
         })
         .collect();
-    Gridded { sheets, gap_m, multivalued: values.multivalued() }
+    Gridded { sheets, gap_m, multivalued: values.multivalued(), repeated, outliers }
 }
 
 /// A gradient per point, m⁻¹, from its neighbours along triangle sides no longer than `gap_m`; 0 without neighbours.
@@ -148,7 +210,7 @@ fn gradients(world: &[DVec2], z: &[f32], triangles: &[[usize; 3]], gap_m: f64) -
         }
         found
     };
-    (0..world.len()).map(gradient).collect()
+    (0..world.len()).into_par_iter().map(gradient).collect()
 }
 
 /// The cubic over a triangle with corner values `z` and gradients, at barycentric coordinates `b`.
@@ -178,14 +240,14 @@ fn interpolate(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: f64) -
     let gradients = gradients(&world, &z, &triangles, gap_m);
     for t in triangles {
         let (places, values) = (t.map(|n| world[n]), t.map(|n| f64::from(z[n])));
+        if circumradius(places) > gap_m {
+            continue;
+        }
         let area = (places[1] - places[0]).perp_dot(places[2] - places[0]);
         // Only which traces lie in the triangle is asked for here.
         let corners = t.map(|n| points[n].0.extend(0.0));
         raster::triangle(corners, grid.count, &mut |u, v, _| {
             let here = grid.world_at(DVec2::new(u as f64, v as f64));
-            if places.iter().all(|p| p.distance(here) > gap_m) {
-                return;
-            }
             let share = |a: DVec2, b: DVec2| (a - here).perp_dot(b - here) / area;
             let b = [share(places[1], places[2]), share(places[2], places[0]), share(places[0], places[1])];
             let (low, high) = values.iter().fold((f64::MAX, f64::MIN), |(l, h), &z| (l.min(z), h.max(z)));

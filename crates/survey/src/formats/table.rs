@@ -137,6 +137,7 @@ pub(super) fn surfaces(
             shape: RawShape::Points(points),
             vertical: vertical.clone(),
             notes: layout.notes.clone(),
+            warnings: Vec::new(),
         })
         .collect())
 }

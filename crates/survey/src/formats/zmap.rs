@@ -2,12 +2,17 @@
 //!
 //! `@ NAME, GRID, n` / `width, null, null text, decimals, start column` / `NROW, NCOL, XMIN, XMAX, YMIN, YMAX` / `0, 0, 0` / `@`, then
 //! values. Lines beginning with `!` or `+` are comments. Values are cut by blanks; where fields of full width touch, by width.
+//!
+//! Written with fields of 20 characters and 7 decimals, null −99999 (or, where depths come near it, −9.99e+29).
 
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
-use super::{Codec, Format, FormatError, SurfaceKind};
-use crate::horizon::NodeGrid;
+use super::write::Failure;
+use super::{Codec, Format, FormatError, SurfaceKind, irap};
+use crate::geometry::SurveyGeometry;
+use crate::horizon::{Horizon, NodeGrid};
 use glam::DVec2;
+use std::io::Write;
 
 pub(super) const CODEC: Codec = Codec {
     format: Format::Zmap,
@@ -16,7 +21,7 @@ pub(super) const CODEC: Codec = Codec {
     detect,
     read_horizon: Some(read),
     read_fault: None,
-    write_horizon: None,
+    write_horizon: Some(write_horizon),
     write_fault: None,
 };
 
@@ -58,6 +63,36 @@ pub(super) fn unrotated(
 pub(super) fn from_columns(file: &[f64], count: [usize; 2]) -> Vec<f64> {
     let nv = count[1];
     (0..file.len()).map(|n| file[n / nv * nv + (nv - 1 - n % nv)]).collect()
+}
+
+/// The depths of a sheet on an unrotated grid in the order of ZMAP+ and CPS-3, column by column.
+pub(super) fn in_columns(depth: &[f32], nv: usize) -> impl Iterator<Item = Vec<f32>> {
+    depth.chunks(nv).map(|column| column.iter().rev().copied().collect())
+}
+
+/// Writes a horizon whose grid is unrotated.
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> Result<(), Failure> {
+    let sheet = irap::only_sheet(horizon)?;
+    let NodeGrid { origin, u_step, v_step, count: [nu, nv] } = sheet.grid;
+    let far = origin + u_step * (nu as f64 - 1.0) + v_step * (nv as f64 - 1.0);
+    let near_null = sheet.depth.iter().any(|z| (z + 99_999.0).abs() < 1.0);
+    let null = if near_null { "-9.99e+29" } else { "-99999.0" };
+    let name: String =
+        horizon.name.chars().map(|c| if c.is_control() || ",@!+".contains(c) { ' ' } else { c }).collect();
+    writeln!(out, "! written by Petroglyph: X and Y in m, depths or times positive down")?;
+    writeln!(out, "@ {}, GRID, 5", name.trim())?;
+    writeln!(out, "20, {null}, , 7, 1")?;
+    writeln!(out, "{nv}, {nu}, {:.6}, {:.6}, {:.6}, {:.6}", origin.x, far.x, origin.y, far.y)?;
+    writeln!(out, "0.0, 0.0, 0.0\n@")?;
+    for column in in_columns(&sheet.depth, nv) {
+        for line in column.chunks(5) {
+            for z in line {
+                if z.is_finite() { write!(out, "{z:>20.7}")? } else { write!(out, "{null:>20}")? }
+            }
+            writeln!(out)?;
+        }
+    }
+    Ok(())
 }
 
 fn numbers(source: &SourceFile, line: Line<'_>) -> Result<Vec<Option<f64>>, FormatError> {
@@ -110,7 +145,13 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     let notes = null.map(|n| format!("the file's null is {n}")).into_iter().collect();
     let shape = RawShape::Grid { grid, z: from_columns(&file, grid.count) };
     let generic = name.is_empty() || name.eq_ignore_ascii_case("GRIDFILE");
-    Ok(vec![RawSurface { name: (!generic).then(|| name.into()), shape, vertical: VerticalFacts::default(), notes }])
+    Ok(vec![RawSurface {
+        name: (!generic).then(|| name.into()),
+        shape,
+        vertical: VerticalFacts::default(),
+        notes,
+        warnings: Vec::new(),
+    }])
 }
 
 /// The values of all lines, cut by blanks or into fields of `width`.

@@ -1,0 +1,67 @@
+//! DUG Insight horizons: rows of `inline crossline z` or `x y z`.
+//!
+//! `#` comments come first, among them `# subgrid=il:1272-3492[10]+cl:1320-3520[10]` and `# vertical_dimension=time`. The extension
+//! names the columns (`.ilclt`, `.ilclz`, `.xyt`, `.xyz`); under another name they are those that fit the survey.
+
+use super::columns::{Column, ColumnLayout, Domain};
+use super::raw::{RawSurface, ReadContext};
+use super::table::{self, Cut};
+use super::text::{self, SourceFile};
+use super::{Codec, Format, FormatError};
+
+pub(super) const CODEC: Codec = Codec {
+    format: Format::Dug,
+    name: "dug",
+    extension: "ilclt",
+    detect,
+    read_horizon: Some(read),
+    read_fault: None,
+    write_horizon: None,
+    write_fault: None,
+};
+
+/// The columns and the domain that an extension names.
+fn of_extension(source: &SourceFile) -> Option<([Column; 3], Domain)> {
+    let extension = source.path.extension()?.to_str()?.to_ascii_lowercase();
+    let lines = [Column::Inline, Column::Crossline, Column::Z];
+    let world = [Column::X, Column::Y, Column::Z];
+    match extension.as_str() {
+        "ilclt" => Some((lines, Domain::Time)),
+        "ilclz" => Some((lines, Domain::Depth)),
+        "xyt" => Some((world, Domain::Time)),
+        _ => None,
+    }
+}
+
+fn detect(source: &SourceFile) -> Option<String> {
+    if let Some(extension) = source.path.extension().filter(|_| of_extension(source).is_some()) {
+        return Some(format!("its extension is .{}", extension.to_string_lossy()));
+    }
+    let text = source.text();
+    text::lines(&text)
+        .take_while(|l| l.text.starts_with('#'))
+        .map(|l| l.text.trim_start_matches(['#', ' ']))
+        .find(|c| c.starts_with("subgrid=") || c.starts_with("vertical_dimension="))
+        .map(|c| format!("its header has '{c}'"))
+}
+
+fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
+    let text = source.text();
+    let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
+    let named = of_extension(source);
+    let header = named.map(|(columns, _)| ColumnLayout::plain(columns.to_vec()));
+    let cut = Cut::of(rows.first().map_or("", |l| l.text));
+    let mut layout = table::settle_columns(source, context, header, &rows, cut)?;
+    let stated = text::lines(&text).find_map(|l| {
+        let word = l.text.trim_start_matches(['#', ' ']).strip_prefix("vertical_dimension=")?.trim().to_string();
+        let domain = match word.to_ascii_lowercase().as_str() {
+            "time" => Domain::Time,
+            "depth" => Domain::Depth,
+            _ => return None,
+        };
+        Some((domain, format!("vertical_dimension={word}")))
+    });
+    let by_name = named.map(|(_, domain)| (domain, "its extension".to_string()));
+    layout.domain = stated.or(by_name).or(layout.domain);
+    table::surfaces(source, &rows, cut, layout, context)
+}

@@ -1,0 +1,106 @@
+//! GeoFrame IESX (3d_ci7m): horizons as card images.
+//!
+//! `PROFILE name … TYPE 1  4 … 3d_ci7m.ifdf     m ms` begins a horizon and states the units of X, Y and Z; `SNAPPING PARAMETERS …`
+//! is passed over; `EOD` ends it. Rows have fixed columns `X Y (16 each) 3 3 Z (9) 10 10 crossline (5) value (14)`, then ` I` and the
+//! inline; fields of full width touch. Magnitudes from 1e29 on are undefined.
+
+use super::options::ZUnit;
+use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::table::UNDEFINED;
+use super::text::{self, Line, SourceFile};
+use super::{Codec, Format, FormatError};
+use glam::DVec2;
+
+pub(super) const CODEC: Codec = Codec {
+    format: Format::Iesx,
+    name: "iesx",
+    extension: "iesx",
+    detect,
+    read_horizon: Some(read),
+    read_fault: None,
+    write_horizon: None,
+    write_fault: None,
+};
+
+/// Widths of the columns before the mark of the inline.
+const WIDTHS: [usize; 9] = [16, 16, 3, 3, 9, 10, 10, 5, 14];
+
+fn detect(source: &SourceFile) -> Option<String> {
+    let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(2000)]).into_owned();
+    text::lines(&start)
+        .any(|l| l.text.starts_with("PROFILE ") && l.text.contains("TYPE"))
+        .then(|| "a line begins with PROFILE and has a TYPE".to_string())
+}
+
+fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
+    let text = source.text();
+    let mut surfaces: Vec<(RawSurface, Vec<RawPoint>)> = Vec::new();
+    for line in text::lines(&text) {
+        // Some exports put the end of the last part before a row.
+        let words = line.text.strip_prefix("EOD").unwrap_or(line.text).trim_start();
+        if words.is_empty() || words.starts_with("SNAPPING") || words.starts_with(['!', '#']) {
+            continue;
+        }
+        if let Some(rest) = words.strip_prefix("PROFILE") {
+            surfaces.push((begin(rest), Vec::new()));
+            continue;
+        }
+        let Some((_, points)) = surfaces.last_mut() else {
+            return Err(source.syntax(line.number, "PROFILE before rows", line.text));
+        };
+        points.push(point(source, Line { text: words, ..line }, line.text.len() - words.len())?);
+    }
+    Ok(surfaces.into_iter().map(|(s, points)| RawSurface { shape: RawShape::Points(points), ..s }).collect())
+}
+
+fn begin(rest: &str) -> RawSurface {
+    let (name, tail) = rest.split_once("TYPE").unwrap_or((rest, ""));
+    // The last word is the unit of Z.
+    let unit = tail.split_whitespace().last().and_then(|w| Some((ZUnit::parse(w)?, format!("PROFILE … {w}"))));
+    let name = name.trim();
+    RawSurface {
+        name: (!name.is_empty()).then(|| name.to_string()),
+        shape: RawShape::Points(Vec::new()),
+        vertical: VerticalFacts { unit, ..VerticalFacts::default() },
+        notes: Vec::new(),
+        warnings: Vec::new(),
+    }
+}
+
+fn point(source: &SourceFile, line: Line<'_>, indent: usize) -> Result<RawPoint, FormatError> {
+    let wrong = || source.syntax(line.number, "X, Y, two counts, Z, three crosslines, a value, I and the inline", line.text);
+    let (left, right) = line.text.split_once(" I").ok_or_else(wrong)?;
+    let inline = right.split_whitespace().next().and_then(text::number).ok_or_else(wrong)?;
+    let free: Vec<f64> = left.split_whitespace().map_while(text::number).collect();
+    let numbers = if free.len() == WIDTHS.len() { Some(free) } else { fixed(left, indent) };
+    let numbers = numbers.ok_or_else(wrong)?;
+    let [x, y, z, crossline] = [0, 1, 4, 7].map(|n| numbers[n]);
+    if [x, y, crossline, inline].iter().any(|v| !v.is_finite() || v.abs() > 1e12) {
+        return Err(wrong());
+    }
+    Ok(RawPoint {
+        lines: Some(DVec2::new(inline, crossline)),
+        xy: Some(DVec2::new(x, y)),
+        z: if z.abs() < UNDEFINED { z } else { f64::NAN },
+        ..RawPoint::default()
+    })
+}
+
+/// The numbers of fixed columns, of which blanks at the beginning were trimmed away; cut from the end, where widths hold.
+fn fixed(left: &str, indent: usize) -> Option<Vec<f64>> {
+    if !left.is_ascii() {
+        return None;
+    }
+    let total: usize = WIDTHS.iter().sum();
+    let padded = format!("{left:>total$}");
+    let from = padded.len().checked_sub(total).filter(|extra| *extra <= indent)?;
+    let mut at = from;
+    WIDTHS
+        .iter()
+        .map(|width| {
+            let field = padded.get(at..at + width)?;
+            at += width;
+            text::number(field)
+        })
+        .collect()
+}

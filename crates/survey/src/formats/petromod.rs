@@ -1,0 +1,69 @@
+//! PetroMod binary maps: a rotated regular grid.
+//!
+//! Four bytes `23 03 19 64`, then `Key=value` pairs cut by commas and ended by a zero byte (`GridNoX`, `GridStepX`, `OriginX`,
+//! `RotationAngle`, `RotationOriginX`, `Undefined` …), then GridNoX·GridNoY big-endian f32, Y fastest. The origin is turned about the rotation origin
+//! by the angle, degrees anticlockwise. `DataUnitZ` is a code of the program's own and not interpreted.
+
+use super::irap::Header;
+use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::text::{self, SourceFile};
+use super::{Codec, Format, FormatError};
+use glam::DVec2;
+use std::collections::HashMap;
+
+pub(super) const CODEC: Codec = Codec {
+    format: Format::PetroMod,
+    name: "petromod",
+    extension: "pmd",
+    detect,
+    read_horizon: Some(read),
+    read_fault: None,
+    write_horizon: None,
+    write_fault: None,
+};
+
+const SIGNATURE: [u8; 4] = [0x23, 0x03, 0x19, 0x64];
+
+fn detect(source: &SourceFile) -> Option<String> {
+    let rest = source.bytes.strip_prefix(&SIGNATURE)?;
+    rest.starts_with(b"Content=Map").then(|| "its header is that of a PetroMod map".to_string())
+}
+
+fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
+    let body = source.bytes.strip_prefix(&SIGNATURE).unwrap_or(&source.bytes);
+    let end = body.iter().position(|b| *b == 0).ok_or_else(|| source.bad_grid("its text has no end"))?;
+    let text = String::from_utf8_lossy(&body[..end]).into_owned();
+    let facts: HashMap<&str, &str> = text.split(',').filter_map(|pair| pair.split_once('=')).collect();
+    let number = |key: &str| {
+        let value = facts.get(key).and_then(|v| text::number(v));
+        value.ok_or_else(|| source.bad_grid(format!("it has no number {key}")))
+    };
+    let or = |key: &str, default: f64| facts.get(key).and_then(|v| text::number(v)).unwrap_or(default);
+    let origin = DVec2::new(number("OriginX")?, number("OriginY")?);
+    let pivot = DVec2::new(or("RotationOriginX", origin.x), or("RotationOriginY", origin.y));
+    let rotation_deg = or("RotationAngle", 0.0);
+    let header = Header {
+        count: [number("GridNoX")? as i64, number("GridNoY")? as i64],
+        step: [number("GridStepX")?, number("GridStepY")?],
+        rotation_deg,
+        origin: pivot + DVec2::from_angle(rotation_deg.to_radians()).rotate(origin - pivot),
+    };
+    let grid = header.grid(source)?;
+    let values = body[end + 1..].as_chunks::<4>().0;
+    let expected = grid.count[0] * grid.count[1];
+    if values.len() != expected {
+        return Err(source.length("grid values", expected, values.len()));
+    }
+    let undefined = or("Undefined", 99_999.0);
+    let z = values.iter().map(|w| f64::from(f32::from_be_bytes(*w)));
+    let z = z.map(|v| if (v - undefined).abs() <= 1e-6 * undefined.abs() { f64::NAN } else { v }).collect();
+    let notes = facts.get("DataUnitZ").map(|code| format!("the file's DataUnitZ={code} is not interpreted"));
+    let shape = RawShape::Grid { grid, z };
+    Ok(vec![RawSurface {
+        name: None,
+        shape,
+        vertical: VerticalFacts::default(),
+        notes: notes.into_iter().collect(),
+        warnings: Vec::new(),
+    }])
+}

@@ -1,0 +1,96 @@
+//! ZMAP+ points and polygons.
+//!
+//! `@FREE POINT , DATA, 80, 1`, a line per column with its name first and its first and last character after four numbers
+//! (`X (EASTING) , 1, 1, 1, 1, 20,, 1.0E+30,,, 4, 0`), `@`, then rows. A new `SEG I.D.` begins a new polygon. Lines beginning with `!` or
+//! `+` are comments.
+
+use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::table::UNDEFINED;
+use super::text::{self, Line, SourceFile};
+use super::{Codec, Format, FormatError};
+use glam::DVec2;
+
+pub(super) const CODEC: Codec = Codec {
+    format: Format::ZmapPoints,
+    name: "zmappoints",
+    extension: "zmap",
+    detect,
+    read_horizon: Some(read),
+    read_fault: Some(read),
+    write_horizon: None,
+    write_fault: None,
+};
+
+fn is_comment(line: &str) -> bool {
+    line.starts_with(['!', '+'])
+}
+
+fn detect(source: &SourceFile) -> Option<String> {
+    let text = source.text();
+    let first = text::lines(&text).find(|l| !is_comment(l.text))?.text.to_ascii_uppercase();
+    (first.starts_with('@') && first.contains("POINT") && first.contains("DATA"))
+        .then(|| "its header is @ … POINT, DATA".to_string())
+}
+
+/// Where a column stands in a row: characters from..to, and its null.
+struct Place {
+    from: usize,
+    to: usize,
+    null: Option<f64>,
+}
+
+fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
+    let text = source.text();
+    // Columns count from the line's own beginning, so lines are taken untrimmed.
+    let mut lines = text.split('\n').enumerate().map(|(n, text)| Line { number: n + 1, text: text.trim_end() });
+    let mut columns: Vec<(String, Place)> = Vec::new();
+    let mut lines_of_header = lines.by_ref().filter(|l| !l.text.trim().is_empty() && !is_comment(l.text.trim_start()));
+    lines_of_header.next();
+    for line in lines_of_header {
+        if line.text.trim() == "@" {
+            break;
+        }
+        let fields: Vec<&str> = line.text.split(',').map(str::trim).collect();
+        let character = |n: usize| fields.get(n).and_then(|f| f.parse::<usize>().ok()).filter(|c| (1..=10_000).contains(c));
+        let (Some(from), Some(to)) = (character(4), character(5)) else {
+            return Err(source.syntax(line.number, "a column with its first and last character", line.text));
+        };
+        let null = fields.get(7).and_then(|f| text::number(f));
+        columns.push((fields[0].to_ascii_uppercase(), Place { from: from - 1, to, null }));
+    }
+    let column = |word: &str| columns.iter().find(|(name, _)| name.starts_with(word)).map(|(_, place)| place);
+    let (Some(x), Some(y), Some(z)) = (column("X"), column("Y"), column("Z")) else {
+        return Err(source.bad_grid("its header names no columns X, Y and Z"));
+    };
+    let segment = column("SEG");
+    let mut points = Vec::new();
+    for line in lines.filter(|l| !l.text.trim().is_empty() && !is_comment(l.text.trim_start())) {
+        let number = |place: &Place| {
+            let end = place.to.min(line.text.len());
+            line.text.get(place.from..end).and_then(text::number)
+        };
+        let wrong = |what: &str| source.syntax(line.number, format!("a number for {what}"), line.text);
+        let coordinate = |place: &Place, what: &str| {
+            number(place).filter(|v| v.is_finite() && v.abs() < 1e12).ok_or_else(|| wrong(what))
+        };
+        let value = number(z).ok_or_else(|| wrong("Z"))?;
+        let is_null = value.abs() >= UNDEFINED || z.null.is_some_and(|n| (value - n).abs() <= 1e-6 * n.abs().max(1.0));
+        points.push(RawPoint {
+            xy: Some(DVec2::new(coordinate(x, "X")?, coordinate(y, "Y")?)),
+            z: if is_null { f64::NAN } else { value },
+            stick: segment.and_then(number).filter(|v| v.is_finite()),
+            ..RawPoint::default()
+        });
+    }
+    if points.is_empty() {
+        let why = "there are no rows after the header".into();
+        return Err(FormatError::Empty { file: source.path.clone(), kind: context.kind, why });
+    }
+    Ok(vec![RawSurface {
+        name: None,
+        shape: RawShape::Points(points),
+        vertical: VerticalFacts::default(),
+        notes: Vec::new(),
+        warnings: Vec::new(),
+    }])
+}
