@@ -4,6 +4,7 @@
 #   make test    all tests
 #   make check   formatting, lints and documentation, warnings denied
 #   make bench   how long our stages take on this machine
+#   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, xtgeo, segyio, lasio)
 #   make accuracy   measures accuracy anew into docs/accuracy.md
 
 OUT ?= out/demo
@@ -12,7 +13,9 @@ OUT_ACCURACY ?= docs/accuracy.md
 export XDG_RUNTIME_DIR ?= /tmp
 PETROGLYPH = target/debug/petroglyph
 
-.PHONY: demo test check bench accuracy setup build
+PYTHON ?= python3
+
+.PHONY: demo test check bench accuracy check-peers setup build
 
 build: setup
 	cargo build --locked
@@ -30,6 +33,9 @@ check: setup
 
 accuracy: setup
 	cargo run --locked --example accuracy > $(OUT_ACCURACY).part && mv $(OUT_ACCURACY).part $(OUT_ACCURACY)
+
+check-peers: build
+	$(PYTHON) bench/check_formats.py $(PETROGLYPH)
 
 bench: build
 	$(PETROGLYPH) bench --quick

@@ -3,10 +3,10 @@
 //! A hash covers what a computation depends on, values and their place, and nothing else: not names, not files.
 
 use crate::error::ProjectError;
-use crate::project::document::{FaultEntry, HorizonEntry, VolumeEntry};
+use crate::project::document::{FaultEntry, HorizonEntry, VolumeEntry, WellEntry};
 use std::path::Path;
 use survey::store::{self, StoredVolume};
-use survey::{Cancelled, Fault, Horizon, Progress, Volume};
+use survey::{Cancelled, Fault, Horizon, Progress, Volume, Well};
 
 /// Samples hashed between two looks at whether the user cancelled.
 const HASH_CHUNK: usize = 1 << 20;
@@ -53,6 +53,24 @@ pub fn hash_fault(fault: &Fault) -> String {
     }
     hash.update(bytemuck::cast_slice(&fault.mesh.triangles));
     hash.finalize().to_hex().to_string()
+}
+
+/// BLAKE3 of a well's path, tops, logs and checkshots.
+///
+/// # Errors
+/// A value that JSON cannot hold.
+pub fn hash_well(well: &Well) -> Result<String, serde_json::Error> {
+    let nameless = Well { name: String::new(), ..well.clone() };
+    Ok(blake3::hash(&serde_json::to_vec(&nameless)?).to_hex().to_string())
+}
+
+/// Reads a well of the project in `root`.
+///
+/// # Errors
+/// Missing or damaged data.
+pub fn read_well(root: &Path, entry: &WellEntry) -> Result<Well, ProjectError> {
+    let well = store::read_well(&root.join(&entry.file))?;
+    Ok(Well { name: entry.name.clone(), ..well })
 }
 
 /// Reads a volume of the project in `root`.

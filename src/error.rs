@@ -13,6 +13,8 @@ pub enum Noun {
     Horizon,
     /// An interpreted fault.
     Fault,
+    /// A well.
+    Well,
     /// A layer between two horizons.
     Layer,
     /// A picture to tile a layer with.
@@ -27,6 +29,7 @@ impl std::fmt::Display for Noun {
             Self::Volume => "volume",
             Self::Horizon => "horizon",
             Self::Fault => "fault",
+            Self::Well => "well",
             Self::Layer => "layer",
             Self::Texture => "texture",
             Self::Scene => "scene",
@@ -183,6 +186,9 @@ pub enum ProjectError {
     /// A horizon or fault file that could not be read or written.
     #[error(transparent)]
     Format(#[from] survey::formats::FormatError),
+    /// A well's file that could not be read.
+    #[error(transparent)]
+    Well(#[from] survey::well::WellError),
     /// Data of the project that could not be read or written.
     #[error(transparent)]
     Store(#[from] survey::store::StoreError),
@@ -270,6 +276,7 @@ impl ProjectError {
             Self::Io { .. }
             | Self::Segy(_)
             | Self::Format(_)
+            | Self::Well(_)
             | Self::Store(_)
             | Self::Model(_)
             | Self::Param(_)

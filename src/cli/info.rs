@@ -1,17 +1,27 @@
 //! `petroglyph info`: what a file or a project holds.
 
+use super::info_interpretation;
 use super::report::Report;
 use crate::error::Noun;
 use crate::project::Project;
 use serde_json::json;
 use std::path::Path;
+use survey::formats::ImportOptions;
 use survey::segy::{SegyFile, SegyOptions};
 use survey::{Progress, SurveyGeometry};
 
-/// Describes whatever is at `path`: a project when it is a folder, else a SEG-Y file.
-pub(super) fn describe(path: &Path, options: &SegyOptions, progress: &Progress) -> anyhow::Result<Report> {
+/// Describes whatever is at `path`: a project when it is a folder, else a horizon, fault or well file, else a SEG-Y file.
+pub(super) fn describe(
+    path: &Path,
+    options: &SegyOptions,
+    reading: &ImportOptions,
+    progress: &Progress,
+) -> anyhow::Result<Report> {
     if path.is_dir() || !path.exists() {
         return project(&Project::open(path)?);
+    }
+    if let Some(report) = info_interpretation::describe(path, reading)? {
+        return Ok(report);
     }
     let file = SegyFile::open(path, options, progress)?;
     let statistics = file.statistics(progress)?;
@@ -32,7 +42,7 @@ fn project(project: &Project) -> anyhow::Result<Report> {
     } else {
         report.say("no survey frame yet: import a volume");
     }
-    for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Layer] {
+    for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Well, Noun::Layer] {
         let names = document.names(noun);
         if !names.is_empty() {
             report.say(format!("{noun}s: {}", names.join(", ")));

@@ -9,7 +9,9 @@ use crate::command::{
 };
 use crate::project::Polarity;
 use survey::Contact;
-use survey::formats::{Column, Format, ImportOptions, PlaceBy, ZPositive, ZUnit};
+use survey::formats::{
+    Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit,
+};
 
 /// One of several words.
 pub(super) fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {
@@ -29,9 +31,15 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
     })
 }
 
-fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage> {
+pub(super) fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage> {
     let units = [("ms", ZUnit::Milliseconds), ("s", ZUnit::Seconds), ("m", ZUnit::Metres), ("ft", ZUnit::Feet)];
     let signs = [("down", ZPositive::Down), ("up", ZPositive::Up)];
+    let orders = [
+        ("columns", ValueOrder::Columns),
+        ("column", ValueOrder::Columns),
+        ("rows", ValueOrder::Rows),
+        ("row", ValueOrder::Rows),
+    ];
     let places = [("lines", PlaceBy::Lines), ("xy", PlaceBy::World)];
     let z_factor = typed.z_factor.unwrap_or(1.0);
     if !(z_factor.is_finite() && z_factor != 0.0) {
@@ -54,6 +62,7 @@ fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage> {
         columns,
         place_by: typed.place_by.as_deref().map(|t| word("--place-by", t, &places)).transpose()?,
         gap_m: typed.gap_m,
+        value_order: typed.value_order.as_deref().map(|t| word("--value-order", t, &orders)).transpose()?,
     })
 }
 
@@ -143,5 +152,8 @@ pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
             })?
         }
     };
-    Ok(Request::Export { project: typed.project, out: typed.out, horizon: typed.horizon, format })
+    let rotated = [("resample", WhenRotated::Resample), ("refuse", WhenRotated::Refuse)];
+    let when_rotated = typed.when_rotated.as_deref().map(|t| word("--when-rotated", t, &rotated)).transpose()?;
+    let options = ExportOptions { when_rotated: when_rotated.unwrap_or_default() };
+    Ok(Request::Export { project: typed.project, out: typed.out, horizon: typed.horizon, format, options })
 }

@@ -2,6 +2,7 @@
 
 use super::report::Report;
 use super::request::Listing;
+use super::well;
 use crate::data;
 use crate::error::Noun;
 use crate::library;
@@ -18,6 +19,8 @@ pub(super) fn list(project: &Project, what: Listing) -> anyhow::Result<Report> {
         Listing::Horizons => Ok(horizons(project)),
         Listing::Horizon(name) => show_horizon(project, &name),
         Listing::Faults => Ok(faults(project)),
+        Listing::Wells => Ok(well::list(project)),
+        Listing::Well(name) => well::show(project, &name),
         Listing::Layers => layers(project),
         Listing::Scalars => Ok(scalars(project)),
         Listing::Scenes => Ok(scenes(project)),

@@ -7,6 +7,7 @@ mod args;
 mod draw;
 mod failure;
 mod info;
+mod info_interpretation;
 mod interpretation;
 mod list;
 mod report;
@@ -15,6 +16,7 @@ mod run;
 mod segy;
 mod terminal;
 mod view;
+mod well;
 
 use clap::Parser;
 use std::process::ExitCode;

@@ -6,6 +6,7 @@ use super::args::{
 };
 use super::interpretation;
 use super::view::View;
+use super::well;
 use crate::bench;
 use crate::command::{
     AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer, SetScalar,
@@ -15,7 +16,7 @@ use crate::picture::Device;
 use glam::DVec2;
 use param::KDefinition;
 use std::path::PathBuf;
-use survey::formats::Format;
+use survey::formats::{ExportOptions, Format, ImportOptions};
 use survey::segy::SegyOptions;
 use survey::synth::SynthSettings;
 use survey::{SurveyGeometry, VerticalUnit};
@@ -29,7 +30,7 @@ pub(super) enum Request {
     /// Make a synthetic survey.
     Synth { out: PathBuf, settings: SynthSettings },
     /// Say what a file or project holds.
-    Info { path: PathBuf, segy: SegyOptions },
+    Info { path: PathBuf, segy: SegyOptions, reading: ImportOptions },
     /// Read a volume; the project is made when it is not there.
     Import { project: PathBuf, command: ImportVolume },
     /// Make a project.
@@ -43,7 +44,7 @@ pub(super) enum Request {
     /// Say something about a project.
     List { project: PathBuf, what: Listing },
     /// Write a horizon to a file.
-    Export { project: PathBuf, out: PathBuf, horizon: String, format: Format },
+    Export { project: PathBuf, out: PathBuf, horizon: String, format: Format, options: ExportOptions },
     /// Compute i, j, k.
     Parameterize { project: PathBuf, size: Option<[usize; 3]> },
     /// Draw a picture.
@@ -83,6 +84,10 @@ pub(super) enum Listing {
     Horizon(String),
     /// Faults.
     Faults,
+    /// Wells.
+    Wells,
+    /// A well in detail.
+    Well(String),
     /// Layers and their styles.
     Layers,
     /// Scalar functions.
@@ -104,7 +109,11 @@ impl TryFrom<Action> for Request {
         Ok(match action {
             Action::Demo(typed) => Self::Demo { out: typed.out },
             Action::Synth(typed) => synth(&typed)?,
-            Action::Info { path, segy } => Self::Info { path, segy: super::segy::segy_options(&segy)? },
+            Action::Info { path, segy, reading } => Self::Info {
+                path,
+                segy: super::segy::segy_options(&segy)?,
+                reading: interpretation::import_options(reading)?,
+            },
             Action::Import(typed) => {
                 Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
             }
@@ -114,6 +123,7 @@ impl TryFrom<Action> for Request {
             }
             Action::Horizon(action) => interpretation::horizon(action)?,
             Action::Fault(action) => interpretation::fault(action)?,
+            Action::Well(action) => well::well(action)?,
             Action::Export(typed) => interpretation::export(typed)?,
             Action::Parameterize(typed) => {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;

@@ -14,7 +14,7 @@ use render::Scene;
 use std::path::Path;
 use std::time::Instant;
 use survey::Progress;
-use survey::formats::{self, Format};
+use survey::formats::{self, ExportOptions, Format};
 use ttf::{TextureLibrary, contact_sheet};
 
 /// Why there is no answer.
@@ -38,9 +38,11 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
     let mut report = match request {
         Request::Demo { out } => told(demo::run(&out, &progress)?),
         Request::Synth { out, settings } => told(synth::write(&out, &settings, &progress)?),
-        Request::Info { path, segy } => info::describe(&path, &segy, &progress)?,
+        Request::Info { path, segy, reading } => info::describe(&path, &segy, &reading, &progress)?,
         Request::Import { project, command } => import(&project, command, &progress)?,
-        Request::Export { project, out, horizon, format } => export(&project, &out, &horizon, format, &progress)?,
+        Request::Export { project, out, horizon, format, options } => {
+            export(&project, &out, &horizon, format, &options, &progress)?
+        }
         Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,
         Request::Patterns { out, project } => patterns(&out, project.as_deref())?,
@@ -126,14 +128,24 @@ fn import(path: &Path, command: ImportVolume, progress: &Progress) -> anyhow::Re
     Ok(report)
 }
 
-fn export(project: &Path, out: &Path, horizon: &str, format: Format, progress: &Progress) -> anyhow::Result<Report> {
+fn export(
+    project: &Path,
+    out: &Path,
+    horizon: &str,
+    format: Format,
+    options: &ExportOptions,
+    progress: &Progress,
+) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
     let document = project.document();
     let entry = &document.horizons[document.position(Noun::Horizon, horizon)?];
     let horizon = data::read_horizon(project.root(), entry, progress)?;
-    formats::write_horizon(out, &horizon, document.frame()?, format)?;
+    let written = formats::write_horizon_as(out, &horizon, document.frame()?, format, options)?;
     let mut report = Report::line(format!("{} written as {format}", out.display()));
-    report.field("file", out).field("format", format.name()).field("horizon", &entry.name);
+    for note in &written.notes {
+        report.say(format!("  {note}"));
+    }
+    report.field("file", out).field("format", format.name()).field("horizon", &entry.name).fields(&written);
     Ok(report)
 }
 

@@ -14,6 +14,7 @@ mod scalar;
 mod scene;
 mod survey_frame;
 mod texture;
+mod well;
 
 pub use contact::SetContact;
 pub use fault::{AddFault, FaultAdded, RemoveFault, SetTruncation};
@@ -24,6 +25,7 @@ pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
+pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
 
 use crate::error::{Noun, ProjectError};
 use crate::project::Draft;
@@ -58,6 +60,12 @@ pub enum Command {
     SetTruncation(SetTruncation),
     /// Take a fault away.
     RemoveFault(RemoveFault),
+    /// Read a well.
+    AddWell(AddWell),
+    /// Give a well another name.
+    RenameWell(RenameWell),
+    /// Take a well away.
+    RemoveWell(RemoveWell),
     /// State the velocity that turns two-way time into metres.
     SetVelocity(SetVelocity),
     /// Say what a horizon does to its neighbours.
@@ -92,6 +100,8 @@ pub enum Effect {
     HorizonAdded(Box<HorizonAdded>),
     /// A fault is in the project.
     FaultAdded(Box<FaultAdded>),
+    /// A well is in the project.
+    WellAdded(Box<WellAdded>),
     /// Something small changed.
     Changed {
         /// What, in a few words.
@@ -112,6 +122,9 @@ impl Command {
             Self::AddFault(change) => change.execute(draft, progress),
             Self::SetTruncation(change) => change.execute(draft),
             Self::RemoveFault(change) => change.execute(draft),
+            Self::AddWell(change) => change.execute(draft, progress),
+            Self::RenameWell(change) => change.execute(draft),
+            Self::RemoveWell(change) => change.execute(draft),
             Self::SetVelocity(change) => change.execute(draft),
             Self::SetContact(change) => change.execute(draft),
             Self::SetLayer(change) => change.execute(draft),
@@ -134,6 +147,7 @@ impl Effect {
             Self::VolumeImported(done) => format!("import volume {}", done.volume),
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
             Self::FaultAdded(done) => format!("fault {}", done.report.name),
+            Self::WellAdded(done) => format!("well {}", done.name),
             Self::Changed { summary } => summary.clone(),
         }
     }
@@ -161,6 +175,7 @@ impl std::fmt::Display for Effect {
             }
             Self::HorizonAdded(done) => write!(f, "{}", done.report),
             Self::FaultAdded(done) => write!(f, "{}", done.report),
+            Self::WellAdded(done) => write!(f, "{done}"),
             Self::Created | Self::Changed { .. } => f.write_str(&self.summary()),
         }
     }

@@ -3,7 +3,9 @@
 //! The text is made for people: it can be read, compared and edited. Every command rewrites it in one fixed order, so that two
 //! states differ only where the project does.
 
-pub use super::entries::{FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry};
+pub use super::entries::{
+    FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry,
+};
 use crate::error::{Noun, ProjectError};
 use param::KDefinition;
 use serde::{Deserialize, Serialize};
@@ -37,6 +39,9 @@ pub struct Document {
     /// Faults in order of import.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<FaultEntry>,
+    /// Wells in order of import.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub wells: Vec<WellEntry>,
     /// The user's own tiles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub textures: Vec<TextureEntry>,
@@ -65,6 +70,7 @@ impl Document {
             volumes: Vec::new(),
             horizons: Vec::new(),
             faults: Vec::new(),
+            wells: Vec::new(),
             textures: Vec::new(),
             style: Style::default(),
             k: BTreeMap::new(),
@@ -102,7 +108,11 @@ impl Document {
     fn check(&self) -> Result<(), String> {
         if let Some(geometry) = &self.geometry {
             geometry.validate().map_err(|error| error.to_string())?;
-        } else if !(self.volumes.is_empty() && self.horizons.is_empty() && self.faults.is_empty()) {
+        } else if !(self.volumes.is_empty()
+            && self.horizons.is_empty()
+            && self.faults.is_empty()
+            && self.wells.is_empty())
+        {
             return Err("it has data but no geometry".to_owned());
         }
         if !self.layer_names.is_empty() && self.layer_names.len() != self.horizons.len() + 1 {
@@ -113,7 +123,7 @@ impl Document {
                 self.layer_names.len()
             ));
         }
-        for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Layer, Noun::Texture, Noun::Scene] {
+        for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Well, Noun::Layer, Noun::Texture, Noun::Scene] {
             let names = self.names(noun);
             if let Some(twice) = names.iter().enumerate().find(|(index, name)| names[..*index].contains(name)) {
                 return Err(format!("two {noun}s are named \"{}\"", twice.1));
@@ -136,6 +146,7 @@ impl Document {
             Noun::Volume => self.volumes.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Horizon => self.horizons.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Fault => self.faults.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Well => self.wells.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Layer => self.layers(),
             Noun::Texture => self.textures.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Scene => self.scenes.iter().map(|entry| entry.name.clone()).collect(),
@@ -147,8 +158,9 @@ impl Document {
         let volumes = self.volumes.iter().map(|entry| entry.file.as_str());
         let horizons = self.horizons.iter().map(|entry| entry.file.as_str());
         let faults = self.faults.iter().map(|entry| entry.file.as_str());
+        let wells = self.wells.iter().map(|entry| entry.file.as_str());
         let textures = self.textures.iter().map(|entry| entry.file.as_str());
-        volumes.chain(horizons).chain(faults).chain(textures)
+        volumes.chain(horizons).chain(faults).chain(wells).chain(textures)
     }
 
     /// The horizons' order, contacts and the layers between them.

@@ -97,6 +97,20 @@ pub struct FaultEntry {
     pub source: Source,
 }
 
+/// A well of the project.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WellEntry {
+    /// Unique name.
+    pub name: String,
+    /// Data, relative to the project's folder.
+    pub file: String,
+    /// BLAKE3 of its path, tops, logs and checkshots.
+    pub hash: String,
+    /// Where it came from.
+    pub source: Source,
+}
+
 /// A tile of the user's own.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

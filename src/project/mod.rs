@@ -3,7 +3,7 @@
 //! ```text
 //! project.toml        the state (see `document`); replaced as a whole, never changed in place
 //! history/NNNN.toml   each command with the state it led to (see `history`)
-//! volumes/ horizons/ faults/ textures/   data, one new file or folder for each generation
+//! volumes/ horizons/ faults/ wells/ textures/   data, one new file or folder for each generation
 //! derived/            what was computed; may be deleted
 //! lock                held while a command runs
 //! ```
@@ -240,7 +240,7 @@ impl NewProject {
             published: false,
             _lock: lock,
         };
-        for folder in ["history", "volumes", "horizons", "faults", "textures"] {
+        for folder in ["history", "volumes", "horizons", "faults", "wells", "textures"] {
             let folder = begun.project.root.join(folder);
             storage::remove(&folder);
             fs::create_dir(folder).map_err(fail)?;

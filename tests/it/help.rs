@@ -28,7 +28,18 @@ const COMMANDS: [&str; 21] = [
 
 #[test]
 fn every_help_shows_an_example() {
-    let more = ["undo", "redo", "prune", "bench", "layer list", "scene remove", "horizon remove", "fault remove"];
+    let more = [
+        "undo",
+        "redo",
+        "prune",
+        "bench",
+        "layer list",
+        "scene remove",
+        "horizon remove",
+        "fault remove",
+        "well add",
+        "well show",
+    ];
     for command in COMMANDS.into_iter().chain(more) {
         let help = run(command.split(' ').chain(["--help"])).done().stdout;
         assert!(help.contains("Example") && help.contains("petroglyph "), "{command}: {help}");
@@ -38,7 +49,7 @@ fn every_help_shows_an_example() {
 #[test]
 fn what_is_not_built_yet_is_not_promised() {
     let help = run(["--help"]).done().stdout;
-    for later in ["extract", "pick", "review", "view ", "evaluate", "well", "attribute"] {
+    for later in ["extract", "pick", "review", "view ", "evaluate", "attribute"] {
         assert!(!help.lines().any(|line| line.trim_start().starts_with(later)), "{later}: {help}");
     }
 }

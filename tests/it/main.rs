@@ -7,3 +7,4 @@ mod demo;
 mod help;
 mod program;
 mod safety;
+mod well;

@@ -138,7 +138,10 @@ pub(in crate::cli) struct ReadingArgs {
     /// What places points that have both line numbers and coordinates
     #[arg(long, value_name = "lines|xy")]
     pub(in crate::cli) place_by: Option<String>,
-    /// Scattered points: a node further than this from every point is a hole
+    /// CPS-3: the order of the values, columns from the north or rows from the south [default: the smoother]
+    #[arg(long, value_name = "columns|rows")]
+    pub(in crate::cli) value_order: Option<String>,
+    /// Scattered points: gaps that hold a circle of this radius stay holes
     #[arg(long = "gap", value_name = "M")]
     pub(in crate::cli) gap_m: Option<f64>,
 }
@@ -202,7 +205,10 @@ pub(in crate::cli) struct ExportArgs {
     /// Horizon
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) horizon: String,
-    /// Format of the file [default: by its extension]
+    /// Format of the file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
     #[arg(long)]
     pub(in crate::cli) format: Option<String>,
+    /// ZMAP+ and CPS-3, which hold no rotated grids: resample such a grid, or refuse it [default: resample]
+    #[arg(long, value_name = "resample|refuse")]
+    pub(in crate::cli) when_rotated: Option<String>,
 }

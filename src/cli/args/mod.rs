@@ -5,6 +5,7 @@ mod layer;
 mod output;
 mod scene;
 mod segy;
+mod well;
 
 pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
@@ -13,6 +14,7 @@ pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, Texture
 pub(super) use output::{BenchArgs, DemoArgs, ParameterizeArgs, RenderArgs, SynthArgs};
 pub(super) use scene::{SceneAction, ViewArgs};
 pub(super) use segy::SegyArgs;
+pub(super) use well::{WellAction, WellAddArgs};
 
 use clap::{Args, Parser, Subcommand};
 use std::path::PathBuf;
@@ -38,13 +40,15 @@ pub(super) enum Action {
     Synth(SynthArgs),
     /// Say what a file or project holds
     #[command(
-        after_help = "Example:\n  petroglyph info survey.sgy\n  petroglyph info survey.sgy --inline-byte 193 --crossline-byte 189\n  petroglyph info north.petro --json"
+        after_help = "Example:\n  petroglyph info survey.sgy\n  petroglyph info survey.sgy --inline-byte 193 --crossline-byte 189\n  petroglyph info top-chalk.irap\n  petroglyph info north.petro --json"
     )]
     Info {
-        /// SEG-Y file, or project folder
+        /// SEG-Y, horizon, fault or well file, or project folder
         path: PathBuf,
         #[command(flatten)]
         segy: SegyArgs,
+        #[command(flatten)]
+        reading: ReadingArgs,
     },
     /// Begin a project without seismic
     #[command(
@@ -65,6 +69,9 @@ pub(super) enum Action {
     /// Faults of a project
     #[command(subcommand)]
     Fault(FaultAction),
+    /// Wells of a project
+    #[command(subcommand)]
+    Well(WellAction),
     /// Write a horizon to a file
     #[command(after_help = "Example:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap")]
     Export(ExportArgs),

@@ -243,7 +243,11 @@ pub(super) fn by_fit(
     } else if fits[2] > 0 || fits[3] > 0 {
         let chosen = if fits[2] > 0 { 2 } else { 3 };
         (chosen, format!("{} of {} lines fall into the survey in that order", fits[chosen], rows.len()))
-    } else if context.geometry.is_none() && integers && width >= 5 && rows.iter().all(|r| r[2].abs() > 1e4 && r[3].abs() > 1e4) {
+    } else if context.geometry.is_none()
+        && integers
+        && width >= 5
+        && rows.iter().all(|r| r[2].abs() > 1e4 && r[3].abs() > 1e4)
+    {
         (0, "their size: small whole numbers before large ones".to_string())
     } else if context.geometry.is_none() && integers {
         return Err(unclear("there is no header, and the first two numbers may be X, Y or inline, crossline".into()));

@@ -7,9 +7,9 @@
 //!
 //! Written in columns from the north, five values a line.
 
+use super::options::ValueOrder;
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, SourceFile};
-use super::options::ValueOrder;
 use super::write::Failure;
 use super::zmap::{from_columns, in_columns, unrotated};
 use super::{Codec, Format, FormatError, irap};
@@ -78,10 +78,13 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         |v: f64| v.abs() >= super::table::UNDEFINED || null.is_some_and(|n| (v - n).abs() <= 1e-6 * n.abs().max(1.0));
     let file: Vec<f64> = values.into_iter().map(|v| if is_null(v) { f64::NAN } else { v }).collect();
     let columns = from_columns(&file, grid.count);
-    let rows = super::irap::transposed(&file, grid.count);
+    let rows = irap::transposed(&file, grid.count);
     let (usual, other) = (roughness(&columns, grid.count[1]), roughness(&rows, grid.count[1]));
-    let evidence =
-        format!("the mean bend from node to node is {usual:.3} in columns from the north, {other:.3} in rows from the south");
+    let evidence = format!(
+        "the mean bend from node to node is {usual:.4} in columns from the north, {other:.4} in rows from the south"
+    );
+    let square =
+        if grid.count[0] == grid.count[1] { " (the grid is square: its mirror image is as smooth)" } else { "" };
     let clear = usual.max(other) >= CLEAR * usual.min(other);
     let told = context.options.value_order;
     let order = told.unwrap_or(if clear && other < usual { ValueOrder::Rows } else { ValueOrder::Columns });
@@ -94,7 +97,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         Some(_) => notes.push(format!("values taken as {word}, as told: {evidence}")),
         None if clear => notes.push(format!("values taken as {word}, the smoother order: {evidence}")),
         None => warnings.push(format!(
-            "the file does not say the order of its values and both are about as smooth: {evidence}. Taken as {word}; look at the map, and say --value-order rows or columns"
+            "the file does not say the order of its values and both are about as smooth: {evidence}{square}. Taken as {word}; look at the map, and say --value-order rows or columns"
         )),
     }
     let shape = RawShape::Grid { grid, z };

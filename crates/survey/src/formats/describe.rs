@@ -154,7 +154,9 @@ fn surface(raw: &RawSurface) -> SurfaceDescription {
     let positive = match &facts.positive {
         Some((positive, words)) => format!("{}{}", positive.word(), says(Some(words))),
         None => match found {
-            Some([_, high]) if high <= 0.0 => "not said; all values are negative, so probably up: say --z-positive up".into(),
+            Some([_, high]) if high <= 0.0 => {
+                "not said; all values are negative, so probably up: say --z-positive up".into()
+            }
             _ => "not said: down is assumed on import (--z-positive)".into(),
         },
     };

@@ -1,12 +1,13 @@
 //! DUG Insight horizons: rows of `inline crossline z` or `x y z`.
 //!
 //! `#` comments come first, among them `# subgrid=il:1272-3492[10]+cl:1320-3520[10]` and `# vertical_dimension=time`. The extension
-//! names the columns (`.ilclt`, `.ilclz`, `.xyt`, `.xyz`); under another name they are those that fit the survey.
+//! names the columns (`.ilclt`, `.ilclz`, `.xyt`, `.xyz`). Under another name they are inline and crossline when all rows are whole numbers within the
+//! subgrid, else those that fit the survey.
 
 use super::columns::{Column, ColumnLayout, Domain};
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
-use super::text::{self, SourceFile};
+use super::text::{self, Line, SourceFile};
 use super::{Codec, Format, FormatError};
 
 pub(super) const CODEC: Codec = Codec {
@@ -45,12 +46,34 @@ fn detect(source: &SourceFile) -> Option<String> {
         .map(|c| format!("its header has '{c}'"))
 }
 
+/// Whether there is a subgrid of lines and the first two numbers of every row are whole and within it.
+fn on_subgrid(text: &str, rows: &[Line<'_>], cut: Cut) -> bool {
+    let Some(subgrid) = text::lines(text)
+        .find_map(|l| l.text.trim_start_matches(['#', ' ']).strip_prefix("subgrid=").map(str::to_string))
+    else {
+        return false;
+    };
+    let range = |word: &str| {
+        let (first, last) = subgrid.split_once(word)?.1.split(['[', '+']).next()?.split_once('-')?;
+        let (first, last) = (text::number(first)?, text::number(last)?);
+        Some(first.min(last)..=first.max(last))
+    };
+    let (Some(inlines), Some(crosslines)) = (range("il:"), range("cl:")) else { return false };
+    let (numbers, _) = table::sample_rows(rows, cut);
+    let fits = |v: Option<&f64>, range: &std::ops::RangeInclusive<f64>| {
+        v.is_some_and(|v| v.fract() == 0.0 && range.contains(v))
+    };
+    numbers.iter().all(|row| fits(row.first(), &inlines) && fits(row.get(1), &crosslines))
+}
+
 fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
     let rows: Vec<_> = text::lines(&text).filter(|l| !table::is_comment(l.text)).collect();
     let named = of_extension(source);
-    let header = named.map(|(columns, _)| ColumnLayout::plain(columns.to_vec()));
     let cut = Cut::of(rows.first().map_or("", |l| l.text));
+    let lines = || [Column::Inline, Column::Crossline, Column::Z];
+    let columns = named.map(|(columns, _)| columns).or_else(|| on_subgrid(&text, &rows, cut).then(lines));
+    let header = columns.map(|columns| ColumnLayout::plain(columns.to_vec()));
     let mut layout = table::settle_columns(source, context, header, &rows, cut)?;
     let stated = text::lines(&text).find_map(|l| {
         let word = l.text.trim_start_matches(['#', ' ']).strip_prefix("vertical_dimension=")?.trim().to_string();

@@ -68,7 +68,8 @@ fn begin(rest: &str) -> RawSurface {
 }
 
 fn point(source: &SourceFile, line: Line<'_>, indent: usize) -> Result<RawPoint, FormatError> {
-    let wrong = || source.syntax(line.number, "X, Y, two counts, Z, three crosslines, a value, I and the inline", line.text);
+    let wrong =
+        || source.syntax(line.number, "X, Y, two counts, Z, three crosslines, a value, I and the inline", line.text);
     let (left, right) = line.text.split_once(" I").ok_or_else(wrong)?;
     let inline = right.split_whitespace().next().and_then(text::number).ok_or_else(wrong)?;
     let free: Vec<f64> = left.split_whitespace().map_while(text::number).collect();

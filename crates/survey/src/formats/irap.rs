@@ -104,7 +104,13 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     }
     let z = transposed(&values, grid.count);
     let shape = RawShape::Grid { grid, z };
-    Ok(vec![RawSurface { name: None, shape, vertical: VerticalFacts::default(), notes: Vec::new(), warnings: Vec::new() }])
+    Ok(vec![RawSurface {
+        name: None,
+        shape,
+        vertical: VerticalFacts::default(),
+        notes: Vec::new(),
+        warnings: Vec::new(),
+    }])
 }
 
 /// All sheets as one: possible where they lie on one grid and no node has two depths.

@@ -85,5 +85,11 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
         return Err(source.length("grid values", expected, values.len()));
     }
     let shape = RawShape::Grid { grid, z: transposed(&values, grid.count) };
-    Ok(vec![RawSurface { name: None, shape, vertical: VerticalFacts::default(), notes: Vec::new(), warnings: Vec::new() }])
+    Ok(vec![RawSurface {
+        name: None,
+        shape,
+        vertical: VerticalFacts::default(),
+        notes: Vec::new(),
+        warnings: Vec::new(),
+    }])
 }

@@ -33,7 +33,8 @@ pub(super) fn split(surface: RawSurface) -> Vec<RawSurface> {
                 .notes
                 .iter()
                 .cloned()
-                .chain(["a closed outline, triangulated in map view: the strip of the fault between its two cut-offs".into()])
+                .chain(["a closed outline, triangulated in map view: the strip of the fault between its two cut-offs"
+                    .into()])
                 .collect(),
             warnings: surface.warnings.clone(),
         })
@@ -61,7 +62,8 @@ fn closed_parts(points: &[RawPoint]) -> Option<Vec<TriangleMesh>> {
     if outlines.is_empty() || outlines.len() * 2 < parts.len() {
         return None;
     }
-    let meshes: Vec<TriangleMesh> = outlines.into_iter().map(|o| triangulate(o)).filter(|m| !m.triangles.is_empty()).collect();
+    let meshes: Vec<TriangleMesh> =
+        outlines.into_iter().map(|o| triangulate(o)).filter(|m| !m.triangles.is_empty()).collect();
     (!meshes.is_empty()).then_some(meshes)
 }
 
@@ -104,8 +106,10 @@ mod tests {
         let mut ring: Vec<(DVec2, f64)> = side(0.0, 0.0).collect();
         ring.extend(side(100.0, 80.0).collect::<Vec<_>>().into_iter().rev());
         ring.push(ring[0]);
-        let points: Vec<RawPoint> =
-            ring.iter().map(|(xy, z)| RawPoint { xy: Some(*xy), z: *z, stick: Some(3.0), ..RawPoint::default() }).collect();
+        let points: Vec<RawPoint> = ring
+            .iter()
+            .map(|(xy, z)| RawPoint { xy: Some(*xy), z: *z, stick: Some(3.0), ..RawPoint::default() })
+            .collect();
         let [mesh] = &closed_parts(&points).unwrap()[..] else { panic!() };
         let area: f64 = (0..mesh.triangles.len())
             .map(|t| mesh.corners(t))

@@ -286,7 +286,7 @@ mod tests {
 
     /// Largest and mean error of gridding `f` from 900 points, away from the rim.
     fn errors(f: impl Fn(f64, f64) -> f64) -> (f64, f64) {
-        let geometry = SurveyGeometry::regular([100, 100, 100], 10.0, 1.0, crate::VerticalUnit::Metres);
+        let geometry = SurveyGeometry::regular([100, 100, 100], 10.0, 1.0, VerticalUnit::Metres);
         let points: Vec<_> = random_points(900).into_iter().map(|p| (p, f(p.x, p.y) as f32)).collect();
         let gridded = grid(&points, &geometry, None, 1e-3);
         let sheet = &gridded.sheets[0];
@@ -320,7 +320,7 @@ mod tests {
     fn a_step_does_not_ring() {
         // A fault at x = 50 with a throw of 30: only the triangles across it may leave the two levels, by a quarter of the throw.
         let step = |x: f64, _: f64| if x < 50.0 { 400.0 } else { 430.0 };
-        let geometry = SurveyGeometry::regular([100, 100, 100], 10.0, 1.0, crate::VerticalUnit::Metres);
+        let geometry = SurveyGeometry::regular([100, 100, 100], 10.0, 1.0, VerticalUnit::Metres);
         let points: Vec<_> = random_points(900).into_iter().map(|p| (p, step(p.x, p.y) as f32)).collect();
         let gridded = grid(&points, &geometry, None, 1e-3);
         for (n, z) in gridded.sheets[0].depth.iter().enumerate().filter(|(_, z)| z.is_finite()) {

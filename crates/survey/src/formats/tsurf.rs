@@ -53,7 +53,13 @@ struct Object {
 
 impl Object {
     fn surface(self) -> RawSurface {
-        RawSurface { name: self.name, shape: RawShape::Mesh(self.mesh), vertical: self.vertical, notes: Vec::new(), warnings: Vec::new() }
+        RawSurface {
+            name: self.name,
+            shape: RawShape::Mesh(self.mesh),
+            vertical: self.vertical,
+            notes: Vec::new(),
+            warnings: Vec::new(),
+        }
     }
 
     /// The name in a `HEADER {` block or line: `name: F5`, `name:F5`, `HEADER { name: F5 }`.

@@ -4,11 +4,11 @@
 //! bilinearly at square nodes as far apart as its own are at least, over the box around its nodes with a depth; a new node beside a hole is
 //! a hole. On a plane that is exact; between nodes the surface is what the picture shows too.
 
+use super::Format;
 use super::error::FormatError;
 use super::export::{ExportOptions, WhenRotated};
 use super::irap;
 use super::write::Failure;
-use super::Format;
 use crate::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use glam::DVec2;
 use std::borrow::Cow;
@@ -141,7 +141,8 @@ mod tests {
     #[test]
     fn a_rotated_plane_is_the_same_plane() {
         let u = DVec2::from_angle(0.5) * 10.0;
-        let sheet = plane(NodeGrid { origin: DVec2::new(500.0, 300.0), u_step: u, v_step: u.perp() * 2.0, count: [40, 30] });
+        let sheet =
+            plane(NodeGrid { origin: DVec2::new(500.0, 300.0), u_step: u, v_step: u.perp() * 2.0, count: [40, 30] });
         assert!(along_axes(&sheet).is_none());
         let resampled = resample(&sheet).unwrap();
         let wanted = plane(resampled.grid);

@@ -51,7 +51,8 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
             break;
         }
         let fields: Vec<&str> = line.text.split(',').map(str::trim).collect();
-        let character = |n: usize| fields.get(n).and_then(|f| f.parse::<usize>().ok()).filter(|c| (1..=10_000).contains(c));
+        let character =
+            |n: usize| fields.get(n).and_then(|f| f.parse::<usize>().ok()).filter(|c| (1..=10_000).contains(c));
         let (Some(from), Some(to)) = (character(4), character(5)) else {
             return Err(source.syntax(line.number, "a column with its first and last character", line.text));
         };

@@ -4,6 +4,7 @@
 //! volumes/NAME.zarr               write_volume, StoredVolume
 //! horizons/NAME.zarr              write_horizon, read_horizon
 //! faults/NAME.json                write_fault, read_fault
+//! wells/NAME.json                 write_well, read_well
 //! derived/parameterization.zarr   write_parameterization, StoredParameterization
 //! ```
 //!
@@ -24,6 +25,7 @@ mod sample;
 #[cfg(test)]
 mod tests;
 mod volume;
+mod well;
 
 pub use array::{ArrayWriter, StoredArray, read_group, write_array, write_group};
 pub use error::StoreError;
@@ -35,3 +37,4 @@ pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterizatio
 pub use replacement::{Replacement, clean, replace_file};
 pub use sample::StoredSample;
 pub use volume::{SourceError, StoredVolume, VolumeInfo, write_volume, write_volume_slabs};
+pub use well::{read_well, write_well};

@@ -21,6 +21,7 @@
 
 mod checkshot;
 mod columns;
+mod describe;
 mod deviation;
 mod error;
 mod las;
@@ -34,6 +35,7 @@ mod tests;
 mod tops;
 
 pub use checkshot::{Checkshot, TimeDepth, parse_checkshot};
+pub use describe::{WellColumnDescription, WellFileDescription, WellFileKind, describe};
 pub use deviation::{Deviation, parse_deviation};
 pub use error::WellError;
 pub use las::{Las, LasItem, parse_las};

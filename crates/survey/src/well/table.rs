@@ -24,6 +24,8 @@ pub(super) struct Table<'a> {
     file: PathBuf,
     /// Comments and lines `KEY: value`: lower-case key and value.
     pub facts: Vec<(String, String)>,
+    /// The columns' names, as they stand there.
+    pub names: Vec<String>,
     /// What the columns hold; empty when nothing names them.
     pub columns: Vec<WellColumn>,
     /// The unit each column's name states.
@@ -69,6 +71,7 @@ impl<'a> Table<'a> {
         let mut table = Self {
             file: file.to_owned(),
             facts: Vec::new(),
+            names: Vec::new(),
             columns: Vec::new(),
             units: Vec::new(),
             rows: Vec::new(),
@@ -122,6 +125,7 @@ impl<'a> Table<'a> {
             table.columns.push(if again { WellColumn::Other } else { column });
             table.units.push(unit);
         }
+        table.names = names;
         table
     }
 

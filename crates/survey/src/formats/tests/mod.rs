@@ -1,6 +1,9 @@
 //! Whole files, in and out: the formats' own examples, round trips, bad input, and real data.
 
 mod faults;
+mod foreign;
+mod penobscot;
+mod polygons;
 mod random;
 mod real;
 mod refusals;

@@ -41,6 +41,15 @@ const FILES: &[(&str, &str)] = &[
         "INLINE-  0  0  0.0  0.0  40.0 F 1\nINLINE-  0  0  5.0  0.0  80.0 F 1\nINLINE-  0  0  0.0  25.0  40.0 F 2\nINLINE-  0  0  5.0  25.0  80.0 F 2\n",
     ),
     (
+        "zmappoints",
+        "!\n@FREE POINT , DATA, 80, 1\nX (E) , 1, 1, 1, 1, 8,, 1.0E+30,,, 4, 0\nY (N) , 2, 2, 1, 9, 16,, 1.0E+30,,, 4, 0\nZ , 3, 3, 1, 17, 24,, 1.0E+30,,, 4, 0\nSEG I.D. , 4, 35, 1, 25, 30,, 1.0E+30,,, 0, 0\n@\n     0.0     0.0    40.0     1\n    50.0     0.0    44.0     1\n    50.0    50.0    48.0     1\n     0.0     0.0    40.0     1\n",
+    ),
+    (
+        "iesx",
+        "PROFILE A TYPE 1  4 a3d_ci7m.ifdf     m ms\nSNAPPING PARAMETERS     5     0     1\n  0.00000000E+00  0.00000000E+00  1 14    40.00      1.00      1.00    1 4.0000000E+01 I      1 XX\n  2.50000000E+01  0.00000000E+00  1 14    44.00      1.00      1.00    1 4.4000000E+01 I      2 XX\nEOD\n",
+    ),
+    ("dug", "# subgrid=il:1-2[1]+cl:1-2[1]\n# vertical_dimension=time\n1\t1\t40\n1\t2\t44\n2\t1\t48\n"),
+    (
         "ijxyz",
         "@File\n#Horizon_name___-> A\n#End_of_Horizon_ASCII_Header_\n1.0 1 0 0 40\n2.0 1 25 0 44\n1.0 2 0 25 48\n",
     ),

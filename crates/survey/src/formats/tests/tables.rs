@@ -212,5 +212,5 @@ fn scattered_points_of_a_plane_are_a_plane_with_a_hole_in_the_gap() {
             }
         }
     }
-    assert!(known > 3000, "{known}");
+    assert!(known > 2900, "{known}");
 }

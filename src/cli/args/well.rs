@@ -1,0 +1,77 @@
+//! What can be typed about wells.
+
+use clap::{Args, Subcommand};
+use std::path::PathBuf;
+
+#[derive(Debug, Subcommand)]
+pub(in crate::cli) enum WellAction {
+    /// Read a well: its deviation, and tops, logs and checkshots along it
+    #[command(
+        after_help = "Examples:\n  petroglyph well add north.petro A-1.csv --name A-1 --kb 25 --tops tops.csv --las A-1.las\n  petroglyph well add north.petro A-2.dev --name A-2 --head 460000,5930000 --kb 25 --checkshot A-2.ckb\n\nThe deviation's header names its columns: md, inclination, azimuth (minimum curvature); or x, y, tvdss; or dx, dy, tvd."
+    )]
+    Add(Box<WellAddArgs>),
+    /// List the wells
+    #[command(after_help = "Example:\n  petroglyph well list north.petro")]
+    List {
+        /// Project folder
+        project: PathBuf,
+    },
+    /// Say where a well runs, where its tops are against the horizons, and what was measured along it
+    #[command(after_help = "Example:\n  petroglyph well show north.petro A-1")]
+    Show {
+        /// Project folder
+        project: PathBuf,
+        /// Well
+        name: String,
+    },
+    /// Give a well another name
+    #[command(after_help = "Example:\n  petroglyph well rename north.petro A-1 \"16/1-9\"")]
+    Rename {
+        /// Project folder
+        project: PathBuf,
+        /// Well
+        from: String,
+        /// New name
+        to: String,
+    },
+    /// Take a well away
+    #[command(after_help = "Example:\n  petroglyph well remove north.petro A-1")]
+    Remove {
+        /// Project folder
+        project: PathBuf,
+        /// Well
+        name: String,
+    },
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct WellAddArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Deviation file
+    pub(in crate::cli) deviation: PathBuf,
+    /// Name of the well
+    #[arg(long)]
+    pub(in crate::cli) name: String,
+    /// Tops: names and depths
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) tops: Option<PathBuf>,
+    /// LAS 2.0 file; may be given several times
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) las: Vec<PathBuf>,
+    /// Time-depth table: TVDSS and TWT
+    #[arg(long, value_name = "FILE")]
+    pub(in crate::cli) checkshot: Option<PathBuf>,
+    /// X, Y of the well head in metres [default: as the deviation says]
+    #[arg(long, value_name = "X,Y", allow_hyphen_values = true)]
+    pub(in crate::cli) head: Option<String>,
+    /// Height of the datum (kelly bushing) above sea level in metres [default: as the deviation says]
+    #[arg(long = "kb", value_name = "M", allow_hyphen_values = true)]
+    pub(in crate::cli) datum_m: Option<f64>,
+    /// Unit of depths where columns do not say it [default: m]
+    #[arg(long, value_name = "m|ft")]
+    pub(in crate::cli) md_unit: Option<String>,
+    /// Name of the well in files that hold several [default: --name]
+    #[arg(long, value_name = "NAME")]
+    pub(in crate::cli) well_in_file: Option<String>,
+}

@@ -1,0 +1,122 @@
+//! `petroglyph info` of horizon, fault and well files: what they hold before they are imported.
+
+use super::report::Report;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+use survey::formats::{self, FileDescription, FormatError, ImportOptions, SurfaceDescription};
+use survey::well::{self, WellFileDescription};
+
+/// Files longer than this are volumes.
+const LARGEST: u64 = 2 << 30;
+
+/// Describes a horizon, fault or well file; None when it is neither (then it may be SEG-Y).
+pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<Option<Report>> {
+    if options.format.is_none() && is_volume(path) {
+        return Ok(None);
+    }
+    if options.format.is_none() {
+        let text = String::from_utf8_lossy(&std::fs::read(path)?).into_owned();
+        if let Some(found) = well::describe(path, &text)? {
+            return Ok(Some(well_file(&found)));
+        }
+    }
+    match formats::describe(path, options) {
+        Ok(found) => Ok(Some(interpretation(&found))),
+        Err(FormatError::UnknownFormat { .. }) if may_be_segy(path) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Volumes are told from interpretation without reading them: by extension, length or the first bytes of a text header.
+fn is_volume(path: &Path) -> bool {
+    let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
+    let long = std::fs::metadata(path).is_ok_and(|facts| facts.len() > LARGEST);
+    ["sgy", "segy", "seg"].contains(&extension.as_str()) || long || begin(path).is_some_and(|b| b[..2] == [0xC3, 0x40])
+}
+
+/// SEG-Y files are at least as long as their headers; shorter ones get the answer for interpretation files.
+fn may_be_segy(path: &Path) -> bool {
+    std::fs::metadata(path).is_ok_and(|facts| facts.len() >= 3600)
+}
+
+fn begin(path: &Path) -> Option<[u8; 4]> {
+    let mut start = [0; 4];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).ok()?;
+    Some(start)
+}
+
+fn interpretation(found: &FileDescription) -> Report {
+    let mut report = Report::default();
+    let evidence = match &found.format.source {
+        formats::Provenance::File(words) => words.as_str(),
+        formats::Provenance::Option | formats::Provenance::Assumed => "as told",
+    };
+    report.say(format!(
+        "{}: {} file in the format {} ({evidence}), {} bytes",
+        found.file.display(),
+        found.kind,
+        found.format.value,
+        found.bytes
+    ));
+    for surface in &found.surfaces {
+        say_surface(surface, &mut report);
+    }
+    report.fields(found);
+    report
+}
+
+fn say_surface(surface: &SurfaceDescription, report: &mut Report) {
+    let range = |word: &str, range: Option<[f64; 2]>, report: &mut Report| {
+        if let Some([low, high]) = range {
+            report.say(format!("  {word:<11} {low} to {high}"));
+        }
+    };
+    report.say(format!("surface {}", surface.name.as_deref().map_or("without a name".into(), |n| format!("'{n}'"))));
+    report.say(format!("  {:<11} {}", "shape", surface.shape));
+    report.say(format!("  {:<11} {} values, {} of them holes", "nodes", surface.values, surface.nulls));
+    range("X", surface.x, report);
+    range("Y", surface.y, report);
+    range("inlines", surface.inlines, report);
+    range("crosslines", surface.crosslines, report);
+    range("values", surface.range, report);
+    report.say(format!("  {:<11} {}", "unit", surface.unit));
+    report.say(format!("  {:<11} {}", "positive", surface.positive));
+    for note in &surface.notes {
+        report.say(format!("  {:<11} {note}", "note"));
+    }
+    for warning in &surface.warnings {
+        report.say(format!("  {:<11} {warning}", "warning"));
+    }
+    if let Some([low, high]) = surface.range {
+        let most = surface.histogram.iter().copied().max().unwrap_or(1).max(1);
+        report.say("  histogram of the values");
+        for (n, count) in surface.histogram.iter().enumerate() {
+            let from = low + (high - low) * n as f64 / surface.histogram.len() as f64;
+            report.say(format!("  {from:>14.3} {} {count}", "#".repeat((count * 40).div_ceil(most))));
+        }
+    }
+    if !surface.map.is_empty() {
+        report.say("  map, north up; from . for the lowest values to # for the highest");
+        for row in &surface.map {
+            report.say(format!("    {row}"));
+        }
+    }
+}
+
+fn well_file(found: &WellFileDescription) -> Report {
+    let mut report = Report::default();
+    let kind = format!("{:?}", found.kind).to_lowercase();
+    report.say(format!("{}: {kind} of a well ({}), {} rows", found.file.display(), found.evidence, found.rows));
+    for fact in &found.facts {
+        report.say(format!("  {fact}"));
+    }
+    for column in &found.columns {
+        let range = column.range.map_or("no numbers".into(), |[low, high]| format!("{low} to {high}"));
+        let unit = if column.unit.is_empty() { String::new() } else { format!(" ({})", column.unit) };
+        let about = if column.description.is_empty() { String::new() } else { format!("; {}", column.description) };
+        report.say(format!("  {}{unit}: {} values, {range}{about}", column.name, column.values));
+    }
+    report.fields(found);
+    report
+}

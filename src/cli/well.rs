@@ -1,0 +1,73 @@
+//! Wells: what was meant, and listings.
+
+use super::args::{WellAction, WellAddArgs};
+use super::interpretation::word;
+use super::report::Report;
+use super::request::{Listing, Request, Usage, numbers};
+use crate::command::{AddWell, Command, RemoveWell, RenameWell, WellAdded};
+use crate::data;
+use crate::error::Noun;
+use crate::project::Project;
+use survey::Progress;
+use survey::formats::ZUnit;
+use survey::well::{WellFiles, WellOptions, WellReport};
+
+/// A typed action as a request.
+pub(super) fn well(action: WellAction) -> Result<Request, Usage> {
+    Ok(match action {
+        WellAction::Add(typed) => add(*typed)?,
+        WellAction::List { project } => Request::List { project, what: Listing::Wells },
+        WellAction::Show { project, name } => Request::List { project, what: Listing::Well(name) },
+        WellAction::Rename { project, from, to } => {
+            Request::Change { project, command: Command::RenameWell(RenameWell { from, to }) }
+        }
+        WellAction::Remove { project, name } => {
+            Request::Change { project, command: Command::RemoveWell(RemoveWell { name }) }
+        }
+    })
+}
+
+fn add(typed: WellAddArgs) -> Result<Request, Usage> {
+    let units = [("m", ZUnit::Metres), ("ft", ZUnit::Feet)];
+    if let Some(kb) = typed.datum_m.filter(|kb| !kb.is_finite()) {
+        return Err(format!("--kb {kb}: expected a number of metres"));
+    }
+    let options = WellOptions {
+        name: Some(typed.name.clone()),
+        well_in_file: typed.well_in_file,
+        head: typed.head.map(|text| numbers::<2>("--head", &text, ',')).transpose()?,
+        datum_m: typed.datum_m,
+        md_unit: typed.md_unit.as_deref().map(|t| word("--md-unit", t, &units)).transpose()?,
+    };
+    let files = WellFiles { deviation: typed.deviation, tops: typed.tops, las: typed.las, checkshot: typed.checkshot };
+    let command = AddWell { name: typed.name, files, options };
+    Ok(Request::Change { project: typed.project, command: Command::AddWell(command) })
+}
+
+/// All wells.
+pub(super) fn list(project: &Project) -> Report {
+    let document = project.document();
+    let mut report = Report::default();
+    for entry in &document.wells {
+        report.say(format!("{}: {}, from {}", entry.name, entry.source.reading, entry.source.path.display()));
+    }
+    if document.wells.is_empty() {
+        report.say("no wells");
+    }
+    report.field("wells", &document.wells);
+    report
+}
+
+/// One well against the survey and its horizons as they are now.
+pub(super) fn show(project: &Project, name: &str) -> anyhow::Result<Report> {
+    let document = project.document();
+    let entry = &document.wells[document.position(Noun::Well, name)?];
+    let well = data::read_well(project.root(), entry)?;
+    let found = WellAdded::of(&well, project.root(), document, WellReport::default(), &Progress::silent())?;
+    let mut report = Report::line(found.to_string().trim_end());
+    report.fields(&found).field("stations", well.path.stations());
+    if let Some(checkshot) = &well.checkshot {
+        report.field("checkshot", checkshot.points());
+    }
+    Ok(report)
+}
