@@ -91,7 +91,7 @@ fn tsurf_horizon_of_an_overthrust_keeps_both_depths() {
         for x in from..=to {
             (0..9).for_each(|y| depth[x * 9 + y] = z + x as f32);
         }
-        crate::Sheet::new(crate::NodeGrid::of_survey(&survey()), depth, crate::Quality::Picked)
+        Sheet::new(crate::NodeGrid::of_survey(&survey()), depth, crate::Quality::Picked)
     };
     let written = Horizon { name: "Over".into(), sheets: vec![sheet(0, 5, 20.0), sheet(2, 8, 60.0)] };
     let folder = tempfile::tempdir().unwrap();
