@@ -5,7 +5,7 @@
 //! `ATOM id ref` (a vertex at the place of another) and `TRGL a b c`. Ids may start anywhere. Everything else
 //! (`BSTONE`, `BORDER`, properties, colours) is passed over.
 //!
-//! Written with ZPOSITIVE Depth, a TFACE per sheet.
+//! Written with ZPOSITIVE Depth, a TFACE per sheet, and CNXYZ at each vertex, which strict readers ask for.
 
 use super::columns;
 use super::options::{ZPositive, ZUnit};
@@ -197,7 +197,7 @@ fn write_head(out: &mut dyn Write, name: &str, geometry: &SurveyGeometry) -> std
 fn write_face(out: &mut dyn Write, mesh: &TriangleMesh, first_id: usize) -> std::io::Result<usize> {
     writeln!(out, "TFACE")?;
     for (n, v) in mesh.vertices.iter().enumerate() {
-        writeln!(out, "VRTX {} {:.4} {:.4} {:.6}", first_id + n, v.x, v.y, v.z)?;
+        writeln!(out, "VRTX {} {:.4} {:.4} {:.6} CNXYZ", first_id + n, v.x, v.y, v.z)?;
     }
     for [a, b, c] in mesh.triangles.iter().map(|t| t.map(|v| v as usize + first_id)) {
         writeln!(out, "TRGL {a} {b} {c}")?;
