@@ -21,6 +21,7 @@ pub mod formats;
 pub mod geometry;
 pub mod height_field;
 pub mod horizon;
+mod huge_pages;
 pub mod mesh;
 pub mod model;
 pub mod progress;

@@ -12,7 +12,7 @@ use super::lines::Lattice;
 pub(super) const MAX_RESIDUAL_BINS: f64 = 0.5;
 
 /// The fit takes every n-th trace of files that have more than this: 1 ‰ of a bin needs far fewer.
-const MAX_POINTS: usize = 1 << 20;
+const MAX_POINTS: usize = 1 << 16;
 
 /// A fitted place, in the unit of the coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,6 +7,7 @@ use super::error::{SegyError, SegyProblem};
 use super::file::SegyFile;
 use super::info::SegyInfo;
 use crate::geometry::SurveyGeometry;
+use crate::huge_pages::zeroed;
 use crate::progress::{Cancelled, Progress};
 use crate::volume::Volume;
 
@@ -55,32 +56,44 @@ impl Sums {
     const NONE: Self =
         Self { min: f32::INFINITY, max: f32::NEG_INFINITY, sum: 0.0, sum_sq: 0.0, samples: 0, non_finite: 0 };
 
-    /// Adds in lanes, which the compiler turns into vector instructions; their order is fixed.
+    /// Adds in lanes, which the compiler turns into vector instructions; their order is fixed. Runs of 64 samples are
+    /// summed in `f32`, whose rounding averages out, where their squares are in its range; else in `f64`.
     fn add_trace(&mut self, trace: &[f32]) {
         const LANES: usize = 8;
+        const RUN: usize = 64;
+        /// Squares of amplitudes in between neither overflow nor vanish.
+        const SAFE: std::ops::Range<f32> = 1e-12..1e15;
+        let (mut mins, mut maxs) = ([f32::INFINITY; LANES], [f32::NEG_INFINITY; LANES]);
         let (chunks, rest) = trace.as_chunks::<LANES>();
-        let (mut sums, mut sums_sq) = ([0.0_f64; LANES], [0.0_f64; LANES]);
-        let (mut mins, mut maxs) = ([self.min; LANES], [self.max; LANES]);
         for chunk in chunks {
             for lane in 0..LANES {
-                let value = f64::from(chunk[lane]);
-                sums[lane] += value;
-                sums_sq[lane] += value * value;
                 // Without the care for NaN of `f32::min`: none are left here.
                 mins[lane] = if chunk[lane] < mins[lane] { chunk[lane] } else { mins[lane] };
                 maxs[lane] = if chunk[lane] > maxs[lane] { chunk[lane] } else { maxs[lane] };
             }
         }
-        for &value in rest {
-            sums[0] += f64::from(value);
-            sums_sq[0] += f64::from(value) * f64::from(value);
-            mins[0] = mins[0].min(value);
-            maxs[0] = maxs[0].max(value);
+        let min = mins.into_iter().chain(rest.iter().copied()).fold(f32::INFINITY, f32::min);
+        let max = maxs.into_iter().chain(rest.iter().copied()).fold(f32::NEG_INFINITY, f32::max);
+        if SAFE.contains(&max.abs().max(min.abs())) {
+            for run in trace.chunks(RUN) {
+                let (chunks, rest) = run.as_chunks::<LANES>();
+                let (mut sums, mut sums_sq) = ([0.0_f32; LANES], [0.0_f32; LANES]);
+                for chunk in chunks {
+                    for lane in 0..LANES {
+                        sums[lane] += chunk[lane];
+                        sums_sq[lane] += chunk[lane] * chunk[lane];
+                    }
+                }
+                self.sum += sums.iter().chain(rest).map(|&v| f64::from(v)).sum::<f64>();
+                self.sum_sq += sums_sq.iter().map(|&v| f64::from(v)).sum::<f64>();
+                self.sum_sq += rest.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();
+            }
+        } else {
+            self.sum += trace.iter().map(|&v| f64::from(v)).sum::<f64>();
+            self.sum_sq += trace.iter().map(|&v| f64::from(v) * f64::from(v)).sum::<f64>();
         }
-        self.sum += sums.iter().sum::<f64>();
-        self.sum_sq += sums_sq.iter().sum::<f64>();
-        self.min = mins.into_iter().fold(self.min, f32::min);
-        self.max = maxs.into_iter().fold(self.max, f32::max);
+        self.min = self.min.min(min);
+        self.max = self.max.max(max);
         self.samples += trace.len() as u64;
     }
 
@@ -158,7 +171,9 @@ impl SegyFile {
         let geometry = self.geometry()?;
         let size = geometry.size();
         progress.begin("reading traces", (size[0] * size[1]) as u64);
-        let mut volume = Volume::filled(size, 0.0_f32);
+        let mut volume = Volume::from_samples(size, zeroed(size.iter().product())).map_err(|mismatch| {
+            SegyProblem::SizeMismatch { volume: size, geometry: mismatch.size }.in_file(&self.path)
+        })?;
         let amplitudes = self.read_inlines(0, volume.samples_mut(), progress)?;
         let mut info = self.info().clone();
         if amplitudes.non_finite > 0 {
@@ -172,5 +187,30 @@ impl SegyFile {
             SegyProblem::SizeMismatch { volume: size, geometry: mismatch.size }.in_file(&self.path)
         })?;
         Ok(SegyVolume { geometry, volume, amplitudes, info })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_double_precision_at_any_scale() {
+        for scale in [1e-30_f32, 1e-14, 1.0, 32_000.0, 1e16, 1e30] {
+            for count in [1, 7, 8, 63, 64, 65, 500] {
+                let trace: Vec<f32> = (0..count).map(|k| scale * ((k * 37 % 101) as f32 / 50.0 - 0.9)).collect();
+                let mut sums = Sums::NONE;
+                sums.add_trace(&trace);
+                let exact = |of: fn(f64) -> f64| trace.iter().map(|&v| of(f64::from(v))).sum::<f64>();
+                let size = f64::from(scale);
+                assert!((sums.sum - exact(|v| v)).abs() < 1e-6 * size * f64::from(count), "{scale} {count}");
+                assert!(
+                    (sums.sum_sq - exact(|v| v * v)).abs() < 1e-6 * size * size * f64::from(count),
+                    "{scale} {count}"
+                );
+                assert_eq!(sums.min, trace.iter().copied().fold(f32::INFINITY, f32::min));
+                assert_eq!(sums.max, trace.iter().copied().fold(f32::NEG_INFINITY, f32::max));
+            }
+        }
     }
 }

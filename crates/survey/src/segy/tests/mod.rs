@@ -6,4 +6,5 @@ mod detection;
 mod expected;
 mod headers;
 mod numberless;
+mod properties;
 mod round_trip;

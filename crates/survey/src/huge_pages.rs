@@ -1,0 +1,43 @@
+//! Memory for a whole volume, in large pages where the system has them.
+//!
+//! The first write to each page of fresh memory costs a fault. 131 072 pages of 4 KiB for a cube of 512³ floats cost more than
+//! decoding it: 0.31 s of processor time in the kernel against 0.10 s in pages of 2 MiB, of 0.38 and 0.14 s in all.
+
+/// `count` zeros. The memory is first touched, and so placed, by the threads that write to it.
+pub(crate) fn zeroed(count: usize) -> Vec<f32> {
+    let samples = vec![0.0_f32; count];
+    advise(&samples);
+    samples
+}
+
+/// Asks for large pages. A wish: where it is not granted, nothing is different.
+#[cfg(target_os = "linux")]
+fn advise(samples: &[f32]) {
+    /// No system's pages are smaller; the advice must begin at one.
+    const PAGE: usize = 4096;
+    let start = samples.as_ptr() as usize;
+    let first = start.next_multiple_of(PAGE);
+    let end = (start + size_of_val(samples)) / PAGE * PAGE;
+    if end <= first {
+        return;
+    }
+    #[expect(unsafe_code, reason = "the standard library has no such advice; measured above")]
+    // SAFETY: the range lies within the vector's own memory, and the advice changes no content.
+    unsafe {
+        libc::madvise(first as *mut libc::c_void, end - first, libc::MADV_HUGEPAGE);
+    }
+}
+
+#[cfg(not(target_os = "linux"))]
+fn advise(_samples: &[f32]) {}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn any_count_is_zeros() {
+        for count in [0, 1, 1023, 1024, 5000, 3_000_000] {
+            let samples = super::zeroed(count);
+            assert!(samples.len() == count && samples.iter().all(|&v| v == 0.0));
+        }
+    }
+}
