@@ -38,7 +38,13 @@ const EVERY_OTHER: &str = "every other inline and crossline; 4 decimals";
 
 const CASES: [Case; 13] = [
     case("truth_il_xl_x_y_twt.csv", [0, 0], Some(1e-4), 1e-4, "the truth itself, in f32"),
-    case("irap_classic_rotated.gri", [1, 1], Some(1e-3), 0.01, "origin and steps are f32: nodes a quarter of a metre off"),
+    case(
+        "irap_classic_rotated.gri",
+        [1, 1],
+        Some(1e-3),
+        0.01,
+        "origin and steps are f32: nodes a quarter of a metre off",
+    ),
     case("irap_classic_rotated.irap", [2, 2], Some(1e-3), 0.01, EVERY_OTHER),
     case("petromod_rotated.pmd", [2, 2], Some(1e-3), 0.01, "every other inline and crossline; f32"),
     case("opendtect_xy_ilxl.dat", [2, 2], Some(1e-3), 0.01, EVERY_OTHER),
