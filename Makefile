@@ -4,7 +4,7 @@
 #   make test    all tests
 #   make check   formatting, lints and documentation, warnings denied
 #   make bench   how long our stages take on this machine
-#   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, xtgeo, segyio, lasio)
+#   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, scipy, xtgeo, segyio, lasio)
 #   make accuracy   measures accuracy anew into docs/accuracy.md
 
 OUT ?= out/demo

@@ -3,8 +3,8 @@
 
     python bench/check_formats.py [PETROGLYPH] [WORK_DIR]
 
-Needs numpy, xtgeo, segyio and lasio from PyPI. A synthetic survey is made; with PETROGLYPH_DATA also Horizon B of the rotated
-Penobscot survey is exported. Prints a line per check; exit code 1 when one fails.
+Needs numpy, scipy, xtgeo, segyio and lasio from PyPI. A synthetic survey, a horizon with holes and a well are made; with PETROGLYPH_DATA
+also Horizon B of the rotated Penobscot survey is exported. Prints a line per check; exit code 1 when one fails.
 """
 
 import json
@@ -19,6 +19,7 @@ import lasio
 import numpy as np
 import segyio
 import xtgeo
+from scipy.spatial import cKDTree
 
 PROGRAM = Path(sys.argv[1] if len(sys.argv) > 1 else "target/debug/petroglyph").resolve()
 FAILED = []
@@ -87,15 +88,12 @@ def opendtect_points(path):
 
 
 def same_points(what, found, wanted, xy_m, z):
-    """Both sets hold the same points: sorted along a direction no two share."""
+    """Both sets hold the same points: each has its own nearest partner."""
     count(f"{what}: nodes", len(found), len(wanted))
-    if len(found) != len(wanted):
-        return
-    order = lambda p: np.lexsort((np.round(p[:, 1], 1), np.round(p[:, 0], 1)))
-    a, b = found[order(found)], wanted[order(wanted)]
-    # Rounding may swap neighbours in the sort; a hundredth of a metre decides nothing then.
-    check(f"{what}: X, Y", np.abs(a[:, :2] - b[:, :2]).max(), xy_m, "m")
-    check(f"{what}: values", np.abs(a[:, 2] - b[:, 2]).max(), z, "")
+    apart, partner = cKDTree(wanted[:, :2]).query(found[:, :2])
+    count(f"{what}: nodes that share a partner", len(found) - len(np.unique(partner)), 0)
+    check(f"{what}: X, Y", apart.max(), xy_m, "m")
+    check(f"{what}: values", np.abs(found[:, 2] - wanted[partner, 2]).max(), z, "")
 
 
 def on_surface(what, found, truth, grid, z):
@@ -128,8 +126,10 @@ def horizon(work, project, name, label, grid=None):
         run(work, "export", project, out(extension), "--horizon", name, "--format", fmt)
     truth = csv_points(out("csv"))
     irap = xtgeo.surface_from_file(out("irap"), fformat="irap_ascii")
-    same_points(f"{label} irap by xtgeo", surface_points(irap), truth, 1e-3, 1e-3)
-    same_points(f"{label} opendtect by numpy", opendtect_points(out("dat")), truth, 6e-3, 1e-3)
+    # Irap holds right angles alone; the survey's, from coordinates rounded to centimetres, is off by a millionth.
+    same_points(f"{label} irap by xtgeo", surface_points(irap), truth, 1e-3 if grid is None else 1e-2, 1e-3)
+    # Two decimals in X and in Y.
+    same_points(f"{label} opendtect by numpy", opendtect_points(out("dat")), truth, 7.1e-3, 1e-3)
     vertices = tsurf_points(out("ts"))
     same_points(f"{label} tsurf", vertices, truth, 1e-3, 1e-3)
     read = xtgeo.triangulated_surface_from_file(out("ts"), fformat="tsurf")
@@ -151,7 +151,9 @@ def segy(work):
     with segyio.open(path) as f:
         for axis, lines in (("inlines", f.ilines), ("crosslines", f.xlines)):
             said = info[axis]
-            count(f"segy {axis}", list(lines), list(range(said["first"], said["last"] + said["step"], said["step"])))
+            ours = range(said["first"], said["last"] + said["step"], said["step"])
+            count(f"segy {axis}: {ours[0]} to {ours[-1]}, lines that differ", sum(a != b for a, b in zip(lines, ours)), 0)
+            count(f"segy {axis}", len(lines), len(ours))
         count("segy samples", len(f.samples), info["samples"])
         scalar = -1.0 / f.header[0][segyio.TraceField.SourceGroupScalar]
         geometry = info["geometry"]
@@ -231,15 +233,7 @@ def main():
     work = folder.name if folder else sys.argv[2]
     run(work, "synth", "s", "--size", "64x48x64", "--seed", "5")
     run(work, "import", "s/survey.sgy", "p.petro")
-    # A horizon without two depths at a trace: every grid format holds it.
-    run(work, "horizon", "add", "p.petro", "s/horizons/Alpha.csv", "--name", "Alpha")
     segy(work)
-    info = answer(work, "info", "p.petro")["geometry"]
-    straight = min(abs(info["inline_vector"][0]), abs(info["inline_vector"][1])) < 1e-9
-    if straight:
-        horizon(work, "p.petro", "Alpha", "synth")
-    else:
-        print("     the synthetic survey is rotated; its unrotated formats are compared on Penobscot alone")
     # An unrotated survey of one's own, with holes.
     run(work, "create", "c.petro", "--bounds", "1000,3000,5000,6000,0,1000", "--size", "81x51x101")
     i, j = np.meshgrid(np.arange(81), np.arange(51), indexing="ij")
