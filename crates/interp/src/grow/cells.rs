@@ -15,9 +15,9 @@ use rayon::prelude::*;
 const GRAIN: usize = 1 << 14;
 
 /// The component of each extremum (the index of its first window), or [`NONE`].
-pub(super) fn label(extrema: &Extrema, links: &Links, min_front_width: usize) -> Vec<u32> {
+pub(super) fn label(extrema: &Extrema, links: &Links, broken: &[[bool; 2]], min_front_width: usize) -> Vec<u32> {
     let cells = min_front_width - 1;
-    let windows = windows(extrema.len(), links, cells);
+    let windows = windows(extrema.len(), links, broken, cells);
     let mut sets = UnionFind::new(extrema.len());
     for v in 0..extrema.len() as u32 {
         if !windows[v as usize] {
@@ -46,10 +46,17 @@ pub(super) fn label(extrema: &Extrema, links: &Links, min_front_width: usize) ->
     label
 }
 
+/// Whether the cell that begins at `a` is closed and none of its four links is broken.
+fn is_open(links: &Links, broken: &[[bool; 2]], a: u32) -> bool {
+    links.closed(a).is_some_and(|[a, b, c, _]| {
+        !(broken[a as usize][0] || broken[a as usize][1] || broken[b as usize][1] || broken[c as usize][0])
+    })
+}
+
 /// Whether each extremum is the first corner of a complete window.
-fn windows(count: usize, links: &Links, cells: usize) -> Vec<bool> {
+fn windows(count: usize, links: &Links, broken: &[[bool; 2]], cells: usize) -> Vec<bool> {
     let mut complete: Vec<bool> =
-        (0..count as u32).into_par_iter().with_min_len(GRAIN).map(|v| links.closed(v).is_some()).collect();
+        (0..count as u32).into_par_iter().with_min_len(GRAIN).map(|v| is_open(links, broken, v)).collect();
     for _ in 1..cells {
         let smaller = complete;
         complete = (0..count as u32)

@@ -7,15 +7,28 @@
 //! | step | ours, in |
 //! |---|---|
 //! | extrema, refined below the sample | [`crate::extrema`] |
-//! | mutual best links between neighbouring traces | `links` |
+//! | mutual best links between neighbouring traces, guided by the dip | `links`, `dip` |
+//! | how much each link speaks for a break, beside the volume's own noise | `evidence` |
+//! | faults: planes along which many links do; they cut links | `planes` |
 //! | closed cells, the opening of the least width, connected windows | `cells` |
+//! | what is left over goes to the surface that it fits best | `flood` |
 //! | triangles | `assemble` |
+//!
+//! Surfaces are connected over necks of `core_width` traces first; what the flood does not reach is connected over necks of `min_front_width`.
 //!
 //! Peaks, troughs and zero crossings never link to one another. Space: voxels.
 
 mod assemble;
 mod cells;
+mod dip;
+mod evidence;
+mod flood;
 mod links;
+mod ours;
+mod paper;
+mod planes;
+#[cfg(test)]
+mod tests;
 mod union_find;
 
 use crate::extrema::{ExtremaError, SlabSource, find_extrema};
@@ -45,6 +58,12 @@ pub struct GrowSettings {
     pub extrema: Vec<Extremum>,
     /// Traces: surfaces and connections narrower than this are not grown. Default 4 (P-horiz 4); at least 2.
     pub min_front_width: usize,
+    /// Traces: surfaces that meet in a neck narrower than this stay apart, and share what lies between them; narrow
+    /// surfaces are grown all the same. Default 10: leaks across faults are rarely wider. At most `min_front_width` turns it off.
+    pub core_width: usize,
+    /// Least evidence along a plane for it to be a fault that cuts surfaces (see `planes`). Default 25; the less, the more cuts.
+    /// Infinite turns the search for faults off.
+    pub fault_evidence: f32,
     /// Inlines read at a time; does not change the result. Default 16.
     pub slab_inlines: usize,
 }
@@ -55,6 +74,8 @@ impl Default for GrowSettings {
             method: Method::Ours,
             extrema: vec![Extremum::Peak, Extremum::Trough],
             min_front_width: 4,
+            core_width: 10,
+            fault_evidence: 25.0,
             slab_inlines: 16,
         }
     }
@@ -122,17 +143,17 @@ pub fn grow_slabs<S: SlabSource>(
     if lines > usize::from(u16::MAX) {
         return Err(GrowError::TooManyLines { lines });
     }
+    if size.contains(&0) {
+        return Ok(Surfaces { size, ..Surfaces::default() });
+    }
     let extrema = find_extrema(source, &kinds, settings.slab_inlines, progress)?;
-    let links: Vec<links::Links> = extrema.par_iter().map(links::mutual_links).collect();
-    progress.check()?;
-    let grown: Vec<Surfaces> = extrema
-        .par_iter()
-        .zip(&links)
-        .map(|(extrema, links)| {
-            let labels = cells::label(extrema, links, settings.min_front_width);
-            assemble::surfaces(extrema, links, &labels)
-        })
-        .collect();
+    let grown = match settings.method {
+        Method::Ours => ours::grow(&extrema, settings, progress)?,
+        Method::Paper => extrema
+            .par_iter()
+            .map(|extrema| paper::grow(extrema, settings.min_front_width, progress))
+            .collect::<Result<_, _>>()?,
+    };
     progress.check()?;
     Ok(assemble::joined(size, grown))
 }

@@ -1,0 +1,204 @@
+//! The dip that links are guided by.
+//!
+//! Two steps. A coarse field: histograms of the jumps of unguided links over bricks of traces, pooled with their neighbours; the
+//! mode is the dip, so that neither a fault nor links that skipped a cycle bend it ([`DipField`]). Then, link by link, a
+//! normalised convolution along the surfaces themselves: p̄ = G∗(w·jump) / G∗w, with G a binomial of 7 × 7 traces that never
+//! steps over a link that does not fit, and w falling with the misfit to the dip known so far ([`along_surfaces`]).
+//! Unlike a structure tensor's, these dips do not alias where a reflector steps by more than half a period a trace. Unit: samples a trace.
+
+use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
+use crate::extrema::Extrema;
+use rayon::prelude::*;
+
+/// Traces and samples of a brick.
+const BRICK: [usize; 3] = [8, 8, 16];
+
+/// Width of a histogram's bin, samples.
+const BIN: f32 = 0.25;
+
+/// Bins: jumps from −4 to 4 samples.
+const BINS: usize = 32;
+
+/// Coarse dips at the centres of bricks.
+pub(super) struct DipField {
+    count: [usize; 3],
+    dips: Vec<[f32; 2]>,
+}
+
+/// Jumps along x and along y in one brick.
+type Histograms = [[f32; BINS]; 2];
+
+impl DipField {
+    /// Finds the dips from the links of all kinds.
+    pub(super) fn new(size: [usize; 3], kinds: &[(&Extrema, &Links)]) -> Self {
+        let count = [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]).max(1));
+        let slab = count[1] * count[2];
+        let mut bricks: Vec<Histograms> = vec![[[0.0; BINS]; 2]; count[0] * slab];
+        bricks.par_chunks_mut(slab).enumerate().for_each(|(bx, slab)| {
+            for (extrema, links) in kinds {
+                for x in bx * BRICK[0]..((bx + 1) * BRICK[0]).min(size[0]) {
+                    for y in 0..size[1] {
+                        add_trace(extrema, links, extrema.on_trace(x, y), &mut slab[y / BRICK[1] * count[2]..]);
+                    }
+                }
+            }
+        });
+        let dips = (0..bricks.len())
+            .into_par_iter()
+            .map(|at| {
+                let centre = [at / slab, at / count[2] % count[1], at % count[2]];
+                let range = |axis: usize| centre[axis].saturating_sub(1)..(centre[axis] + 2).min(count[axis]);
+                let mut pooled: Histograms = [[0.0; BINS]; 2];
+                for bx in range(0) {
+                    for by in range(1) {
+                        for bz in range(2) {
+                            let brick = &bricks[(bx * count[1] + by) * count[2] + bz];
+                            for axis in 0..2 {
+                                for (sum, weight) in pooled[axis].iter_mut().zip(&brick[axis]) {
+                                    *sum += weight;
+                                }
+                            }
+                        }
+                    }
+                }
+                pooled.map(|histogram| mode(&histogram))
+            })
+            .collect();
+        Self { count, dips }
+    }
+
+    /// Dips at each extremum, linear between the centres of bricks.
+    pub(super) fn at_extrema(&self, extrema: &Extrema) -> Vec<[f32; 2]> {
+        let mut dips = vec![[0.0; 2]; extrema.len()];
+        let ny = extrema.size[1];
+        extrema.split_inlines(&mut dips).into_par_iter().enumerate().for_each(|(x, line)| {
+            let first = extrema.on_inline(x).start;
+            let across = self.between(0, x as f32);
+            for y in 0..ny {
+                let along = self.between(1, y as f32);
+                for v in extrema.on_trace(x, y) {
+                    let down = self.between(2, extrema.z[v]);
+                    let mut dip = [0.0; 2];
+                    for (bx, wx) in across {
+                        for (by, wy) in along {
+                            for (bz, wz) in down {
+                                let at = self.dips[(bx * self.count[1] + by) * self.count[2] + bz];
+                                dip[0] += wx * wy * wz * at[0];
+                                dip[1] += wx * wy * wz * at[1];
+                            }
+                        }
+                    }
+                    line[v - first] = dip;
+                }
+            }
+        });
+        dips
+    }
+
+    /// The two bricks that a place lies between along an axis, with their weights.
+    fn between(&self, axis: usize, at: f32) -> [(usize, f32); 2] {
+        let place = ((at + 0.5) / BRICK[axis] as f32 - 0.5).clamp(0.0, (self.count[axis] - 1) as f32);
+        let low = place as usize;
+        let share = place - low as f32;
+        [(low, 1.0 - share), ((low + 1).min(self.count[axis] - 1), share)]
+    }
+}
+
+/// Adds the jumps of a trace to its column of bricks.
+fn add_trace(extrema: &Extrema, links: &Links, trace: std::ops::Range<usize>, column: &mut [Histograms]) {
+    for v in trace {
+        let brick = &mut column[extrema.z[v] as usize / BRICK[2]];
+        for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
+            let next = links.to[direction][v];
+            if next != NONE {
+                let jump = extrema.z[next as usize] - extrema.z[v];
+                let bin = (jump / BIN + BINS as f32 / 2.0) as usize;
+                brick[axis][bin.min(BINS - 1)] += extrema.amplitude[v].min(extrema.amplitude[next as usize]);
+            }
+        }
+    }
+}
+
+/// The most frequent jump: the highest of the smoothed bins, then the mean of those around it; 0 where there are none.
+fn mode(histogram: &[f32; BINS]) -> f32 {
+    let at = |bin: usize| histogram[bin];
+    let smoothed = |bin: usize| {
+        let (below, above) = (at(bin.saturating_sub(1)), at((bin + 1).min(BINS - 1)));
+        below + 2.0 * at(bin) + above
+    };
+    let mut top = 0;
+    for bin in 1..BINS {
+        if smoothed(bin) > smoothed(top) {
+            top = bin;
+        }
+    }
+    let (mut sum, mut weight) = (0.0, 0.0);
+    for bin in top.saturating_sub(3)..(top + 4).min(BINS) {
+        sum += at(bin) * ((bin as f32 + 0.5) - BINS as f32 / 2.0) * BIN;
+        weight += at(bin);
+    }
+    if weight > 0.0 { sum / weight } else { 0.0 }
+}
+
+/// Rounds of the binomial 1-2-1 along x and y: 3 make 7 × 7 traces.
+const ROUNDS: usize = 3;
+
+/// Weight of the dip known so far, so that an extremum without links has one.
+const PRIOR: f32 = 0.02;
+
+/// Refines `dips` along the surfaces. A link counts by `w = 1/(1 + (misfit/scale)²)²`; the convolution steps only over links
+/// with a misfit below two scales.
+pub(super) fn along_surfaces(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], scale: f32) -> Vec<[f32; 2]> {
+    let count = extrema.len();
+    let misfit =
+        |v: usize, next: usize, axis: usize| extrema.z[next] - extrema.z[v] - 0.5 * (dips[v][axis] + dips[next][axis]);
+    // Sums and weights of the jumps at each extremum: [Σ w·jump_x, Σ w, Σ w·jump_y, Σ w].
+    let mut sums: Vec<[f32; 4]> = (0..count)
+        .into_par_iter()
+        .with_min_len(GRAIN)
+        .map(|v| {
+            let mut sum = [PRIOR * dips[v][0], PRIOR, PRIOR * dips[v][1], PRIOR];
+            for (direction, axis, forward) in DIRECTIONS {
+                let other = links.to[direction][v];
+                if other == NONE {
+                    continue;
+                }
+                let (low, high) = if forward { (v, other as usize) } else { (other as usize, v) };
+                let off = misfit(low, high, axis) / scale;
+                let weight = 1.0 / (1.0 + off * off).powi(2);
+                sum[2 * axis] += weight * (extrema.z[high] - extrema.z[low]);
+                sum[2 * axis + 1] += weight;
+            }
+            sum
+        })
+        .collect();
+    let mut smoothed = sums.clone();
+    for round in 0..2 * ROUNDS {
+        let axis = round % 2;
+        smoothed.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(v, out)| {
+            let mut sum = sums[v].map(|s| 2.0 * s);
+            for (direction, _, forward) in DIRECTIONS.into_iter().filter(|&(_, of, _)| of == axis) {
+                let other = links.to[direction][v];
+                if other == NONE {
+                    continue;
+                }
+                let (low, high) = if forward { (v, other as usize) } else { (other as usize, v) };
+                if misfit(low, high, axis).abs() < 2.0 * scale {
+                    for (s, there) in sum.iter_mut().zip(sums[other as usize]) {
+                        *s += there;
+                    }
+                }
+            }
+            *out = sum.map(|s| 0.25 * s);
+        });
+        std::mem::swap(&mut sums, &mut smoothed);
+    }
+    sums.into_par_iter().with_min_len(GRAIN).map(|[x, wx, y, wy]| [x / wx, y / wy]).collect()
+}
+
+/// Extrema handled at a time by one thread.
+const GRAIN: usize = 1 << 14;
+
+/// Index into [`Links::to`], its axis, and whether it leads to the next trace.
+const DIRECTIONS: [(usize, usize, bool); 4] =
+    [(NEXT_X, 0, true), (BACK_X, 0, false), (NEXT_Y, 1, true), (BACK_Y, 1, false)];

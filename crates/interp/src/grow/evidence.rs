@@ -1,0 +1,189 @@
+//! How much each link speaks for a break: misfit to the dip and change of amplitude, in units of what noise alone does.
+//!
+//! Noise moves an extremum of height a by an amount in proportion to 1/a. For a link with misfit r between extrema of heights a and b
+//!
+//! `m = r/√(c²·(1/a² + 1/b²) + f²)`, `h = (b − a)/√(s² + g²·max(a, b)²)`, `E = ½·m̄²/var m̄ + ½·h̄²/var h̄`
+//!
+//! where c and s are the volume's own, medians over its links in classes of dip, and the bar is a binomial over the surface *across*
+//! the link: along a fault misfits keep their sign and add up, noise does not. Variances are measured (by medians) too, so that on a
+//! continuous reflector E is about 1 at any signal-to-noise ratio. f and g keep clean data from being judged by their last digit.
+//! A strong extremum without a partner has the greatest E. E is kept in quarters, at most [`MOST`].
+
+use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
+use crate::extrema::Extrema;
+use rayon::prelude::*;
+
+/// Greatest E, in quarters.
+pub(super) const MOST: u8 = 100;
+
+/// What interpolation and curvature may do to a misfit, samples.
+const LEAST_MISFIT: f32 = 0.08;
+
+/// Relative change of amplitude from trace to trace that is no sign of a break.
+const LEAST_CHANGE: f32 = 0.05;
+
+/// Median of the absolute value of a normal variable over its standard deviation.
+const MEDIAN_OVER_SIGMA: f32 = 0.6745;
+
+/// Links of which one is looked at to measure the noise.
+const SPARSE: usize = 7;
+
+/// Width of the classes of dip that noise is measured in, samples a trace.
+const DIP_CLASS: f32 = 0.25;
+
+/// Classes of dip; the last holds all that is steeper.
+const DIP_CLASSES: usize = 13;
+
+/// Links that a class needs to be measured; one with fewer takes over from the next less steep one.
+const LEAST_LINKS: usize = 64;
+
+/// What noise does to the links of one kind of extremum.
+#[derive(Debug, Clone)]
+pub(super) struct Noise {
+    /// For each class of dip: c (amplitude × samples) and s (amplitude).
+    classes: [[f32; 2]; DIP_CLASSES],
+}
+
+impl Noise {
+    /// Measures the noise on every seventh extremum's links, in classes of dip: noise that is alike on neighbouring traces
+    /// at one depth moves the extrema of a flat reflector together, those of a dipping one apart.
+    pub(super) fn measure(extrema: &Extrema, links: &Links, dips: &[[f32; 2]]) -> Self {
+        let mut seen: [[Vec<f32>; 2]; DIP_CLASSES] = Default::default();
+        for v in (0..extrema.len()).step_by(SPARSE) {
+            for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
+                let next = links.to[direction][v];
+                if next == NONE {
+                    continue;
+                }
+                let next = next as usize;
+                let (a, b) = (extrema.amplitude[v], extrema.amplitude[next]);
+                let [places, changes] = &mut seen[class(dips[v][axis])];
+                places.push(misfit(extrema, dips, v, next, axis).abs() / uncertainty(a, b));
+                changes.push((a - b).abs());
+            }
+        }
+        let mut classes = [[0.0; 2]; DIP_CLASSES];
+        for at in 0..DIP_CLASSES {
+            classes[at] = if seen[at][0].len() < LEAST_LINKS && at > 0 {
+                classes[at - 1]
+            } else {
+                seen[at].each_mut().map(sigma)
+            };
+        }
+        Self { classes }
+    }
+
+    /// s where reflectors are flat.
+    fn amplitude(&self) -> f32 {
+        self.classes[0][1]
+    }
+}
+
+/// Class of a dip.
+fn class(dip: f32) -> usize {
+    ((dip.abs() / DIP_CLASS) as usize).min(DIP_CLASSES - 1)
+}
+
+/// Standard deviation by the median of absolute values.
+fn sigma(values: &mut Vec<f32>) -> f32 {
+    if values.is_empty() {
+        return 0.0;
+    }
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f32::total_cmp).1 / MEDIAN_OVER_SIGMA
+}
+
+/// (1/a² + 1/b²)^½.
+fn uncertainty(a: f32, b: f32) -> f32 {
+    let (a, b) = (1.0 / a, 1.0 / b);
+    (a * a + b * b).sqrt()
+}
+
+/// Misfit of a link to the dips at its ends, samples.
+pub(super) fn misfit(extrema: &Extrema, dips: &[[f32; 2]], v: usize, next: usize, axis: usize) -> f32 {
+    extrema.z[next] - extrema.z[v] - 0.5 * (dips[v][axis] + dips[next][axis])
+}
+
+/// Rounds of the binomial 1-2-1 across the link: 8 make a standard deviation of two traces.
+const ROUNDS: usize = 8;
+
+/// Least variance of what was smoothed, so that clean data are not judged by their last digit.
+const LEAST_VARIANCE: f32 = 0.1;
+
+/// Greatest square that misfit or change of amplitude count with.
+const MOST_SQUARE: f32 = 25.0;
+
+/// E of the links to x + 1 and y + 1 of each extremum, in quarters; for a strong extremum without one [`MOST`], for a weak
+/// one 0.
+pub(super) fn evidence(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], noise: &Noise) -> Vec<[u8; 2]> {
+    let mut found = vec![[0u8; 2]; extrema.len()];
+    for axis in 0..2 {
+        let signed = smoothed(signed_breaks(extrema, links, dips, noise, axis), links, 1 - axis);
+        let variance = [0, 1].map(|which| {
+            let mut sample: Vec<f32> =
+                signed.iter().step_by(SPARSE).filter(|s| s[2] > 0.0).map(|s| (s[which] / s[2]).abs()).collect();
+            sigma(&mut sample).powi(2).max(LEAST_VARIANCE)
+        });
+        found.par_iter_mut().with_min_len(1 << 14).enumerate().for_each(|(v, found)| {
+            let [misfit, change, weight] = signed[v];
+            found[axis] = if links.to[2 * axis][v] == NONE {
+                if is_strong(extrema.amplitude[v], noise) { MOST } else { 0 }
+            } else {
+                let square = |sum: f32, variance: f32| ((sum / weight).powi(2) / variance).min(MOST_SQUARE);
+                (4.0 * 0.5 * (square(misfit, variance[0]) + square(change, variance[1])) + 0.5) as u8
+            };
+        });
+    }
+    found
+}
+
+/// Misfit and change of amplitude of each link along `axis` in units of the noise, and a weight: 1 where there is a link.
+fn signed_breaks(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], noise: &Noise, axis: usize) -> Vec<[f32; 3]> {
+    let next = &links.to[2 * axis];
+    (0..extrema.len())
+        .into_par_iter()
+        .with_min_len(1 << 14)
+        .map(|v| {
+            if next[v] == NONE {
+                return [0.0; 3];
+            }
+            let next = next[v] as usize;
+            let (a, b) = (extrema.amplitude[v], extrema.amplitude[next]);
+            let [place, change] = noise.classes[class(dips[v][axis])];
+            let place = (place * uncertainty(a, b)).hypot(LEAST_MISFIT);
+            let off = misfit(extrema, dips, v, next, axis) / place;
+            [off.clamp(-9.0, 9.0), ((b - a) / change.hypot(LEAST_CHANGE * a.max(b))).clamp(-9.0, 9.0), 1.0]
+        })
+        .collect()
+}
+
+/// A binomial along `axis` over the surfaces.
+fn smoothed(mut values: Vec<[f32; 3]>, links: &Links, axis: usize) -> Vec<[f32; 3]> {
+    let (next, back) = (&links.to[2 * axis], &links.to[2 * axis + 1]);
+    let mut other = values.clone();
+    for _ in 0..ROUNDS {
+        other.par_iter_mut().with_min_len(1 << 14).enumerate().for_each(|(v, out)| {
+            let mut sum = values[v].map(|s| 0.5 * s);
+            for there in [next[v], back[v]] {
+                if there != NONE {
+                    for (s, value) in sum.iter_mut().zip(values[there as usize]) {
+                        *s += 0.25 * value;
+                    }
+                }
+            }
+            *out = sum;
+        });
+        std::mem::swap(&mut values, &mut other);
+    }
+    values
+}
+
+/// Whether an extremum is too high to be noise.
+pub(super) fn is_strong(amplitude: f32, noise: &Noise) -> bool {
+    amplitude > 5.0 * noise.amplitude()
+}
+
+/// Strong extrema without a partner behind them, along x and y.
+pub(super) fn begins(extrema: &Extrema, links: &Links, v: usize, noise: &Noise) -> [bool; 2] {
+    [BACK_X, BACK_Y].map(|back| links.to[back][v] == NONE && is_strong(extrema.amplitude[v], noise))
+}

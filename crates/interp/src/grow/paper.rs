@@ -1,0 +1,206 @@
+//! The paper's growing (P-horiz 4): fronts from every extremum in turn.
+//!
+//! A seed's surface grows border by border. The next border is every extremum that was not visited yet, lies on one of the
+//! eight traces around a point of the current border and touches it: its sample is at most one away. A border falls into the pieces that touch
+//! one another, and a piece narrower than `min_front_width` ends there; its points stay visited. "Voxels are
+//! visited only once to avoid intersecting and overlapping surfaces", so what is grown depends on the order of seeds: here that of memory,
+//! by x, then y, then z. The borders are triangulated with those before them: every cell of four neighbouring traces whose corners belong to
+//! the two borders and touch makes its triangles.
+//!
+//! The paper leaves open what a first border counts (here: the seed and its ring together) and whether touching is
+//! judged by samples or by refined depths (here: by refined depths, 1.5 samples, so that a reflector that rises by one sample and a
+//! little more is not torn). Steeper reflectors fall apart, as they do in the paper.
+
+use super::links::NONE;
+use crate::extrema::Extrema;
+use crate::surfaces::{Surface, Surfaces, Vertex};
+use survey::{Cancelled, Progress};
+
+/// Greatest difference in depth of extrema that touch, samples.
+const TOUCH: f32 = 1.5;
+
+/// What is known of every extremum.
+struct Ground<'e> {
+    extrema: &'e Extrema,
+    /// Trace of each extremum.
+    trace: Vec<u32>,
+    /// Border it was reached in, counted over all surfaces; 0: not visited.
+    border: Vec<u32>,
+}
+
+impl Ground<'_> {
+    /// Calls `found` for every extremum of the traces around `v` that touches it.
+    fn around(&self, v: u32, mut found: impl FnMut(u32)) {
+        let [nx, ny, _] = self.extrema.size;
+        let trace = self.trace[v as usize] as usize;
+        let (x, y) = (trace / ny, trace % ny);
+        let z = self.extrema.z[v as usize];
+        for nearby_x in x.saturating_sub(1)..(x + 2).min(nx) {
+            for nearby_y in y.saturating_sub(1)..(y + 2).min(ny) {
+                if (nearby_x, nearby_y) == (x, y) {
+                    continue;
+                }
+                if let Some(other) = self.touching(nearby_x, nearby_y, z) {
+                    found(other);
+                }
+            }
+        }
+    }
+
+    /// The extremum of the trace at (x, y) closest to depth z, if it touches.
+    fn touching(&self, x: usize, y: usize, z: f32) -> Option<u32> {
+        let range = self.extrema.on_trace(x, y);
+        let depths = &self.extrema.z[range.clone()];
+        let below = depths.partition_point(|&d| d < z);
+        [below.checked_sub(1), Some(below)]
+            .into_iter()
+            .flatten()
+            .filter(|&at| at < depths.len() && (depths[at] - z).abs() <= TOUCH)
+            .min_by(|&a, &b| (depths[a] - z).abs().total_cmp(&(depths[b] - z).abs()))
+            .map(|at| (range.start + at) as u32)
+    }
+}
+
+/// Grows the surfaces of one kind.
+///
+/// # Errors
+/// [`Cancelled`] by the user.
+pub(super) fn grow(extrema: &Extrema, min_front_width: usize, progress: &Progress) -> Result<Surfaces, Cancelled> {
+    let [nx, ny, _] = extrema.size;
+    let mut ground = Ground { extrema, trace: Vec::with_capacity(extrema.len()), border: vec![0; extrema.len()] };
+    for x in 0..nx {
+        for y in 0..ny {
+            ground.trace.extend(extrema.on_trace(x, y).map(|_| (x * ny + y) as u32));
+        }
+    }
+    let mut found = Surfaces { size: extrema.size, ..Surfaces::default() };
+    let mut borders = 0;
+    for x in 0..nx {
+        progress.check()?;
+        for seed in extrema.on_inline(x) {
+            if ground.border[seed] == 0 {
+                grow_from(&mut ground, seed as u32, min_front_width, &mut borders, &mut found);
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Grows the surface of one seed and adds it, if it has triangles.
+fn grow_from(ground: &mut Ground, seed: u32, width: usize, borders: &mut u32, found: &mut Surfaces) {
+    *borders += 1;
+    ground.border[seed as usize] = *borders;
+    let mut members = vec![seed];
+    let mut current = vec![seed];
+    let mut is_seed = true;
+    while !current.is_empty() {
+        *borders += 1;
+        let mut next = Vec::new();
+        for &v in &current {
+            let mut reached = Vec::new();
+            ground.around(v, |other| reached.push(other));
+            for other in reached {
+                if ground.border[other as usize] == 0 {
+                    ground.border[other as usize] = *borders;
+                    next.push(other);
+                }
+            }
+        }
+        let pieces = pieces(ground, &next, *borders);
+        current = pieces.into_iter().filter(|piece| piece.len() + usize::from(is_seed) >= width).flatten().collect();
+        current.sort_unstable();
+        members.extend_from_slice(&current);
+        is_seed = false;
+    }
+    if members.len() >= 3 {
+        triangulate(ground, members, found);
+    }
+}
+
+/// The pieces of a border: points that touch along the border.
+fn pieces(ground: &Ground, border: &[u32], number: u32) -> Vec<Vec<u32>> {
+    let mut order: Vec<u32> = border.to_vec();
+    order.sort_unstable();
+    let mut taken = vec![false; order.len()];
+    let mut found = Vec::new();
+    for first in 0..order.len() {
+        if taken[first] {
+            continue;
+        }
+        taken[first] = true;
+        let mut piece = vec![order[first]];
+        let mut reached = 0;
+        while reached < piece.len() {
+            ground.around(piece[reached], |other| {
+                if ground.border[other as usize] == number
+                    && let Ok(at) = order.binary_search(&other)
+                    && !taken[at]
+                {
+                    taken[at] = true;
+                    piece.push(other);
+                }
+            });
+            reached += 1;
+        }
+        found.push(piece);
+    }
+    found
+}
+
+/// Triangulates the cells between the members of a surface. A cell's corners belong to at most three borders that follow each
+/// other; two borders of one surface meet only where one grew from the other.
+fn triangulate(ground: &Ground, mut members: Vec<u32>, found: &mut Surfaces) {
+    let [nx, ny, _] = ground.extrema.size;
+    members.sort_unstable();
+    let place = |v: u32| members.binary_search(&v).map_or(NONE, |at| at as u32);
+    let mut triangles = Vec::new();
+    let mut used = vec![false; members.len()];
+    for &a in &members {
+        let trace = ground.trace[a as usize] as usize;
+        let (x, y) = (trace / ny, trace % ny);
+        if x + 1 >= nx || y + 1 >= ny {
+            continue;
+        }
+        let z = ground.extrema.z[a as usize];
+        let corner = |x: usize, y: usize, z: f32| {
+            ground
+                .touching(x, y, z)
+                .filter(|&v| place(v) != NONE && ground.border[v as usize].abs_diff(ground.border[a as usize]) <= 2)
+        };
+        let (b, c) = (corner(x + 1, y, z), corner(x, y + 1, z));
+        let d = b
+            .and_then(|b| corner(x + 1, y + 1, ground.extrema.z[b as usize]))
+            .or_else(|| c.and_then(|c| corner(x + 1, y + 1, ground.extrema.z[c as usize])));
+        let mut add = |corners: [u32; 3]| {
+            let corners = corners.map(place);
+            corners.iter().for_each(|&at| used[at as usize] = true);
+            triangles.push(corners);
+        };
+        match (b, c, d) {
+            (Some(b), Some(c), Some(d)) => {
+                add([a, b, c]);
+                add([b, d, c]);
+            }
+            (Some(b), Some(c), None) => add([a, b, c]),
+            (Some(b), None, Some(d)) => add([a, b, d]),
+            (None, Some(c), Some(d)) => add([a, d, c]),
+            _ => {}
+        }
+    }
+    if triangles.is_empty() {
+        return;
+    }
+    let (first_vertex, first_triangle) = (found.vertices.len() as u32, found.triangles.len() as u32);
+    let mut renumbered = vec![NONE; members.len()];
+    for (at, &v) in members.iter().enumerate().filter(|&(at, _)| used[at]) {
+        renumbered[at] = found.vertices.len() as u32;
+        let trace = ground.trace[v as usize] as usize;
+        found.vertices.push(Vertex { x: (trace / ny) as u16, y: (trace % ny) as u16, z: ground.extrema.z[v as usize] });
+    }
+    found.triangles.extend(triangles.iter().map(|corners| corners.map(|at| renumbered[at as usize])));
+    found.surfaces.push(Surface {
+        extremum: ground.extrema.kind,
+        vertices: first_vertex..found.vertices.len() as u32,
+        triangles: first_triangle..found.triangles.len() as u32,
+    });
+}
