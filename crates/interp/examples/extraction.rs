@@ -62,12 +62,17 @@ impl Case {
     }
 }
 
-/// Precision over the surfaces that lie on reflectors with at least half of their vertices. (A surface along a side lobe that
-/// touches a reflector here and there is nobody's.)
-fn precision(evaluation: &Evaluation, reflector: Option<usize>) -> f64 {
-    let own = || evaluation.surfaces.iter().filter(|s| s.majority == reflector && 2 * s.on_any >= s.vertices);
-    let vertices: usize = own().map(|s| s.vertices).sum();
-    own().map(|s| s.on_majority).sum::<usize>() as f64 / vertices.max(1) as f64
+/// Precision and purity over the surfaces that lie on reflectors with at least half of their vertices. (A surface along a side
+/// lobe that touches a reflector here and there is nobody's.)
+fn quality(evaluation: &Evaluation, reflector: Option<usize>) -> [f64; 2] {
+    let own = || {
+        let all = evaluation.surfaces.iter().filter(|s| 2 * s.on_any >= s.vertices && s.majority.is_some());
+        all.filter(|s| reflector.is_none() || s.majority == reflector)
+    };
+    let vertices = own().map(|s| s.vertices).sum::<usize>().max(1) as f64;
+    let right = own().map(|s| s.on_majority).sum::<usize>() as f64;
+    let pure: f64 = own().map(|s| s.purity() * s.vertices as f64).sum();
+    [right / vertices, pure / vertices]
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -83,7 +88,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("that thins out interferes with it, and no extremum lies within a sample of it.\n\n## Ours\n");
     println!(
-        "| SNR | seed | Alpha | Bravo | Unconformity | Charlie | Delta | all reflectors: purity | surfaces ≥ 500 triangles | s |"
+        "| SNR | seed | Alpha | Bravo | Unconformity | Charlie | Delta | all reflectors | surfaces ≥ 500 triangles | s |"
     );
     println!("|---|---|---|---|---|---|---|---|---|---|");
     for snr in RATIOS {
@@ -93,9 +98,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     println!("\n## What each step gains\n\nSNR 3, seed 1.\n");
-    println!(
-        "| | Alpha | Bravo | Unconformity | Charlie | Delta | all reflectors: purity | surfaces ≥ 500 triangles | s |"
-    );
+    println!("| | Alpha | Bravo | Unconformity | Charlie | Delta | all reflectors | surfaces ≥ 500 triangles | s |");
     println!("|---|---|---|---|---|---|---|---|---|");
     let case = Case::new(side, 3.0, 1)?;
     let ours = GrowSettings::default();
@@ -119,10 +122,11 @@ fn row(case: &Case, name: &str, settings: &GrowSettings) -> Result<(), Box<dyn E
     print!("| {name} ");
     for (h, score) in evaluation.horizons.iter().enumerate() {
         let reflector = case.index.reflector_index(case.survey.truth.reflector_of(h));
-        let precision = precision(&evaluation, reflector);
-        print!("| {:.3} ({:.3}) / {precision:.3} / {:.3} ", score.coverage(), bounds[h], score.purity);
+        let [precision, purity] = quality(&evaluation, reflector);
+        print!("| {:.3} ({:.3}) / {precision:.3} / {purity:.3} ", score.coverage(), bounds[h]);
     }
     let large = surfaces.surfaces.iter().filter(|s| s.triangles.len() >= 500).count();
-    println!("| {:.3} | {large} | {seconds:.1} |", evaluation.all.purity);
+    let [precision, purity] = quality(&evaluation, None);
+    println!("| {precision:.3} / {purity:.3} | {large} | {seconds:.1} |");
     Ok(())
 }
