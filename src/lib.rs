@@ -4,6 +4,7 @@
 //! whoever asks for it (command line, window, script), so that each can be undone, also by another process later.
 //! What is computed from a project is cached beside it, keyed by what it was computed from.
 
+pub mod app;
 pub mod bench;
 pub mod cli;
 pub mod command;

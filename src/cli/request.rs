@@ -49,6 +49,8 @@ pub(super) enum Request {
     Parameterize { project: PathBuf, size: Option<[usize; 3]> },
     /// Draw a picture.
     Render(RenderRequest),
+    /// Open the window.
+    Window { project: Option<PathBuf> },
     /// Draw all patterns.
     Patterns { out: PathBuf, project: Option<PathBuf> },
     /// Measure stages.
@@ -114,6 +116,7 @@ impl TryFrom<Action> for Request {
                 segy: super::segy::segy_options(&segy)?,
                 reading: interpretation::import_options(reading)?,
             },
+            Action::View { project } => Self::Window { project },
             Action::Import(typed) => {
                 Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
             }
@@ -195,6 +198,7 @@ fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
         frequency,
         opacity: typed.opacity,
         k: typed.k.as_deref().map(k_definition).transpose()?,
+        style: None,
     };
     if change == (SetLayer { layer: change.layer.clone(), ..SetLayer::default() }) {
         return Err("layer set: nothing to change; give --name, --pattern, --colour or another option".to_owned());

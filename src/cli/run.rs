@@ -8,7 +8,7 @@ use crate::command::{AddScene, Command, ImportVolume, SetRaw};
 use crate::error::Noun;
 use crate::pipeline::Stage;
 use crate::project::Project;
-use crate::{bench, data, demo, derived, library, picture, pipeline, scene, style, synth};
+use crate::{app, bench, data, demo, derived, library, picture, pipeline, scene, style, synth};
 use anyhow::Context;
 use render::Scene;
 use std::path::Path;
@@ -34,8 +34,14 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
 
 /// Does it.
 pub(super) fn run(request: Request) -> Result<Report, Failure> {
+    if let Request::Window { project } = request {
+        // The window shows progress itself, and Ctrl-C is to end it at once.
+        app::run(project)?;
+        return Ok(Report::default());
+    }
     let (terminal, progress) = Terminal::start();
     let mut report = match request {
+        Request::Window { .. } => Report::default(),
         Request::Demo { out } => told(demo::run(&out, &progress)?),
         Request::Synth { out, settings } => told(synth::write(&out, &settings, &progress)?),
         Request::Info { path, segy, reading } => info::describe(&path, &segy, &reading, &progress)?,

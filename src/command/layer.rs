@@ -37,6 +37,9 @@ pub struct SetLayer {
     /// What k means inside the layer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k: Option<KDefinition>,
+    /// All of its style at once, before anything else is changed: so that ink and frequency can be taken away, too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub style: Option<LayerStyle>,
 }
 
 /// Takes a layer's style away: it gets the default one again.
@@ -72,6 +75,9 @@ impl SetLayer {
     }
 
     fn change(&self, style: &mut LayerStyle, library: &ttf::TextureLibrary) -> Result<(), ProjectError> {
+        if let Some(whole) = &self.style {
+            *style = LayerStyle { layer: style.layer.clone(), ..whole.clone() };
+        }
         if let Some(pattern) = &self.pattern {
             let index = library.index_of(pattern, &format!("layer `{}`", style.layer))?;
             let textured = LayerStyle::textured(&style.layer, library.pattern(index).colour, pattern);

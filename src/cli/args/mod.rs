@@ -107,6 +107,12 @@ pub(super) enum Action {
         after_help = "Examples:\n  petroglyph render north.petro block.png\n  petroglyph render north.petro half.png --blend 0.5 --cut nearest,0.5,0.4 --azimuth 30 --size 2400x1800 --dpi 300"
     )]
     Render(RenderArgs),
+    /// Open the window: the whole work, from volume to picture
+    #[command(after_help = "Examples:\n  petroglyph view\n  petroglyph view north.petro")]
+    View {
+        /// Project folder; without one the start page opens
+        project: Option<PathBuf>,
+    },
     /// Draw a sheet of every pattern with its name
     #[command(after_help = "Example:\n  petroglyph patterns patterns.png")]
     Patterns {

@@ -1,0 +1,39 @@
+//! Why there is no window.
+
+/// A window could not be opened.
+#[derive(Debug, thiserror::Error)]
+pub enum WindowError {
+    /// No desktop to open it on.
+    #[error(
+        "there is no display to open a window on ({reason}); start it in a desktop session or set DISPLAY, or make pictures with `petroglyph render`"
+    )]
+    NoDisplay {
+        /// What the system said.
+        reason: String,
+    },
+    /// No graphics driver.
+    #[error(
+        "there is no graphics driver for the window ({reason}); install one (Mesa's software driver will do: mesa-vulkan-drivers), or make pictures with `petroglyph render --device cpu`"
+    )]
+    NoDriver {
+        /// What the system said.
+        reason: String,
+    },
+    /// Anything else.
+    #[error("the window could not be opened ({reason}); try again, or make pictures with `petroglyph render`")]
+    Failed {
+        /// What the system said.
+        reason: String,
+    },
+}
+
+impl From<eframe::Error> for WindowError {
+    fn from(error: eframe::Error) -> Self {
+        let reason = error.to_string();
+        match error {
+            eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => Self::NoDisplay { reason },
+            eframe::Error::Wgpu(_) => Self::NoDriver { reason },
+            eframe::Error::AppCreation(_) => Self::Failed { reason },
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Faces of the roaming box and of the cut-outs, to be dragged.
+//!
+//! A face moves along its axis by the share of the pointer's travel that runs along the axis' image: Δ = δ·a/|a|², a the pixels that one
+//! voxel along the axis takes at the handle. Faces stop at whole samples.
+
+use super::camera;
+use glam::{DVec2, DVec3};
+use render::visible::Solid;
+use render::{Scene, VoxelBox};
+use survey::SurveyGeometry;
+
+/// What a face belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Owner {
+    /// The roaming box.
+    Block,
+    /// A cut-out, by its place in the scene.
+    CutOut(usize),
+}
+
+/// One of the six faces of a box.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Face {
+    /// Whose.
+    pub owner: Owner,
+    /// 0 = across inlines (x), 1 = across crosslines (y), 2 = across depth (z).
+    pub axis: usize,
+    /// At the largest coordinate along the axis, else at the smallest.
+    pub at_max: bool,
+}
+
+/// A visible face and the point to take hold of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Handle {
+    /// The face.
+    pub face: Face,
+    /// Where, voxel.
+    pub voxel: DVec3,
+    /// Where, in the picture.
+    pub at: DVec2,
+    /// The image of one voxel along the axis.
+    pub along: DVec2,
+}
+
+/// Least length of a box along an axis, samples.
+const THINNEST: f64 = 2.0;
+
+fn boxes(scene: &Scene, geometry: &SurveyGeometry) -> Vec<(Owner, VoxelBox)> {
+    let cuts = scene.cut_outs.iter().enumerate().map(|(index, cut)| (Owner::CutOut(index), *cut));
+    std::iter::once((Owner::Block, scene.box_in(geometry))).chain(cuts).collect()
+}
+
+/// The faces that can be seen, each with a handle in its middle or, where that is cut away, in the middle of what is left of it.
+pub fn handles(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> Vec<Handle> {
+    let view = camera::view(scene, geometry, size);
+    let block = scene.box_in(geometry);
+    let solid = Solid::new(&block, &scene.cuts_in(geometry));
+    let mut found = Vec::new();
+    for (owner, bounds) in boxes(scene, geometry) {
+        let Some(bounds) = bounds.intersection(&block) else { continue };
+        for axis in 0..3 {
+            for at_max in [false, true] {
+                let outward = if at_max { 1.0 } else { -1.0 };
+                // A cut-out's walls are rock on the far side; where it reaches the block's own face there is no wall.
+                let plane = if at_max { bounds.max[axis] } else { bounds.min[axis] };
+                let (normal, is_open) = match owner {
+                    Owner::Block => (outward, false),
+                    Owner::CutOut(_) => (-outward, plane == if at_max { block.max[axis] } else { block.min[axis] }),
+                };
+                let towards = view.towards_camera(bounds.centre())[axis] * normal;
+                if is_open || towards <= 1e-9 {
+                    continue;
+                }
+                let Some(voxel) = place(&bounds, axis, plane, &solid, normal) else { continue };
+                let at = view.project(voxel);
+                let along = view.project(voxel + DVec3::AXES[axis]) - at;
+                found.push(Handle { face: Face { owner, axis, at_max }, voxel, at, along });
+            }
+        }
+    }
+    found
+}
+
+/// The point of the face nearest its middle that has rock behind it and air before it.
+fn place(bounds: &VoxelBox, axis: usize, plane: f64, solid: &Solid, normal: f64) -> Option<DVec3> {
+    const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
+    let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
+    let at = |share_u: f64, share_v: f64| {
+        let mut point = [0.0; 3];
+        point[axis] = plane;
+        for (axis, share) in [(u, share_u), (v, share_v)] {
+            point[axis] = bounds.min[axis] + share * (bounds.max[axis] - bounds.min[axis]);
+        }
+        DVec3::from_array(point)
+    };
+    let behind = DVec3::AXES[axis] * (-0.01 * normal);
+    let candidates = SHARES.into_iter().flat_map(|a| SHARES.map(|b| at(a, b)));
+    candidates.into_iter().find(|point| {
+        solid.contains((*point + behind).as_vec3()) && !solid.contains((*point - behind).as_vec3())
+    })
+}
+
+/// The scene with a handle pulled by `delta` points from where it was in `start`; the rest of the picture stays where it is.
+pub fn pull(start: &Scene, geometry: &SurveyGeometry, size: DVec2, handle: &Handle, delta: DVec2) -> Scene {
+    let length_sq = handle.along.length_squared();
+    if length_sq < 1e-9 {
+        return start.clone();
+    }
+    let moved = delta.dot(handle.along) / length_sq;
+    move_face(start, geometry, size, handle.face, moved)
+}
+
+/// The scene with a face moved by so many samples along its axis, as far as it can go.
+pub fn move_face(start: &Scene, geometry: &SurveyGeometry, size: DVec2, face: Face, moved: f64) -> Scene {
+    let mut scene = start.clone();
+    let Face { owner, axis, at_max } = face;
+    let block = start.box_in(geometry);
+    let (limits, mut bounds) = match owner {
+        Owner::Block => (VoxelBox::of_size(geometry.size()), block),
+        Owner::CutOut(index) => match start.cut_outs.get(index).and_then(|cut| cut.intersection(&block)) {
+            Some(cut) => (block, cut),
+            None => return scene,
+        },
+    };
+    let thinnest = THINNEST.min(bounds.max[axis] - bounds.min[axis]);
+    if at_max {
+        bounds.max[axis] = (bounds.max[axis] + moved).round().clamp(bounds.min[axis] + thinnest, limits.max[axis]);
+    } else {
+        bounds.min[axis] = (bounds.min[axis] + moved).round().clamp(limits.min[axis], bounds.max[axis] - thinnest);
+    }
+    match owner {
+        Owner::Block => {
+            let before = camera::view(start, geometry, size);
+            scene.roaming_box = Some(bounds);
+            scene.cut_outs.retain(|cut| cut.intersection(&bounds).is_some());
+            camera::hold(&before, &mut scene, geometry, size, block.centre());
+        }
+        Owner::CutOut(index) => scene.cut_outs[index] = bounds,
+    }
+    scene
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::VerticalUnit;
+
+    const SIZE: DVec2 = DVec2::new(800.0, 600.0);
+
+    fn scene() -> (Scene, SurveyGeometry) {
+        let geometry = SurveyGeometry::regular([61, 41, 51], 25.0, 8.0, VerticalUnit::Metres);
+        let mut scene = Scene::default();
+        let block = scene.box_in(&geometry);
+        let corner = scene.view(&geometry).nearest_corner(&block);
+        scene.cut_outs = vec![block.corner_cut(corner, [0.5, 0.5])];
+        (scene, geometry)
+    }
+
+    #[test]
+    fn three_faces_of_the_block_and_two_walls_of_a_corner_cut_are_seen() {
+        let (scene, geometry) = scene();
+        let found = handles(&scene, &geometry, SIZE);
+        let of_block = found.iter().filter(|handle| handle.face.owner == Owner::Block).count();
+        assert_eq!((of_block, found.len()), (3, 5), "{found:?}");
+    }
+
+    #[test]
+    fn a_handle_follows_the_pointer_to_the_next_sample() {
+        let (scene, geometry) = scene();
+        for handle in handles(&scene, &geometry, SIZE) {
+            let inwards = if handle.face.at_max { -6.0 } else { 6.0 };
+            let pulled = pull(&scene, &geometry, SIZE, &handle, handle.along * inwards);
+            let coordinate = |scene: &Scene| {
+                let bounds = match handle.face.owner {
+                    Owner::Block => scene.box_in(&geometry),
+                    Owner::CutOut(index) => scene.cut_outs[index],
+                };
+                if handle.face.at_max { bounds.max[handle.face.axis] } else { bounds.min[handle.face.axis] }
+            };
+            assert_eq!(coordinate(&pulled) - coordinate(&scene), inwards, "{handle:?}");
+            pulled.validate(&geometry).unwrap();
+        }
+    }
+
+    #[test]
+    fn no_pull_makes_a_scene_without_a_picture() {
+        let (scene, geometry) = scene();
+        for handle in handles(&scene, &geometry, SIZE) {
+            for far in [-1e4, -20.0, 20.0, 1e4] {
+                let pulled = pull(&scene, &geometry, SIZE, &handle, handle.along * far);
+                pulled.validate(&geometry).unwrap();
+            }
+        }
+    }
+
+    #[test]
+    fn the_rest_of_the_block_stays_while_a_face_is_pulled() {
+        let (scene, geometry) = scene();
+        let handle = handles(&scene, &geometry, SIZE)[0];
+        let inwards = if handle.face.at_max { -9.0 } else { 9.0 };
+        let pulled = pull(&scene, &geometry, SIZE, &handle, handle.along * inwards);
+        let point = DVec3::new(30.0, 20.0, 25.0);
+        let before = camera::view(&scene, &geometry, SIZE).project(point);
+        let after = camera::view(&pulled, &geometry, SIZE).project(point);
+        assert!((before - after).length() < 0.5, "{before} {after}");
+    }
+}

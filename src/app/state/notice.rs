@@ -1,0 +1,61 @@
+//! What went wrong, kept where it happened until the user has seen it.
+
+use crate::error::ProjectError;
+
+/// Where in the window something belongs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Place {
+    /// The start page.
+    Start,
+    /// The block view.
+    Block,
+    /// The sections.
+    Sections,
+    /// The map.
+    Map,
+    /// The stratigraphic column and its styles.
+    Layers,
+    /// Volumes, horizons, faults.
+    Data,
+    /// Picking.
+    Picks,
+    /// Named scenes, view settings and export.
+    Scenes,
+    /// The dialogue in front.
+    Dialogue,
+}
+
+/// One message.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Notice {
+    /// Where it is shown.
+    pub place: Place,
+    /// Whether something failed, or is only worth knowing.
+    pub failed: bool,
+    /// What happened.
+    pub text: String,
+    /// What to do next.
+    pub hint: Option<String>,
+}
+
+impl Notice {
+    /// Something failed; causes are told once each.
+    pub fn failure(place: Place, error: &(dyn std::error::Error + 'static)) -> Self {
+        let mut text = error.to_string();
+        let hint = error.downcast_ref::<ProjectError>().and_then(ProjectError::hint).map(str::to_owned);
+        let mut cause = error.source();
+        while let Some(inner) = cause {
+            let said = inner.to_string();
+            if !text.contains(&said) {
+                text = format!("{text}: {said}");
+            }
+            cause = inner.source();
+        }
+        Self { place, failed: true, text, hint }
+    }
+
+    /// Something worth knowing.
+    pub fn note(place: Place, text: impl Into<String>) -> Self {
+        Self { place, failed: false, text: text.into(), hint: None }
+    }
+}

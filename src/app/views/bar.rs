@@ -1,0 +1,113 @@
+//! The line at the top: the project, undo and redo, what fills the middle, raw against illustrated.
+
+use crate::app::state::{Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Session, State};
+use eframe::egui::{Align, Button, Layout, RichText, Slider, Ui};
+use render::Scene;
+
+/// Shows the line.
+pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        menu(ui, state, session, actions);
+        ui.label(RichText::new(session.name()).strong().size(16.0)).on_hover_text(session.root.display().to_string());
+        ui.separator();
+        history(ui, session, actions);
+        ui.separator();
+        for (layout, name, hint) in [
+            (Arrangement::Block, "Block", "The block alone (1)"),
+            (Arrangement::Sections, "Sections", "The block and three sections through one point (2)"),
+            (Arrangement::Map, "Map", "A horizon as a map with contours (3)"),
+        ] {
+            if ui.selectable_label(session.view.layout == layout, name).on_hover_text(hint).clicked() {
+                actions.push(Action::Arrange(layout));
+            }
+        }
+        ui.separator();
+        comparison(ui, session, actions);
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if ui.button("?").on_hover_text("Shortcuts (?)").clicked() {
+                actions.push(Action::Ask(Box::new(Dialogue::Shortcuts)));
+            }
+            let form = ExportForm::new(session.root.with_extension("png").display().to_string());
+            let can = session.is_drawable();
+            let export = ui.add_enabled(can, Button::new("Export…")).on_hover_text("Draw to a file (Ctrl E)");
+            if export.clicked() {
+                actions.push(Action::Ask(Box::new(Dialogue::Export(form))));
+            }
+        });
+    });
+}
+
+fn menu(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
+    ui.menu_button("Project", |ui| {
+        let ask = |choice: Choice| Action::Ask(Box::new(Dialogue::Choose(choice)));
+        let has_frame = session.document.geometry.is_some();
+        for (name, action, can) in [
+            ("Open…", ask(Choice::Project), true),
+            ("New from SEG-Y…", ask(Choice::NewSurvey), true),
+            ("Add a volume…", ask(Choice::MoreSurvey), true),
+            ("Add a horizon…", ask(Choice::Horizon), has_frame),
+            ("Add a fault…", ask(Choice::Fault), has_frame),
+            ("Add a tile…", ask(Choice::Texture), true),
+            ("Close", Action::Close, true),
+        ] {
+            if ui.add_enabled(can, Button::new(name)).clicked() {
+                actions.push(action);
+                ui.close();
+            }
+        }
+        ui.separator();
+        let appearance = state.remembered.appearance;
+        for choice in [Appearance::System, Appearance::Light, Appearance::Dark] {
+            if ui.radio(appearance == choice, format!("{} appearance", choice.name())).clicked() {
+                actions.push(Action::Appear(choice));
+            }
+        }
+        ui.separator();
+        let scale = state.remembered.scale.unwrap_or(1.0);
+        for (name, factor) in [("Larger", 1.1), ("Smaller", 1.0 / 1.1)] {
+            if ui.button(name).clicked() {
+                actions.push(Action::Scale(scale * factor));
+            }
+        }
+    });
+}
+
+fn history(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    for (name, what, keys, action) in [
+        ("Undo", session.undoable(), "Ctrl Z", Action::Undo),
+        ("Redo", session.redoable(), "Ctrl Shift Z", Action::Redo),
+    ] {
+        let hint = what.map_or_else(String::new, |what| format!("{name}: {what} ({keys})"));
+        let button = ui.add_enabled(what.is_some(), Button::new(name)).on_hover_text(hint);
+        if button.clicked() {
+            actions.push(action);
+        }
+    }
+}
+
+fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let document = &session.document;
+    let both = !document.horizons.is_empty() && !document.volumes.is_empty();
+    ui.add_enabled_ui(both, |ui| {
+        for (compare, name, hint) in [
+            (Compare::Blend, "Blend", "One picture, blended from illustrated to raw"),
+            (Compare::SideBySide, "Side by side", "Illustrated and raw beside each other"),
+            (Compare::Wipe, "Wipe", "Illustrated over raw, with a line to drag"),
+        ] {
+            let label = ui.selectable_label(session.view.compare == compare, name).on_hover_text(hint);
+            if label.clicked() {
+                actions.push(Action::Compare(compare));
+            }
+        }
+        if session.view.compare == Compare::Blend {
+            let mut blend = session.view.scene.blend;
+            let name = ui.weak("illustrated … raw");
+            let slider = ui.add(Slider::new(&mut blend, 0.0..=1.0).fixed_decimals(2));
+            if slider.labelled_by(name.id).on_hover_text("0 is illustrated, 1 is raw").changed() {
+                actions.push(Action::Show(Box::new(Scene { blend, ..session.view.scene.clone() })));
+            }
+        }
+    })
+    .response
+    .on_disabled_hover_text("Needs a volume and horizons");
+}

@@ -1,0 +1,267 @@
+//! The block: pictures from the painter, turned and cut by hand.
+//!
+//! Two spaces: points of the window, and pixels of the picture (points × the display's scale). Cameras are changed in points: [`camera`]
+//! needs proportions only.
+
+use super::pointed::{self, Pointed};
+use crate::app::state::faces::{self, Handle};
+use crate::app::state::{Action, Compare, Session, State, camera};
+use crate::app::theme;
+use crate::app::work::{Drawing, Drawn, PictureWish, Rocks};
+use eframe::egui::{
+    Align2, Color32, ColorImage, CursorIcon, FontId, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+};
+use glam::DVec2;
+use render::{Background, Scene};
+
+/// How near the pointer must be to take hold of a handle or of the wipe's line, points.
+const REACH: f32 = 11.0;
+/// Natural logarithm of the zoom that a point of wheel travel makes.
+const WHEEL: f64 = 0.0022;
+
+/// What the hand holds.
+enum Grab {
+    Turn,
+    Shift,
+    Wipe,
+    Face { handle: Handle, start: Box<Scene>, from: Pos2, size: DVec2 },
+}
+
+/// The view.
+#[derive(Default)]
+pub struct BlockView {
+    panes: Vec<Option<TextureHandle>>,
+    wished: Option<(Vec<Scene>, u64, bool)>,
+    number: u64,
+    shown: u64,
+    is_final: bool,
+    grab: Option<Grab>,
+    device: String,
+}
+
+impl BlockView {
+    /// What draws the pictures.
+    pub fn device(&self) -> &str {
+        &self.device
+    }
+
+    /// Whether the picture shown is the last word on what is wished.
+    pub fn is_settled(&self) -> bool {
+        self.is_final && self.shown == self.number
+    }
+
+    /// Takes a picture in.
+    pub fn receive(&mut self, ctx: &eframe::egui::Context, drawn: Drawn) {
+        if drawn.number < self.shown || drawn.pane >= self.panes.len() {
+            return;
+        }
+        self.shown = drawn.number;
+        self.is_final = drawn.is_final;
+        self.device = drawn.device;
+        let size = [drawn.image.width() as usize, drawn.image.height() as usize];
+        let image = ColorImage::from_rgba_unmultiplied(size, &drawn.image);
+        match &mut self.panes[drawn.pane] {
+            Some(texture) => texture.set(image, TextureOptions::LINEAR),
+            none => *none = Some(ctx.load_texture(format!("block {}", drawn.pane), image, TextureOptions::LINEAR)),
+        }
+    }
+
+    /// Shows the block in all the room there is; answers what is under the cursor.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        rocks: Option<(&Rocks, u64)>,
+        drawing: &Drawing,
+        actions: &mut Vec<Action>,
+    ) -> Option<Pointed> {
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Block"));
+        let view = &session.view;
+        let rects: Vec<Rect> = match view.compare {
+            Compare::SideBySide => {
+                let (left, right) = rect.split_left_right_at_fraction(0.5);
+                vec![left, right]
+            }
+            Compare::Blend => vec![rect],
+            Compare::Wipe => vec![rect, rect],
+        };
+        let scale = ui.pixels_per_point();
+        let scenes: Vec<Scene> = rects
+            .iter()
+            .zip(State::blends(view))
+            .map(|(rect, blend)| {
+                let size_px = [rect.width(), rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
+                Scene { size_px, blend, background: Background::Transparent, ..view.scene.clone() }
+            })
+            .collect();
+        let pane = response.hover_pos().map_or(rects[0], |at| *rects.iter().find(|rect| rect.contains(at)).unwrap_or(&rects[0]));
+        let geometry = session.document.geometry.as_ref()?;
+        let size = dvec(pane.size());
+        let handles = if view.handles { faces::handles(&view.scene, geometry, size) } else { Vec::new() };
+        self.touch(ui, &response, session, pane, rect, &handles, actions);
+        if let Some((rocks, version)) = rocks {
+            self.wish(scenes, rocks, version, drawing);
+        }
+        self.paint(ui, session, &rects, rect);
+        if response.contains_pointer() || self.grab.is_some() {
+            self.paint_handles(ui, &handles, pane, response.hover_pos());
+        }
+        let pointed = response.hover_pos().filter(|_| self.grab.is_none()).and_then(|at| {
+            let loaded = rocks?.0.try_read().ok()?;
+            pointed::on_block(&loaded, &view.scene, size, dvec(at - pane.min))
+        });
+        if response.clicked()
+            && let Some(pointed) = &pointed
+        {
+            actions.push(Action::Slices(pointed.voxel.to_array()));
+        }
+        pointed
+    }
+
+    fn touch(
+        &mut self,
+        ui: &Ui,
+        response: &Response,
+        session: &Session,
+        pane: Rect,
+        whole: Rect,
+        handles: &[Handle],
+        actions: &mut Vec<Action>,
+    ) {
+        let Some(geometry) = session.document.geometry.as_ref() else { return };
+        let view = &session.view;
+        let size = dvec(pane.size());
+        let wipe_x = whole.left() + whole.width() * view.wipe;
+        let modifiers = ui.input(|input| input.modifiers);
+        if response.drag_started()
+            && let Some(at) = ui.input(|input| input.pointer.press_origin())
+        {
+            let handle = handles.iter().find(|handle| (screen(pane, handle.at) - at).length() < REACH);
+            self.grab = Some(match handle {
+                _ if view.compare == Compare::Wipe && (at.x - wipe_x).abs() < REACH => Grab::Wipe,
+                Some(handle) => {
+                    Grab::Face { handle: *handle, start: Box::new(view.scene.clone()), from: at, size }
+                }
+                None if modifiers.shift || !response.dragged_by(PointerButton::Primary) => Grab::Shift,
+                None => Grab::Turn,
+            });
+        }
+        let mut scene = view.scene.clone();
+        let delta = dvec(response.drag_delta());
+        if let (Some(grab), Some(at)) = (&self.grab, response.interact_pointer_pos()) {
+            match grab {
+                Grab::Turn => camera::orbit(&mut scene, geometry, size, delta),
+                Grab::Shift => camera::pan(&mut scene, size, delta),
+                Grab::Wipe => actions.push(Action::Wipe((at.x - whole.left()) / whole.width())),
+                Grab::Face { handle, start, from, size } => {
+                    scene = faces::pull(start, geometry, *size, handle, dvec(at - *from));
+                }
+            }
+        }
+        if response.drag_stopped() || !response.dragged() {
+            self.grab = None;
+        }
+        if let Some(at) = response.hover_pos() {
+            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let factor = (f64::from(scroll) * WHEEL).exp() * f64::from(pinch);
+            if (factor - 1.0).abs() > 1e-6 {
+                camera::zoom_at(&mut scene, size, dvec(at - pane.min), factor);
+            }
+            let is_near = |handle: &&Handle| (screen(pane, handle.at) - at).length() < REACH;
+            let on_wipe = view.compare == Compare::Wipe && (at.x - wipe_x).abs() < REACH;
+            if on_wipe {
+                ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);
+            } else if handles.iter().any(|handle| is_near(&handle)) {
+                ui.ctx().set_cursor_icon(CursorIcon::Grab);
+            }
+        }
+        if response.double_clicked() && modifiers == Modifiers::NONE {
+            actions.push(Action::Stand(crate::app::state::StandardView::Block));
+        }
+        if scene != view.scene {
+            actions.push(Action::Show(Box::new(scene)));
+        }
+    }
+
+    /// Asks for other pictures when something that shows has changed.
+    fn wish(&mut self, scenes: Vec<Scene>, rocks: &Rocks, version: u64, drawing: &Drawing) {
+        let is_moving = self.grab.is_some();
+        let wished = (scenes, version, is_moving);
+        if self.wished.as_ref() == Some(&wished) {
+            return;
+        }
+        self.panes.resize_with(wished.0.len(), || None);
+        self.number += 1;
+        drawing.draw(PictureWish { number: self.number, scenes: wished.0.clone(), rocks: rocks.clone(), is_moving });
+        self.wished = Some(wished);
+    }
+
+    fn paint(&self, ui: &Ui, session: &Session, rects: &[Rect], whole: Rect) {
+        let painter = ui.painter_at(whole);
+        painter.rect_filled(whole, 0.0, paper(ui));
+        let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        let view = &session.view;
+        let wipe_x = whole.left() + whole.width() * view.wipe;
+        for (index, (rect, texture)) in rects.iter().zip(&self.panes).enumerate() {
+            let Some(texture) = texture else { continue };
+            let clip = match (view.compare, index) {
+                (Compare::Wipe, 0) => Rect::from_min_max(rect.min, pos2(wipe_x, rect.max.y)),
+                (Compare::Wipe, _) => Rect::from_min_max(pos2(wipe_x, rect.min.y), rect.max),
+                _ => *rect,
+            };
+            ui.painter_at(clip).image(texture.id(), *rect, uv, Color32::WHITE);
+        }
+        let accent = theme::accent(ui.visuals());
+        let rule = match view.compare {
+            Compare::Blend => None,
+            Compare::SideBySide => Some((whole.center().x, Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color))),
+            Compare::Wipe => Some((wipe_x, Stroke::new(2.0, accent))),
+        };
+        if let Some((x, stroke)) = rule {
+            painter.vline(x, whole.y_range(), stroke);
+            if view.compare == Compare::Wipe {
+                painter.circle_filled(pos2(x, whole.center().y), 8.0, accent);
+            }
+            let font = FontId::proportional(13.0);
+            let colour = ui.visuals().text_color();
+            let top = whole.top() + 10.0;
+            painter.text(pos2(x - 12.0, top), Align2::RIGHT_TOP, "illustrated", font.clone(), colour);
+            painter.text(pos2(x + 12.0, top), Align2::LEFT_TOP, "raw", font, colour);
+        }
+    }
+
+    fn paint_handles(&self, ui: &Ui, handles: &[Handle], pane: Rect, pointer: Option<Pos2>) {
+        let accent = theme::accent(ui.visuals());
+        let held = match &self.grab {
+            Some(Grab::Face { handle, .. }) => Some(handle.face),
+            Some(_) => return,
+            None => None,
+        };
+        let painter = ui.painter_at(pane);
+        for handle in handles {
+            let at = screen(pane, handle.at);
+            let is_hot = held == Some(handle.face)
+                || held.is_none() && pointer.is_some_and(|pointer| (pointer - at).length() < REACH);
+            let along = Vec2::new(handle.along.x as f32, handle.along.y as f32).normalized() * 15.0;
+            if is_hot {
+                painter.line_segment([at - along, at + along], Stroke::new(2.5, accent));
+            }
+            painter.circle(at, if is_hot { 7.0 } else { 5.0 }, Color32::WHITE, Stroke::new(2.0, accent));
+        }
+    }
+}
+
+/// What pictures lie on.
+pub fn paper(ui: &Ui) -> Color32 {
+    if ui.visuals().dark_mode { Color32::from_gray(0x9a) } else { Color32::WHITE }
+}
+
+fn dvec(v: Vec2) -> DVec2 {
+    DVec2::new(f64::from(v.x), f64::from(v.y))
+}
+
+fn screen(pane: Rect, at: DVec2) -> Pos2 {
+    pane.min + Vec2::new(at.x as f32, at.y as f32)
+}

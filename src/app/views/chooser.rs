@@ -1,0 +1,248 @@
+//! Choosing a file or folder: a list to walk through and a line to type into.
+//!
+//! Ours, not the desktop's, so that it is the same everywhere, needs no desktop service, and can be driven by keys and tests. Folders
+//! are listed on a thread: one on a network may take its time.
+
+use super::notices;
+use crate::app::state::{Action, Choice, Dialogue, Place, State};
+use eframe::egui::{Context, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// What a folder holds.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+struct Listing {
+    folder: PathBuf,
+    folders: Vec<String>,
+    files: Vec<String>,
+    projects: Vec<String>,
+    error: Option<String>,
+}
+
+/// The chooser.
+pub struct Chooser {
+    choice: Option<Choice>,
+    text: String,
+    listing: Arc<Mutex<Listing>>,
+    listed: Option<PathBuf>,
+    /// Folder last chosen from.
+    home: PathBuf,
+}
+
+impl Default for Chooser {
+    fn default() -> Self {
+        let home = std::env::current_dir().unwrap_or_default();
+        Self { choice: None, text: String::new(), listing: Arc::default(), listed: None, home }
+    }
+}
+
+impl Chooser {
+    /// Shows the chooser in front of everything.
+    pub fn show(&mut self, ctx: &Context, state: &State, choice: Choice, actions: &mut Vec<Action>) {
+        if self.choice != Some(choice) {
+            self.choice = Some(choice);
+            self.text = self.home.join("").display().to_string();
+            self.listed = None;
+        }
+        let modal = Modal::new(Id::unique("chooser")).show(ctx, |ui| {
+            ui.set_width(640.0_f32.min(ctx.content_rect().width() - 60.0));
+            ui.heading(title(choice));
+            ui.label(explanation(choice));
+            notices::show(ui, state, Place::Dialogue, actions);
+            let line = ui.label("Path");
+            let edit = ui.add(TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY)).labelled_by(line.id);
+            if ui.memory(|memory| memory.focused().is_none()) {
+                edit.request_focus();
+            }
+            let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
+            self.list(ui, choice);
+            ui.horizontal(|ui| {
+                let path = PathBuf::from(self.text.trim());
+                if ui.button(verb(choice)).clicked() || entered {
+                    self.choose(choice, path, actions);
+                }
+                if ui.button("Cancel").clicked() {
+                    actions.push(Action::Answered);
+                }
+            });
+        });
+        if modal.should_close() {
+            actions.push(Action::Answered);
+        }
+        if actions.iter().any(|action| matches!(action, Action::Answered)) {
+            self.choice = None;
+        }
+    }
+
+    /// The folder that the typed path is in or is.
+    fn folder(&self) -> PathBuf {
+        let path = Path::new(self.text.trim());
+        if self.text.ends_with(['/', '\\']) || self.text.is_empty() {
+            path.to_owned()
+        } else {
+            path.parent().map(Path::to_owned).unwrap_or_default()
+        }
+    }
+
+    fn list(&mut self, ui: &mut Ui, choice: Choice) {
+        let folder = self.folder();
+        if self.listed.as_deref() != Some(&folder) {
+            self.listed = Some(folder.clone());
+            let (listing, ctx) = (self.listing.clone(), ui.ctx().clone());
+            std::thread::spawn(move || {
+                let read = read(&folder);
+                *listing.lock().unwrap_or_else(PoisonError::into_inner) = read;
+                ctx.request_repaint();
+            });
+        }
+        let listing = self.listing.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let height = (ui.ctx().content_rect().height() - 320.0).clamp(120.0, 380.0);
+        ScrollArea::vertical().max_height(height).min_scrolled_height(height).auto_shrink(false).show(ui, |ui| {
+            if let Some(error) = &listing.error {
+                ui.weak(error);
+            }
+            if let Some(parent) = listing.folder.parent()
+                && ui.selectable_label(false, "..  (up)").clicked()
+            {
+                self.text = parent.join("").display().to_string();
+            }
+            for name in &listing.projects {
+                if ui.selectable_label(false, RichText::new(name).strong()).clicked() {
+                    self.text = listing.folder.join(name).display().to_string();
+                }
+            }
+            for name in &listing.folders {
+                if ui.selectable_label(false, format!("{name}/")).clicked() {
+                    self.text = listing.folder.join(name).join("").display().to_string();
+                }
+            }
+            if choice != Choice::Project && choice != Choice::Demo {
+                for name in listing.files.iter().filter(|name| fits(choice, name)) {
+                    let path = listing.folder.join(name);
+                    let is_chosen = Path::new(&self.text) == path;
+                    if ui.selectable_label(is_chosen, name).clicked() {
+                        self.text = path.display().to_string();
+                    }
+                }
+            }
+        });
+    }
+
+    fn choose(&mut self, choice: Choice, path: PathBuf, actions: &mut Vec<Action>) {
+        self.home = self.folder();
+        let dialogue = match choice {
+            Choice::Project => {
+                actions.push(Action::Answered);
+                actions.push(Action::Open(path));
+                return;
+            }
+            Choice::Demo => {
+                actions.push(Action::Demo(path));
+                return;
+            }
+            Choice::Texture => {
+                actions.push(Action::Answered);
+                let command = crate::command::AddTexture { path, width_mm: None };
+                actions.push(Action::Apply(Box::new(crate::Command::AddTexture(command))));
+                return;
+            }
+            Choice::NewSurvey => Dialogue::Survey { path, is_new: true },
+            Choice::MoreSurvey => Dialogue::Survey { path, is_new: false },
+            Choice::Horizon => Dialogue::Interpretation { path, is_fault: false },
+            Choice::Fault => Dialogue::Interpretation { path, is_fault: true },
+        };
+        self.choice = None;
+        actions.push(Action::Ask(Box::new(dialogue)));
+    }
+}
+
+/// Reads a folder; what cannot be read is said to be so.
+fn read(folder: &Path) -> Listing {
+    let mut listing = Listing { folder: folder.to_owned(), ..Listing::default() };
+    let entries = match std::fs::read_dir(if folder.as_os_str().is_empty() { Path::new(".") } else { folder }) {
+        Ok(entries) => entries,
+        Err(error) => {
+            listing.error = Some(format!("{} cannot be listed: {error}", folder.display()));
+            return listing;
+        }
+    };
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with('.') {
+            continue;
+        }
+        let path = entry.path();
+        match path.is_dir() {
+            true if path.join("project.toml").exists() => listing.projects.push(name),
+            true => listing.folders.push(name),
+            false => listing.files.push(name),
+        }
+    }
+    [&mut listing.folders, &mut listing.files, &mut listing.projects].into_iter().for_each(|names| names.sort());
+    listing
+}
+
+/// Whether a file's ending fits what is looked for. Interpretations have any ending.
+fn fits(choice: Choice, name: &str) -> bool {
+    let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_lowercase()).unwrap_or_default();
+    match choice {
+        Choice::NewSurvey | Choice::MoreSurvey => matches!(ending.as_str(), "sgy" | "segy" | "seg" | "sgy3"),
+        Choice::Texture => matches!(ending.as_str(), "png" | "jpg" | "jpeg" | "svg"),
+        _ => true,
+    }
+}
+
+fn title(choice: Choice) -> &'static str {
+    match choice {
+        Choice::Project => "Open a project",
+        Choice::NewSurvey => "New project from a SEG-Y volume",
+        Choice::MoreSurvey => "Add a volume",
+        Choice::Horizon => "Add a horizon",
+        Choice::Fault => "Add a fault",
+        Choice::Texture => "Add a tile of your own",
+        Choice::Demo => "Make the demonstration",
+    }
+}
+
+fn explanation(choice: Choice) -> &'static str {
+    match choice {
+        Choice::Project => "Projects are shown in bold; they are folders that end in .petro.",
+        Choice::NewSurvey | Choice::MoreSurvey => {
+            "Choose the file. How it is read is shown before anything is imported."
+        }
+        Choice::Horizon => "Irap, ZMAP+, CPS-3, EarthVision, Petrel, Charisma, OpendTect, TSurf, CSV and plain columns.",
+        Choice::Fault => "Sticks (OpendTect, Charisma), TSurf, or points.",
+        Choice::Texture => "A PNG, JPEG or SVG that repeats without seams.",
+        Choice::Demo => "A folder for it. It takes about a minute and 60 MB.",
+    }
+}
+
+fn verb(choice: Choice) -> &'static str {
+    match choice {
+        Choice::Project => "Open",
+        Choice::Demo => "Make it",
+        Choice::Texture => "Add",
+        _ => "Next",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folders_projects_and_files_are_told_apart() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir_all(folder.path().join("a.petro")).unwrap();
+        std::fs::write(folder.path().join("a.petro/project.toml"), "").unwrap();
+        std::fs::create_dir(folder.path().join("deeper")).unwrap();
+        for name in ["s.SGY", "h.dat", ".hidden"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        let listing = read(folder.path());
+        assert_eq!((listing.projects, listing.folders), (vec!["a.petro".to_owned()], vec!["deeper".to_owned()]));
+        assert_eq!(listing.files, ["h.dat", "s.SGY"]);
+        assert!(fits(Choice::NewSurvey, "s.SGY") && !fits(Choice::NewSurvey, "h.dat"));
+        assert!(read(Path::new("/no/such/folder")).error.is_some());
+    }
+}

@@ -1,0 +1,300 @@
+//! How a survey would be read: geometry, evidence, a map of the traces, a section; bytes can be changed and show their effect at once.
+
+use super::notices;
+use crate::app::state::{Action, Place, State};
+use crate::app::work::Work;
+use crate::app::work::scan::{self, Found, SurveyScan};
+use crate::command::ImportVolume;
+use crate::project::Polarity;
+use eframe::egui::{
+    Button, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Mesh, Modal, Pos2, Rect, Role, ScrollArea, Sense,
+    Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
+};
+use glam::DVec2;
+use image::RgbaImage;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+use survey::segy::{FileUnit, SegyInfo, SegyOptions};
+use survey::SurveyGeometry;
+
+/// After a change, so long nothing more must change before the file is read anew.
+const PATIENCE: Duration = Duration::from_millis(250);
+
+/// The dialogue.
+#[derive(Default)]
+pub struct Import {
+    path: PathBuf,
+    options: SegyOptions,
+    name: String,
+    polarity: Polarity,
+    target: String,
+    scanned: Option<SegyOptions>,
+    changed: Option<Instant>,
+    found: Found<SurveyScan>,
+    textures: Option<(SegyOptions, TextureHandle, TextureHandle)>,
+}
+
+impl Import {
+    /// Shows the dialogue.
+    pub fn show(&mut self, ctx: &Context, state: &State, work: &Work, path: &Path, is_new: bool, actions: &mut Vec<Action>) {
+        if self.path != path {
+            let target = path.with_extension("petro").display().to_string();
+            *self = Self { path: path.to_owned(), target, ..Self::default() };
+        }
+        self.rescan(ctx, work);
+        let room = ctx.content_rect().size();
+        let modal = Modal::new(Id::unique("import")).show(ctx, |ui| {
+            ui.set_width((room.x - 120.0).clamp(560.0, 1040.0));
+            let file = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+            ui.heading(format!("Read {file}"));
+            notices::show(ui, state, Place::Dialogue, actions);
+            let height = (room.y - 290.0).max(240.0);
+            ui.columns_const(|[left, right]: &mut [Ui; 2]| {
+                ScrollArea::vertical().id_salt("reading").max_height(height).min_scrolled_height(height).show(left, |ui| self.reading(ui));
+                ScrollArea::vertical().id_salt("evidence").max_height(height).min_scrolled_height(height).show(right, |ui| self.evidence(ui));
+            });
+            ui.separator();
+            self.target(ui, state, is_new, actions);
+        });
+        if modal.should_close() {
+            actions.push(Action::Answered);
+        }
+        if actions.iter().any(|action| matches!(action, Action::Answered)) {
+            self.path = PathBuf::new();
+        }
+    }
+
+    /// Reads the headers with the present options once they have stopped changing.
+    fn rescan(&mut self, ctx: &Context, work: &Work) {
+        if self.scanned.as_ref() == Some(&self.options) {
+            return;
+        }
+        let is_first = self.scanned.is_none();
+        match self.changed {
+            Some(changed) if changed.elapsed() >= PATIENCE => {}
+            _ if is_first => {}
+            None => {
+                self.changed = Some(Instant::now());
+                return ctx.request_repaint_after(PATIENCE);
+            }
+            Some(_) => return ctx.request_repaint_after(PATIENCE),
+        }
+        self.changed = None;
+        self.scanned = Some(self.options.clone());
+        let (found, path, options) = (self.found.clone(), self.path.clone(), self.options.clone());
+        let number = found.begin();
+        work.background("Reading the headers", Place::Dialogue, move |progress, _| {
+            found.put(number, scan::survey(&path, &options, progress));
+            Ok(())
+        });
+    }
+
+    /// What can be stated about the file, beside what was found.
+    fn reading(&mut self, ui: &mut Ui) {
+        let options = &mut self.options;
+        let name = &mut self.name;
+        let polarity = &mut self.polarity;
+        self.found.with(|found| {
+            let info = found.and_then(|found| found.as_ref().ok()).map(|scan| &scan.info);
+            ui.strong("Header bytes");
+            Grid::new("bytes").num_columns(3).spacing([12.0, 7.0]).show(ui, |ui| {
+                let bytes = info.map(|info| info.byte_positions);
+                byte(ui, "Inline", &mut options.inline_byte, bytes.map(|bytes| bytes.inline));
+                byte(ui, "Crossline", &mut options.crossline_byte, bytes.map(|bytes| bytes.crossline));
+                byte(ui, "X", &mut options.x_byte, bytes.and_then(|bytes| bytes.x));
+                byte(ui, "Y", &mut options.y_byte, bytes.and_then(|bytes| bytes.y));
+            });
+            ui.add_space(6.0);
+            Grid::new("units").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
+                let unit = ui.label("Vertical unit");
+                let shown = match (options.vertical_unit, info) {
+                    (Some(unit), _) => unit.symbol().to_owned(),
+                    (None, Some(info)) => format!("{} (found)", info.vertical_unit.symbol()),
+                    (None, None) => "as found".to_owned(),
+                };
+                ui.label_inputs_by(unit.id, |ui| {
+                    ComboBox::from_id_salt("vertical unit").selected_text(shown).show_ui(ui, |ui| {
+                        ui.selectable_value(&mut options.vertical_unit, None, "as found");
+                        for unit in [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet] {
+                            ui.selectable_value(&mut options.vertical_unit, Some(unit), unit.symbol());
+                        }
+                    });
+                });
+                ui.end_row();
+                let label = ui.label("Polarity");
+                ui.label_inputs_by(label.id, |ui| {
+                    ComboBox::from_id_salt("polarity").selected_text(polarity.to_string()).show_ui(ui, |ui| {
+                        for choice in [Polarity::Normal, Polarity::Reverse] {
+                            ui.selectable_value(polarity, choice, choice.to_string());
+                        }
+                    });
+                });
+                ui.end_row();
+                let label = ui.label("Name");
+                ui.add(TextEdit::singleline(name).hint_text("seismic").desired_width(160.0)).labelled_by(label.id);
+                ui.end_row();
+            });
+            if *options != SegyOptions::default() && ui.button("Detect again").on_hover_text("Forget what was typed").clicked() {
+                *options = SegyOptions::default();
+            }
+            if let Some(info) = info {
+                ui.add_space(10.0);
+                candidates(ui, info, options);
+                summary(ui, info);
+            }
+        });
+    }
+
+    fn evidence(&mut self, ui: &mut Ui) {
+        let (textures, scanned) = (&mut self.textures, self.scanned.clone().unwrap_or_default());
+        self.found.with(|found| match found {
+            None => {
+                ui.add(Spinner::new());
+                ui.label("Reading the headers…");
+            }
+            Some(Err(notice)) => {
+                ui.colored_label(ui.visuals().error_fg_color, &notice.text);
+                if let Some(hint) = &notice.hint {
+                    ui.label(hint);
+                }
+            }
+            Some(Ok(scan)) => {
+                let is_new = textures.as_ref().is_none_or(|(of, ..)| *of != scanned);
+                if is_new {
+                    *textures = Some((scanned, texture(ui, "traces", &scan.traces), texture(ui, "inline", &scan.inline)));
+                }
+                if let Some((_, traces, inline)) = textures {
+                    ui.strong("Where the traces are, north up");
+                    map(ui, traces, &scan.geometry);
+                    let middle = scan.geometry.inlines.number_at((scan.geometry.inlines.count / 2) as f64);
+                    ui.strong(format!("Inline {middle:.0}"));
+                    picture(ui, inline, "Middle inline");
+                }
+                for warning in &scan.info.warnings {
+                    ui.colored_label(ui.visuals().warn_fg_color, warning);
+                }
+                for assumption in &scan.info.assumptions {
+                    ui.label(format!("Assumed: {assumption}"));
+                }
+                for line in &scan.info.evidence {
+                    ui.weak(line);
+                }
+            }
+        });
+    }
+
+    fn target(&mut self, ui: &mut Ui, state: &State, is_new: bool, actions: &mut Vec<Action>) {
+        let can = self.found.with(|found| matches!(found, Some(Ok(_)))) && self.scanned.as_ref() == Some(&self.options);
+        ui.horizontal(|ui| {
+            if is_new {
+                let label = ui.label("Project");
+                ui.add(TextEdit::singleline(&mut self.target).desired_width(420.0)).labelled_by(label.id);
+            } else if let Some(session) = &state.session {
+                ui.label(format!("Into {}", session.name()));
+            }
+            let verb = if is_new { "Create project" } else { "Import" };
+            if ui.add_enabled(can, Button::new(verb)).clicked() {
+                let name = self.name.trim();
+                let command = Box::new(ImportVolume {
+                    path: self.path.clone(),
+                    name: (!name.is_empty()).then(|| name.to_owned()),
+                    polarity: self.polarity,
+                    options: self.options.clone(),
+                });
+                let into = is_new.then(|| PathBuf::from(self.target.trim()));
+                actions.push(Action::Import { command, into });
+            }
+            if ui.button("Cancel").clicked() {
+                actions.push(Action::Answered);
+            }
+        });
+    }
+}
+
+/// A byte position: what was found, until another is typed.
+fn byte(ui: &mut Ui, name: &str, option: &mut Option<u16>, found: Option<u16>) {
+    let label = ui.label(name);
+    let mut value = option.or(found).unwrap_or(0);
+    let drag = DragValue::new(&mut value).speed(0.3).range(0..=237);
+    if ui.add(drag).labelled_by(label.id).on_hover_text("First byte in the trace header, 1 to 237").changed() && value > 0 {
+        *option = Some(value);
+    }
+    match (option.is_some(), found) {
+        (true, _) => ui.label("stated"),
+        (false, Some(_)) => ui.weak("found"),
+        (false, None) => ui.weak("none"),
+    };
+    ui.end_row();
+}
+
+/// Readings of the line numbers that were looked at; each can be taken.
+fn candidates(ui: &mut Ui, info: &SegyInfo, options: &mut SegyOptions) {
+    ui.strong("Other readings");
+    for candidate in &info.candidates {
+        let bytes = [candidate.inline_byte, candidate.crossline_byte];
+        let is_taken = bytes == [info.byte_positions.inline, info.byte_positions.crossline];
+        ui.horizontal_wrapped(|ui| {
+            if is_taken {
+                ui.label("✔");
+            } else if ui.small_button("Use").on_hover_text(format!("Read bytes {} and {}", bytes[0], bytes[1])).clicked() {
+                (options.inline_byte, options.crossline_byte) = (Some(bytes[0]), Some(bytes[1]));
+            }
+            ui.label(candidate.as_sentence());
+        });
+    }
+}
+
+fn summary(ui: &mut Ui, info: &SegyInfo) {
+    ui.add_space(8.0);
+    ui.strong("The volume");
+    let unit = info.vertical_unit.symbol();
+    let last = info.start + info.interval * info.samples.saturating_sub(1) as f64;
+    for line in [
+        format!("inlines {}, crosslines {}", info.inlines, info.crosslines),
+        format!("{} samples of {} {unit}, {} to {last} {unit}", info.samples, info.interval, info.start),
+        format!("{} traces, {} missing, {} dead, {} repeated", info.traces, info.missing_traces, info.dead_traces, info.duplicate_traces),
+        format!("format code {}, revision {}", info.format_code, info.revision),
+    ] {
+        ui.label(line);
+    }
+}
+
+fn texture(ui: &Ui, name: &str, image: &RgbaImage) -> TextureHandle {
+    let size = [image.width() as usize, image.height() as usize];
+    ui.ctx().load_texture(name, ColorImage::from_rgba_unmultiplied(size, image), TextureOptions::LINEAR)
+}
+
+fn picture(ui: &mut Ui, texture: &TextureHandle, name: &str) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 170.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, name));
+    let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+    ui.painter().image(texture.id(), rect, uv, Color32::WHITE);
+}
+
+/// The lattice where it lies in the world, one scale both ways.
+fn map(ui: &mut Ui, texture: &TextureHandle, geometry: &SurveyGeometry) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 190.0), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Map of the traces"));
+    let [inlines, crosslines, _] = geometry.size().map(|count| count.saturating_sub(1) as f64);
+    let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let world = corners.map(|[u, v]| geometry.inline_vector * (u * inlines) + geometry.crossline_vector * (v * crosslines));
+    let low = world.into_iter().fold(DVec2::INFINITY, DVec2::min);
+    let high = world.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+    let extent = (high - low).max(DVec2::splat(1e-6));
+    let room = rect.shrink(16.0);
+    let scale = (f64::from(room.width()) / extent.x).min(f64::from(room.height()) / extent.y);
+    let place = |at: DVec2| -> Pos2 {
+        let off = (at - (low + high) * 0.5) * scale;
+        room.center() + vec2(off.x as f32, -off.y as f32)
+    };
+    let mut mesh = Mesh::with_texture(texture.id());
+    for ([u, v], at) in corners.into_iter().zip(world) {
+        mesh.vertices.push(eframe::egui::epaint::Vertex { pos: place(at), uv: pos2(u as f32, v as f32), color: Color32::WHITE });
+    }
+    mesh.indices = vec![0, 1, 2, 0, 2, 3];
+    ui.painter().add(Shape::mesh(mesh));
+    let first = geometry.origin;
+    let text = format!("inline {}, crossline {}: X {:.0}, Y {:.0}", geometry.inlines.first, geometry.crosslines.first, first.x, first.y);
+    ui.painter().circle_filled(place(world[0]), 4.0, crate::app::theme::accent(ui.visuals()));
+    ui.weak(format!("● {text}"));
+}

@@ -1,0 +1,170 @@
+//! How a horizon or fault file would be read: unit, sign, factor; what was found is shown before it is added.
+
+use super::layers::contact_name;
+use super::notices;
+use crate::app::state::{Action, Place, Session, State};
+use crate::app::work::Work;
+use crate::app::work::scan::{self, Found, InterpretationScan};
+use crate::command::{AddFault, AddHorizon, Age, Command};
+use eframe::egui::{Button, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use std::path::{Path, PathBuf};
+use survey::Contact;
+use survey::formats::{ImportOptions, ZPositive, ZUnit};
+
+/// The dialogue.
+#[derive(Default)]
+pub struct Interpretation {
+    path: PathBuf,
+    name: String,
+    options: ImportOptions,
+    contact: Contact,
+    truncated_by: Option<String>,
+    scanned: Option<ImportOptions>,
+    found: Found<InterpretationScan>,
+}
+
+impl Interpretation {
+    /// Shows the dialogue.
+    #[expect(clippy::too_many_arguments, reason = "a panel is handed the parts of the window it needs, and no others")]
+    pub fn show(
+        &mut self,
+        ctx: &Context,
+        state: &State,
+        session: &Session,
+        work: &Work,
+        path: &Path,
+        is_fault: bool,
+        actions: &mut Vec<Action>,
+    ) {
+        if self.path != path {
+            let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+            *self = Self { path: path.to_owned(), name, ..Self::default() };
+        }
+        self.rescan(session, work, is_fault);
+        let modal = Modal::new(Id::unique("interpretation")).show(ctx, |ui| {
+            ui.set_width(620.0);
+            ui.heading(if is_fault { "Add a fault" } else { "Add a horizon" });
+            ui.weak(path.display().to_string());
+            notices::show(ui, state, Place::Dialogue, actions);
+            self.form(ui, session, is_fault);
+            ui.separator();
+            let height = (ctx.content_rect().height() - 460.0).clamp(90.0, 260.0);
+            ScrollArea::vertical().max_height(height).min_scrolled_height(height).auto_shrink(false).show(ui, |ui| self.report(ui));
+            ui.separator();
+            ui.horizontal(|ui| {
+                let can = !self.name.trim().is_empty() && self.found.with(|found| matches!(found, Some(Ok(_))));
+                if ui.add_enabled(can, Button::new("Add")).clicked() {
+                    actions.push(Action::Apply(Box::new(self.command(is_fault))));
+                }
+                if ui.button("Cancel").clicked() {
+                    actions.push(Action::Answered);
+                }
+            });
+        });
+        if modal.should_close() {
+            actions.push(Action::Answered);
+        }
+        if actions.iter().any(|action| matches!(action, Action::Answered)) {
+            self.path = PathBuf::new();
+        }
+    }
+
+    fn rescan(&mut self, session: &Session, work: &Work, is_fault: bool) {
+        let Some(geometry) = session.document.geometry.clone() else { return };
+        if self.scanned.as_ref() == Some(&self.options) {
+            return;
+        }
+        self.scanned = Some(self.options.clone());
+        let (found, path, options) = (self.found.clone(), self.path.clone(), self.options.clone());
+        let number = found.begin();
+        work.background("Reading the file", Place::Dialogue, move |_, _| {
+            let read = if is_fault { scan::fault(&path, &geometry, &options) } else { scan::horizon(&path, &geometry, &options) };
+            found.put(number, read);
+            Ok(())
+        });
+    }
+
+    fn form(&mut self, ui: &mut Ui, session: &Session, is_fault: bool) {
+        Grid::new("interpretation").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
+            let label = ui.label("Name");
+            ui.add(TextEdit::singleline(&mut self.name).desired_width(240.0)).labelled_by(label.id);
+            ui.end_row();
+            let units = [ZUnit::Milliseconds, ZUnit::Seconds, ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
+            choice(ui, "Vertical unit", &mut self.options.z_unit, &units);
+            let signs = [(ZPositive::Down, "positive down"), (ZPositive::Up, "positive up")];
+            choice(ui, "Sign", &mut self.options.z_positive, &signs);
+            let label = ui.label("Factor");
+            ui.add(DragValue::new(&mut self.options.z_factor).speed(0.01)).labelled_by(label.id);
+            ui.end_row();
+            if is_fault {
+                let label = ui.label("Ends at");
+                ui.label_inputs_by(label.id, |ui| {
+                    let shown = self.truncated_by.clone().unwrap_or_else(|| "nothing".to_owned());
+                    ComboBox::from_id_salt("ends at").selected_text(shown).show_ui(ui, |ui| {
+                        ui.selectable_value(&mut self.truncated_by, None, "nothing");
+                        for fault in &session.document.faults {
+                            ui.selectable_value(&mut self.truncated_by, Some(fault.name.clone()), &fault.name);
+                        }
+                    });
+                });
+            } else {
+                let label = ui.label("Contact");
+                ui.label_inputs_by(label.id, |ui| {
+                    ComboBox::from_id_salt("contact").selected_text(contact_name(self.contact)).show_ui(ui, |ui| {
+                        for contact in [Contact::Conformable, Contact::Erosional, Contact::Onlap, Contact::Intrusive] {
+                            ui.selectable_value(&mut self.contact, contact, contact_name(contact));
+                        }
+                    });
+                });
+            }
+            ui.end_row();
+        });
+    }
+
+    fn report(&mut self, ui: &mut Ui) {
+        let name = &mut self.name;
+        self.found.with(|found| match found {
+            None => {
+                ui.add(Spinner::new());
+            }
+            Some(Err(notice)) => {
+                ui.colored_label(ui.visuals().error_fg_color, &notice.text);
+                if let Some(hint) = &notice.hint {
+                    ui.label(hint);
+                }
+            }
+            Some(Ok(scan)) => {
+                for (surface, report) in &scan.surfaces {
+                    if scan.surfaces.len() > 1 && ui.selectable_label(surface == name, surface).clicked() {
+                        name.clone_from(surface);
+                    }
+                    ui.label(report.trim_end());
+                }
+            }
+        });
+    }
+
+    fn command(&self, is_fault: bool) -> Command {
+        let (path, name, options) = (self.path.clone(), self.name.trim().to_owned(), self.options.clone());
+        if is_fault {
+            Command::AddFault(AddFault { path, name, truncated_by: self.truncated_by.clone(), options })
+        } else {
+            Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: Age::ByDepth, options })
+        }
+    }
+}
+
+/// A choice that may be left to the file.
+fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut Option<T>, choices: &[(T, &str)]) {
+    let label = ui.label(name);
+    let shown = choices.iter().find(|(choice, _)| Some(*choice) == *value).map_or("as the file says", |(_, name)| name);
+    ui.label_inputs_by(label.id, |ui| {
+        ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
+            ui.selectable_value(value, None, "as the file says");
+            for (choice, name) in choices {
+                ui.selectable_value(value, Some(*choice), *name);
+            }
+        });
+    });
+    ui.end_row();
+}

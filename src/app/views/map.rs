@@ -1,0 +1,230 @@
+//! The map: a horizon's structure, or the thickness below it, north up, with contours, the sections' lines and a colour bar.
+
+use crate::app::state::{Action, Session};
+use crate::app::theme;
+use crate::app::work::Rocks;
+use crate::app::work::map::{MapPicture, MapWish, Mapped, Maps};
+use eframe::egui::{
+    Align2, Color32, ColorImage, ComboBox, Context, FontId, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+};
+use glam::DVec2;
+use survey::SurveyGeometry;
+
+/// Zoom stays between these.
+const ZOOM: [f32; 2] = [0.8, 40.0];
+
+/// The view.
+#[derive(Default)]
+pub struct MapView {
+    texture: Option<TextureHandle>,
+    shown: Option<MapPicture>,
+    wished: Option<(Mapped, u64)>,
+    thickness: bool,
+    zoom: Option<f32>,
+    shift: Vec2,
+}
+
+/// From voxel x, y to the screen: north up, one scale both ways.
+struct Sheet {
+    geometry: SurveyGeometry,
+    middle: DVec2,
+    centre: Pos2,
+    scale: f64,
+}
+
+impl Sheet {
+    fn new(geometry: &SurveyGeometry, rect: Rect, zoom: f32, shift: Vec2) -> Self {
+        let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1) as f64);
+        let corners = [[0.0, 0.0], [nx, 0.0], [nx, ny], [0.0, ny]];
+        let world = corners.map(|[x, y]| geometry.inline_vector * x + geometry.crossline_vector * y);
+        let low = world.into_iter().fold(DVec2::INFINITY, DVec2::min);
+        let high = world.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
+        let extent = (high - low).max(DVec2::splat(1e-6));
+        let fit = (f64::from(rect.width()) / extent.x).min(f64::from(rect.height()) / extent.y);
+        Self {
+            geometry: geometry.clone(),
+            middle: (low + high) * 0.5,
+            centre: rect.center() + shift,
+            scale: fit * f64::from(zoom),
+        }
+    }
+
+    fn screen(&self, voxel: DVec2) -> Pos2 {
+        let world = self.geometry.inline_vector * voxel.x + self.geometry.crossline_vector * voxel.y;
+        let off = (world - self.middle) * self.scale;
+        self.centre + vec2(off.x as f32, -off.y as f32)
+    }
+
+    fn voxel(&self, at: Pos2) -> DVec2 {
+        let off = at - self.centre;
+        let world = self.middle + DVec2::new(f64::from(off.x), -f64::from(off.y)) / self.scale;
+        self.geometry.voxel_from_world((world + self.geometry.origin).extend(0.0)).truncate()
+    }
+}
+
+impl MapView {
+    /// Takes a map in.
+    pub fn receive(&mut self, ctx: &Context, picture: MapPicture) {
+        let size = [picture.image.width() as usize, picture.image.height() as usize];
+        let image = ColorImage::from_rgba_unmultiplied(size, &picture.image);
+        match &mut self.texture {
+            Some(texture) => texture.set(image, TextureOptions::LINEAR),
+            none => *none = Some(ctx.load_texture("map", image, TextureOptions::LINEAR)),
+        }
+        self.shown = Some(picture);
+    }
+
+    /// Shows the map in all the room there is.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        rocks: Option<(&Rocks, u64)>,
+        maps: &Maps,
+        actions: &mut Vec<Action>,
+    ) {
+        let Some(geometry) = &session.document.geometry else { return };
+        let horizons = &session.document.horizons;
+        if horizons.is_empty() {
+            ui.label("A map shows a horizon. Add or pick one first.");
+            return;
+        }
+        let chosen = session.view.horizon.as_ref().and_then(|name| horizons.iter().position(|entry| entry.name == *name));
+        let upper = chosen.unwrap_or(0);
+        let lower = (upper + 1 < horizons.len()).then_some(upper + 1);
+        self.header(ui, session, upper, lower, actions);
+        let mapped = match lower.filter(|_| self.thickness) {
+            Some(lower) => Mapped::Thickness(upper, lower),
+            None => Mapped::Structure(upper),
+        };
+        if let Some((rocks, version)) = rocks
+            && self.wished != Some((mapped, version))
+        {
+            self.wished = Some((mapped, version));
+            maps.map(MapWish { mapped, rocks: rocks.clone() });
+        }
+        let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Map"));
+        let body = Rect::from_min_max(rect.min + vec2(16.0, 16.0), rect.max - vec2(96.0, 16.0));
+        let zoom = self.touch(ui, &response, body);
+        let sheet = Sheet::new(geometry, body, zoom, self.shift);
+        ui.painter_at(rect).rect_filled(rect, 0.0, super::block::paper(ui));
+        self.paint(ui, session, rect, &sheet);
+        if response.clicked()
+            && let Some(at) = response.interact_pointer_pos()
+        {
+            let voxel = sheet.voxel(at);
+            actions.push(Action::Slices([voxel.x, voxel.y, session.view.slices[2]]));
+        }
+    }
+
+    fn header(&mut self, ui: &mut Ui, session: &Session, upper: usize, lower: Option<usize>, actions: &mut Vec<Action>) {
+        let horizons = &session.document.horizons;
+        ui.horizontal(|ui| {
+            let label = ui.strong("Map of");
+            let mut chosen = upper;
+            ui.label_inputs_by(label.id, |ui| {
+                ComboBox::from_id_salt("mapped").selected_text(&horizons[upper].name).show_ui(ui, |ui| {
+                    for (index, entry) in horizons.iter().enumerate() {
+                        ui.selectable_value(&mut chosen, index, &entry.name);
+                    }
+                });
+            });
+            if chosen != upper {
+                actions.push(Action::Horizon(Some(horizons[chosen].name.clone())));
+            }
+            if ui.selectable_label(!self.thickness, "Structure").clicked() {
+                self.thickness = false;
+            }
+            ui.add_enabled_ui(lower.is_some(), |ui| {
+                let hint = lower.map_or_else(String::new, |lower| format!("Vertical, down to {}", horizons[lower].name));
+                if ui.selectable_label(self.thickness, "Thickness").on_hover_text(hint).clicked() {
+                    self.thickness = true;
+                }
+            });
+        });
+    }
+
+    fn touch(&mut self, ui: &Ui, response: &eframe::egui::Response, body: Rect) -> f32 {
+        let mut zoom = self.zoom.unwrap_or(1.0);
+        if response.dragged() {
+            self.shift += response.drag_delta();
+        }
+        if let Some(at) = response.hover_pos() {
+            let factor = ui.input(|input| (input.smooth_scroll_delta().y * 0.0022).exp() * input.zoom_delta());
+            let next = (zoom * factor).clamp(ZOOM[0], ZOOM[1]);
+            let off = at - body.center();
+            self.shift = off - (off - self.shift) * (next / zoom);
+            zoom = next;
+        }
+        if response.double_clicked() {
+            (zoom, self.shift) = (1.0, Vec2::ZERO);
+        }
+        self.zoom = Some(zoom);
+        zoom
+    }
+
+    fn paint(&self, ui: &Ui, session: &Session, rect: Rect, sheet: &Sheet) {
+        let painter = ui.painter_at(rect);
+        let (Some(texture), Some(shown), Some(geometry)) = (&self.texture, &self.shown, &session.document.geometry) else { return };
+        let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1) as f64);
+        let half = [0.5 / (nx as f32 + 1.0), 0.5 / (ny as f32 + 1.0)];
+        let mut mesh = Mesh::with_texture(texture.id());
+        for [u, v] in [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]] {
+            let uv = pos2(half[0] + u as f32 * (1.0 - 2.0 * half[0]), half[1] + v as f32 * (1.0 - 2.0 * half[1]));
+            let pos = sheet.screen(DVec2::new(u * nx, v * ny));
+            mesh.vertices.push(eframe::egui::epaint::Vertex { pos, uv, color: Color32::WHITE });
+        }
+        mesh.indices = vec![0, 1, 2, 0, 2, 3];
+        painter.add(Shape::mesh(mesh));
+        for piece in &shown.contours {
+            let stroke = Stroke::new(if piece.is_index { 1.6 } else { 0.7 }, Color32::from_black_alpha(if piece.is_index { 220 } else { 150 }));
+            painter.line_segment(piece.ends.map(|end| sheet.screen(end)), stroke);
+        }
+        let line = Stroke::new(1.5, theme::accent(ui.visuals()));
+        let [x, y, _] = session.view.slices;
+        painter.line_segment([DVec2::new(x, 0.0), DVec2::new(x, ny)].map(|end| sheet.screen(end)), line);
+        painter.line_segment([DVec2::new(0.0, y), DVec2::new(nx, y)].map(|end| sheet.screen(end)), line);
+        self.bar(ui, session, rect, shown);
+        north(ui, rect);
+    }
+
+    /// Which colour is which value.
+    fn bar(&self, ui: &Ui, session: &Session, rect: Rect, shown: &MapPicture) {
+        let painter = ui.painter_at(rect);
+        let bar = Rect::from_min_size(pos2(rect.right() - 84.0, rect.top() + 60.0), vec2(16.0, (rect.height() - 130.0).max(40.0)));
+        let colours = ttf::RgbaFunction::over(ttf::ColourMap::Strata, [0.0, 1.0]);
+        let steps = 64;
+        for step in 0..steps {
+            let share = step as f32 / steps as f32;
+            let [r, g, b, _] = colours.evaluate(1.0 - share).map(|channel| (channel * 255.0 + 0.5) as u8);
+            let top = bar.top() + bar.height() * share;
+            let part = Rect::from_min_max(pos2(bar.left(), top), pos2(bar.right(), top + bar.height() / steps as f32 + 0.5));
+            painter.rect_filled(part, 0.0, Color32::from_rgb(r, g, b));
+        }
+        let unit = session.document.geometry.as_ref().map_or("", |geometry| geometry.vertical.unit.symbol());
+        let ink = Color32::from_gray(0x20);
+        let font = FontId::proportional(12.0);
+        let [first, last] = match shown.mapped {
+            Mapped::Structure(_) => shown.range,
+            Mapped::Thickness(..) => [shown.range[1], shown.range[0]],
+        };
+        for (y, value) in [(bar.top(), first), (bar.center().y, 0.5 * (first + last)), (bar.bottom(), last)] {
+            painter.text(pos2(bar.right() + 5.0, y), Align2::LEFT_CENTER, format!("{value:.0}"), font.clone(), ink);
+        }
+        painter.text(pos2(bar.left(), bar.top() - 10.0), Align2::LEFT_BOTTOM, unit, font.clone(), ink);
+        let text = format!("every {} {unit}", shown.interval);
+        painter.text(pos2(rect.right() - 6.0, bar.bottom() + 14.0), Align2::RIGHT_TOP, text, font, ink);
+    }
+}
+
+fn north(ui: &Ui, rect: Rect) {
+    let painter = ui.painter_at(rect);
+    let ink = Color32::from_gray(0x20);
+    let foot = pos2(rect.left() + 22.0, rect.top() + 50.0);
+    let tip = foot - vec2(0.0, 26.0);
+    painter.line_segment([foot, tip], Stroke::new(1.6, ink));
+    painter.add(Shape::convex_polygon(vec![tip - vec2(0.0, 6.0), tip + vec2(4.5, 5.0), tip + vec2(-4.5, 5.0)], ink, Stroke::NONE));
+    painter.text(foot + vec2(0.0, 3.0), Align2::CENTER_TOP, "N", FontId::proportional(13.0), ink);
+}

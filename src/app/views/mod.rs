@@ -1,0 +1,21 @@
+//! What is seen: a file for each panel. Each draws the state and answers with actions.
+
+pub mod block;
+pub mod bar;
+pub mod chooser;
+pub mod controls;
+pub mod data;
+pub mod export;
+pub mod import;
+pub mod interpretation;
+pub mod layers;
+pub mod map;
+pub mod notices;
+pub mod patterns;
+pub mod pointed;
+pub mod sections;
+pub mod shortcuts;
+pub mod start;
+pub mod status;
+pub mod swatch;
+pub mod tiles;

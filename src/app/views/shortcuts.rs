@@ -1,0 +1,186 @@
+//! Every action by keyboard: one table that is both obeyed and shown.
+
+use crate::app::state::{Action, Choice, Compare, Dialogue, ExportForm, Layout, Panel, Session, StandardView, State, camera};
+use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};
+use glam::DVec2;
+use render::Scene;
+
+/// What a key does to an open project.
+type Deed = fn(&Session) -> Option<Action>;
+
+/// A key and its deed.
+pub struct Shortcut {
+    /// The key.
+    pub key: Key,
+    /// What is held with it.
+    pub modifiers: Modifiers,
+    /// How the two are shown.
+    pub shown: &'static str,
+    /// What it does.
+    pub name: &'static str,
+    deed: Deed,
+}
+
+const fn plain(key: Key, shown: &'static str, name: &'static str, deed: Deed) -> Shortcut {
+    Shortcut { key, modifiers: Modifiers::NONE, shown, name, deed }
+}
+
+const fn command(key: Key, shown: &'static str, name: &'static str, deed: Deed) -> Shortcut {
+    Shortcut { key, modifiers: Modifiers::COMMAND, shown, name, deed }
+}
+
+/// Degrees that an arrow key turns.
+const TURN_POINTS: f64 = 30.0;
+/// Factor that a key zooms by.
+const ZOOM: f64 = 1.2;
+/// A picture's size where only the aspect matters.
+const ANY_SIZE: DVec2 = DVec2::new(900.0, 650.0);
+
+/// All of them.
+pub const SHORTCUTS: &[Shortcut] = &[
+    Shortcut {
+        key: Key::Z,
+        modifiers: Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        shown: "Ctrl Shift Z",
+        name: "Redo",
+        deed: |_| Some(Action::Redo),
+    },
+    command(Key::Z, "Ctrl Z", "Undo", |_| Some(Action::Undo)),
+    command(Key::O, "Ctrl O", "Open a project", |_| ask(Dialogue::Choose(Choice::Project))),
+    command(Key::N, "Ctrl N", "New project from SEG-Y", |_| ask(Dialogue::Choose(Choice::NewSurvey))),
+    command(Key::I, "Ctrl I", "Add a horizon", |_| ask(Dialogue::Choose(Choice::Horizon))),
+    command(Key::E, "Ctrl E", "Export the picture", |session| {
+        ask(Dialogue::Export(ExportForm::new(session.root.with_extension("png").display().to_string())))
+    }),
+    command(Key::W, "Ctrl W", "Close the project", |_| Some(Action::Close)),
+    plain(Key::Num1, "1", "Block alone", |_| Some(Action::Arrange(Layout::Block))),
+    plain(Key::Num2, "2", "Block and sections", |_| Some(Action::Arrange(Layout::Sections))),
+    plain(Key::Num3, "3", "Map", |_| Some(Action::Arrange(Layout::Map))),
+    plain(Key::L, "L", "Layers", |_| Some(Action::Panel(Panel::Layers))),
+    plain(Key::D, "D", "Data", |_| Some(Action::Panel(Panel::Data))),
+    plain(Key::P, "P", "Picks", |_| Some(Action::Panel(Panel::Picks))),
+    plain(Key::B, "B", "Blend", |_| Some(Action::Compare(Compare::Blend))),
+    plain(Key::S, "S", "Side by side", |_| Some(Action::Compare(Compare::SideBySide))),
+    plain(Key::W, "W", "Wipe", |_| Some(Action::Compare(Compare::Wipe))),
+    plain(Key::R, "R", "Raw or illustrated", |session| {
+        let blend = if session.view.scene.blend < 0.5 { 1.0 } else { 0.0 };
+        show(Scene { blend, ..session.view.scene.clone() })
+    }),
+    plain(Key::Home, "Home", "Block view", |_| Some(Action::Stand(StandardView::Block))),
+    plain(Key::T, "T", "From above", |_| Some(Action::Stand(StandardView::Top))),
+    plain(Key::ArrowLeft, "←", "Turn left", |session| turn(session, DVec2::new(-TURN_POINTS, 0.0))),
+    plain(Key::ArrowRight, "→", "Turn right", |session| turn(session, DVec2::new(TURN_POINTS, 0.0))),
+    plain(Key::PageUp, "Page up", "Look from higher", |session| turn(session, DVec2::new(0.0, TURN_POINTS))),
+    plain(Key::PageDown, "Page down", "Look from lower", |session| turn(session, DVec2::new(0.0, -TURN_POINTS))),
+    plain(Key::Plus, "+", "Nearer", |session| zoom(session, ZOOM)),
+    plain(Key::Equals, "=", "Nearer", |session| zoom(session, ZOOM)),
+    plain(Key::Minus, "−", "Farther", |session| zoom(session, 1.0 / ZOOM)),
+    plain(Key::C, "C", "Cut the nearest corner, or nothing", |session| {
+        let geometry = session.document.geometry.as_ref()?;
+        let mut scene = session.view.scene.clone();
+        if scene.cut_outs.is_empty() {
+            scene.cut_outs = vec![super::controls::nearest_cut(&scene, geometry)];
+        } else {
+            scene.cut_outs.clear();
+        }
+        show(scene)
+    }),
+    plain(Key::H, "H", "Handles", |session| Some(Action::Handles(!session.view.handles))),
+    plain(Key::J, "J", "Inline before", |session| step(session, 0, -1.0)),
+    plain(Key::K, "K", "Inline after", |session| step(session, 0, 1.0)),
+    plain(Key::N, "N", "Crossline before", |session| step(session, 1, -1.0)),
+    plain(Key::M, "M", "Crossline after", |session| step(session, 1, 1.0)),
+    plain(Key::Comma, ",", "Slice above", |session| step(session, 2, -1.0)),
+    plain(Key::Period, ".", "Slice below", |session| step(session, 2, 1.0)),
+];
+
+fn ask(dialogue: Dialogue) -> Option<Action> {
+    Some(Action::Ask(Box::new(dialogue)))
+}
+
+fn show(scene: Scene) -> Option<Action> {
+    Some(Action::Show(Box::new(scene)))
+}
+
+fn turn(session: &Session, delta: DVec2) -> Option<Action> {
+    let mut scene = session.view.scene.clone();
+    camera::orbit(&mut scene, session.document.geometry.as_ref()?, ANY_SIZE, delta);
+    show(scene)
+}
+
+fn zoom(session: &Session, factor: f64) -> Option<Action> {
+    let mut scene = session.view.scene.clone();
+    camera::zoom_at(&mut scene, ANY_SIZE, ANY_SIZE * 0.5, factor);
+    show(scene)
+}
+
+fn step(session: &Session, axis: usize, by: f64) -> Option<Action> {
+    let mut slices = session.view.slices;
+    slices[axis] += by;
+    Some(Action::Slices(slices))
+}
+
+/// Obeys the keys that were pressed, unless something is being typed or asked.
+pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
+    if state.is_asking() || ctx.egui_wants_keyboard_input() {
+        return;
+    }
+    let asked = ctx.input_mut(|input| input.events.iter().any(|event| matches!(event, eframe::egui::Event::Text(text) if text == "?")));
+    if asked {
+        actions.push(Action::Ask(Box::new(Dialogue::Shortcuts)));
+    }
+    let Some(session) = &state.session else { return };
+    for shortcut in SHORTCUTS {
+        if ctx.input_mut(|input| input.consume_key(shortcut.modifiers, shortcut.key)) {
+            actions.extend((shortcut.deed)(session));
+        }
+    }
+}
+
+/// Shows the table.
+pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
+    let modal = Modal::new(Id::unique("shortcuts")).show(ctx, |ui| {
+        ui.set_width(620.0);
+        ui.heading("Shortcuts");
+        ScrollArea::vertical().max_height(ctx.content_rect().height() - 200.0).show(ui, |ui| {
+            ui.columns_const(|columns: &mut [eframe::egui::Ui; 2]| {
+                let half = SHORTCUTS.len().div_ceil(2);
+                for (column, part) in columns.iter_mut().zip(SHORTCUTS.chunks(half)) {
+                    Grid::new(("shortcuts", part[0].shown)).num_columns(2).spacing([18.0, 6.0]).show(column, |ui| {
+                        for shortcut in part {
+                            ui.strong(shortcut.shown);
+                            ui.label(shortcut.name);
+                            ui.end_row();
+                        }
+                    });
+                }
+            });
+        });
+        ui.weak("In the block: drag turns it, Shift drag moves it, the wheel zooms, a click moves the sections there.");
+        if ui.button("Close").clicked() {
+            actions.push(Action::Answered);
+        }
+    });
+    if modal.should_close() {
+        actions.push(Action::Answered);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_key_means_two_things() {
+        for (index, shortcut) in SHORTCUTS.iter().enumerate() {
+            for other in &SHORTCUTS[..index] {
+                assert!(
+                    shortcut.key != other.key || shortcut.modifiers != other.modifiers,
+                    "{} and {}",
+                    shortcut.name,
+                    other.name
+                );
+            }
+        }
+    }
+}

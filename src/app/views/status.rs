@@ -1,0 +1,34 @@
+//! The line at the foot: what is under the cursor, and what is under way.
+
+use super::pointed::{self, Pointed};
+use crate::app::state::Session;
+use crate::app::work::RunningLine;
+use eframe::egui::{Align, Layout, ProgressBar, Ui};
+
+/// Shows the line.
+pub fn show(ui: &mut Ui, session: Option<&Session>, pointed: Option<&Pointed>, running: &[RunningLine], device: &str) {
+    ui.horizontal(|ui| {
+        if let (Some(session), Some(pointed)) = (session, pointed) {
+            ui.label(pointed::sentence(pointed, &session.document));
+        } else if let Some(session) = session {
+            ui.weak(session.root.display().to_string());
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for line in running {
+                if ui.small_button("Stop").on_hover_text(format!("Stop: {}", line.title)).clicked() {
+                    line.progress.cancel();
+                }
+                let bar = match line.share() {
+                    Some(share) => ProgressBar::new(share).show_percentage(),
+                    None => ProgressBar::new(0.0),
+                };
+                ui.add(bar.desired_width(110.0));
+                let text = if line.stage.is_empty() { line.title.clone() } else { format!("{}: {}", line.title, line.stage) };
+                ui.label(text);
+            }
+            if running.is_empty() && !device.is_empty() {
+                ui.weak(format!("drawn by {device}"));
+            }
+        });
+    });
+}

@@ -1,0 +1,174 @@
+//! What pictures are drawn from, read and computed once and shared by those who draw and those who ask what is under the cursor.
+//!
+//! A change of style alone compiles the tables anew and leaves model, parameterization and volumes as they are.
+
+use super::running::Running;
+use super::{Event, Outbox, spawn};
+use crate::app::state::{Notice, Place};
+use crate::error::ProjectError;
+use crate::pipeline::{self, Loaded};
+use crate::project::{Document, Project};
+use crate::{derived, library, style};
+use render::Scene;
+use std::path::PathBuf;
+use std::sync::{Arc, Condvar, Mutex, PoisonError, RwLock};
+use survey::Progress;
+use survey::model::ModelSettings;
+use ttf::TtfTables;
+
+/// Loaded data; whoever only looks must not wait for it (`try_read`).
+pub type Rocks = Arc<RwLock<Loaded>>;
+
+/// What is to be drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// The project.
+    pub root: PathBuf,
+    /// Its state.
+    pub document: Document,
+    /// Vertical exaggeration: patterns are sized for it.
+    pub exaggeration: f64,
+}
+
+#[derive(Default)]
+struct Slot {
+    wanted: Option<Wanted>,
+    progress: Option<Progress>,
+    ended: bool,
+    forget: bool,
+}
+
+/// The thread that loads, and the wish it works on next.
+pub(super) struct Loader {
+    shared: Arc<(Mutex<Slot>, Condvar)>,
+}
+
+impl Loader {
+    pub(super) fn start(outbox: Outbox, running: Running) -> Self {
+        let shared = Arc::new((Mutex::new(Slot::default()), Condvar::new()));
+        let mine = shared.clone();
+        spawn("data", move || work(&mine, &outbox, &running));
+        Self { shared }
+    }
+
+    /// Loads this next; what is being loaded for another state is given up.
+    pub(super) fn load(&self, wanted: Wanted) {
+        self.change(|slot| {
+            slot.wanted = Some(wanted);
+            slot.progress.iter().for_each(Progress::cancel);
+        });
+    }
+
+    /// Lets go of everything.
+    pub(super) fn forget(&self) {
+        self.change(|slot| {
+            slot.wanted = None;
+            slot.forget = true;
+            slot.progress.iter().for_each(Progress::cancel);
+        });
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Slot)) {
+        change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
+        self.shared.1.notify_one();
+    }
+}
+
+impl Drop for Loader {
+    fn drop(&mut self) {
+        self.change(|slot| {
+            slot.ended = true;
+            slot.progress.iter().for_each(Progress::cancel);
+        });
+    }
+}
+
+/// What was loaded last, and what for.
+struct Kept {
+    root: PathBuf,
+    key: String,
+    volumes: Vec<(String, String)>,
+    rocks: Rocks,
+}
+
+fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox, running: &Running) {
+    let mut kept: Option<Kept> = None;
+    loop {
+        let wanted = {
+            let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+            loop {
+                if slot.ended {
+                    return;
+                }
+                if std::mem::take(&mut slot.forget) {
+                    kept = None;
+                }
+                if let Some(wanted) = slot.wanted.take() {
+                    break wanted;
+                }
+                slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
+            }
+        };
+        let (guard, progress) = running.begin("Preparing the picture", Place::Block, outbox.wake.clone());
+        shared.0.lock().unwrap_or_else(PoisonError::into_inner).progress = Some(progress.clone());
+        let loaded = load(&wanted, &mut kept, &progress);
+        drop(guard);
+        match loaded {
+            Ok(rocks) => outbox.send(Event::Ready { root: wanted.root, rocks }),
+            Err(ProjectError::Cancelled(_)) => {}
+            Err(error) => outbox.send(Event::Told(Notice::failure(Place::Block, &error))),
+        }
+        outbox.wake();
+    }
+}
+
+fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
+    let document = &wanted.document;
+    let key = derived::parameterization_key(document, &ModelSettings::default(), &pipeline::param_settings(document));
+    let volumes = needed_volumes(document);
+    let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
+    if let Some(kept) = kept.as_ref().filter(same) {
+        restyle(&kept.rocks, wanted)?;
+        return Ok(kept.rocks.clone());
+    }
+    // Memory for one model and its volumes, not for two.
+    *kept = None;
+    let project = Project::open(&wanted.root)?;
+    // Half-way needs everything that any blend needs.
+    let scene = Scene { blend: 0.5, exaggeration: wanted.exaggeration, ..Scene::default() };
+    let rocks = Arc::new(RwLock::new(pipeline::load(&project, &scene, progress)?));
+    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, rocks: rocks.clone() });
+    Ok(rocks)
+}
+
+/// Names and hashes of the volumes that pictures of a project show.
+fn needed_volumes(document: &Document) -> Vec<(String, String)> {
+    let functions = style::of_project(document);
+    let scalars = functions.scalars.iter().map(|function| function.volume.clone());
+    let wanted: Vec<String> = scalars.chain(functions.raw.map(|raw| raw.volume)).collect();
+    let entries = document.volumes.iter().filter(|entry| wanted.contains(&entry.name));
+    entries.map(|entry| (entry.name.clone(), entry.hash.clone())).collect()
+}
+
+/// Compiles the styles of a project state into what is loaded.
+fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
+    let document = &wanted.document;
+    let functions = style::of_project(document);
+    let tables = {
+        let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
+        match &loaded.rock {
+            None => None,
+            Some(rock) => {
+                let library = library::of_project(&wanted.root, document)?;
+                let names = document.stratigraphy().layer_names_bottom_up();
+                let block = pipeline::block_extent(&loaded.geometry, rock, names, wanted.exaggeration);
+                Some(TtfTables::compile(&functions, &block, &library)?)
+            }
+        }
+    };
+    let mut loaded = rocks.write().unwrap_or_else(PoisonError::into_inner);
+    loaded.tables = tables;
+    loaded.raw = functions.raw;
+    loaded.version = pipeline::new_version();
+    Ok(())
+}

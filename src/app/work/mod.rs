@@ -1,0 +1,186 @@
+//! Everything that takes time, away from the window's thread.
+//!
+//! [`Work`] hands orders to threads and collects their [`Event`]s; [`Running`] lists what is under way, with progress and a way to stop it.
+//! Commands on the project go one after the other ([`project`]); data are read and models built by [`data`]; pictures
+//! ([`picture`]) and sections ([`slice`]) are drawn for the latest wish only.
+//!
+//! Invariant: no call from the window's thread waits.
+
+pub mod data;
+mod export;
+pub mod map;
+pub mod picture;
+mod project;
+pub mod running;
+pub mod scan;
+pub mod slice;
+pub mod swatches;
+
+pub use data::{Rocks, Wanted};
+pub use map::{MapPicture, Maps};
+pub use picture::{Drawing, Drawn, PictureWish};
+pub use running::{Running, RunningLine};
+pub use slice::{SlicePicture, SliceWish, Slices};
+pub use swatches::Swatches;
+
+use super::state::{Notice, Place, Snapshot, Task};
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::Arc;
+use survey::Progress;
+
+/// An answer.
+pub enum Event {
+    /// A project was read.
+    Opened(Box<Snapshot>),
+    /// The open project changed.
+    Changed(Box<Snapshot>),
+    /// Data of this project state are ready to be drawn.
+    Ready {
+        /// The project.
+        root: PathBuf,
+        /// The data.
+        rocks: Rocks,
+    },
+    /// A picture of the block.
+    Drawn(Drawn),
+    /// A section.
+    Sliced(SlicePicture),
+    /// A map.
+    Mapped(MapPicture),
+    /// A picture was written.
+    Exported(PathBuf),
+    /// Something is worth knowing.
+    Told(Notice),
+}
+
+/// Wakes the window up: something is there to be shown.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// Where workers leave their answers.
+#[derive(Clone)]
+pub struct Outbox {
+    sender: Sender<Event>,
+    wake: Wake,
+}
+
+impl Outbox {
+    /// Leaves an answer; a window that has gone needs none.
+    pub fn send(&self, event: Event) {
+        let _ = self.sender.send(event);
+        (self.wake)();
+    }
+
+    /// Wakes the window without an answer.
+    pub fn wake(&self) {
+        (self.wake)();
+    }
+}
+
+/// The workers.
+pub struct Work {
+    events: Receiver<Event>,
+    /// Where answers go.
+    pub outbox: Outbox,
+    /// What is under way.
+    pub running: Running,
+    orders: Sender<project::Order>,
+    data: data::Loader,
+    /// Pictures of the block.
+    pub drawing: Drawing,
+    /// Sections.
+    pub slices: Slices,
+    /// Maps.
+    pub maps: Maps,
+    root: Option<PathBuf>,
+}
+
+impl Work {
+    /// Starts the workers.
+    pub fn start(wake: Wake) -> Self {
+        let (sender, events) = channel();
+        let outbox = Outbox { sender, wake };
+        let running = Running::default();
+        Self {
+            events,
+            orders: project::start(outbox.clone(), running.clone()),
+            data: data::Loader::start(outbox.clone(), running.clone()),
+            drawing: Drawing::start(outbox.clone()),
+            slices: Slices::start(outbox.clone()),
+            maps: Maps::start(outbox.clone()),
+            outbox,
+            running,
+            root: None,
+        }
+    }
+
+    /// The next answer, if there is one.
+    pub fn next_event(&mut self) -> Option<Event> {
+        let event = self.events.try_recv().ok()?;
+        if let Event::Opened(snapshot) = &event {
+            self.root = Some(snapshot.root.clone());
+        }
+        Some(event)
+    }
+
+    /// Does what a state asks for; `place` is where a failure is shown.
+    pub fn run(&mut self, task: Task, place: Place) {
+        let root = || self.root.clone();
+        let order = match task {
+            Task::Open(root) => project::Order::Open(root),
+            Task::Demo(folder) => project::Order::Demo(folder),
+            Task::Create { command, root } => project::Order::Create { command, root },
+            Task::Apply(command) => match root() {
+                Some(root) => project::Order::Apply { root, command, place },
+                None => return,
+            },
+            Task::Undo => match root() {
+                Some(root) => project::Order::Undo(root),
+                None => return,
+            },
+            Task::Redo => match root() {
+                Some(root) => project::Order::Redo(root),
+                None => return,
+            },
+            Task::Export(plan) => {
+                if let Some(root) = root() {
+                    let (outbox, running) = (self.outbox.clone(), self.running.clone());
+                    spawn("export", move || export::export(&root, &plan, &outbox, &running));
+                }
+                return;
+            }
+            Task::Release => {
+                self.root = None;
+                self.data.forget();
+                return;
+            }
+            Task::Remember => return,
+        };
+        // The thread lives as long as this value.
+        let _ = self.orders.send(order);
+    }
+
+    /// Reads and computes what pictures of the open project need.
+    pub fn load(&mut self, wanted: Wanted) {
+        self.data.load(wanted);
+    }
+
+    /// Does something of its own on a thread.
+    pub fn background(&self, title: &str, place: Place, job: impl FnOnce(&Progress, &Outbox) -> Result<(), Notice> + Send + 'static) {
+        let (outbox, running) = (self.outbox.clone(), self.running.clone());
+        let title = title.to_owned();
+        spawn("background", move || {
+            let (line, progress) = running.begin(&title, place, outbox.wake.clone());
+            if let Err(notice) = job(&progress, &outbox) {
+                outbox.send(Event::Told(notice));
+            }
+            drop(line);
+            outbox.wake();
+        });
+    }
+}
+
+/// A named thread; a system that has no thread left loses the job, not the window.
+fn spawn(name: &str, job: impl FnOnce() + Send + 'static) {
+    let _ = std::thread::Builder::new().name(name.to_owned()).spawn(job);
+}

@@ -1,0 +1,186 @@
+//! Pictures of the block for the screen: coarse at once, then full, then smooth, always for the latest wish.
+//!
+//! The time that one ray took last time decides how coarse the first picture is, so that it comes within [`COARSE_S`] on any machine. A
+//! coarse picture is always finished, or nothing would be seen while the camera moves; finer ones are given up for a newer wish.
+
+use super::{Event, Outbox, Rocks, spawn};
+use crate::app::state::{Notice, Place};
+use crate::picture::{Device, Painter};
+use image::RgbaImage;
+use render::{RenderError, Scene};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::Instant;
+use survey::Progress;
+
+/// Seconds a first picture may take: the hand notices more than a tenth.
+const COARSE_S: f64 = 0.09;
+/// Largest factor by which a first picture is coarser.
+const COARSEST: u32 = 8;
+/// Samples a pixel along each axis of the last picture.
+const SMOOTH_SAMPLES: u32 = 2;
+/// Weight of the latest measurement of the time a ray takes.
+const LATEST: f64 = 0.5;
+
+/// What is to be seen.
+#[derive(Clone)]
+pub struct PictureWish {
+    /// Unlike that of any other wish, and growing.
+    pub number: u64,
+    /// The pictures, each with its size on the screen.
+    pub scenes: Vec<Scene>,
+    /// What they are drawn from.
+    pub rocks: Rocks,
+    /// While the hand moves, coarse is enough.
+    pub is_moving: bool,
+}
+
+/// A picture.
+pub struct Drawn {
+    /// Of which wish.
+    pub number: u64,
+    /// Which of its scenes.
+    pub pane: usize,
+    /// The pixels: fewer than the screen's where it is coarse.
+    pub image: RgbaImage,
+    /// Whether nothing better will come.
+    pub is_final: bool,
+    /// What drew it.
+    pub device: String,
+}
+
+#[derive(Default)]
+struct Slot {
+    wish: Option<PictureWish>,
+    /// Of the picture being drawn, if it may be given up.
+    progress: Option<Progress>,
+    ended: bool,
+}
+
+/// The thread that draws, and the wish it works on next.
+pub struct Drawing {
+    shared: Arc<(Mutex<Slot>, Condvar)>,
+}
+
+impl Drawing {
+    /// Starts the thread.
+    pub fn start(outbox: Outbox) -> Self {
+        let shared = Arc::new((Mutex::new(Slot::default()), Condvar::new()));
+        let mine = shared.clone();
+        spawn("picture", move || Artist::new(outbox).work(&mine));
+        Self { shared }
+    }
+
+    /// Draws this next, instead of what was wished before.
+    pub fn draw(&self, wish: PictureWish) {
+        self.change(|slot| {
+            slot.wish = Some(wish);
+            slot.progress.iter().for_each(Progress::cancel);
+        });
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Slot)) {
+        change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
+        self.shared.1.notify_one();
+    }
+}
+
+impl Drop for Drawing {
+    fn drop(&mut self) {
+        self.change(|slot| {
+            slot.ended = true;
+            slot.progress.iter().for_each(Progress::cancel);
+        });
+    }
+}
+
+struct Artist {
+    outbox: Outbox,
+    painter: Option<Painter>,
+    /// Seconds a ray takes.
+    ray_s: f64,
+}
+
+impl Artist {
+    fn new(outbox: Outbox) -> Self {
+        // Until measured: a slow processor.
+        Self { outbox, painter: None, ray_s: 1.5e-6 }
+    }
+
+    fn work(mut self, shared: &(Mutex<Slot>, Condvar)) {
+        loop {
+            let wish = {
+                let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+                loop {
+                    if slot.ended {
+                        return;
+                    }
+                    slot.progress = None;
+                    if let Some(wish) = slot.wish.take() {
+                        break wish;
+                    }
+                    slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
+                }
+            };
+            if let Err(error) = self.satisfy(&wish, shared) {
+                self.outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
+            }
+        }
+    }
+
+    /// Draws the wish ever finer until it is smooth or a newer one is there.
+    fn satisfy(&mut self, wish: &PictureWish, shared: &(Mutex<Slot>, Condvar)) -> Result<(), RenderError> {
+        let rays: f64 = wish.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();
+        let divisor = ((rays * self.ray_s / COARSE_S).sqrt().ceil() as u32).clamp(1, COARSEST);
+        let mut passes = vec![(divisor, 1)];
+        if !wish.is_moving {
+            if divisor > 1 {
+                passes.push((1, 1));
+            }
+            passes.push((1, SMOOTH_SAMPLES));
+        }
+        for (index, (divisor, samples)) in passes.iter().copied().enumerate() {
+            let progress = Progress::silent();
+            if index > 0 {
+                let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+                if slot.wish.is_some() || slot.ended {
+                    return Ok(());
+                }
+                slot.progress = Some(progress.clone());
+            }
+            for pane in 0..wish.scenes.len() {
+                match self.draw(wish, pane, divisor, samples, index + 1 == passes.len(), &progress) {
+                    Err(RenderError::Cancelled(_)) => return Ok(()),
+                    other => other?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn draw(
+        &mut self,
+        wish: &PictureWish,
+        pane: usize,
+        divisor: u32,
+        samples: u32,
+        is_final: bool,
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
+        let painter = match &mut self.painter {
+            Some(painter) => painter,
+            none => none.insert(Painter::new(Device::Auto, progress)?),
+        };
+        let scene = &wish.scenes[pane];
+        let size_px = scene.size_px.map(|side| side.div_ceil(divisor).max(1));
+        let scene = Scene { size_px, samples, ..scene.clone() };
+        let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
+        let start = Instant::now();
+        let (image, _) = painter.draw(&scene, &loaded, progress)?;
+        drop(loaded);
+        let rays = f64::from(size_px[0]) * f64::from(size_px[1]) * f64::from(samples * samples);
+        self.ray_s += (start.elapsed().as_secs_f64() / rays - self.ray_s) * LATEST;
+        let device = painter.device().to_owned();
+        self.outbox.send(Event::Drawn(Drawn { number: wish.number, pane, image, is_final, device }));
+        Ok(())
+    }
+}

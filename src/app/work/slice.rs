@@ -1,0 +1,156 @@
+//! Sections along the lattice: amplitudes as a raster, horizons and faults as lines over it.
+//!
+//! The raster has one pixel a sample; lines are in its coordinates, voxel from the section's first sample: s to the right, t down. An
+//! inline runs along crosslines, a crossline along inlines, a slice has inlines to the right and crosslines down.
+
+use super::{Event, Outbox, Rocks, spawn};
+use crate::app::state::SliceKind;
+use crate::pipeline::Loaded;
+use glam::{DVec2, DVec3, Vec3};
+use image::{Rgba, RgbaImage};
+use render::{NamedVolume, VoxelBox};
+use std::collections::HashMap;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use survey::section::{LineKind, LineQuality, Section, SectionPlane};
+
+/// Colours that a value's range is divided into.
+const COLOURS: usize = 1024;
+
+/// A section to be seen.
+#[derive(Clone)]
+pub struct SliceWish {
+    /// Along what.
+    pub kind: SliceKind,
+    /// Where, voxel.
+    pub at: f64,
+    /// What it is cut from.
+    pub rocks: Rocks,
+}
+
+/// A line of a section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SliceLine {
+    /// Horizon or fault, by its index.
+    pub kind: LineKind,
+    /// How sure it is.
+    pub quality: LineQuality,
+    /// (s, t) from the section's corner.
+    pub points: Vec<DVec2>,
+}
+
+/// A section.
+pub struct SlicePicture {
+    /// Along what.
+    pub kind: SliceKind,
+    /// Where, voxel.
+    pub at: f64,
+    /// A pixel a sample, s to the right, t down.
+    pub image: RgbaImage,
+    /// Horizons and faults.
+    pub lines: Vec<SliceLine>,
+}
+
+#[derive(Default)]
+struct Slot {
+    wishes: HashMap<SliceKind, SliceWish>,
+    ended: bool,
+}
+
+/// The thread that cuts, and the wishes it works on next: the latest of each kind.
+pub struct Slices {
+    shared: Arc<(Mutex<Slot>, Condvar)>,
+}
+
+impl Slices {
+    /// Starts the thread.
+    pub fn start(outbox: Outbox) -> Self {
+        let shared = Arc::new((Mutex::new(Slot::default()), Condvar::new()));
+        let mine = shared.clone();
+        spawn("sections", move || work(&mine, &outbox));
+        Self { shared }
+    }
+
+    /// Cuts this next, instead of what was wished of its kind before.
+    pub fn cut(&self, wish: SliceWish) {
+        self.change(|slot| drop(slot.wishes.insert(wish.kind, wish)));
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Slot)) {
+        change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
+        self.shared.1.notify_one();
+    }
+}
+
+impl Drop for Slices {
+    fn drop(&mut self) {
+        self.change(|slot| slot.ended = true);
+    }
+}
+
+fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox) {
+    loop {
+        let wish = {
+            let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+            loop {
+                if slot.ended {
+                    return;
+                }
+                let next = SliceKind::ALL.into_iter().find_map(|kind| slot.wishes.remove(&kind));
+                if let Some(wish) = next {
+                    break wish;
+                }
+                slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
+            }
+        };
+        let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
+        let picture = cut(&loaded, wish.kind, wish.at);
+        drop(loaded);
+        outbox.send(Event::Sliced(picture));
+    }
+}
+
+/// The plane of a section over the whole survey.
+pub fn plane(kind: SliceKind, at: f64, size: [usize; 3]) -> SectionPlane {
+    let high = VoxelBox::of_size(size).high();
+    match kind {
+        SliceKind::Inline => SectionPlane::inline(at, DVec3::ZERO, high),
+        SliceKind::Crossline => SectionPlane::crossline(at, DVec3::ZERO, high),
+        SliceKind::Slice => SectionPlane::slice(at, DVec3::ZERO, high),
+    }
+}
+
+/// Cuts what is loaded.
+pub fn cut(loaded: &Loaded, kind: SliceKind, at: f64) -> SlicePicture {
+    let plane = plane(kind, at, loaded.geometry.size());
+    let lines = loaded.rock.as_ref().map_or_else(Vec::new, |rock| {
+        let section = Section::new(&rock.model, &plane);
+        let is_interpreted = |kind: LineKind| !matches!(kind, LineKind::Frame | LineKind::Fault { real: false, .. });
+        let lines = section.lines.into_iter().filter(|line| is_interpreted(line.kind));
+        lines.map(|line| SliceLine { kind: line.kind, quality: line.quality, points: line.points }).collect()
+    });
+    SlicePicture { kind, at, image: raster(loaded, &plane), lines }
+}
+
+/// Raw data on the plane; light grey where there are none.
+fn raster(loaded: &Loaded, plane: &SectionPlane) -> RgbaImage {
+    let [width, height] = plane.extent.map(|extent| extent.round() as u32 + 1);
+    let blank = Rgba([0xdc, 0xdc, 0xda, 0xff]);
+    let mut image = RgbaImage::from_pixel(width, height, blank);
+    let Some(raw) = &loaded.raw else { return image };
+    let Some(volume) = loaded.volumes.iter().find(|volume| volume.name == raw.volume) else { return image };
+    let volume = NamedVolume { name: &volume.name, volume: &volume.volume, covers: volume.covers };
+    let colours = raw.function.bake(COLOURS);
+    let [low, high] = raw.function.domain;
+    let scale = (COLOURS - 1) as f32 / (high - low).max(f32::MIN_POSITIVE);
+    let (origin, s_axis, t_axis) = (plane.origin.as_vec3(), plane.s_axis.as_vec3(), plane.t_axis.as_vec3());
+    for (s, t, pixel) in image.enumerate_pixels_mut() {
+        let point: Vec3 = origin + s_axis * s as f32 + t_axis * t as f32;
+        let value = volume.sample(point);
+        if value.is_nan() {
+            continue;
+        }
+        let colour = colours[((value - low) * scale).clamp(0.0, (COLOURS - 1) as f32) as usize];
+        *pixel = Rgba([colour[0], colour[1], colour[2], 1.0].map(|c| (c * 255.0 + 0.5) as u8));
+    }
+    image
+}
