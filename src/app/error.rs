@@ -29,7 +29,13 @@ pub enum WindowError {
 
 impl From<eframe::Error> for WindowError {
     fn from(error: eframe::Error) -> Self {
-        let reason = error.to_string();
+        // Winit quotes the line of its source that noticed.
+        let text = error.to_string();
+        let reason = text.rsplit("): ").next().and_then(|tail| tail.rsplit(".rs:").next()).unwrap_or(&text);
+        let reason = reason
+            .trim_start_matches(|c: char| c.is_ascii_digit() || c == ':' || c == ' ')
+            .trim_end_matches(')')
+            .to_owned();
         match error {
             eframe::Error::Winit(_) | eframe::Error::WinitEventLoop(_) => Self::NoDisplay { reason },
             eframe::Error::Wgpu(_) => Self::NoDriver { reason },

@@ -6,7 +6,7 @@ use crate::command::{AddHorizon, Age, Command};
 use crate::project::Project;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
-use egui_kittest::kittest::Queryable;
+use egui_kittest::kittest::{NodeT, Queryable};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use survey::formats::ImportOptions;
@@ -48,7 +48,8 @@ fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
 
 fn click(harness: &mut Driven, label: &str) {
     harness.get_by_label(label).click();
-    harness.run_steps(2);
+    // A dialogue is laid out unseen in its first frame.
+    harness.run_steps(3);
 }
 
 fn geometry() -> SurveyGeometry {
@@ -190,7 +191,9 @@ fn a_layer_gets_a_pattern_and_undo_takes_it_back() {
     click(&mut harness, "Layer Top - Base");
     click(&mut harness, "Name");
     let button = harness.query_all_by_label_contains("…").find(|node| {
-        node.accesskit_node().label().is_some_and(|label| label.ends_with('…') && label.chars().next().is_some_and(char::is_lowercase))
+        node.accesskit_node()
+            .label()
+            .is_some_and(|label| label.ends_with('…') && label.chars().next().is_some_and(char::is_lowercase))
     });
     button.expect("the present pattern can be changed").click();
     harness.run_steps(3);
@@ -201,9 +204,7 @@ fn a_layer_gets_a_pattern_and_undo_takes_it_back() {
     });
     harness.key_press_modifiers(Modifiers::COMMAND, Key::Z);
     wait(&mut harness, "it is taken back", |harness| document(harness).style.layers.style("Top - Base").is_none());
-    wait(&mut harness, "the window knows", |harness| {
-        state(harness).session.as_ref().unwrap().redoable().is_some()
-    });
+    wait(&mut harness, "the window knows", |harness| state(harness).session.as_ref().unwrap().redoable().is_some());
     click(&mut harness, "Redo");
     wait(&mut harness, "it is back", |harness| document(harness).style.layers.style("Top - Base").is_some());
 }
@@ -224,9 +225,9 @@ fn views_are_arranged_compared_and_kept() {
     assert_eq!(state(&harness).session.as_ref().unwrap().view.compare, Compare::Wipe);
     click(&mut harness, "From above");
     assert_eq!(state(&harness).session.as_ref().unwrap().view.scene.camera.elevation_deg, 90.0);
-    harness.get_by_placeholder("Name of a scene").focus();
+    harness.get_by_label("Scene name").focus();
     harness.step();
-    harness.get_by_placeholder("Name of a scene").type_text("plan");
+    harness.get_by_label("Scene name").type_text("plan");
     harness.run_steps(2);
     click(&mut harness, "Keep view");
     wait(&mut harness, "the scene is kept", |harness| document(harness).scenes.len() == 1);
@@ -240,7 +241,8 @@ fn a_picture_is_exported_at_its_printed_size() {
     click(&mut harness, "Export…");
     let path = folder.path().join("out.png");
     let Some(Dialogue::Export(form)) = &state(&harness).dialogue else { panic!("no dialogue") };
-    let form = super::state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], dpi: 60.0, ..form.clone() };
+    let form =
+        super::state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], dpi: 60.0, ..form.clone() };
     let expected = form.size_px();
     harness.state_mut().as_mut().unwrap().act(super::state::Action::Ask(Box::new(Dialogue::Export(form))));
     harness.run_steps(2);
@@ -255,7 +257,7 @@ fn the_shortcuts_are_shown_on_a_question_mark() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     harness.event(eframe::egui::Event::Text("?".into()));
-    harness.run_steps(2);
+    harness.run_steps(3);
     harness.get_by_label("Shortcuts");
     harness.key_press(Key::Escape);
     harness.run_steps(3);

@@ -20,6 +20,8 @@ pub fn accent(visuals: &Visuals) -> Color32 {
 pub fn install(ctx: &Context) {
     ctx.set_style_of(Theme::Light, style(Theme::Light));
     ctx.set_style_of(Theme::Dark, style(Theme::Dark));
+    // Where the desktop does not say: as paper is.
+    ctx.options_mut(|options| options.fallback_theme = Theme::Light);
 }
 
 fn style(theme: Theme) -> Style {
@@ -57,9 +59,12 @@ fn visuals(theme: Theme) -> Visuals {
     visuals.popup_shadow = Shadow { offset: [0, 3], blur: 10, spread: 0, color: shade };
     visuals.hyperlink_color = accent;
     visuals.selection.bg_fill = accent.gamma_multiply(if dark { 0.45 } else { 0.26 });
-    visuals.selection.stroke = Stroke::new(1.0, if dark { Color32::WHITE } else { Color32::from_rgb(0x4a, 0x1f, 0x08) });
-    visuals.error_fg_color = if dark { Color32::from_rgb(0xff, 0x8a, 0x80) } else { Color32::from_rgb(0xb0, 0x1e, 0x1e) };
-    visuals.warn_fg_color = if dark { Color32::from_rgb(0xf2, 0xc1, 0x4e) } else { Color32::from_rgb(0x85, 0x5a, 0x00) };
+    visuals.selection.stroke =
+        Stroke::new(1.0, if dark { Color32::WHITE } else { Color32::from_rgb(0x4a, 0x1f, 0x08) });
+    visuals.error_fg_color =
+        if dark { Color32::from_rgb(0xff, 0x8a, 0x80) } else { Color32::from_rgb(0xb0, 0x1e, 0x1e) };
+    visuals.warn_fg_color =
+        if dark { Color32::from_rgb(0xf2, 0xc1, 0x4e) } else { Color32::from_rgb(0x85, 0x5a, 0x00) };
     visuals.slider_trailing_fill = true;
     let text = grey(0x1d, 0xe8);
     let radius = CornerRadius::same(6);

@@ -1,14 +1,16 @@
 //! The window: draws the state, hands actions to it and tasks to the workers.
 
 use super::error::WindowError;
-use super::state::{Action, Appearance, Dialogue, Layout, Notice, Panel as Side, Place, Remembered, SliceKind, State, Task};
+use super::state::{
+    Action, Appearance, Dialogue, Layout, Notice, Panel as Side, Place, Remembered, SliceKind, State, Task,
+};
+use super::theme;
 use super::views::{
     bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, import::Import,
-    interpretation::Interpretation, layers::Layers, map::MapView, notices,
-    patterns::Patterns, pointed::Pointed, sections::Sections, shortcuts, start, status, tiles::Tiles,
+    interpretation::Interpretation, layers::Layers, map::MapView, notices, patterns::Patterns, pointed::Pointed,
+    sections::Sections, shortcuts, start, status, tiles::Tiles,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
-use super::theme;
 use crate::command::Command;
 use eframe::egui::{self, CentralPanel, Context, Frame, Panel, ThemePreference, Ui};
 use std::path::PathBuf;
@@ -29,7 +31,10 @@ const LEAST: [f32; 2] = [860.0, 560.0];
 pub fn run(project: Option<PathBuf>) -> Result<(), WindowError> {
     // Winit's own words for it are an error chain of its backends.
     #[cfg(all(unix, not(target_os = "macos")))]
-    if ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"].iter().all(|name| std::env::var_os(name).is_none_or(|v| v.is_empty())) {
+    if ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
+        .iter()
+        .all(|name| std::env::var_os(name).is_none_or(|v| v.is_empty()))
+    {
         return Err(WindowError::NoDisplay { reason: "neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned() });
     }
     let viewport = egui::ViewportBuilder::default()
@@ -270,7 +275,8 @@ impl Window {
         Panel::right("controls").default_size(300.0).min_size(240.0).show(ui, |ui| {
             self.controls.show(ui, &self.state, session, actions);
         });
-        CentralPanel::no_frame().show(ui, |ui| {
+        let frame = Frame::new().fill(ui.visuals().panel_fill);
+        CentralPanel::no_frame().frame(frame).show(ui, |ui| {
             notices::show(ui, &self.state, Place::Block, actions);
             if !session.is_drawable() {
                 Frame::new().inner_margin(40.0).show(ui, |ui| {
@@ -287,7 +293,7 @@ impl Window {
                     ui.scope_builder(egui::UiBuilder::new().max_rect(left), |ui| {
                         self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, actions);
                     });
-                    ui.scope_builder(egui::UiBuilder::new().max_rect(right.shrink(4.0)), |ui| {
+                    ui.scope_builder(egui::UiBuilder::new().max_rect(right.shrink(6.0)), |ui| {
                         self.map.show(ui, session, rocks, &self.work.maps, actions);
                     });
                     ui.advance_cursor_after_rect(left.union(right));

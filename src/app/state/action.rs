@@ -1,10 +1,10 @@
 //! What can happen, and what follows from it for others.
 
+use super::Appearance;
 use super::dialogue::{Dialogue, ExportPlan};
 use super::notice::Notice;
 use super::session::Snapshot;
 use super::view::{Compare, Layout, Panel, StandardView};
-use super::Appearance;
 use crate::command::Command;
 use render::Scene;
 use std::path::PathBuf;

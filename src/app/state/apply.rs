@@ -124,8 +124,10 @@ impl State {
 
     /// Notes how the project is looked at, so that it can be gone on from.
     pub fn mark(&mut self) {
-        self.remembered.left =
-            self.session.as_ref().map(|session| super::remembered::Left { root: session.root.clone(), view: session.view.clone() });
+        self.remembered.left = self
+            .session
+            .as_ref()
+            .map(|session| super::remembered::Left { root: session.root.clone(), view: session.view.clone() });
     }
 
     /// A task that needs a project.

@@ -95,9 +95,9 @@ fn place(bounds: &VoxelBox, axis: usize, plane: f64, solid: &Solid, normal: f64)
     };
     let behind = DVec3::AXES[axis] * (-0.01 * normal);
     let candidates = SHARES.into_iter().flat_map(|a| SHARES.map(|b| at(a, b)));
-    candidates.into_iter().find(|point| {
-        solid.contains((*point + behind).as_vec3()) && !solid.contains((*point - behind).as_vec3())
-    })
+    candidates
+        .into_iter()
+        .find(|point| solid.contains((*point + behind).as_vec3()) && !solid.contains((*point - behind).as_vec3()))
 }
 
 /// The scene with a handle pulled by `delta` points from where it was in `start`; the rest of the picture stays where it is.

@@ -52,7 +52,9 @@ impl Session {
 
     /// The name the project goes by: its folder's without the ending.
     pub fn name(&self) -> String {
-        self.root.file_stem().map_or_else(|| self.root.display().to_string(), |stem| stem.to_string_lossy().into_owned())
+        self.root
+            .file_stem()
+            .map_or_else(|| self.root.display().to_string(), |stem| stem.to_string_lossy().into_owned())
     }
 
     /// What undo would take back.

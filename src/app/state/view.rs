@@ -165,7 +165,6 @@ impl View {
             self.slices[axis] = self.slices[axis].clamp(0.0, last[axis]).round();
         }
         self.layer = self.layer.take().filter(|name| document.layers().contains(name));
-        self.horizon =
-            self.horizon.take().filter(|name| document.horizons.iter().any(|entry| entry.name == *name));
+        self.horizon = self.horizon.take().filter(|name| document.horizons.iter().any(|entry| entry.name == *name));
     }
 }

@@ -1,6 +1,8 @@
 //! The line at the top: the project, undo and redo, what fills the middle, raw against illustrated.
 
-use crate::app::state::{Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Session, State};
+use crate::app::state::{
+    Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Session, State,
+};
 use eframe::egui::{Align, Button, Layout, RichText, Slider, Ui};
 use render::Scene;
 

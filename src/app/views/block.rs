@@ -9,8 +9,8 @@ use crate::app::state::{Action, Compare, Session, State, camera};
 use crate::app::theme;
 use crate::app::work::{Drawing, Drawn, PictureWish, Rocks};
 use eframe::egui::{
-    Align2, Color32, ColorImage, CursorIcon, FontId, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense, Stroke,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+    Align2, Color32, ColorImage, CursorIcon, FontId, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense,
+    Stroke, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
 };
 use glam::DVec2;
 use render::{Background, Scene};
@@ -96,7 +96,9 @@ impl BlockView {
                 Scene { size_px, blend, background: Background::Transparent, ..view.scene.clone() }
             })
             .collect();
-        let pane = response.hover_pos().map_or(rects[0], |at| *rects.iter().find(|rect| rect.contains(at)).unwrap_or(&rects[0]));
+        let pane = response
+            .hover_pos()
+            .map_or(rects[0], |at| *rects.iter().find(|rect| rect.contains(at)).unwrap_or(&rects[0]));
         let geometry = session.document.geometry.as_ref()?;
         let size = dvec(pane.size());
         let handles = if view.handles { faces::handles(&view.scene, geometry, size) } else { Vec::new() };
@@ -141,9 +143,7 @@ impl BlockView {
             let handle = handles.iter().find(|handle| (screen(pane, handle.at) - at).length() < REACH);
             self.grab = Some(match handle {
                 _ if view.compare == Compare::Wipe && (at.x - wipe_x).abs() < REACH => Grab::Wipe,
-                Some(handle) => {
-                    Grab::Face { handle: *handle, start: Box::new(view.scene.clone()), from: at, size }
-                }
+                Some(handle) => Grab::Face { handle: *handle, start: Box::new(view.scene.clone()), from: at, size },
                 None if modifiers.shift || !response.dragged_by(PointerButton::Primary) => Grab::Shift,
                 None => Grab::Turn,
             });
@@ -211,12 +211,14 @@ impl BlockView {
                 (Compare::Wipe, _) => Rect::from_min_max(pos2(wipe_x, rect.min.y), rect.max),
                 _ => *rect,
             };
-            ui.painter_at(clip).image(texture.id(), *rect, uv, Color32::WHITE);
+            ui.painter_at(clip).image(texture.id(), fitted(*rect, texture.size_vec2()), uv, Color32::WHITE);
         }
         let accent = theme::accent(ui.visuals());
         let rule = match view.compare {
             Compare::Blend => None,
-            Compare::SideBySide => Some((whole.center().x, Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color))),
+            Compare::SideBySide => {
+                Some((whole.center().x, Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color)))
+            }
             Compare::Wipe => Some((wipe_x, Stroke::new(2.0, accent))),
         };
         if let Some((x, stroke)) = rule {
@@ -253,9 +255,16 @@ impl BlockView {
     }
 }
 
+/// The largest rectangle of a picture's shape in the middle of another: a picture of before the view was resized keeps its shape.
+fn fitted(rect: Rect, shape: Vec2) -> Rect {
+    let scale = (rect.width() / shape.x).min(rect.height() / shape.y);
+    let is_same = (rect.width() / rect.height() / (shape.x / shape.y) - 1.0).abs() < 0.03;
+    if is_same { rect } else { Rect::from_center_size(rect.center(), shape * scale) }
+}
+
 /// What pictures lie on.
 pub fn paper(ui: &Ui) -> Color32 {
-    if ui.visuals().dark_mode { Color32::from_gray(0x9a) } else { Color32::WHITE }
+    if ui.visuals().dark_mode { Color32::from_rgb(0xd2, 0xcf, 0xc8) } else { Color32::WHITE }
 }
 
 fn dvec(v: Vec2) -> DVec2 {

@@ -210,7 +210,9 @@ fn explanation(choice: Choice) -> &'static str {
         Choice::NewSurvey | Choice::MoreSurvey => {
             "Choose the file. How it is read is shown before anything is imported."
         }
-        Choice::Horizon => "Irap, ZMAP+, CPS-3, EarthVision, Petrel, Charisma, OpendTect, TSurf, CSV and plain columns.",
+        Choice::Horizon => {
+            "Irap, ZMAP+, CPS-3, EarthVision, Petrel, Charisma, OpendTect, TSurf, CSV and plain columns."
+        }
         Choice::Fault => "Sticks (OpendTect, Charisma), TSurf, or points.",
         Choice::Texture => "A PNG, JPEG or SVG that repeats without seams.",
         Choice::Demo => "A folder for it. It takes about a minute and 60 MB.",

@@ -6,6 +6,7 @@ use crate::command::{AddScene, Command, RemoveScene};
 use eframe::egui::{Button, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
 use render::{Corner, Ground, Projection, Scene, VoxelBox};
+use survey::VerticalUnit;
 
 /// Angle a perspective begins with.
 const FOV_DEG: f64 = 35.0;
@@ -55,8 +56,8 @@ impl Controls {
             });
         }
         ui.horizontal(|ui| {
-            let edit = TextEdit::singleline(&mut self.scene_name).hint_text("Name of a scene").desired_width(130.0);
-            ui.add(edit);
+            let label = ui.label("Scene name");
+            ui.add(TextEdit::singleline(&mut self.scene_name).desired_width(100.0)).labelled_by(label.id);
             let name = self.scene_name.trim().to_owned();
             if ui.add_enabled(!name.is_empty(), Button::new("Keep view")).clicked() {
                 let command = AddScene { name, scene: session.view.scene.clone() };
@@ -101,7 +102,9 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
         });
         if has_layers {
             row(ui, "Pattern density", |ui| {
-                ui.add(Slider::new(&mut scene.global_frequency, 0.1..=10.0).logarithmic(true).max_decimals(2).suffix("×"))
+                ui.add(
+                    Slider::new(&mut scene.global_frequency, 0.1..=10.0).logarithmic(true).max_decimals(2).suffix("×"),
+                )
             });
         }
         row(ui, "Side tone", |ui| ui.add(Slider::new(&mut scene.face_tone, 0.0..=0.5).max_decimals(2)));
@@ -130,7 +133,11 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
     let mut changed = bounds;
     let last = VoxelBox::of_size(geometry.size()).max;
     Grid::new("box").num_columns(3).show(ui, |ui| {
-        for (axis, name) in ["Inlines", "Crosslines", geometry.vertical.unit.symbol()].into_iter().enumerate() {
+        let vertical = match geometry.vertical.unit {
+            VerticalUnit::Milliseconds => "Time, ms",
+            VerticalUnit::Metres => "Depth, m",
+        };
+        for (axis, name) in ["Inlines", "Crosslines", vertical].into_iter().enumerate() {
             ui.label(name);
             for (end, word) in ["from", "to"].into_iter().enumerate() {
                 let voxel = if end == 0 { bounds.min[axis] } else { bounds.max[axis] };
@@ -143,7 +150,8 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
                 let speed = (at(1.0) - at(0.0)).abs();
                 let ends = [at(0.0), at(last[axis])];
                 let range = ends[0].min(ends[1])..=ends[0].max(ends[1]);
-                let value = DragValue::new(&mut number).speed(speed).range(range).max_decimals(1);
+                let value =
+                    DragValue::new(&mut number).speed(speed).range(range).max_decimals(if axis == 2 { 1 } else { 0 });
                 let response = ui.name_inputs(format!("{name} {word}"), |ui| ui.add(value));
                 if response.changed() {
                     let voxel = match axis {

@@ -76,12 +76,17 @@ impl Data {
         let [inlines, crosslines, samples] = geometry.size();
         ui.label(format!("{inlines} inlines, {crosslines} crosslines, {samples} samples"));
         let [x, y] = [geometry.inline_vector, geometry.crossline_vector].map(|vector| vector.length());
-        ui.label(format!("bins of {x:.2} × {y:.2} m, {} {} apart", geometry.vertical.interval, geometry.vertical.unit.symbol()));
+        ui.label(format!(
+            "bins of {x:.2} × {y:.2} m, {} {} apart",
+            geometry.vertical.interval,
+            geometry.vertical.unit.symbol()
+        ));
         if geometry.vertical.unit == VerticalUnit::Milliseconds {
             ui.horizontal(|ui| {
                 let label = ui.label("Velocity").on_hover_text("Turns two-way time into metres");
                 let mut velocity = self.velocity.unwrap_or(geometry.velocity_m_s);
-                let drag = DragValue::new(&mut velocity).speed(10.0).range(300.0..=9000.0).suffix(" m/s").max_decimals(0);
+                let drag =
+                    DragValue::new(&mut velocity).speed(10.0).range(300.0..=9000.0).suffix(" m/s").max_decimals(0);
                 let response = ui.add(drag).labelled_by(label.id);
                 if response.changed() {
                     self.velocity = Some(velocity);
@@ -111,7 +116,9 @@ fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             let is_raw = raw.as_ref().is_some_and(|raw| raw.volume == entry.name);
             let radio = ui.radio(is_raw, &entry.name);
-            if radio.on_hover_text(format!("Show as raw data; {} polarity; {}", entry.polarity, entry.source.reading)).clicked()
+            if radio
+                .on_hover_text(format!("Show as raw data; {} polarity; {}", entry.polarity, entry.source.reading))
+                .clicked()
                 && let Ok(raw) = style::raw_colour(document, Some(&entry.name), ColourMap::Seismics, None)
             {
                 actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
@@ -128,7 +135,10 @@ fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             let present = ColourMap::ALL.into_iter().find(|map| {
                 let stops = map.stops();
                 stops.len() == raw.function.stops.len()
-                    && stops.iter().zip(&raw.function.stops).all(|((at, colour), stop)| *at == stop.at && *colour == stop.colour)
+                    && stops
+                        .iter()
+                        .zip(&raw.function.stops)
+                        .all(|((at, colour), stop)| *at == stop.at && *colour == stop.colour)
             });
             let mut chosen = present;
             let name = present.map_or("own", ColourMap::name);

@@ -8,7 +8,14 @@ use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdi
 const LARGEST: u32 = 16_000;
 
 /// Shows the dialogue.
-pub fn show(ctx: &Context, state: &State, session: &Session, form: &ExportForm, is_drawing: bool, actions: &mut Vec<Action>) {
+pub fn show(
+    ctx: &Context,
+    state: &State,
+    session: &Session,
+    form: &ExportForm,
+    is_drawing: bool,
+    actions: &mut Vec<Action>,
+) {
     let modal = Modal::new(Id::unique("export")).show(ctx, |ui| {
         ui.set_width(440.0);
         ui.heading("Export the picture");
@@ -21,7 +28,11 @@ pub fn show(ctx: &Context, state: &State, session: &Session, form: &ExportForm, 
             ui.label("Size");
             ui.horizontal(|ui| {
                 for (index, name) in ["Width", "Height"].into_iter().enumerate() {
-                    let drag = DragValue::new(&mut next.size_cm[index]).speed(0.1).range(1.0..=120.0).max_decimals(2).suffix(" cm");
+                    let drag = DragValue::new(&mut next.size_cm[index])
+                        .speed(0.1)
+                        .range(1.0..=120.0)
+                        .max_decimals(2)
+                        .suffix(" cm");
                     ui.name_inputs(name, |ui| ui.add(drag));
                     if index == 0 {
                         ui.label("×");
@@ -36,9 +47,10 @@ pub fn show(ctx: &Context, state: &State, session: &Session, form: &ExportForm, 
             ui.label("With");
             ui.vertical(|ui| {
                 let has_layers = !session.document.horizons.is_empty();
-                for (shown, name, can) in
-                    [(&mut next.legend, "Legend", has_layers), (&mut next.scale_bar, "Scale bar and exaggeration", true)]
-                {
+                for (shown, name, can) in [
+                    (&mut next.legend, "Legend", has_layers),
+                    (&mut next.scale_bar, "Scale bar and exaggeration", true),
+                ] {
                     let mut is_shown = *shown == Shown::Yes;
                     if ui.add_enabled(can, eframe::egui::Checkbox::new(&mut is_shown, name)).changed() {
                         *shown = if is_shown { Shown::Yes } else { Shown::No };
@@ -51,7 +63,10 @@ pub fn show(ctx: &Context, state: &State, session: &Session, form: &ExportForm, 
         let is_too_large = width.max(height) > LARGEST;
         let text = format!("{width} × {height} pixels");
         if is_too_large {
-            ui.colored_label(ui.visuals().error_fg_color, format!("{text}: too large, lower the size or the resolution"));
+            ui.colored_label(
+                ui.visuals().error_fg_color,
+                format!("{text}: too large, lower the size or the resolution"),
+            );
         } else {
             ui.weak(text);
         }

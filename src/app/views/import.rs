@@ -7,15 +7,15 @@ use crate::app::work::scan::{self, Found, SurveyScan};
 use crate::command::ImportVolume;
 use crate::project::Polarity;
 use eframe::egui::{
-    Button, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Mesh, Modal, Pos2, Rect, Role, ScrollArea, Sense,
-    Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    Button, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Mesh, Modal, Pos2, Rect, Role, ScrollArea,
+    Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::RgbaImage;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use survey::segy::{FileUnit, SegyInfo, SegyOptions};
 use survey::SurveyGeometry;
+use survey::segy::{FileUnit, SegyInfo, SegyOptions};
 
 /// After a change, so long nothing more must change before the file is read anew.
 const PATIENCE: Duration = Duration::from_millis(250);
@@ -36,7 +36,15 @@ pub struct Import {
 
 impl Import {
     /// Shows the dialogue.
-    pub fn show(&mut self, ctx: &Context, state: &State, work: &Work, path: &Path, is_new: bool, actions: &mut Vec<Action>) {
+    pub fn show(
+        &mut self,
+        ctx: &Context,
+        state: &State,
+        work: &Work,
+        path: &Path,
+        is_new: bool,
+        actions: &mut Vec<Action>,
+    ) {
         if self.path != path {
             let target = path.with_extension("petro").display().to_string();
             *self = Self { path: path.to_owned(), target, ..Self::default() };
@@ -50,8 +58,16 @@ impl Import {
             notices::show(ui, state, Place::Dialogue, actions);
             let height = (room.y - 290.0).max(240.0);
             ui.columns_const(|[left, right]: &mut [Ui; 2]| {
-                ScrollArea::vertical().id_salt("reading").max_height(height).min_scrolled_height(height).show(left, |ui| self.reading(ui));
-                ScrollArea::vertical().id_salt("evidence").max_height(height).min_scrolled_height(height).show(right, |ui| self.evidence(ui));
+                ScrollArea::vertical()
+                    .id_salt("reading")
+                    .max_height(height)
+                    .min_scrolled_height(height)
+                    .show(left, |ui| self.reading(ui));
+                ScrollArea::vertical()
+                    .id_salt("evidence")
+                    .max_height(height)
+                    .min_scrolled_height(height)
+                    .show(right, |ui| self.evidence(ui));
             });
             ui.separator();
             self.target(ui, state, is_new, actions);
@@ -134,7 +150,9 @@ impl Import {
                 ui.add(TextEdit::singleline(name).hint_text("seismic").desired_width(160.0)).labelled_by(label.id);
                 ui.end_row();
             });
-            if *options != SegyOptions::default() && ui.button("Detect again").on_hover_text("Forget what was typed").clicked() {
+            if *options != SegyOptions::default()
+                && ui.button("Detect again").on_hover_text("Forget what was typed").clicked()
+            {
                 *options = SegyOptions::default();
             }
             if let Some(info) = info {
@@ -161,7 +179,8 @@ impl Import {
             Some(Ok(scan)) => {
                 let is_new = textures.as_ref().is_none_or(|(of, ..)| *of != scanned);
                 if is_new {
-                    *textures = Some((scanned, texture(ui, "traces", &scan.traces), texture(ui, "inline", &scan.inline)));
+                    *textures =
+                        Some((scanned, texture(ui, "traces", &scan.traces), texture(ui, "inline", &scan.inline)));
                 }
                 if let Some((_, traces, inline)) = textures {
                     ui.strong("Where the traces are, north up");
@@ -216,7 +235,9 @@ fn byte(ui: &mut Ui, name: &str, option: &mut Option<u16>, found: Option<u16>) {
     let label = ui.label(name);
     let mut value = option.or(found).unwrap_or(0);
     let drag = DragValue::new(&mut value).speed(0.3).range(0..=237);
-    if ui.add(drag).labelled_by(label.id).on_hover_text("First byte in the trace header, 1 to 237").changed() && value > 0 {
+    if ui.add(drag).labelled_by(label.id).on_hover_text("First byte in the trace header, 1 to 237").changed()
+        && value > 0
+    {
         *option = Some(value);
     }
     match (option.is_some(), found) {
@@ -235,8 +256,12 @@ fn candidates(ui: &mut Ui, info: &SegyInfo, options: &mut SegyOptions) {
         let is_taken = bytes == [info.byte_positions.inline, info.byte_positions.crossline];
         ui.horizontal_wrapped(|ui| {
             if is_taken {
-                ui.label("✔");
-            } else if ui.small_button("Use").on_hover_text(format!("Read bytes {} and {}", bytes[0], bytes[1])).clicked() {
+                ui.strong("In use:");
+            } else if ui
+                .small_button("Use")
+                .on_hover_text(format!("Read bytes {} and {}", bytes[0], bytes[1]))
+                .clicked()
+            {
                 (options.inline_byte, options.crossline_byte) = (Some(bytes[0]), Some(bytes[1]));
             }
             ui.label(candidate.as_sentence());
@@ -252,7 +277,10 @@ fn summary(ui: &mut Ui, info: &SegyInfo) {
     for line in [
         format!("inlines {}, crosslines {}", info.inlines, info.crosslines),
         format!("{} samples of {} {unit}, {} to {last} {unit}", info.samples, info.interval, info.start),
-        format!("{} traces, {} missing, {} dead, {} repeated", info.traces, info.missing_traces, info.dead_traces, info.duplicate_traces),
+        format!(
+            "{} traces, {} missing, {} dead, {} repeated",
+            info.traces, info.missing_traces, info.dead_traces, info.duplicate_traces
+        ),
         format!("format code {}, revision {}", info.format_code, info.revision),
     ] {
         ui.label(line);
@@ -277,7 +305,8 @@ fn map(ui: &mut Ui, texture: &TextureHandle, geometry: &SurveyGeometry) {
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Map of the traces"));
     let [inlines, crosslines, _] = geometry.size().map(|count| count.saturating_sub(1) as f64);
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
-    let world = corners.map(|[u, v]| geometry.inline_vector * (u * inlines) + geometry.crossline_vector * (v * crosslines));
+    let world =
+        corners.map(|[u, v]| geometry.inline_vector * (u * inlines) + geometry.crossline_vector * (v * crosslines));
     let low = world.into_iter().fold(DVec2::INFINITY, DVec2::min);
     let high = world.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
     let extent = (high - low).max(DVec2::splat(1e-6));
@@ -289,12 +318,19 @@ fn map(ui: &mut Ui, texture: &TextureHandle, geometry: &SurveyGeometry) {
     };
     let mut mesh = Mesh::with_texture(texture.id());
     for ([u, v], at) in corners.into_iter().zip(world) {
-        mesh.vertices.push(eframe::egui::epaint::Vertex { pos: place(at), uv: pos2(u as f32, v as f32), color: Color32::WHITE });
+        mesh.vertices.push(eframe::egui::epaint::Vertex {
+            pos: place(at),
+            uv: pos2(u as f32, v as f32),
+            color: Color32::WHITE,
+        });
     }
     mesh.indices = vec![0, 1, 2, 0, 2, 3];
     ui.painter().add(Shape::mesh(mesh));
     let first = geometry.origin;
-    let text = format!("inline {}, crossline {}: X {:.0}, Y {:.0}", geometry.inlines.first, geometry.crosslines.first, first.x, first.y);
+    let text = format!(
+        "inline {}, crossline {}: X {:.0}, Y {:.0}",
+        geometry.inlines.first, geometry.crosslines.first, first.x, first.y
+    );
     ui.painter().circle_filled(place(world[0]), 4.0, crate::app::theme::accent(ui.visuals()));
-    ui.weak(format!("● {text}"));
+    ui.weak(format!("dot: {text}"));
 }

@@ -49,7 +49,11 @@ impl Interpretation {
             self.form(ui, session, is_fault);
             ui.separator();
             let height = (ctx.content_rect().height() - 460.0).clamp(90.0, 260.0);
-            ScrollArea::vertical().max_height(height).min_scrolled_height(height).auto_shrink(false).show(ui, |ui| self.report(ui));
+            ScrollArea::vertical()
+                .max_height(height)
+                .min_scrolled_height(height)
+                .auto_shrink(false)
+                .show(ui, |ui| self.report(ui));
             ui.separator();
             ui.horizontal(|ui| {
                 let can = !self.name.trim().is_empty() && self.found.with(|found| matches!(found, Some(Ok(_))));
@@ -78,7 +82,11 @@ impl Interpretation {
         let (found, path, options) = (self.found.clone(), self.path.clone(), self.options.clone());
         let number = found.begin();
         work.background("Reading the file", Place::Dialogue, move |_, _| {
-            let read = if is_fault { scan::fault(&path, &geometry, &options) } else { scan::horizon(&path, &geometry, &options) };
+            let read = if is_fault {
+                scan::fault(&path, &geometry, &options)
+            } else {
+                scan::horizon(&path, &geometry, &options)
+            };
             found.put(number, read);
             Ok(())
         });
@@ -89,7 +97,8 @@ impl Interpretation {
             let label = ui.label("Name");
             ui.add(TextEdit::singleline(&mut self.name).desired_width(240.0)).labelled_by(label.id);
             ui.end_row();
-            let units = [ZUnit::Milliseconds, ZUnit::Seconds, ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
+            let units =
+                [ZUnit::Milliseconds, ZUnit::Seconds, ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
             choice(ui, "Vertical unit", &mut self.options.z_unit, &units);
             let signs = [(ZPositive::Down, "positive down"), (ZPositive::Up, "positive up")];
             choice(ui, "Sign", &mut self.options.z_positive, &signs);

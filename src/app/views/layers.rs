@@ -110,7 +110,9 @@ impl Layers {
         Grid::new("style").num_columns(2).show(ui, |ui| {
             colours(ui, &mut style);
             frequencies(ui, &mut style);
-            let label = ui.label("In cut-outs").on_hover_text("Opacity where the block is cut away: 0 is gone, 1 stands out of the cut");
+            let label = ui
+                .label("In cut-outs")
+                .on_hover_text("Opacity where the block is cut away: 0 is gone, 1 stands out of the cut");
             ui.add(Slider::new(&mut style.opacity, 0.0..=1.0).max_decimals(2)).labelled_by(label.id);
             ui.end_row();
             definition(ui, document, layer, actions);
@@ -153,7 +155,8 @@ impl Layers {
     }
 
     fn rename(&mut self, ui: &mut Ui, layer: &str, actions: &mut Vec<Action>) {
-        let (_, mut text) = self.name.take().filter(|(of, _)| of == layer).unwrap_or((layer.to_owned(), layer.to_owned()));
+        let (_, mut text) =
+            self.name.take().filter(|(of, _)| of == layer).unwrap_or((layer.to_owned(), layer.to_owned()));
         ui.horizontal(|ui| {
             let label = ui.strong("Name");
             let edit = ui.add(TextEdit::singleline(&mut text).desired_width(180.0)).labelled_by(label.id);
@@ -192,7 +195,8 @@ fn row(
                 tiles.paint(ui, swatches, style, rect);
                 ui.vertical(|ui| {
                     ui.strong(name);
-                    let patterns: Vec<&str> = style.intervals.iter().map(|interval| interval.texture.as_str()).collect();
+                    let patterns: Vec<&str> =
+                        style.intervals.iter().map(|interval| interval.texture.as_str()).collect();
                     ui.weak(if patterns.is_empty() { "plain".to_owned() } else { patterns.join(", ") });
                 });
             });
@@ -298,9 +302,8 @@ fn definition(ui: &mut Ui, document: &Document, layer: &str, actions: &mut Vec<A
 
 /// Patterns by depth, top first, each with where it begins from below.
 fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, actions: &mut Vec<Action>) {
-    let browse = |interval: Option<usize>| {
-        Action::Ask(Box::new(Dialogue::Patterns { layer: layer.to_owned(), interval }))
-    };
+    let browse =
+        |interval: Option<usize>| Action::Ask(Box::new(Dialogue::Patterns { layer: layer.to_owned(), interval }));
     if style.intervals.is_empty() {
         if ui.button("Choose a pattern…").clicked() {
             actions.push(browse(None));
@@ -318,8 +321,10 @@ fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, actions: &mut Vec
             if button.clicked() {
                 actions.push(browse((count > 1).then_some(index)));
             }
-            let opacity = DragValue::new(&mut style.intervals[index].opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
-            ui.name_inputs(format!("Opacity of pattern {ordinal}"), |ui| ui.add(opacity)).on_hover_text("Opacity of the pattern");
+            let opacity =
+                DragValue::new(&mut style.intervals[index].opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
+            ui.name_inputs(format!("Opacity of pattern {ordinal}"), |ui| ui.add(opacity))
+                .on_hover_text("Opacity of the pattern");
             if ui.small_button("Split").on_hover_text("Divide this part of the layer in two").clicked() {
                 split = Some(index);
             }

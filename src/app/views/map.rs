@@ -5,8 +5,8 @@ use crate::app::theme;
 use crate::app::work::Rocks;
 use crate::app::work::map::{MapPicture, MapWish, Mapped, Maps};
 use eframe::egui::{
-    Align2, Color32, ColorImage, ComboBox, Context, FontId, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, TextureHandle,
-    TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, ColorImage, ComboBox, Context, FontId, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use survey::SurveyGeometry;
@@ -90,7 +90,8 @@ impl MapView {
             ui.label("A map shows a horizon. Add or pick one first.");
             return;
         }
-        let chosen = session.view.horizon.as_ref().and_then(|name| horizons.iter().position(|entry| entry.name == *name));
+        let chosen =
+            session.view.horizon.as_ref().and_then(|name| horizons.iter().position(|entry| entry.name == *name));
         let upper = chosen.unwrap_or(0);
         let lower = (upper + 1 < horizons.len()).then_some(upper + 1);
         self.header(ui, session, upper, lower, actions);
@@ -119,9 +120,16 @@ impl MapView {
         }
     }
 
-    fn header(&mut self, ui: &mut Ui, session: &Session, upper: usize, lower: Option<usize>, actions: &mut Vec<Action>) {
+    fn header(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        upper: usize,
+        lower: Option<usize>,
+        actions: &mut Vec<Action>,
+    ) {
         let horizons = &session.document.horizons;
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let label = ui.strong("Map of");
             let mut chosen = upper;
             ui.label_inputs_by(label.id, |ui| {
@@ -138,7 +146,8 @@ impl MapView {
                 self.thickness = false;
             }
             ui.add_enabled_ui(lower.is_some(), |ui| {
-                let hint = lower.map_or_else(String::new, |lower| format!("Vertical, down to {}", horizons[lower].name));
+                let hint =
+                    lower.map_or_else(String::new, |lower| format!("Vertical, down to {}", horizons[lower].name));
                 if ui.selectable_label(self.thickness, "Thickness").on_hover_text(hint).clicked() {
                     self.thickness = true;
                 }
@@ -167,7 +176,10 @@ impl MapView {
 
     fn paint(&self, ui: &Ui, session: &Session, rect: Rect, sheet: &Sheet) {
         let painter = ui.painter_at(rect);
-        let (Some(texture), Some(shown), Some(geometry)) = (&self.texture, &self.shown, &session.document.geometry) else { return };
+        let (Some(texture), Some(shown), Some(geometry)) = (&self.texture, &self.shown, &session.document.geometry)
+        else {
+            return;
+        };
         let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1) as f64);
         let half = [0.5 / (nx as f32 + 1.0), 0.5 / (ny as f32 + 1.0)];
         let mut mesh = Mesh::with_texture(texture.id());
@@ -179,7 +191,10 @@ impl MapView {
         mesh.indices = vec![0, 1, 2, 0, 2, 3];
         painter.add(Shape::mesh(mesh));
         for piece in &shown.contours {
-            let stroke = Stroke::new(if piece.is_index { 1.6 } else { 0.7 }, Color32::from_black_alpha(if piece.is_index { 220 } else { 150 }));
+            let stroke = Stroke::new(
+                if piece.is_index { 1.6 } else { 0.7 },
+                Color32::from_black_alpha(if piece.is_index { 220 } else { 150 }),
+            );
             painter.line_segment(piece.ends.map(|end| sheet.screen(end)), stroke);
         }
         let line = Stroke::new(1.5, theme::accent(ui.visuals()));
@@ -193,14 +208,18 @@ impl MapView {
     /// Which colour is which value.
     fn bar(&self, ui: &Ui, session: &Session, rect: Rect, shown: &MapPicture) {
         let painter = ui.painter_at(rect);
-        let bar = Rect::from_min_size(pos2(rect.right() - 84.0, rect.top() + 60.0), vec2(16.0, (rect.height() - 130.0).max(40.0)));
+        let bar = Rect::from_min_size(
+            pos2(rect.right() - 84.0, rect.top() + 60.0),
+            vec2(16.0, (rect.height() - 130.0).max(40.0)),
+        );
         let colours = ttf::RgbaFunction::over(ttf::ColourMap::Strata, [0.0, 1.0]);
         let steps = 64;
         for step in 0..steps {
             let share = step as f32 / steps as f32;
             let [r, g, b, _] = colours.evaluate(1.0 - share).map(|channel| (channel * 255.0 + 0.5) as u8);
             let top = bar.top() + bar.height() * share;
-            let part = Rect::from_min_max(pos2(bar.left(), top), pos2(bar.right(), top + bar.height() / steps as f32 + 0.5));
+            let part =
+                Rect::from_min_max(pos2(bar.left(), top), pos2(bar.right(), top + bar.height() / steps as f32 + 0.5));
             painter.rect_filled(part, 0.0, Color32::from_rgb(r, g, b));
         }
         let unit = session.document.geometry.as_ref().map_or("", |geometry| geometry.vertical.unit.symbol());
@@ -215,7 +234,7 @@ impl MapView {
         }
         painter.text(pos2(bar.left(), bar.top() - 10.0), Align2::LEFT_BOTTOM, unit, font.clone(), ink);
         let text = format!("every {} {unit}", shown.interval);
-        painter.text(pos2(rect.right() - 6.0, bar.bottom() + 14.0), Align2::RIGHT_TOP, text, font, ink);
+        painter.text(pos2(rect.right() - 10.0, bar.bottom() + 14.0), Align2::RIGHT_TOP, text, font, ink);
     }
 }
 
@@ -225,6 +244,10 @@ fn north(ui: &Ui, rect: Rect) {
     let foot = pos2(rect.left() + 22.0, rect.top() + 50.0);
     let tip = foot - vec2(0.0, 26.0);
     painter.line_segment([foot, tip], Stroke::new(1.6, ink));
-    painter.add(Shape::convex_polygon(vec![tip - vec2(0.0, 6.0), tip + vec2(4.5, 5.0), tip + vec2(-4.5, 5.0)], ink, Stroke::NONE));
+    painter.add(Shape::convex_polygon(
+        vec![tip - vec2(0.0, 6.0), tip + vec2(4.5, 5.0), tip + vec2(-4.5, 5.0)],
+        ink,
+        Stroke::NONE,
+    ));
     painter.text(foot + vec2(0.0, 3.0), Align2::CENTER_TOP, "N", FontId::proportional(13.0), ink);
 }

@@ -1,7 +1,7 @@
 //! What is seen: a file for each panel. Each draws the state and answers with actions.
 
-pub mod block;
 pub mod bar;
+pub mod block;
 pub mod chooser;
 pub mod controls;
 pub mod data;

@@ -38,7 +38,9 @@ impl Patterns {
             notices::show(ui, state, Place::Dialogue, actions);
             ui.horizontal(|ui| {
                 let label = ui.label("Search");
-                let edit = ui.add(TextEdit::singleline(&mut self.search).hint_text("limestone, 627, sand…").desired_width(260.0));
+                let edit = ui.add(
+                    TextEdit::singleline(&mut self.search).hint_text("limestone, 627, sand…").desired_width(260.0),
+                );
                 let edit = edit.labelled_by(label.id);
                 if ui.memory(|memory| memory.focused().is_none()) {
                     edit.request_focus();
@@ -128,7 +130,9 @@ fn chosen(session: &Session, layer: &str, interval: Option<usize>, pattern: &Pat
 /// Whether every word is in the pattern's names, number or description.
 fn fits(pattern: &Pattern, search: &str) -> bool {
     let number = pattern.fgdc.map_or_else(String::new, |number| number.to_string());
-    let text = [&pattern.name, &pattern.title, &pattern.family, &pattern.description, &number].map(|part| part.to_lowercase()).join(" ");
+    let text = [&pattern.name, &pattern.title, &pattern.family, &pattern.description, &number]
+        .map(|part| part.to_lowercase())
+        .join(" ");
     search.to_lowercase().split_whitespace().all(|word| text.contains(word))
 }
 

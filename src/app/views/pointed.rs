@@ -66,18 +66,15 @@ pub fn sentence(pointed: &Pointed, document: &crate::project::Document) -> Strin
     let Some(geometry) = &document.geometry else { return String::new() };
     let lines = geometry.lines_from_voxel(pointed.voxel.truncate());
     let z = geometry.vertical.value_at(pointed.voxel.z);
-    let mut text = format!(
-        "inline {:.0}   crossline {:.0}   {:.1} {}",
-        lines.x,
-        lines.y,
-        z,
-        geometry.vertical.unit.symbol()
-    );
+    let mut text =
+        format!("inline {:.0}   crossline {:.0}   {:.1} {}", lines.x, lines.y, z, geometry.vertical.unit.symbol());
     if let Some(value) = pointed.value {
         text += &format!("   value {value:.4}");
     }
     let names = document.stratigraphy().layer_names_bottom_up();
-    if let Some(name) = pointed.layer.filter(|_| !document.horizons.is_empty()).and_then(|layer| names.get(usize::from(layer))) {
+    if let Some(name) =
+        pointed.layer.filter(|_| !document.horizons.is_empty()).and_then(|layer| names.get(usize::from(layer)))
+    {
         text += &format!("   {name}");
     }
     text

@@ -227,7 +227,7 @@ fn header(ui: &mut Ui, session: &Session, kind: SliceKind, geometry: &SurveyGeom
         let drag = DragValue::new(&mut number)
             .speed(per_sample.abs() * 0.5)
             .range(ends[0].min(ends[1])..=ends[0].max(ends[1]))
-            .max_decimals(1)
+            .max_decimals(if axis == 2 { 1 } else { 0 })
             .suffix(suffix);
         if ui.add(drag).labelled_by(label.id).changed() {
             let mut slices = session.view.slices;
@@ -293,7 +293,11 @@ fn cross(
 /// The least of 1, 2, 5 × 10ⁿ that is not less.
 fn round_step(least: f64) -> f64 {
     let decade = 10f64.powf(least.max(1e-9).log10().floor());
-    [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * decade).find(|step| *step >= least * 0.999).unwrap_or(decade)
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|factor| factor * decade)
+        .find(|step| *step >= least * 0.999)
+        .unwrap_or(decade)
 }
 
 /// Numbers along the upper and the left edge.

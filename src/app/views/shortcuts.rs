@@ -1,6 +1,8 @@
 //! Every action by keyboard: one table that is both obeyed and shown.
 
-use crate::app::state::{Action, Choice, Compare, Dialogue, ExportForm, Layout, Panel, Session, StandardView, State, camera};
+use crate::app::state::{
+    Action, Choice, Compare, Dialogue, ExportForm, Layout, Panel, Session, StandardView, State, camera,
+};
 use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};
 use glam::DVec2;
 use render::Scene;
@@ -68,13 +70,13 @@ pub const SHORTCUTS: &[Shortcut] = &[
     }),
     plain(Key::Home, "Home", "Block view", |_| Some(Action::Stand(StandardView::Block))),
     plain(Key::T, "T", "From above", |_| Some(Action::Stand(StandardView::Top))),
-    plain(Key::ArrowLeft, "←", "Turn left", |session| turn(session, DVec2::new(-TURN_POINTS, 0.0))),
-    plain(Key::ArrowRight, "→", "Turn right", |session| turn(session, DVec2::new(TURN_POINTS, 0.0))),
+    plain(Key::ArrowLeft, "Left", "Turn left", |session| turn(session, DVec2::new(-TURN_POINTS, 0.0))),
+    plain(Key::ArrowRight, "Right", "Turn right", |session| turn(session, DVec2::new(TURN_POINTS, 0.0))),
     plain(Key::PageUp, "Page up", "Look from higher", |session| turn(session, DVec2::new(0.0, TURN_POINTS))),
     plain(Key::PageDown, "Page down", "Look from lower", |session| turn(session, DVec2::new(0.0, -TURN_POINTS))),
     plain(Key::Plus, "+", "Nearer", |session| zoom(session, ZOOM)),
     plain(Key::Equals, "=", "Nearer", |session| zoom(session, ZOOM)),
-    plain(Key::Minus, "−", "Farther", |session| zoom(session, 1.0 / ZOOM)),
+    plain(Key::Minus, "-", "Farther", |session| zoom(session, 1.0 / ZOOM)),
     plain(Key::C, "C", "Cut the nearest corner, or nothing", |session| {
         let geometry = session.document.geometry.as_ref()?;
         let mut scene = session.view.scene.clone();
@@ -125,7 +127,9 @@ pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
     if state.is_asking() || ctx.egui_wants_keyboard_input() {
         return;
     }
-    let asked = ctx.input_mut(|input| input.events.iter().any(|event| matches!(event, eframe::egui::Event::Text(text) if text == "?")));
+    let asked = ctx.input_mut(|input| {
+        input.events.iter().any(|event| matches!(event, eframe::egui::Event::Text(text) if text == "?"))
+    });
     if asked {
         actions.push(Action::Ask(Box::new(Dialogue::Shortcuts)));
     }

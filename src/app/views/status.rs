@@ -23,7 +23,8 @@ pub fn show(ui: &mut Ui, session: Option<&Session>, pointed: Option<&Pointed>, r
                     None => ProgressBar::new(0.0),
                 };
                 ui.add(bar.desired_width(110.0));
-                let text = if line.stage.is_empty() { line.title.clone() } else { format!("{}: {}", line.title, line.stage) };
+                let text =
+                    if line.stage.is_empty() { line.title.clone() } else { format!("{}: {}", line.title, line.stage) };
                 ui.label(text);
             }
             if running.is_empty() && !device.is_empty() {

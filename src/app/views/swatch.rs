@@ -31,9 +31,11 @@ pub fn draw(
             // From the lower left corner, v up.
             let at = [x as f32 + offset[0], height as f32 - y as f32 - offset[1]];
             let k = at[1] / height as f32;
-            let interval = style.intervals.iter().zip(&textures).find(|(interval, _)| {
-                k >= interval.k[0] && (k < interval.k[1] || interval.k[1] >= 1.0)
-            });
+            let interval = style
+                .intervals
+                .iter()
+                .zip(&textures)
+                .find(|(interval, _)| k >= interval.k[0] && (k < interval.k[1] || interval.k[1] >= 1.0));
             let ground = interval.and_then(|(interval, _)| interval.colour).unwrap_or(style.colour).to_unit();
             let mut colour = ground;
             if let Some((interval, (texture, tile_mm))) = interval {

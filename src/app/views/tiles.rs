@@ -1,7 +1,9 @@
 //! Swatches on the screen: textures made of what the swatch thread has drawn.
 
 use crate::app::work::Swatches;
-use eframe::egui::{Color32, ColorImage, CornerRadius, Rect, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, pos2};
+use eframe::egui::{
+    Color32, ColorImage, CornerRadius, Rect, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, pos2,
+};
 use std::collections::HashMap;
 use ttf::LayerStyle;
 

@@ -4,8 +4,8 @@
 //! caption says so.
 
 use super::{Event, Outbox, Running};
-use crate::app::state::{ExportPlan, Notice, Place, camera};
 use crate::app::state::Shown;
+use crate::app::state::{ExportPlan, Notice, Place, camera};
 use crate::error::ProjectError;
 use crate::picture::{self, Device, Painter};
 use crate::project::Project;
@@ -150,7 +150,13 @@ fn scale_bars(sheet: &mut RgbaImage, top: f64, px: &impl Fn(f64) -> f64, scene: 
     let text = if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") };
     letter(sheet, [left, y + px(1.6 + LETTER_MM)], length.max(px(20.0)), px(LETTER_MM), &text);
     let at = left + length + px(8.0);
-    letter(sheet, [at, y + px(LETTER_MM * 0.35)], f64::from(sheet.width()) - at - px(MARGIN_MM), px(LETTER_MM), &caption(scene, geometry));
+    letter(
+        sheet,
+        [at, y + px(LETTER_MM * 0.35)],
+        f64::from(sheet.width()) - at - px(MARGIN_MM),
+        px(LETTER_MM),
+        &caption(scene, geometry),
+    );
 }
 
 /// What a reader must know to read lengths.

@@ -148,9 +148,8 @@ fn grid(loaded: &Loaded, mapped: Mapped) -> Grid {
     let [nx, ny, _] = loaded.geometry.size();
     let vertical = &loaded.geometry.vertical;
     let value = |x: usize, y: usize| match mapped {
-        Mapped::Structure(horizon) => {
-            horizon_at(loaded, horizon, x, y).map_or((f64::NAN, 0), |(z, block)| (vertical.value_at(f64::from(z)), block))
-        }
+        Mapped::Structure(horizon) => horizon_at(loaded, horizon, x, y)
+            .map_or((f64::NAN, 0), |(z, block)| (vertical.value_at(f64::from(z)), block)),
         Mapped::Thickness(upper, lower) => match (horizon_at(loaded, upper, x, y), horizon_at(loaded, lower, x, y)) {
             (Some((top, block)), Some((base, _))) => (f64::from((base - top).max(0.0)) * vertical.interval, block),
             _ => (f64::NAN, 0),
@@ -264,7 +263,8 @@ mod tests {
     fn a_flat_horizon_has_no_contour_and_a_hole_has_none_around_it() {
         assert!(contours(&grid_of([9, 9], |_, _| 55.0), [55.0, 55.0], 10.0).is_empty());
         let holed = grid_of([9, 9], |x, y| if (x, y) == (4.0, 4.0) { f64::NAN } else { 10.0 * x });
-        let near = |piece: &ContourPiece| piece.ends.iter().all(|end| (*end - DVec2::splat(4.0)).abs().max_element() < 1.0);
+        let near =
+            |piece: &ContourPiece| piece.ends.iter().all(|end| (*end - DVec2::splat(4.0)).abs().max_element() < 1.0);
         assert!(!contours(&holed, [0.0, 80.0], 5.0).iter().any(near));
     }
 

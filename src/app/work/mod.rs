@@ -25,8 +25,8 @@ pub use swatches::Swatches;
 
 use super::state::{Notice, Place, Snapshot, Task};
 use std::path::PathBuf;
-use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use survey::Progress;
 
 /// An answer.
@@ -166,7 +166,12 @@ impl Work {
     }
 
     /// Does something of its own on a thread.
-    pub fn background(&self, title: &str, place: Place, job: impl FnOnce(&Progress, &Outbox) -> Result<(), Notice> + Send + 'static) {
+    pub fn background(
+        &self,
+        title: &str,
+        place: Place,
+        job: impl FnOnce(&Progress, &Outbox) -> Result<(), Notice> + Send + 'static,
+    ) {
         let (outbox, running) = (self.outbox.clone(), self.running.clone());
         let title = title.to_owned();
         spawn("background", move || {

@@ -114,8 +114,11 @@ fn middle_inline(file: &SegyFile) -> RgbaImage {
 /// # Errors
 /// Why it cannot be read, for the dialogue.
 pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) -> Result<InterpretationScan, Notice> {
-    let found = formats::read_horizons(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
-    Ok(InterpretationScan { surfaces: found.into_iter().map(|(horizon, report)| (horizon.name, report.to_string())).collect() })
+    let found =
+        formats::read_horizons(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+    Ok(InterpretationScan {
+        surfaces: found.into_iter().map(|(horizon, report)| (horizon.name, report.to_string())).collect(),
+    })
 }
 
 /// Looks into a fault file.
@@ -123,6 +126,9 @@ pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) 
 /// # Errors
 /// Why it cannot be read, for the dialogue.
 pub fn fault(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) -> Result<InterpretationScan, Notice> {
-    let found = formats::read_fault(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
-    Ok(InterpretationScan { surfaces: found.into_iter().map(|(fault, report)| (fault.name, report.to_string())).collect() })
+    let found =
+        formats::read_fault(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+    Ok(InterpretationScan {
+        surfaces: found.into_iter().map(|(fault, report)| (fault.name, report.to_string())).collect(),
+    })
 }

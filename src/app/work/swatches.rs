@@ -55,7 +55,8 @@ impl Swatches {
                         list(&theirs, library.as_ref());
                     }
                     Order::Draw(Wish { key, style, size_px, px_per_mm }) => {
-                        let drawn = library.as_ref().and_then(|library| swatch::draw(&style, library, size_px, px_per_mm).ok());
+                        let drawn =
+                            library.as_ref().and_then(|library| swatch::draw(&style, library, size_px, px_per_mm).ok());
                         let mut done = theirs.lock().unwrap_or_else(PoisonError::into_inner);
                         done.images.insert(key, drawn.map(Arc::new));
                     }
