@@ -6,7 +6,7 @@ use super::state::{
 };
 use super::theme;
 use super::views::{
-    bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, import::Import,
+    bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, functions::Functions, import::Import,
     interpretation::Interpretation, layers::Layers, map::MapView, notices, patterns::Patterns, pointed::Pointed,
     sections::Sections, shortcuts, start, status, tiles::Tiles,
 };
@@ -61,6 +61,7 @@ pub struct Window {
     map: MapView,
     layers: Layers,
     data: Data,
+    functions: Functions,
     patterns: Patterns,
     import: Import,
     interpretation: Interpretation,
@@ -90,6 +91,7 @@ impl Window {
             map: MapView::default(),
             layers: Layers::default(),
             data: Data::default(),
+            functions: Functions::default(),
             patterns: Patterns::default(),
             import: Import::default(),
             interpretation: Interpretation::default(),
@@ -206,6 +208,7 @@ impl Window {
         // Neither named views nor the history change what is drawn from.
         let mut document = crate::project::Document { scenes: Vec::new(), step: 0, ..session.document.clone() };
         self.layers.draft_of(&mut document);
+        self.functions.draft_of(&mut document);
         let exaggeration = session.view.scene.exaggeration;
         let wanted = Wanted { root: session.root.clone(), document, exaggeration };
         if self.wanted.as_ref() != Some(&wanted) {
@@ -257,7 +260,8 @@ impl Window {
             ui.horizontal(|ui| {
                 for (side, name, hint) in [
                     (Side::Layers, "Layers", "The stratigraphic column (L)"),
-                    (Side::Data, "Data", "Volumes, horizons and faults (D)"),
+                    (Side::Data, "Data", "Volumes, horizons, faults and wells (D)"),
+                    (Side::Values, "Values", "Colours and textures by value (V)"),
                 ] {
                     if ui.selectable_label(session.view.panel == side, name).on_hover_text(hint).clicked() {
                         actions.push(Action::Panel(side));
@@ -270,6 +274,13 @@ impl Window {
                     self.layers.show(ui, &self.state, session, &self.swatches, &mut self.tiles, actions);
                 }
                 Side::Data => self.data.show(ui, &self.state, session, actions),
+                Side::Values => {
+                    notices::show(ui, &self.state, Place::Data, actions);
+                    let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+                    egui::ScrollArea::vertical().show(ui, |ui| {
+                        self.functions.show(ui, session, rocks, &self.swatches, actions);
+                    });
+                }
             }
         });
         Panel::right("controls").default_size(300.0).min_size(240.0).show(ui, |ui| {

@@ -39,8 +39,10 @@ pub enum Panel {
     /// The stratigraphic column.
     #[default]
     Layers,
-    /// Volumes, horizons, faults.
+    /// Volumes, horizons, faults, wells.
     Data,
+    /// Colours and textures by value.
+    Values,
     /// Horizon picking.
     Picks,
 }

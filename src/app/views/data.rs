@@ -1,9 +1,9 @@
-//! Volumes, horizons and faults of the project.
+//! Volumes, horizons, faults and wells of the project.
 
 use super::notices;
 use super::sections::HORIZON_COLOURS;
 use crate::app::state::{Action, Choice, Dialogue, Place, Session, State};
-use crate::command::{Command, RemoveFault, RemoveHorizon, RemoveVolume, RenameHorizon, SetRaw, SetVelocity};
+use crate::command::{Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity};
 use crate::style;
 use eframe::egui::{Button, ComboBox, DragValue, Key, ScrollArea, Sense, TextEdit, Ui, vec2};
 use survey::VerticalUnit;
@@ -31,6 +31,7 @@ impl Data {
             ui.heading("Faults");
             faults(ui, session, actions);
             ui.add_space(10.0);
+            wells(ui, session, actions);
             self.survey(ui, session, actions);
         });
     }
@@ -129,34 +130,24 @@ fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             }
         });
     }
-    if let Some(raw) = &raw {
+    add(ui, "Add a volume…", Choice::MoreSurvey, true, actions);
+}
+
+fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    if session.document.wells.is_empty() {
+        return;
+    }
+    ui.heading("Wells");
+    for entry in &session.document.wells {
         ui.horizontal(|ui| {
-            let label = ui.label("Colours");
-            let present = ColourMap::ALL.into_iter().find(|map| {
-                let stops = map.stops();
-                stops.len() == raw.function.stops.len()
-                    && stops
-                        .iter()
-                        .zip(&raw.function.stops)
-                        .all(|((at, colour), stop)| *at == stop.at && *colour == stop.colour)
-            });
-            let mut chosen = present;
-            let name = present.map_or("own", ColourMap::name);
-            ui.label_inputs_by(label.id, |ui| {
-                ComboBox::from_id_salt("raw colours").selected_text(name).show_ui(ui, |ui| {
-                    for map in ColourMap::ALL {
-                        ui.selectable_value(&mut chosen, Some(map), map.name());
-                    }
-                });
-            });
-            if let Some(map) = chosen.filter(|_| chosen != present)
-                && let Ok(raw) = style::raw_colour(document, Some(&raw.volume), map, Some(raw.function.domain))
-            {
-                actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
+            ui.label(&entry.name).on_hover_text(&entry.source.reading);
+            if ui.small_button("Remove").on_hover_text(format!("Remove well {}", entry.name)).clicked() {
+                let command = RemoveWell { name: entry.name.clone() };
+                actions.push(Action::Apply(Box::new(Command::RemoveWell(command))));
             }
         });
     }
-    add(ui, "Add a volume…", Choice::MoreSurvey, true, actions);
+    ui.add_space(10.0);
 }
 
 fn faults(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {

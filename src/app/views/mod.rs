@@ -6,6 +6,7 @@ pub mod chooser;
 pub mod controls;
 pub mod data;
 pub mod export;
+pub mod functions;
 pub mod import;
 pub mod interpretation;
 pub mod layers;

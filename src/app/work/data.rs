@@ -111,7 +111,7 @@ fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox, running: &Running) {
         };
         let (guard, progress) = running.begin("Preparing the picture", Place::Block, outbox.wake.clone());
         shared.0.lock().unwrap_or_else(PoisonError::into_inner).progress = Some(progress.clone());
-        let loaded = load(&wanted, &mut kept, &progress);
+        let loaded = super::compute(|| load(&wanted, &mut kept, &progress));
         drop(guard);
         match loaded {
             Ok(rocks) => outbox.send(Event::Ready { root: wanted.root, rocks }),

@@ -37,7 +37,7 @@ const INK: Colour = Colour::new(0x23, 0x1f, 0x1b);
 /// Draws the picture and writes it.
 pub(super) fn export(root: &Path, plan: &ExportPlan, outbox: &Outbox, running: &Running) {
     let (guard, progress) = running.begin("Drawing the picture", Place::Dialogue, outbox.wake.clone());
-    let done = draw(root, plan, &progress);
+    let done = super::compute(|| draw(root, plan, &progress));
     drop(guard);
     outbox.send(match done {
         Ok(()) => Event::Exported(plan.form.path.clone().into()),

@@ -25,7 +25,7 @@ pub use swatches::Swatches;
 
 use super::state::{Notice, Place, Snapshot, Task};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use survey::Progress;
 
@@ -182,6 +182,19 @@ impl Work {
             drop(line);
             outbox.wake();
         });
+    }
+}
+
+/// Computes on all processors but one: that one is the window's, so that it stays at hand while work goes on.
+fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
+    static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
+    let pool = POOL.get_or_init(|| {
+        let threads = std::thread::available_parallelism().map_or(1, |count| count.get().saturating_sub(1).max(1));
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()
+    });
+    match pool {
+        Some(pool) => pool.install(job),
+        None => job(),
     }
 }
 

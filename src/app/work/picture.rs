@@ -175,7 +175,7 @@ impl Artist {
         let scene = Scene { size_px, samples, ..scene.clone() };
         let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();
-        let (image, _) = painter.draw(&scene, &loaded, progress)?;
+        let (image, _) = super::compute(|| painter.draw(&scene, &loaded, progress))?;
         drop(loaded);
         let rays = f64::from(size_px[0]) * f64::from(size_px[1]) * f64::from(samples * samples);
         self.ray_s += (start.elapsed().as_secs_f64() / rays - self.ray_s) * LATEST;

@@ -28,7 +28,7 @@ pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
         for order in orders {
             let place = order.place();
             let (guard, progress) = running.begin(&order.title(), place, outbox.wake.clone());
-            match order.carry_out(&progress) {
+            match super::compute(|| order.carry_out(&progress)) {
                 Ok(event) => {
                     tell_warnings(&guard, place, &outbox);
                     outbox.send(event);
