@@ -1,6 +1,6 @@
 //! The window driven by its labels, without a display: what a reader of the screen finds is what is clicked.
 
-use super::state::{Compare, Dialogue, Layout, State};
+use super::state::{Compare, Dialogue, Interpreted, Layout, State, Target};
 use super::window::Window;
 use crate::command::{AddHorizon, Age, Command};
 use crate::project::Project;
@@ -157,7 +157,7 @@ fn a_survey_becomes_a_project_through_the_import_dialogue() {
     let path = survey(folder.path());
     let mut harness = driven(folder.path(), None);
     harness.step();
-    let ask = super::state::Action::Ask(Box::new(Dialogue::Survey { path: path.clone(), is_new: true }));
+    let ask = super::state::Action::Ask(Box::new(Dialogue::Survey { path: path.clone(), target: Target::NewProject }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the headers are read", |harness| harness.query_by_label("Map of the traces").is_some());
     for label in ["Inline", "Crossline", "Polarity", "Middle inline"] {
@@ -174,7 +174,7 @@ fn a_horizon_comes_in_through_its_dialogue() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     let path = horizon(folder.path(), "Middle", 55.0);
-    let ask = super::state::Action::Ask(Box::new(Dialogue::Interpretation { path, is_fault: false }));
+    let ask = super::state::Action::Ask(Box::new(Dialogue::Interpretation { path, kind: Interpreted::Horizon }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the file is read", |harness| {
         harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())
@@ -276,4 +276,34 @@ fn data_is_listed_renamed_and_removed() {
     harness.run_steps(2);
     wait(&mut harness, "a horizon is gone", |harness| document(harness).horizons.len() == 1);
     assert_eq!(document(&harness).horizons[0].name, "Top");
+}
+
+#[test]
+fn values_get_colours_and_textures() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Values");
+    harness.get_by_label("Histogram");
+    click(&mut harness, "Textures by seismic");
+    wait(&mut harness, "the textures are there", |harness| document(harness).style.scalars.len() == 1);
+    wait(&mut harness, "they are listed", |harness| harness.query_by_label("Texture of seismic 1").is_some());
+}
+
+#[test]
+fn a_horizon_is_mapped_and_the_block_cut_by_keys() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    harness.key_press(Key::Num3);
+    harness.run_steps(3);
+    assert!(harness.query_all_by_label("Map of").count() > 0);
+    let scene = |harness: &Driven| state(harness).session.as_ref().unwrap().view.scene.clone();
+    assert_eq!(scene(&harness).cut_outs.len(), 1);
+    harness.key_press(Key::C);
+    harness.run_steps(2);
+    assert!(scene(&harness).cut_outs.is_empty());
+    harness.key_press(Key::X);
+    harness.run_steps(2);
+    let block = scene(&harness).roaming_box.expect("a side was moved");
+    assert_eq!(block.max[1] - block.min[1], 19.0 - 4.0);
+    scene(&harness).validate(&geometry()).unwrap();
 }

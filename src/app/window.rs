@@ -6,9 +6,9 @@ use super::state::{
 };
 use super::theme;
 use super::views::{
-    bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, functions::Functions, import::Import,
-    interpretation::Interpretation, layers::Layers, map::MapView, notices, patterns::Patterns, pointed::Pointed,
-    sections::Sections, shortcuts, start, status, tiles::Tiles,
+    bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, functions::Functions,
+    import::Import, interpretation::Interpretation, layers::Layers, map::MapView, notices, patterns::Patterns,
+    pointed::Pointed, sections::Sections, shortcuts, start, status, tiles::Tiles,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use crate::command::Command;
@@ -53,6 +53,7 @@ pub fn run(project: Option<PathBuf>) -> Result<(), WindowError> {
 
 /// The window's content.
 pub struct Window {
+    ctx: Context,
     state: State,
     work: Work,
     settings: Option<PathBuf>,
@@ -83,6 +84,7 @@ impl Window {
         let waking = ctx.clone();
         let wake: Wake = Arc::new(move || waking.request_repaint());
         let mut window = Self {
+            ctx: ctx.clone(),
             state: State::new(remembered),
             work: Work::start(wake.clone()),
             settings,
@@ -128,6 +130,9 @@ impl Window {
             let place = self.place_of(&task);
             if matches!(task, Task::Remember) {
                 self.remember();
+            }
+            if matches!(task, Task::Copy) {
+                self.block.copy(&self.ctx);
             }
             if matches!(task, Task::Release) {
                 (self.rocks, self.wanted, self.pointed) = (None, None, None);
@@ -330,12 +335,12 @@ impl Window {
         match &self.state.dialogue {
             Some(Dialogue::Choose(choice)) => self.chooser.show(ctx, &self.state, *choice, actions),
             Some(Dialogue::Shortcuts) => shortcuts::dialogue(ctx, actions),
-            Some(Dialogue::Survey { path, is_new }) => {
-                self.import.show(ctx, &self.state, &self.work, path, *is_new, actions);
+            Some(Dialogue::Survey { path, target }) => {
+                self.import.show(ctx, &self.state, &self.work, path, *target, actions);
             }
-            Some(Dialogue::Interpretation { path, is_fault }) => {
+            Some(Dialogue::Interpretation { path, kind }) => {
                 if let Some(session) = &self.state.session {
-                    self.interpretation.show(ctx, &self.state, session, &self.work, path, *is_fault, actions);
+                    self.interpretation.show(ctx, &self.state, session, &self.work, path, *kind, actions);
                 }
             }
             Some(Dialogue::Patterns { layer, interval }) => {

@@ -16,7 +16,8 @@ fn without_a_display_there_is_a_reason_and_a_way() {
     view.arg("view").env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
     let run = Run::of(&view.output().unwrap()).failed(&["display", "petroglyph render"]);
     assert!(run.stdout.is_empty());
-    let nobody = Run::of(&command().arg("view").env("DISPLAY", ":4711").env_remove("WAYLAND_DISPLAY").output().unwrap());
+    let nobody =
+        Run::of(&command().arg("view").env("DISPLAY", ":4711").env_remove("WAYLAND_DISPLAY").output().unwrap());
     nobody.failed(&["display"]);
 }
 

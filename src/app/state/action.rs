@@ -51,6 +51,8 @@ pub enum Action {
     },
     /// Draw to a file.
     Export(Box<ExportPlan>),
+    /// Put the picture on the clipboard.
+    Copy,
     /// Show another picture: camera, box, cut-outs, blend.
     Show(Box<Scene>),
     /// Show a named scene.
@@ -101,6 +103,8 @@ pub enum Task {
     },
     /// Draw to a file.
     Export(Box<ExportPlan>),
+    /// Put the picture on the clipboard.
+    Copy,
     /// Let go of the open project.
     Release,
     /// Write down what outlives the window.

@@ -69,6 +69,7 @@ impl State {
                 }];
             }
             Action::Export(plan) => return self.task(Task::Export(plan)),
+            Action::Copy => return self.task(Task::Copy),
             Action::Appear(appearance) => {
                 self.remembered.appearance = appearance;
                 return vec![Task::Remember];

@@ -22,6 +22,24 @@ pub enum Choice {
     Demo,
 }
 
+/// Where a survey goes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// Into a project of its own.
+    NewProject,
+    /// Into the open project.
+    OpenProject,
+}
+
+/// What an interpretation file holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpreted {
+    /// A horizon.
+    Horizon,
+    /// A fault.
+    Fault,
+}
+
 /// Something asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Dialogue {
@@ -31,15 +49,15 @@ pub enum Dialogue {
     Survey {
         /// The file.
         path: PathBuf,
-        /// Whether it begins a project.
-        is_new: bool,
+        /// Where it goes.
+        target: Target,
     },
     /// How to read a horizon or fault.
     Interpretation {
         /// The file.
         path: PathBuf,
-        /// A fault, else a horizon.
-        is_fault: bool,
+        /// What it holds.
+        kind: Interpreted,
     },
     /// Which pattern a layer gets.
     Patterns {

@@ -17,7 +17,7 @@ mod view;
 mod tests;
 
 pub use action::{Action, Task};
-pub use dialogue::{Choice, Dialogue, ExportForm, ExportPlan, Shown};
+pub use dialogue::{Choice, Dialogue, ExportForm, ExportPlan, Interpreted, Shown, Target};
 pub use notice::{Notice, Place};
 pub use remembered::{Appearance, Remembered};
 pub use session::{Session, Snapshot};

@@ -29,6 +29,13 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
             if ui.button("?").on_hover_text("Shortcuts (?)").clicked() {
                 actions.push(Action::Ask(Box::new(Dialogue::Shortcuts)));
             }
+            if ui
+                .add_enabled(session.is_drawable(), Button::new("Copy"))
+                .on_hover_text("Copy the picture (Ctrl Shift C)")
+                .clicked()
+            {
+                actions.push(Action::Copy);
+            }
             let form = ExportForm::new(session.root.with_extension("png").display().to_string());
             let can = session.is_drawable();
             let export = ui.add_enabled(can, Button::new("Export…")).on_hover_text("Draw to a file (Ctrl E)");

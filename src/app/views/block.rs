@@ -19,6 +19,8 @@ use render::{Background, Scene};
 const REACH: f32 = 11.0;
 /// Natural logarithm of the zoom that a point of wheel travel makes.
 const WHEEL: f64 = 0.0022;
+/// Wheel travel that moves a face by a sample, points.
+const WHEEL_STEP: f32 = 24.0;
 
 /// What the hand holds.
 enum Grab {
@@ -32,11 +34,15 @@ enum Grab {
 #[derive(Default)]
 pub struct BlockView {
     panes: Vec<Option<TextureHandle>>,
+    /// The pictures' pixels, left to right.
+    pixels: Vec<Option<ColorImage>>,
     wished: Option<(Vec<Scene>, u64, bool)>,
     number: u64,
     shown: u64,
     is_final: bool,
     grab: Option<Grab>,
+    /// Wheel travel over a handle not yet used, points.
+    wheel: f32,
     device: String,
 }
 
@@ -51,6 +57,17 @@ impl BlockView {
         self.is_final && self.shown == self.number
     }
 
+    /// Puts the picture on the clipboard, on white; of two that are compared, the illustrated one.
+    pub fn copy(&self, ctx: &eframe::egui::Context) {
+        let Some(mut image) = self.pixels.iter().flatten().next().cloned() else { return };
+        for pixel in &mut image.pixels {
+            let [r, g, b, alpha] = pixel.to_array();
+            let white = u8::MAX - alpha;
+            *pixel = Color32::from_rgb(r.saturating_add(white), g.saturating_add(white), b.saturating_add(white));
+        }
+        ctx.copy_image(image);
+    }
+
     /// Takes a picture in.
     pub fn receive(&mut self, ctx: &eframe::egui::Context, drawn: Drawn) {
         if drawn.number < self.shown || drawn.pane >= self.panes.len() {
@@ -61,6 +78,8 @@ impl BlockView {
         self.device = drawn.device;
         let size = [drawn.image.width() as usize, drawn.image.height() as usize];
         let image = ColorImage::from_rgba_unmultiplied(size, &drawn.image);
+        self.pixels.resize(self.panes.len(), None);
+        self.pixels[drawn.pane] = Some(image.clone());
         match &mut self.panes[drawn.pane] {
             Some(texture) => texture.set(image, TextureOptions::LINEAR),
             none => *none = Some(ctx.load_texture(format!("block {}", drawn.pane), image, TextureOptions::LINEAR)),
@@ -122,6 +141,7 @@ impl BlockView {
         pointed
     }
 
+    #[expect(clippy::too_many_arguments, reason = "what the hand can touch, and where")]
     fn touch(
         &mut self,
         ui: &Ui,
@@ -165,11 +185,18 @@ impl BlockView {
         }
         if let Some(at) = response.hover_pos() {
             let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
+            let is_near = |handle: &&Handle| (screen(pane, handle.at) - at).length() < REACH;
             let factor = (f64::from(scroll) * WHEEL).exp() * f64::from(pinch);
-            if (factor - 1.0).abs() > 1e-6 {
+            if let Some(handle) = handles.iter().find(is_near) {
+                self.wheel += scroll;
+                let steps = (self.wheel / WHEEL_STEP).trunc();
+                self.wheel -= steps * WHEEL_STEP;
+                if steps != 0.0 {
+                    scene = faces::move_face(&scene, geometry, size, handle.face, f64::from(steps));
+                }
+            } else if (factor - 1.0).abs() > 1e-6 {
                 camera::zoom_at(&mut scene, size, dvec(at - pane.min), factor);
             }
-            let is_near = |handle: &&Handle| (screen(pane, handle.at) - at).length() < REACH;
             let on_wipe = view.compare == Compare::Wipe && (at.x - wipe_x).abs() < REACH;
             if on_wipe {
                 ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);

@@ -4,7 +4,7 @@
 //! are listed on a thread: one on a network may take its time.
 
 use super::notices;
-use crate::app::state::{Action, Choice, Dialogue, Place, State};
+use crate::app::state::{Action, Choice, Dialogue, Interpreted, Place, State, Target};
 use eframe::egui::{Context, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -146,10 +146,10 @@ impl Chooser {
                 actions.push(Action::Apply(Box::new(crate::Command::AddTexture(command))));
                 return;
             }
-            Choice::NewSurvey => Dialogue::Survey { path, is_new: true },
-            Choice::MoreSurvey => Dialogue::Survey { path, is_new: false },
-            Choice::Horizon => Dialogue::Interpretation { path, is_fault: false },
-            Choice::Fault => Dialogue::Interpretation { path, is_fault: true },
+            Choice::NewSurvey => Dialogue::Survey { path, target: Target::NewProject },
+            Choice::MoreSurvey => Dialogue::Survey { path, target: Target::OpenProject },
+            Choice::Horizon => Dialogue::Interpretation { path, kind: Interpreted::Horizon },
+            Choice::Fault => Dialogue::Interpretation { path, kind: Interpreted::Fault },
         };
         self.choice = None;
         actions.push(Action::Ask(Box::new(dialogue)));

@@ -3,7 +3,9 @@
 use super::notices;
 use super::sections::HORIZON_COLOURS;
 use crate::app::state::{Action, Choice, Dialogue, Place, Session, State};
-use crate::command::{Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity};
+use crate::command::{
+    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity,
+};
 use crate::style;
 use eframe::egui::{Button, ComboBox, DragValue, Key, ScrollArea, Sense, TextEdit, Ui, vec2};
 use survey::VerticalUnit;

@@ -181,7 +181,8 @@ impl Functions {
                 let middle = 0.5 * (entry.lowest.max(-entry.clip) + entry.clip);
                 let texture = swatches.patterns().first().map(|pattern| pattern.name.clone()).unwrap_or_default();
                 let range = [middle, f32::INFINITY];
-                let interval = ScalarInterval { range, texture, factor: [1.0; 2], opacity: 1.0, colour: None, ink: None };
+                let interval =
+                    ScalarInterval { range, texture, factor: [1.0; 2], opacity: 1.0, colour: None, ink: None };
                 let function = ScalarTtf { volume: entry.name.clone(), intervals: vec![interval] };
                 actions.push(Action::Apply(Box::new(Command::SetScalar(SetScalar { function }))));
             }
@@ -218,16 +219,20 @@ fn map(ui: &mut Ui, document: &Document, raw: &mut RawColour) {
         let label = ui.label("Colours");
         let present = ColourMap::ALL.into_iter().find(|map| {
             let stops = map.stops();
-            let same = |((at, colour), stop): (&(f32, ttf::Colour), &ttf::RgbaStop)| *at == stop.at && *colour == stop.colour;
+            let same =
+                |((at, colour), stop): (&(f32, ttf::Colour), &ttf::RgbaStop)| *at == stop.at && *colour == stop.colour;
             stops.len() == raw.function.stops.len() && stops.iter().zip(&raw.function.stops).all(same)
         });
         let mut chosen = present;
         ui.label_inputs_by(label.id, |ui| {
-            ComboBox::from_id_salt("raw colours").selected_text(present.map_or("own", ColourMap::name)).show_ui(ui, |ui| {
-                for map in ColourMap::ALL {
-                    ui.selectable_value(&mut chosen, Some(map), map.name());
-                }
-            });
+            ComboBox::from_id_salt("raw colours").selected_text(present.map_or("own", ColourMap::name)).show_ui(
+                ui,
+                |ui| {
+                    for map in ColourMap::ALL {
+                        ui.selectable_value(&mut chosen, Some(map), map.name());
+                    }
+                },
+            );
         });
         if let Some(map) = chosen.filter(|_| chosen != present)
             && let Ok(next) = style::raw_colour(document, Some(&raw.volume), map, Some(raw.function.domain))

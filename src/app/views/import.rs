@@ -1,7 +1,7 @@
 //! How a survey would be read: geometry, evidence, a map of the traces, a section; bytes can be changed and show their effect at once.
 
 use super::notices;
-use crate::app::state::{Action, Place, State};
+use crate::app::state::{Action, Place, State, Target};
 use crate::app::work::Work;
 use crate::app::work::scan::{self, Found, SurveyScan};
 use crate::command::ImportVolume;
@@ -27,7 +27,7 @@ pub struct Import {
     options: SegyOptions,
     name: String,
     polarity: Polarity,
-    target: String,
+    root: String,
     scanned: Option<SegyOptions>,
     changed: Option<Instant>,
     found: Found<SurveyScan>,
@@ -42,12 +42,12 @@ impl Import {
         state: &State,
         work: &Work,
         path: &Path,
-        is_new: bool,
+        target: Target,
         actions: &mut Vec<Action>,
     ) {
         if self.path != path {
-            let target = path.with_extension("petro").display().to_string();
-            *self = Self { path: path.to_owned(), target, ..Self::default() };
+            let root = path.with_extension("petro").display().to_string();
+            *self = Self { path: path.to_owned(), root, ..Self::default() };
         }
         self.rescan(ctx, work);
         let room = ctx.content_rect().size();
@@ -70,7 +70,7 @@ impl Import {
                     .show(right, |ui| self.evidence(ui));
             });
             ui.separator();
-            self.target(ui, state, is_new, actions);
+            self.target(ui, state, target, actions);
         });
         if modal.should_close() {
             actions.push(Action::Answered);
@@ -202,16 +202,16 @@ impl Import {
         });
     }
 
-    fn target(&mut self, ui: &mut Ui, state: &State, is_new: bool, actions: &mut Vec<Action>) {
+    fn target(&mut self, ui: &mut Ui, state: &State, target: Target, actions: &mut Vec<Action>) {
         let can = self.found.with(|found| matches!(found, Some(Ok(_)))) && self.scanned.as_ref() == Some(&self.options);
         ui.horizontal(|ui| {
-            if is_new {
+            if target == Target::NewProject {
                 let label = ui.label("Project");
-                ui.add(TextEdit::singleline(&mut self.target).desired_width(420.0)).labelled_by(label.id);
+                ui.add(TextEdit::singleline(&mut self.root).desired_width(420.0)).labelled_by(label.id);
             } else if let Some(session) = &state.session {
                 ui.label(format!("Into {}", session.name()));
             }
-            let verb = if is_new { "Create project" } else { "Import" };
+            let verb = if target == Target::NewProject { "Create project" } else { "Import" };
             if ui.add_enabled(can, Button::new(verb)).clicked() {
                 let name = self.name.trim();
                 let command = Box::new(ImportVolume {
@@ -220,7 +220,7 @@ impl Import {
                     polarity: self.polarity,
                     options: self.options.clone(),
                 });
-                let into = is_new.then(|| PathBuf::from(self.target.trim()));
+                let into = (target == Target::NewProject).then(|| PathBuf::from(self.root.trim()));
                 actions.push(Action::Import { command, into });
             }
             if ui.button("Cancel").clicked() {

@@ -2,7 +2,7 @@
 
 use super::layers::contact_name;
 use super::notices;
-use crate::app::state::{Action, Place, Session, State};
+use crate::app::state::{Action, Interpreted, Place, Session, State};
 use crate::app::work::Work;
 use crate::app::work::scan::{self, Found, InterpretationScan};
 use crate::command::{AddFault, AddHorizon, Age, Command};
@@ -33,20 +33,20 @@ impl Interpretation {
         session: &Session,
         work: &Work,
         path: &Path,
-        is_fault: bool,
+        kind: Interpreted,
         actions: &mut Vec<Action>,
     ) {
         if self.path != path {
             let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
             *self = Self { path: path.to_owned(), name, ..Self::default() };
         }
-        self.rescan(session, work, is_fault);
+        self.rescan(session, work, kind);
         let modal = Modal::new(Id::unique("interpretation")).show(ctx, |ui| {
             ui.set_width(620.0);
-            ui.heading(if is_fault { "Add a fault" } else { "Add a horizon" });
+            ui.heading(if kind == Interpreted::Fault { "Add a fault" } else { "Add a horizon" });
             ui.weak(path.display().to_string());
             notices::show(ui, state, Place::Dialogue, actions);
-            self.form(ui, session, is_fault);
+            self.form(ui, session, kind);
             ui.separator();
             let height = (ctx.content_rect().height() - 460.0).clamp(90.0, 260.0);
             ScrollArea::vertical()
@@ -58,7 +58,7 @@ impl Interpretation {
             ui.horizontal(|ui| {
                 let can = !self.name.trim().is_empty() && self.found.with(|found| matches!(found, Some(Ok(_))));
                 if ui.add_enabled(can, Button::new("Add")).clicked() {
-                    actions.push(Action::Apply(Box::new(self.command(is_fault))));
+                    actions.push(Action::Apply(Box::new(self.command(kind))));
                 }
                 if ui.button("Cancel").clicked() {
                     actions.push(Action::Answered);
@@ -73,7 +73,7 @@ impl Interpretation {
         }
     }
 
-    fn rescan(&mut self, session: &Session, work: &Work, is_fault: bool) {
+    fn rescan(&mut self, session: &Session, work: &Work, kind: Interpreted) {
         let Some(geometry) = session.document.geometry.clone() else { return };
         if self.scanned.as_ref() == Some(&self.options) {
             return;
@@ -82,7 +82,7 @@ impl Interpretation {
         let (found, path, options) = (self.found.clone(), self.path.clone(), self.options.clone());
         let number = found.begin();
         work.background("Reading the file", Place::Dialogue, move |_, _| {
-            let read = if is_fault {
+            let read = if kind == Interpreted::Fault {
                 scan::fault(&path, &geometry, &options)
             } else {
                 scan::horizon(&path, &geometry, &options)
@@ -92,7 +92,7 @@ impl Interpretation {
         });
     }
 
-    fn form(&mut self, ui: &mut Ui, session: &Session, is_fault: bool) {
+    fn form(&mut self, ui: &mut Ui, session: &Session, kind: Interpreted) {
         Grid::new("interpretation").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
             let label = ui.label("Name");
             ui.add(TextEdit::singleline(&mut self.name).desired_width(240.0)).labelled_by(label.id);
@@ -105,7 +105,7 @@ impl Interpretation {
             let label = ui.label("Factor");
             ui.add(DragValue::new(&mut self.options.z_factor).speed(0.01)).labelled_by(label.id);
             ui.end_row();
-            if is_fault {
+            if kind == Interpreted::Fault {
                 let label = ui.label("Ends at");
                 ui.label_inputs_by(label.id, |ui| {
                     let shown = self.truncated_by.clone().unwrap_or_else(|| "nothing".to_owned());
@@ -153,9 +153,9 @@ impl Interpretation {
         });
     }
 
-    fn command(&self, is_fault: bool) -> Command {
+    fn command(&self, kind: Interpreted) -> Command {
         let (path, name, options) = (self.path.clone(), self.name.trim().to_owned(), self.options.clone());
-        if is_fault {
+        if kind == Interpreted::Fault {
             Command::AddFault(AddFault { path, name, truncated_by: self.truncated_by.clone(), options })
         } else {
             Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: Age::ByDepth, options })

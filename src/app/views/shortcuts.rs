@@ -1,5 +1,6 @@
 //! Every action by keyboard: one table that is both obeyed and shown.
 
+use crate::app::state::faces::{self, Face, Owner};
 use crate::app::state::{
     Action, Choice, Compare, Dialogue, ExportForm, Layout, Panel, Session, StandardView, State, camera,
 };
@@ -27,6 +28,10 @@ const fn plain(key: Key, shown: &'static str, name: &'static str, deed: Deed) ->
     Shortcut { key, modifiers: Modifiers::NONE, shown, name, deed }
 }
 
+const fn shifted(key: Key, shown: &'static str, name: &'static str, deed: Deed) -> Shortcut {
+    Shortcut { key, modifiers: Modifiers::SHIFT, shown, name, deed }
+}
+
 const fn command(key: Key, shown: &'static str, name: &'static str, deed: Deed) -> Shortcut {
     Shortcut { key, modifiers: Modifiers::COMMAND, shown, name, deed }
 }
@@ -35,6 +40,8 @@ const fn command(key: Key, shown: &'static str, name: &'static str, deed: Deed) 
 const TURN_POINTS: f64 = 30.0;
 /// Factor that a key zooms by.
 const ZOOM: f64 = 1.2;
+/// Samples that a key moves a side of the block by.
+const SIDE: f64 = 4.0;
 /// A picture's size where only the aspect matters.
 const ANY_SIZE: DVec2 = DVec2::new(900.0, 650.0);
 
@@ -46,6 +53,13 @@ pub const SHORTCUTS: &[Shortcut] = &[
         shown: "Ctrl Shift Z",
         name: "Redo",
         deed: |_| Some(Action::Redo),
+    },
+    Shortcut {
+        key: Key::C,
+        modifiers: Modifiers::COMMAND.plus(Modifiers::SHIFT),
+        shown: "Ctrl Shift C",
+        name: "Copy the picture",
+        deed: |_| Some(Action::Copy),
     },
     command(Key::Z, "Ctrl Z", "Undo", |_| Some(Action::Undo)),
     command(Key::O, "Ctrl O", "Open a project", |_| ask(Dialogue::Choose(Choice::Project))),
@@ -88,6 +102,12 @@ pub const SHORTCUTS: &[Shortcut] = &[
         }
         show(scene)
     }),
+    shifted(Key::I, "Shift I", "Inline side outwards", |session| side(session, 0, -SIDE)),
+    plain(Key::I, "I", "Inline side inwards", |session| side(session, 0, SIDE)),
+    shifted(Key::X, "Shift X", "Crossline side outwards", |session| side(session, 1, -SIDE)),
+    plain(Key::X, "X", "Crossline side inwards", |session| side(session, 1, SIDE)),
+    shifted(Key::Z, "Shift Z", "Top up", |session| side(session, 2, -SIDE)),
+    plain(Key::Z, "Z", "Top down", |session| side(session, 2, SIDE)),
     plain(Key::H, "H", "Handles", |session| Some(Action::Handles(!session.view.handles))),
     plain(Key::J, "J", "Inline before", |session| step(session, 0, -1.0)),
     plain(Key::K, "K", "Inline after", |session| step(session, 0, 1.0)),
@@ -121,6 +141,18 @@ fn step(session: &Session, axis: usize, by: f64) -> Option<Action> {
     let mut slices = session.view.slices;
     slices[axis] += by;
     Some(Action::Slices(slices))
+}
+
+/// Moves the side of the block that faces the viewer inwards by so many samples.
+fn side(session: &Session, axis: usize, inwards: f64) -> Option<Action> {
+    let geometry = session.document.geometry.as_ref()?;
+    let scene = &session.view.scene;
+    let block = scene.box_in(geometry);
+    let towards = camera::view(scene, geometry, ANY_SIZE).towards_camera(block.centre())[axis];
+    // From below, the base is the side that faces the viewer.
+    let at_max = towards > 0.0;
+    let face = Face { owner: Owner::Block, axis, at_max };
+    show(faces::move_face(scene, geometry, ANY_SIZE, face, if at_max { -inwards } else { inwards }))
 }
 
 /// Obeys the keys that were pressed, unless something is being typed or asked.

@@ -25,8 +25,8 @@ pub use swatches::Swatches;
 
 use super::state::{Notice, Place, Snapshot, Task};
 use std::path::PathBuf;
-use std::sync::{Arc, OnceLock};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, OnceLock};
 use survey::Progress;
 
 /// An answer.
@@ -154,7 +154,8 @@ impl Work {
                 self.data.forget();
                 return;
             }
-            Task::Remember => return,
+            // These are the window's own.
+            Task::Remember | Task::Copy => return,
         };
         // The thread lives as long as this value.
         let _ = self.orders.send(order);
