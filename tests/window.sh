@@ -39,7 +39,8 @@ alive
 # Turn the block by hand: from the middle of the picture to the right.
 middle_x=$((width / 2)) middle_y=$((height / 2))
 xdotool mousemove "$middle_x" "$((middle_y + 150))" mousedown 1
-for step in 1 2 3 4 5 6; do xdotool mousemove_relative -- 20 -4; sleep 0.1; done
+sleep 0.6
+for step in 1 2 3 4 5 6 7 8; do xdotool mousemove_relative -- 15 -4; sleep 0.3; done
 xdotool mouseup 1
 look 2-turned 8
 key s; look 3-side-by-side 10

@@ -275,7 +275,7 @@ impl Window {
             });
             ui.separator();
             match session.view.panel {
-                Side::Layers | Side::Picks => {
+                Side::Layers => {
                     self.layers.show(ui, &self.state, session, &self.swatches, &mut self.tiles, actions);
                 }
                 Side::Data => self.data.show(ui, &self.state, session, actions),

@@ -71,7 +71,7 @@ pub enum Action {
     Panel(Panel),
     /// Show a layer's style.
     Layer(Option<String>),
-    /// Show a horizon on the map; picks go to it.
+    /// Show a horizon on the map.
     Horizon(Option<String>),
     /// Show or hide the handles of box and cut-outs.
     Handles(bool),

@@ -9,16 +9,10 @@ pub enum Place {
     Start,
     /// The block view.
     Block,
-    /// The sections.
-    Sections,
-    /// The map.
-    Map,
     /// The stratigraphic column and its styles.
     Layers,
     /// Volumes, horizons, faults.
     Data,
-    /// Picking.
-    Picks,
     /// Named scenes, view settings and export.
     Scenes,
     /// The dialogue in front.

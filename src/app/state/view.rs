@@ -43,8 +43,6 @@ pub enum Panel {
     Data,
     /// Colours and textures by value.
     Values,
-    /// Horizon picking.
-    Picks,
 }
 
 /// A section along the lattice.
@@ -124,7 +122,7 @@ pub struct View {
     pub panel: Panel,
     /// The layer whose style is shown.
     pub layer: Option<String>,
-    /// The horizon that the map shows and picks go to.
+    /// The horizon that the map shows.
     pub horizon: Option<String>,
     /// Whether handles of box and cut-outs are shown.
     pub handles: bool,

@@ -49,7 +49,7 @@ impl Controls {
                 if ui.button(&entry.name).on_hover_text("Show this scene").clicked() {
                     actions.push(Action::ShowNamed(entry.name.clone()));
                 }
-                if ui.small_button("Remove").on_hover_text(format!("Remove scene {}", entry.name)).clicked() {
+                if super::data::remove(ui, &format!("Remove scene {}", entry.name)) {
                     let command = RemoveScene { name: entry.name.clone() };
                     actions.push(Action::Apply(Box::new(Command::RemoveScene(command))));
                 }

@@ -7,7 +7,7 @@ use crate::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity,
 };
 use crate::style;
-use eframe::egui::{Button, ComboBox, DragValue, Key, ScrollArea, Sense, TextEdit, Ui, vec2};
+use eframe::egui::{Align, Button, DragValue, Key, Layout, ScrollArea, Sense, TextEdit, Ui, vec2};
 use survey::VerticalUnit;
 use ttf::ColourMap;
 
@@ -61,10 +61,12 @@ impl Data {
                 if label.on_hover_text(&entry.source.reading).clicked() {
                     actions.push(Action::Horizon((!is_chosen).then(|| entry.name.clone())));
                 }
-                if ui.small_button("Rename").on_hover_text(format!("Rename horizon {}", entry.name)).clicked() {
+                if is_chosen
+                    && ui.small_button("Rename").on_hover_text(format!("Rename horizon {}", entry.name)).clicked()
+                {
                     self.renaming = Some((entry.name.clone(), entry.name.clone()));
                 }
-                if ui.small_button("Remove").on_hover_text(format!("Remove horizon {}", entry.name)).clicked() {
+                if remove(ui, &format!("Remove horizon {}", entry.name)) {
                     let command = RemoveHorizon { name: entry.name.clone() };
                     actions.push(Action::Apply(Box::new(Command::RemoveHorizon(command))));
                 }
@@ -106,6 +108,12 @@ impl Data {
     }
 }
 
+/// A button at the right end of a row; answers whether it was clicked.
+pub(super) fn remove(ui: &mut Ui, hint: &str) -> bool {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.small_button("Remove").on_hover_text(hint).clicked())
+        .inner
+}
+
 fn add(ui: &mut Ui, name: &str, choice: Choice, can: bool, actions: &mut Vec<Action>) {
     if ui.add_enabled(can, Button::new(name)).clicked() {
         actions.push(Action::Ask(Box::new(Dialogue::Choose(choice))));
@@ -126,7 +134,7 @@ fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             {
                 actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
             }
-            if ui.small_button("Remove").on_hover_text(format!("Remove volume {}", entry.name)).clicked() {
+            if remove(ui, &format!("Remove volume {}", entry.name)) {
                 let command = RemoveVolume { name: entry.name.clone() };
                 actions.push(Action::Apply(Box::new(Command::RemoveVolume(command))));
             }
@@ -143,7 +151,7 @@ fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     for entry in &session.document.wells {
         ui.horizontal(|ui| {
             ui.label(&entry.name).on_hover_text(&entry.source.reading);
-            if ui.small_button("Remove").on_hover_text(format!("Remove well {}", entry.name)).clicked() {
+            if remove(ui, &format!("Remove well {}", entry.name)) {
                 let command = RemoveWell { name: entry.name.clone() };
                 actions.push(Action::Apply(Box::new(Command::RemoveWell(command))));
             }
@@ -159,7 +167,7 @@ fn faults(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             if let Some(other) = &entry.truncated_by {
                 ui.weak(format!("ends at {other}"));
             }
-            if ui.small_button("Remove").on_hover_text(format!("Remove fault {}", entry.name)).clicked() {
+            if remove(ui, &format!("Remove fault {}", entry.name)) {
                 let command = RemoveFault { name: entry.name.clone() };
                 actions.push(Action::Apply(Box::new(Command::RemoveFault(command))));
             }

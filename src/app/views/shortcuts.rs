@@ -75,7 +75,6 @@ pub const SHORTCUTS: &[Shortcut] = &[
     plain(Key::L, "L", "Layers", |_| Some(Action::Panel(Panel::Layers))),
     plain(Key::D, "D", "Data", |_| Some(Action::Panel(Panel::Data))),
     plain(Key::V, "V", "Values", |_| Some(Action::Panel(Panel::Values))),
-    plain(Key::P, "P", "Picks", |_| Some(Action::Panel(Panel::Picks))),
     plain(Key::B, "B", "Blend", |_| Some(Action::Compare(Compare::Blend))),
     plain(Key::S, "S", "Side by side", |_| Some(Action::Compare(Compare::SideBySide))),
     plain(Key::W, "W", "Wipe", |_| Some(Action::Compare(Compare::Wipe))),
