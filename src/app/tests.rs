@@ -157,7 +157,7 @@ fn a_survey_becomes_a_project_through_the_import_dialogue() {
     let path = survey(folder.path());
     let mut harness = driven(folder.path(), None);
     harness.step();
-    let ask = super::state::Action::Ask(Box::new(Dialogue::Survey { path: path.clone(), target: Target::NewProject }));
+    let ask = super::state::Action::Ask(Box::new(Dialogue::Survey { path, target: Target::NewProject }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the headers are read", |harness| harness.query_by_label("Map of the traces").is_some());
     for label in ["Inline", "Crossline", "Polarity", "Middle inline"] {

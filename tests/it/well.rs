@@ -120,5 +120,9 @@ fn horizons_are_written_in_every_format_and_read_back() {
         assert_eq!(shown["sheets"][0]["range"], serde_json::json!([500.0, 500.0]), "{format}");
         fs::remove_dir_all(at.join("d.petro")).unwrap();
     }
-    run_in(at, "export c.petro out.pmd --horizon 'Top Chalk'").failed(&["cannot be written", "formats that can", "zmap"]);
+    run_in(at, "export c.petro out.pmd --horizon 'Top Chalk'").failed(&[
+        "cannot be written",
+        "formats that can",
+        "zmap",
+    ]);
 }

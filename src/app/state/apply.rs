@@ -88,10 +88,8 @@ impl State {
         let Some(session) = &mut self.session else { return };
         let view = &mut session.view;
         match action {
-            Action::Show(scene) => {
-                if session.document.geometry.as_ref().is_some_and(|frame| scene.validate(frame).is_ok()) {
-                    view.scene = *scene;
-                }
+            Action::Show(scene) if session.document.geometry.as_ref().is_some_and(|f| scene.validate(f).is_ok()) => {
+                view.scene = *scene;
             }
             Action::ShowNamed(name) => match scene::choose(&session.document, Some(&name)) {
                 Ok(scene) => view.scene = scene,

@@ -161,8 +161,8 @@ impl View {
             self.scene.blend = 1.0;
         }
         let last = VoxelBox::of_size(geometry.size()).max;
-        for axis in 0..3 {
-            self.slices[axis] = self.slices[axis].clamp(0.0, last[axis]).round();
+        for (at, last) in self.slices.iter_mut().zip(last) {
+            *at = at.clamp(0.0, last).round();
         }
         self.layer = self.layer.take().filter(|name| document.layers().contains(name));
         self.horizon = self.horizon.take().filter(|name| document.horizons.iter().any(|entry| entry.name == *name));

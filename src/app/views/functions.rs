@@ -196,7 +196,8 @@ fn interval_row(ui: &mut Ui, volume: &str, index: usize, interval: &mut ScalarIn
         for (end, word) in ["from", "to"].into_iter().enumerate() {
             let value = &mut interval.range[end];
             if value.is_finite() {
-                let drag = DragValue::new(value).speed(value.abs() * 0.01 + 1e-3);
+                let speed = value.abs() * 0.01 + 1e-3;
+                let drag = DragValue::new(value).speed(speed);
                 ui.name_inputs(format!("{volume} {word} {}", index + 1), |ui| ui.add(drag));
             } else {
                 ui.weak(if end == 0 { "lowest" } else { "highest" });

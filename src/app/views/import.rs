@@ -115,8 +115,8 @@ impl Import {
             ui.strong("Header bytes");
             Grid::new("bytes").num_columns(3).spacing([12.0, 7.0]).show(ui, |ui| {
                 let bytes = info.map(|info| info.byte_positions);
-                byte(ui, "Inline", &mut options.inline_byte, bytes.map(|bytes| bytes.inline));
-                byte(ui, "Crossline", &mut options.crossline_byte, bytes.map(|bytes| bytes.crossline));
+                byte(ui, "Inline", &mut options.inline_byte, bytes.and_then(|bytes| bytes.inline));
+                byte(ui, "Crossline", &mut options.crossline_byte, bytes.and_then(|bytes| bytes.crossline));
                 byte(ui, "X", &mut options.x_byte, bytes.and_then(|bytes| bytes.x));
                 byte(ui, "Y", &mut options.y_byte, bytes.and_then(|bytes| bytes.y));
             });
@@ -253,7 +253,7 @@ fn candidates(ui: &mut Ui, info: &SegyInfo, options: &mut SegyOptions) {
     ui.strong("Other readings");
     for candidate in &info.candidates {
         let bytes = [candidate.inline_byte, candidate.crossline_byte];
-        let is_taken = bytes == [info.byte_positions.inline, info.byte_positions.crossline];
+        let is_taken = bytes.map(Some) == [info.byte_positions.inline, info.byte_positions.crossline];
         ui.horizontal_wrapped(|ui| {
             if is_taken {
                 ui.strong("In use:");

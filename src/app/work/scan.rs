@@ -34,8 +34,11 @@ pub struct InterpretationScan {
 
 /// What the last look into a file found; a newer look replaces it.
 pub struct Found<T> {
-    slot: Arc<Mutex<(u64, Option<Result<T, Notice>>)>>,
+    slot: Arc<Mutex<Look<T>>>,
 }
+
+/// The number of the latest look, and what was found last.
+type Look<T> = (u64, Option<Result<T, Notice>>);
 
 impl<T> Clone for Found<T> {
     fn clone(&self) -> Self {
