@@ -6,16 +6,18 @@
 #   make bench   how long our stages take on this machine
 #   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, scipy, xtgeo, segyio, lasio)
 #   make accuracy   measures accuracy anew into docs/accuracy.md
+#   make extraction measures the quality of horizon candidates into docs/extraction.md
 
 OUT ?= out/demo
 OUT_ACCURACY ?= docs/accuracy.md
+OUT_EXTRACTION ?= docs/extraction.md
 # The Vulkan loader complains where no desktop session has set this.
 export XDG_RUNTIME_DIR ?= /tmp
 PETROGLYPH = target/debug/petroglyph
 
 PYTHON ?= python3
 
-.PHONY: demo test check bench accuracy check-peers setup build
+.PHONY: demo test check bench accuracy extraction check-peers setup build
 
 build: setup
 	cargo build --locked
@@ -36,6 +38,9 @@ accuracy: setup
 
 check-peers: build
 	$(PYTHON) bench/check_formats.py $(PETROGLYPH)
+
+extraction: setup
+	cargo run --locked -p petroglyph-interp --example extraction > $(OUT_EXTRACTION).part && mv $(OUT_EXTRACTION).part $(OUT_EXTRACTION)
 
 bench: build
 	$(PETROGLYPH) bench --quick

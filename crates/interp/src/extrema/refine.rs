@@ -40,7 +40,7 @@ pub fn maximum(trace: &[f32], z: usize, sign: f32) -> (f32, f32) {
         }
         t -= slope / curvature;
     }
-    if !(t.abs() <= MAX_SHIFT) {
+    if t.is_nan() || t.abs() > MAX_SHIFT {
         return parabola;
     }
     let height = a[0] + t * (a[1] + t * (a[2] + t * (a[3] + t * a[4])));
@@ -67,7 +67,7 @@ pub fn crossing(trace: &[f32], z: usize) -> (f32, f32) {
     for _ in 0..STEPS {
         let value = a[0] + t * (a[1] + t * (a[2] + t * a[3]));
         let slope = a[1] + t * (2.0 * a[2] + t * 3.0 * a[3]);
-        if !(slope > 0.0) {
+        if slope.is_nan() || slope <= 0.0 {
             return line;
         }
         t -= value / slope;

@@ -94,7 +94,7 @@ fn triangles_of_inline(extrema: &Extrema, links: &Links, labels: &[u32], x: usiz
 }
 
 /// Surfaces of several kinds in one list, by their first vertex (ties: in the order given).
-pub(super) fn joined(size: [usize; 3], parts: Vec<Surfaces>) -> Surfaces {
+pub(super) fn joined(size: [usize; 3], parts: &[Surfaces]) -> Surfaces {
     let mut order: Vec<(usize, usize)> =
         parts.iter().enumerate().flat_map(|(kind, part)| (0..part.surfaces.len()).map(move |s| (kind, s))).collect();
     let first = |&(kind, surface): &(usize, usize)| {

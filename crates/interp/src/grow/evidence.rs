@@ -67,7 +67,7 @@ impl Noise {
             classes[at] = if seen[at][0].len() < LEAST_LINKS && at > 0 {
                 classes[at - 1]
             } else {
-                seen[at].each_mut().map(sigma)
+                seen[at].each_mut().map(|values| sigma(values))
             };
         }
         Self { classes }
@@ -85,7 +85,7 @@ fn class(dip: f32) -> usize {
 }
 
 /// Standard deviation by the median of absolute values.
-fn sigma(values: &mut Vec<f32>) -> f32 {
+fn sigma(values: &mut [f32]) -> f32 {
     if values.is_empty() {
         return 0.0;
     }

@@ -147,7 +147,7 @@ pub fn grow_slabs<S: SlabSource>(
         return Ok(Surfaces { size, ..Surfaces::default() });
     }
     let extrema = find_extrema(source, &kinds, settings.slab_inlines, progress)?;
-    let grown = match settings.method {
+    let grown: Vec<Surfaces> = match settings.method {
         Method::Ours => ours::grow(&extrema, settings, progress)?,
         Method::Paper => extrema
             .par_iter()
@@ -155,5 +155,5 @@ pub fn grow_slabs<S: SlabSource>(
             .collect::<Result<_, _>>()?,
     };
     progress.check()?;
-    Ok(assemble::joined(size, grown))
+    Ok(assemble::joined(size, &grown))
 }
