@@ -1,8 +1,8 @@
 //! Our growing, step by step: links, dips, evidence, cuts, windows, flood (see [`super`]).
 //!
-//! All kinds of extrema share the coarse dip and the faults; they never link to one another. Memory beside the extrema: about 45 bytes
-//! an extremum (16 links, 8 dips, 4 evidence and cuts, 16 while dips or evidence are smoothed), and 2 bytes per 8 voxels for the fault
-//! planes: some 10 bytes a voxel where an extremum of either kind comes every three to four samples.
+//! All kinds of extrema share the coarse dip and the faults; they never link to one another. Memory beside the 8 bytes of an extremum:
+//! 16 of links, 8 of dips, 4 of evidence and cuts, and, for one kind at a time, 40 while its dips are smoothed; half a byte a voxel for the
+//! fault planes. With peaks and troughs together every three to four samples that is some 15 bytes a voxel.
 
 use super::evidence::{self, Noise};
 use super::links::{self, Links, NEXT_X, NEXT_Y, NONE};
@@ -49,7 +49,8 @@ pub(super) fn grow(
     let field = dip::DipField::new(first.size, &pairs);
     drop(unguided);
     progress.step(1)?;
-    let linked: Vec<Linked> = extrema.par_iter().map(|extrema| linked(extrema, &field)).collect();
+    // One kind after the other: each is parallel inside, and needs most memory while its dips are smoothed.
+    let linked: Vec<Linked> = extrema.iter().map(|extrema| linked(extrema, &field)).collect();
     progress.step(1)?;
     let mut broken = if settings.fault_evidence.is_finite() {
         let kinds: Vec<_> =
