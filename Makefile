@@ -5,6 +5,7 @@
 #   make check   formatting, lints and documentation, warnings denied
 #   make bench   how long our stages take on this machine
 #   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, scipy, xtgeo, segyio, lasio)
+#   make fuzz    two seconds of made-up input for every parser; make fuzz-long ten minutes each
 #   make accuracy   measures accuracy anew into docs/accuracy.md
 #   make extraction measures the quality of horizon candidates into docs/extraction.md
 
@@ -17,7 +18,7 @@ PETROGLYPH = target/debug/petroglyph
 
 PYTHON ?= python3
 
-.PHONY: demo test check bench accuracy extraction check-peers setup build
+.PHONY: demo test check bench accuracy extraction check-peers fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
@@ -41,6 +42,12 @@ check-peers: build
 
 extraction: setup
 	cargo run --locked -p petroglyph-interp --example extraction > $(OUT_EXTRACTION).part && mv $(OUT_EXTRACTION).part $(OUT_EXTRACTION)
+
+fuzz: setup
+	fuzz/run.sh 2
+
+fuzz-long: setup
+	fuzz/run.sh 600
 
 bench: build
 	$(PETROGLYPH) bench --quick

@@ -9,6 +9,12 @@ Input (all written by the dump): `region.npy` uint16 [inline][crossline][sample]
 float32 [horizon][block][x][y], voxel z of the extended sheets; `meta.json` with `size`, `margin` (nodes around the
 survey), `metric_m` (m per voxel along x, y, z), `layers`, `blocks`. Only closed layers (two horizons) are timed on both sides.
 
+With --segy, DIR is instead the folder of `petroglyph bench --segy DIR`, and segyio reads the same cubes:
+
+    venv/bin/pip install segyio
+    petroglyph bench --segy DIR
+    venv/bin/python bench/peers.py --segy DIR
+
 f_z is what P-illus 3.1 describes: a kd-tree over each horizon's nodes, two distances for each voxel, no refinement to the
 surface (so k is off by up to the sampling). The trace is a fixed-step walk along the gradient of f_z, vectorised over all voxels.
 """
@@ -81,11 +87,32 @@ def trace(k, region, meta, steps=48):
     return p[0], p[1]
 
 
+def read_segy(folder, rounds=5):
+    """GB/s at which segyio's own whole-cube reading fills an array, the quickest of several rounds."""
+    import segyio
+
+    result = {"segyio": segyio.__version__}
+    for name in ("ieee", "ibm"):
+        seconds = []
+        for _ in range(rounds):
+            started = time.perf_counter()
+            cube = segyio.tools.cube(str(folder / f"{name}.sgy"))
+            seconds.append(time.perf_counter() - started)
+        result[f"{name}_gb_per_s"] = round(cube.nbytes / 1e9 / min(seconds), 2)
+        result[f"{name}_s"] = [round(s, 3) for s in seconds]
+        del cube
+    return result
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("dir", type=pathlib.Path)
     parser.add_argument("--scipy", action="store_true", help="time scipy's cKDTree too (minutes)")
+    parser.add_argument("--segy", action="store_true", help="time segyio on the cubes of `petroglyph bench --segy DIR`")
     args = parser.parse_args()
+    if args.segy:
+        print(json.dumps(read_segy(args.dir)))
+        return
     meta = json.loads((args.dir / "meta.json").read_text())
     region, sheets = np.load(args.dir / "region.npy"), np.load(args.dir / "sheets.npy")
     result = {"size": meta["size"], "threads": int(os.environ.get("OMP_NUM_THREADS", "0")) or os.cpu_count()}

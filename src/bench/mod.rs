@@ -7,6 +7,7 @@
 
 mod dump;
 mod model;
+pub mod segy;
 
 use crate::error::ProjectError;
 use crate::picture::{Device, Painter};

@@ -55,6 +55,8 @@ pub(super) enum Request {
     Patterns { out: PathBuf, project: Option<PathBuf> },
     /// Measure stages.
     Bench { sizes: bench::Sizes, dump: Option<PathBuf> },
+    /// How fast a SEG-Y cube is read.
+    BenchSegy { side: usize, folder: PathBuf },
     /// Go back.
     Undo(PathBuf),
     /// Go forward.
@@ -136,7 +138,10 @@ impl TryFrom<Action> for Request {
             Action::Patterns { out, project } => Self::Patterns { out, project },
             Action::Bench(typed) => {
                 let sizes = if typed.quick { bench::Sizes::Quick } else { bench::Sizes::Full };
-                Self::Bench { sizes, dump: typed.dump }
+                match typed.segy {
+                    Some(folder) => Self::BenchSegy { side: if typed.quick { 128 } else { 512 }, folder },
+                    None => Self::Bench { sizes, dump: typed.dump },
+                }
             }
             Action::Create(typed) => Self::Create { geometry: frame(&typed)?, project: typed.project },
             Action::Velocity { project, velocity_m_s } => {

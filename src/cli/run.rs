@@ -52,6 +52,7 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
         Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,
         Request::Patterns { out, project } => patterns(&out, project.as_deref())?,
+        Request::BenchSegy { side, folder } => told(bench::segy::run(side, &folder, &progress)?),
         Request::Bench { sizes, dump } => told(bench::run(sizes, dump.as_deref(), &progress)?),
         Request::Create { project, geometry } => {
             Project::create(&project, geometry)?.publish()?;
