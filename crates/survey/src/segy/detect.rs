@@ -207,7 +207,7 @@ pub(super) fn detect(
     let search = Search { columns, options };
     if options.line_source != LineSource::Headers {
         return match bins::find(columns, options, bins::MIN_FILL_STATED) {
-            Ok(bins) => search.by_coordinates(bins, Vec::new(), findings),
+            Ok(bins) => search.by_coordinates(&bins, Vec::new(), findings),
             Err(reason) => Err(SegyProblem::NoLattice { reason, tried: Vec::new() }),
         };
     }
@@ -383,7 +383,7 @@ impl Search<'_> {
     /// The lattice of X and Y, where no header numbers lines or the user wants it.
     fn by_coordinates(
         &self,
-        bins: Bins,
+        bins: &Bins,
         mut candidates: Vec<Candidate>,
         findings: &mut Findings,
     ) -> Result<Detected, SegyProblem> {
@@ -469,7 +469,7 @@ impl Search<'_> {
         readings.splice(0..0, contradicted);
         match readings.as_slice() {
             [] => match bins::find(self.columns, self.options, MIN_FILL_UNKNOWN) {
-                Ok(bins) => self.by_coordinates(bins, candidates, findings),
+                Ok(bins) => self.by_coordinates(&bins, candidates, findings),
                 Err(reason) => {
                     refuse::two_dimensional(self.columns, &candidates)?;
                     Err(if reason.is_empty() {

@@ -33,7 +33,8 @@ impl SegyFile {
         let origin = DVec2::from(g.origin);
         let linear = DMat2::from_cols(g.inline_vector.into(), g.crossline_vector.into());
         let size = [info.inlines.count, info.crosslines.count];
-        if self.places() < 2 || !(linear.determinant().abs() > 0.0) {
+        let area = linear.determinant().abs();
+        if self.places() < 2 || area.is_nan() || area == 0.0 {
             return Vec::new();
         }
         // Corners of the outermost bins, not of the outermost traces.
@@ -46,7 +47,7 @@ impl SegyFile {
         let width = (extent.x / SIZE[0]).max(extent.y / (2.0 * SIZE[1]));
         let cell = DVec2::new(width, 2.0 * width);
         let [columns, rows] = [extent.x / cell.x, extent.y / cell.y].map(|n| (n - 1e-6).ceil().max(1.0) as usize);
-        if !(width > 0.0) || columns > 200 || rows > 100 {
+        if width.is_nan() || width <= 0.0 || columns > 200 || rows > 100 {
             return Vec::new();
         }
         let index_from_world = linear.inverse();

@@ -57,7 +57,7 @@ fn lay_out(text: &mut String, value: &Value, depth: usize) {
             for (n, entry) in entries.iter().enumerate() {
                 // A set of logs opens once more, so that each of its curves has a line.
                 if entry.get("curves").is_some() {
-                    lay_out(text, entry, 0)
+                    lay_out(text, entry, 0);
                 } else {
                     let _ = write!(text, "{entry}");
                 }

@@ -238,7 +238,7 @@ fn a_well_in_depth_and_in_time_surveys() {
 
     let time = SurveyGeometry {
         vertical: crate::VerticalAxis { unit: VerticalUnit::Milliseconds, ..depth.vertical },
-        ..depth.clone()
+        ..depth
     };
     assert_eq!(well.place_at_md(425.0, &time).unwrap().z, 400.0);
     assert_eq!(well.time_depth(&time), TimeDepth::ConstantVelocity(2000.0));
