@@ -1,9 +1,16 @@
 #!/usr/bin/env python3
-"""Times the Python side of the parameterization on the input that `petroglyph bench --dump DIR` wrote.
+"""Times Python programs beside ours: the parameterization on the input that `petroglyph bench --dump DIR` wrote.
 
     python3 -m venv venv && venv/bin/pip install numpy scipy pykdtree
     petroglyph bench --dump DIR
     OMP_NUM_THREADS=2 venv/bin/python bench/peers.py DIR [--scipy]
+
+    venv/bin/pip install vtk
+    cargo run -p petroglyph-render --example volume_speed -- --dump volume.raw
+    venv/bin/python bench/peers.py --volume volume.raw [--side 256 --pixels 800 --function typical]
+
+times VTK's volume mappers on the volume, function, camera and step that `volume_speed` draws: one sample a voxel, the white ramp, a parallel
+projection over a corner. VTK's graphics mapper runs on whatever OpenGL there is, without a window.
 
 Input (all written by the dump): `region.npy` uint16 [inline][crossline][sample], layer + layers * block; `sheets.npy`
 float32 [horizon][block][x][y], voxel z of the extended sheets; `meta.json` with `size`, `margin` (nodes around the
@@ -124,15 +131,129 @@ def extraction(amplitude):
     }
 
 
+FUNCTIONS = {
+    "dense": [(-1.3, 0.002), (1.3, 0.02)],
+    "typical": [(-1.3, 0.0), (0.13, 0.0), (1.3, 1.0)],
+    "sparse": [(-1.3, 0.0), (1.04, 0.0), (1.3, 1.0)],
+}
+
+
+def processor_seconds():
+    times = os.times()
+    return times.user + times.system
+
+
+def vtk_picture(path, side, pixels, function, mapper, shade, reach, out=None):
+    """Seconds of the clock and of the processor for a picture, the best of three after a first."""
+    import vtk
+    from vtk.util.numpy_support import numpy_to_vtk
+
+    values = np.fromfile(path, np.float32).reshape(side, side, side)
+    # VTK wants x fastest; ours are z fastest.
+    scalars = numpy_to_vtk(np.ascontiguousarray(values.transpose(2, 1, 0)).ravel(), deep=True)
+    image = vtk.vtkImageData()
+    image.SetDimensions(side, side, side)
+    image.GetPointData().SetScalars(scalars)
+    opacity, colour = vtk.vtkPiecewiseFunction(), vtk.vtkColorTransferFunction()
+    for value, alpha in FUNCTIONS[function]:
+        opacity.AddPoint(value, alpha)
+    colour.AddRGBPoint(-1.3, 1, 1, 1)
+    colour.AddRGBPoint(1.3, 1, 1, 1)
+    look = vtk.vtkVolumeProperty()
+    look.SetScalarOpacity(opacity)
+    look.SetColor(colour)
+    look.SetInterpolationTypeToLinear()
+    look.SetScalarOpacityUnitDistance(1.0)
+    if shade:
+        look.ShadeOn()
+    if mapper == "gpu":
+        drawer = vtk.vtkOpenGLGPUVolumeRayCastMapper()
+        drawer.SetSampleDistance(1.0)
+        if reach is not None:
+            drawer.SetVolumetricScatteringBlending(2.0)
+            drawer.SetGlobalIlluminationReach(reach)
+    else:
+        drawer = vtk.vtkFixedPointVolumeRayCastMapper()
+        drawer.SetSampleDistance(1.0)
+        drawer.SetInteractiveSampleDistance(1.0)
+        drawer.SetImageSampleDistance(1.0)
+    drawer.SetAutoAdjustSampleDistances(0)
+    drawer.SetInputData(image)
+    volume = vtk.vtkVolume()
+    volume.SetMapper(drawer)
+    volume.SetProperty(look)
+    renderer = vtk.vtkRenderer()
+    renderer.AddVolume(volume)
+    camera = renderer.GetActiveCamera()
+    azimuth, elevation = np.radians(35.0), np.radians(28.0)
+    # x east, y north, and z down in the volume: seen with z pointing down.
+    forward = np.array([np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), np.sin(elevation)])
+    middle = np.full(3, (side - 1) / 2)
+    camera.SetFocalPoint(*middle)
+    camera.SetPosition(*(middle - forward * side * 3))
+    camera.SetViewUp(0, 0, -1)
+    camera.ParallelProjectionOn()
+    right = np.array([np.cos(azimuth), -np.sin(azimuth), 0.0])
+    up = np.cross(forward, right)
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * (side - 1) - middle
+    widest = max(np.ptp(corners @ right), np.ptp(corners @ up))
+    # The picture's half height in the volume's units, with the same free border of 4 % to each side.
+    camera.SetParallelScale(widest / 2 / 0.92)
+    renderer.ResetCameraClippingRange()
+    window = vtk.vtkRenderWindow()
+    window.SetOffScreenRendering(1)
+    window.SetMultiSamples(0)
+    window.SetSize(pixels, pixels)
+    window.AddRenderer(renderer)
+    wall, spent = [], []
+    for _ in range(4):
+        volume.Modified()
+        began, before = time.perf_counter(), processor_seconds()
+        window.Render()
+        grab = vtk.vtkWindowToImageFilter()
+        grab.SetInput(window)
+        grab.ReadFrontBufferOff()
+        grab.Update()
+        wall.append(time.perf_counter() - began)
+        spent.append(processor_seconds() - before)
+    if out:
+        writer = vtk.vtkPNGWriter()
+        writer.SetFileName(out)
+        writer.SetInputConnection(grab.GetOutputPort())
+        writer.Write()
+    return min(wall[1:]), min(spent[1:])
+
+
+def time_vtk(args):
+    rows = [("cpu ray caster", "cpu", False, None), ("cpu ray caster, Phong", "cpu", True, None), ("gpu mapper", "gpu", False, None), ("gpu mapper, Phong", "gpu", True, None),
+            ("gpu mapper, scattering, reach 0", "gpu", True, 0.0), ("gpu mapper, scattering, reach 0.3", "gpu", True, 0.3)]
+    for n, (name, mapper, shade, reach) in enumerate(rows):
+        out = f"{args.keep}/vtk-{n}.png" if args.keep else None
+        wall, spent = vtk_picture(args.volume, args.side, args.pixels, args.function, mapper, shade, reach, out)
+        print(f"VTK {name:<36} {args.function:<8} {wall:8.3f} s  {spent:7.2f} s of processor", flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("dir", type=pathlib.Path)
+    parser.add_argument("dir", type=pathlib.Path, nargs="?")
+    parser.add_argument("--volume", help="raw floats to time VTK on, as `volume_speed --dump` writes them")
+    parser.add_argument("--side", type=int, default=256)
+    parser.add_argument("--pixels", type=int, default=800)
+    parser.add_argument("--function", choices=FUNCTIONS, default="typical")
+    parser.add_argument("--keep", help="folder for VTK's pictures")
     parser.add_argument("--scipy", action="store_true", help="time scipy's cKDTree too (minutes)")
     parser.add_argument("--segy", action="store_true", help="time segyio on the cubes of `petroglyph bench --segy DIR`")
     args = parser.parse_args()
     if args.segy:
         print(json.dumps(read_segy(args.dir)))
         return
+
+
+    if args.volume:
+        time_vtk(args)
+        return
+    if args.dir is None:
+        parser.error("DIR or --volume is needed")
     meta = json.loads((args.dir / "meta.json").read_text())
     region, sheets = np.load(args.dir / "region.npy"), np.load(args.dir / "sheets.npy")
     result = {"size": meta["size"], "threads": int(os.environ.get("OMP_NUM_THREADS", "0")) or os.cpu_count()}

@@ -3,7 +3,8 @@
 use crate::error::ProjectError;
 use crate::pipeline::{Loaded, Stage};
 use image::RgbaImage;
-use render::{RenderError, Renderer, Scene, reference};
+use render::reference::CpuRenderer;
+use render::{RenderError, Renderer, Scene};
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
@@ -30,6 +31,7 @@ const SOFTWARE_DRIVERS: [&str; 2] = ["llvmpipe", "SwiftShader"];
 /// Draws pictures one after the other; an adapter is looked for once.
 pub struct Painter {
     renderer: Option<Renderer>,
+    processor: CpuRenderer,
     device: Device,
 }
 
@@ -53,7 +55,7 @@ impl Painter {
                 }
             },
         };
-        Ok(Self { renderer, device })
+        Ok(Self { renderer, processor: CpuRenderer::default(), device })
     }
 
     /// What draws, by name.
@@ -83,10 +85,10 @@ impl Painter {
             {
                 progress.warn(&format!("drawing on the processor, which is slower: {error}"));
                 self.renderer = None;
-                reference::render(scene, &inputs, progress)?
+                self.processor.render(scene, &inputs, progress)?
             }
             Some(drawn) => drawn?,
-            None => reference::render(scene, &inputs, progress)?,
+            None => self.processor.render(scene, &inputs, progress)?,
         };
         Ok((image, Stage::new("picture", start.elapsed())))
     }

@@ -203,6 +203,8 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
     {
         wanted.push(&raw.volume);
     }
+    wanted.extend(scene.media.all().map(|medium| medium.volume.as_str()));
+    wanted.extend(scene.media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str())));
     let mut volumes = Vec::new();
     for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
         let covers = placement::covers(&geometry, entry.geometry.as_ref().unwrap_or(&geometry))
@@ -249,6 +251,8 @@ impl Loaded {
             packed: self.packed.as_ref(),
             tables: self.tables.as_ref(),
             volumes,
+            candidates: None,
+            wells: &[],
             version: self.version,
         }
     }

@@ -2,7 +2,10 @@
 
 use crate::error::{Noun, ProjectError};
 use crate::project::Document;
-use render::{Ground, Scene};
+use crate::style;
+use render::media::{LayerOpacity, MediumColour, white_ramp};
+use render::{Background, Faces, Ground, Medium, Occlusion, Outlines, Phong, Scene, Shading, Stroke};
+use ttf::{Colour, ColourMap, RgbaFunction, RgbaStop};
 
 /// The scene of that name; without a name the project's first scene, or else the default view.
 ///
@@ -41,6 +44,109 @@ pub fn default_view(document: &Document) -> Result<Scene, ProjectError> {
         scene.cut_outs = vec![block.corner_cut(corner, CUT_SHARE)];
     }
     Ok(scene)
+}
+
+/// A way of drawing, by one word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Technique {
+    /// Textured faces.
+    Illustrate,
+    /// The volume seen through, shaded by what lies in front (P-horiz 5.1).
+    Occlusion,
+    /// The volume seen through, shaded by its gradients.
+    Phong,
+    /// The volume seen through, unshaded.
+    Volume,
+}
+
+/// What a view shows through, where it was said.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SeeThrough {
+    /// How.
+    pub technique: Option<Technique>,
+    /// Which volume.
+    pub medium: Option<String>,
+    /// Values up to this share of the volume's clip are clear.
+    pub clear_below: f32,
+}
+
+/// Background of volumes seen through: their white needs something darker behind it.
+const BEHIND_VOLUMES: Colour = Colour::new(0x2c, 0x33, 0x3a);
+/// Edges before that background.
+const EDGES_OF_VOLUMES: Colour = Colour::new(0x9a, 0xa4, 0xad);
+
+impl SeeThrough {
+    /// Changes a view.
+    ///
+    /// # Errors
+    /// The project has no such volume, or none at all.
+    pub fn change(&self, scene: &mut Scene, document: &Document) -> Result<(), ProjectError> {
+        let shading = match self.technique {
+            Some(Technique::Occlusion) => Shading::Occlusion(Occlusion::default()),
+            Some(Technique::Phong) => Shading::Phong(Phong::default()),
+            Some(Technique::Volume) => Shading::Unshaded,
+            None | Some(Technique::Illustrate) => return self.fill_cut_outs(scene, document),
+        };
+        scene.media.shading = shading;
+        scene.media.faces = Faces::None;
+        scene.ground = None;
+        if scene.background == Scene::default().background {
+            scene.background = Background::Colour(BEHIND_VOLUMES);
+            if scene.outlines == Outlines::default() {
+                scene.outlines.edges = Stroke { width_px: 1.4, colour: EDGES_OF_VOLUMES };
+            }
+        }
+        if scene.media.surroundings.is_empty() || self.medium.is_some() {
+            let raw = style::raw_colour(document, self.medium.as_deref(), ColourMap::Grey, None)?;
+            let [low, high] = raw.function.domain;
+            let mut function = white_ramp(high, self.clear_below);
+            if low >= 0.0 {
+                function.domain = raw.function.domain;
+            }
+            let colour = MediumColour::Function;
+            scene.media.surroundings =
+                vec![Medium { volume: raw.volume, function, layers: LayerOpacity::Ignored, colour }];
+        }
+        Ok(())
+    }
+
+    /// Fills the cut-outs of an illustration with the volume in its raw colours, more opaque the larger its values are.
+    fn fill_cut_outs(&self, scene: &mut Scene, document: &Document) -> Result<(), ProjectError> {
+        if self.technique == Some(Technique::Illustrate) {
+            scene.media.faces = Faces::All;
+        }
+        let Some(name) = &self.medium else { return Ok(()) };
+        let mut raw = style::raw_colour(document, Some(name), ColourMap::Seismics, None)?;
+        if let Some(own) = document.style.raw.as_ref().filter(|own| own.volume == *name) {
+            raw = own.clone();
+        }
+        let [low, high] = raw.function.domain;
+        let clear = self.clear_below.max(0.0);
+        let mut function = raw.function;
+        function.stops = resampled(&function);
+        for stop in &mut function.stops {
+            let value = low + (high - low) * stop.at;
+            let share = if low < 0.0 { value.abs() / high.max(-low) } else { stop.at };
+            stop.opacity = ((share - clear) / (1.0 - clear)).clamp(0.0, 1.0);
+        }
+        let followed = document.style.layers.styles.iter().any(|style| style.opacity > 0.0);
+        let layers = if followed { LayerOpacity::Followed } else { LayerOpacity::Ignored };
+        scene.media.cut_outs = vec![Medium { volume: raw.volume, function, layers, colour: MediumColour::Function }];
+        Ok(())
+    }
+}
+
+/// The stops of a function, and enough between them to bend its opacity.
+fn resampled(function: &RgbaFunction) -> Vec<RgbaStop> {
+    const BETWEEN: usize = 32;
+    let [low, high] = function.domain;
+    let stop = |n: usize| {
+        let at = n as f32 / BETWEEN as f32;
+        let [r, g, b, opacity] = function.evaluate(low + (high - low) * at);
+        let byte = |c: f32| (c * 255.0).round() as u8;
+        RgbaStop { at, colour: Colour::new(byte(r), byte(g), byte(b)), opacity }
+    };
+    (0..=BETWEEN).map(stop).collect()
 }
 
 /// Height of the drawn block over its longer side that the exaggeration aims at: a block, neither a tile nor a tower.

@@ -18,6 +18,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let project = Project::open(&request.project)?;
     let document = project.document();
     let mut scene = choose(&project, request.scene.as_deref())?;
+    request.see_through.change(&mut scene, document)?;
     request.view.change(&mut scene, document.frame()?);
     if document.volumes.is_empty() && document.horizons.is_empty() {
         anyhow::bail!(
@@ -74,6 +75,9 @@ fn choose(project: &Project, wanted: Option<&str>) -> anyhow::Result<Scene> {
 fn assumptions(project: &Project, scene: &Scene) -> Vec<String> {
     let document = project.document();
     let mut lines = Vec::new();
+    for medium in scene.media.all() {
+        lines.push(format!("seen through: volume {}", medium.volume));
+    }
     let in_time = document.geometry.as_ref().filter(|frame| frame.vertical.unit == VerticalUnit::Milliseconds);
     match in_time {
         Some(frame) => lines.push(format!(

@@ -13,6 +13,7 @@ use crate::command::{
     SetVelocity,
 };
 use crate::picture::Device;
+use crate::scene::{SeeThrough, Technique};
 use glam::DVec2;
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
@@ -85,6 +86,8 @@ pub(super) struct RenderRequest {
     pub(super) view: View,
     pub(super) dpi: f64,
     pub(super) device: Device,
+    /// What is seen through, where it was said.
+    pub(super) see_through: SeeThrough,
 }
 
 /// What to list of a project.
@@ -249,8 +252,18 @@ fn synth(typed: &SynthArgs) -> Result<Request, Usage> {
 }
 
 fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
-    if typed.technique != "illustrate" {
-        return Err(format!("--technique {}: expected illustrate", typed.technique));
+    let technique = match typed.technique.as_deref() {
+        None => None,
+        Some("illustrate") => Some(Technique::Illustrate),
+        Some("occlusion") => Some(Technique::Occlusion),
+        Some("phong") => Some(Technique::Phong),
+        Some("volume") => Some(Technique::Volume),
+        Some(other) => {
+            return Err(format!("--technique {other}: expected illustrate, occlusion, phong or volume"));
+        }
+    };
+    if !(typed.clear_below >= -1.0 && typed.clear_below < 1.0) {
+        return Err(format!("--clear-below {}: expected -1 to less than 1", typed.clear_below));
     }
     let device = match typed.device.as_str() {
         "auto" => Device::Auto,
@@ -272,6 +285,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         view: typed.view.try_into()?,
         dpi: typed.dpi,
         device,
+        see_through: SeeThrough { technique, medium: typed.medium, clear_below: typed.clear_below },
     })
 }
 

@@ -3,7 +3,7 @@
 use super::args::ViewArgs;
 use super::request::{Usage, counts, numbers};
 use glam::DVec3;
-use render::{Background, Corner, Ground, Lookup, Outlines, Projection, Scene, VoxelBox};
+use render::{Background, Corner, FaceData, Ground, Lookup, Outlines, Projection, Scene, VoxelBox};
 use survey::SurveyGeometry;
 
 /// Changes to a scene; what is absent stays.
@@ -20,6 +20,7 @@ pub(super) struct View {
     roaming_box: Option<LineBox>,
     cuts: Vec<Cut>,
     ground: Option<Option<Ground>>,
+    face_data: Option<FaceData>,
     outlines: Option<Outlines>,
     global_frequency: Option<f32>,
     samples: Option<u32>,
@@ -80,6 +81,13 @@ impl TryFrom<ViewArgs> for View {
             roaming_box: typed.roaming_box.map(|text| numbers("--box", &text, ',')).transpose()?,
             cuts,
             ground: switch("--ground", typed.ground.as_deref(), Some(Ground::default()), None)?,
+            face_data: match typed.show.as_deref() {
+                None => None,
+                Some("rock") => Some(FaceData::Rock),
+                Some("leaves") => Some(FaceData::Leaves),
+                Some("distance") => Some(FaceData::Distance),
+                Some(other) => return Err(format!("--show {other}: expected rock, leaves or distance")),
+            },
             outlines: switch("--outlines", typed.outlines.as_deref(), Outlines::default(), Outlines::none())?,
             global_frequency: typed.global_frequency,
             samples: typed.samples,
@@ -134,6 +142,7 @@ impl View {
         scene.camera.zoom = self.zoom.unwrap_or(scene.camera.zoom);
         scene.roaming_box = self.roaming_box.map(|lines| voxel_box(lines, geometry)).or(scene.roaming_box);
         scene.ground = self.ground.unwrap_or(scene.ground);
+        scene.face_data = self.face_data.unwrap_or(scene.face_data);
         scene.outlines = self.outlines.unwrap_or(scene.outlines);
         scene.global_frequency = self.global_frequency.unwrap_or(scene.global_frequency);
         scene.samples = self.samples.unwrap_or(scene.samples);

@@ -67,7 +67,7 @@ fn wrong_usage_is_2_and_failure_is_1() {
         "create a.petro --bounds 0,10,0,10,0,10 --size 4x4",
         "render a.petro a.txt",
         "render a.petro a.png --lookup fast",
-        "render a.petro a.png --technique occlusion",
+        "render a.petro a.png --technique magic",
         "import a.sgy a.petro --polarity sideways",
         "horizon add a.petro a.csv --name A --z-unit furlong",
         "horizon add a.petro a.csv --name A --z-factor 0",

@@ -72,6 +72,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         packed: Some(&packed),
         tables: Some(&tables),
         volumes: &volumes,
+        candidates: None,
+        wells: &[],
         version: 1,
     };
     let whole = VoxelBox::of_size(geometry.size());

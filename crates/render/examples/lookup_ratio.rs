@@ -44,6 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         packed: Some(&packed),
         tables: Some(&tables),
         volumes: &[],
+        candidates: None,
+        wells: &[],
         version: 1,
     };
     let mut renderer = Renderer::headless()?;

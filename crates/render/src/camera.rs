@@ -207,6 +207,26 @@ impl View {
         self.centre_px + DVec2::new(flat.x, -flat.y) * self.scale
     }
 
+    /// A direction given as right, up and towards the viewer, in display space, unit.
+    pub fn display_direction(&self, eye: DVec3) -> DVec3 {
+        (self.right * eye.x + self.up * eye.y - self.forward * eye.z).normalize_or_zero()
+    }
+
+    /// The affine map from voxel to eye space: right, up and forward in m of display space, forward counted from where rays start.
+    pub fn eye_from_voxel(&self) -> (DMat3, DVec3) {
+        let rows = DMat3::from_cols(self.right, self.up, self.forward).transpose();
+        let linear = rows * self.display_from_voxel;
+        (linear, DVec3::new(0.0, 0.0, self.distance) - linear * self.centre_voxel)
+    }
+
+    /// The inverse, for view coordinates (m right and up, or tangents) at a depth: `origin + depth · direction`, voxels.
+    pub fn depth_ray(&self, flat: DVec2) -> (DVec3, DVec3) {
+        let spread = self.voxel_from_display * (self.right * flat.x + self.up * flat.y);
+        let forward = self.voxel_from_display * self.forward;
+        let back = self.centre_voxel - forward * self.distance;
+        if self.perspective { (back, forward + spread) } else { (back + spread, forward) }
+    }
+
     /// The ray through a pixel position.
     pub fn ray(&self, pixel: DVec2) -> ViewRay {
         let offset = (pixel - self.centre_px) / self.scale;

@@ -65,6 +65,16 @@ pub enum SceneError {
         /// The roaming box's largest corner.
         box_max: [f64; 3],
     },
+    /// More of something than a scene can have.
+    #[error("{found} {what} are more than the {limit} a scene can have")]
+    TooMany {
+        /// Of what.
+        what: &'static str,
+        /// How many.
+        found: usize,
+        /// How many are possible.
+        limit: usize,
+    },
     /// Cut-outs that leave nothing to see, or too many of them.
     #[error("{found} cut-outs are more than the {limit} a scene can have; merge some")]
     TooManyCutOuts {
@@ -115,6 +125,16 @@ pub enum RenderError {
         what: &'static str,
         /// How to get it.
         remedy: &'static str,
+    },
+    /// The distances or leaves do not fill their box.
+    #[error("candidates of {size:?} need {expected} distances and leaves, found {found:?}; extract them again")]
+    CandidateSize {
+        /// `[inlines, crosslines, samples]`.
+        size: [usize; 3],
+        /// Values the box holds.
+        expected: usize,
+        /// Distances and leaves given.
+        found: [usize; 2],
     },
     /// The user stopped it.
     #[error(transparent)]

@@ -3,9 +3,16 @@
 use crate::camera::View;
 use crate::error::RenderError;
 use crate::ground::Relief;
-use crate::inputs::{Inputs, NamedVolume};
+use crate::inputs::{Candidates, Inputs, NamedVolume};
+use crate::leaves::FaceData;
+use crate::media::Faces;
+use crate::media::field::Field;
+use crate::media::prepared::Preparations;
+use crate::outline;
 use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
+use crate::voxel_box::VoxelBox;
+use crate::wells::Tubes;
 use glam::{DVec3, Vec3};
 use param::{PackedVolume, Parameterization};
 use survey::model::StructuralModel;
@@ -17,11 +24,19 @@ pub const MAX_VOLUMES: usize = 6;
 /// Colour under raw data where there is nothing else.
 const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
 
+/// A scene that shows candidates which are not there.
+pub(crate) const NO_CANDIDATES: RenderError = RenderError::Missing {
+    what: "horizon candidates",
+    remedy: "extract them first, or leave leaves and distances out of the scene",
+};
+
 /// Everything a picture needs, with names resolved.
 pub(crate) struct Frame<'a> {
     pub scene: &'a Scene,
     pub view: View,
     pub solid: Solid,
+    /// The part of the survey shown.
+    pub roaming_box: VoxelBox,
     /// The transfer functions with the scene's blend, frequency and raw data.
     pub tables: TtfTables,
     /// One per entry of `tables.volumes`; `None` where the picture does not need it.
@@ -36,6 +51,14 @@ pub(crate) struct Frame<'a> {
     pub voxel_m: Vec3,
     /// Factor on the colour of faces across x, y, z.
     pub tones: [f32; 3],
+    /// Behind everything, straight: nothing where edges are to be drawn behind what is seen through.
+    pub background: [f32; 4],
+    /// Horizon candidates, where faces show them.
+    pub candidates: Option<Candidates<'a>>,
+    /// Wells.
+    pub tubes: Option<Tubes>,
+    /// What is seen through.
+    pub field: Option<Field<'a>>,
 }
 
 /// The interpretation and the map to flat space.
@@ -54,11 +77,18 @@ pub(crate) enum Flat<'a> {
 
 impl<'a> Frame<'a> {
     /// Checks the scene against the inputs.
-    pub fn new(scene: &'a Scene, inputs: &Inputs<'a>) -> Result<Self, RenderError> {
+    pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Preparations) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
         let rock = resolve_rock(scene, inputs)?;
         let tables = resolve_tables(scene, inputs, rock.is_some())?;
-        let volumes = resolve_volumes(&tables, inputs.volumes)?;
+        let mut tables = tables;
+        let media: Vec<&String> = scene.media.all().map(|m| &m.volume).chain(paints(scene)).collect();
+        for name in &media {
+            if !tables.volumes.contains(name) {
+                tables.volumes.push((*name).clone());
+            }
+        }
+        let volumes = resolve_volumes(&tables, &media, inputs.volumes)?;
         let roaming_box = scene.box_in(inputs.geometry);
         let relief = match (&scene.ground, rock) {
             (None, _) => None,
@@ -74,11 +104,28 @@ impl<'a> Frame<'a> {
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
         let view = scene.view(inputs.geometry);
+        let field = Field::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
+        let candidates = match (scene.face_data, inputs.candidates) {
+            (FaceData::Rock, _) => None,
+            (_, None) => return Err(NO_CANDIDATES),
+            (_, Some(candidates)) => {
+                candidates.validate()?;
+                Some(candidates)
+            }
+        };
+        let solid = Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry));
+        let longest_m = (0..3).map(|axis| metric.col(axis).length() * roaming_box.extent()[axis]).fold(0.0, f64::max);
+        let background = if outline::has_underlay(scene) { [0.0; 4] } else { scene.background.rgba() };
         Ok(Self {
+            background,
+            candidates,
+            tubes: Tubes::new(inputs.wells, &scene.wells, &view, longest_m, solid.roaming_box),
+            field,
+            roaming_box,
             scene,
             tones: tones(&view, &roaming_box.centre(), scene.face_tone),
             view,
-            solid: Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry)),
+            solid,
             tables,
             volumes,
             rock,
@@ -119,7 +166,7 @@ fn resolve_tables(scene: &Scene, inputs: &Inputs, illustrated: bool) -> Result<T
         set_raw(&mut tables, raw);
     }
     if !illustrated {
-        if tables.globals.raw_volume == NONE {
+        if tables.globals.raw_volume == NONE && scene.media.faces != Faces::None && scene.face_data == FaceData::Rock {
             return Err(RenderError::Missing {
                 what: "something to show",
                 remedy: "add horizons and parameterize the project, or name a volume under `raw`",
@@ -180,15 +227,25 @@ fn set_raw(tables: &mut TtfTables, raw: &RawColour) {
     tables.globals.no_data = raw.no_data.map_or([0.0; 4], |colour| rgba(colour, 1.0));
 }
 
+/// Volumes painted on horizons.
+fn paints(scene: &Scene) -> impl Iterator<Item = &String> {
+    scene.media.horizons.iter().filter_map(|horizon| horizon.paint.as_ref()).map(|paint| &paint.volume)
+}
+
 /// The volumes behind the slots that are in use.
 fn resolve_volumes<'a>(
     tables: &TtfTables,
+    media: &[&String],
     volumes: &[NamedVolume<'a>],
 ) -> Result<Vec<Option<NamedVolume<'a>>>, RenderError> {
     if tables.volumes.len() > MAX_VOLUMES {
         return Err(RenderError::TooManyVolumes { found: tables.volumes.len(), limit: MAX_VOLUMES });
     }
-    let is_used = |slot: u32| tables.globals.raw_volume == slot || tables.scalars.iter().any(|s| s.volume == slot);
+    let is_used = |slot: u32| {
+        tables.globals.raw_volume == slot
+            || tables.scalars.iter().any(|s| s.volume == slot)
+            || media.contains(&&tables.volumes[slot as usize])
+    };
     let find = |name: &String| {
         volumes.iter().find(|v| v.name == *name).copied().ok_or_else(|| RenderError::UnknownVolume {
             name: name.clone(),

@@ -13,6 +13,8 @@ pub(crate) struct Gpu {
     pub adapter_name: String,
     /// Floats that one storage buffer can hold and bind.
     pub buffer_floats: usize,
+    /// Whether textures of 32-bit floats can be filtered.
+    pub filters_floats: bool,
     lost: Arc<Mutex<Option<String>>>,
 }
 
@@ -39,6 +41,7 @@ impl Gpu {
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("petroglyph"),
             required_limits: limits,
+            required_features: adapter.features() & wgpu::Features::FLOAT32_FILTERABLE,
             ..wgpu::DeviceDescriptor::default()
         }))
         .map_err(|error| unsuitable(error.to_string()))?;
@@ -46,6 +49,7 @@ impl Gpu {
         let limits = device.limits();
         let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let buffer_floats = (bytes / 16 * 4).min(u64::from(u32::MAX)) as usize;
+        let filters_floats = device.features().contains(wgpu::Features::FLOAT32_FILTERABLE);
         let lost = Arc::new(Mutex::new(None));
         let report = Arc::clone(&lost);
         device.set_device_lost_callback(move |_, reason| {
@@ -53,7 +57,7 @@ impl Gpu {
                 *lost = Some(reason);
             }
         });
-        Ok(Self { device, queue, adapter_name, buffer_floats, lost })
+        Ok(Self { device, queue, adapter_name, buffer_floats, filters_floats, lost })
     }
 
     /// Runs commands and turns what the graphics library says about them into an error.

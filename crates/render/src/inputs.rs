@@ -1,6 +1,9 @@
 //! What a scene is drawn from: borrowed data of the project, in voxel space.
 
+use crate::error::RenderError;
+use crate::leaves::BORDER;
 use crate::voxel_box::VoxelBox;
+use crate::wells::WellPath;
 use glam::Vec3;
 use param::{PackedVolume, Parameterization};
 use survey::model::StructuralModel;
@@ -22,6 +25,10 @@ pub struct Inputs<'a> {
     pub tables: Option<&'a TtfTables>,
     /// Scalar volumes, raw data among them.
     pub volumes: &'a [NamedVolume<'a>],
+    /// Distances to horizon candidates and their leaves.
+    pub candidates: Option<Candidates<'a>>,
+    /// Wells.
+    pub wells: &'a [WellPath<'a>],
     /// Changes whenever data behind any of these references change: what is on the GPU is kept while it stays the same.
     pub version: u64,
 }
@@ -37,6 +44,72 @@ pub struct NamedVolume<'a> {
     pub covers: VoxelBox,
 }
 
+/// For every sample of the survey the distance to the nearest candidate surface and the leaf of its tree (P-horiz 4.4, 5.2).
+#[derive(Debug, Clone, Copy)]
+pub struct Candidates<'a> {
+    /// `[inlines, crosslines, samples]`.
+    pub size: [usize; 3],
+    /// Distance in steps; 255 = farther.
+    pub distance: &'a [u8],
+    /// Leaf id; 0 = none.
+    pub leaf: &'a [u32],
+    /// Voxels to a step of `distance`.
+    pub voxels_per_step: f32,
+    /// What leaves are coloured by, by leaf id: the node of their tree at some level, for instance; 0 = not shown. Absent: the
+    /// leaf itself.
+    pub groups: Option<&'a [u32]>,
+}
+
+impl Candidates<'_> {
+    /// Refuses volumes that do not fill their box.
+    ///
+    /// # Errors
+    /// [`RenderError::CandidateSize`].
+    pub fn validate(&self) -> Result<(), RenderError> {
+        let expected = self.size.iter().product();
+        let found = [self.distance.len(), self.leaf.len()];
+        if found == [expected; 2] && expected > 0 {
+            Ok(())
+        } else {
+            Err(RenderError::CandidateSize { size: self.size, expected, found })
+        }
+    }
+
+    /// Leaf of the nearest sample.
+    pub fn leaf_at(&self, p: Vec3) -> u32 {
+        let index = |axis: usize| ((p[axis] + 0.5).max(0.0) as usize).min(self.size[axis] - 1);
+        self.leaf[(index(0) * self.size[1] + index(1)) * self.size[2] + index(2)]
+    }
+
+    /// The number that a leaf is coloured by; 0 = not shown.
+    pub fn group(&self, leaf: u32) -> u32 {
+        self.groups.map_or(leaf, |groups| groups.get(leaf as usize).copied().unwrap_or(0))
+    }
+
+    /// Whether a place lies beside another group: its neighbours aside in x or y belong to different ones.
+    pub fn is_border(&self, p: Vec3) -> bool {
+        let group = |aside: Vec3| self.group(self.leaf_at(p + aside));
+        group(Vec3::X * BORDER) != group(Vec3::X * -BORDER) || group(Vec3::Y * BORDER) != group(Vec3::Y * -BORDER)
+    }
+
+    /// Distance by trilinear interpolation, voxels.
+    pub fn distance_at(&self, p: Vec3) -> f32 {
+        let last = Vec3::from_array(self.size.map(|n| (n - 1) as f32));
+        let clamped = p.clamp(Vec3::ZERO, last);
+        let low = clamped.floor().min((last - 1.0).max(Vec3::ZERO));
+        let f = clamped - low;
+        let at = |x: usize, y: usize, z: usize| {
+            let x = (low.x as usize + x).min(self.size[0] - 1);
+            let y = (low.y as usize + y).min(self.size[1] - 1);
+            let z = (low.z as usize + z).min(self.size[2] - 1);
+            f32::from(self.distance[(x * self.size[1] + y) * self.size[2] + z])
+        };
+        let along_z = |x: usize, y: usize| at(x, y, 0) + (at(x, y, 1) - at(x, y, 0)) * f.z;
+        let along_y = |x: usize| along_z(x, 0) + (along_z(x, 1) - along_z(x, 0)) * f.y;
+        (along_y(0) + (along_y(1) - along_y(0)) * f.x) * self.voxels_per_step
+    }
+}
+
 /// Interpolation weights below this do not ask for their sample.
 pub const NO_WEIGHT: f32 = 1e-5;
 /// How far outside its extent a volume still answers, in its own samples: only rounding.
@@ -45,7 +118,17 @@ pub const SLACK: f32 = 1e-3;
 impl<'a> Inputs<'a> {
     /// Raw data without an interpretation.
     pub fn raw(geometry: &'a SurveyGeometry, volumes: &'a [NamedVolume<'a>]) -> Self {
-        Self { geometry, model: None, param: None, packed: None, tables: None, volumes, version: 0 }
+        Self {
+            geometry,
+            model: None,
+            param: None,
+            packed: None,
+            tables: None,
+            volumes,
+            candidates: None,
+            wells: &[],
+            version: 0,
+        }
     }
 }
 

@@ -5,14 +5,11 @@
 //! agree.
 //!
 //! One ray per sample finds the first face of the block ([`visible`]) or the ground ([`ground`]); the point is looked up in flat
-//! space, textured, blended to the raw data; outlines ([`outline`]) are stroked over the finished picture.
+//! space, textured, blended to the raw data; what is in front of it is integrated by [`media`]; outlines ([`outline`]) are stroked over the finished picture.
 //!
 //! # Spaces
 //! Everything is voxel space (x = inline index, y = crossline index, z = sample index downwards), but for the camera's
 //! display space (X east, Y north, Z up, m, exaggerated) and pixels (x right, y down, centres at halves).
-//!
-//! Deliberately absent: no volume is rendered inside cut-outs yet; the loop over the solid stretches of a ray ([`visible::Solid::next_span`])
-//! is the place where it will go.
 
 pub mod accuracy;
 pub mod camera;
@@ -23,17 +20,25 @@ mod frame;
 mod gpu;
 pub mod ground;
 pub mod inputs;
+pub mod leaves;
+pub mod media;
 pub mod outline;
+pub mod pick;
 pub mod reference;
 pub mod scene;
 mod shade;
 pub mod visible;
 pub mod voxel_box;
+pub mod wells;
 
 pub use camera::{Camera, Projection, View};
 pub use error::{RenderError, SceneError};
 pub use faces::Renderer;
-pub use inputs::{Inputs, NamedVolume};
+pub use inputs::{Candidates, Inputs, NamedVolume};
+pub use leaves::FaceData;
+pub use media::{Faces, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading};
 pub use outline::{Outlines, Stroke};
+pub use pick::{Pick, Picked, pick};
 pub use scene::{Background, Ground, Lookup, Scene};
 pub use voxel_box::{Corner, VoxelBox};
+pub use wells::{WellPath, WellStyle};

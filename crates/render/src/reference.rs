@@ -6,6 +6,8 @@
 use crate::error::RenderError;
 use crate::frame::Frame;
 use crate::inputs::Inputs;
+use crate::media::light::LightVolume;
+use crate::media::prepared::Preparations;
 use crate::outline;
 use crate::scene::Scene;
 use crate::shade::trace;
@@ -19,31 +21,67 @@ use survey::Progress;
 /// # Errors
 /// A scene without a picture, missing inputs, or cancellation.
 pub fn render(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
-    let frame = Frame::new(scene, inputs)?;
-    let [width, height] = scene.size_px;
-    progress.begin("render", u64::from(height));
-    let rows: Vec<Vec<u8>> = (0..height)
+    CpuRenderer::default().render(scene, inputs, progress)
+}
+
+/// The CPU renderer, keeping what it learnt of the data while [`Inputs::version`] stays the same.
+#[derive(Debug, Default)]
+pub struct CpuRenderer {
+    kept: Preparations,
+}
+
+impl CpuRenderer {
+    /// Draws the scene.
+    ///
+    /// # Errors
+    /// A scene without a picture, missing inputs, or cancellation.
+    pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        draw(&Frame::new(scene, inputs, &mut self.kept)?, progress)
+    }
+}
+
+/// Pixels along a side of what one task draws.
+const TILE: u32 = 32;
+
+fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
+    let light = match &frame.field {
+        Some(field) => LightVolume::new(field, &frame.view, &frame.solid, &frame.roaming_box, progress)?,
+        None => None,
+    };
+    let [width, height] = frame.scene.size_px;
+    let across = width.div_ceil(TILE);
+    let tiles = across * height.div_ceil(TILE);
+    progress.begin("render", u64::from(tiles));
+    let mut image = RgbaImage::new(width, height);
+    let drawn: Vec<(u32, u32, Vec<[u8; 4]>)> = (0..tiles)
         .into_par_iter()
-        .map(|y| {
-            let row = (0..width).flat_map(|x| pixel(&frame, x, y)).collect();
-            progress.step(1).map(|()| row)
+        .map(|tile| {
+            let (left, top) = (tile % across * TILE, tile / across * TILE);
+            let (right, bottom) = ((left + TILE).min(width), (top + TILE).min(height));
+            let rows = (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y)));
+            let pixels = rows.map(|(x, y)| pixel(frame, light.as_ref(), x, y)).collect();
+            progress.step(1).map(|()| (left, top, pixels))
         })
         .collect::<Result<_, _>>()?;
-    // The rows fill the image by construction.
-    let mut image = RgbaImage::from_raw(width, height, rows.concat()).unwrap_or_default();
-    outline::draw(&frame, &mut image);
+    for (left, top, pixels) in drawn {
+        let columns = TILE.min(width - left);
+        for (n, pixel) in (0u32..).zip(pixels) {
+            image.put_pixel(left + n % columns, top + n / columns, image::Rgba(pixel));
+        }
+    }
+    outline::draw(frame, &mut image);
     Ok(image)
 }
 
 /// The averaged colour of one pixel, straight 8-bit RGBA.
-fn pixel(frame: &Frame, x: u32, y: u32) -> [u8; 4] {
+fn pixel(frame: &Frame, light: Option<&LightVolume>, x: u32, y: u32) -> [u8; 4] {
     let samples = frame.scene.samples;
     let mut sum = Vec4::ZERO;
     for sub_y in 0..samples {
         for sub_x in 0..samples {
             let offset = DVec2::new(f64::from(sub_x) + 0.5, f64::from(sub_y) + 0.5) / f64::from(samples);
             let view_ray = frame.view.ray(DVec2::new(f64::from(x), f64::from(y)) + offset);
-            let colour = trace(frame, &view_ray);
+            let colour = trace(frame, light, &view_ray);
             sum += (colour.truncate() * colour.w).extend(colour.w);
         }
     }

@@ -5,8 +5,11 @@
 
 use crate::camera::{Camera, View};
 use crate::error::SceneError;
+use crate::leaves::FaceData;
+use crate::media::Media;
 use crate::outline::Outlines;
 use crate::voxel_box::VoxelBox;
+use crate::wells::WellStyle;
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
 use ttf::{Colour, RawColour};
@@ -60,6 +63,12 @@ pub struct Scene {
     pub outlines: Outlines,
     /// Boxes cut out of the roaming box.
     pub cut_outs: Vec<VoxelBox>,
+    /// What faces show. Default the rock.
+    pub face_data: FaceData,
+    /// How wells are drawn.
+    pub wells: WellStyle,
+    /// What is seen through, in the cut-outs and around them.
+    pub media: Media,
 }
 
 impl Default for Scene {
@@ -79,6 +88,9 @@ impl Default for Scene {
             raw: None,
             outlines: Outlines::default(),
             cut_outs: Vec::new(),
+            face_data: FaceData::Rock,
+            wells: WellStyle::default(),
+            media: Media::default(),
         }
     }
 }
@@ -175,6 +187,8 @@ impl Scene {
         }
         self.camera.validate()?;
         self.outlines.validate()?;
+        self.media.validate()?;
+        self.wells.validate()?;
         self.validate_boxes(geometry)
     }
 

@@ -1,4 +1,4 @@
-//! The colour of a visible point: region, flat coordinates, texture, scalar stack, raw data (P-illus 3.5, 4, 5).
+//! What a ray shows: the media it passes, and the colour of the point that stops it: region, flat coordinates, texture, scalar stack, raw data (P-illus 3.5, 4, 5).
 //!
 //! The pixel's footprint on the plane of a face is exact: with ray `o + t·d` and plane normal n, a step of the pixel moves the hit by
 //! `∂p = ∂o + t·∂d + ∂t·d`, `∂t = −n·(∂o + t·∂d)/(n·d)`; the Jacobian of (i, j, k) takes it to flat space.
@@ -7,17 +7,81 @@ use crate::camera::ViewRay;
 use crate::frame::{Flat, Frame, Rock};
 use crate::ground::GroundHit;
 use crate::inputs::NamedVolume;
-use crate::visible::{FaceHit, Ray};
+use crate::leaves::{FaceData, cover, distance_tone, leaf_colour};
+use crate::media::Faces;
+use crate::media::light::LightVolume;
+use crate::media::march::gather;
+use crate::visible::{FaceHit, Ray, TOUCH};
+use crate::wells::WellHit;
 use glam::{Vec3, Vec4};
 use survey::model::Region;
-use ttf::{FaceFrame, FlatFootprint, FlatPoint, ShadePoint};
+use ttf::{FaceFrame, FlatFootprint, FlatPoint, ShadePoint, linear_from_srgb, srgb_from_linear};
 
 /// Straight RGBA along one ray.
-pub(crate) fn trace(frame: &Frame, view_ray: &ViewRay) -> Vec4 {
-    match first_hit(frame, &Ray::from(*view_ray)) {
-        Hit::Background => Vec4::from_array(frame.scene.background.rgba()),
+pub(crate) fn trace(frame: &Frame, light: Option<&LightVolume>, view_ray: &ViewRay) -> Vec4 {
+    let ray = Ray::from(*view_ray);
+    let hit = stopping_hit(frame, &ray);
+    let behind = match hit {
+        Hit::Background => Vec4::from_array(frame.background),
         Hit::Face(hit) => face_colour(frame, view_ray, &hit).extend(1.0),
         Hit::Ground(hit) => ground_colour(frame, &hit).extend(1.0),
+        Hit::Well(hit) => hit.colour.extend(1.0),
+    };
+    let Some(field) = &frame.field else { return behind };
+    let gathered = gather(field, light, &frame.solid, &ray, hit.t());
+    let mut far = linear(behind.truncate());
+    if let (Some(light), true) = (light, hit.t().is_finite()) {
+        far *= light.at(ray.at(hit.t()));
+    }
+    if gathered.passes == 1.0 && far == linear(behind.truncate()) {
+        return behind;
+    }
+    // Premultiplied by what is covered, then straight again.
+    let sum = gathered.colour + far * (behind.w * gathered.passes);
+    let alpha = 1.0 - gathered.passes * (1.0 - behind.w);
+    encoded(sum / alpha.max(1e-6)).extend(alpha)
+}
+
+pub(crate) fn linear(encoded: Vec3) -> Vec3 {
+    Vec3::from_array(encoded.to_array().map(linear_from_srgb))
+}
+
+pub(crate) fn encoded(linear: Vec3) -> Vec3 {
+    Vec3::from_array(linear.to_array().map(|c| srgb_from_linear(c.clamp(0.0, 1.0))))
+}
+
+/// What stops a ray in this scene: a well, or the first face or ground, one of the cut-outs' back faces or ground, or nothing.
+pub(crate) fn stopping_hit(frame: &Frame, ray: &Ray) -> Hit {
+    let hit = stopping_rock(frame, ray);
+    match frame.tubes.as_ref().and_then(|tubes| tubes.hit(ray, hit.t())) {
+        Some(well) => Hit::Well(well),
+        None => hit,
+    }
+}
+
+fn stopping_rock(frame: &Frame, ray: &Ray) -> Hit {
+    match frame.scene.media.faces {
+        Faces::All => first_hit(frame, ray),
+        Faces::None => Hit::Background,
+        Faces::CutOuts => {
+            let Some([enter, _]) = frame.solid.box_interval(ray) else { return Hit::Background };
+            let mut from = f32::MIN;
+            for _ in 0..=frame.solid.cut_outs.len() + 1 {
+                let Some(span) = frame.solid.next_span(ray, from) else { return Hit::Background };
+                let front = span.entry.t <= enter + TOUCH;
+                match (&frame.relief, frame.rock) {
+                    (Some(relief), Some(rock)) if relief.is_air(rock.model, span.entry.point) => {
+                        if let Some(hit) = relief.march(rock.model, ray, span.entry.t, span.end) {
+                            return Hit::Ground(hit);
+                        }
+                    }
+                    _ if !front => return Hit::Face(span.entry),
+                    _ => {}
+                }
+                from = span.end;
+            }
+            Hit::Background
+        }
     }
 }
 
@@ -27,6 +91,7 @@ pub(crate) enum Hit {
     Background,
     Face(FaceHit),
     Ground(GroundHit),
+    Well(WellHit),
 }
 
 impl Hit {
@@ -36,6 +101,7 @@ impl Hit {
             Self::Background => f32::INFINITY,
             Self::Face(hit) => hit.t,
             Self::Ground(hit) => hit.t,
+            Self::Well(hit) => hit.t,
         }
     }
 }
@@ -85,7 +151,21 @@ fn face_colour(frame: &Frame, view_ray: &ViewRay, hit: &FaceHit) -> Vec3 {
             }
         }
     };
-    Vec4::from_array(ttf::shade(&frame.tables, &point, &scalars)).truncate() * frame.tones[hit.axis]
+    let rock = Vec4::from_array(ttf::shade(&frame.tables, &point, &scalars)).truncate();
+    with_candidates(frame, hit.point, rock) * frame.tones[hit.axis]
+}
+
+/// The colour of a face with the candidates it is to show.
+fn with_candidates(frame: &Frame, p: Vec3, rock: Vec3) -> Vec3 {
+    let Some(candidates) = &frame.candidates else { return rock };
+    let distance = candidates.distance_at(p);
+    if frame.scene.face_data == FaceData::Distance {
+        return Vec3::splat(distance_tone(distance));
+    }
+    match candidates.group(candidates.leaf_at(p)) {
+        0 => rock,
+        group => rock.lerp(leaf_colour(group), cover(distance)),
+    }
 }
 
 /// The colour of the ground: the average of the texture just below it, hill-shaded, blended to the raw data (P-illus 5, 5.2).

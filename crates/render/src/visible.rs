@@ -108,6 +108,12 @@ impl Solid {
             && !self.cut_outs.iter().any(|[low, high]| p.cmpgt(*low).all() && p.cmplt(*high).all())
     }
 
+    /// The interval of a ray in the roaming box, cut-outs or not.
+    pub fn box_interval(&self, ray: &Ray) -> Option<[f32; 2]> {
+        let outer = cross(ray, self.roaming_box);
+        (outer.exit > outer.enter).then_some([outer.enter, outer.exit])
+    }
+
     /// The first stretch of rock that begins at or after distance `from`.
     pub fn next_span(&self, ray: &Ray, from: f32) -> Option<SolidSpan> {
         let outer = cross(ray, self.roaming_box);

@@ -16,9 +16,17 @@ pub(in crate::cli) struct RenderArgs {
     /// Dots per inch, written into the picture: sets its printed size
     #[arg(long, value_name = "D", default_value_t = 300.0)]
     pub(in crate::cli) dpi: f64,
-    /// Way of drawing: illustrate
-    #[arg(long, value_name = "illustrate", default_value = "illustrate")]
-    pub(in crate::cli) technique: String,
+    /// Way of drawing: illustrate (textured faces), occlusion (the volume seen through, shaded without gradients), phong (by gradients) or volume
+    /// (unshaded) [default: as the view says, else illustrate]
+    #[arg(long, value_name = "illustrate|occlusion|phong|volume")]
+    pub(in crate::cli) technique: Option<String>,
+    /// Volume that is seen through; with textured faces it fills the cut-outs, in layers that have an opacity if there are any [default: the volume shown as
+    /// raw data]
+    #[arg(long, value_name = "NAME")]
+    pub(in crate::cli) medium: Option<String>,
+    /// Values up to this share of the volume's clip are clear, larger ones more and more opaque; from -1
+    #[arg(long, value_name = "SHARE", default_value_t = 0.1, allow_hyphen_values = true)]
+    pub(in crate::cli) clear_below: f32,
     /// What draws: the graphics adapter, or the processor when there is none; or one of them
     #[arg(long, value_name = "auto|gpu|cpu", default_value = "auto")]
     pub(in crate::cli) device: String,

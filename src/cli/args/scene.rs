@@ -87,6 +87,9 @@ pub(in crate::cli) struct ViewArgs {
     /// Relief of the topmost horizon instead of a flat top
     #[arg(long, value_name = "on|off")]
     pub(in crate::cli) ground: Option<String>,
+    /// What faces show: the rock, the leaves of horizon candidates in colours, or the distance to the nearest candidate
+    #[arg(long, value_name = "rock|leaves|distance")]
+    pub(in crate::cli) show: Option<String>,
     /// Lines along horizons, faults and edges
     #[arg(long, value_name = "on|off")]
     pub(in crate::cli) outlines: Option<String>,

@@ -105,36 +105,81 @@ fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
         point.grad_k = flat.dk / params.voxel_m.xyz;
         point.defined = 1u;
     }
-    return shade(point, axis, p) * params.tones[axis];
+    return with_candidates(p, shade(point, axis, p)) * params.tones[axis];
+}
+
+// The first rock on a ray, or with `faces_shown` = FACES_CUT_OUTS the first that does not begin at the roaming box; or the ground.
+struct Stop {
+    span: SolidSpan,
+    ground: GroundHit,
+}
+
+fn stopping_hit(ray: PixelRay) -> Stop {
+    var stop: Stop;
+    if faces_shown == FACES_ALL && with_ground == 0u {
+        stop.span = next_span(ray.origin, ray.direction, LOWEST);
+        return stop;
+    }
+    if faces_shown != FACES_ALL && faces_shown != FACES_CUT_OUTS {
+        return stop;
+    }
+    let outer = cross_box(ray.origin, ray.direction, params.box_low.xyz, params.box_high.xyz);
+    var start = LOWEST;
+    for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
+        stop.span = next_span(ray.origin, ray.direction, start);
+        if !stop.span.found {
+            break;
+        }
+        var is_rock = true;
+        if with_ground == 1u {
+            is_rock = probe_at(stop.span.point).is_rock;
+        }
+        if is_rock && (faces_shown == FACES_ALL || stop.span.t > outer.enter + TOUCH) {
+            break;
+        }
+        stop.span.found = false;
+        if with_ground == 1u && !is_rock {
+            stop.ground = march(ray.origin, ray.direction, stop.span.t, stop.span.end);
+            if stop.ground.found {
+                break;
+            }
+        }
+        start = stop.span.end;
+    }
+    return stop;
 }
 
 fn trace(ray: PixelRay) -> vec4<f32> {
-    var span: SolidSpan;
-    var ground: GroundHit;
-    if with_ground == 0u {
-        span = next_span(ray.origin, ray.direction, LOWEST);
-    } else {
-        var start = LOWEST;
-        for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
-            span = next_span(ray.origin, ray.direction, start);
-            if !span.found || probe_at(span.point).is_rock {
-                break;
-            }
-            span.found = false;
-            ground = march(ray.origin, ray.direction, span.t, span.end);
-            if ground.found {
-                break;
-            }
-            start = span.end;
+    let hit = stopping_hit(ray);
+    var behind = params.background;
+    var stop = HIGHEST;
+    if hit.span.found {
+        behind = vec4(face_colour(ray, hit.span.t, hit.span.point, hit.span.axis), 1.0);
+        stop = hit.span.t;
+    } else if with_ground == 1u && hit.ground.found {
+        behind = vec4(ground_colour(hit.ground), 1.0);
+        stop = dot(hit.ground.point - ray.origin, ray.direction);
+    }
+    if with_wells == 1u {
+        let well = well_hit(ray.origin, ray.direction, stop);
+        if well.w < stop {
+            behind = vec4(well.xyz, 1.0);
+            stop = well.w;
         }
     }
-    if span.found {
-        return vec4(face_colour(ray, span.t, span.point, span.axis), 1.0);
+    if with_media == 0u {
+        return behind;
     }
-    if with_ground == 1u && ground.found {
-        return vec4(ground_colour(ground), 1.0);
+    let gathered = gather(ray.origin, ray.direction, stop);
+    var far = to_linear(behind.rgb);
+    if shading == OCCLUSION && stop < HIGHEST {
+        far *= light_at(ray.origin + ray.direction * stop);
+    } else if gathered.passes == 1.0 {
+        return behind;
     }
-    return params.background;
+    let sum = gathered.colour + far * (behind.a * gathered.passes);
+    let alpha = 1.0 - gathered.passes * (1.0 - behind.a);
+    return vec4(to_encoded(sum / max(alpha, 1e-6)), alpha);
 }
 
 @compute @workgroup_size(8, 8)

@@ -127,7 +127,7 @@ impl FaceParams {
             direction_dy: four(ray.direction_step[1]),
             box_low: plain(frame.solid.roaming_box[0]),
             box_high: plain(frame.solid.roaming_box[1]),
-            background: frame.scene.background.rgba(),
+            background: frame.background,
             voxel_m: plain(frame.voxel_m),
             tones: Vec3::from_array(frame.tones).extend(1.0).to_array(),
             light: [0.0; 4],

@@ -9,6 +9,8 @@
 
 mod grids;
 mod layout;
+mod light;
+mod media;
 mod model;
 #[cfg(test)]
 mod tests;
@@ -19,11 +21,14 @@ use crate::error::RenderError;
 use crate::frame::{Flat, Frame, MAX_VOLUMES};
 use crate::gpu::Gpu;
 use crate::inputs::Inputs;
+use crate::media::prepared::Preparations;
 use crate::outline;
 use crate::scene::Scene;
 use grids::{GridBuffers, Seen};
 use image::RgbaImage;
 use layout::FaceParams;
+use light::LightBuffers;
+use media::{CandidateTextures, MediaVariant};
 use model::{ModelBuffers, POOL_BUFFERS, PackedTexture};
 use std::collections::HashMap;
 use survey::Progress;
@@ -42,7 +47,17 @@ pub(crate) const SHADER: &str = concat!(
     include_str!("shade.wgsl"),
     include_str!("texture.wgsl"),
     include_str!("volume.wgsl"),
+    include_str!("media.wgsl"),
+    include_str!("light.wgsl"),
+    include_str!("leaves.wgsl"),
+    include_str!("wells.wgsl"),
 );
+
+/// The shader with the way to filter volumes that a device has.
+pub(crate) fn shader(filters_floats: bool) -> String {
+    let filter = if filters_floats { include_str!("filtered.wgsl") } else { include_str!("by_hand.wgsl") };
+    [SHADER, filter].concat()
+}
 
 /// Samples that one dispatch computes at most: a tenth of a second on the software driver.
 const SAMPLES_PER_TILE: u32 = 1 << 17;
@@ -55,7 +70,7 @@ pub struct Renderer {
     module: wgpu::ShaderModule,
     layouts: [wgpu::BindGroupLayout; 4],
     pipeline_layout: wgpu::PipelineLayout,
-    pipelines: HashMap<Variant, wgpu::ComputePipeline>,
+    pipelines: HashMap<(Variant, Pass), wgpu::ComputePipeline>,
     version: Option<u64>,
     model: Option<ModelBuffers>,
     grids: Option<GridBuffers>,
@@ -64,6 +79,14 @@ pub struct Renderer {
     textures: Option<TextureBuffers>,
     volumes: HashMap<String, wgpu::Texture>,
     no_volume: wgpu::Texture,
+    kept: Preparations,
+    light_layout: wgpu::BindGroupLayout,
+    light_pipeline_layout: wgpu::PipelineLayout,
+    light: Option<LightBuffers>,
+    no_light: wgpu::Texture,
+    candidates: Option<CandidateTextures>,
+    no_candidates: CandidateTextures,
+    filtering: wgpu::Sampler,
 }
 
 /// A pipeline's constants.
@@ -78,6 +101,14 @@ struct Variant {
     has_horizons: u32,
     pool_chunk: u32,
     pool_chunks: u32,
+    media: MediaVariant,
+}
+
+/// The entry points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Pass {
+    Draw,
+    Carry,
 }
 
 impl Renderer {
@@ -87,20 +118,34 @@ impl Renderer {
     /// [`RenderError::NoAdapter`] without a Vulkan driver, [`RenderError::Unsuitable`] for one that is too small.
     pub fn headless() -> Result<Self, RenderError> {
         let gpu = Gpu::headless()?;
-        let (module, layouts, pipeline_layout, no_packed, no_volume) = gpu.guarded(|| {
-            let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some("faces"),
-                source: wgpu::ShaderSource::Wgsl(SHADER.into()),
-            });
-            let layouts = bind_group_layouts(&gpu);
-            let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                label: Some("faces"),
-                bind_group_layouts: &layouts.each_ref().map(Some),
+        let make = gpu.guarded(|| Self::with(&gpu))?;
+        Ok(make(gpu))
+    }
+
+    /// Makes what stays the same for all pictures.
+    fn with(gpu: &Gpu) -> Result<impl FnOnce(Gpu) -> Self + use<>, RenderError> {
+        let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some("faces"),
+            source: wgpu::ShaderSource::Wgsl(shader(gpu.filters_floats).into()),
+        });
+        let layouts = bind_group_layouts(gpu);
+        let pipeline_layout = |label, layouts: &[Option<&wgpu::BindGroupLayout>]| {
+            gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                label: Some(label),
+                bind_group_layouts: layouts,
                 immediate_size: 0,
-            });
-            Ok((module, layouts, pipeline_layout, PackedTexture::new(&gpu, None)?, no_volume(&gpu)))
-        })?;
-        Ok(Self {
+            })
+        };
+        let light_layout = light::layout(gpu);
+        let of_light = [&light_layout, &layouts[1], &layouts[2], &layouts[3]].map(Some);
+        let light_pipeline_layout = pipeline_layout("light", &of_light);
+        let pipeline_layout = pipeline_layout("faces", &layouts.each_ref().map(Some));
+        let (no_packed, no_volume) = (PackedTexture::new(gpu, None)?, no_volume(gpu));
+        let one = wgpu::Extent3d { width: 1, height: 1, depth_or_array_layers: 1 };
+        let no_light = media::texture(gpu, "no light", one, light::FORMAT, wgpu::TextureUsages::empty());
+        let no_candidates = CandidateTextures::new(gpu, None)?;
+        let filtering = media::filtering(gpu);
+        Ok(move |gpu| Self {
             gpu,
             module,
             layouts,
@@ -114,6 +159,14 @@ impl Renderer {
             textures: None,
             volumes: HashMap::new(),
             no_volume,
+            kept: Preparations::default(),
+            light_layout,
+            light_pipeline_layout,
+            light: None,
+            no_light,
+            candidates: None,
+            no_candidates,
+            filtering,
         })
     }
 
@@ -127,7 +180,7 @@ impl Renderer {
     /// # Errors
     /// A scene without a picture, missing inputs, cancellation, or what the device says.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
-        let frame = Frame::new(scene, inputs)?;
+        let frame = Frame::new(scene, inputs, &mut self.kept)?;
         self.upload(&frame, inputs)?;
         let mut image = self.draw(&frame, progress)?;
         outline::draw(&frame, &mut image);
@@ -140,6 +193,7 @@ impl Renderer {
             self.model = None;
             self.grids = None;
             self.packed = None;
+            self.candidates = None;
             self.volumes.clear();
             self.version = Some(inputs.version);
         }
@@ -165,6 +219,9 @@ impl Renderer {
         if !self.textures.as_ref().is_some_and(|held| held.hold(&frame.tables.textures)) {
             self.textures = Some(gpu.guarded(|| Ok(TextureBuffers::new(gpu, &frame.tables.textures)))?);
         }
+        if let (Some(candidates), None) = (media::candidates_of(frame), &self.candidates) {
+            self.candidates = Some(gpu.guarded(|| CandidateTextures::new(gpu, Some(candidates)))?);
+        }
         for volume in frame.volumes.iter().flatten() {
             if !self.volumes.contains_key(volume.name) {
                 let texture = gpu.guarded(|| upload_volume(gpu, volume))?;
@@ -189,16 +246,22 @@ impl Renderer {
             has_horizons: frame.rock.map_or(0, |rock| u32::from(!rock.model.stratigraphy().horizons.is_empty())),
             pool_chunk: self.model.as_ref().map_or(1, |m| m.pool_chunk),
             pool_chunks: self.model.as_ref().map_or(1, |m| m.pool_chunks() as u32),
+            media: MediaVariant::of(frame),
         }
     }
 
     fn draw(&mut self, frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
         let variant = self.variant(frame);
-        if !self.pipelines.contains_key(&variant) {
-            let pipeline = self.gpu.guarded(|| Ok(self.pipeline(variant)))?;
-            self.pipelines.insert(variant, pipeline);
+        let grid = media::light_grid(frame);
+        self.make_pipeline(variant, Pass::Draw)?;
+        if let Some(grid) = &grid {
+            self.make_pipeline(variant, Pass::Carry)?;
+            if !self.light.as_ref().is_some_and(|held| held.fits(grid.size)) {
+                self.light = None;
+                self.light = Some(self.gpu.guarded(|| LightBuffers::new(&self.gpu, grid.size))?);
+            }
         }
-        let pipeline = &self.pipelines[&variant];
+        let pipeline = &self.pipelines[&(variant, Pass::Draw)];
         let [width, height] = frame.scene.size_px;
         let side = tile_side(frame.scene.samples);
         let mut image = RgbaImage::new(width, height);
@@ -206,12 +269,24 @@ impl Renderer {
             .flat_map(|row| (0..width.div_ceil(side)).map(move |column| [column * side, row * side]))
             .map(|[x, y]| [x, y, side.min(width - x), side.min(height - y)])
             .collect();
-        progress.begin("render", tiles.len() as u64);
         self.gpu.guarded(|| {
             let target = Target::new(&self.gpu, side);
             let mut params = FaceParams::of(frame);
             let params_buffer = self.gpu.uniform("params", bytemuck::bytes_of(&params));
-            let groups = self.bind_groups(frame, &params_buffer, &target.pixels);
+            let mut words = layout::relief_map(frame);
+            let media = media::media_params(frame, grid.as_ref(), &mut words);
+            let media = self.gpu.uniform("media", bytemuck::bytes_of(&media));
+            let words = self.gpu.storage("words", bytemuck::cast_slice(&words));
+            let buffers = [&params_buffer, &target.pixels, &words, &media];
+            if let (Some(grid), Some(light)) = (&grid, &self.light) {
+                let groups = self.bind_groups(frame, buffers, &self.no_light);
+                let pipeline = &self.pipelines[&(variant, Pass::Carry)];
+                let own = (&self.light_layout, &params_buffer, &words);
+                light.carry(&self.gpu, pipeline, own, &groups[1..], grid, progress)?;
+            }
+            let carried = self.light.as_ref().filter(|_| grid.is_some()).map_or(&self.no_light, |light| &light.volume);
+            let groups = self.bind_groups(frame, buffers, carried);
+            progress.begin("render", tiles.len() as u64);
             for tile in tiles {
                 params.tile = tile;
                 self.gpu.queue.write_buffer(&params_buffer, 0, bytemuck::bytes_of(&params));
@@ -223,8 +298,16 @@ impl Renderer {
         Ok(image)
     }
 
-    fn pipeline(&self, variant: Variant) -> wgpu::ComputePipeline {
-        let constants = [
+    fn make_pipeline(&mut self, variant: Variant, pass: Pass) -> Result<(), RenderError> {
+        if !self.pipelines.contains_key(&(variant, pass)) {
+            let pipeline = self.gpu.guarded(|| Ok(on_a_large_stack(|| self.pipeline(variant, pass))))?;
+            self.pipelines.insert((variant, pass), pipeline);
+        }
+        Ok(())
+    }
+
+    fn pipeline(&self, variant: Variant, pass: Pass) -> wgpu::ComputePipeline {
+        let mut constants = vec![
             ("lookup", f64::from(variant.lookup)),
             ("with_ground", f64::from(variant.with_ground)),
             ("with_raw", f64::from(variant.with_raw)),
@@ -235,11 +318,16 @@ impl Renderer {
             ("pool_chunk", f64::from(variant.pool_chunk)),
             ("pool_chunks", f64::from(variant.pool_chunks)),
         ];
+        constants.extend(variant.media.constants());
+        let (label, layout) = match pass {
+            Pass::Draw => ("draw", &self.pipeline_layout),
+            Pass::Carry => ("carry", &self.light_pipeline_layout),
+        };
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some("faces"),
-            layout: Some(&self.pipeline_layout),
+            label: Some(label),
+            layout: Some(layout),
             module: &self.module,
-            entry_point: Some("draw"),
+            entry_point: Some(label),
             compilation_options: wgpu::PipelineCompilationOptions {
                 constants: &constants,
                 ..wgpu::PipelineCompilationOptions::default()
@@ -248,7 +336,9 @@ impl Renderer {
         })
     }
 
-    fn bind_groups(&self, frame: &Frame, params: &wgpu::Buffer, pixels: &wgpu::Buffer) -> [wgpu::BindGroup; 4] {
+    /// `buffers`: parameters, pixels, words, media.
+    fn bind_groups(&self, frame: &Frame, buffers: [&wgpu::Buffer; 4], light: &wgpu::Texture) -> [wgpu::BindGroup; 4] {
+        let [params, pixels, words, media] = buffers;
         let gpu = &self.gpu;
         let tables = &frame.tables;
         let storage = |label: &str, bytes: &[u8]| gpu.storage(label, bytes);
@@ -262,7 +352,6 @@ impl Renderer {
         }
         let scalars = storage("scalar entries", bytemuck::cast_slice(&entries));
         let stops = storage("stops", bytemuck::cast_slice(&tables.stops));
-        let relief_map = storage("relief map", bytemuck::cast_slice(&layout::relief_map(frame)));
         let no_buffer = storage("none", &[]);
         let no_info = gpu.uniform("no model", &[]);
         let none = || no_buffer.as_entire_binding();
@@ -284,6 +373,11 @@ impl Renderer {
         let volume_infos = gpu.uniform("volumes", bytemuck::cast_slice(&volume_infos));
         let mut volumes = vec![volume_infos.as_entire_binding()];
         volumes.extend(views.iter().map(wgpu::BindingResource::TextureView));
+        let candidates = self.candidates.as_ref().unwrap_or(&self.no_candidates);
+        let others = [&candidates.distances, &candidates.leaves, light];
+        let others = others.map(|texture| texture.create_view(&wgpu::TextureViewDescriptor::default()));
+        volumes.extend([media.as_entire_binding(), wgpu::BindingResource::Sampler(&self.filtering)]);
+        volumes.extend(others.iter().map(wgpu::BindingResource::TextureView));
         let packed = self.packed.as_ref().unwrap_or(&self.no_packed);
         let packed_view = packed.texture.create_view(&wgpu::TextureViewDescriptor::default());
         let mut model = match &self.model {
@@ -308,11 +402,36 @@ impl Renderer {
         };
         let tables = [&globals, &layers, &intervals, &scalars, &stops].map(wgpu::Buffer::as_entire_binding);
         [
-            group(0, [params, pixels, &relief_map].map(wgpu::Buffer::as_entire_binding).to_vec()),
+            group(0, [params, pixels, words].map(wgpu::Buffer::as_entire_binding).to_vec()),
             group(1, [infos, texels].into_iter().chain(tables).collect()),
             group(2, volumes),
             group(3, model),
         ]
+    }
+}
+
+/// Stack for compiling shaders, bytes: the software driver's compiler recurses deeply, and threads of tests and pools are small.
+const COMPILER_STACK: usize = 64 << 20;
+
+/// Runs something on a thread with a large stack, or here where no thread can be had.
+fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
+    let (sender, receiver) = std::sync::mpsc::channel();
+    let mut work = Some(work);
+    std::thread::scope(|scope| {
+        let taken = &mut work;
+        let builder = std::thread::Builder::new().stack_size(COMPILER_STACK);
+        let spawned = builder.spawn_scoped(scope, move || {
+            if let Some(work) = taken.take() {
+                // The receiver lives until the scope has ended.
+                let _ = sender.send(work());
+            }
+        });
+        drop(spawned);
+    });
+    match (receiver.try_recv(), work) {
+        (Ok(made), _) => made,
+        (Err(_), Some(work)) => work(),
+        (Err(_), None) => unreachable!("a thread that took the work sends its result or its panic"),
     }
 }
 
@@ -412,8 +531,16 @@ fn bind_group_layouts(gpu: &Gpu) -> [wgpu::BindGroupLayout; 4] {
         gpu.device
             .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("faces"), entries: &entries })
     };
+    let texture = |sample_type| wgpu::BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D3,
+        multisampled: false,
+    };
+    let filtered = texture(wgpu::TextureSampleType::Float { filterable: true });
     let mut volumes = vec![uniform];
-    volumes.extend([volume; MAX_VOLUMES]);
+    volumes.extend([texture(wgpu::TextureSampleType::Float { filterable: gpu.filters_floats }); MAX_VOLUMES]);
+    volumes.extend([uniform, wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering)]);
+    volumes.extend([filtered, texture(wgpu::TextureSampleType::Uint), filtered]);
     let mut model = vec![uniform, read, read, read];
     model.extend([read; POOL_BUFFERS]);
     model.extend([uniform, volume, read, read, read]);

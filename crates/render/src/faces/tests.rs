@@ -1,10 +1,13 @@
 //! The shader is valid, and Rust and WGSL agree on every shared struct and constant.
 
 use super::layout::{FaceParams, FaultInfo, GridInfo, ModelInfo, PackedInfo, SheetInfo};
+use super::light::Slice;
+use super::media::{HORIZON_WORDS, MediaParams, MediumInfo};
 use super::textures::TextureInfo;
 use super::volumes::VolumeInfo;
-use super::{Renderer, SHADER};
-use crate::{Inputs, RenderError, Scene, ground, inputs, visible};
+use super::{Renderer, shader};
+use crate::media::{march, table};
+use crate::{Inputs, RenderError, Scene, ground, inputs, leaves, visible, wells};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use param::{ParamSettings, Parameterization};
 use std::mem::offset_of;
@@ -15,16 +18,24 @@ use ttf::tables::{IntervalEntry, LayerEntry, ScalarEntry, StopEntry, TtfGlobals}
 use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 
 fn module() -> naga::Module {
-    naga::front::wgsl::parse_str(SHADER).unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)))
+    parsed(&shader(true))
+}
+
+fn parsed(text: &str) -> naga::Module {
+    naga::front::wgsl::parse_str(text).unwrap_or_else(|error| panic!("{}", error.emit_to_string(text)))
 }
 
 #[test]
 fn the_shader_is_valid() {
-    let module = module();
-    Validator::new(ValidationFlags::all(), Capabilities::default())
-        .validate(&module)
-        .unwrap_or_else(|error| panic!("{}", error.emit_to_string(SHADER)));
-    assert!(module.entry_points.iter().any(|entry| entry.name == "draw"));
+    for text in [shader(true), shader(false)] {
+        let module = parsed(&text);
+        Validator::new(ValidationFlags::all(), Capabilities::default())
+            .validate(&module)
+            .unwrap_or_else(|error| panic!("{}", error.emit_to_string(&text)));
+        for name in ["draw", "carry"] {
+            assert!(module.entry_points.iter().any(|entry| entry.name == name), "{name}");
+        }
+    }
 }
 
 /// Compares a struct's members with Rust's fields: same names, same order, same offsets, same size. Padding is Rust's own business.
@@ -71,6 +82,11 @@ fn structs_have_the_same_layout() {
     check!(m, IntervalEntry: colour, ink, k, frequency, texture);
     check!(m, ScalarEntry: colour, ink, range, factor, texture, volume, opacity);
     check!(m, StopEntry: colour, at);
+    check!(m, Slice: index, side);
+    check!(m, MediumInfo: low, scale, slot, table, layers, place, coloured);
+    check!(m, MediaParams: display_x, display_y, display_z, covector_x, covector_y, covector_z, light, phong, cells_x,
+        cells_y, cells_z, cells_shift, cells_low, back, right, up, forward, grid, cells, bricks, scales, candidates,
+        leaves, slice_units, groups, wells, capsules, media);
 }
 
 #[test]
@@ -110,6 +126,21 @@ fn constants_are_the_same() {
         ("ACROSS_ONLY_SHARE", f64::from(ttf::coordinates::ACROSS_ONLY_SHARE)),
         ("ALONG_ONLY_SHARE", f64::from(ttf::coordinates::ALONG_ONLY_SHARE)),
         ("NONE", f64::from(ttf::tables::NONE)),
+        ("ENTRIES", table::ENTRIES as f64),
+        ("OPAQUE", f64::from(table::OPAQUE)),
+        ("NO_DATA", f64::from(table::NO_DATA)),
+        ("NO_DATA_BELOW", f64::from(table::NO_DATA_BELOW)),
+        ("SPENT", f64::from(march::SPENT)),
+        ("SOFT", f64::from(crate::media::field::SOFT)),
+        ("BRICK", crate::media::prepared::BRICK as f64),
+        ("MIXED", f64::from(crate::media::bricks::MIXED)),
+        ("HORIZON_WORDS", HORIZON_WORDS as f64),
+        ("HALF_WIDTH", f64::from(leaves::HALF_WIDTH)),
+        ("FADE", f64::from(leaves::FADE)),
+        ("BLACK_AT", f64::from(leaves::BLACK_AT)),
+        ("BORDER", f64::from(leaves::BORDER)),
+        ("BORDER_TONE", f64::from(leaves::BORDER_TONE)),
+        ("RIM_LIGHT", f64::from(wells::RIM_LIGHT)),
     ] {
         assert_eq!(constant(&m, name), value, "{name}");
     }
@@ -152,6 +183,8 @@ fn a_split_pool_draws_the_same() {
         packed: None,
         tables: Some(&tables),
         volumes: &[],
+        candidates: None,
+        wells: &[],
         version: 1,
     };
     let scene = Scene { size_px: [90, 70], samples: 1, ..Scene::default() };

@@ -3,9 +3,11 @@
 use super::hidden::{ASIDE, IN_FRONT, covered_by, is_seen, seen_parts};
 use super::relief::relief_lines;
 use super::solid::{EdgeLine, FaceRect, edge_lines, face_rects};
+use super::underlay::{has_underlay, underlay};
 use super::{NOMINAL_SIDE_PX, Stroke};
 use crate::frame::{Frame, Rock};
 use crate::ground::{air_layer, is_air};
+use crate::media::Faces;
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use rayon::prelude::*;
@@ -29,7 +31,7 @@ impl Lines {
             let edges = edge_lines(&frame.solid, &frame.view);
             lines.edges = edges.par_iter().flat_map_iter(|edge| seen_edge(frame, edge)).collect();
         }
-        if let Some(rock) = frame.rock {
+        if let (Some(rock), Faces::All) = (frame.rock, frame.scene.media.faces) {
             for rect in face_rects(&frame.solid, &frame.view) {
                 lines.add_face(frame, rock, &rect);
             }
@@ -146,6 +148,9 @@ fn seen_edge(frame: &Frame, edge: &EdgeLine) -> Vec<Vec<DVec2>> {
 /// Strokes a picture's outlines over it, anti-aliased, on sRGB-encoded values.
 pub(crate) fn draw(frame: &Frame, image: &mut RgbaImage) {
     let outlines = frame.scene.outlines;
+    if has_underlay(frame.scene) {
+        underlay(frame, image);
+    }
     let lines = Lines::of(frame);
     for (stroke, lines) in
         [(outlines.horizons, &lines.horizons), (outlines.faults, &lines.faults), (outlines.edges, &lines.edges)]
@@ -155,7 +160,7 @@ pub(crate) fn draw(frame: &Frame, image: &mut RgbaImage) {
 }
 
 /// Strokes polylines as one shape, so that crossings do not darken.
-fn stroke_lines(image: &mut RgbaImage, stroke: &Stroke, lines: &[Vec<DVec2>]) {
+pub(super) fn stroke_lines(image: &mut RgbaImage, stroke: &Stroke, lines: &[Vec<DVec2>]) {
     let (width, height) = image.dimensions();
     let scale = width.min(height) as f32 / NOMINAL_SIDE_PX;
     let mut builder = PathBuilder::new();

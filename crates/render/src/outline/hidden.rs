@@ -6,6 +6,7 @@
 
 use crate::camera::View;
 use crate::frame::Frame;
+use crate::media::march::gather;
 use crate::shade::first_hit;
 use crate::visible::Ray;
 use glam::{DVec2, DVec3};
@@ -29,9 +30,21 @@ pub(super) fn covered_by(frame: &Frame, p: DVec3) -> f64 {
     t - f64::from(first_hit(frame, &Ray::from(view_ray)).t())
 }
 
+/// Whether the media in front of a point hide lines there: less than half of the light passes.
+fn is_veiled(frame: &Frame, p: DVec3) -> bool {
+    let view_ray = frame.view.ray(frame.view.project(p));
+    let t = (p - view_ray.origin).dot(view_ray.direction) - SAME;
+    let ray = Ray::from(view_ray);
+    if frame.tubes.as_ref().is_some_and(|tubes| tubes.hit(&ray, t as f32).is_some()) {
+        return true;
+    }
+    let Some(field) = &frame.field else { return false };
+    gather(field, None, &frame.solid, &ray, t as f32).passes < 0.5
+}
+
 /// Whether the block's surface is at `p` and nothing is in front of it.
 pub(super) fn is_seen(frame: &Frame, p: DVec3) -> bool {
-    covered_by(frame, p).abs() < SAME
+    covered_by(frame, p).abs() < SAME && !is_veiled(frame, p)
 }
 
 /// The parts of a polyline (voxel) for which `seen` holds, in pixels.

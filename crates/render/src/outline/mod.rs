@@ -10,9 +10,11 @@ mod draw;
 mod hidden;
 mod relief;
 mod solid;
+mod underlay;
 
 pub(crate) use draw::draw;
 pub(crate) use solid::{FaceRect, face_rects};
+pub(crate) use underlay::has_underlay;
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};

@@ -57,6 +57,8 @@ impl Block {
             packed: Some(&self.packed),
             tables: Some(&self.tables),
             volumes,
+            candidates: None,
+            wells: &[],
             version: 1,
         }
     }

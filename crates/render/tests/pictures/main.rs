@@ -3,3 +3,5 @@
 mod block;
 mod closed_form;
 mod gpu;
+mod gpu_media;
+mod media;

@@ -1,0 +1,339 @@
+//! The media on the GPU: numbers, words and textures of `media.wgsl`.
+//!
+//! Everything of variable length (tables, opacities, bricks, styles) lies in the one buffer of words that the ground's map is in, since
+//! storage bindings are few on some adapters.
+
+use crate::camera::View;
+use crate::error::RenderError;
+use crate::frame::Frame;
+use crate::gpu::Gpu;
+use crate::inputs::Candidates;
+use crate::leaves::FaceData;
+use crate::media::field::{Field, FieldMedium, Place};
+use crate::media::light::{LightGrid, cells_from_voxel};
+use crate::media::table::{ENTRIES, Table};
+use crate::media::{Faces, MAX_MEDIA, Scope, Shading};
+use bytemuck::{Pod, Zeroable};
+use glam::{DVec2, DVec3, Mat3, Vec3};
+use ttf::tables::NONE;
+
+/// A medium, as the shader has it.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
+pub struct MediumInfo {
+    pub low: f32,
+    pub scale: f32,
+    pub slot: u32,
+    pub table: u32,
+    pub layers: u32,
+    pub place: u32,
+    pub coloured: u32,
+    pub padding: u32,
+}
+
+/// The media of a scene, as the shader has them.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable)]
+pub struct MediaParams {
+    pub display_x: [f32; 4],
+    pub display_y: [f32; 4],
+    pub display_z: [f32; 4],
+    pub covector_x: [f32; 4],
+    pub covector_y: [f32; 4],
+    pub covector_z: [f32; 4],
+    pub light: [f32; 4],
+    pub phong: [f32; 4],
+    pub cells_x: [f32; 4],
+    pub cells_y: [f32; 4],
+    pub cells_z: [f32; 4],
+    pub cells_shift: [f32; 4],
+    pub cells_low: [f32; 4],
+    pub back: [f32; 4],
+    pub right: [f32; 4],
+    pub up: [f32; 4],
+    pub forward: [f32; 4],
+    pub grid: [f32; 4],
+    pub cells: [u32; 4],
+    pub bricks: [u32; 4],
+    pub scales: [f32; 4],
+    pub candidates: [u32; 4],
+    pub leaves: [u32; 4],
+    pub slice_units: f32,
+    pub groups: u32,
+    pub wells: u32,
+    pub capsules: u32,
+    pub media: [MediumInfo; MAX_MEDIA],
+}
+
+/// Words of a horizon's record.
+pub const HORIZON_WORDS: usize = 12;
+
+/// A pipeline's constants about media.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
+pub struct MediaVariant {
+    with_media: u32,
+    shading: u32,
+    faces_shown: u32,
+    media_count: u32,
+    with_leaves: u32,
+    with_layers: u32,
+    face_data: u32,
+    with_wells: u32,
+}
+
+impl MediaVariant {
+    /// What a frame needs.
+    pub fn of(frame: &Frame) -> Self {
+        let faces_shown = match frame.scene.media.faces {
+            Faces::All => 0,
+            Faces::CutOuts => 1,
+            Faces::None => 2,
+        };
+        let face_data = match (frame.scene.face_data, frame.candidates.is_some()) {
+            (FaceData::Leaves, true) => 1,
+            (FaceData::Distance, true) => 2,
+            _ => 0,
+        };
+        let with_wells = u32::from(frame.tubes.is_some());
+        let Some(field) = &frame.field else { return Self { faces_shown, face_data, with_wells, ..Self::default() } };
+        Self {
+            face_data,
+            with_wells,
+            with_media: 1,
+            shading: match field.shading {
+                Shading::Unshaded => 0,
+                Shading::Phong(_) => 1,
+                Shading::Occlusion(_) => 2,
+            },
+            faces_shown,
+            media_count: field.media.len() as u32,
+            with_leaves: u32::from(field.horizons.is_some()),
+            with_layers: u32::from(field.media.iter().any(|m| m.layers.is_some())),
+        }
+    }
+
+    /// Names and values of the overrides.
+    pub fn constants(&self) -> [(&'static str, f64); 8] {
+        [
+            ("face_data", f64::from(self.face_data)),
+            ("with_wells", f64::from(self.with_wells)),
+            ("with_media", f64::from(self.with_media)),
+            ("shading", f64::from(self.shading)),
+            ("faces_shown", f64::from(self.faces_shown)),
+            ("media_count", f64::from(self.media_count)),
+            ("with_leaves", f64::from(self.with_leaves)),
+            ("with_layers", f64::from(self.with_layers)),
+        ]
+    }
+}
+
+/// The horizon candidates that a picture looks at.
+pub fn candidates_of<'f, 'a>(frame: &'f Frame<'a>) -> Option<&'f Candidates<'a>> {
+    let of_field = frame.field.as_ref().and_then(|field| field.horizons.as_ref()).map(|h| &h.candidates);
+    frame.candidates.as_ref().or(of_field)
+}
+
+/// Where light is carried for a frame, if it is.
+pub fn light_grid(frame: &Frame) -> Option<LightGrid> {
+    let field = frame.field.as_ref()?;
+    let Shading::Occlusion(occlusion) = field.shading else { return None };
+    Some(LightGrid::new(&occlusion, &frame.view, &frame.roaming_box, f64::from(field.unit_m)))
+}
+
+/// Appends the media to the words and says where they are.
+pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32>) -> MediaParams {
+    let mut params = MediaParams::zeroed();
+    let plain = |v: Vec3| v.extend(0.0).to_array();
+    let columns = |m: Mat3| [plain(m.x_axis), plain(m.y_axis), plain(m.z_axis)];
+    [params.display_x, params.display_y, params.display_z] = columns(frame.view.display_from_voxel().as_mat3());
+    params.scales[3] = 1.0;
+    params.leaves[3] = NONE;
+    if let Some(candidates) = candidates_of(frame) {
+        let [x, y, z] = candidates.size.map(|n| n as u32);
+        params.candidates = [x, y, z, 0];
+        params.scales[3] = candidates.voxels_per_step;
+        if let Some(groups) = candidates.groups {
+            params.leaves[3] = words.len() as u32;
+            params.groups = groups.len() as u32;
+            words.extend_from_slice(groups);
+        }
+    }
+    if let Some(tubes) = &frame.tubes {
+        params.wells = words.len() as u32;
+        params.capsules = tubes.capsules.len() as u32;
+        for capsule in &tubes.capsules {
+            let [a, b] = capsule.ends;
+            let [red, green, blue] = capsule.colour;
+            add(words, &[a.x, a.y, a.z, capsule.radius, b.x, b.y, b.z, red, green, blue]);
+        }
+    }
+    let Some(field) = &frame.field else { return params };
+    [params.covector_x, params.covector_y, params.covector_z] = columns(field.display_normal_from_voxel);
+    params.light = field.light.extend(1.0).to_array();
+    if let Shading::Phong(phong) = field.shading {
+        params.light[3] = phong.shininess;
+        params.phong = [phong.ambient, phong.diffuse, phong.specular, 0.0];
+    }
+    if let Some(grid) = grid {
+        set_light(&mut params, &frame.view, grid);
+    }
+    params.scales = [field.samples_per_unit, field.unit_m, field.reach, params.scales[3]];
+    for (info, medium) in params.media.iter_mut().zip(&field.media) {
+        let table = add_table(words, &medium.table);
+        let layers = medium.layers.as_ref().map_or(NONE, |looks| add(words, looks.entries.as_flattened()));
+        *info = MediumInfo {
+            low: medium.table.low,
+            scale: medium.table.scale,
+            slot: slot(frame, medium),
+            table,
+            layers,
+            place: u32::from(medium.place == Place::CutOut),
+            coloured: u32::from(medium.layers.as_ref().is_some_and(|looks| looks.colours)),
+            padding: 0,
+        };
+    }
+    let [x, y, z] = field.bricks.size.map(|n| n as u32);
+    params.bricks = [x, y, z, words.len() as u32];
+    words.extend_from_slice(&field.bricks.words);
+    add_horizons(frame, field, words, &mut params);
+    params
+}
+
+fn set_light(params: &mut MediaParams, view: &View, grid: &LightGrid) {
+    let plain = |v: DVec3| v.as_vec3().extend(0.0).to_array();
+    let (linear, shift) = cells_from_voxel(view, grid);
+    let columns = [linear.x_axis, linear.y_axis, linear.z_axis].map(|c| c.extend(0.0).to_array());
+    [params.cells_x, params.cells_y, params.cells_z] = columns;
+    params.cells_shift = shift.extend(if grid.perspective { 1.0 } else { 0.0 }).to_array();
+    let low = grid.low / grid.cell + 0.5;
+    params.cells_low = [low.x as f32, low.y as f32, grid.near as f32, grid.slice as f32];
+    let (back, forward) = view.depth_ray(DVec2::ZERO);
+    let step = |flat: DVec2| {
+        let (origin, direction) = view.depth_ray(flat);
+        (origin - back) + (direction - forward)
+    };
+    params.back = plain(back);
+    params.forward = plain(forward);
+    params.right = plain(step(DVec2::X));
+    params.up = plain(step(DVec2::Y));
+    params.grid = [grid.low.x as f32, grid.low.y as f32, grid.cell as f32, grid.strength];
+    params.cells = [grid.size[0] as u32, grid.size[1] as u32, grid.size[2] as u32, 0];
+    params.slice_units = grid.slice_units;
+}
+
+fn slot(frame: &Frame, medium: &FieldMedium) -> u32 {
+    let position = frame.tables.volumes.iter().position(|name| name == medium.volume.name);
+    position.map_or(NONE, |slot| slot as u32)
+}
+
+fn add(words: &mut Vec<u32>, values: &[f32]) -> u32 {
+    let first = words.len() as u32;
+    words.extend(values.iter().map(|value| value.to_bits()));
+    first
+}
+
+fn add_table(words: &mut Vec<u32>, table: &Table) -> u32 {
+    debug_assert_eq!(table.entries.len(), ENTRIES);
+    add(words, table.entries.as_flattened())
+}
+
+fn add_horizons(frame: &Frame, field: &Field, words: &mut Vec<u32>, params: &mut MediaParams) {
+    let scope = match field.scope {
+        Scope::Everywhere => 0,
+        Scope::NearHorizons => 1,
+        Scope::AwayFromHorizons => 2,
+    };
+    params.leaves[2] = scope;
+    let Some(horizons) = &field.horizons else { return };
+    params.candidates[3] = horizons.styles.len() as u32;
+    params.leaves[0] = words.len() as u32;
+    words.extend(horizons.styles.iter().map(|style| u32::from(*style)));
+    let paints: Vec<Option<u32>> =
+        horizons.horizons.iter().map(|h| h.paint.as_ref().map(|paint| add_table(words, &paint.table))).collect();
+    params.leaves[1] = words.len() as u32;
+    for (horizon, paint) in horizons.horizons.iter().zip(paints) {
+        let mut record = [0u32; HORIZON_WORDS];
+        let numbers = [
+            horizon.colour.x,
+            horizon.colour.y,
+            horizon.colour.z,
+            horizon.extinction,
+            horizon.thickness,
+            horizon.emission,
+        ];
+        for (to, number) in record.iter_mut().zip(numbers) {
+            *to = number.to_bits();
+        }
+        record[6] = NONE;
+        record[10] = u32::from(horizon.by_leaf);
+        if let (Some(medium), Some(table)) = (&horizon.paint, paint) {
+            record[6] = slot(frame, medium);
+            record[7] = table;
+            record[8] = medium.table.low.to_bits();
+            record[9] = medium.table.scale.to_bits();
+        }
+        words.extend(record);
+    }
+}
+
+/// Distances and leaves on the GPU.
+pub struct CandidateTextures {
+    pub distances: wgpu::Texture,
+    pub leaves: wgpu::Texture,
+}
+
+impl CandidateTextures {
+    /// Uploads them; `None` makes textures of one texel, to bind where nothing is read.
+    pub fn new(gpu: &Gpu, candidates: Option<&Candidates>) -> Result<Self, RenderError> {
+        let [nx, ny, nz] = candidates.map_or([1; 3], |c| c.size);
+        let limit = gpu.device.limits().max_texture_dimension_3d as usize;
+        if [nx, ny, nz].into_iter().any(|n| n > limit) {
+            return Err(RenderError::Unsuitable {
+                adapter: gpu.adapter_name.clone(),
+                reason: format!("the candidates have {nx} x {ny} x {nz} samples, its limit is {limit} a side"),
+            });
+        }
+        let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };
+        let distances = texture(gpu, "distances", size, wgpu::TextureFormat::R8Unorm, wgpu::TextureUsages::COPY_DST);
+        let leaves = texture(gpu, "leaves", size, wgpu::TextureFormat::R32Uint, wgpu::TextureUsages::COPY_DST);
+        if let Some(candidates) = candidates {
+            let plane = ny * nz;
+            for x in 0..nx {
+                let range = x * plane..(x + 1) * plane;
+                gpu.write_plane(&distances, x as u32, &candidates.distance[range.clone()]);
+                gpu.write_plane(&leaves, x as u32, bytemuck::cast_slice(&candidates.leaf[range]));
+            }
+        }
+        Ok(Self { distances, leaves })
+    }
+}
+
+/// A 3D texture that shaders read.
+pub fn texture(
+    gpu: &Gpu,
+    label: &str,
+    size: wgpu::Extent3d,
+    format: wgpu::TextureFormat,
+    usage: wgpu::TextureUsages,
+) -> wgpu::Texture {
+    gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(label),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D3,
+        format,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | usage,
+        view_formats: &[],
+    })
+}
+
+/// The sampler of all filtered volumes.
+pub fn filtering(gpu: &Gpu) -> wgpu::Sampler {
+    gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+        label: Some("filtering"),
+        mag_filter: wgpu::FilterMode::Linear,
+        min_filter: wgpu::FilterMode::Linear,
+        ..wgpu::SamplerDescriptor::default()
+    })
+}

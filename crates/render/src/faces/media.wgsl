@@ -1,0 +1,430 @@
+// The media of a scene at any point, and a ray through them: the twin of `media::field` and `media::march`.
+//
+// Voxel space; extinction per unit of length, colours linear. One flat loop over samples: brick by brick as on the CPU would leave
+// lanes idle.
+
+struct MediumInfo {
+    // Value of the first entry of its table, entries per unit of value.
+    low: f32,
+    scale: f32,
+    slot: u32,
+    // First word of its table, and of the looks by layer (r, g, b, factor on the opacity; NONE: layers do nothing).
+    table: u32,
+    layers: u32,
+    // 0 surroundings, 1 cut-outs.
+    place: u32,
+    // 1 where layers colour it.
+    coloured: u32,
+    padding_0: u32,
+}
+
+struct MediaParams {
+    // Columns of voxel → display and of voxel covector → display covector; w unused.
+    display_x: vec4<f32>,
+    display_y: vec4<f32>,
+    display_z: vec4<f32>,
+    covector_x: vec4<f32>,
+    covector_y: vec4<f32>,
+    covector_z: vec4<f32>,
+    // Direction to the light in display space; w: shininess.
+    light: vec4<f32>,
+    // Ambient, diffuse, specular; w unused.
+    phong: vec4<f32>,
+    // Columns and shift of voxel → cell and slice, see `light::cells_from_voxel`; shift.w = 1 in a perspective.
+    cells_x: vec4<f32>,
+    cells_y: vec4<f32>,
+    cells_z: vec4<f32>,
+    cells_shift: vec4<f32>,
+    // Lower left corner in cells + ½; depth of the first slice, m; thickness of a slice, m.
+    cells_low: vec4<f32>,
+    // Voxel position of a place in view coordinates (x, y) at depth d: back + d · forward + (x · right + y · up), times d in a perspective.
+    back: vec4<f32>,
+    right: vec4<f32>,
+    up: vec4<f32>,
+    forward: vec4<f32>,
+    // Lower left corner and side of a cell in view coordinates; factor on the occlusion.
+    grid: vec4<f32>,
+    // Cells right and up, slices; w unused.
+    cells: vec4<u32>,
+    // Bricks along x, y, z, and their first word.
+    bricks: vec4<u32>,
+    // Samples per unit, unit in m, reach in voxels, voxels per step of distance.
+    scales: vec4<f32>,
+    // Samples of the candidates along x, y, z; w: leaf ids that have a style.
+    candidates: vec4<u32>,
+    // First words of the styles by leaf and of the horizons; scope; first word of the groups by leaf, NONE: leaves are their own.
+    leaves: vec4<u32>,
+    slice_units: f32,
+    // Leaf ids that have a group; first word of the wells, and their pieces.
+    groups: u32,
+    wells: u32,
+    capsules: u32,
+    media: array<MediumInfo, 4>,
+}
+
+@group(2) @binding(7) var<uniform> media: MediaParams;
+@group(2) @binding(8) var filtering: sampler;
+// Texels as of volumes: (x, y, z) is sample (z, y, x).
+@group(2) @binding(9) var distances: texture_3d<f32>;
+@group(2) @binding(10) var leaf_ids: texture_3d<u32>;
+// Emission (xyz) and λ (w) of cells; z runs over the fronts of slices.
+@group(2) @binding(11) var light_volume: texture_3d<f32>;
+
+// 1 where anything is seen through; how it is lit; which faces stop a ray; how many media; whether leaves and layers matter.
+override with_media: u32 = 0u;
+override shading: u32 = 0u;
+override faces_shown: u32 = 0u;
+override media_count: u32 = 0u;
+override with_leaves: u32 = 0u;
+override with_layers: u32 = 0u;
+
+const PHONG: u32 = 1u;
+const OCCLUSION: u32 = 2u;
+const FACES_ALL: u32 = 0u;
+const FACES_CUT_OUTS: u32 = 1u;
+const SURROUNDINGS: u32 = 0u;
+const CUT_OUT: u32 = 1u;
+const SCOPE_NEAR: u32 = 1u;
+const SCOPE_AWAY: u32 = 2u;
+const BRICK: f32 = 8.0;
+const MIXED: u32 = 255u;
+const ENTRIES: u32 = 2048u;
+const OPAQUE: f32 = 1e4;
+const SPENT: f32 = 1e-3;
+const SOFT: f32 = 0.25;
+const NO_DATA_BELOW: f32 = -1e30;
+const HORIZON_WORDS: u32 = 12u;
+
+fn word(at: u32) -> f32 {
+    return bitcast<f32>(relief_map[at]);
+}
+
+fn to_linear(c: vec3<f32>) -> vec3<f32> {
+    return select(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, c <= vec3(0.04045));
+}
+
+fn to_encoded(linear: vec3<f32>) -> vec3<f32> {
+    let c = clamp(linear, vec3(0.0), vec3(1.0));
+    return select(1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, c * 12.92, c <= vec3(0.0031308));
+}
+
+fn extinction_of(opacity: f32) -> f32 {
+    if opacity >= 0.9999 {
+        return OPAQUE;
+    }
+    return -log(1.0 - max(opacity, 0.0));
+}
+
+// Trilinear value; below NO_DATA_BELOW where there is none.
+fn medium_value(slot: u32, p: vec3<f32>) -> f32 {
+    let info = volume_infos[slot];
+    let index = p * info.scale.xyz + info.offset.xyz;
+    let last = vec3<f32>(info.size.xyz) - 1.0;
+    if any(index < vec3(-SLACK)) || any(index > last + SLACK) {
+        return NO_DATA;
+    }
+    return filtered_volume(slot, clamp(index, vec3(0.0), last), info.size.xyz);
+}
+
+fn medium_gradient(slot: u32, p: vec3<f32>) -> vec3<f32> {
+    let scale = volume_infos[slot].scale.xyz;
+    var difference = vec3(0.0);
+    for (var axis = 0u; axis < 3u; axis += 1u) {
+        var step = vec3(0.0);
+        step[axis] = 1.0 / scale[axis];
+        let ahead = medium_value(slot, p + step);
+        let behind = medium_value(slot, p - step);
+        if ahead >= NO_DATA_BELOW && behind >= NO_DATA_BELOW {
+            difference[axis] = ahead - behind;
+        }
+    }
+    return difference * 0.5 * scale;
+}
+
+fn to_display(v: vec3<f32>) -> vec3<f32> {
+    return media.display_x.xyz * v.x + media.display_y.xyz * v.y + media.display_z.xyz * v.z;
+}
+
+fn lit(gradient: vec3<f32>, colour: vec3<f32>, towards: vec3<f32>) -> vec3<f32> {
+    let normal =
+        unit_or_zero(media.covector_x.xyz * gradient.x + media.covector_y.xyz * gradient.y + media.covector_z.xyz * gradient.z);
+    let half = unit_or_zero(media.light.xyz + towards);
+    let diffuse = media.phong.y * abs(dot(normal, media.light.xyz));
+    let specular = media.phong.z * pow(max(abs(dot(normal, half)), 1e-6), media.light.w);
+    return colour * (media.phong.x + diffuse) + vec3(specular);
+}
+
+struct Matter {
+    colour: vec3<f32>,
+    extinction: f32,
+    emission: vec3<f32>,
+}
+
+fn table_word(info: MediumInfo, value: f32) -> u32 {
+    return info.table + 4u * u32(clamp((value - info.low) * info.scale + 0.5, 0.0, f32(ENTRIES - 1u)));
+}
+
+fn of_medium(n: u32, p: vec3<f32>, brick: u32, towards: vec3<f32>) -> Matter {
+    var matter: Matter;
+    let info = media.media[n];
+    let value = medium_value(info.slot, p);
+    if value < NO_DATA_BELOW {
+        return matter;
+    }
+    let entry = table_word(info, value);
+    matter.extinction = word(entry + 3u);
+    if matter.extinction <= 0.0 {
+        return matter;
+    }
+    matter.colour = vec3(word(entry), word(entry + 1u), word(entry + 2u));
+    if with_layers == 1u && info.layers != NONE {
+        var layer = brick >> 16u & 255u;
+        if layer == MIXED {
+            layer = layer_at(p, block_at(p));
+        }
+        let looks = info.layers + 4u * layer;
+        let opacity = word(looks + 3u);
+        if info.coloured == 1u {
+            matter.colour = vec3(word(looks), word(looks + 1u), word(looks + 2u));
+        }
+        if opacity != 1.0 {
+            matter.extinction = extinction_of((1.0 - exp(-matter.extinction)) * opacity);
+            if opacity == 0.0 {
+                matter.extinction = 0.0;
+                return matter;
+            }
+        }
+    }
+    if shading == PHONG {
+        matter.colour = lit(medium_gradient(info.slot, p), matter.colour, towards);
+    }
+    return matter;
+}
+
+struct HorizonAt {
+    colour: vec3<f32>,
+    cover: f32,
+    distance: f32,
+    extinction: f32,
+    emission: f32,
+}
+
+fn leaf_at(p: vec3<f32>) -> u32 {
+    let at = min(vec3<u32>(max(p + 0.5, vec3(0.0))), media.candidates.xyz - 1u);
+    return textureLoad(leaf_ids, at.zyx, 0).r;
+}
+
+// Distance to the nearest candidate, voxels; by hand, since bytes are filtered with weights of 8 bits.
+fn distance_at(p: vec3<f32>) -> f32 {
+    let last = vec3<f32>(media.candidates.xyz) - 1.0;
+    let clamped = clamp(p, vec3(0.0), last);
+    let low = min(floor(clamped), max(last - 1.0, vec3(0.0)));
+    let f = clamped - low;
+    var sum = 0.0;
+    for (var corner = 0u; corner < 8u; corner += 1u) {
+        let side = vec3<u32>(corner & 1u, corner >> 1u & 1u, corner >> 2u);
+        let w = select(vec3(1.0) - f, f, side == vec3(1u));
+        let at = min(vec3<u32>(low) + side, media.candidates.xyz - 1u);
+        sum += w.x * w.y * w.z * textureLoad(distances, at.zyx, 0).r;
+    }
+    return sum * 255.0 * media.scales.w;
+}
+
+fn horizon_at(p: vec3<f32>) -> HorizonAt {
+    var found: HorizonAt;
+    found.distance = 1e9;
+    let leaf = leaf_at(p);
+    if leaf == 0u || leaf >= media.candidates.w {
+        return found;
+    }
+    let style = relief_map[media.leaves.x + leaf];
+    if style == 0u {
+        return found;
+    }
+    let record = media.leaves.y + HORIZON_WORDS * (style - 1u);
+    found.distance = distance_at(p);
+    found.cover = clamp((word(record + 4u) - found.distance) / (2.0 * SOFT) + 0.5, 0.0, 1.0);
+    found.colour = vec3(word(record), word(record + 1u), word(record + 2u));
+    found.extinction = word(record + 3u);
+    found.emission = word(record + 5u);
+    if relief_map[record + 10u] == 1u {
+        let group = leaf_group(leaf);
+        if group == 0u {
+            var nothing: HorizonAt;
+            nothing.distance = 1e9;
+            return nothing;
+        }
+        var tone = 1.0;
+        if found.cover > 0.0 && is_border(p) {
+            tone = BORDER_TONE;
+        }
+        found.colour = to_linear(leaf_colour(group) * tone);
+    }
+    let slot = relief_map[record + 6u];
+    if slot != NONE && found.cover > 0.0 {
+        let value = medium_value(slot, p);
+        if value > NO_DATA_BELOW {
+            var paint: MediumInfo;
+            paint.table = relief_map[record + 7u];
+            paint.low = word(record + 8u);
+            paint.scale = word(record + 9u);
+            let entry = table_word(paint, value);
+            found.colour = vec3(word(entry), word(entry + 1u), word(entry + 2u));
+        }
+    }
+    return found;
+}
+
+fn matter_at(p: vec3<f32>, place: u32, brick: u32, towards: vec3<f32>) -> Matter {
+    if with_leaves == 0u && media_count == 1u {
+        var nothing: Matter;
+        if media.media[0].place != place {
+            return nothing;
+        }
+        return of_medium(0u, p, brick, towards);
+    }
+    var horizon: HorizonAt;
+    horizon.distance = 1e9;
+    if with_leaves == 1u {
+        horizon = horizon_at(p);
+    }
+    var sum: Matter;
+    let rest = 1.0 - horizon.cover;
+    let scope = media.leaves.z;
+    let in_scope = !(scope == SCOPE_NEAR && horizon.distance > media.scales.z)
+        && !(scope == SCOPE_AWAY && horizon.distance <= media.scales.z);
+    if rest > 0.0 && in_scope {
+        for (var n = 0u; n < media_count; n += 1u) {
+            if media.media[n].place == place {
+                let one = of_medium(n, p, brick, towards);
+                sum.extinction += one.extinction * rest;
+                sum.colour += one.colour * (one.extinction * rest);
+            }
+        }
+    }
+    if horizon.cover > 0.0 {
+        let kappa = horizon.extinction * horizon.cover;
+        sum.extinction += kappa;
+        sum.colour += horizon.colour * kappa;
+        sum.emission = horizon.colour * (horizon.emission * kappa);
+    }
+    if sum.extinction > 0.0 {
+        sum.colour /= sum.extinction;
+        sum.emission /= sum.extinction;
+    }
+    return sum;
+}
+
+fn brick_at(p: vec3<f32>) -> vec3<i32> {
+    return clamp(vec3<i32>(p / BRICK), vec3(0), vec3<i32>(media.bricks.xyz) - 1);
+}
+
+fn brick_word(brick: vec3<i32>) -> u32 {
+    let at = vec3<u32>(brick);
+    return relief_map[media.bricks.w + (at.x * media.bricks.y + at.y) * media.bricks.z + at.z];
+}
+
+// λ + E at a voxel position.
+fn light_at(p: vec3<f32>) -> vec3<f32> {
+    var q = media.cells_x.xyz * p.x + media.cells_y.xyz * p.y + media.cells_z.xyz * p.z + media.cells_shift.xyz;
+    if media.cells_shift.w == 1.0 {
+        let depth = max(q.z * media.cells_low.w + media.cells_low.z, 1e-9);
+        q = vec3(q.xy / depth - media.cells_low.xy, q.z);
+    }
+    let size = vec3<f32>(media.cells.xyz) + vec3(0.0, 0.0, 1.0);
+    let at = (clamp(q, vec3(0.0), size - 1.0) + 0.5) / size;
+    let value = textureSampleLevel(light_volume, filtering, at, 0.0);
+    return value.xyz + vec3(value.w);
+}
+
+struct Gathered {
+    colour: vec3<f32>,
+    passes: f32,
+}
+
+fn through(
+    origin: vec3<f32>, direction: vec3<f32>, t_from: f32, t_to: f32, place: u32, towards: vec3<f32>, units: f32, before: Gathered,
+) -> Gathered {
+    var gathered = before;
+    let length = (t_to - t_from) * units;
+    let steps = max(ceil(length * media.scales.x), 1.0);
+    let step_t = (t_to - t_from) / steps;
+    let step = length / steps;
+    let shift = 8u * place;
+    let inverse = 1.0 / select(direction, vec3(1e-6), abs(direction) < vec3(1e-6));
+    var n = 0.0;
+    loop {
+        let p = origin + direction * (t_from + (n + 0.5) * step_t);
+        let brick = brick_at(p);
+        let content = brick_word(brick);
+        let distance = content >> shift & 255u;
+        if distance == 0u {
+            let matter = matter_at(p, place, content, towards);
+            if matter.extinction > 0.0 {
+                let alpha = 1.0 - exp(-matter.extinction * step);
+                var colour = matter.colour;
+                if shading == OCCLUSION {
+                    colour *= light_at(p);
+                }
+                gathered.colour += (colour + matter.emission) * (alpha * gathered.passes);
+                gathered.passes *= 1.0 - alpha;
+            }
+            n += 1.0;
+        } else {
+            let around = i32(distance) - 1;
+            let border = select(vec3<f32>(brick - around), vec3<f32>(brick + 1 + around), direction > vec3(0.0)) * BRICK;
+            let out = (border - origin) * inverse;
+            let reached = select(out, vec3(HIGHEST), abs(direction) < vec3(1e-6));
+            let exit = min(reached.x, min(reached.y, reached.z));
+            n = max(n + 1.0, ceil((exit - t_from) / step_t + 0.5) );
+        }
+        continuing {
+            break if n >= steps || gathered.passes <= SPENT;
+        }
+    }
+    return gathered;
+}
+
+// What a ray meets in the roaming box before `stop`.
+fn gather(origin: vec3<f32>, direction: vec3<f32>, stop: f32) -> Gathered {
+    var gathered: Gathered;
+    gathered.passes = 1.0;
+    let outer = cross_box(origin, direction, params.box_low.xyz, params.box_high.xyz);
+    if outer.exit <= outer.enter {
+        return gathered;
+    }
+    let along = to_display(direction);
+    let metres = length(along);
+    let towards = -along / metres;
+    let units = metres / media.scales.y;
+    let last = min(outer.exit, stop);
+    if params.cut_count == 0u {
+        if last > outer.enter + TOUCH && faces_shown != FACES_ALL {
+            gathered = through(origin, direction, outer.enter, last, SURROUNDINGS, towards, units, gathered);
+        }
+        return gathered;
+    }
+    // Each round takes a cut-out's stretch, then the rock behind it: two stretches a round.
+    var t = outer.enter;
+    for (var round = 0u; round < 2u * (params.cut_count + 1u); round += 1u) {
+        if t + TOUCH >= last || gathered.passes <= SPENT {
+            break;
+        }
+        let span = next_span(origin, direction, t);
+        var to = last;
+        var place = CUT_OUT;
+        if span.found {
+            if span.t <= t + TOUCH {
+                place = SURROUNDINGS;
+                to = min(span.end, last);
+            } else {
+                to = min(span.t, last);
+            }
+        }
+        if to > t + TOUCH && (place == CUT_OUT || faces_shown != FACES_ALL) {
+            gathered = through(origin, direction, t, to, place, towards, units, gathered);
+        }
+        t = max(to, t + 0.5 * TOUCH);
+    }
+    return gathered;
+}

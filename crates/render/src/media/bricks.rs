@@ -1,0 +1,264 @@
+//! Which bricks of space show something, and how far the nearest such brick is.
+//!
+//! A brick shows a medium if its function is visible somewhere in the range of the volume's samples there *and* some layer that can be there
+//! lets it through; it shows a horizon if a sample near enough belongs to one of its leaves. Every brick then gets the distance to the
+//! nearest brick that shows something, in bricks and by the largest axis, up to [`FARTHEST`]: a ray may jump to the border of that cube of bricks. One
+//! pass of a 3D distance transform takes the place of an octree: any jump is one lookup.
+//!
+//! Voxel space of the survey; brick (bx, by, bz) spans [8·bx, 8·bx + 8] along x and so on. A brick's word: distance for the surroundings in
+//! bits 0–7, for the cut-outs in bits 8–15, and in bits 16–23 the layer if the brick lies wholly in one, else [`MIXED`].
+
+use super::prepared::BRICK;
+use super::{LayerOpacity, Medium, MediumColour};
+use crate::ground::air_layer;
+use glam::Vec3;
+use rayon::prelude::*;
+use survey::model::StructuralModel;
+use ttf::{TtfTables, linear_from_srgb};
+
+/// Largest distance stored, bricks.
+pub const FARTHEST: u8 = 15;
+/// Stands for "several layers, or unknown".
+pub const MIXED: u8 = 255;
+
+/// What is in a brick, before distances.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BrickContent {
+    /// Whether the surroundings and the cut-outs show something there.
+    pub shows: [bool; 2],
+    /// The layer if it is one.
+    pub layer: u8,
+}
+
+/// The bricks of a survey.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bricks {
+    /// Bricks along each axis.
+    pub size: [usize; 3],
+    /// Their words, `[x][y][z]`.
+    pub words: Vec<u32>,
+}
+
+impl Bricks {
+    /// The bricks of a survey of so many samples; `content` is asked for each, with its number along each axis.
+    pub fn new(samples: [usize; 3], content: impl Fn([usize; 3]) -> BrickContent + Sync) -> Self {
+        let size = samples.map(|n| n.saturating_sub(1).div_ceil(BRICK).max(1));
+        let contents: Vec<BrickContent> = (0..size.iter().product::<usize>())
+            .into_par_iter()
+            .map(|n| content([n / (size[1] * size[2]), n / size[2] % size[1], n % size[2]]))
+            .collect();
+        let distances = [0, 1].map(|place| distances(size, contents.iter().map(|c| c.shows[place]).collect()));
+        let words = contents
+            .iter()
+            .enumerate()
+            .map(|(n, c)| u32::from(distances[0][n]) | u32::from(distances[1][n]) << 8 | u32::from(c.layer) << 16)
+            .collect();
+        Self { size, words }
+    }
+
+    /// The brick around a voxel position.
+    #[inline(always)]
+    pub fn at(&self, p: Vec3) -> [i32; 3] {
+        [0, 1, 2].map(|axis| ((p[axis] * (1.0 / BRICK as f32)) as i32).clamp(0, self.size[axis] as i32 - 1))
+    }
+
+    /// Its word.
+    #[inline(always)]
+    pub fn word(&self, [x, y, z]: [i32; 3]) -> u32 {
+        self.words[(x as usize * self.size[1] + y as usize) * self.size[2] + z as usize]
+    }
+
+    /// Voxel positions of its corners.
+    pub fn corners(brick: [usize; 3]) -> [Vec3; 2] {
+        let low = Vec3::from_array(brick.map(|n| (n * BRICK) as f32));
+        [low, low + BRICK as f32]
+    }
+}
+
+/// Distance to the nearest marked brick by the largest axis: three passes of a running minimum.
+fn distances(size: [usize; 3], marked: Vec<bool>) -> Vec<u8> {
+    let mut field: Vec<u8> = marked.into_iter().map(|m| if m { 0 } else { FARTHEST }).collect();
+    // Growing the marked set by one cube at a time is separable: along each axis a brick within one of the set joins it.
+    for reached in 1..FARTHEST {
+        let before = field.clone();
+        let mut grown: Vec<bool> = before.iter().map(|d| *d < reached).collect();
+        for axis in 0..3 {
+            let stride = [size[1] * size[2], size[2], 1][axis];
+            let source = grown.clone();
+            for (n, to) in grown.iter_mut().enumerate() {
+                let along = n / stride % size[axis];
+                *to |= along > 0 && source[n - stride] || along + 1 < size[axis] && source[n + stride];
+            }
+        }
+        let mut changed = false;
+        for (d, inside) in field.iter_mut().zip(grown) {
+            if inside && *d == FARTHEST {
+                *d = reached;
+                changed = true;
+            }
+        }
+        if !changed {
+            break;
+        }
+    }
+    field
+}
+
+/// Where layers can be, brick by brick, without asking the model at every voxel.
+#[derive(Debug)]
+pub struct LayerMap {
+    size: [usize; 3],
+    layers: Vec<u8>,
+}
+
+/// Columns asked along a brick's side.
+const ASKED: usize = 5;
+/// How much faster than distance the offset from a fault may grow.
+const FAULT_SLOPE: f64 = 1.25;
+/// What a sheet may bend between two of them, voxels.
+const BEND: f32 = 0.75;
+
+impl LayerMap {
+    /// Asks a model: a brick lies in one layer if one block does (no fault within reach) and no sheet of it crosses.
+    pub fn new(model: &StructuralModel) -> Self {
+        let size = model.size().map(|n| n.saturating_sub(1).div_ceil(BRICK).max(1));
+        let metric = model.metric();
+        let half_diagonal_m = (metric * glam::DVec3::splat(BRICK as f64 * 0.5)).length();
+        let radius_m = (half_diagonal_m * FAULT_SLOPE) as f32;
+        let layers = (0..size[0] * size[1])
+            .into_par_iter()
+            .flat_map_iter(|column| {
+                let [bx, by] = [column / size[1], column % size[1]];
+                let spans = sheet_spans(model, [bx, by]);
+                (0..size[2])
+                    .map(move |bz| {
+                        let [low, high] = Bricks::corners([bx, by, bz]);
+                        let middle = (low + high) * 0.5;
+                        let faults = model.faults();
+                        if (0..faults.surfaces().len()).any(|f| faults.side(f, middle).abs() < radius_m) {
+                            return MIXED;
+                        }
+                        let block = usize::from(model.block_at(middle));
+                        let crossed = spans[block].iter().any(|[top, base]| *top < high.z && *base > low.z);
+                        if crossed {
+                            return MIXED;
+                        }
+                        u8::try_from(model.layer_at(middle, block as u16)).unwrap_or(MIXED)
+                    })
+                    .collect::<Vec<_>>()
+            })
+            .collect();
+        Self { size, layers }
+    }
+
+    /// The layer that a brick lies in, or [`MIXED`].
+    pub fn layer(&self, [x, y, z]: [usize; 3]) -> u8 {
+        self.layers[(x * self.size[1] + y) * self.size[2] + z]
+    }
+}
+
+/// Shallowest and deepest voxel z of every sheet over a column of bricks, `[block][horizon]`.
+fn sheet_spans(model: &StructuralModel, [bx, by]: [usize; 2]) -> Vec<Vec<[f32; 2]>> {
+    let step = BRICK as f32 / (ASKED - 1) as f32;
+    let spans = |block: usize, horizon: usize| {
+        let sheet = model.sheet(horizon, block as u16);
+        let mut span = [f32::MAX, f32::MIN];
+        for n in 0..ASKED * ASKED {
+            let x = (bx * BRICK) as f32 + (n / ASKED) as f32 * step;
+            let y = (by * BRICK) as f32 + (n % ASKED) as f32 * step;
+            let z = sheet.z_at(x, y);
+            span = [span[0].min(z), span[1].max(z)];
+        }
+        [span[0] - BEND, span[1] + BEND]
+    };
+    let horizons = model.stratigraphy().horizons.len();
+    (0..model.block_count()).map(|block| (0..horizons).map(|h| spans(block, h)).collect()).collect()
+}
+
+/// What layers do to a medium, bottom up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LayerLooks {
+    /// Linear colour, and the factor on the opacity.
+    pub entries: Vec<[f32; 4]>,
+    /// Whether the colour replaces the medium's.
+    pub colours: bool,
+}
+
+impl LayerLooks {
+    /// What a medium asks of the styles; nothing shows in the air above a shown ground. `None` where layers do not matter.
+    pub fn new(
+        medium: &Medium,
+        tables: &TtfTables,
+        model: Option<&StructuralModel>,
+        ground_is_shown: bool,
+    ) -> Option<Self> {
+        let model = model?;
+        let colours = medium.colour == MediumColour::Layers;
+        let entry = |layer: usize| {
+            let style = tables.layers.get(layer)?;
+            let [r, g, b] = tables.average_colour(layer as u32, 0.5).map(linear_from_srgb);
+            let opacity = if medium.layers == LayerOpacity::Followed { style.colour[3] } else { 1.0 };
+            Some([r, g, b, opacity])
+        };
+        let mut entries: Vec<[f32; 4]> =
+            (0..model.layer_count()).map(|layer| entry(layer).unwrap_or([1.0; 4])).collect();
+        if ground_is_shown && let Some(air) = entries.get_mut(usize::from(air_layer(model))) {
+            air[3] = 0.0;
+        }
+        (colours || entries.iter().any(|entry| entry[3] != 1.0)).then_some(Self { entries, colours })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::Progress;
+    use survey::model::ModelSettings;
+    use survey::synth::{SynthSettings, Synthetic};
+
+    #[test]
+    fn distances_are_those_of_a_search() {
+        let samples = [81, 57, 97];
+        let is_marked = |[x, y, z]: [usize; 3]| (x * 31 + y * 17 + z * 7) % 97 == 5 && x < 6;
+        let bricks = Bricks::new(samples, |b| BrickContent { shows: [is_marked(b), false], layer: 3 });
+        let [nx, ny, nz] = bricks.size;
+        let all: Vec<[usize; 3]> = (0..nx * ny * nz).map(|n| [n / (ny * nz), n / nz % ny, n % nz]).collect();
+        for &b in &all {
+            let to = |m: &[usize; 3]| (0..3).map(|a| m[a].abs_diff(b[a])).max().unwrap_or(0);
+            let nearest = all.iter().filter(|m| is_marked(**m)).map(to).min().unwrap();
+            let word = bricks.word(b.map(|n| n as i32));
+            assert_eq!((word & 255) as usize, nearest.min(usize::from(FARTHEST)), "{b:?}");
+            assert_eq!((word >> 8 & 255, word >> 16), (u32::from(FARTHEST), 3));
+        }
+    }
+
+    #[test]
+    fn a_brick_of_one_layer_is_of_that_layer() {
+        let quiet = Progress::silent();
+        let s = Synthetic::generate(&SynthSettings { size: [48, 40, 64], ..SynthSettings::default() }, &quiet).unwrap();
+        let settings = ModelSettings::default();
+        let model =
+            StructuralModel::build(&s.geometry, &s.stratigraphy, &s.horizons, &s.faults, &settings, &quiet).unwrap();
+        let map = LayerMap::new(&model);
+        let (mut uniform, mut bricks) = (0, 0);
+        for bx in 0..6 {
+            for by in 0..5 {
+                for bz in 0..8 {
+                    bricks += 1;
+                    let layer = map.layer([bx, by, bz]);
+                    if layer == MIXED {
+                        continue;
+                    }
+                    uniform += 1;
+                    let [low, high] = Bricks::corners([bx, by, bz]);
+                    for n in 0..125 {
+                        let f = Vec3::new((n % 5) as f32, (n / 5 % 5) as f32, (n / 25) as f32) / 4.0;
+                        let p = (low + (high - low) * f).min(Vec3::new(47.0, 39.0, 63.0));
+                        assert_eq!(model.region_at(p).layer, u16::from(layer), "{p}");
+                    }
+                }
+            }
+        }
+        assert!(uniform * 40 > bricks, "{uniform} of {bricks}");
+    }
+}

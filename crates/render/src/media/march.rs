@@ -1,0 +1,214 @@
+//! A ray through the media: in its intervals before, in and after cut-outs, to the face that stops it (P-illus 5.1, figure 10).
+//!
+//! An interval of optical length ℓ is divided into n = ⌈ℓ·samples⌉ equal steps, sampled in their middles:
+//!
+//! ```text
+//! C ← C + T·αᵢ·cᵢ      T ← T·(1 − αᵢ)      αᵢ = 1 − exp(−κᵢ·ℓ/n)
+//! ```
+//!
+//! so a homogeneous medium absorbs 1 − e^(−κℓ) exactly. Steps in bricks that show nothing are jumped over, a ray that lets less than
+//! [`SPENT`] pass has ended. Voxel space; t in voxels along the ray.
+
+use super::field::{Field, Matter, Place};
+use super::light::LightVolume;
+use super::prepared::BRICK;
+use super::table::absorbed;
+use super::{Faces, Shading};
+use crate::visible::{Ray, Solid, TOUCH};
+use glam::Vec3;
+
+/// Light that is no longer followed.
+pub const SPENT: f32 = 1.0e-3;
+
+/// What a ray gathered.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gathered {
+    /// Linear, premultiplied.
+    pub colour: Vec3,
+    /// Share of the light from behind that passes.
+    pub passes: f32,
+}
+
+impl Default for Gathered {
+    fn default() -> Self {
+        Self { colour: Vec3::ZERO, passes: 1.0 }
+    }
+}
+
+/// A stretch of a ray in one place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Where it begins and ends.
+    pub t: [f32; 2],
+    /// What it is in.
+    pub place: Place,
+}
+
+/// Calls `found` for each stretch of a ray in the roaming box up to `stop`, front to back.
+pub fn stretches(solid: &Solid, ray: &Ray, stop: f32, mut found: impl FnMut(Stretch)) {
+    let Some([enter, exit]) = solid.box_interval(ray) else { return };
+    let last = exit.min(stop);
+    let mut t = enter;
+    let mut add = |from: f32, to: f32, place: Place| {
+        if to > from + TOUCH {
+            found(Stretch { t: [from, to], place });
+        }
+    };
+    for _ in 0..=solid.cut_outs.len() {
+        if t + TOUCH >= last {
+            return;
+        }
+        let Some(span) = solid.next_span(ray, t) else {
+            add(t, last, Place::CutOut);
+            return;
+        };
+        add(t, span.entry.t.min(last), Place::CutOut);
+        add(span.entry.t, span.end.min(last), Place::Surroundings);
+        t = span.end;
+    }
+}
+
+/// Gathers what a ray meets before `stop`.
+pub fn gather(field: &Field, light: Option<&LightVolume>, solid: &Solid, ray: &Ray, stop: f32) -> Gathered {
+    let mut gathered = Gathered::default();
+    let along = field.display_from_voxel * ray.direction;
+    let metres = along.length();
+    let towards = -along / metres;
+    stretches(solid, ray, stop, |stretch| {
+        let path = Path { field, light, ray, towards, units: metres / field.unit_m };
+        // Rock that is drawn as faces is not looked into.
+        if gathered.passes > SPENT && (stretch.place == Place::CutOut || field.faces != Faces::All) {
+            path.through(stretch, &mut gathered, |_, _| true);
+        }
+    });
+    gathered
+}
+
+/// What a step needs to know.
+struct Path<'a> {
+    field: &'a Field<'a>,
+    light: Option<&'a LightVolume>,
+    ray: &'a Ray,
+    towards: Vec3,
+    /// Units of length per voxel of t.
+    units: f32,
+}
+
+impl Path<'_> {
+    /// Steps through a stretch; `seen` is told of every step that shows something, and ends the ray by `false`.
+    fn through(&self, stretch: Stretch, gathered: &mut Gathered, mut seen: impl FnMut(f32, f32) -> bool) {
+        let [from, to] = stretch.t;
+        let length = (to - from) * self.units;
+        let steps = (length * self.field.samples_per_unit).ceil().max(1.0);
+        let (step_t, step) = ((to - from) / steps, length / steps);
+        let steps = steps as u32;
+        let shift = if stretch.place == Place::CutOut { 8 } else { 0 };
+        let bricks = &self.field.bricks;
+        let mut n = 0;
+        while n < steps {
+            let brick = bricks.at(self.ray.at(from + (n as f32 + 0.5) * step_t));
+            let word = bricks.word(brick);
+            let distance = (word >> shift & 255) as i32;
+            let exit = exit_t(self.ray, brick, (distance - 1).max(0));
+            // Compared as numbers before they are cut to integers: an exit may be infinite.
+            let next = ((exit - from) / step_t + 0.5).ceil().clamp((n + 1) as f32, steps as f32) as u32;
+            if distance == 0 {
+                for n in n..next {
+                    let t = from + (n as f32 + 0.5) * step_t;
+                    let p = self.ray.at(t);
+                    let matter = self.field.at(p, stretch.place, word, self.towards);
+                    if matter.extinction > 0.0 {
+                        let alpha = absorbed(matter.extinction * step);
+                        gathered.colour += self.shaded(&matter, p) * (alpha * gathered.passes);
+                        gathered.passes *= 1.0 - alpha;
+                        if !seen(t, alpha) || gathered.passes <= SPENT {
+                            return;
+                        }
+                    }
+                }
+            }
+            n = next;
+        }
+    }
+
+    /// The light that matter sends to the viewer.
+    #[inline(always)]
+    fn shaded(&self, matter: &Matter, p: Vec3) -> Vec3 {
+        match self.light {
+            Some(light) => matter.colour * light.at(p) + matter.emission,
+            None => matter.colour + matter.emission,
+        }
+    }
+}
+
+/// Distance along the ray at which it leaves a brick grown by `around` bricks to every side.
+#[inline(always)]
+fn exit_t(ray: &Ray, brick: [i32; 3], around: i32) -> f32 {
+    let mut exit = f32::MAX;
+    for axis in 0..3 {
+        let d = ray.direction[axis];
+        if d.abs() > 1e-6 {
+            let border = if d > 0.0 { brick[axis] + 1 + around } else { brick[axis] - around };
+            exit = exit.min(((border * BRICK as i32) as f32 - ray.origin[axis]) / d);
+        }
+    }
+    exit
+}
+
+/// The first place on a ray, before `stop`, at which something shows: the distance along the ray, and what shows there.
+pub fn first_seen(field: &Field, solid: &Solid, ray: &Ray, stop: f32) -> Option<(f32, Place)> {
+    let along = field.display_from_voxel * ray.direction;
+    let mut found = None;
+    stretches(solid, ray, stop, |stretch| {
+        let looked_into = stretch.place == Place::CutOut || field.faces != Faces::All;
+        if found.is_none() && looked_into {
+            let towards = -along.normalize_or_zero();
+            let path = Path { field, light: None, ray, towards, units: along.length() / field.unit_m };
+            path.through(stretch, &mut Gathered::default(), |t, alpha| {
+                if alpha > 0.02 {
+                    found = Some((t, stretch.place));
+                }
+                found.is_none()
+            });
+        }
+    });
+    found
+}
+
+/// Whether this scene's light must be carried before its picture is drawn.
+pub fn needs_light(field: &Field) -> bool {
+    matches!(field.shading, Shading::Occlusion(_))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_alternate_and_end_at_the_stop() {
+        let solid = Solid {
+            roaming_box: [Vec3::ZERO, Vec3::splat(10.0)],
+            cut_outs: vec![
+                [Vec3::new(2.0, 0.0, 0.0), Vec3::new(4.0, 10.0, 10.0)],
+                [Vec3::new(8.0, 0.0, 0.0), Vec3::new(10.0, 10.0, 10.0)],
+            ],
+        };
+        let ray = Ray { origin: Vec3::new(-5.0, 5.0, 5.0), direction: Vec3::X };
+        let all = |stop: f32| {
+            let mut list = Vec::new();
+            stretches(&solid, &ray, stop, |s| list.push((s.t[0], s.t[1], s.place == Place::CutOut)));
+            list
+        };
+        let whole = [(5.0, 7.0, false), (7.0, 9.0, true), (9.0, 13.0, false), (13.0, 15.0, true)];
+        assert_eq!(all(f32::INFINITY), whole);
+        assert_eq!(all(9.5), [(5.0, 7.0, false), (7.0, 9.0, true), (9.0, 9.5, false)]);
+        assert_eq!(all(4.0), []);
+    }
+
+    #[test]
+    fn a_brick_is_left_where_its_border_is() {
+        let ray = Ray { origin: Vec3::new(1.0, 2.0, 30.0), direction: Vec3::new(0.6, 0.0, -0.8) };
+        assert!((exit_t(&ray, [0, 0, 3], 0) - 6.0 / 0.8).abs() < 1e-5);
+        assert!((exit_t(&ray, [0, 0, 3], 1) - 14.0 / 0.8).abs() < 1e-5);
+    }
+}

@@ -1,0 +1,71 @@
+//! Edges of a block that is seen through: those at its back are drawn behind what the rays gathered, those at its front over it.
+//!
+//! The picture is made without a background; background and back edges are put under it afterwards, in linear light as the media are.
+
+use super::draw::stroke_lines;
+use crate::frame::Frame;
+use crate::media::Faces;
+use crate::scene::Scene;
+use crate::shade::{encoded, linear};
+use glam::{DVec2, DVec3, Vec3};
+use image::{Rgba, RgbaImage};
+
+/// Whether a scene's back edges are drawn behind its media.
+pub(crate) fn has_underlay(scene: &Scene) -> bool {
+    scene.media.faces == Faces::None && scene.outlines.edges.width_px > 0.0
+}
+
+/// Puts the background and the back edges under a picture.
+pub(super) fn underlay(frame: &Frame, image: &mut RgbaImage) {
+    let background = frame.scene.background.rgba().map(|c| (c * 255.0 + 0.5) as u8);
+    let mut below = RgbaImage::from_pixel(image.width(), image.height(), Rgba(background));
+    stroke_lines(&mut below, &frame.scene.outlines.edges, &back_edges(frame));
+    for (pixel, below) in image.pixels_mut().zip(below.pixels()) {
+        pixel.0 = over(pixel.0, below.0);
+    }
+}
+
+/// The edges of the roaming box that meet at the corner farthest from the camera, pixels.
+fn back_edges(frame: &Frame) -> Vec<Vec<DVec2>> {
+    let block = frame.roaming_box;
+    let towards = frame.view.towards_camera(block.centre());
+    let farthest = DVec3::select(towards.cmpgt(DVec3::ZERO), block.low(), block.high());
+    let nearest = DVec3::select(towards.cmpgt(DVec3::ZERO), block.high(), block.low());
+    (0..3)
+        .map(|axis| {
+            let mut end = farthest;
+            end[axis] = nearest[axis];
+            vec![frame.view.project(farthest), frame.view.project(end)]
+        })
+        .collect()
+}
+
+/// Straight RGBA over straight RGBA in linear light.
+fn over(above: [u8; 4], below: [u8; 4]) -> [u8; 4] {
+    match (above[3], below[3]) {
+        (255, _) => return above,
+        (0, _) => return below,
+        _ => {}
+    }
+    let unit = |c: [u8; 4]| c.map(|byte| f32::from(byte) / 255.0);
+    let (a, b) = (unit(above), unit(below));
+    let colour = |c: [f32; 4]| linear(Vec3::new(c[0], c[1], c[2]));
+    let alpha = a[3] + b[3] * (1.0 - a[3]);
+    let sum = colour(a) * a[3] + colour(b) * (b[3] * (1.0 - a[3]));
+    let byte = |c: f32| (c.clamp(0.0, 1.0) * 255.0 + 0.5) as u8;
+    let [red, green, blue] = encoded(sum / alpha).to_array().map(byte);
+    [red, green, blue, byte(alpha)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn half_of_white_over_black_is_half_as_much_light() {
+        assert_eq!(over([255, 255, 255, 255], [0, 0, 0, 255]), [255; 4]);
+        assert_eq!(over([9, 9, 9, 0], [1, 2, 3, 4]), [1, 2, 3, 4]);
+        let [grey, _, _, alpha] = over([255, 255, 255, 128], [0, 0, 0, 255]);
+        assert!(alpha == 255 && grey.abs_diff(188) <= 1, "{grey}");
+    }
+}
