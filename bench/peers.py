@@ -34,25 +34,21 @@ import time
 
 import numpy as np
 
-
 def horizon_points(sheet, margin, metric):
     """Nodes of one extended sheet in metres, n x 3."""
     nx, ny = sheet.shape
     x, y = np.meshgrid(np.arange(nx) - margin, np.arange(ny) - margin, indexing="ij")
     return np.stack([x.ravel() * metric[0], y.ravel() * metric[1], sheet.ravel() * metric[2]], axis=1).astype(np.float32)
 
-
 def pykdtree_distances(points, queries):
     from pykdtree.kdtree import KDTree
 
     return KDTree(points).query(queries)[0]
 
-
 def scipy_distances(points, queries):
     from scipy.spatial import cKDTree
 
     return cKDTree(points).query(queries, workers=int(os.environ.get("OMP_NUM_THREADS", "1")))[0]
-
 
 def f_z(region, sheets, meta, distances):
     """k of every voxel in a closed layer, NaN elsewhere."""
@@ -70,7 +66,6 @@ def f_z(region, sheets, meta, distances):
             d_bottom, d_top = distances(bottom, voxels), distances(top, voxels)
             k[inside] = d_bottom / np.maximum(d_bottom + d_top, 1e-6)
     return k
-
 
 def trace(k, region, meta, steps=48):
     """Walks every voxel along the gradient of f_z to k = 0.5; returns the voxel x, y where it arrives."""
@@ -94,7 +89,6 @@ def trace(k, region, meta, steps=48):
             break
     return p[0], p[1]
 
-
 def read_segy(folder, rounds=5):
     """GB/s at which segyio's own whole-cube reading fills an array, the quickest of several rounds."""
     import segyio
@@ -110,7 +104,6 @@ def read_segy(folder, rounds=5):
         result[f"{name}_s"] = [round(s, 3) for s in seconds]
         del cube
     return result
-
 
 def extraction(amplitude):
     """What scipy offers for horizon candidates: the nearest extremum of every voxel and connected extrema; no triangles, no trees."""
@@ -130,18 +123,15 @@ def extraction(amplitude):
         "scipy_label_s": round(time.perf_counter() - transformed, 2),
     }
 
-
 FUNCTIONS = {
     "dense": [(-1.3, 0.002), (1.3, 0.02)],
     "typical": [(-1.3, 0.0), (0.13, 0.0), (1.3, 1.0)],
     "sparse": [(-1.3, 0.0), (1.04, 0.0), (1.3, 1.0)],
 }
 
-
 def processor_seconds():
     times = os.times()
     return times.user + times.system
-
 
 def vtk_picture(path, side, pixels, function, mapper, shade, reach, out=None):
     """Seconds of the clock and of the processor for a picture, the best of three after a first."""
@@ -223,7 +213,6 @@ def vtk_picture(path, side, pixels, function, mapper, shade, reach, out=None):
         writer.Write()
     return min(wall[1:]), min(spent[1:])
 
-
 def time_vtk(args):
     rows = [("cpu ray caster", "cpu", False, None), ("cpu ray caster, Phong", "cpu", True, None), ("gpu mapper", "gpu", False, None), ("gpu mapper, Phong", "gpu", True, None),
             ("gpu mapper, scattering, reach 0", "gpu", True, 0.0), ("gpu mapper, scattering, reach 0.3", "gpu", True, 0.3)]
@@ -231,7 +220,6 @@ def time_vtk(args):
         out = f"{args.keep}/vtk-{n}.png" if args.keep else None
         wall, spent = vtk_picture(args.volume, args.side, args.pixels, args.function, mapper, shade, reach, out)
         print(f"VTK {name:<36} {args.function:<8} {wall:8.3f} s  {spent:7.2f} s of processor", flush=True)
-
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -247,7 +235,6 @@ def main():
     if args.segy:
         print(json.dumps(read_segy(args.dir)))
         return
-
 
     if args.volume:
         time_vtk(args)
@@ -270,7 +257,6 @@ def main():
         f_z(region, sheets, meta, scipy_distances)
         result["scipy_f_z_s"] = round(time.perf_counter() - started, 2)
     print(json.dumps(result))
-
 
 if __name__ == "__main__":
     main()

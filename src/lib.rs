@@ -14,6 +14,7 @@ pub mod demo;
 pub mod derived;
 pub mod error;
 pub mod extraction;
+pub mod horizon_distance;
 pub mod library;
 pub mod picture;
 pub mod pipeline;

@@ -2,11 +2,12 @@
 //! needs and nothing more, and what was computed before is taken from `derived/`.
 
 use crate::error::ProjectError;
+use crate::horizon_distance::HorizonDistances;
 use crate::project::{Document, Project, placement};
 use crate::{data, derived, library, style};
 use glam::Vec3;
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
-use render::{Inputs, Lookup, NamedVolume, Scene, VoxelBox};
+use render::{FaceData, Inputs, Lookup, NamedVolume, Scene, VoxelBox};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use survey::model::{ModelSettings, StructuralModel};
@@ -155,6 +156,8 @@ pub struct Loaded {
     pub packed: Option<PackedVolume>,
     /// The volume shown as raw data and its colours.
     pub raw: Option<RawColour>,
+    /// Distances to the horizons, where the scene shows them.
+    pub distances: Option<HorizonDistances>,
     /// Compiled styles.
     pub tables: Option<TtfTables>,
     /// Unlike that of anything else loaded by this process: renderers keep what they uploaded while it stays the same.
@@ -212,7 +215,12 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
         let volume = data::read_volume(project.root(), entry, progress)?;
         volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
     }
-    Ok(Loaded { geometry, rock, volumes, packed, raw: functions.raw, tables, version: new_version() })
+    let shows_distances = !scene.media.horizons.is_empty() || scene.face_data != FaceData::Rock;
+    let distances = match &rock {
+        Some(rock) if shows_distances => Some(HorizonDistances::new(&rock.model, progress)?),
+        _ => None,
+    };
+    Ok(Loaded { distances, geometry, rock, volumes, packed, raw: functions.raw, tables, version: new_version() })
 }
 
 /// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so
@@ -251,7 +259,7 @@ impl Loaded {
             packed: self.packed.as_ref(),
             tables: self.tables.as_ref(),
             volumes,
-            candidates: None,
+            candidates: self.distances.as_ref().map(HorizonDistances::candidates),
             wells: &[],
             version: self.version,
         }

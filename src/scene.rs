@@ -3,8 +3,10 @@
 use crate::error::{Noun, ProjectError};
 use crate::project::Document;
 use crate::style;
-use render::media::{LayerOpacity, MediumColour, white_ramp};
-use render::{Background, Faces, Ground, Medium, Occlusion, Outlines, Phong, Scene, Shading, Stroke};
+use render::media::{Colouring, LayerOpacity, MediumColour, white_ramp};
+use render::{
+    Background, Faces, Ground, Medium, Occlusion, Outlines, Phong, PickedHorizon, Scene, Scope, Shading, Stroke,
+};
 use ttf::{Colour, ColourMap, RgbaFunction, RgbaStop};
 
 /// The scene of that name; without a name the project's first scene, or else the default view.
@@ -68,7 +70,34 @@ pub struct SeeThrough {
     pub medium: Option<String>,
     /// Values up to this share of the volume's clip are clear.
     pub clear_below: f32,
+    /// Horizons shown in it.
+    pub horizons: Vec<ShownHorizon>,
+    /// Where the volume shows.
+    pub scope: Scope,
 }
+
+/// A horizon of the interpretation, shown in a volume.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShownHorizon {
+    /// Its name.
+    pub name: String,
+    /// Its colour; absent: one of its own.
+    pub colour: Option<Colour>,
+    /// Its opacity.
+    pub opacity: f32,
+    /// The light it gives off.
+    pub emission: f32,
+}
+
+/// Colours of horizons shown without one: pink first, as selections have been in the literature.
+const HORIZON_COLOURS: [Colour; 6] = [
+    Colour::new(0xe8, 0x5a, 0x9b),
+    Colour::new(0xf2, 0xc1, 0x2e),
+    Colour::new(0x3f, 0xa7, 0xd6),
+    Colour::new(0x59, 0xb8, 0x6b),
+    Colour::new(0xee, 0x7a, 0x3a),
+    Colour::new(0x8f, 0x74, 0xc9),
+];
 
 /// Background of volumes seen through: their white needs something darker behind it.
 const BEHIND_VOLUMES: Colour = Colour::new(0x2c, 0x33, 0x3a);
@@ -81,6 +110,21 @@ impl SeeThrough {
     /// # Errors
     /// The project has no such volume, or none at all.
     pub fn change(&self, scene: &mut Scene, document: &Document) -> Result<(), ProjectError> {
+        for (n, shown) in self.horizons.iter().enumerate() {
+            let index = document.position(Noun::Horizon, &shown.name)?;
+            scene.media.horizons.push(PickedHorizon {
+                leaves: vec![index as u32 + 1],
+                colour: shown.colour.unwrap_or(HORIZON_COLOURS[n % HORIZON_COLOURS.len()]),
+                colouring: Colouring::Own,
+                opacity: shown.opacity,
+                thickness: 1.0,
+                emission: shown.emission,
+                paint: None,
+            });
+        }
+        if self.scope != Scope::Everywhere {
+            scene.media.scope = self.scope;
+        }
         let shading = match self.technique {
             Some(Technique::Occlusion) => Shading::Occlusion(Occlusion::default()),
             Some(Technique::Phong) => Shading::Phong(Phong::default()),

@@ -193,6 +193,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
             rock: Some(rock),
             volumes: Vec::new(),
             packed: Some(packed),
+            distances: None,
             raw: None,
             tables: Some(tables),
             version: pipeline::new_version(),

@@ -13,11 +13,12 @@ use crate::command::{
     SetVelocity,
 };
 use crate::picture::Device;
-use crate::scene::{SeeThrough, Technique};
+use crate::scene::{SeeThrough, ShownHorizon, Technique};
 use glam::DVec2;
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
+use render::Scope;
 use std::path::PathBuf;
 use survey::formats::{ExportOptions, Format, ImportOptions};
 use survey::segy::SegyOptions;
@@ -285,8 +286,35 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         view: typed.view.try_into()?,
         dpi: typed.dpi,
         device,
-        see_through: SeeThrough { technique, medium: typed.medium, clear_below: typed.clear_below },
+        see_through: SeeThrough {
+            technique,
+            medium: typed.medium,
+            clear_below: typed.clear_below,
+            horizons: typed.horizon.iter().map(|text| shown_horizon(text)).collect::<Result<_, _>>()?,
+            scope: match typed.scope.as_str() {
+                "everywhere" => Scope::Everywhere,
+                "near" => Scope::NearHorizons,
+                "away" => Scope::AwayFromHorizons,
+                other => return Err(format!("--scope {other}: expected everywhere, near or away")),
+            },
+        },
     })
+}
+
+/// NAME[,#RRGGBB[,OPACITY[,LIGHT]]]
+fn shown_horizon(text: &str) -> Result<ShownHorizon, Usage> {
+    let mut parts = text.split(',');
+    let name = parts.next().unwrap_or_default().to_owned();
+    let colour = parts.next().map(colour).transpose()?;
+    let mut number = |unless: f32| match parts.next() {
+        None => Ok(unless),
+        Some(part) => part.parse::<f32>().map_err(|_| format!("--horizon {text}: {part} is no number")),
+    };
+    let (opacity, emission) = (number(1.0)?, number(0.0)?);
+    if parts.next().is_some() {
+        return Err(format!("--horizon {text}: expected NAME,#RRGGBB,OPACITY,LIGHT"));
+    }
+    Ok(ShownHorizon { name, colour, opacity, emission })
 }
 
 fn colour(text: &str) -> Result<Colour, Usage> {

@@ -11,3 +11,4 @@ mod help;
 mod program;
 mod safety;
 mod well;
+mod see_through;

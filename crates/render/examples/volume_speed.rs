@@ -155,7 +155,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [width, height] = options.size_px;
     println!("{0}³ voxels, {width} x {height} pixels, one sample a voxel, 32-bit floats", options.side);
     for (name, scene) in scenes(options.size_px) {
-        let mut report = |device: &str, (wall, spent, image): (f64, f64, RgbaImage)| -> Result<(), Box<dyn Error>> {
+        let report = |device: &str, (wall, spent, image): (f64, f64, RgbaImage)| -> Result<(), Box<dyn Error>> {
             println!("{name:<34} {device:<24} {wall:8.3} s  {spent:7.2} s of processor");
             if let Some(folder) = &options.keep {
                 image.save(format!("{folder}/{name} {}.png", device.split(' ').next().unwrap_or_default()))?;

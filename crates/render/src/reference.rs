@@ -42,6 +42,8 @@ impl CpuRenderer {
 
 /// Pixels along a side of what one task draws.
 const TILE: u32 = 32;
+/// Tiles drawn before they are put into the picture.
+const TILES_AT_ONCE: usize = 4096;
 
 fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
     let light = match &frame.field {
@@ -53,20 +55,23 @@ fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
     let tiles = across * height.div_ceil(TILE);
     progress.begin("render", u64::from(tiles));
     let mut image = RgbaImage::new(width, height);
-    let drawn: Vec<(u32, u32, Vec<[u8; 4]>)> = (0..tiles)
-        .into_par_iter()
-        .map(|tile| {
-            let (left, top) = (tile % across * TILE, tile / across * TILE);
-            let (right, bottom) = ((left + TILE).min(width), (top + TILE).min(height));
-            let rows = (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y)));
-            let pixels = rows.map(|(x, y)| pixel(frame, light.as_ref(), x, y)).collect();
-            progress.step(1).map(|()| (left, top, pixels))
-        })
-        .collect::<Result<_, _>>()?;
-    for (left, top, pixels) in drawn {
-        let columns = TILE.min(width - left);
-        for (n, pixel) in (0u32..).zip(pixels) {
-            image.put_pixel(left + n % columns, top + n / columns, image::Rgba(pixel));
+    // Some at a time, so that large pictures are not held twice.
+    for first in (0..tiles).step_by(TILES_AT_ONCE) {
+        let drawn: Vec<(u32, u32, Vec<[u8; 4]>)> = (first..tiles.min(first + TILES_AT_ONCE as u32))
+            .into_par_iter()
+            .map(|tile| {
+                let (left, top) = (tile % across * TILE, tile / across * TILE);
+                let (right, bottom) = ((left + TILE).min(width), (top + TILE).min(height));
+                let places = (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y)));
+                let pixels = places.map(|(x, y)| pixel(frame, light.as_ref(), x, y)).collect();
+                progress.step(1).map(|()| (left, top, pixels))
+            })
+            .collect::<Result<_, _>>()?;
+        for (left, top, pixels) in drawn {
+            let columns = TILE.min(width - left);
+            for (n, pixel) in (0u32..).zip(pixels) {
+                image.put_pixel(left + n % columns, top + n / columns, image::Rgba(pixel));
+            }
         }
     }
     outline::draw(frame, &mut image);

@@ -27,6 +27,12 @@ pub(in crate::cli) struct RenderArgs {
     /// Values up to this share of the volume's clip are clear, larger ones more and more opaque; from -1
     #[arg(long, value_name = "SHARE", default_value_t = 0.1, allow_hyphen_values = true)]
     pub(in crate::cli) clear_below: f32,
+    /// Horizon shown in the volume, with its colour, opacity and the light it gives off; repeat it for several
+    #[arg(long, value_name = "NAME[,#RRGGBB[,OPACITY[,LIGHT]]]")]
+    pub(in crate::cli) horizon: Vec<String>,
+    /// Where the volume shows: everywhere, near the horizons shown, or away from them
+    #[arg(long, value_name = "everywhere|near|away", default_value = "everywhere")]
+    pub(in crate::cli) scope: String,
     /// What draws: the graphics adapter, or the processor when there is none; or one of them
     #[arg(long, value_name = "auto|gpu|cpu", default_value = "auto")]
     pub(in crate::cli) device: String,
