@@ -6,6 +6,7 @@
 #   make bench   how long our stages take on this machine
 #   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, scipy, xtgeo, segyio, lasio)
 #   make fuzz    two seconds of made-up input for every parser; make fuzz-long ten minutes each
+#   make gallery the pictures of docs/gallery.md
 #   make accuracy   measures accuracy anew into docs/accuracy.md
 #   make extraction measures the quality of horizon candidates into docs/extraction.md
 
@@ -18,13 +19,17 @@ PETROGLYPH = target/debug/petroglyph
 
 PYTHON ?= python3
 
-.PHONY: demo test check bench accuracy extraction check-peers fuzz fuzz-long setup build
+.PHONY: demo gallery test check bench accuracy extraction check-peers fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
 
 demo: build
 	$(PETROGLYPH) demo --out $(OUT)
+
+# The pictures of docs/gallery.md, from the demonstration's project.
+gallery: demo
+	docs/gallery.sh $(PETROGLYPH) $(OUT)/demo.petro docs/gallery
 
 test: setup
 	cargo test --workspace --locked

@@ -1,5 +1,5 @@
 #!/bin/sh
-# Draws the pictures of docs/gallery.md from a project with volumes `seismic` and `impedance` and horizons Alpha, Beta, Gamma (the demonstration's):
+# Draws the pictures of docs/gallery.md from a project with volumes `seismic` and `impedance` and horizons Alpha, Bravo, Gamma (the demonstration's):
 #   docs/gallery.sh PETROGLYPH PROJECT FOLDER
 # Each picture takes seconds on two cores. Extra options go to every picture: GALLERY_OPTIONS='--size 800x600 --samples 1'.
 set -eu
@@ -21,7 +21,9 @@ for blend in 0 0.35 0.65 1; do
 done
 # P-illus 10 and 11: a volume in the cut-out, whole and in a layer that was left standing.
 draw cut-out-volume $cut --ground off --medium seismic --clear-below 0.2
-draw cut-out-impedance $cut --ground off --medium impedance --clear-below 0.4
+"$petroglyph" layer set "$project" Limestone --opacity 1
+draw cut-out-layer $cut --ground off --medium seismic --clear-below 0
+"$petroglyph" undo "$project"
 # P-horiz 5: gradients, and none.
 draw phong --technique phong --clear-below 0.25
 draw occlusion --technique occlusion --clear-below 0.25
@@ -29,10 +31,10 @@ draw unshaded --technique volume --clear-below 0.25
 # P-horiz 4: distances on faces; 6 and 7: horizons in the volume.
 draw distance $cut --ground off --show distance
 draw leaves $cut --ground off --show leaves --blend 1
-draw horizons --technique occlusion --clear-below 0.35 --horizon Alpha --horizon Beta
-draw horizon-semi-transparent --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,0.25 --horizon Beta
-draw horizon-top-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,1,1 --horizon Beta
-draw horizon-bottom-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,0.5 --horizon Beta,#f2c12e,1,1.2
-draw horizons-both-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,1,1 --horizon Beta,#f2c12e,1,1
-draw horizons-near --technique occlusion --scope near --clear-below 0.1 --horizon Alpha --horizon Beta
+draw horizons --technique occlusion --clear-below 0.35 --horizon Alpha --horizon Bravo
+draw horizon-semi-transparent --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,0.25 --horizon Bravo
+draw horizon-top-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,1,1 --horizon Bravo
+draw horizon-bottom-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,0.5 --horizon Bravo,#f2c12e,1,1.2
+draw horizons-both-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,1,1 --horizon Bravo,#f2c12e,1,1
+draw horizons-near --technique occlusion --scope near --clear-below 0.1 --horizon Alpha --horizon Bravo
 draw horizons-away --technique occlusion --scope away --clear-below 0.35 --horizon Alpha,#e85a9b,0.02

@@ -77,7 +77,8 @@ impl Painter {
         let start = Instant::now();
         let scene = &Scene { raw: scene.raw.clone().or_else(|| loaded.raw.clone()), ..scene.clone() };
         let volumes = loaded.named_volumes();
-        let inputs = loaded.inputs(&volumes);
+        let wells = loaded.well_paths();
+        let inputs = loaded.inputs(&volumes, &wells);
         let drawn = self.renderer.as_mut().map(|renderer| renderer.render(scene, &inputs, progress));
         let image = match drawn {
             Some(Err(error @ (RenderError::OutOfMemory { .. } | RenderError::DeviceLost { .. })))

@@ -5,9 +5,9 @@ use crate::error::ProjectError;
 use crate::horizon_distance::HorizonDistances;
 use crate::project::{Document, Project, placement};
 use crate::{data, derived, library, style};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
-use render::{FaceData, Inputs, Lookup, NamedVolume, Scene, VoxelBox};
+use render::{FaceData, Inputs, Lookup, NamedVolume, Scene, VoxelBox, WellPath};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use survey::model::{ModelSettings, StructuralModel};
@@ -144,6 +144,16 @@ pub struct LoadedVolume {
     pub covers: VoxelBox,
 }
 
+/// A well of the project in voxels.
+pub struct LoadedWell {
+    /// Its name.
+    pub name: String,
+    /// Its path from the head down.
+    pub path: Vec<DVec3>,
+    /// Its tops.
+    pub tops: Vec<DVec3>,
+}
+
 /// Everything a scene of a project is drawn from.
 pub struct Loaded {
     /// The frame.
@@ -156,6 +166,8 @@ pub struct Loaded {
     pub packed: Option<PackedVolume>,
     /// The volume shown as raw data and its colours.
     pub raw: Option<RawColour>,
+    /// Wells, in voxels.
+    pub wells: Vec<LoadedWell>,
     /// Distances to the horizons, where the scene shows them.
     pub distances: Option<HorizonDistances>,
     /// Compiled styles.
@@ -220,7 +232,13 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
         Some(rock) if shows_distances => Some(HorizonDistances::new(&rock.model, progress)?),
         _ => None,
     };
-    Ok(Loaded { distances, geometry, rock, volumes, packed, raw: functions.raw, tables, version: new_version() })
+    let mut wells = Vec::new();
+    for entry in &document.wells {
+        let well = data::read_well(project.root(), entry)?;
+        let tops = well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, &geometry)).collect();
+        wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(&geometry), tops });
+    }
+    Ok(Loaded { wells, distances, geometry, rock, volumes, packed, raw: functions.raw, tables, version: new_version() })
 }
 
 /// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so
@@ -250,8 +268,13 @@ impl Loaded {
         named.map(|loaded| NamedVolume { name: &loaded.name, volume: &loaded.volume, covers: loaded.covers }).collect()
     }
 
+    /// The wells as renderers take them.
+    pub fn well_paths(&self) -> Vec<WellPath<'_>> {
+        self.wells.iter().map(|well| WellPath { name: &well.name, path: &well.path, tops: &well.tops }).collect()
+    }
+
     /// Everything as renderers take it.
-    pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>]) -> Inputs<'a> {
+    pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>], wells: &'a [WellPath<'a>]) -> Inputs<'a> {
         Inputs {
             geometry: &self.geometry,
             model: self.rock.as_ref().map(|rock| &rock.model),
@@ -260,7 +283,7 @@ impl Loaded {
             tables: self.tables.as_ref(),
             volumes,
             candidates: self.distances.as_ref().map(HorizonDistances::candidates),
-            wells: &[],
+            wells,
             version: self.version,
         }
     }

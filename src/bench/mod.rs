@@ -194,6 +194,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
             volumes: Vec::new(),
             packed: Some(packed),
             distances: None,
+            wells: Vec::new(),
             raw: None,
             tables: Some(tables),
             version: pipeline::new_version(),

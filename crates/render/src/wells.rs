@@ -95,6 +95,8 @@ pub struct Tubes {
 
 /// Light on a tube seen at its rim, of that at its middle.
 pub const RIM_LIGHT: f32 = 0.35;
+/// How far a tube may lie off its path, voxels: a drawn path is sampled far more densely than it bends.
+const STRAIGHT: f64 = 0.05;
 /// Width of a top's band over the tube's.
 const TOP_WIDTH: f32 = 1.6;
 
@@ -114,7 +116,8 @@ impl Tubes {
         let radius = style.radius * longest_m as f32;
         let mut capsules = Vec::new();
         for (well, path) in wells.iter().enumerate() {
-            for ends in path.path.windows(2).filter_map(|ends| clipped([ends[0], ends[1]], roaming_box)) {
+            let kept = simplified(path.path, STRAIGHT);
+            for ends in kept.windows(2).filter_map(|ends| clipped([ends[0], ends[1]], roaming_box)) {
                 let ends = ends.map(|end| (to_display * end).as_vec3());
                 capsules.push(Capsule { ends, radius, colour: style.colour.to_unit(), well });
             }
@@ -152,6 +155,30 @@ impl Tubes {
         }
         nearest
     }
+}
+
+/// The points of a path without those that lie within `tolerance` of the line through their neighbours kept (Douglas and Peucker 1973).
+fn simplified(path: &[DVec3], tolerance: f64) -> Vec<DVec3> {
+    let (Some(&first), Some(&last)) = (path.first(), path.last()) else { return Vec::new() };
+    let mut kept = vec![first];
+    // Stretches still to be looked at, the next one last.
+    let mut stretches = vec![(0, path.len() - 1)];
+    while let Some((from, to)) = stretches.pop() {
+        let along = path[to] - path[from];
+        let off = |p: DVec3| {
+            let u = ((p - path[from]).dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
+            (p - path[from] - along * u).length()
+        };
+        let farthest = (from + 1..to).max_by(|&a, &b| off(path[a]).total_cmp(&off(path[b])));
+        match farthest.filter(|&n| off(path[n]) > tolerance) {
+            Some(n) => stretches.extend([(n, to), (from, n)]),
+            None => kept.push(path[to]),
+        }
+    }
+    if kept.len() == 1 {
+        kept.push(last);
+    }
+    kept
 }
 
 /// The part of a segment inside a box.
@@ -241,6 +268,19 @@ mod tests {
         assert!((s - 19.0).abs() < 1e-4);
         assert!(hit(Vec3::new(-5.0, 1.01, 5.0), Vec3::X).is_none());
         assert!(hit(Vec3::new(-5.0, 0.0, 11.5), Vec3::X).is_none());
+    }
+
+    #[test]
+    fn a_path_keeps_its_bends_only() {
+        let path: Vec<DVec3> = (0..=300)
+            .map(|n| f64::from(n) * 0.1)
+            .map(|s| if s < 20.0 { DVec3::new(3.0, 4.0, s) } else { DVec3::new(3.0 + (s - 20.0), 4.0, s) })
+            .collect();
+        let kept = simplified(&path, STRAIGHT);
+        assert_eq!(kept.len(), 3);
+        assert!((kept[1] - DVec3::new(3.0, 4.0, 20.0)).length() < 0.11);
+        assert_eq!(simplified(&path[..1], STRAIGHT).len(), 2);
+        assert!(simplified(&[], STRAIGHT).is_empty());
     }
 
     #[test]

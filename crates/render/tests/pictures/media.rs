@@ -1,13 +1,13 @@
 //! Media whose pictures are known in closed form: absorption, layers, occlusion, light given off.
 
 use crate::block::Block;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use render::media::{Colouring, EmptySpace, LayerOpacity, MediumColour, white_ramp};
 use render::reference::render;
 use render::{
     Background, Camera, Candidates, Faces, Inputs, Media, Medium, NamedVolume, Occlusion, Outlines, PickedHorizon,
-    Projection, Scene, Scope, Shading, VoxelBox,
+    Picked, Projection, Scene, Scope, Shading, VoxelBox, WellPath, pick,
 };
 use survey::synth::closed_form::ClosedForm;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
@@ -417,4 +417,46 @@ fn an_opaque_slice_hides_what_is_behind_and_shows_its_colour() {
             assert_eq!([r, g, b], front.rgb);
         }
     }
+}
+
+#[test]
+fn what_is_under_a_pixel_is_what_shows_there() {
+    let geometry = cubic(33);
+    let mut volume = Volume::filled([33; 3], 0.0f32);
+    for x in 0..33 {
+        for y in 12..16 {
+            volume.trace_mut(x, y).fill(1.0);
+        }
+    }
+    let volumes = [NamedVolume::whole("v", &volume)];
+    let leaf: Vec<u32> = (0..33 * 33 * 33).map(|n| if n / 33 % 33 >= 11 { 9 } else { 0 }).collect();
+    let distance = vec![25u8; leaf.len()];
+    let candidates =
+        Candidates { size: [33; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
+    let path = [DVec3::new(4.0, 3.0, -9.0), DVec3::new(4.0, 3.0, 40.0)];
+    let wells = [WellPath { name: "A", path: &path, tops: &path[..0] }];
+    let inputs = Inputs { candidates: Some(candidates), wells: &wells, ..Inputs::raw(&geometry, &volumes) };
+    let media = Media {
+        faces: Faces::None,
+        samples_per_voxel: 8.0,
+        surroundings: vec![medium("v", white_ramp(1.0, 0.5))],
+        ..Media::default()
+    };
+    let scene = head_on([66, 66], media);
+    let view = scene.view(&geometry);
+    let at = |x: f64| pick(&scene, &inputs, view.project(DVec3::new(x, 0.0, 16.0))).unwrap();
+    let seen = at(20.0).unwrap();
+    // Between the samples at 11 (clear) and 12 (opaque) the value passes ½.
+    assert_eq!(seen.what, Picked::Medium);
+    assert!((seen.voxel.y - 11.6).abs() < 0.2 && (seen.voxel.x - 20.0).abs() < 0.3, "{seen:?}");
+    assert_eq!((seen.leaf, seen.region), (Some(9), None));
+    assert!((seen.leaf_distance.unwrap() - 1.0).abs() < 1e-4 && seen.values[0] > 0.5);
+    let well = at(4.0).unwrap();
+    assert_eq!((well.what, well.leaf), (Picked::Well(0), None));
+    assert!((2.0..3.0).contains(&well.voxel.y), "{well:?}");
+    assert_eq!(pick(&scene, &inputs, DVec2::new(-30.0, 5.0)).unwrap(), None);
+    let raw = ttf::RawColour::new("v", white_ramp(1.0, 0.5));
+    let faces = Scene { media: Media::default(), blend: 1.0, raw: Some(raw), ..scene.clone() };
+    let face = pick(&faces, &inputs, view.project(DVec3::new(20.0, 0.0, 16.0))).unwrap().unwrap();
+    assert_eq!((face.what, face.voxel.y, face.values[0]), (Picked::Face, 0.0, 0.0));
 }
