@@ -46,6 +46,11 @@ impl Progress {
         Self::new(Arc::new(Silent))
     }
 
+    /// A handle that reports to nobody and is cancelled with this one: for work that is a part of a step.
+    pub fn muted(&self) -> Self {
+        Self { sink: Arc::new(Silent), cancelled: self.cancelled.clone(), done: Arc::default() }
+    }
+
     /// Begins a stage of `total` steps.
     pub fn begin(&self, stage: &str, total: u64) {
         self.done.store(0, Ordering::Relaxed);

@@ -86,7 +86,7 @@ pub(super) fn like(volume: &Volume<f32>, samples: Vec<f32>) -> Volume<f32> {
     out
 }
 
-fn along_inlines(
+pub(super) fn along_inlines(
     volume: &Volume<f32>,
     settings: &DipSettings,
     progress: &Progress,
@@ -104,7 +104,7 @@ fn along_inlines(
     Ok(dips)
 }
 
-fn along_crosslines(
+pub(super) fn along_crosslines(
     volume: &Volume<f32>,
     settings: &DipSettings,
     progress: &Progress,

@@ -6,12 +6,13 @@
 //! | [`semblance()`] | how alike neighbouring traces are along the reflections: low at faults |
 //! | [`envelope()`] | how strong the reflections are, whatever their phase |
 //!
-//! These work on a volume in memory.
+//! These work on a volume in memory; [`stored`] does the same to a stored volume of any size.
 
 mod dip;
 mod envelope;
 mod error;
 mod semblance;
+pub mod stored;
 
 mod window;
 

@@ -31,6 +31,12 @@ pub enum SegyProblem {
         /// The system's answer.
         source: io::Error,
     },
+    /// Whoever supplies the samples to write failed.
+    #[error("the samples to write could not be supplied: {source}")]
+    Source {
+        /// The supplier's reason.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
     /// Too few bytes for the two file headers and a trace.
     #[error(
         "{bytes} bytes are too few for SEG-Y, whose headers alone take 3600; the file is empty, cut off or something else"

@@ -101,6 +101,25 @@ impl SegyFile {
         (trace != NO_TRACE).then_some(trace as usize)
     }
 
+    /// Whether samples are multiplied by factors of their traces.
+    pub(super) fn is_weighted(&self) -> bool {
+        self.weights.is_some()
+    }
+
+    /// Gives back the memory of what was read of the file so far; it is read again when it is needed.
+    pub fn release(&self) {
+        #[expect(
+            unsafe_code,
+            reason = "the mapping is read-only and shared: the system drops its pages and reads them from the file again. \
+                      Without it a file as large as memory is counted as held by this program"
+        )]
+        // An advice: where the system does not take it, nothing is lost.
+        let release = |map: &Mmap| unsafe { map.unchecked_advise(memmap2::UncheckedAdvice::DontNeed) };
+        if let Bytes::Mapped(map) = &self.bytes {
+            let _ = release(map);
+        }
+    }
+
     /// Decodes the trace at inline index `x`, crossline index `y` into `out`, whose length is the count of samples.
     /// What the file does not hold is 0, and so are values that are no numbers, whose count is returned.
     pub fn read_trace(&self, x: usize, y: usize, out: &mut [f32]) -> usize {

@@ -27,6 +27,7 @@
 //! ```
 
 mod bins;
+mod block;
 mod columns;
 mod coordinates;
 mod detect;
@@ -54,6 +55,7 @@ mod tests;
 
 use std::path::Path;
 
+pub use block::ExactType;
 pub use detect::{Candidate, Verdict};
 pub use error::{SegyError, SegyProblem};
 pub use file::SegyFile;
@@ -84,4 +86,4 @@ pub fn read(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<S
     SegyFile::open(path, options, progress)?.read(progress)
 }
 
-pub use write::write;
+pub use write::{SampleSource, write, write_lines};

@@ -3,8 +3,10 @@
 //! The file is written under another name beside its target and renamed when it is complete, so that a full disk or a
 //! cancel leaves nothing behind.
 
+use std::borrow::Cow;
 use std::fs::{self, File, OpenOptions};
 use std::io::{BufWriter, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use glam::DVec3;
@@ -66,13 +68,15 @@ pub struct WriteOptions {
     pub byte_order: ByteOrder,
     /// Lines of the textual header, without `C 1`; empty for lines that describe the volume.
     pub text: Vec<String>,
+    /// Where the volume comes from, as a further line of the description; none.
+    pub origin: Option<String>,
     /// Samples are multiplied by this before integers are rounded and clipped; 1.
     pub gain: f32,
 }
 
 impl Default for WriteOptions {
     fn default() -> Self {
-        Self { format: WriteFormat::default(), byte_order: ByteOrder::Big, text: Vec::new(), gain: 1.0 }
+        Self { format: WriteFormat::default(), byte_order: ByteOrder::Big, text: Vec::new(), origin: None, gain: 1.0 }
     }
 }
 
@@ -87,6 +91,10 @@ pub struct WriteReport {
     pub clipped: u64,
 }
 
+/// What is asked for the samples of a range of inlines, `[inline][crossline][sample]`.
+pub type SampleSource<'s> =
+    dyn FnMut(Range<usize>) -> Result<Cow<'s, [f32]>, Box<dyn std::error::Error + Send + Sync>> + 's;
+
 /// Writes the live traces of a volume.
 ///
 /// # Errors
@@ -99,19 +107,32 @@ pub fn write(
     options: &WriteOptions,
     progress: &Progress,
 ) -> Result<WriteReport, SegyError> {
-    write_beside(path, geometry, volume, options, progress).map_err(|problem| problem.in_file(path))
+    if volume.size() != geometry.size() {
+        return Err(SegyProblem::SizeMismatch { volume: volume.size(), geometry: geometry.size() }.in_file(path));
+    }
+    let [_, crosslines, samples] = volume.size();
+    let line = crosslines * samples;
+    let mut source = |lines: Range<usize>| Ok(Cow::Borrowed(&volume.samples()[lines.start * line..lines.end * line]));
+    write_lines(path, geometry, volume.live(), options, geometry.inlines.count, &mut source, progress)
 }
 
-fn write_beside(
+/// Writes the live traces of a volume that is larger than memory: `source` is asked for `together` inlines at a time. `live` is the
+/// mask of live traces, `None` = all.
+///
+/// # Errors
+/// As [`write`], and [`SegyProblem::Source`] for what the source answers.
+pub fn write_lines(
     path: &Path,
     geometry: &SurveyGeometry,
-    volume: &Volume<f32>,
+    live: Option<&[bool]>,
     options: &WriteOptions,
+    together: usize,
+    source: &mut SampleSource<'_>,
     progress: &Progress,
-) -> Result<WriteReport, SegyProblem> {
-    let plan = Plan::new(geometry, volume, options)?;
+) -> Result<WriteReport, SegyError> {
     let temporary = temporary_beside(path);
-    let written = plan.write(&temporary, progress).and_then(|report| {
+    let written = Plan::new(geometry, live, options).and_then(|plan| {
+        let report = plan.write(&temporary, together.max(1), source, progress)?;
         fs::rename(&temporary, path).map_err(io("put the file in its place", "check that you may write there"))?;
         Ok(report)
     });
@@ -119,7 +140,7 @@ fn write_beside(
         // The first error is the one to tell.
         let _ = fs::remove_file(&temporary);
     }
-    written
+    written.map_err(|problem| problem.in_file(path))
 }
 
 fn temporary_beside(path: &Path) -> PathBuf {
@@ -136,7 +157,7 @@ fn io(doing: &'static str, hint: &'static str) -> impl Fn(std::io::Error) -> Seg
 /// A volume and the header values that hold it.
 struct Plan<'a> {
     geometry: &'a SurveyGeometry,
-    volume: &'a Volume<f32>,
+    live: Option<&'a [bool]>,
     options: &'a WriteOptions,
     interval: u16,
     samples: u16,
@@ -148,13 +169,10 @@ struct Plan<'a> {
 impl<'a> Plan<'a> {
     fn new(
         geometry: &'a SurveyGeometry,
-        volume: &'a Volume<f32>,
+        live: Option<&'a [bool]>,
         options: &'a WriteOptions,
     ) -> Result<Self, SegyProblem> {
         geometry.validate()?;
-        if volume.size() != geometry.size() {
-            return Err(SegyProblem::SizeMismatch { volume: volume.size(), geometry: geometry.size() });
-        }
         for axis in [geometry.inlines, geometry.crosslines] {
             check_line_numbers(&axis)?;
         }
@@ -167,7 +185,7 @@ impl<'a> Plan<'a> {
         let (delay, time_scalar) = delay(geometry.vertical.first)?;
         Ok(Self {
             geometry,
-            volume,
+            live,
             options,
             interval: interval(geometry.vertical.interval)?,
             samples,
@@ -177,9 +195,15 @@ impl<'a> Plan<'a> {
         })
     }
 
-    fn write(&self, path: &Path, progress: &Progress) -> Result<WriteReport, SegyProblem> {
+    fn write(
+        &self,
+        path: &Path,
+        together: usize,
+        source: &mut SampleSource<'_>,
+        progress: &Progress,
+    ) -> Result<WriteReport, SegyProblem> {
         const SPACE: &str = "make room on the disk, or choose another folder";
-        let [inlines, crosslines, _] = self.volume.size();
+        let [inlines, crosslines, samples] = self.geometry.size();
         progress.begin("writing traces", (inlines * crosslines) as u64);
         let file = OpenOptions::new()
             .write(true)
@@ -190,12 +214,25 @@ impl<'a> Plan<'a> {
         let mut out = BufWriter::with_capacity(1 << 20, file);
         out.write_all(&self.file_header()).map_err(io("write", SPACE))?;
         let mut report = WriteReport { traces: 0, bytes: FILE_HEADER_BYTES as u64, clipped: 0 };
+        let is_live = |x: usize, y: usize| self.live.is_none_or(|live| live[x * crosslines + y]);
+        let mut values = Cow::Borrowed(&[][..]);
         for x in 0..inlines {
             progress.step(crosslines as u64)?;
-            let live: Vec<usize> = (0..crosslines).filter(|&y| self.volume.is_live(x, y)).collect();
+            let slab = x - x % together;
+            if x == slab {
+                // What was read before is given back first.
+                drop(std::mem::take(&mut values));
+                values =
+                    source(slab..(slab + together).min(inlines)).map_err(|source| SegyProblem::Source { source })?;
+            }
+            let live: Vec<usize> = (0..crosslines).filter(|&y| is_live(x, y)).collect();
             let first = report.traces;
+            let trace = |y: usize| {
+                let from = ((x - slab) * crosslines + y) * samples;
+                values.get(from..from + samples).unwrap_or_default()
+            };
             let traces: Vec<(Vec<u8>, u64)> =
-                live.par_iter().enumerate().map(|(k, &y)| self.trace(x, y, first + k)).collect();
+                live.par_iter().enumerate().map(|(k, &y)| self.trace([x, y], first + k, trace(y))).collect();
             for (bytes, clipped) in traces {
                 out.write_all(&bytes).map_err(io("write", SPACE))?;
                 report.traces += 1;
@@ -240,7 +277,7 @@ impl<'a> Plan<'a> {
             VerticalUnit::Milliseconds => "TWO-WAY TIME (TWT) IN MS",
             VerticalUnit::Metres => "DEPTH IN M",
         };
-        vec![
+        let mut text = vec![
             "WRITTEN BY PETROGLYPH".to_owned(),
             format!("POST-STACK 3D VOLUME, VERTICAL AXIS {axis}, POSITIVE DOWN"),
             format!(
@@ -255,11 +292,13 @@ impl<'a> Plan<'a> {
             format!("CDP X AT BYTE 181, CDP Y AT BYTE 185, IN M, SCALAR {} AT BYTE 71", self.coordinate_scalar),
             format!("SAMPLE FORMAT {}", self.options.format.sample_format().name().to_uppercase()),
             "TRACES THAT WERE NOT RECORDED ARE LEFT OUT".to_owned(),
-        ]
+        ];
+        text.extend(self.options.origin.as_ref().map(|origin| format!("ORIGIN: {}", origin.to_uppercase())));
+        text
     }
 
     /// A trace, and how many of its samples were clipped.
-    fn trace(&self, x: usize, y: usize, number: usize) -> (Vec<u8>, u64) {
+    fn trace(&self, [x, y]: [usize; 2], number: usize, samples: &[f32]) -> (Vec<u8>, u64) {
         let order = self.options.byte_order;
         let format = self.options.format.sample_format();
         let mut bytes = vec![0; TRACE_HEADER_BYTES + usize::from(self.samples) * format.bytes()];
@@ -295,7 +334,7 @@ impl<'a> Plan<'a> {
         ] {
             order.put(&mut bytes, usize::from(byte) - 1, value.to_be_bytes());
         }
-        let clipped = self.encode(self.volume.trace(x, y), &mut bytes[TRACE_HEADER_BYTES..]);
+        let clipped = self.encode(samples, &mut bytes[TRACE_HEADER_BYTES..]);
         (bytes, clipped)
     }
 

@@ -1,19 +1,22 @@
 //! Zarr v3 arrays: the only place that knows the array library.
 //!
-//! An array is cut into chunks (what is compressed, zstd with a checksum), and chunks are bundled into shards (what is a file), so that a
-//! large volume is neither millions of files nor one. Order is C: the last axis is fastest. Every shard is written, also
+//! An array is cut into chunks (what is compressed, zstd with a checksum; chunks of volumes are not, see `shard`), and chunks are bundled
+//! into shards (what is a file), so that a large volume is neither millions of files nor one. Order is C: the last axis is fastest. Every shard is written, also
 //! where it holds nothing but the fill value, so that a missing file is noticed and not read as "nothing there".
 
 use super::error::StoreError;
 use super::layout::{Layout, gather, grid_index};
 use super::sample::StoredSample;
+use super::shard::{ShardGrid, Shards};
 use crate::progress::Progress;
 use rayon::prelude::*;
 use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use zarrs::array::codec::ZstdCodec;
-use zarrs::array::{Array, ArrayBuilder, ArrayCreateError, ArrayError, ArraySubset, CodecError, CodecOptions};
+use zarrs::array::codec::{Crc32cCodec, ZstdCodec};
+use zarrs::array::{
+    Array, ArrayBuilder, ArrayCreateError, ArrayError, ArraySubset, BytesToBytesCodecTraits, CodecError, CodecOptions,
+};
 use zarrs::filesystem::FilesystemStore;
 use zarrs::group::{Group, GroupBuilder, GroupCreateError};
 use zarrs::storage::StorageError;
@@ -100,6 +103,75 @@ pub fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError> {
     }
 }
 
+/// Writes the metadata of an array whose chunks are coded by `codec`.
+fn create<T: StoredSample>(
+    group: &Path,
+    name: &str,
+    layout: &Layout,
+    fill: T,
+    codec: Arc<dyn BytesToBytesCodecTraits>,
+) -> Result<Array<FilesystemStore>, StoreError> {
+    let wide = |shape: &[usize]| shape.iter().map(|&n| n as u64).collect::<Vec<u64>>();
+    let mut builder = ArrayBuilder::new(wide(&layout.shape), wide(layout.file_shape()), T::data_type(), T::fill(fill));
+    if layout.shard.is_some() {
+        builder.subchunk_shape(wide(&layout.chunk));
+    }
+    builder.bytes_to_bytes_codecs(vec![codec]);
+    builder.dimension_names(Some(layout.axes.iter().copied()));
+    builder.attributes(Map::from_iter([(COMPLETE.to_owned(), Value::Bool(true))]));
+    let array = builder.build(file_store(group, "written")?, &format!("/{name}"));
+    let array = array.map_err(|error| StoreError::Array {
+        path: group.to_owned(),
+        action: "written",
+        reason: error.to_string(),
+    })?;
+    array.store_metadata().map_err(|error| explain_storage(&error, "written", group, name))?;
+    Ok(array)
+}
+
+/// Writes the metadata of a volume whose shards are then written one by one (see `shard`): fill value 0.
+pub(super) fn create_volume<T: StoredSample>(
+    group: &Path,
+    name: &str,
+    size: [usize; 3],
+) -> Result<ShardGrid, StoreError> {
+    let layout = Layout::volume(size);
+    create(group, name, &layout, T::from_f32(0.0), Arc::new(Crc32cCodec::new()))?;
+    let three = |shape: &[usize]| [shape[0], shape[1], shape[2]];
+    Ok(ShardGrid {
+        folder: group.join(name),
+        shape: size,
+        chunk: three(&layout.chunk),
+        shard: three(layout.file_shape()),
+    })
+}
+
+/// How the array `name` is cut into shards, if its chunks are stored as [`create_volume`] says.
+fn plain_shards(group: &Path, name: &str, shape: &[usize]) -> Option<ShardGrid> {
+    let metadata: Value = serde_json::from_slice(&std::fs::read(group.join(name).join("zarr.json")).ok()?).ok()?;
+    let edges = |value: &Value| -> Option<[usize; 3]> {
+        let edges: Option<Vec<usize>> = value.as_array()?.iter().map(|n| Some(n.as_u64()? as usize)).collect();
+        edges?.try_into().ok()
+    };
+    let names = |codecs: &Value| -> Option<Vec<String>> {
+        codecs.as_array()?.iter().map(|codec| Some(codec["name"].as_str()?.to_owned())).collect()
+    };
+    let codecs = metadata["codecs"].as_array()?;
+    let sharding = &codecs[0]["configuration"];
+    let is_plain = codecs.len() == 1
+        && codecs[0]["name"] == "sharding_indexed"
+        && names(&sharding["codecs"])? == ["bytes", "crc32c"]
+        && names(&sharding["index_codecs"])? == ["bytes", "crc32c"]
+        && sharding["index_location"].as_str().is_none_or(|place| place == "end")
+        && sharding["codecs"][0]["configuration"]["endian"].as_str().is_none_or(|endian| endian == "little");
+    let shape: [usize; 3] = shape.try_into().ok()?;
+    let shard = edges(&metadata["chunk_grid"]["configuration"]["chunk_shape"])?;
+    let chunk = edges(&sharding["chunk_shape"])?;
+    let is_cut = (0..3).all(|axis| chunk[axis] > 0 && shard[axis].is_multiple_of(chunk[axis]) && shard[axis] > 0);
+    let folder = group.join(name);
+    (is_plain && is_cut).then_some(ShardGrid { folder, shape, chunk, shard })
+}
+
 /// An array that is being written, shard by shard, from any thread.
 pub struct ArrayWriter<T> {
     group: PathBuf,
@@ -113,22 +185,7 @@ impl<T: StoredSample> ArrayWriter<T> {
     /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is what a reader finds where nothing
     /// was written.
     pub fn create(group: &Path, name: &str, layout: Layout, fill: T) -> Result<Self, StoreError> {
-        let wide = |shape: &[usize]| shape.iter().map(|&n| n as u64).collect::<Vec<u64>>();
-        let file_shape = wide(layout.file_shape());
-        let mut builder = ArrayBuilder::new(wide(&layout.shape), file_shape, T::data_type(), T::fill(fill));
-        if layout.shard.is_some() {
-            builder.subchunk_shape(wide(&layout.chunk));
-        }
-        builder.bytes_to_bytes_codecs(vec![Arc::new(ZstdCodec::new(ZSTD_LEVEL, true))]);
-        builder.dimension_names(Some(layout.axes.iter().copied()));
-        builder.attributes(Map::from_iter([(COMPLETE.to_owned(), Value::Bool(true))]));
-        let array = builder.build(file_store(group, "written")?, &format!("/{name}"));
-        let array = array.map_err(|error| StoreError::Array {
-            path: group.to_owned(),
-            action: "written",
-            reason: error.to_string(),
-        })?;
-        array.store_metadata().map_err(|error| explain_storage(&error, "written", group, name))?;
+        let array = create(group, name, &layout, fill, Arc::new(ZstdCodec::new(ZSTD_LEVEL, true)))?;
         Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, of: std::marker::PhantomData })
     }
 
@@ -180,6 +237,8 @@ pub struct StoredArray {
     name: String,
     shape: Vec<usize>,
     array: Array<FilesystemStore>,
+    /// Its files, where they can be read without the library.
+    shards: Option<Shards>,
 }
 
 impl StoredArray {
@@ -198,13 +257,26 @@ impl StoredArray {
                 });
             }
         };
-        let shape = array.shape().iter().map(|&n| n as usize).collect();
-        Ok(Self { group: group.to_owned(), name: name.to_owned(), shape, array })
+        let shape: Vec<usize> = array.shape().iter().map(|&n| n as usize).collect();
+        let shards = plain_shards(group, name, &shape).map(|grid| Shards::new(grid, group, name));
+        Ok(Self { group: group.to_owned(), name: name.to_owned(), shape, array, shards })
     }
 
     /// Elements along each axis.
     pub fn shape(&self) -> &[usize] {
         &self.shape
+    }
+
+    /// Its files, where they are those of a volume.
+    pub(super) fn shards(&self) -> Option<&Shards> {
+        self.shards.as_ref()
+    }
+
+    /// Gives back the memory of files that were read.
+    pub(super) fn release(&mut self) {
+        if let Some(shards) = &mut self.shards {
+            shards.release();
+        }
     }
 
     /// Name of the element type as Zarr spells it.
@@ -277,6 +349,9 @@ impl StoredArray {
         }
         if size.contains(&0) {
             return Ok(Vec::new());
+        }
+        if let (Some(shards), [x, y, z], [nx, ny, nz]) = (&self.shards, start, size) {
+            return shards.read_box([*x, *y, *z], [*nx, *ny, *nz]);
         }
         self.check_files(start, size)?;
         let ranges: Vec<_> = start.iter().zip(size).map(|(&s, &n)| s as u64..(s + n) as u64).collect();

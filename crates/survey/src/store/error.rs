@@ -25,6 +25,12 @@ pub enum StoreError {
         /// What was looked for.
         path: PathBuf,
     },
+    /// A volume whose writing was interrupted.
+    #[error("{} was not written to its end; run the same import again to finish it", path.display())]
+    Unfinished {
+        /// The folder.
+        path: PathBuf,
+    },
     /// A Zarr group lacks an array.
     #[error("{} has no array {array:?}; it was not written by this program or is incomplete: import the data again", path.display())]
     MissingArray {

@@ -19,11 +19,13 @@ mod error;
 mod fault;
 mod header;
 mod horizon;
+mod ingest;
 mod layout;
 mod parameterization;
 mod pyramid;
 mod replacement;
 mod sample;
+mod shard;
 #[cfg(test)]
 mod tests;
 mod volume;
@@ -35,9 +37,12 @@ pub use error::StoreError;
 pub use fault::{read_fault, write_fault};
 pub use header::VERSION;
 pub use horizon::{read_horizon, write_horizon};
+pub use ingest::{
+    Block, Ingested, LineOrder, SourceError, WriteSettings, resume_volume, write_volume, write_volume_blocks,
+};
 pub use layout::{BRICK, Layout};
 pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
 pub use replacement::{Replacement, clean, replace_file};
 pub use sample::StoredSample;
-pub use volume::{SourceError, StoredVolume, VolumeInfo, write_volume, write_volume_slabs};
+pub use volume::{StoredVolume, VolumeInfo};
 pub use well::{read_well, write_well};

@@ -13,7 +13,7 @@ mod sealed {
 }
 
 /// A number that arrays are made of.
-pub trait StoredSample: sealed::Element + Copy + Send + Sync + PartialEq + 'static {
+pub trait StoredSample: sealed::Element + bytemuck::Pod + Send + Sync + PartialEq {
     /// Name of the type as Zarr spells it.
     const TYPE: &'static str;
     /// Value of what was never written: NaN, or 0 for integers.

@@ -201,11 +201,12 @@ fn slabs_and_threads_make_the_same_bytes() {
     let path = dir.path().join("slabs");
     let row = SIZE[1] * SIZE[2];
     let mut asked = Vec::new();
-    let slab = |lines: std::ops::Range<usize>| {
-        asked.push(lines.clone());
-        Ok(original.samples()[lines.start * row..lines.end * row].to_vec().into())
+    let slab = |block: &Block| {
+        assert_eq!(block.crosslines, 0..SIZE[1]);
+        asked.push(block.inlines.clone());
+        Ok(original.samples()[block.inlines.start * row..block.inlines.end * row].to_vec().into())
     };
-    write_volume_slabs(&path, SIZE, None, &info(SIZE), slab, &quiet()).unwrap();
+    write_volume_blocks(&path, SIZE, None, &info(SIZE), &WriteSettings::default(), slab, &quiet()).unwrap();
     assert_eq!(asked, [0..128, 128..131]);
     assert!(content(&path) == one);
 }
@@ -217,8 +218,10 @@ fn a_source_that_fails_or_a_cancel_leaves_the_old_volume() {
     let size = [20, 20, 20];
     write_volume(&path, &volume(size), &info(size), &quiet()).unwrap();
     let before = content(dir.path());
-    let slab = |_| -> Result<std::borrow::Cow<'static, [f32]>, SourceError> { Err("trace 5 is cut off".into()) };
-    let error = write_volume_slabs(&path, size, None, &info(size), slab, &quiet()).unwrap_err();
+    let slab =
+        |_: &Block| -> Result<std::borrow::Cow<'static, [f32]>, SourceError> { Err("trace 5 is cut off".into()) };
+    let settings = WriteSettings::default();
+    let error = write_volume_blocks(&path, size, None, &info(size), &settings, slab, &quiet()).unwrap_err();
     assert!(error.source().unwrap().to_string().contains("trace 5"));
     let cancelled = quiet();
     cancelled.cancel();
@@ -227,6 +230,113 @@ fn a_source_that_fails_or_a_cancel_leaves_the_old_volume() {
     let error = write_volume(&path, &volume([20, 20, 19]), &info(size), &quiet()).unwrap_err();
     assert!(matches!(error, StoreError::SizeMismatch { .. }));
     assert!(content(dir.path()) == before);
+}
+
+/// The samples of a block of a volume.
+fn block_of(volume: &Volume<f32>, block: &Block) -> Vec<f32> {
+    let lines = block.inlines.clone().flat_map(|x| block.crosslines.clone().map(move |y| (x, y)));
+    lines.flat_map(|(x, y)| volume.trace(x, y).iter().copied()).collect()
+}
+
+#[test]
+fn little_memory_makes_small_blocks_in_the_order_of_the_source_and_the_same_bytes() {
+    let dir = tempfile::tempdir().unwrap();
+    let size = [140, 270, 20];
+    let original = volume(size);
+    let whole = dir.path().join("whole");
+    write_volume(&whole, &original, &info(size), &quiet()).unwrap();
+    let column = 128 * 128 * 20 * 4;
+    for (order, columns, expected) in [
+        (LineOrder::Inlines, 1, 6),
+        (LineOrder::Inlines, 2, 4),
+        (LineOrder::Crosslines, 1, 6),
+        (LineOrder::Crosslines, 2, 3),
+    ] {
+        let mut asked = Vec::new();
+        let supply = |block: &Block| {
+            asked.push(block.clone());
+            Ok(block_of(&original, block).into())
+        };
+        let settings = WriteSettings { memory_bytes: 2 * columns * column, order };
+        let path = dir.path().join("parts");
+        write_volume_blocks(&path, size, None, &info(size), &settings, supply, &quiet()).unwrap();
+        assert_eq!(asked.len(), expected, "{order:?} {columns} {asked:?}");
+        assert!(content(&path) == content(&whole));
+    }
+}
+
+#[test]
+fn an_interrupted_volume_goes_on_where_it_was_and_ends_the_same() {
+    let dir = tempfile::tempdir().unwrap();
+    let size = [300, 130, 70];
+    let original = volume(size);
+    let whole = dir.path().join("whole");
+    write_volume(&whole, &original, &info(size), &quiet()).unwrap();
+    let path = dir.path().join("resumed");
+    let settings = WriteSettings { memory_bytes: 1, order: LineOrder::Inlines };
+    let resume = |fingerprint: &str, stop_after: usize| {
+        let mut supplied = 0;
+        let supply = |block: &Block| {
+            if supplied == stop_after {
+                return Err("the program was killed".into());
+            }
+            supplied += 1;
+            Ok(block_of(&original, block).into())
+        };
+        let done = resume_volume(&path, fingerprint, size, None, &info(size), &settings, supply, &quiet());
+        (done, supplied)
+    };
+    assert!(resume("a", 4).0.is_err());
+    assert!(matches!(StoredVolume::open(&path).err(), Some(StoreError::Unfinished { .. })));
+    // A file cut short, as a power cut may leave it, is written again, and so is one with a wrong bit.
+    let files = ["0/c/0/0/0", "0/c/1/0/0"].map(|file| path.join(file));
+    let bytes = fs::read(&files[0]).unwrap();
+    fs::write(&files[0], &bytes[..bytes.len() - 9]).unwrap();
+    let mut bytes = fs::read(&files[1]).unwrap();
+    bytes[77] ^= 4;
+    fs::write(&files[1], bytes).unwrap();
+    let (done, supplied) = resume("a", usize::MAX);
+    assert_eq!((done.unwrap().kept, supplied), (2, 4));
+    assert!(content(&path) == content(&whole));
+
+    fs::remove_dir_all(&path).unwrap();
+    assert!(resume("a", 4).0.is_err());
+    let (done, supplied) = resume("b", usize::MAX);
+    assert_eq!((done.unwrap().kept, supplied), (0, 6), "another fingerprint starts anew");
+    assert!(content(&path) == content(&whole));
+}
+
+#[test]
+fn sections_and_boxes_of_every_kind_are_those_of_the_volume() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("v.zarr");
+    let mut original = volume(SIZE);
+    // A brick of nothing is not stored, and reads as nothing.
+    for x in 64..128 {
+        for y in 0..64 {
+            original.trace_mut(x, y)[64..128].fill(0.0);
+        }
+    }
+    write_volume(&path, &original, &info(SIZE), &quiet()).unwrap();
+    let stored = StoredVolume::open(&path).unwrap();
+    let [nx, ny, nz] = SIZE;
+    for (start, size) in [
+        ([64, 0, 0], [1, ny, nz]),
+        ([130, 0, 0], [1, ny, nz]),
+        ([0, 69, 0], [nx, 1, nz]),
+        ([0, 0, 128], [nx, ny, 1]),
+        ([63, 63, 63], [2, 2, 2]),
+        ([3, 5, 7], [120, 60, 140]),
+        ([130, 69, 149], [1, 1, 1]),
+    ] {
+        let part = stored.read_box::<f32>(0, start, size).unwrap();
+        for x in 0..size[0] {
+            for y in 0..size[1] {
+                let trace = &original.trace(x + start[0], y + start[1])[start[2]..start[2] + size[2]];
+                assert_eq!(part.trace(x, y), trace, "{start:?} {size:?} at {x} {y}");
+            }
+        }
+    }
 }
 
 /// A sheet on the survey's lattice and one on a rotated grid of its own.

@@ -1,0 +1,381 @@
+//! Shards of volumes as they lie on disk, written and read without copies: Zarr v3's `sharding_indexed` codec with the inner codecs
+//! `bytes` (little-endian) and `crc32c`, and the index, with a checksum of its own, at the end.
+//!
+//! ```text
+//! chunk, crc32c, chunk, crc32c, …, (offset u64, length u64) for each place of the shard, crc32c
+//! ```
+//!
+//! Chunks that hold only the fill value are left out (offset and length all ones). Chunks are **not compressed**: float samples of
+//! seismic lose about a tenth to zstd, and a section through a volume then costs the decoding of every chunk it touches, sixty-four
+//! times the data it needs. Uncompressed chunks are mapped into memory, and a section copies only its own samples: measured at 512³,
+//! see `docs/performance.md`.
+//!
+//! A shard is written beside its place and renamed, so that a killed program leaves whole shards only. Reading a whole chunk checks its
+//! checksum; reading a part of one does not.
+
+use super::error::StoreError;
+use super::sample::StoredSample;
+use bytemuck::{cast_slice, try_cast_slice};
+use memmap2::Mmap;
+use rayon::prelude::*;
+use std::fs::{self, File};
+use std::io::ErrorKind;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+const _: () = assert!(cfg!(target_endian = "little"), "chunks are little-endian and mapped as they are");
+
+/// Bytes of a checksum.
+const CHECKSUM: usize = 4;
+
+/// Bytes of an entry of the index.
+const ENTRY: usize = 16;
+
+/// Offset and length of a chunk that is not there.
+const ABSENT: u64 = u64::MAX;
+
+/// Below so many samples a box is read by one thread.
+const WORTH_THREADS: usize = 1 << 15;
+
+/// How a volume is cut into shards, and where they are.
+#[derive(Debug, Clone)]
+pub(super) struct ShardGrid {
+    /// Folder of the array.
+    pub folder: PathBuf,
+    /// Voxels along each axis.
+    pub shape: [usize; 3],
+    /// Edges of a chunk.
+    pub chunk: [usize; 3],
+    /// Edges of a shard, multiples of the chunk's.
+    pub shard: [usize; 3],
+}
+
+impl ShardGrid {
+    /// Shards along each axis.
+    pub fn counts(&self) -> [usize; 3] {
+        [0, 1, 2].map(|axis| self.shape[axis].div_ceil(self.shard[axis]))
+    }
+
+    /// Chunks of a shard along each axis.
+    fn chunks(&self) -> [usize; 3] {
+        [0, 1, 2].map(|axis| self.shard[axis] / self.chunk[axis])
+    }
+
+    fn samples_in_chunk(&self) -> usize {
+        self.chunk.iter().product()
+    }
+
+    /// Name of a shard below the array's folder.
+    fn key([x, y, z]: [usize; 3]) -> String {
+        format!("c/{x}/{y}/{z}")
+    }
+
+    /// First voxel of a shard, and its voxels inside the volume.
+    pub fn extent(&self, index: [usize; 3]) -> ([usize; 3], [usize; 3]) {
+        let start = [0, 1, 2].map(|axis| index[axis] * self.shard[axis]);
+        (start, [0, 1, 2].map(|axis| self.shard[axis].min(self.shape[axis] - start[axis])))
+    }
+
+    /// Writes the shard at `index` from `samples` of `size` whose first voxel is `first`; they hold at least what of the shard is inside
+    /// the volume. `bytes` is room, kept between calls.
+    pub fn write<T: StoredSample>(
+        &self,
+        index: [usize; 3],
+        samples: &[T],
+        first: [usize; 3],
+        size: [usize; 3],
+        bytes: &mut Vec<u8>,
+    ) -> Result<(), StoreError> {
+        self.encode(index, samples, first, size, bytes);
+        let path = self.folder.join(Self::key(index));
+        let fail = |source| StoreError::io("written", &path, source);
+        let partial = path.with_extension("part");
+        let written = match fs::write(&partial, &*bytes) {
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                let parent = partial.parent().unwrap_or(&self.folder);
+                fs::create_dir_all(parent).and_then(|()| fs::write(&partial, &*bytes))
+            }
+            written => written,
+        };
+        written.and_then(|()| fs::rename(&partial, &path)).map_err(fail)
+    }
+
+    fn encode<T: StoredSample>(
+        &self,
+        index: [usize; 3],
+        samples: &[T],
+        first: [usize; 3],
+        size: [usize; 3],
+        bytes: &mut Vec<u8>,
+    ) {
+        let [nx, ny, nz] = self.chunks();
+        let (start, _) = self.extent(index);
+        let mut entries: Vec<u64> = Vec::with_capacity(2 * nx * ny * nz);
+        let zero = T::from_f32(0.0);
+        let mut chunk = vec![zero; self.samples_in_chunk()];
+        bytes.clear();
+        for n in 0..nx * ny * nz {
+            let place = [n / (ny * nz), n / nz % ny, n % nz];
+            let from = [0, 1, 2].map(|axis| start[axis] + place[axis] * self.chunk[axis]);
+            let inside = [0, 1, 2].map(|axis| self.chunk[axis].min(self.shape[axis].saturating_sub(from[axis])));
+            if inside.contains(&0) {
+                entries.extend([ABSENT; 2]);
+                continue;
+            }
+            if inside != self.chunk {
+                chunk.fill(zero);
+            }
+            for x in 0..inside[0] {
+                for y in 0..inside[1] {
+                    let at =
+                        ((from[0] - first[0] + x) * size[1] + from[1] - first[1] + y) * size[2] + from[2] - first[2];
+                    let to = (x * self.chunk[1] + y) * self.chunk[2];
+                    chunk[to..to + inside[2]].copy_from_slice(&samples[at..at + inside[2]]);
+                }
+            }
+            if chunk.iter().all(|value| *value == zero) {
+                entries.extend([ABSENT; 2]);
+                continue;
+            }
+            let offset = bytes.len();
+            bytes.extend_from_slice(cast_slice(&chunk));
+            bytes.extend(crc32c::crc32c(&bytes[offset..]).to_le_bytes());
+            entries.extend([offset as u64, (bytes.len() - offset) as u64]);
+        }
+        let index_at = bytes.len();
+        bytes.extend_from_slice(cast_slice(&entries));
+        bytes.extend(crc32c::crc32c(&bytes[index_at..]).to_le_bytes());
+    }
+}
+
+/// A shard file, mapped, its index checked.
+#[derive(Debug)]
+struct Shard {
+    map: Mmap,
+    /// Bytes of each chunk without its checksum; empty = only the fill value.
+    chunks: Vec<Range<usize>>,
+}
+
+impl Shard {
+    fn open(path: &Path, chunk_count: usize, chunk_bytes: usize) -> Result<Self, Trouble> {
+        let file = File::open(path).map_err(Trouble::Io)?;
+        let length = file.metadata().map_err(Trouble::Io)?.len() as usize;
+        let index_bytes = chunk_count * ENTRY;
+        let Some(index_at) = length.checked_sub(index_bytes + CHECKSUM) else {
+            return Err(Trouble::Damage(format!("only {length} bytes are left of it")));
+        };
+        #[expect(
+            unsafe_code,
+            reason = "a file can be mapped in no other way; files of the store are replaced, never changed. A crossline of 512³ samples lies in \
+                      4096 pieces of 256 bytes, each of which positional reads would pay a call for"
+        )]
+        let map = unsafe { Mmap::map(&file) }.map_err(Trouble::Io)?;
+        let index = &map[index_at..index_at + index_bytes];
+        if crc32c::crc32c(index).to_le_bytes() != map[index_at + index_bytes..] {
+            return Err(Trouble::Damage("the checksum of its index does not fit".to_owned()));
+        }
+        let number = |bytes: &[u8]| bytes.iter().rev().fold(0u64, |value, byte| value << 8 | u64::from(*byte));
+        let mut chunks = Vec::with_capacity(chunk_count);
+        for entry in index.chunks_exact(ENTRY) {
+            let (offset, bytes) = (number(&entry[..8]), number(&entry[8..]));
+            if (offset, bytes) == (ABSENT, ABSENT) {
+                chunks.push(0..0);
+                continue;
+            }
+            let fits = bytes == (chunk_bytes + CHECKSUM) as u64
+                && offset.checked_add(bytes).is_some_and(|end| end <= index_at as u64);
+            if !fits {
+                return Err(Trouble::Damage("its index points beyond its chunks".to_owned()));
+            }
+            chunks.push(offset as usize..offset as usize + chunk_bytes);
+        }
+        Ok(Self { map, chunks })
+    }
+
+    fn is_whole(&self, chunk: usize) -> bool {
+        let range = self.chunks[chunk].clone();
+        range.is_empty()
+            || crc32c::crc32c(&self.map[range.clone()]).to_le_bytes() == self.map[range.end..range.end + CHECKSUM]
+    }
+}
+
+/// What keeps a shard from being read.
+enum Trouble {
+    Io(std::io::Error),
+    Damage(String),
+}
+
+/// The shards of an array, mapped when they are first needed.
+#[derive(Debug)]
+pub(super) struct Shards {
+    grid: ShardGrid,
+    /// The group, and the array's name in it, for errors.
+    group: PathBuf,
+    name: String,
+    open: Vec<OnceLock<Shard>>,
+}
+
+impl Shards {
+    pub fn new(grid: ShardGrid, group: &Path, name: &str) -> Self {
+        let open = (0..grid.counts().iter().product()).map(|_| OnceLock::new()).collect();
+        Self { grid, group: group.to_owned(), name: name.to_owned(), open }
+    }
+
+    /// Unmaps what was mapped.
+    pub fn release(&mut self) {
+        self.open.iter_mut().for_each(|shard| drop(shard.take()));
+    }
+
+    fn damaged(&self, index: [usize; 3], reason: &str) -> StoreError {
+        StoreError::Damaged {
+            path: self.group.clone(),
+            array: self.name.clone(),
+            reason: format!("the file {}: {reason}", ShardGrid::key(index)),
+        }
+    }
+
+    fn shard<T: StoredSample>(&self, index: [usize; 3]) -> Result<&Shard, StoreError> {
+        let [_, ny, nz] = self.grid.counts();
+        let cell = &self.open[(index[0] * ny + index[1]) * nz + index[2]];
+        if let Some(shard) = cell.get() {
+            return Ok(shard);
+        }
+        let path = self.grid.folder.join(ShardGrid::key(index));
+        let chunk_bytes = self.grid.samples_in_chunk() * size_of::<T>();
+        let opened = Shard::open(&path, self.grid.chunks().iter().product(), chunk_bytes);
+        match opened {
+            // Another thread may have been first; its map is as good.
+            Ok(shard) => Ok(cell.get_or_init(|| shard)),
+            Err(Trouble::Io(error)) if error.kind() == ErrorKind::NotFound => Err(StoreError::Damaged {
+                path: self.group.clone(),
+                array: self.name.clone(),
+                reason: format!("the file {} is missing", ShardGrid::key(index)),
+            }),
+            Err(Trouble::Io(error)) => Err(StoreError::io("read", &path, error)),
+            Err(Trouble::Damage(reason)) => Err(self.damaged(index, &reason)),
+        }
+    }
+
+    /// Whether the shard is there and all its checksums fit.
+    pub fn is_whole<T: StoredSample>(&self, index: [usize; 3]) -> bool {
+        self.shard::<T>(index).is_ok_and(|shard| (0..shard.chunks.len()).all(|chunk| shard.is_whole(chunk)))
+    }
+
+    /// The stored checksum of every chunk, shard by shard; 0 for those that hold only the fill value. They identify the data.
+    pub fn checksums<T: StoredSample>(&self) -> Result<Vec<u32>, StoreError> {
+        let [nx, ny, nz] = self.grid.counts();
+        let mut sums = Vec::new();
+        for n in 0..nx * ny * nz {
+            let shard = self.shard::<T>([n / (ny * nz), n / nz % ny, n % nz])?;
+            sums.extend(shard.chunks.iter().map(|range| match range.is_empty() {
+                true => 0,
+                false => {
+                    shard.map[range.end..range.end + CHECKSUM].iter().rev().fold(0, |sum, b| sum << 8 | u32::from(*b))
+                }
+            }));
+        }
+        Ok(sums)
+    }
+
+    /// The samples of a box that is inside the array. Large boxes are read by all threads.
+    pub fn read_box<T: StoredSample>(&self, start: [usize; 3], size: [usize; 3]) -> Result<Vec<T>, StoreError> {
+        let mut out = vec![T::from_f32(0.0); size.iter().product()];
+        if out.is_empty() {
+            return Ok(out);
+        }
+        let whole = Span { start, size };
+        if out.len() < WORTH_THREADS {
+            self.copy::<T>(&whole, &whole, &mut out)?;
+            return Ok(out);
+        }
+        // The longest of the two slow axes is cut at the edges of chunks, so that a thread has chunks of its own.
+        let axis = if size[0] > 1 { 0 } else { 1 };
+        let row: usize = size[axis + 1..].iter().product();
+        let edge = self.grid.chunk[axis];
+        let mut parts = Vec::new();
+        let (mut rest, mut from) = (out.as_mut_slice(), start[axis]);
+        while from < start[axis] + size[axis] {
+            let to = ((from / edge + 1) * edge).min(start[axis] + size[axis]);
+            let (part, after) = rest.split_at_mut((to - from) * row);
+            let mut span = whole;
+            (span.start[axis], span.size[axis]) = (from, to - from);
+            parts.push((span, part));
+            (rest, from) = (after, to);
+        }
+        parts.into_par_iter().try_for_each(|(span, part)| self.copy::<T>(&whole, &span, part))?;
+        Ok(out)
+    }
+
+    /// Copies the part `span` of the box `whole`; `out` is that part.
+    fn copy<T: StoredSample>(&self, whole: &Span, span: &Span, out: &mut [T]) -> Result<(), StoreError> {
+        let grid = &self.grid;
+        let chunks = grid.chunks();
+        let first = [0, 1, 2].map(|axis| span.start[axis] / grid.chunk[axis]);
+        let last = [0, 1, 2].map(|axis| (span.start[axis] + span.size[axis] - 1) / grid.chunk[axis]);
+        for cx in first[0]..=last[0] {
+            for cy in first[1]..=last[1] {
+                for cz in first[2]..=last[2] {
+                    let place = [cx, cy, cz];
+                    let index = [0, 1, 2].map(|axis| place[axis] / chunks[axis]);
+                    let inner = [0, 1, 2].map(|axis| place[axis] % chunks[axis]);
+                    let shard = self.shard::<T>(index)?;
+                    let number = (inner[0] * chunks[1] + inner[1]) * chunks[2] + inner[2];
+                    let range = shard.chunks[number].clone();
+                    if range.is_empty() {
+                        continue;
+                    }
+                    let extent = Span {
+                        start: [0, 1, 2].map(|axis| place[axis] * grid.chunk[axis]),
+                        size: [0, 1, 2]
+                            .map(|axis| grid.chunk[axis].min(grid.shape[axis] - place[axis] * grid.chunk[axis])),
+                    };
+                    if whole.covers(&extent) && !shard.is_whole(number) {
+                        return Err(self.damaged(index, "the checksum of a chunk does not fit"));
+                    }
+                    let Ok(samples) = try_cast_slice::<u8, T>(&shard.map[range]) else {
+                        return Err(self.damaged(index, "its chunks are not aligned"));
+                    };
+                    copy_chunk(samples, grid.chunk, &extent, span, out);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A box of voxels.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    start: [usize; 3],
+    size: [usize; 3],
+}
+
+impl Span {
+    fn end(&self, axis: usize) -> usize {
+        self.start[axis] + self.size[axis]
+    }
+
+    fn covers(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.start[axis] <= other.start[axis] && self.end(axis) >= other.end(axis))
+    }
+}
+
+/// Copies what a chunk of edges `chunk` and a span have in common.
+fn copy_chunk<T: StoredSample>(samples: &[T], chunk: [usize; 3], extent: &Span, span: &Span, out: &mut [T]) {
+    let low = [0, 1, 2].map(|axis| extent.start[axis].max(span.start[axis]));
+    let count = [0, 1, 2].map(|axis| extent.end(axis).min(span.end(axis)) - low[axis]);
+    for x in low[0]..low[0] + count[0] {
+        let from = ((x - extent.start[0]) * chunk[1] + low[1] - extent.start[1]) * chunk[2] + low[2] - extent.start[2];
+        let to = ((x - span.start[0]) * span.size[1] + low[1] - span.start[1]) * span.size[2] + low[2] - span.start[2];
+        if count[2] == 1 {
+            let values = samples[from..].iter().step_by(chunk[2]).take(count[1]);
+            out[to..].iter_mut().step_by(span.size[2]).zip(values).for_each(|(out, value)| *out = *value);
+            continue;
+        }
+        for y in 0..count[1] {
+            let (from, to) = (from + y * chunk[2], to + y * span.size[2]);
+            out[to..to + count[2]].copy_from_slice(&samples[from..from + count[2]]);
+        }
+    }
+}
