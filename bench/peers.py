@@ -1,9 +1,14 @@
 #!/usr/bin/env python3
-"""Times Python programs beside ours: the parameterization on the input that `petroglyph bench --dump DIR` wrote.
+"""Times the Python side on the input that `petroglyph bench --dump DIR` wrote: the parameterization, and with --store the store, with --segy reading SEG-Y, with --volume
+pictures of a volume.
 
-    python3 -m venv venv && venv/bin/pip install numpy scipy pykdtree
+    python3 -m venv venv && venv/bin/pip install numpy scipy pykdtree segyio multidimio
     petroglyph bench --dump DIR
     OMP_NUM_THREADS=2 venv/bin/python bench/peers.py DIR [--scipy]
+    venv/bin/python bench/peers.py DIR --store
+
+With --store: segyio reads `survey.sgy` (cube, inline, crossline, depth slice; the page cache is warm) and MDIO ingests it with its own
+template for post-stack volumes and its default chunks and codec, then reads the same three sections; the shortest of seven counts.
 
     venv/bin/pip install vtk
     cargo run -p petroglyph-render --example volume_speed -- --dump volume.raw
@@ -34,21 +39,25 @@ import time
 
 import numpy as np
 
+
 def horizon_points(sheet, margin, metric):
     """Nodes of one extended sheet in metres, n x 3."""
     nx, ny = sheet.shape
     x, y = np.meshgrid(np.arange(nx) - margin, np.arange(ny) - margin, indexing="ij")
     return np.stack([x.ravel() * metric[0], y.ravel() * metric[1], sheet.ravel() * metric[2]], axis=1).astype(np.float32)
 
+
 def pykdtree_distances(points, queries):
     from pykdtree.kdtree import KDTree
 
     return KDTree(points).query(queries)[0]
 
+
 def scipy_distances(points, queries):
     from scipy.spatial import cKDTree
 
     return cKDTree(points).query(queries, workers=int(os.environ.get("OMP_NUM_THREADS", "1")))[0]
+
 
 def f_z(region, sheets, meta, distances):
     """k of every voxel in a closed layer, NaN elsewhere."""
@@ -66,6 +75,7 @@ def f_z(region, sheets, meta, distances):
             d_bottom, d_top = distances(bottom, voxels), distances(top, voxels)
             k[inside] = d_bottom / np.maximum(d_bottom + d_top, 1e-6)
     return k
+
 
 def trace(k, region, meta, steps=48):
     """Walks every voxel along the gradient of f_z to k = 0.5; returns the voxel x, y where it arrives."""
@@ -89,6 +99,7 @@ def trace(k, region, meta, steps=48):
             break
     return p[0], p[1]
 
+
 def read_segy(folder, rounds=5):
     """GB/s at which segyio's own whole-cube reading fills an array, the quickest of several rounds."""
     import segyio
@@ -104,6 +115,7 @@ def read_segy(folder, rounds=5):
         result[f"{name}_s"] = [round(s, 3) for s in seconds]
         del cube
     return result
+
 
 def extraction(amplitude):
     """What scipy offers for horizon candidates: the nearest extremum of every voxel and connected extrema; no triangles, no trees."""
@@ -123,15 +135,18 @@ def extraction(amplitude):
         "scipy_label_s": round(time.perf_counter() - transformed, 2),
     }
 
+
 FUNCTIONS = {
     "dense": [(-1.3, 0.002), (1.3, 0.02)],
     "typical": [(-1.3, 0.0), (0.13, 0.0), (1.3, 1.0)],
     "sparse": [(-1.3, 0.0), (1.04, 0.0), (1.3, 1.0)],
 }
 
+
 def processor_seconds():
     times = os.times()
     return times.user + times.system
+
 
 def vtk_picture(path, side, pixels, function, mapper, shade, reach, out=None):
     """Seconds of the clock and of the processor for a picture, the best of three after a first."""
@@ -213,6 +228,7 @@ def vtk_picture(path, side, pixels, function, mapper, shade, reach, out=None):
         writer.Write()
     return min(wall[1:]), min(spent[1:])
 
+
 def time_vtk(args):
     rows = [("cpu ray caster", "cpu", False, None), ("cpu ray caster, Phong", "cpu", True, None), ("gpu mapper", "gpu", False, None), ("gpu mapper, Phong", "gpu", True, None),
             ("gpu mapper, scattering, reach 0", "gpu", True, 0.0), ("gpu mapper, scattering, reach 0.3", "gpu", True, 0.3)]
@@ -220,6 +236,58 @@ def time_vtk(args):
         out = f"{args.keep}/vtk-{n}.png" if args.keep else None
         wall, spent = vtk_picture(args.volume, args.side, args.pixels, args.function, mapper, shade, reach, out)
         print(f"VTK {name:<36} {args.function:<8} {wall:8.3f} s  {spent:7.2f} s of processor", flush=True)
+
+
+def shortest_ms(read, repeats=7):
+    """Milliseconds of the fastest of some reads."""
+    took = []
+    for _ in range(repeats):
+        started = time.perf_counter()
+        read()
+        took.append(time.perf_counter() - started)
+    return round(min(took) * 1e3, 3)
+
+
+def time_segyio(path):
+    import segyio
+
+    started = time.perf_counter()
+    segyio.tools.cube(str(path))
+    result = {"cube_s": round(time.perf_counter() - started, 2)}
+    with segyio.open(str(path)) as file:
+        inline, crossline = file.ilines[len(file.ilines) // 2], file.xlines[len(file.xlines) // 2]
+        result["inline_ms"] = shortest_ms(lambda: file.iline[inline])
+        result["crossline_ms"] = shortest_ms(lambda: file.xline[crossline])
+        result["slice_ms"] = shortest_ms(lambda: file.depth_slice[len(file.samples) // 2], 3)
+    return result
+
+
+def time_mdio(path, out):
+    import shutil
+
+    from mdio import open_mdio, segy_to_mdio
+    from mdio.builder.template_registry import TemplateRegistry
+    from segy.schema import HeaderField
+    from segy.standards import get_segy_standard
+
+    places = {"inline": 189, "crossline": 193, "cdp_x": 181, "cdp_y": 185}
+    fields = [HeaderField(name=name, byte=byte, format="int32") for name, byte in places.items()]
+    spec = get_segy_standard(1.0).customize(trace_header_fields=fields)
+    template = TemplateRegistry.get_instance().get("PostStack3DTime")
+    shutil.rmtree(out, ignore_errors=True)
+    started = time.perf_counter()
+    segy_to_mdio(segy_spec=spec, mdio_template=template, input_path=str(path), output_path=str(out), overwrite=True)
+    took = time.perf_counter() - started
+    volume = open_mdio(str(out))["amplitude"]
+    n = volume.shape[0] // 2
+    return {
+        "ingest_s": round(took, 2),
+        "ingest_mb_s": round(volume.size * 4 / took / 1e6, 1),
+        "inline_ms": shortest_ms(lambda: volume[n].values),
+        "crossline_ms": shortest_ms(lambda: volume[:, n].values),
+        "slice_ms": shortest_ms(lambda: volume[:, :, n].values),
+    }
+
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -231,16 +299,20 @@ def main():
     parser.add_argument("--keep", help="folder for VTK's pictures")
     parser.add_argument("--scipy", action="store_true", help="time scipy's cKDTree too (minutes)")
     parser.add_argument("--segy", action="store_true", help="time segyio on the cubes of `petroglyph bench --segy DIR`")
+    parser.add_argument("--store", action="store_true", help="time segyio and MDIO on survey.sgy instead")
     args = parser.parse_args()
     if args.segy:
         print(json.dumps(read_segy(args.dir)))
         return
-
     if args.volume:
         time_vtk(args)
         return
     if args.dir is None:
         parser.error("DIR or --volume is needed")
+    if args.store:
+        survey = args.dir / "survey.sgy"
+        print(json.dumps({"segyio": time_segyio(survey), "mdio": time_mdio(survey, args.dir / "survey.mdio")}))
+        return
     meta = json.loads((args.dir / "meta.json").read_text())
     region, sheets = np.load(args.dir / "region.npy"), np.load(args.dir / "sheets.npy")
     result = {"size": meta["size"], "threads": int(os.environ.get("OMP_NUM_THREADS", "0")) or os.cpu_count()}
@@ -257,6 +329,7 @@ def main():
         f_z(region, sheets, meta, scipy_distances)
         result["scipy_f_z_s"] = round(time.perf_counter() - started, 2)
     print(json.dumps(result))
+
 
 if __name__ == "__main__":
     main()

@@ -5,24 +5,20 @@
 use crate::error::ProjectError;
 use crate::project::document::{FaultEntry, HorizonEntry, VolumeEntry, WellEntry};
 use std::path::Path;
-use survey::store::{self, StoredVolume};
-use survey::{Cancelled, Fault, Horizon, Progress, Volume, Well};
+use survey::store::{self, StoreError, StoredVolume};
+use survey::{Fault, Horizon, Progress, Volume, Well};
 
-/// Samples hashed between two looks at whether the user cancelled.
-const HASH_CHUNK: usize = 1 << 20;
-
-/// BLAKE3 of a volume's size, samples and live-trace mask.
+/// BLAKE3 of a volume's size, sample type, the checksums of its bricks and its live-trace mask: what identifies its samples, without reading
+/// them.
 ///
 /// # Errors
-/// [`Cancelled`].
-pub fn hash_volume(volume: &Volume<f32>, progress: &Progress) -> Result<String, Cancelled> {
+/// Missing or damaged data.
+pub fn hash_stored(volume: &StoredVolume) -> Result<String, StoreError> {
     let mut hash = blake3::Hasher::new();
-    hash.update(bytemuck::cast_slice(&volume.size().map(|count| count as u64)));
-    for chunk in volume.samples().chunks(HASH_CHUNK) {
-        hash.update(bytemuck::cast_slice(chunk));
-        progress.check()?;
-    }
-    let live: Vec<u8> = volume.live().unwrap_or_default().iter().map(|live| u8::from(*live)).collect();
+    hash.update(bytemuck::cast_slice(&volume.size(0).map(|count| count as u64)));
+    hash.update(volume.type_name().as_bytes());
+    hash.update(bytemuck::cast_slice(&volume.checksums()?));
+    let live: Vec<u8> = volume.live().iter().map(|live| u8::from(*live)).collect();
     hash.update(&live);
     Ok(hash.finalize().to_hex().to_string())
 }
@@ -106,13 +102,22 @@ mod tests {
 
     #[test]
     fn a_hash_sees_values_place_and_mask_but_not_the_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let hash = |name: &str, volume: &Volume<f32>| {
+            let path = folder.path().join(name);
+            let geometry = SurveyGeometry::regular(volume.size(), 25.0, 4.0, VerticalUnit::Metres);
+            store::write_volume(&path, volume, &store::VolumeInfo::of(geometry), &Progress::silent()).unwrap();
+            hash_stored(&StoredVolume::open(&path).unwrap()).unwrap()
+        };
         let volume = Volume::filled([2, 3, 4], 1.5f32);
         let mut masked = volume.clone();
         masked.set_live(Some(vec![true, true, true, true, true, false])).unwrap();
-        let hash = |volume: &Volume<f32>| hash_volume(volume, &Progress::silent()).unwrap();
-        assert_eq!(hash(&volume), hash(&Volume::filled([2, 3, 4], 1.5)));
-        assert_ne!(hash(&volume), hash(&masked));
-        assert_ne!(hash(&volume), hash(&Volume::filled([3, 2, 4], 1.5)));
+        let mut changed = volume.clone();
+        changed.trace_mut(1, 2)[3] = 1.500_000_1;
+        assert_eq!(hash("a", &volume), hash("b", &Volume::filled([2, 3, 4], 1.5)));
+        assert_ne!(hash("a", &volume), hash("c", &masked));
+        assert_ne!(hash("a", &volume), hash("d", &Volume::filled([3, 2, 4], 1.5)));
+        assert_ne!(hash("a", &volume), hash("e", &changed));
 
         let grid = NodeGrid::of_survey(&SurveyGeometry::regular([2, 2, 2], 1.0, 1.0, VerticalUnit::Metres));
         let horizon = |name: &str, depth: f32, grid: NodeGrid| Horizon {

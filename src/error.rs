@@ -192,6 +192,12 @@ pub enum ProjectError {
     /// Data of the project that could not be read or written.
     #[error(transparent)]
     Store(#[from] survey::store::StoreError),
+    /// An attribute could not be computed.
+    #[error(transparent)]
+    Attribute(#[from] survey::attribute::AttributeError),
+    /// There is nothing to compute from.
+    #[error("the project has no volume; import one with `petroglyph import SURVEY.sgy PROJECT`")]
+    NoVolume,
     /// The interpretation does not make a solid model.
     #[error(transparent)]
     Model(#[from] survey::model::ModelError),
@@ -455,6 +461,8 @@ impl ProjectError {
             | Self::Well(_)
             | Self::Store(_)
             | Self::Assembly(_)
+            | Self::Attribute(_)
+            | Self::NoVolume
             | Self::Model(_)
             | Self::Param(_)
             | Self::Interp(_)

@@ -16,6 +16,7 @@ pub mod error;
 pub mod extraction;
 pub mod horizon_distance;
 pub mod library;
+mod memory;
 pub mod picture;
 pub mod pipeline;
 pub mod project;
@@ -23,6 +24,7 @@ pub mod proposals;
 pub mod scene;
 pub mod style;
 pub mod synth;
+pub mod volume_file;
 
 pub use command::{Command, Effect};
 pub use error::ProjectError;

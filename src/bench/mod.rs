@@ -11,6 +11,7 @@ mod model;
 pub mod segy;
 
 pub use self::interp::ExtractionRow;
+mod store;
 
 use crate::error::ProjectError;
 use crate::picture::{Device, Painter};
@@ -22,6 +23,7 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 use std::time::Instant;
+pub use store::StoreMeasured;
 use survey::Progress;
 
 /// How large the cubes are.
@@ -38,6 +40,14 @@ impl Sizes {
         match self {
             Self::Quick => &[64, 128],
             Self::Full => &[128, 256, 512],
+        }
+    }
+
+    /// Side of the cube that is stored.
+    fn stored(self) -> usize {
+        match self {
+            Self::Quick => 128,
+            Self::Full => 512,
         }
     }
 
@@ -86,6 +96,8 @@ pub struct Measured {
     pub packed_picture_seconds: f64,
     /// The first over the second.
     pub exact_over_packed: f64,
+    /// Into the store and out of it.
+    pub store: StoreMeasured,
 }
 
 impl fmt::Display for Measured {
@@ -105,6 +117,7 @@ impl fmt::Display for Measured {
         writeln!(f, "time per voxel, largest over smallest cube: {:.2}", self.growth)?;
         self.extractions.iter().try_for_each(|row| write!(f, "{row}"))?;
         writeln!(f, "extraction, time per voxel, largest over smallest cube: {:.2}", self.extraction_growth)?;
+        writeln!(f, "{}", self.store)?;
         writeln!(
             f,
             "picture of three faces on the {}: {:.2} s exact, {:.2} s packed, ratio {:.2}",
@@ -141,6 +154,7 @@ pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> anyhow::Re
         (Some(first), Some(last)) => last.us_per_voxel / first.us_per_voxel,
         _ => 1.0,
     };
+    let store = store::run(sizes.stored(), dump, progress)?;
     let (exact, packed) = pictures;
     Ok(Measured {
         threads: rayon::current_num_threads(),
@@ -152,6 +166,7 @@ pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> anyhow::Re
         exact_picture_seconds: exact,
         packed_picture_seconds: packed,
         exact_over_packed: exact / packed,
+        store,
     })
 }
 

@@ -1,18 +1,23 @@
 //! What was meant by the options of volumes, horizons and faults.
 
-use super::args::{ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs};
+use super::args::{
+    AttributeArgs, ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs,
+};
 use super::assembly;
 use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
 use crate::command::{
-    AddFault, AddHorizon, Age, Command, ImportVolume, RemoveFault, RemoveHorizon, RenameHorizon, SetContact,
-    SetTruncation,
+    AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
+    RenameHorizon, SetContact, SetTruncation,
 };
+use crate::memory;
 use crate::project::Polarity;
 use survey::Contact;
+use survey::attribute::{DipSettings, SemblanceSettings};
 use survey::formats::{
     Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit,
 };
+use survey::segy::WriteFormat;
 
 /// One of several words.
 pub(super) fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {
@@ -29,7 +34,31 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
         path: typed.survey,
         name: typed.name,
         polarity: word("--polarity", &typed.polarity, &polarity)?,
+        memory_bytes: bytes("--memory", typed.memory.as_deref())?,
     })
+}
+
+/// Bytes of `2G` and the like.
+fn bytes(option: &str, typed: Option<&str>) -> Result<Option<u64>, Usage> {
+    let parsed = |text| {
+        memory::parse_bytes(text).ok_or_else(|| format!("{option} {text}: expected bytes such as 2G, 800M or 64K"))
+    };
+    typed.map(parsed).transpose()
+}
+
+pub(super) fn attribute(typed: AttributeArgs) -> Result<Request, Usage> {
+    let kinds = [AttributeKind::Semblance, AttributeKind::Envelope, AttributeKind::Dip].map(|kind| (kind.name(), kind));
+    let mut dip = DipSettings::default();
+    dip.max_dip = typed.max_dip.unwrap_or(dip.max_dip);
+    let command = ComputeAttribute {
+        kind: word("--kind", &typed.kind, &kinds)?,
+        name: typed.name,
+        volume: typed.volume,
+        dip,
+        semblance: SemblanceSettings::default(),
+        memory_bytes: bytes("--memory", typed.memory.as_deref())?,
+    };
+    Ok(Request::Change { project: typed.project, command: Command::Attribute(command) })
 }
 
 pub(super) fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage> {
@@ -148,6 +177,16 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
 }
 
 pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
+    if let Some(volume) = typed.volume {
+        let formats =
+            [(1, WriteFormat::Ibm32), (3, WriteFormat::Int16), (5, WriteFormat::Ieee32), (8, WriteFormat::Int8)];
+        let format = typed.format_code.map(|code| {
+            let found = formats.iter().find(|(known, _)| *known == code).map(|(_, format)| *format);
+            found.ok_or_else(|| format!("--format-code {code}: expected 1, 3, 5 or 8"))
+        });
+        let format = format.transpose()?;
+        return Ok(Request::ExportVolume { project: typed.project, out: typed.out, volume, format });
+    }
     let Some(horizon) = typed.horizon else {
         return Ok(Request::ExportCandidates { project: typed.project, out: typed.out });
     };

@@ -21,7 +21,7 @@ use param::KDefinition;
 use render::Scope;
 use std::path::PathBuf;
 use survey::formats::{ExportOptions, Format, ImportOptions};
-use survey::segy::SegyOptions;
+use survey::segy::{SegyOptions, WriteFormat};
 use survey::synth::SynthSettings;
 use survey::{SurveyGeometry, VerticalUnit};
 use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
@@ -57,6 +57,8 @@ pub(super) enum Request {
     ExportCandidates { project: PathBuf, out: PathBuf },
     /// Write a horizon to a file.
     Export { project: PathBuf, out: PathBuf, horizon: String, format: Format, options: ExportOptions },
+    /// Write a volume as SEG-Y, by default in the type it is stored in.
+    ExportVolume { project: PathBuf, out: PathBuf, volume: String, format: Option<WriteFormat> },
     /// Compute i, j, k.
     Parameterize { project: PathBuf, size: Option<[usize; 3]> },
     /// Draw a picture.
@@ -136,6 +138,7 @@ impl TryFrom<Action> for Request {
             Action::Import(typed) => {
                 Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
             }
+            Action::Attribute(typed) => interpretation::attribute(typed)?,
             Action::Volume(VolumeAction::List { project }) => Self::List { project, what: Listing::Volumes },
             Action::Volume(VolumeAction::Remove { project, name }) => {
                 change(project, Command::RemoveVolume(RemoveVolume { name }))

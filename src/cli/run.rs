@@ -8,7 +8,9 @@ use crate::command::{AddScene, Command, ImportVolume, SetRaw};
 use crate::error::Noun;
 use crate::pipeline::Stage;
 use crate::project::Project;
-use crate::{app, bench, data, demo, derived, extraction, library, picture, pipeline, proposals, scene, style, synth};
+use crate::{
+    app, bench, data, demo, derived, extraction, library, picture, pipeline, proposals, scene, style, synth, volume_file,
+};
 use anyhow::Context;
 use render::Scene;
 use std::path::Path;
@@ -57,6 +59,9 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             let mut report = Report::line(format!("{}: {count} points of horizon candidates", out.display()));
             report.field("file", &out).field("points", count);
             report
+        }
+        Request::ExportVolume { project, out, volume, format } => {
+            told(volume_file::write(&Project::open(&project)?, &out, &volume, format, &progress)?)
         }
         Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,

@@ -1,14 +1,16 @@
 //! Bringing volumes in, and taking them out again.
 
+use super::stored::{self, Facts};
 use super::{Effect, Noun, ProjectError};
-use crate::data;
-use crate::project::document::{Polarity, VolumeEntry};
+use crate::memory;
+use crate::project::document::Polarity;
 use crate::project::{Draft, placement};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
-use survey::segy::{SegyFile, SegyOptions};
-use survey::store::{self, VolumeInfo};
-use survey::{Progress, SurveyGeometry, Volume};
+use std::fs;
+use std::path::{Path, PathBuf};
+use survey::segy::{ExactType, SegyFile, SegyOptions};
+use survey::store::{self, Block, Ingested, LineOrder, StoreError, StoredSample, VolumeInfo, WriteSettings};
+use survey::{Progress, SurveyGeometry};
 
 /// Reads a SEG-Y volume into the project. The first one gives the survey frame; others must lie in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,6 +26,9 @@ pub struct ImportVolume {
     /// What the user states about the file.
     #[serde(default)]
     pub options: SegyOptions,
+    /// Memory to use, bytes; absent: half of what is available. Not remembered: the result does not depend on it.
+    #[serde(skip)]
+    pub memory_bytes: Option<u64>,
 }
 
 /// What an import did.
@@ -37,6 +42,10 @@ pub struct VolumeImported {
     pub traces: usize,
     /// Places of the lattice without a trace.
     pub missing_traces: usize,
+    /// Type that the samples are stored in.
+    pub sample_type: String,
+    /// Files of the volume that an interrupted import of the same file had written.
+    pub kept_files: usize,
     /// What a positive amplitude means.
     pub polarity: Polarity,
     /// Value at which colours are clipped.
@@ -54,8 +63,8 @@ pub struct RemoveVolume {
     pub name: String,
 }
 
-/// Share of the samples that a colour map shows unclipped.
-const SHOWN_SHARE: f32 = 0.99;
+/// Folder of a project in which a volume is written that is not complete. A killed import leaves it, the next one goes on there.
+pub(crate) const IMPORTING: &str = "importing";
 
 impl ImportVolume {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
@@ -67,16 +76,16 @@ impl ImportVolume {
             placement::covers(frame, &geometry)
                 .map_err(|source| ProjectError::Placement { name: name.clone(), source })?;
         }
-        let read = file.read(progress)?;
-        read.info.warnings.iter().for_each(|warning| progress.warn(warning));
-        let hash = data::hash_volume(&read.volume, progress)?;
-        let (file, new) = draft.generation("volumes", &name, "zarr");
-        let info = VolumeInfo {
-            polarity: Some(self.polarity.to_string()),
-            source: Some(self.path.display().to_string()),
-            ..VolumeInfo::of(geometry.clone())
-        };
-        store::write_volume(&new, &read.volume, &info, progress)?;
+        file.release();
+        file.info().warnings.iter().for_each(|warning| progress.warn(warning));
+        let (stored_as, new) = draft.generation("volumes", &name, "zarr");
+        let folder = draft.root().join(IMPORTING);
+        let ingested = self.ingest(&file, &geometry, &folder, &new, progress);
+        if ingested.is_err() {
+            // Only a killed program leaves something to go on with; who cancels, or has no room, wants none of it.
+            let _ = fs::remove_dir_all(&folder);
+        }
+        let ingested = ingested?;
         let own = match &draft.document.geometry {
             None => {
                 draft.document.geometry = Some(geometry);
@@ -86,27 +95,115 @@ impl ImportVolume {
             Some(frame) if is_same_lattice(frame, &geometry) => None,
             Some(_) => Some(geometry),
         };
-        let clip = clip_of(&read.volume);
-        draft.document.volumes.push(VolumeEntry {
+        let info = file.info();
+        let facts = Facts {
             name: name.clone(),
-            file,
-            hash,
+            file: stored_as,
             polarity: self.polarity,
-            clip,
-            lowest: read.amplitudes.min,
-            source: super::source_of(&self.path, reading(&read.info))?,
+            source: super::source_of(&self.path, reading(info))?,
             geometry: own,
-        });
+        };
+        let entry = stored::entry(&new, facts, progress)?;
+        let clip = entry.clip;
+        draft.document.volumes.push(entry);
         Ok(Effect::VolumeImported(VolumeImported {
             volume: name,
-            size: read.volume.size(),
-            traces: read.info.traces,
-            missing_traces: read.info.missing_traces,
+            size: file.size(),
+            traces: info.traces,
+            missing_traces: info.missing_traces,
+            sample_type: type_name(file.exact_type()).to_owned(),
+            kept_files: ingested.kept,
             polarity: self.polarity,
             clip,
-            evidence: read.info.evidence,
-            assumptions: read.info.assumptions,
+            evidence: info.evidence.clone(),
+            assumptions: info.assumptions.clone(),
         }))
+    }
+
+    /// Writes the file's samples to the store at `new`, by way of `folder`.
+    fn ingest(
+        &self,
+        file: &SegyFile,
+        geometry: &SurveyGeometry,
+        folder: &Path,
+        new: &Path,
+        progress: &Progress,
+    ) -> Result<Ingested, ProjectError> {
+        let ingest = match file.exact_type() {
+            ExactType::Int8 => Self::ingest_as::<i8>,
+            ExactType::Uint8 => Self::ingest_as::<u8>,
+            ExactType::Int16 => Self::ingest_as::<i16>,
+            ExactType::Uint16 => Self::ingest_as::<u16>,
+            ExactType::Float32 => Self::ingest_as::<f32>,
+        };
+        let partial = folder.join(new.file_name().unwrap_or_default());
+        keep_only(folder, &partial);
+        let done = ingest(self, file, geometry, &partial, progress)?;
+        let fail = |source| ProjectError::io("written", new, source);
+        if let Some(parent) = new.parent() {
+            fs::create_dir_all(parent).map_err(fail)?;
+        }
+        fs::rename(&partial, new).map_err(fail)?;
+        // Empty now; an empty folder left behind is no harm.
+        let _ = fs::remove_dir(folder);
+        Ok(done)
+    }
+
+    fn ingest_as<T: StoredSample>(
+        &self,
+        file: &SegyFile,
+        geometry: &SurveyGeometry,
+        partial: &Path,
+        progress: &Progress,
+    ) -> Result<Ingested, ProjectError> {
+        let info = VolumeInfo {
+            polarity: Some(self.polarity.to_string()),
+            source: Some(self.path.display().to_string()),
+            ..VolumeInfo::of(geometry.clone())
+        };
+        let order = if file.info().sorted_by == "crossline" { LineOrder::Crosslines } else { LineOrder::Inlines };
+        let memory_bytes = self.memory_bytes.unwrap_or_else(memory::half_of_available);
+        let settings = WriteSettings { memory_bytes, order };
+        let mut non_finite = 0;
+        let supply = |block: &Block| {
+            let (samples, bad) = file.read_block::<T>(block.inlines.clone(), block.crosslines.clone(), progress)?;
+            file.release();
+            non_finite += bad;
+            Ok(samples.into())
+        };
+        let live = file.live();
+        let fingerprint = self.fingerprint::<T>(file)?;
+        let (size, live) = (file.size(), live.as_deref());
+        let done = store::resume_volume(partial, &fingerprint, size, live, &info, &settings, supply, progress);
+        let done = done.map_err(cancelled_within)?;
+        if done.kept > 0 {
+            progress.warn(&format!(
+                "an interrupted import of this file went on: {} of {} files were there and whole",
+                done.kept, done.files
+            ));
+        }
+        if non_finite > 0 {
+            progress.warn(&format!("{non_finite} samples are no numbers (NaN or infinite) and are read as 0"));
+        }
+        Ok(done)
+    }
+
+    /// Stands for the file as it is now, and for what was said about it.
+    fn fingerprint<T: StoredSample>(&self, file: &SegyFile) -> Result<String, ProjectError> {
+        let fail = |source| ProjectError::io("read", &self.path, source);
+        let facts = fs::metadata(&self.path).map_err(fail)?;
+        let modified = facts.modified().ok().and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
+        let path = fs::canonicalize(&self.path).map_err(fail)?;
+        Ok(serde_json::json!({
+            "path": path,
+            "bytes": facts.len(),
+            "modified_ns": modified.map(|time| time.as_nanos().to_string()),
+            "options": self.options,
+            "polarity": self.polarity,
+            "size": file.size(),
+            "type": T::TYPE,
+        })
+        .to_string())
     }
 
     fn name_in(&self, draft: &Draft) -> String {
@@ -138,21 +235,35 @@ fn reading(info: &survey::segy::SegyInfo) -> String {
     format!("SEG-Y format code {}, {lines}, {place}, vertical in {}", info.format_code, info.vertical_unit.symbol())
 }
 
-/// The value that most samples of live traces do not exceed in size; 1 where all are zero.
-fn clip_of(volume: &Volume<f32>) -> f32 {
-    let [inlines, crosslines, _] = volume.size();
-    let live =
-        (0..inlines * crosslines).map(|n| (n / crosslines, n % crosslines)).filter(|&(x, y)| volume.is_live(x, y));
-    let mut samples: Vec<f32> = live.flat_map(|(x, y)| volume.trace(x, y)).copied().collect();
-    if samples.len() > SAMPLES_ENOUGH {
-        let step = samples.len() / SAMPLES_ENOUGH;
-        samples = samples.into_iter().step_by(step).collect();
+/// Removes what other imports left in the folder.
+fn keep_only(folder: &Path, wanted: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten().filter(|entry| entry.path() != wanted) {
+        // What cannot be removed is garbage that nothing refers to.
+        let _ = fs::remove_dir_all(entry.path());
     }
-    ttf::symmetric_clip(&samples, SHOWN_SHARE).unwrap_or(1.0)
 }
 
-/// So many samples give a percentile to three digits; more would only take longer.
-const SAMPLES_ENOUGH: usize = 1 << 20;
+/// A cancel that the reader noticed is a cancel, not a failure of the source.
+fn cancelled_within(error: StoreError) -> ProjectError {
+    match error {
+        StoreError::Source { path, source } => match source.downcast::<survey::segy::SegyError>() {
+            Ok(segy) => (*segy).into(),
+            Err(source) => StoreError::Source { path, source }.into(),
+        },
+        other => other.into(),
+    }
+}
+
+/// The name of a type as the store spells it.
+fn type_name(exact: ExactType) -> &'static str {
+    match exact {
+        ExactType::Int8 => i8::TYPE,
+        ExactType::Uint8 => u8::TYPE,
+        ExactType::Int16 => i16::TYPE,
+        ExactType::Uint16 => u16::TYPE,
+        ExactType::Float32 => f32::TYPE,
+    }
+}
 
 impl RemoveVolume {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {

@@ -5,6 +5,7 @@
 //! from a command, because every state is remembered.
 
 mod assembly;
+mod attribute;
 mod contact;
 mod fault;
 mod fault_pick;
@@ -16,16 +17,19 @@ mod order;
 mod pick;
 mod scalar;
 mod scene;
+mod stored;
 mod survey_frame;
 mod texture;
 mod well;
 
 pub use assembly::{AssemblyReport, HoleReport};
+pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
 pub use fault::{AddFault, FaultAdded, RemoveFault, SetTruncation};
 pub use fault_pick::{AcceptFault, PickFault};
 pub use fill::{FillHorizon, HorizonFilled};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
+pub(crate) use import::IMPORTING;
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
 pub use pick::{Climb, Move, MovePick, PickNode, Picked, ReplayPicks, Replayed, ReplayedPick, Unfit};
@@ -54,6 +58,8 @@ pub enum Command {
     },
     /// Read a volume.
     Import(ImportVolume),
+    /// Compute a volume from a volume.
+    Attribute(ComputeAttribute),
     /// Take a volume away.
     RemoveVolume(RemoveVolume),
     /// Read a horizon.
@@ -116,6 +122,8 @@ pub enum Effect {
     Created,
     /// A volume is in the project.
     VolumeImported(VolumeImported),
+    /// Volumes were computed.
+    AttributeComputed(AttributeComputed),
     /// A horizon is in the project.
     HorizonAdded(Box<HorizonAdded>),
     /// A node was added to a horizon or taken out, or a pick was moved.
@@ -141,6 +149,7 @@ impl Command {
         match self {
             Self::Create { .. } => Err(ProjectError::Exists { path: draft.root().to_owned() }),
             Self::Import(change) => change.execute(draft, progress),
+            Self::Attribute(change) => change.execute(draft, progress),
             Self::RemoveVolume(change) => change.execute(draft),
             Self::AddHorizon(change) => change.execute(draft, progress),
             Self::RenameHorizon(change) => change.execute(draft),
@@ -177,6 +186,7 @@ impl Effect {
         match self {
             Self::Created => "create".to_owned(),
             Self::VolumeImported(done) => format!("import volume {}", done.volume),
+            Self::AttributeComputed(done) => format!("{} of {}", done.attribute, done.of),
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
             Self::Picked(done) => format!("pick {} of {}", done.pick, done.horizon),
             Self::Replayed(done) => format!("{} picks made again", done.picks.len()),
@@ -202,12 +212,13 @@ impl std::fmt::Display for Effect {
                 let [inlines, crosslines, samples] = done.size;
                 writeln!(
                     f,
-                    "volume '{}': {inlines} inlines, {crosslines} crosslines, {samples} samples; {} traces, {} missing; {} polarity",
-                    done.volume, done.traces, done.missing_traces, done.polarity
+                    "volume '{}': {inlines} inlines, {crosslines} crosslines, {samples} samples, stored as {}; {} traces, {} missing; {} polarity",
+                    done.volume, done.sample_type, done.traces, done.missing_traces, done.polarity
                 )?;
                 done.evidence.iter().try_for_each(|line| writeln!(f, "  {line}"))?;
                 done.assumptions.iter().try_for_each(|line| writeln!(f, "  assumed: {line}"))
             }
+            Self::AttributeComputed(done) => write!(f, "{done}"),
             Self::HorizonAdded(done) => write!(f, "{}", done.report),
             Self::Picked(done) => write!(f, "{done}"),
             Self::Replayed(done) => write!(f, "{done}"),

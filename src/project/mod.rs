@@ -27,7 +27,7 @@ pub use document::{Document, Polarity};
 pub use draft::Draft;
 pub use history::{HISTORY_LIMIT, Step};
 
-use crate::command::{Command, Effect};
+use crate::command::{Command, Effect, IMPORTING};
 use crate::error::ProjectError;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -271,6 +271,8 @@ impl NewProject {
             return Err(ProjectError::Exists { path: self.destination.clone() });
         }
         storage::remove(&self.project.root.join("creating"));
+        // What an import that was killed had written to a project of this name.
+        storage::remove(&self.project.root.join(IMPORTING));
         storage::rename(&self.project.root, &self.destination)?;
         self.published = true;
         Project::open(&self.destination)

@@ -10,5 +10,7 @@ mod extraction;
 mod help;
 mod program;
 mod safety;
+
+mod store;
 mod well;
 mod see_through;

@@ -65,6 +65,11 @@ impl<T: Copy> Volume<T> {
         &self.samples
     }
 
+    /// All samples in memory order, without the volume.
+    pub fn into_samples(self) -> Vec<T> {
+        self.samples
+    }
+
     /// All samples in memory order, to write.
     pub fn samples_mut(&mut self) -> &mut [T] {
         &mut self.samples

@@ -17,6 +17,9 @@ pub(in crate::cli) struct ImportArgs {
     /// What a positive amplitude means: normal (SEG: more impedance) or reverse
     #[arg(long, default_value = "normal", value_name = "normal|reverse")]
     pub(in crate::cli) polarity: String,
+    /// Memory to use, such as 2G or 800M [default: half of what is available]
+    #[arg(long, value_name = "BYTES")]
+    pub(in crate::cli) memory: Option<String>,
     #[command(flatten)]
     pub(in crate::cli) segy: SegyArgs,
 }
@@ -228,15 +231,21 @@ pub(in crate::cli) struct ExportArgs {
     pub(in crate::cli) project: PathBuf,
     /// File to write
     pub(in crate::cli) out: PathBuf,
-    /// Horizon
-    #[arg(long, value_name = "NAME", required_unless_present = "candidates")]
+    /// Horizon to write
+    #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "volume"], conflicts_with = "volume")]
     pub(in crate::cli) horizon: Option<String>,
     /// All horizon candidates instead: CSV with inline, crossline, z, leaf and surface of each point
-    #[arg(long, conflicts_with_all = ["horizon", "format"])]
+    #[arg(long, conflicts_with_all = ["horizon", "format", "volume"])]
     pub(in crate::cli) candidates: bool,
-    /// Format of the file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
-    #[arg(long)]
+    /// Format of the horizon's file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
+    #[arg(long, conflicts_with = "volume")]
     pub(in crate::cli) format: Option<String>,
+    /// Volume to write, as SEG-Y
+    #[arg(long, value_name = "NAME")]
+    pub(in crate::cli) volume: Option<String>,
+    /// SEG-Y sample format: 1 IBM float, 3 16-bit integer, 5 IEEE float, 8 8-bit integer [default: as the volume is stored]
+    #[arg(long, value_name = "1|3|5|8", requires = "volume")]
+    pub(in crate::cli) format_code: Option<u16>,
     /// ZMAP+ and CPS-3, which hold no rotated grids: resample such a grid, or refuse it [default: resample]
     #[arg(long, value_name = "resample|refuse")]
     pub(in crate::cli) when_rotated: Option<String>,

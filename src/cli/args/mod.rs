@@ -1,6 +1,7 @@
 //! What can be typed.
 
 mod assembly;
+mod attribute;
 mod extraction;
 mod interpretation;
 mod layer;
@@ -11,6 +12,7 @@ mod well;
 
 pub(super) use assembly::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
 pub(super) use extraction::ExtractArgs;
+pub(super) use attribute::AttributeArgs;
 pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
 };
@@ -61,9 +63,14 @@ pub(super) enum Action {
     Create(CreateArgs),
     /// Read a SEG-Y volume into a project
     #[command(
-        after_help = "Examples:\n  petroglyph import survey.sgy north.petro\n  petroglyph import impedance.sgy north.petro --name impedance --inline-byte 9 --crossline-byte 21"
+        after_help = "Examples:\n  petroglyph import survey.sgy north.petro\n  petroglyph import large.sgy north.petro --memory 4G\n  petroglyph import impedance.sgy north.petro --name impedance --inline-byte 9 --crossline-byte 21"
     )]
     Import(ImportArgs),
+    /// Compute a volume from a volume: semblance, envelope or dip
+    #[command(
+        after_help = "Examples:\n  petroglyph attribute north.petro --kind semblance --name faults\n  petroglyph attribute north.petro --kind dip --name dip --volume seismic --memory 2G"
+    )]
+    Attribute(AttributeArgs),
     /// Volumes of a project
     #[command(subcommand)]
     Volume(VolumeAction),
@@ -100,9 +107,9 @@ pub(super) enum Action {
         /// Folder that `petroglyph synth` wrote
         truth: PathBuf,
     },
-    /// Write a horizon, or the points of all candidates, to a file
+    /// Write a horizon, the points of all candidates or a volume to a file
     #[command(
-        after_help = "Examples:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap\n  petroglyph export north.petro points.csv --candidates"
+        after_help = "Examples:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap\n  petroglyph export north.petro points.csv --candidates\n  petroglyph export north.petro out.sgy --volume seismic"
     )]
     Export(ExportArgs),
     /// State the velocity that turns two-way time into metres

@@ -1,0 +1,43 @@
+//! How much memory there is.
+
+use std::fs;
+
+/// Used where the system does not say what is available.
+const UNKNOWN: u64 = 2 << 30;
+
+/// Half of the memory that is available now, bytes.
+pub fn half_of_available() -> u64 {
+    let text = fs::read_to_string("/proc/meminfo").unwrap_or_default();
+    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
+    let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
+    kilobytes.map_or(UNKNOWN, |kilobytes| kilobytes * 1024 / 2)
+}
+
+/// Bytes of `2G`, `512M`, `800K` or a plain number.
+pub fn parse_bytes(text: &str) -> Option<u64> {
+    let text = text.trim();
+    let (number, unit) = match text.char_indices().next_back()? {
+        (at, 'k' | 'K') => (&text[..at], 1u64 << 10),
+        (at, 'm' | 'M') => (&text[..at], 1 << 20),
+        (at, 'g' | 'G') => (&text[..at], 1 << 30),
+        _ => (text, 1),
+    };
+    let number: f64 = number.trim().parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0)?;
+    Some((number * unit as f64) as u64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_powers_of_1024() {
+        assert_eq!(parse_bytes("2G"), Some(2 << 30));
+        assert_eq!(parse_bytes("1.5m"), Some(3 << 19));
+        assert_eq!(parse_bytes("7K"), Some(7 << 10));
+        assert_eq!(parse_bytes("4096"), Some(4096));
+        for wrong in ["", "G", "-2G", "2T", "two", "nan", "0"] {
+            assert_eq!(parse_bytes(wrong), None, "{wrong}");
+        }
+    }
+}
