@@ -10,7 +10,6 @@ mod extraction;
 mod help;
 mod program;
 mod safety;
-
 mod store;
 mod well;
 mod see_through;
