@@ -139,6 +139,7 @@ fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> anyho
             name: Some(name.to_owned()),
             polarity: Polarity::Normal,
             options: SegyOptions::default(),
+            memory_bytes: None,
         })
     };
     project.apply(&import(&files.survey, "seismic"), progress)?;
