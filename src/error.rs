@@ -207,6 +207,21 @@ pub enum ProjectError {
     /// No picture could be made.
     #[error(transparent)]
     Render(#[from] render::RenderError),
+    /// Horizon candidates could not be extracted or read.
+    #[error(transparent)]
+    Interp(interp::Error),
+    /// No candidates yet.
+    #[error("the project has no horizon candidates yet")]
+    NotExtracted,
+    /// Nothing to extract from.
+    #[error("the project has no volume on its own lattice to extract horizon candidates from")]
+    NoVolume,
+    /// A volume whose voxels are not the project's.
+    #[error("volume \"{volume}\" lies on another lattice than the project")]
+    OtherLattice {
+        /// Its name.
+        volume: String,
+    },
     /// The user stopped it.
     #[error("cancelled")]
     Cancelled(#[from] survey::Cancelled),
@@ -219,6 +234,16 @@ pub enum ProjectError {
     /// At the last step.
     #[error("there is nothing to redo")]
     NothingToRedo,
+}
+
+impl From<interp::Error> for ProjectError {
+    fn from(error: interp::Error) -> Self {
+        match error {
+            interp::Error::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            interp::Error::Store(error) => Self::Store(error),
+            other => Self::Interp(other),
+        }
+    }
 }
 
 fn listed(names: &[String]) -> String {
@@ -259,6 +284,11 @@ impl ProjectError {
             Self::BadName { .. } => "use letters, digits, blanks, - and _",
             Self::NothingToUndo | Self::NothingToRedo => "`petroglyph info PROJECT` shows the history",
             Self::Cancelled(_) => "nothing was changed",
+            Self::NotExtracted => "run `petroglyph extract PROJECT` first",
+            Self::NoVolume => "import one with `petroglyph import SURVEY.sgy PROJECT`",
+            Self::OtherLattice { .. } => {
+                "extract from a volume on the project's lattice, or import this one into a project of its own"
+            }
             Self::Geometry(_) => "check the header bytes and bounds the geometry is made from",
             Self::Style(_) => "`petroglyph patterns OUT.png` draws every pattern with its name",
             Self::Scene(_) => {
@@ -280,6 +310,7 @@ impl ProjectError {
             | Self::Store(_)
             | Self::Model(_)
             | Self::Param(_)
+            | Self::Interp(_)
             | Self::Render(_) => return None,
         })
     }

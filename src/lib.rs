@@ -12,6 +12,7 @@ pub mod data;
 pub mod demo;
 pub mod derived;
 pub mod error;
+pub mod extraction;
 pub mod library;
 pub mod picture;
 pub mod pipeline;

@@ -142,6 +142,9 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
 }
 
 pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
+    let Some(horizon) = typed.horizon else {
+        return Ok(Request::ExportCandidates { project: typed.project, out: typed.out });
+    };
     let format = match typed.format.as_deref() {
         Some(name) => format(name)?,
         None => {
@@ -155,5 +158,5 @@ pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
     let rotated = [("resample", WhenRotated::Resample), ("refuse", WhenRotated::Refuse)];
     let when_rotated = typed.when_rotated.as_deref().map(|t| word("--when-rotated", t, &rotated)).transpose()?;
     let options = ExportOptions { when_rotated: when_rotated.unwrap_or_default() };
-    Ok(Request::Export { project: typed.project, out: typed.out, horizon: typed.horizon, format, options })
+    Ok(Request::Export { project: typed.project, out: typed.out, horizon, format, options })
 }

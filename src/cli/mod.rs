@@ -5,6 +5,7 @@
 
 mod args;
 mod draw;
+mod extraction;
 mod failure;
 mod info;
 mod info_interpretation;

@@ -4,6 +4,7 @@ use super::args::{
     Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs,
     VolumeAction,
 };
+use super::extraction;
 use super::interpretation;
 use super::view::View;
 use super::well;
@@ -14,6 +15,7 @@ use crate::command::{
 };
 use crate::picture::Device;
 use glam::DVec2;
+use interp::ExtractSettings;
 use param::KDefinition;
 use std::path::PathBuf;
 use survey::formats::{ExportOptions, Format, ImportOptions};
@@ -43,6 +45,10 @@ pub(super) enum Request {
     SetRaw { project: PathBuf, volume: Option<String>, map: ColourMap, range: Option<[f32; 2]> },
     /// Say something about a project.
     List { project: PathBuf, what: Listing },
+    /// Extract horizon candidates.
+    Extract { project: PathBuf, volume: Option<String>, settings: ExtractSettings },
+    /// Write the points of all candidates to a file.
+    ExportCandidates { project: PathBuf, out: PathBuf },
     /// Write a horizon to a file.
     Export { project: PathBuf, out: PathBuf, horizon: String, format: Format, options: ExportOptions },
     /// Compute i, j, k.
@@ -127,6 +133,7 @@ impl TryFrom<Action> for Request {
             Action::Horizon(action) => interpretation::horizon(action)?,
             Action::Fault(action) => interpretation::fault(action)?,
             Action::Well(action) => well::well(action)?,
+            Action::Extract(typed) => extraction::extract(typed)?,
             Action::Export(typed) => interpretation::export(typed)?,
             Action::Parameterize(typed) => {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;

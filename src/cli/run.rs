@@ -8,7 +8,7 @@ use crate::command::{AddScene, Command, ImportVolume, SetRaw};
 use crate::error::Noun;
 use crate::pipeline::Stage;
 use crate::project::Project;
-use crate::{app, bench, data, demo, derived, library, picture, pipeline, scene, style, synth};
+use crate::{app, bench, data, demo, derived, extraction, library, picture, pipeline, scene, style, synth};
 use anyhow::Context;
 use render::Scene;
 use std::path::Path;
@@ -48,6 +48,15 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
         Request::Import { project, command } => import(&project, command, &progress)?,
         Request::Export { project, out, horizon, format, options } => {
             export(&project, &out, &horizon, format, &options, &progress)?
+        }
+        Request::Extract { project, volume, settings } => {
+            told(extraction::extract(&Project::open(&project)?, volume.as_deref(), &settings, &progress)?)
+        }
+        Request::ExportCandidates { project, out } => {
+            let count = extraction::export_points(&Project::open(&project)?, &out, &progress)?;
+            let mut report = Report::line(format!("{}: {count} points of horizon candidates", out.display()));
+            report.field("file", &out).field("points", count);
+            report
         }
         Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,

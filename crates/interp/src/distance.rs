@@ -29,9 +29,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use survey::Progress;
-
-/// The code of "farther than the greatest distance".
-pub const BEYOND: u8 = u8::MAX;
+pub use survey::store::BEYOND;
 
 /// The code of the greatest distance.
 const FARTHEST: f32 = 254.0;
@@ -44,6 +42,7 @@ const BLOCK: usize = 64;
 
 /// How distances are computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct DistanceSettings {
     /// Greatest distance that is told, voxels, at most 64. Default 10, as in the paper; the error of a coded distance is a 508th of it.
     pub max_distance: f32,

@@ -32,6 +32,18 @@ pub enum Error {
         /// Leaves there are.
         count: usize,
     },
+    /// Surfaces could not be grown.
+    #[error(transparent)]
+    Growing(Box<dyn std::error::Error + Send + Sync>),
+    /// Candidates could not be read or written.
+    #[error(transparent)]
+    Store(#[from] survey::store::StoreError),
+    /// Stored trees contradict each other.
+    #[error("the stored surface trees are damaged: {fact}; delete them and extract again")]
+    DamagedForest {
+        /// What is wrong.
+        fact: &'static str,
+    },
     /// A setting that means nothing.
     #[error("{setting} = {value} cannot be; it must be {expected}")]
     Setting {

@@ -26,6 +26,7 @@ mod dual;
 mod moments;
 mod prune;
 mod split;
+mod tables;
 #[cfg(test)]
 pub(crate) mod tests;
 
@@ -44,6 +45,7 @@ pub const MAX_TRIANGLES: usize = (1 << 30) - 1;
 
 /// How trees are built.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct ForestSettings {
     /// Fewest triangles of a leaf; a surface with fewer is one leaf. Default 500, as in the paper.
     pub min_leaf_triangles: u32,

@@ -203,8 +203,11 @@ pub(in crate::cli) struct ExportArgs {
     /// File to write
     pub(in crate::cli) out: PathBuf,
     /// Horizon
-    #[arg(long, value_name = "NAME")]
-    pub(in crate::cli) horizon: String,
+    #[arg(long, value_name = "NAME", required_unless_present = "candidates")]
+    pub(in crate::cli) horizon: Option<String>,
+    /// All horizon candidates instead: CSV with inline, crossline, z, leaf and surface of each point
+    #[arg(long, conflicts_with_all = ["horizon", "format"])]
+    pub(in crate::cli) candidates: bool,
     /// Format of the file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
     #[arg(long)]
     pub(in crate::cli) format: Option<String>,

@@ -1,5 +1,6 @@
 //! What can be typed.
 
+mod extraction;
 mod interpretation;
 mod layer;
 mod output;
@@ -7,6 +8,7 @@ mod scene;
 mod segy;
 mod well;
 
+pub(super) use extraction::ExtractArgs;
 pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
 };
@@ -72,8 +74,15 @@ pub(super) enum Action {
     /// Wells of a project
     #[command(subcommand)]
     Well(WellAction),
-    /// Write a horizon to a file
-    #[command(after_help = "Example:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap")]
+    /// Find horizon candidates in a volume: surfaces, their trees, and the closest leaf of every voxel
+    #[command(
+        after_help = "Examples:\n  petroglyph extract north.petro\n  petroglyph extract north.petro --extrema peak --min-front-width 6 --json"
+    )]
+    Extract(ExtractArgs),
+    /// Write a horizon, or the points of all candidates, to a file
+    #[command(
+        after_help = "Examples:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap\n  petroglyph export north.petro points.csv --candidates"
+    )]
     Export(ExportArgs),
     /// State the velocity that turns two-way time into metres
     #[command(after_help = "Example:\n  petroglyph velocity north.petro 2500")]

@@ -258,3 +258,20 @@ fn contradictory_arrays_and_cancellation_are_answered() {
     progress.cancel();
     assert!(matches!(Forest::build(surfaces, &ForestSettings::default(), &progress), Err(Error::Cancelled(_))));
 }
+
+#[test]
+fn a_forest_survives_its_tables_and_damaged_tables_are_refused() {
+    let surfaces = sheets([65, 40, 64], &[&fold, &roof, &|_, _| 3.0], |n, x, _| n < 2 || x < 3);
+    let forest = build(surfaces, &ForestSettings::default());
+    let size = forest.surfaces.size;
+    assert_eq!(Forest::from_tables(forest.tables(), size).unwrap(), forest);
+    let mut tables = forest.tables();
+    tables.nodes[1][0] = 7;
+    assert!(matches!(Forest::from_tables(tables, size), Err(Error::DamagedForest { .. })));
+    let mut tables = forest.tables();
+    tables.nodes.pop();
+    assert!(Forest::from_tables(tables, size).is_err());
+    let mut tables = forest.tables();
+    tables.triangles[5][0] = u32::MAX;
+    assert!(matches!(Forest::from_tables(tables, size), Err(Error::MalformedSurfaces { .. })));
+}

@@ -6,6 +6,7 @@
 //! faults/NAME.json                write_fault, read_fault
 //! wells/NAME.json                 write_well, read_well
 //! derived/parameterization.zarr   write_parameterization, StoredParameterization
+//! derived/candidates.zarr         CandidateWriter, StoredCandidates
 //! ```
 //!
 //! Everything is written under another name beside its place, synced and renamed at the very end ([`Replacement`]): a crash, a
@@ -13,6 +14,7 @@
 //! known to `array` and `sample` alone.
 
 mod array;
+mod candidates;
 mod error;
 mod fault;
 mod header;
@@ -28,6 +30,7 @@ mod volume;
 mod well;
 
 pub use array::{ArrayWriter, StoredArray, read_group, write_array, write_group};
+pub use candidates::{BEYOND, CandidateBox, CandidateInfo, CandidateWriter, ForestTables, StoredCandidates};
 pub use error::StoreError;
 pub use fault::{read_fault, write_fault};
 pub use header::VERSION;

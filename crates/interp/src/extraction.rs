@@ -1,0 +1,252 @@
+//! From a volume to horizon candidates: surfaces, their trees, and for every voxel the closest leaf.
+//!
+//! [`extract`] keeps the result in memory; [`extract_to_store`] writes it slab by slab, for volumes larger than memory too: growing reads
+//! slabs ([`SlabSource`]), and of distances one slab is in memory at a time. Both give the same candidates. Space: voxels.
+
+use crate::distance::{DistanceSettings, LeafDistances};
+use crate::error::Error;
+use crate::extrema::{ExtremaError, SlabSource};
+use crate::forest::{Forest, ForestSettings};
+use crate::grow::{GrowError, GrowSettings, grow_slabs};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::ops::Range;
+use std::path::Path;
+use std::time::Instant;
+use survey::Progress;
+use survey::store::{CandidateBox, CandidateInfo, CandidateWriter, StoreError, StoredVolume};
+
+/// How candidates are extracted.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ExtractSettings {
+    /// How surfaces are grown.
+    pub grow: GrowSettings,
+    /// How their trees are built.
+    pub forest: ForestSettings,
+    /// How far distances are told.
+    pub distance: DistanceSettings,
+}
+
+/// Seconds by stage.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct StageSeconds {
+    /// Extrema, links, surfaces.
+    pub growing: f64,
+    /// Surface trees.
+    pub trees: f64,
+    /// Distances and leaf ids.
+    pub distances: f64,
+    /// Writing, 0 when nothing was written.
+    pub storing: f64,
+    /// All of them.
+    pub total: f64,
+}
+
+/// What an extraction found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ExtractReport {
+    /// How it was done.
+    pub settings: ExtractSettings,
+    /// Surfaces.
+    pub surfaces: usize,
+    /// Leaves of their trees.
+    pub leaves: usize,
+    /// Surfaces with fewer triangles than a leaf should have, which are one leaf each.
+    pub undersized: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles of the largest surface.
+    pub largest: usize,
+    /// Share of the voxels that have a leaf within the greatest distance, 0 to 1.
+    pub within_reach: f64,
+    /// Bytes of a leaf id: 2, or 4 when there are more than 65 535.
+    pub leaf_id_bytes: usize,
+    /// How long it took.
+    pub seconds: StageSeconds,
+}
+
+impl ExtractReport {
+    /// What to say when there is no surface.
+    pub fn nothing_found(&self) -> Option<String> {
+        (self.surfaces == 0).then(|| {
+            format!(
+                "no surface at least {} traces wide was found: the volume is constant, dead or thinner than that, or --extrema names what it does not have",
+                self.settings.grow.min_front_width
+            )
+        })
+    }
+}
+
+impl fmt::Display for ExtractReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(sentence) = self.nothing_found() {
+            return writeln!(f, "{sentence}");
+        }
+        writeln!(
+            f,
+            "{} surfaces with {} triangles, the largest with {}; {} leaves, of which {} are whole surfaces below {} triangles",
+            self.surfaces,
+            self.triangles,
+            self.largest,
+            self.leaves,
+            self.undersized,
+            self.settings.forest.min_leaf_triangles
+        )?;
+        writeln!(
+            f,
+            "{:.1} % of the voxels lie within {} voxels of a surface",
+            self.within_reach * 100.0,
+            self.settings.distance.max_distance
+        )?;
+        if self.leaf_id_bytes > 2 {
+            writeln!(f, "there are more than 65535 leaves: their ids take four bytes a voxel instead of two")?;
+        }
+        let StageSeconds { growing, trees, distances, storing, total } = self.seconds;
+        writeln!(
+            f,
+            "growing {growing:.2} s, trees {trees:.2} s, distances {distances:.2} s, storing {storing:.2} s: {total:.2} s"
+        )
+    }
+}
+
+/// Candidates in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extraction {
+    /// Surfaces and their trees.
+    pub forest: Forest,
+    /// For every voxel its closest leaf. Memory: 5 bytes a voxel.
+    pub candidates: CandidateBox,
+    /// What was found.
+    pub report: ExtractReport,
+}
+
+/// Extracts the candidates of a volume.
+///
+/// # Errors
+/// [`Error`]: settings that make no sense, a source that fails, or cancelled. That nothing is found is no error.
+pub fn extract<S>(source: &S, settings: &ExtractSettings, progress: &Progress) -> Result<Extraction, Error>
+where
+    S: SlabSource,
+    GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
+{
+    let start = Instant::now();
+    let (forest, mut report) = grow_forest(source, settings, progress)?;
+    let measuring = Instant::now();
+    let [nx, ny, _] = source.size();
+    let distances = LeafDistances::new(&forest, &settings.distance)?;
+    progress.begin("measuring distances to surfaces", (nx * ny) as u64);
+    let all = distances.columns(0..nx, 0..ny, progress)?;
+    drop(distances);
+    let reached = all.leaf.iter().filter(|&&leaf| leaf != 0).count();
+    report.within_reach = reached as f64 / all.leaf.len().max(1) as f64;
+    report.seconds.distances = measuring.elapsed().as_secs_f64();
+    report.seconds.total = start.elapsed().as_secs_f64();
+    let candidates = CandidateBox { size: source.size(), distance: all.distance, leaf: all.leaf };
+    Ok(Extraction { forest, candidates, report })
+}
+
+/// Extracts the candidates of a volume into the store; `key` identifies source and settings. What is at `path` is replaced at the very end.
+///
+/// # Errors
+/// As [`extract`], and [`Error::Store`]; `path` is then what it was before.
+pub fn extract_to_store<S>(
+    path: &Path,
+    key: &str,
+    source: &S,
+    settings: &ExtractSettings,
+    progress: &Progress,
+) -> Result<ExtractReport, Error>
+where
+    S: SlabSource,
+    GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
+{
+    let start = Instant::now();
+    let (forest, mut report) = grow_forest(source, settings, progress)?;
+    let size = source.size();
+    let mut writer = CandidateWriter::create(path, size, forest.leaf_count())?;
+    let measuring = Instant::now();
+    let distances = LeafDistances::new(&forest, &settings.distance)?;
+    let (mut reached, mut storing) = (0, 0.0);
+    distances.slabs(writer.slab_inlines(), progress, |slab| {
+        let writing = Instant::now();
+        reached += slab.leaf.iter().filter(|&&leaf| leaf != 0).count();
+        writer.write_slab(slab.x.start, &slab.distance, &slab.leaf, progress)?;
+        storing += writing.elapsed().as_secs_f64();
+        Ok::<(), Error>(())
+    })?;
+    drop(distances);
+    report.seconds.distances = measuring.elapsed().as_secs_f64() - storing;
+    report.within_reach = reached as f64 / size.iter().product::<usize>().max(1) as f64;
+    let writing = Instant::now();
+    let tables = forest.tables();
+    // The pyramid's and trees' share is not known before it is written; what it takes is told to the caller alone.
+    report.seconds.storing = storing;
+    report.seconds.total = start.elapsed().as_secs_f64();
+    let info = CandidateInfo {
+        key: key.to_owned(),
+        size,
+        max_distance: settings.distance.max_distance,
+        leaves: forest.leaf_count(),
+        report: serde_json::to_value(&report).unwrap_or_default(),
+    };
+    drop(forest);
+    writer.finish(&info, &tables, progress)?;
+    report.seconds.storing += writing.elapsed().as_secs_f64();
+    report.seconds.total = start.elapsed().as_secs_f64();
+    Ok(report)
+}
+
+/// Grows surfaces and builds their trees.
+fn grow_forest<S>(source: &S, settings: &ExtractSettings, progress: &Progress) -> Result<(Forest, ExtractReport), Error>
+where
+    S: SlabSource,
+    GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
+{
+    let start = Instant::now();
+    let surfaces = grow_slabs(source, &settings.grow, progress).map_err(|error| match error {
+        GrowError::Cancelled(cancelled) | GrowError::Extrema(ExtremaError::Cancelled(cancelled)) => cancelled.into(),
+        other => Error::Growing(Box::new(other)),
+    })?;
+    let growing = start.elapsed().as_secs_f64();
+    let largest = surfaces.surfaces.iter().map(|part| part.triangles.len()).max().unwrap_or(0);
+    let forest = Forest::build(surfaces, &settings.forest, progress)?;
+    let undersized =
+        forest.roots.iter().filter(|&&root| forest.is_undersized(root, settings.forest.min_leaf_triangles));
+    let report = ExtractReport {
+        settings: settings.clone(),
+        surfaces: forest.roots.len(),
+        leaves: forest.leaf_count(),
+        undersized: undersized.count(),
+        triangles: forest.surfaces.triangles.len(),
+        vertices: forest.surfaces.vertices.len(),
+        largest,
+        within_reach: 0.0,
+        leaf_id_bytes: if forest.leaf_count() > usize::from(u16::MAX) { 4 } else { 2 },
+        seconds: StageSeconds { growing, trees: start.elapsed().as_secs_f64() - growing, ..StageSeconds::default() },
+    };
+    Ok((forest, report))
+}
+
+impl SlabSource for StoredVolume {
+    type Error = StoreError;
+
+    fn size(&self) -> [usize; 3] {
+        Self::size(self, 0)
+    }
+
+    fn read(&self, inlines: Range<usize>, visit: &mut dyn FnMut(usize, usize, &[f32])) -> Result<(), StoreError> {
+        let [_, ny, nz] = Self::size(self, 0);
+        let slab = self.read_box_f32(0, [inlines.start, 0, 0], [inlines.len(), ny, nz])?;
+        for x in 0..inlines.len() {
+            for y in 0..ny {
+                if slab.is_live(x, y) {
+                    visit(inlines.start + x, y, slab.trace(x, y));
+                }
+            }
+        }
+        Ok(())
+    }
+}

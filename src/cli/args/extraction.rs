@@ -1,0 +1,28 @@
+//! What can be typed to extract horizon candidates.
+
+use clap::Args;
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ExtractArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Volume to extract from [default: the first on the project's lattice]
+    #[arg(long, value_name = "NAME")]
+    pub(in crate::cli) volume: Option<String>,
+    /// How surfaces grow: ours, or paper, the published way
+    #[arg(long, value_name = "ours|paper", default_value = "ours")]
+    pub(in crate::cli) method: String,
+    /// What they follow: peak, trough, zero; several with commas
+    #[arg(long, value_name = "KINDS", default_value = "peak,trough")]
+    pub(in crate::cli) extrema: String,
+    /// Traces: surfaces and connections narrower than this are not grown
+    #[arg(long, value_name = "TRACES", default_value_t = 4)]
+    pub(in crate::cli) min_front_width: usize,
+    /// Fewest triangles of a leaf of a surface's tree
+    #[arg(long, value_name = "N", default_value_t = 500)]
+    pub(in crate::cli) min_leaf_triangles: u32,
+    /// Greatest distance to a surface that is told, voxels
+    #[arg(long, value_name = "VOXELS", default_value_t = 10.0)]
+    pub(in crate::cli) max_distance: f32,
+}

@@ -1,0 +1,26 @@
+//! What was meant by the options of an extraction.
+
+use super::args::ExtractArgs;
+use super::interpretation::word;
+use super::request::{Request, Usage};
+use interp::{DistanceSettings, ExtractSettings, Extremum, ForestSettings, GrowSettings, Method};
+
+/// What surfaces can follow, by word.
+const KINDS: [(&str, Extremum); 3] = [("peak", Extremum::Peak), ("trough", Extremum::Trough), ("zero", Extremum::Zero)];
+
+pub(super) fn extract(typed: ExtractArgs) -> Result<Request, Usage> {
+    let method = word("--method", &typed.method, &[("ours", Method::Ours), ("paper", Method::Paper)])?;
+    let kinds = typed.extrema.split(',').map(|kind| word("--extrema", kind.trim(), &KINDS));
+    let grow = GrowSettings {
+        method,
+        extrema: kinds.collect::<Result<_, _>>()?,
+        min_front_width: typed.min_front_width,
+        ..GrowSettings::default()
+    };
+    let settings = ExtractSettings {
+        grow,
+        forest: ForestSettings { min_leaf_triangles: typed.min_leaf_triangles, ..ForestSettings::default() },
+        distance: DistanceSettings { max_distance: typed.max_distance },
+    };
+    Ok(Request::Extract { project: typed.project, volume: typed.volume, settings })
+}
