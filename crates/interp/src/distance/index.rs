@@ -97,6 +97,24 @@ pub(super) struct CellIndex {
     /// First triangle of each (brick, cell); one more at the end.
     starts: Vec<u32>,
     triangles: Vec<CellTriangle>,
+    /// Least and greatest z of the triangles of each brick.
+    z_ranges: Vec<[f32; 2]>,
+}
+
+/// The triangles of a brick.
+pub(super) struct Brick<'a> {
+    /// First triangle of each cell; one more at the end.
+    starts: &'a [u32],
+    triangles: &'a [CellTriangle],
+    /// Least and greatest z; `None` when it is empty.
+    pub(super) z_range: Option<[f32; 2]>,
+}
+
+impl<'a> Brick<'a> {
+    /// Triangles of a cell: row · 4 + column of it.
+    pub(super) fn in_cell(&self, cell: usize) -> &'a [CellTriangle] {
+        &self.triangles[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
 }
 
 impl CellIndex {
@@ -106,7 +124,7 @@ impl CellIndex {
         let nz = forest.surfaces.size[2];
         let counts =
             [(x.end - origin[0]).div_ceil(BRICK), (y.end - origin[1]).div_ceil(BRICK), nz.div_ceil(INTERVAL).max(1)];
-        let mut index = Self { origin, counts, starts: Vec::new(), triangles: Vec::new() };
+        let mut index = Self { origin, counts, starts: Vec::new(), triangles: Vec::new(), z_ranges: Vec::new() };
         let mut starts = vec![0u32; counts.iter().product::<usize>() * CELLS + 1];
         index.each(forest, bins, &x, &y, |at, _| starts[at + 1] += 1);
         for n in 1..starts.len() {
@@ -114,10 +132,14 @@ impl CellIndex {
         }
         let mut ends = starts.clone();
         let mut triangles = vec![CellTriangle::default(); starts[starts.len() - 1] as usize];
+        let mut z_ranges = vec![[f32::INFINITY, f32::NEG_INFINITY]; counts.iter().product()];
         index.each(forest, bins, &x, &y, |at, triangle| {
             triangles[ends[at] as usize] = triangle;
             ends[at] += 1;
+            let ([high, low], range) = (triangle.z_range(), &mut z_ranges[at / CELLS]);
+            *range = [range[0].min(high), range[1].max(low)];
         });
+        index.z_ranges = z_ranges;
         index.starts = starts;
         index.triangles = triangles;
         index
@@ -173,15 +195,22 @@ impl CellIndex {
         &self.triangles[self.starts[at] as usize..self.starts[at + 1] as usize]
     }
 
-    /// Whether the brick that holds a cell has no triangles in an interval.
-    pub(super) fn is_brick_empty(&self, x: usize, y: usize, interval: usize) -> bool {
-        let first = self.place(x, y, interval) / CELLS * CELLS;
-        self.starts[first] == self.starts[first + CELLS]
+    /// A brick, by its number along x and y in the volume, and the interval of depth.
+    pub(super) fn brick(&self, x: usize, y: usize, interval: usize) -> Brick<'_> {
+        let [x, y] = [x - self.origin[0] / BRICK, y - self.origin[1] / BRICK];
+        let brick = (x * self.counts[1] + y) * self.counts[2] + interval;
+        let starts = &self.starts[brick * CELLS..(brick + 1) * CELLS + 1];
+        let is_empty = starts[0] == starts[CELLS];
+        Brick { starts, triangles: &self.triangles, z_range: (!is_empty).then(|| self.z_ranges[brick]) }
     }
 
-    /// Cells that are indexed: x and y.
-    pub(super) fn cells(&self) -> [Range<usize>; 2] {
-        [0, 1].map(|axis| self.origin[axis]..self.origin[axis] + self.counts[axis] * BRICK)
+    /// Bricks, numbered in the volume, that have cells within `reach` of a column.
+    pub(super) fn bricks_within(&self, column: [usize; 2], reach: usize) -> [Range<usize>; 2] {
+        [0, 1].map(|axis| {
+            let first = self.origin[axis] / BRICK;
+            let from = (column[axis].saturating_sub(reach) / BRICK).max(first);
+            from..((column[axis] + reach) / BRICK + 1).min(first + self.counts[axis])
+        })
     }
 }
 

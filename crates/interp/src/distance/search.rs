@@ -1,7 +1,7 @@
 //! The search down the columns of a block.
 
 use super::index::{BRICK, CellIndex, INTERVAL, TriangleBins};
-use super::triangle::{CellTriangle, FromColumn, LANES};
+use super::triangle::{CellTriangle, FromColumn, LANES, greater};
 use super::{BEYOND, BlockRows, DistanceSettings};
 use crate::forest::Forest;
 use std::ops::Range;
@@ -43,6 +43,23 @@ enum Neighbour {
     None,
     /// The column next to it.
     Before,
+}
+
+/// Where triangles are tested.
+struct Place {
+    column: [usize; 2],
+    cell: [usize; 2],
+    /// Squared horizontal distance of the two.
+    h_sq: f32,
+    run: usize,
+    /// The interval of depth that the triangles stand in, and the first that is visited for this run.
+    interval: usize,
+    top: usize,
+}
+
+/// Horizontal distance, along one axis, of a column to the `count` cells from `unit · count`.
+fn apart(at: usize, unit: usize, count: usize) -> f32 {
+    (unit * count).saturating_sub(at).max(at.saturating_sub((unit + 1) * count)) as f32
 }
 
 /// A column at work. Arrays are filled up to whole runs.
@@ -88,7 +105,7 @@ impl<'a> Column<'a> {
             let reach = self.reach(run);
             for cell_x in x.saturating_sub(1)..x + 1 {
                 for cell_y in y.saturating_sub(1)..y + 1 {
-                    self.visit_cell([x, y], [cell_x, cell_y], 0.0, run, reach);
+                    self.visit_cell([x, y], [cell_x, cell_y], run, reach);
                 }
             }
             let reach = self.reach(run);
@@ -135,36 +152,32 @@ impl<'a> Column<'a> {
 
     /// Visits the cells that `reach` reaches but for the four around the column.
     fn visit_bricks(&mut self, [x, y]: [usize; 2], run: usize, reach: f32) {
-        let [cells_x, cells_y] = self.index.cells();
-        let within = |at: usize, cells: &Range<usize>| {
-            let first = at.saturating_sub(reach as usize + 1).max(cells.start);
-            first..(at + reach as usize + 1).min(cells.end)
-        };
-        let (xs, ys) = (within(x, &cells_x), within(y, &cells_y));
-        let apart =
-            |at: usize, first: usize, last: usize| first.saturating_sub(at).max(at.saturating_sub(last + 1)) as f32;
-        let mut brick_x = xs.start / BRICK * BRICK;
-        while brick_x < xs.end {
-            let mut brick_y = ys.start / BRICK * BRICK;
-            while brick_y < ys.end {
-                let h = [apart(x, brick_x, brick_x + BRICK - 1), apart(y, brick_y, brick_y + BRICK - 1)];
-                let intervals = self.intervals(run, reach, h[0] * h[0] + h[1] * h[1]);
-                let empty = intervals.clone().all(|n| self.index.is_brick_empty(brick_x, brick_y, n));
-                if !intervals.is_empty() && !empty {
-                    for cell_x in brick_x.max(xs.start)..(brick_x + BRICK).min(xs.end) {
-                        let h_x = apart(x, cell_x, cell_x);
-                        for cell_y in brick_y.max(ys.start)..(brick_y + BRICK).min(ys.end) {
-                            let h_y = apart(y, cell_y, cell_y);
-                            let h_sq = h_x * h_x + h_y * h_y;
-                            if h_sq > 0.0 {
-                                self.visit_cell([x, y], [cell_x, cell_y], h_sq, run, reach);
-                            }
+        let index = self.index;
+        let [bricks_x, bricks_y] = index.bricks_within([x, y], reach as usize + 1);
+        let (top, reach_sq) = ((run * RUN) as f32, reach * reach);
+        for brick_x in bricks_x {
+            let h_x = apart(x, brick_x, BRICK);
+            for brick_y in bricks_y.clone() {
+                let h_y = apart(y, brick_y, BRICK);
+                let h_sq = h_x * h_x + h_y * h_y;
+                let intervals = self.intervals(run, reach, h_sq);
+                for interval in intervals.clone() {
+                    let brick = index.brick(brick_x, brick_y, interval);
+                    let Some([high, low]) = brick.z_range else { continue };
+                    if !may_be_closer(&self.best_sq.as_chunks::<RUN>().0[run], h_sq, [high - top, low - top]) {
+                        continue;
+                    }
+                    for n in 0..BRICK * BRICK {
+                        let cell = [brick_x * BRICK + n / BRICK, brick_y * BRICK + n % BRICK];
+                        let h = [apart(x, cell[0], 1), apart(y, cell[1], 1)];
+                        let h_sq = h[0] * h[0] + h[1] * h[1];
+                        if h_sq > 0.0 && h_sq <= reach_sq {
+                            let place = Place { column: [x, y], cell, h_sq, run, top: intervals.start, interval };
+                            self.test(&place, brick.in_cell(n));
                         }
                     }
                 }
-                brick_y += BRICK;
             }
-            brick_x += BRICK;
         }
     }
 
@@ -178,47 +191,38 @@ impl<'a> Column<'a> {
         self.index.interval(top - down)..self.index.interval(top + (RUN - 1) as f32 + down) + 1
     }
 
-    /// Tests the triangles of a cell against a run.
-    fn visit_cell(&mut self, [x, y]: [usize; 2], cell: [usize; 2], h_sq: f32, run: usize, reach: f32) {
+    /// Tests the triangles of one of the four cells around the column against a run.
+    fn visit_cell(&mut self, column: [usize; 2], cell: [usize; 2], run: usize, reach: f32) {
         let index = self.index;
-        let (top, bottom) = ((run * RUN) as f32, (run * RUN + RUN - 1) as f32);
-        let [dx, dy] = [x as f32 - cell[0] as f32, y as f32 - cell[1] as f32];
-        let intervals = self.intervals(run, reach, h_sq);
+        let intervals = self.intervals(run, reach, 0.0);
         for interval in intervals.clone() {
-            for triangle in index.in_cell(cell[0], cell[1], interval) {
-                let [high, low] = triangle.z_range();
-                let gap = (high - bottom).max(top - low).max(0.0);
-                if h_sq + gap * gap > reach * reach {
-                    continue;
-                }
-                // One that stands in several intervals is taken in the first that is visited.
-                if interval > intervals.start && index.interval(high) < interval {
-                    continue;
-                }
-                self.test(triangle, dx, dy, h_sq, run);
-            }
+            let place = Place { column, cell, h_sq: 0.0, run, top: intervals.start, interval };
+            self.test(&place, index.in_cell(cell[0], cell[1], interval));
         }
     }
 
-    /// Tests one triangle against a run, several samples at once.
-    fn test(&mut self, triangle: &CellTriangle, dx: f32, dy: f32, h_sq: f32, run: usize) {
-        let [high, low] = triangle.z_range();
-        let seen = FromColumn::new(triangle, dx, dy);
-        let leaf = triangle.leaf();
-        for first in (run * RUN..(run + 1) * RUN).step_by(LANES) {
-            let (top, bottom) = (first as f32, (first + LANES - 1) as f32);
-            let gap = (high - bottom).max(top - low).max(0.0);
-            let lanes = first..first + LANES;
-            let (best_sq, leaves) = (&mut self.best_sq[lanes.clone()], &mut self.leaf[lanes]);
-            let reach_sq = best_sq.iter().fold(0.0f32, |most, sq| most.max(*sq));
-            if h_sq + gap * gap > reach_sq {
+    /// Tests triangles of a cell against a run.
+    fn test(&mut self, place: &Place, triangles: &[CellTriangle]) {
+        let [dx, dy] = [0, 1].map(|axis| place.column[axis] as f32 - place.cell[axis] as f32);
+        let top = (place.run * RUN) as f32;
+        let best_sq = &mut self.best_sq.as_chunks_mut::<RUN>().0[place.run];
+        let leaves = &mut self.leaf.as_chunks_mut::<RUN>().0[place.run];
+        for triangle in triangles {
+            let [high, low] = triangle.z_range();
+            if !may_be_closer(best_sq, place.h_sq, [high - top, low - top]) {
                 continue;
             }
-            let found = seen.distances_sq(top);
-            for lane in 0..LANES {
-                let closer = found[lane] < best_sq[lane] || (found[lane] == best_sq[lane] && leaf < leaves[lane]);
-                best_sq[lane] = if closer { found[lane] } else { best_sq[lane] };
-                leaves[lane] = if closer { leaf } else { leaves[lane] };
+            // One that stands in several intervals is taken in the first that is visited.
+            if place.interval > place.top && self.index.interval(high) < place.interval {
+                continue;
+            }
+            let seen = FromColumn::new(triangle, dx, dy);
+            let groups = best_sq.as_chunks_mut::<LANES>().0.iter_mut().zip(leaves.as_chunks_mut::<LANES>().0);
+            for (group, (best_sq, leaves)) in groups.enumerate() {
+                let first = top + (group * LANES) as f32;
+                if may_be_closer(best_sq, place.h_sq, [high - first, low - first]) {
+                    keep_closest(best_sq, leaves, seen.distances_sq(first), triangle.leaf());
+                }
             }
         }
     }
@@ -230,5 +234,26 @@ impl<'a> Column<'a> {
             leaf[n] = if found { self.leaf[n] } else { 0 };
             distance[n] = if found { settings.encode(self.best_sq[n].sqrt().min(self.max)) } else { BEYOND };
         }
+    }
+}
+
+/// Whether a triangle `h` away horizontally and from `high` to `low` below the first sample could be closer to one of the samples.
+#[inline(always)]
+fn may_be_closer<const N: usize>(best_sq: &[f32; N], h_sq: f32, [high, low]: [f32; 2]) -> bool {
+    let mut may = false;
+    for (n, best_sq) in best_sq.iter().enumerate() {
+        let gap = greater(greater(high - n as f32, n as f32 - low), 0.0);
+        may |= h_sq + gap * gap <= *best_sq;
+    }
+    may
+}
+
+/// Takes over what is closer; of equals the lesser leaf.
+#[inline(always)]
+fn keep_closest(best_sq: &mut [f32; LANES], leaves: &mut [u32; LANES], found: [f32; LANES], leaf: u32) {
+    for lane in 0..LANES {
+        let closer = found[lane] < best_sq[lane] || (found[lane] == best_sq[lane] && leaf < leaves[lane]);
+        best_sq[lane] = if closer { found[lane] } else { best_sq[lane] };
+        leaves[lane] = if closer { leaf } else { leaves[lane] };
     }
 }
