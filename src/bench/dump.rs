@@ -59,7 +59,12 @@ pub(super) fn write(folder: &Path, model: &StructuralModel, progress: &Progress)
 }
 
 /// Version 1.0 of the format: magic, length of the header, a Python literal padded to 64 bytes, the values in C order.
-fn write_npy<'a>(path: &Path, kind: &str, shape: &[usize], parts: impl Iterator<Item = &'a [u8]>) -> io::Result<()> {
+pub(super) fn write_npy<'a>(
+    path: &Path,
+    kind: &str,
+    shape: &[usize],
+    parts: impl Iterator<Item = &'a [u8]>,
+) -> io::Result<()> {
     let shape: String = shape.iter().map(|count| format!("{count}, ")).collect();
     let mut header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({shape}), }}");
     while (10 + header.len() + 1) % 64 != 0 {

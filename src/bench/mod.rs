@@ -6,7 +6,10 @@
 //! largest cube over that of the smallest. Memory is what the process needed at its peak beyond what it held before, a voxel.
 
 mod dump;
+mod interp;
 mod model;
+
+pub use self::interp::ExtractionRow;
 
 use crate::error::ProjectError;
 use crate::picture::{Device, Painter};
@@ -70,6 +73,10 @@ pub struct Measured {
     pub cubes: Vec<Cube>,
     /// Time per voxel of the largest cube over that of the smallest.
     pub growth: f64,
+    /// Extractions of horizon candidates, small to large.
+    pub extractions: Vec<ExtractionRow>,
+    /// Time per voxel of the largest extraction over that of the smallest.
+    pub extraction_growth: f64,
     /// What drew the pictures.
     pub device: String,
     /// Seconds for a picture by the exact lookup.
@@ -95,6 +102,8 @@ impl fmt::Display for Measured {
             }
         }
         writeln!(f, "time per voxel, largest over smallest cube: {:.2}", self.growth)?;
+        self.extractions.iter().try_for_each(|row| write!(f, "{row}"))?;
+        writeln!(f, "extraction, time per voxel, largest over smallest cube: {:.2}", self.extraction_growth)?;
         writeln!(
             f,
             "picture of three faces on the {}: {:.2} s exact, {:.2} s packed, ratio {:.2}",
@@ -108,6 +117,11 @@ impl fmt::Display for Measured {
 /// # Errors
 /// Cancelled, or files that could not be written.
 pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> Result<Measured, ProjectError> {
+    let extractions = interp::measure(sizes, dump, progress)?;
+    let extraction_growth = match (extractions.first(), extractions.last()) {
+        (Some(first), Some(last)) => last.us_per_voxel / first.us_per_voxel,
+        _ => 1.0,
+    };
     let mut cubes = Vec::new();
     let (mut device, mut pictures) = (String::new(), (0.0, 0.0));
     for &side in sizes.sides() {
@@ -131,6 +145,8 @@ pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> Result<Mea
         threads: rayon::current_num_threads(),
         cubes,
         growth,
+        extractions,
+        extraction_growth,
         device,
         exact_picture_seconds: exact,
         packed_picture_seconds: packed,

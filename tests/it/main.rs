@@ -5,6 +5,7 @@ mod bad_input;
 mod chain;
 mod create;
 mod demo;
+mod extraction;
 mod help;
 mod program;
 mod safety;

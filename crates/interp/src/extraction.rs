@@ -3,6 +3,9 @@
 //! [`extract`] keeps the result in memory; [`extract_to_store`] writes it slab by slab, for volumes larger than memory too: growing reads
 //! slabs ([`SlabSource`]), and of distances one slab is in memory at a time. Both give the same candidates. Space: voxels.
 
+#[cfg(test)]
+mod tests;
+
 use crate::distance::{DistanceSettings, LeafDistances};
 use crate::error::Error;
 use crate::extrema::{ExtremaError, SlabSource};

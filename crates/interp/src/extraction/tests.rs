@@ -1,0 +1,88 @@
+//! The whole extraction: in memory and through the store, and where there is nothing to find.
+
+use super::*;
+use survey::Volume;
+use survey::store::{BEYOND, StoredCandidates};
+
+/// Dipping layers, a cosine of depth.
+fn layered(size: [usize; 3]) -> Volume<f32> {
+    let [_, ny, nz] = size;
+    let sample = |n: usize| {
+        let (x, y, z) = ((n / nz / ny) as f32, (n / nz % ny) as f32, (n % nz) as f32);
+        (std::f32::consts::TAU * (z - 0.3 * x + 0.1 * y) / 12.0).cos()
+    };
+    Volume::from_samples(size, (0..size.iter().product()).map(sample).collect()).unwrap()
+}
+
+fn extracted(volume: &Volume<f32>) -> Extraction {
+    extract(volume, &ExtractSettings::default(), &Progress::silent()).unwrap()
+}
+
+#[test]
+fn layers_are_as_far_as_their_cosine_says() {
+    let size = [40, 36, 60];
+    let found = extracted(&layered(size));
+    assert!(found.report.surfaces > 5 && found.report.nothing_found().is_none());
+    assert_eq!(found.report.leaves, found.forest.leaf_count());
+    let settings = DistanceSettings::default();
+    let steep = (1.0f32 + 0.09 + 0.01).sqrt();
+    for (x, y, z) in [(20, 18, 30), (17, 21, 25), (23, 15, 34), (20, 20, 28)] {
+        // Peaks and troughs alternate every six samples.
+        let phase = (z as f32 - 0.3 * x as f32 + 0.1 * y as f32).rem_euclid(6.0);
+        let wanted = phase.min(6.0 - phase) / steep;
+        let n = (x * size[1] + y) * size[2] + z;
+        let distance = settings.decode(found.candidates.distance[n]).unwrap();
+        assert!((distance - wanted).abs() < 0.06, "{x} {y} {z}: {distance}, not {wanted}");
+        assert!(found.candidates.leaf[n] > 0);
+    }
+}
+
+#[test]
+fn the_store_gives_what_memory_holds() {
+    let size = [150, 20, 40];
+    let volume = layered(size);
+    let wanted = extracted(&volume);
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("candidates.zarr");
+    let silent = Progress::silent();
+    let settings = ExtractSettings::default();
+    let report = extract_to_store(&path, "key", &volume, &settings, &silent).unwrap();
+    let stored = StoredCandidates::open(&path).unwrap();
+    assert_eq!((stored.info().key.as_str(), stored.info().leaves), ("key", report.leaves));
+    assert_eq!(stored.read(0, &silent).unwrap(), wanted.candidates);
+    assert_eq!(Forest::from_tables(stored.read_forest(&silent).unwrap(), size).unwrap(), wanted.forest);
+    let kept: ExtractReport = serde_json::from_value(stored.info().report.clone()).unwrap();
+    assert_eq!((kept.surfaces, kept.within_reach), (wanted.report.surfaces, wanted.report.within_reach));
+    let cancelled = Progress::silent();
+    cancelled.cancel();
+    let again = extract_to_store(&path, "other", &volume, &settings, &cancelled);
+    assert!(matches!(again, Err(Error::Cancelled(_))));
+    assert_eq!(StoredCandidates::open(&path).unwrap().info().key, "key", "what was there is still there");
+}
+
+#[test]
+fn nothing_is_found_where_nothing_is() {
+    let mut dead = layered([8, 8, 40]);
+    dead.set_live(Some(vec![false; 64])).unwrap();
+    let nan = Volume::filled([8, 8, 20], f32::NAN);
+    for volume in [Volume::filled([8, 8, 20], 3.0), nan, dead, layered([1, 1, 40]), layered([3, 9, 40])] {
+        let found = extracted(&volume);
+        assert_eq!((found.report.surfaces, found.report.leaves), (0, 0));
+        assert!(found.report.nothing_found().unwrap().contains("no surface at least 4 traces wide"));
+        assert!(found.candidates.distance.iter().all(|&code| code == BEYOND));
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("candidates.zarr");
+        extract_to_store(&path, "", &volume, &ExtractSettings::default(), &Progress::silent()).unwrap();
+        assert_eq!(StoredCandidates::open(&path).unwrap().info().leaves, 0);
+    }
+}
+
+#[test]
+fn settings_that_cannot_be_are_refused() {
+    let volume = layered([8, 8, 40]);
+    let refused = |settings: ExtractSettings| extract(&volume, &settings, &Progress::silent()).unwrap_err();
+    let grow = GrowSettings { min_front_width: 0, ..GrowSettings::default() };
+    assert!(matches!(refused(ExtractSettings { grow, ..ExtractSettings::default() }), Error::Growing(_)));
+    let distance = DistanceSettings { max_distance: f32::NAN };
+    assert!(matches!(refused(ExtractSettings { distance, ..ExtractSettings::default() }), Error::Setting { .. }));
+}
