@@ -56,11 +56,11 @@ pub(super) fn measure(
     sizes: Sizes,
     dump: Option<&Path>,
     progress: &Progress,
-) -> Result<Vec<ExtractionRow>, ProjectError> {
+) -> anyhow::Result<Vec<ExtractionRow>> {
     sizes.sides().iter().map(|&side| row(side, dump.filter(|_| side == sizes.middle()), progress)).collect()
 }
 
-fn row(side: usize, dump: Option<&Path>, progress: &Progress) -> Result<ExtractionRow, ProjectError> {
+fn row(side: usize, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<ExtractionRow> {
     let settings = SynthSettings { size: [side; 3], snr: Some(SNR), ..SynthSettings::default() };
     let volume = Synthetic::generate(&settings, progress)?.seismic;
     if let Some(folder) = dump {

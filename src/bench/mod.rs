@@ -116,7 +116,7 @@ impl fmt::Display for Measured {
 ///
 /// # Errors
 /// Cancelled, or files that could not be written.
-pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> Result<Measured, ProjectError> {
+pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<Measured> {
     let extractions = interp::measure(sizes, dump, progress)?;
     let extraction_growth = match (extractions.first(), extractions.last()) {
         (Some(first), Some(last)) => last.us_per_voxel / first.us_per_voxel,
