@@ -52,11 +52,7 @@ impl fmt::Display for ExtractionRow {
 ///
 /// # Errors
 /// Cancelled, or a dump that could not be written.
-pub(super) fn measure(
-    sizes: Sizes,
-    dump: Option<&Path>,
-    progress: &Progress,
-) -> anyhow::Result<Vec<ExtractionRow>> {
+pub(super) fn measure(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<Vec<ExtractionRow>> {
     sizes.sides().iter().map(|&side| row(side, dump.filter(|_| side == sizes.middle()), progress)).collect()
 }
 
