@@ -221,6 +221,133 @@ pub enum ProjectError {
     OtherLattice {
         /// Its name.
         volume: String,
+    /// A place outside the survey.
+    #[error(
+        "inline {}, crossline {}, {} lies outside the survey: inlines {} to {}, crosslines {} to {}, {} to {} down",
+        at[0], at[1], at[2], inlines[0], inlines[1], crosslines[0], crosslines[1], vertical[0], vertical[1]
+    )]
+    PickOutside {
+        /// Inline, crossline, vertical value.
+        at: [f64; 3],
+        /// First and last inline.
+        inlines: [i32; 2],
+        /// First and last crossline.
+        crosslines: [i32; 2],
+        /// First and last vertical value.
+        vertical: [f64; 2],
+    },
+    /// A place with no candidate near it.
+    #[error(
+        "no candidate lies within {max_distance} voxels of inline {}, crossline {}, {}: the nearest is {distance:.1} voxels away, at inline {:.1}, crossline {:.1}, {:.1}",
+        at[0], at[1], at[2], nearest[0], nearest[1], nearest[2]
+    )]
+    NoCandidate {
+        /// Inline, crossline, vertical value.
+        at: [f64; 3],
+        /// The nearest candidate, likewise.
+        nearest: [f64; 3],
+        /// Its distance, voxels.
+        distance: f32,
+        /// How far the extraction reaches, voxels.
+        max_distance: f32,
+    },
+    /// A node could not be found.
+    #[error(transparent)]
+    Assembly(#[from] interp::assembly::AssemblyError),
+    /// A horizon that was imported.
+    #[error("horizon \"{horizon}\" was imported, not assembled by picks")]
+    NotAssembled {
+        /// Its name.
+        horizon: String,
+    },
+    /// Nothing of a horizon is left.
+    #[error("nothing of horizon \"{horizon}\" would be left")]
+    NothingLeft {
+        /// Its name.
+        horizon: String,
+    },
+    /// The node is part of the horizon already.
+    #[error("horizon \"{horizon}\" has all of the node at leaf {leaf} already")]
+    AlreadyPicked {
+        /// The horizon.
+        horizon: String,
+        /// The leaf.
+        leaf: u32,
+    },
+    /// The node is no part of the horizon.
+    #[error("horizon \"{horizon}\" has nothing of the node at leaf {leaf}")]
+    NotPicked {
+        /// The horizon.
+        horizon: String,
+        /// The leaf.
+        leaf: u32,
+    },
+    /// A pick that is not there.
+    #[error("there is no pick {pick}; {}", if known.is_empty() { "nothing was picked yet".to_owned() } else { format!("there are: {known:?}") })]
+    UnknownPick {
+        /// Its number.
+        pick: u32,
+        /// Those there are.
+        known: Vec<u32>,
+    },
+    /// A pick that cannot go down so far.
+    #[error("pick {pick} is {up} levels above its leaf and cannot descend further than that")]
+    AtLeaf {
+        /// Its number.
+        pick: u32,
+        /// Levels above its leaf.
+        up: u32,
+    },
+    /// Picks of another extraction.
+    #[error("the extraction has changed since picks {picks:?} of horizon \"{horizon}\" were made")]
+    OutdatedPicks {
+        /// The horizon.
+        horizon: String,
+        /// Their numbers.
+        picks: Vec<u32>,
+    },
+    /// Picks that mean something else now.
+    #[error("picks {picks:?} of horizon \"{horizon}\" no longer fit: their nodes are different ones, or gone")]
+    UnfitPicks {
+        /// The horizon.
+        horizon: String,
+        /// Their numbers.
+        picks: Vec<u32>,
+    },
+    /// A stick of one place.
+    #[error("stick {stick} has one place; a stick is a line of at least two")]
+    ShortStick {
+        /// Which one, from 1.
+        stick: usize,
+    },
+    /// Sticks that make no surface.
+    #[error("the sticks of fault \"{fault}\" span no surface")]
+    FlatSticks {
+        /// The fault.
+        fault: String,
+    },
+    /// A fault that was not drawn here.
+    #[error("fault \"{fault}\" was not drawn by sticks")]
+    NotDrawn {
+        /// Its name.
+        fault: String,
+    },
+    /// No horizons to find faults in.
+    #[error("the project has no horizons whose offsets could speak for faults")]
+    NoEvidence,
+    /// Nothing was proposed.
+    #[error("no faults were proposed yet")]
+    NoProposals,
+    /// Proposals of another state.
+    #[error("the horizons have changed since faults were proposed")]
+    OutdatedProposals,
+    /// A proposal that is not there.
+    #[error("there is no proposal {proposal}; they are numbered from 1 to {known}")]
+    UnknownProposal {
+        /// Its number.
+        proposal: u32,
+        /// How many there are.
+        known: u32,
     },
     /// The user stopped it.
     #[error("cancelled")]
@@ -280,6 +407,26 @@ impl ProjectError {
             }
             Self::Duplicate { .. } => "choose another --name, or rename or remove the present one first",
             Self::Unknown { .. } => "check the spelling; names are listed by `petroglyph info PROJECT`",
+            Self::PickOutside { .. } => "give INLINE,CROSSLINE,Z as line numbers and in the project's vertical unit",
+            Self::NoCandidate { .. } => {
+                "pick there, or extract with another --extrema or a larger --max-distance"
+            }
+            Self::NotAssembled { .. } => "choose another --horizon; picks make horizons of their own",
+            Self::NothingLeft { .. } => "`petroglyph horizon remove` takes a horizon away",
+            Self::AlreadyPicked { .. } => "pick elsewhere, or climb higher with --up",
+            Self::NotPicked { .. } => "`petroglyph horizon show` lists the picks and their places",
+            Self::UnknownPick { .. } => "`petroglyph horizon show PROJECT NAME` lists the picks with their numbers",
+            Self::AtLeaf { .. } => "take the leaf out with `petroglyph pick --remove`, or extract with smaller leaves",
+            Self::OutdatedPicks { .. } => {
+                "`petroglyph horizon replay` makes them again, or extract with the former settings"
+            }
+            Self::UnfitPicks { .. } => "`petroglyph horizon replay --drop-unfit` takes them out; then pick anew",
+            Self::ShortStick { .. } => "write a stick as --stick IL,XL,Z IL,XL,Z …",
+            Self::FlatSticks { .. } => "draw sticks beside one another, along the fault's dip",
+            Self::NotDrawn { .. } => "choose another --name",
+            Self::NoEvidence => "assemble or import horizons first",
+            Self::NoProposals | Self::OutdatedProposals => "run `petroglyph fault propose PROJECT`",
+            Self::UnknownProposal { .. } => "`petroglyph fault propose PROJECT` lists them",
             Self::NoGeometry => "import a volume, or create the project with --bounds and --size",
             Self::BadName { .. } => "use letters, digits, blanks, - and _",
             Self::NothingToUndo | Self::NothingToRedo => "`petroglyph info PROJECT` shows the history",
@@ -308,6 +455,7 @@ impl ProjectError {
             | Self::Format(_)
             | Self::Well(_)
             | Self::Store(_)
+            | Self::Assembly(_)
             | Self::Model(_)
             | Self::Param(_)
             | Self::Interp(_)

@@ -6,6 +6,7 @@
 
 pub mod app;
 pub mod bench;
+pub mod candidates;
 pub mod cli;
 pub mod command;
 pub mod data;
@@ -17,6 +18,7 @@ pub mod library;
 pub mod picture;
 pub mod pipeline;
 pub mod project;
+pub mod proposals;
 pub mod scene;
 pub mod style;
 pub mod synth;

@@ -1,6 +1,7 @@
 //! What was meant by the options of volumes, horizons and faults.
 
 use super::args::{ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs};
+use super::assembly;
 use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
 use crate::command::{
@@ -108,6 +109,8 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
         HorizonAction::Rename { project, from, to } => {
             Request::Change { project, command: Command::RenameHorizon(RenameHorizon { from, to }) }
         }
+        HorizonAction::Fill(typed) => assembly::fill(typed),
+        HorizonAction::Replay(typed) => assembly::replay(typed),
         HorizonAction::Contact { project, name, contact: text } => {
             let contact = contact("contact", &text)?;
             Request::Change { project, command: Command::SetContact(SetContact { horizon: name, contact }) }
@@ -131,6 +134,9 @@ fn add_fault(typed: FaultAddArgs) -> Result<Request, Usage> {
 pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
     Ok(match action {
         FaultAction::Add(typed) => add_fault(*typed)?,
+        FaultAction::Pick(typed) => assembly::fault_pick(typed)?,
+        FaultAction::Propose(typed) => assembly::fault_propose(&typed)?,
+        FaultAction::Accept { project, id, name } => assembly::fault_accept(project, id, name),
         FaultAction::List { project } => Request::List { project, what: Listing::Faults },
         FaultAction::Truncate { project, name, by } => {
             Request::Change { project, command: Command::SetTruncation(SetTruncation { fault: name, by }) }

@@ -74,6 +74,17 @@ fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
         report.say(format!("  sheet of {u} x {v} nodes: {nodes} with a depth, {low} to {high} {unit}, {holes} holes"));
         sheets.push(json!({ "count": [u, v], "nodes": nodes, "holes": holes, "range": [low, high] }));
     }
+    if let Some(log) = &entry.assembly {
+        report.say(format!("  colour {}, {} picks:", log.colour, log.picks.len()));
+        for pick in &log.picks {
+            let [inline, crossline, z] = pick.at;
+            let verb = if pick.operation == interp::assembly::Operation::Add { "adds" } else { "takes out" };
+            report.say(format!(
+                "    {}: at {inline},{crossline},{z}, leaf {}, {} up, {verb} {} triangles",
+                pick.id, pick.leaf, pick.up, pick.node.triangles
+            ));
+        }
+    }
     report.field("horizon", entry).field("sheets", sheets).field("unit", unit);
     Ok(report)
 }

@@ -4,6 +4,7 @@
 //! 1 failed, 2 wrong usage.
 
 mod args;
+mod assembly;
 mod draw;
 mod extraction;
 mod failure;

@@ -4,8 +4,7 @@ use super::args::{
     Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs,
     VolumeAction,
 };
-use super::extraction;
-use super::interpretation;
+use super::{assembly, extraction, interpretation};
 use super::view::View;
 use super::well;
 use crate::bench;
@@ -16,6 +15,7 @@ use crate::command::{
 use crate::picture::Device;
 use glam::DVec2;
 use interp::ExtractSettings;
+use interp::faults::ProposeSettings;
 use param::KDefinition;
 use std::path::PathBuf;
 use survey::formats::{ExportOptions, Format, ImportOptions};
@@ -39,6 +39,10 @@ pub(super) enum Request {
     Create { project: PathBuf, geometry: Option<SurveyGeometry> },
     /// Change a project.
     Change { project: PathBuf, command: Command },
+    /// Measure an extraction.
+    Evaluate { project: PathBuf, truth: PathBuf },
+    /// Look for faults.
+    ProposeFaults { project: PathBuf, settings: ProposeSettings },
     /// Keep a view, made from what the project or a file has.
     AddScene { project: PathBuf, name: String, from: Option<PathBuf>, view: View },
     /// Set the colours of raw data.
@@ -134,6 +138,10 @@ impl TryFrom<Action> for Request {
             Action::Fault(action) => interpretation::fault(action)?,
             Action::Well(action) => well::well(action)?,
             Action::Extract(typed) => extraction::extract(typed)?,
+            Action::Pick(typed) => assembly::pick(typed)?,
+            Action::Climb(typed) => assembly::climb(typed),
+            Action::Descend(typed) => assembly::descend(typed),
+            Action::Evaluate { project, truth } => Self::Evaluate { project, truth },
             Action::Export(typed) => interpretation::export(typed)?,
             Action::Parameterize(typed) => {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;

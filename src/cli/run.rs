@@ -3,12 +3,12 @@
 use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
-use super::{draw, info, list};
+use super::{assembly, draw, info, list};
 use crate::command::{AddScene, Command, ImportVolume, SetRaw};
 use crate::error::Noun;
 use crate::pipeline::Stage;
 use crate::project::Project;
-use crate::{app, bench, data, demo, derived, extraction, library, picture, pipeline, scene, style, synth};
+use crate::{app, bench, data, demo, derived, extraction, library, picture, pipeline, proposals, scene, style, synth};
 use anyhow::Context;
 use render::Scene;
 use std::path::Path;
@@ -69,6 +69,10 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             report
         }
         Request::Change { project, command } => change(Project::open(&project)?, &command, &progress)?,
+        Request::Evaluate { project, truth } => assembly::evaluate(&project, &truth, &progress)?,
+        Request::ProposeFaults { project, settings } => {
+            told(proposals::propose(&Project::open(&project)?, &settings, &progress)?)
+        }
         Request::AddScene { project, name, from, view } => {
             let project = Project::open(&project)?;
             let mut scene = match from {

@@ -1,5 +1,6 @@
 //! Bringing faults in, saying where they end, taking them out.
 
+use super::assembly::rebuild_all;
 use super::{Effect, Noun, ProjectError};
 use crate::data;
 use crate::project::Draft;
@@ -72,6 +73,7 @@ impl AddFault {
             hash,
             source: super::source_of(&self.path, super::horizon::reading(&report))?,
         });
+        rebuild_all(draft, progress)?;
         Ok(Effect::FaultAdded(Box::new(FaultAdded { triangles: fault.mesh.triangles.len(), report })))
     }
 }
@@ -87,13 +89,14 @@ pub struct FaultAdded {
 }
 
 impl SetTruncation {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Fault, &self.fault)?;
         if let Some(by) = &self.by {
             draft.document.position(Noun::Fault, by)?;
         }
         draft.document.faults[index].truncated_by.clone_from(&self.by);
         draft.document.check_truncation()?;
+        rebuild_all(draft, progress)?;
         let summary = match &self.by {
             Some(by) => format!("fault {} ends at {by}", self.fault),
             None => format!("fault {} ends at none", self.fault),
@@ -103,12 +106,14 @@ impl SetTruncation {
 }
 
 impl RemoveFault {
-    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Fault, &self.name)?;
         draft.document.faults.remove(index);
+        draft.document.sticks.retain(|drawn| drawn.fault != self.name);
         for fault in &mut draft.document.faults {
             fault.truncated_by = fault.truncated_by.take().filter(|by| *by != self.name);
         }
+        rebuild_all(draft, progress)?;
         Ok(Effect::Changed { summary: format!("no fault {}", self.name) })
     }
 }

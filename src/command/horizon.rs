@@ -87,6 +87,7 @@ impl AddHorizon {
             file,
             hash,
             source: super::source_of(&self.path, reading(&report))?,
+            assembly: None,
         };
         draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
         let rules = ContactRules::new(&draft.document.stratigraphy());

@@ -4,12 +4,16 @@
 //! overwrites nothing and can fail at any point: [`crate::Project::apply`] discards the draft then. Undo needs nothing
 //! from a command, because every state is remembered.
 
+mod assembly;
 mod contact;
 mod fault;
+mod fault_pick;
+mod fill;
 mod horizon;
 mod import;
 mod layer;
 mod order;
+mod pick;
 mod scalar;
 mod scene;
 mod survey_frame;
@@ -18,9 +22,13 @@ mod well;
 
 pub use contact::SetContact;
 pub use fault::{AddFault, FaultAdded, RemoveFault, SetTruncation};
+pub use assembly::{AssemblyReport, HoleReport};
+pub use fault_pick::{AcceptFault, PickFault};
+pub use fill::{FillHorizon, HorizonFilled};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
+pub use pick::{Climb, Move, MovePick, PickNode, Picked, Replayed, ReplayedPick, ReplayPicks, Unfit};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
@@ -54,6 +62,18 @@ pub enum Command {
     RenameHorizon(RenameHorizon),
     /// Take a horizon away.
     RemoveHorizon(RemoveHorizon),
+    /// Add a node of a surface tree to a horizon, or take it out.
+    Pick(PickNode),
+    /// Move a pick up or down its tree.
+    MovePick(MovePick),
+    /// Make picks again on the present extraction.
+    ReplayPicks(ReplayPicks),
+    /// Fill the holes of a horizon.
+    FillHorizon(FillHorizon),
+    /// Draw a fault by sticks.
+    PickFault(PickFault),
+    /// Accept a proposed fault.
+    AcceptFault(AcceptFault),
     /// Read a fault.
     AddFault(AddFault),
     /// Say where a fault ends.
@@ -98,6 +118,12 @@ pub enum Effect {
     VolumeImported(VolumeImported),
     /// A horizon is in the project.
     HorizonAdded(Box<HorizonAdded>),
+    /// A node was added to a horizon or taken out, or a pick was moved.
+    Picked(Box<Picked>),
+    /// Picks were made again.
+    Replayed(Box<Replayed>),
+    /// Holes of a horizon were filled.
+    HorizonFilled(Box<HorizonFilled>),
     /// A fault is in the project.
     FaultAdded(Box<FaultAdded>),
     /// A well is in the project.
@@ -119,12 +145,18 @@ impl Command {
             Self::AddHorizon(change) => change.execute(draft, progress),
             Self::RenameHorizon(change) => change.execute(draft),
             Self::RemoveHorizon(change) => change.execute(draft),
+            Self::Pick(change) => change.execute(draft, progress),
+            Self::MovePick(change) => change.execute(draft, progress),
+            Self::ReplayPicks(change) => change.execute(draft, progress),
+            Self::FillHorizon(change) => change.execute(draft, progress),
+            Self::PickFault(change) => change.execute(draft, progress),
+            Self::AcceptFault(change) => change.execute(draft, progress),
             Self::AddFault(change) => change.execute(draft, progress),
-            Self::SetTruncation(change) => change.execute(draft),
-            Self::RemoveFault(change) => change.execute(draft),
             Self::AddWell(change) => change.execute(draft, progress),
             Self::RenameWell(change) => change.execute(draft),
             Self::RemoveWell(change) => change.execute(draft),
+            Self::SetTruncation(change) => change.execute(draft, progress),
+            Self::RemoveFault(change) => change.execute(draft, progress),
             Self::SetVelocity(change) => change.execute(draft),
             Self::SetContact(change) => change.execute(draft),
             Self::SetLayer(change) => change.execute(draft),
@@ -146,6 +178,9 @@ impl Effect {
             Self::Created => "create".to_owned(),
             Self::VolumeImported(done) => format!("import volume {}", done.volume),
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
+            Self::Picked(done) => format!("pick {} of {}", done.pick, done.horizon),
+            Self::Replayed(done) => format!("{} picks made again", done.picks.len()),
+            Self::HorizonFilled(done) => format!("holes of {} filled", done.horizon),
             Self::FaultAdded(done) => format!("fault {}", done.report.name),
             Self::WellAdded(done) => format!("well {}", done.name),
             Self::Changed { summary } => summary.clone(),
@@ -174,6 +209,9 @@ impl std::fmt::Display for Effect {
                 done.assumptions.iter().try_for_each(|line| writeln!(f, "  assumed: {line}"))
             }
             Self::HorizonAdded(done) => write!(f, "{}", done.report),
+            Self::Picked(done) => write!(f, "{done}"),
+            Self::Replayed(done) => write!(f, "{done}"),
+            Self::HorizonFilled(done) => write!(f, "{done}"),
             Self::FaultAdded(done) => write!(f, "{}", done.report),
             Self::WellAdded(done) => write!(f, "{done}"),
             Self::Created | Self::Changed { .. } => f.write_str(&self.summary()),

@@ -1,24 +1,33 @@
 //! `petroglyph demo`: the whole chain on a synthetic survey, through files and commands as a user would go.
 //!
-//! Synthetic survey → SEG-Y and interpretation files → import → layers → parameterization → three pictures: illustrative, raw, and half-way between.
-//! The look is in `look.toml`.
+//! Synthetic survey → SEG-Y and fault files → import → candidates → picks, one on each part of each horizon → layers → parameterization → three
+//! pictures: illustrative, raw, and half-way between. Of the truth no more is used than one place on each part, as someone has it who
+//! sees the reflector. The look is in `look.toml`.
 
-use crate::command::{AddFault, AddHorizon, AddScene, Age, Command, ImportVolume, SetLayer};
+use crate::command::{
+    AddFault, AddScene, Climb, Command, Effect, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
+};
+use crate::error::ProjectError;
+use crate::extraction;
 use crate::picture::{self, Device, Painter};
 use crate::pipeline::{self, Stage};
 use crate::project::{Polarity, Project};
 use crate::synth::{self, SynthSurvey};
 use anyhow::Context;
+use interp::ExtractSettings;
+use interp::assembly::Operation;
+use interp::evaluate::Parts;
+use interp::holes::FillSettings;
 use render::Scene;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use survey::Progress;
+use survey::{Contact, Progress};
 use survey::formats::ImportOptions;
 use survey::segy::SegyOptions;
-use survey::synth::SynthSettings;
+use survey::synth::{SynthSettings, SynthTruth};
 
 /// Survey, patterns and view.
 #[derive(Debug, Deserialize)]
@@ -82,7 +91,17 @@ pub fn run(out: &Path, progress: &Progress) -> anyhow::Result<Demonstration> {
     ));
     done.stages.push(stage.lap("synthetic survey"));
 
-    let mut project = build_project(&done.project, &files, &look, progress)?;
+    let mut project = build_project(&done.project, &files, progress)?;
+    done.steps.push(format!("imported volumes and faults into {}", done.project.display()));
+    done.stages.push(stage.lap("import"));
+
+    let extracted = extraction::extract(&project, None, &ExtractSettings::default(), progress)?;
+    done.steps.push(format!("found {} candidates with {} leaves", extracted.report.surfaces, extracted.report.leaves));
+    done.stages.push(stage.lap("candidates"));
+    let picks = assemble(&mut project, &files, progress)?;
+    done.steps.push(format!("assembled {} horizons by {picks} picks", files.horizons.len()));
+    done.stages.push(stage.lap("picks"));
+    style(&mut project, &files, &look, progress)?;
     let frame = project.document().frame()?.clone();
     let mut scene = look.scene.clone();
     let block = scene.box_in(&frame);
@@ -91,9 +110,6 @@ pub fn run(out: &Path, progress: &Progress) -> anyhow::Result<Demonstration> {
         let scene = Scene { blend, ..scene.clone() };
         project.apply(&Command::AddScene(AddScene { name: name.to_owned(), scene }), progress)?;
     }
-    done.steps.push(format!("imported them into {}", done.project.display()));
-    done.stages.push(stage.lap("import"));
-
     // What the half-way picture needs is what all of them need.
     let loaded = pipeline::load(&project, &Scene { blend: 0.5, ..scene.clone() }, progress)?;
     done.stages.extend(loaded.rock.iter().flat_map(|rock| rock.stages.clone()));
@@ -109,8 +125,8 @@ pub fn run(out: &Path, progress: &Progress) -> anyhow::Result<Demonstration> {
     Ok(done)
 }
 
-/// Imports everything through the same commands as the command line.
-fn build_project(path: &Path, files: &SynthSurvey, look: &Look, progress: &Progress) -> anyhow::Result<Project> {
+/// Imports volumes and faults through the same commands as the command line.
+fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> anyhow::Result<Project> {
     // A former demonstration is replaced; anything else of that name is not ours to remove.
     if path.join("project.toml").exists() {
         fs::remove_dir_all(path).with_context(|| format!("{} could not be replaced", path.display()))?;
@@ -127,16 +143,6 @@ fn build_project(path: &Path, files: &SynthSurvey, look: &Look, progress: &Progr
     };
     project.apply(&import(&files.survey, "seismic"), progress)?;
     project.apply(&import(&files.attribute, "impedance"), progress)?;
-    for horizon in &files.horizons {
-        let command = AddHorizon {
-            path: horizon.file.clone(),
-            name: horizon.name.clone(),
-            contact: horizon.contact,
-            age: Age::ByDepth,
-            options: ImportOptions::default(),
-        };
-        project.apply(&Command::AddHorizon(command), progress)?;
-    }
     for fault in &files.faults {
         let command = AddFault {
             path: fault.file.clone(),
@@ -146,12 +152,53 @@ fn build_project(path: &Path, files: &SynthSurvey, look: &Look, progress: &Progr
         };
         project.apply(&Command::AddFault(command), progress)?;
     }
-    let named = project.document().layers().into_iter().zip(&files.layer_names);
-    let names = named.map(|(layer, name)| SetLayer { layer, name: Some(name.clone()), ..SetLayer::default() });
+    Ok(new.publish()?)
+}
+
+/// Parts of a horizon with fewer traces are not picked.
+const FEWEST_TRACES: usize = 200;
+
+/// Picks every part of every horizon once, climbing to the highest valid node, and fills the holes. Answers the count of picks.
+fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> anyhow::Result<usize> {
+    let truth = SynthTruth::read(&files.truth)?;
+    let frame = project.document().frame()?.clone();
+    let mut picks = 0;
+    for (h, horizon) in files.horizons.iter().enumerate() {
+        for place in Parts::of(&truth, h).middles(&truth, h, FEWEST_TRACES) {
+            let lines = frame.lines_from_voxel(place.truncate());
+            let pick = PickNode {
+                at: [lines.x, lines.y, frame.vertical.value_at(place.z)],
+                horizon: horizon.name.clone(),
+                climb: Climb::HighestValid,
+                operation: Operation::Add,
+                colour: None,
+            };
+            match project.apply(&Command::Pick(pick), progress) {
+                Ok(Effect::Picked(_)) => picks += 1,
+                // A part that noise has swallowed, or that another pick has reached.
+                Err(ProjectError::NoCandidate { .. } | ProjectError::AlreadyPicked { .. }) | Ok(_) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        let fill = FillHorizon { name: horizon.name.clone(), settings: FillSettings::default() };
+        project.apply(&Command::FillHorizon(fill), progress)?;
+        if horizon.contact != Contact::Conformable {
+            let contact = SetContact { horizon: horizon.name.clone(), contact: horizon.contact };
+            project.apply(&Command::SetContact(contact), progress)?;
+        }
+    }
+    Ok(picks)
+}
+
+/// Names and patterns of the layers.
+fn style(project: &mut Project, files: &SynthSurvey, look: &Look, progress: &Progress) -> anyhow::Result<()> {
+    let named: Vec<(String, String)> =
+        project.document().layers().into_iter().zip(files.layer_names.iter().cloned()).collect();
+    let names = named.into_iter().map(|(layer, name)| SetLayer { layer, name: Some(name), ..SetLayer::default() });
     for style in names.chain(look.layers.iter().cloned()) {
         project.apply(&Command::SetLayer(style), progress)?;
     }
-    Ok(new.publish()?)
+    Ok(())
 }
 
 /// Times stages one after the other.

@@ -6,6 +6,7 @@
 pub use super::entries::{
     FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry,
 };
+pub use super::picks::{Assembly, FaultSticks, PickEntry};
 use crate::error::{Noun, ProjectError};
 use param::KDefinition;
 use serde::{Deserialize, Serialize};
@@ -42,6 +43,9 @@ pub struct Document {
     /// Wells in order of import.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub wells: Vec<WellEntry>,
+    /// Sticks of the faults that were drawn here.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sticks: Vec<FaultSticks>,
     /// The user's own tiles.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub textures: Vec<TextureEntry>,
@@ -71,6 +75,7 @@ impl Document {
             horizons: Vec::new(),
             faults: Vec::new(),
             wells: Vec::new(),
+            sticks: Vec::new(),
             textures: Vec::new(),
             style: Style::default(),
             k: BTreeMap::new(),
@@ -249,6 +254,7 @@ mod tests {
             file: format!("horizons/{name}.zarr"),
             hash: "00".into(),
             source: Source { path: "a b.csv".into(), bytes: 10, reading: "csv".into() },
+            assembly: None,
         }
     }
 

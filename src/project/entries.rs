@@ -1,6 +1,7 @@
 //! The named things of a project as `project.toml` lists them. Files are relative to the project's folder; a hash identifies data by
 //! its content.
 
+use super::picks::Assembly;
 use render::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -78,6 +79,9 @@ pub struct HorizonEntry {
     pub hash: String,
     /// Where it came from.
     pub source: Source,
+    /// How it was assembled, if it was not imported.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub assembly: Option<Assembly>,
 }
 
 /// A fault of the project.

@@ -107,6 +107,7 @@ mod tests {
             file: format!("horizons/{name}.zarr"),
             hash: String::new(),
             source: Source { path: "x".into(), bytes: 0, reading: String::new() },
+            assembly: None,
         }
     }
 

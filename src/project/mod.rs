@@ -19,6 +19,7 @@ mod draft;
 mod entries;
 mod history;
 mod layers;
+mod picks;
 pub mod placement;
 mod storage;
 

@@ -1,6 +1,7 @@
 //! Drives the real program in temporary folders: what a user types, what comes out, what is left on disk.
 
 mod app;
+mod assembly;
 mod bad_input;
 mod chain;
 mod create;

@@ -1,6 +1,7 @@
 //! What can be typed about volumes, horizons and faults.
 
 use super::SegyArgs;
+use super::assembly::{FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs};
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -69,6 +70,12 @@ pub(in crate::cli) enum HorizonAction {
         /// New name
         to: String,
     },
+    /// Fill the holes of a horizon, never across a fault
+    #[command(after_help = "Example:\n  petroglyph horizon fill north.petro \"Top Chalk\" --max-traces 200")]
+    Fill(FillArgs),
+    /// Make the picks of horizons again, after another extraction
+    #[command(after_help = "Example:\n  petroglyph horizon replay north.petro")]
+    Replay(ReplayArgs),
     /// Say what a horizon does to its neighbours
     #[command(after_help = "Example:\n  petroglyph horizon contact north.petro \"Base Tertiary\" erosional")]
     Contact {
@@ -153,6 +160,25 @@ pub(in crate::cli) enum FaultAction {
         after_help = "Examples:\n  petroglyph fault add north.petro f1.ts --name F1\n  petroglyph fault add north.petro sticks.dat --name F2 --z-unit ms --truncated-by F1"
     )]
     Add(Box<FaultAddArgs>),
+    /// Draw a fault by sticks
+    #[command(
+        after_help = "Example:\n  petroglyph fault pick north.petro --name F1 --stick 1250,1300,900 1250,1310,1020 --stick 1270,1302,900 1270,1312,1020"
+    )]
+    Pick(FaultPickArgs),
+    /// Propose faults from the offsets of the horizons
+    #[command(after_help = "Example:\n  petroglyph fault propose north.petro")]
+    Propose(FaultProposeArgs),
+    /// Accept a proposed fault
+    #[command(after_help = "Example:\n  petroglyph fault accept north.petro 1 --name F1")]
+    Accept {
+        /// Project folder
+        project: PathBuf,
+        /// Number of the proposal
+        id: u32,
+        /// Name of the fault
+        #[arg(long)]
+        name: String,
+    },
     /// List the faults
     #[command(after_help = "Example:\n  petroglyph fault list north.petro")]
     List {

@@ -1,6 +1,7 @@
 //! What can be typed.
 
 mod extraction;
+mod assembly;
 mod interpretation;
 mod layer;
 mod output;
@@ -9,6 +10,9 @@ mod segy;
 mod well;
 
 pub(super) use extraction::ExtractArgs;
+pub(super) use assembly::{
+    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs,
+};
 pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
 };
@@ -79,6 +83,25 @@ pub(super) enum Action {
         after_help = "Examples:\n  petroglyph extract north.petro\n  petroglyph extract north.petro --extrema peak --min-front-width 6 --json"
     )]
     Extract(ExtractArgs),
+    /// Pick a candidate and add it to a horizon, or take it out
+    #[command(
+        after_help = "Examples:\n  petroglyph pick north.petro --at 1250,1302,948 --horizon \"Top Chalk\" --highest-valid\n  petroglyph pick north.petro --at 1310,1302,960 --horizon \"Top Chalk\" --up 2 --remove"
+    )]
+    Pick(PickArgs),
+    /// Move a pick up its tree
+    #[command(after_help = "Example:\n  petroglyph climb north.petro 3 --levels 2")]
+    Climb(ClimbArgs),
+    /// Move a pick down its tree
+    #[command(after_help = "Example:\n  petroglyph descend north.petro 3")]
+    Descend(DescendArgs),
+    /// Measure the extraction against the truth of a synthetic survey
+    #[command(after_help = "Example:\n  petroglyph evaluate synthetic.petro out/synth --json")]
+    Evaluate {
+        /// Project folder
+        project: PathBuf,
+        /// Folder that `petroglyph synth` wrote
+        truth: PathBuf,
+    },
     /// Write a horizon, or the points of all candidates, to a file
     #[command(
         after_help = "Examples:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap\n  petroglyph export north.petro points.csv --candidates"

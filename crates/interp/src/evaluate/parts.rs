@@ -4,8 +4,10 @@
 //! block, and across the boundary of two blocks where the fault between them is only the continuation of one that has died out. What
 //! erosion, faults and walls leave unconnected are different parts.
 
+use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::VecDeque;
 use survey::synth::SynthTruth;
 
 /// A connected part of a true horizon.
@@ -51,7 +53,7 @@ impl Parts {
             })
             .collect();
         let mut parent: Vec<u32> = (0..(blocks * traces) as u32).collect();
-        let open = |fault: usize, y: usize| !truth.fault_is_real(fault, glam::DVec3::new(0.0, y as f64, 0.0));
+        let open = |fault: usize, y: usize| !truth.fault_is_real(fault, DVec3::new(0.0, y as f64, 0.0));
         for (node, _) in exists.iter().enumerate().filter(|(_, exists)| **exists) {
             let (block, trace) = (node / traces, node % traces);
             let (x, y) = (trace / ny, trace % ny);
@@ -86,6 +88,40 @@ impl Parts {
             }
         }
         Self { traces, part, blocks: found }
+    }
+
+    /// One place in the middle of each part of at least `fewest` nodes, voxels: where someone who sees the horizon would pick it.
+    pub fn middles(&self, truth: &SynthTruth, horizon: usize, fewest: usize) -> Vec<DVec3> {
+        let [nx, ny, _] = truth.size;
+        let neighbours = |node: usize| {
+            let (x, y) = (node % self.traces / ny, node % ny);
+            [
+                (x > 0).then(|| node - ny),
+                (x + 1 < nx).then(|| node + ny),
+                (y > 0).then(|| node - 1),
+                (y + 1 < ny).then(|| node + 1),
+            ]
+        };
+        // Rings from the rim inwards; the last node of a part to be reached is its middle.
+        let mut left: Vec<bool> = self.part.iter().map(|&part| part != NONE).collect();
+        let on_rim = |node: usize| neighbours(node).iter().any(|next| next.is_none_or(|next| self.part[next] == NONE));
+        let mut queue: VecDeque<usize> = (0..left.len()).filter(|&node| left[node] && on_rim(node)).collect();
+        queue.iter().for_each(|&node| left[node] = false);
+        let mut found = vec![(0usize, 0usize); self.blocks.len()];
+        while let Some(node) = queue.pop_front() {
+            let part = &mut found[self.part[node] as usize];
+            *part = (part.0 + 1, node);
+            for next in neighbours(node).into_iter().flatten() {
+                if std::mem::replace(&mut left[next], false) {
+                    queue.push_back(next);
+                }
+            }
+        }
+        let place = |node: usize| {
+            let (x, y) = ((node % self.traces / ny) as f64, (node % ny) as f64);
+            DVec3::new(x, y, truth.sheet_z(horizon, (node / self.traces) as u16, x, y))
+        };
+        found.into_iter().filter(|(nodes, _)| *nodes >= fewest).map(|(_, node)| place(node)).collect()
     }
 
     /// All parts, with nothing counted yet.

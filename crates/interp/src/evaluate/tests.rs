@@ -103,6 +103,23 @@ fn parts_are_what_faults_separate() {
 }
 
 #[test]
+fn the_middle_of_a_part_lies_on_it_away_from_its_rim() {
+    let truth = truth();
+    for h in 0..truth.horizons.len() {
+        let parts = Parts::of(&truth, h);
+        let middles = parts.middles(&truth, h, 64);
+        assert!(!middles.is_empty());
+        for p in middles {
+            let block = (0..4u16).find(|&block| truth.sheet_z(h, block, p.x, p.y) == p.z).unwrap();
+            for (dx, dy) in [(0.0, 0.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+                assert!(truth.exists(h, block, p.x + dx, p.y + dy), "{p}");
+            }
+        }
+    }
+    assert_eq!(Parts::of(&truth, 0).middles(&truth, 0, 64).len(), 3);
+}
+
+#[test]
 fn named_horizons_are_reflectors_of_the_index() {
     let truth = truth();
     let index = TruthIndex::new(&truth);

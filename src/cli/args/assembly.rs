@@ -1,0 +1,138 @@
+//! What can be typed about picks, and about faults drawn or proposed.
+
+use clap::{ArgAction, ArgMatches, Args, Command, FromArgMatches};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct PickArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Place: line numbers and the vertical value
+    #[arg(long, value_name = "INLINE,CROSSLINE,Z", allow_hyphen_values = true)]
+    pub(in crate::cli) at: String,
+    /// Horizon that the node goes to; made when it is not there
+    #[arg(long, value_name = "NAME")]
+    pub(in crate::cli) horizon: String,
+    /// Climb so many levels above the leaf [default: 0]
+    #[arg(long, value_name = "N", conflicts_with = "highest_valid")]
+    pub(in crate::cli) up: Option<u32>,
+    /// Climb to the highest node that does not lie twice over a trace, by itself or with the horizon
+    #[arg(long)]
+    pub(in crate::cli) highest_valid: bool,
+    /// Take the node out of the horizon
+    #[arg(long)]
+    pub(in crate::cli) remove: bool,
+    /// Colour of the horizon, #rrggbb [default: as it was, or the next of a list]
+    #[arg(long, value_name = "COLOUR")]
+    pub(in crate::cli) colour: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ClimbArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Number of the pick
+    pub(in crate::cli) id: u32,
+    /// Levels
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(in crate::cli) levels: u32,
+    /// To the highest node that does not lie twice over a trace
+    #[arg(long, conflicts_with = "levels")]
+    pub(in crate::cli) highest_valid: bool,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct DescendArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Number of the pick
+    pub(in crate::cli) id: u32,
+    /// Levels
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(in crate::cli) levels: u32,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct FillArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Horizon
+    pub(in crate::cli) name: String,
+    /// Leave holes of more traces than this [default: fill all]
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) max_traces: Option<usize>,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct ReplayArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Horizon [default: all that were assembled]
+    pub(in crate::cli) name: Option<String>,
+    /// Take picks that no longer fit out of the log
+    #[arg(long)]
+    pub(in crate::cli) drop_unfit: bool,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct FaultPickArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Fault; further sticks are added to it
+    #[arg(long)]
+    pub(in crate::cli) name: String,
+    #[command(flatten)]
+    pub(in crate::cli) sticks: StickArgs,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct FaultProposeArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Farthest that two sides of a horizon may be apart, traces [default: 14]
+    #[arg(long, value_name = "TRACES")]
+    pub(in crate::cli) reach: Option<usize>,
+    /// Smallest throw, samples [default: 2]
+    #[arg(long, value_name = "SAMPLES")]
+    pub(in crate::cli) min_throw: Option<f32>,
+    /// Smallest dip, degrees [default: 30]
+    #[arg(long, value_name = "DEG")]
+    pub(in crate::cli) min_dip: Option<f64>,
+}
+
+/// `--stick A B C --stick D E`: each occurrence is a list of its own, which derived arguments cannot tell.
+#[derive(Debug, Clone, Default)]
+pub(in crate::cli) struct StickArgs(pub(in crate::cli) Vec<Vec<String>>);
+
+/// Name of the option.
+const STICK: &str = "stick";
+
+impl Args for StickArgs {
+    fn augment_args(command: Command) -> Command {
+        command.arg(
+            clap::Arg::new(STICK)
+                .long(STICK)
+                .value_name("INLINE,CROSSLINE,Z")
+                .num_args(1..)
+                .action(ArgAction::Append)
+                .required(true)
+                .help("A stick: two or more places along the fault, from top to bottom; may be repeated"),
+        )
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl FromArgMatches for StickArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let sticks = matches.get_occurrences::<String>(STICK).into_iter().flatten();
+        Ok(Self(sticks.map(|stick| stick.cloned().collect()).collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}

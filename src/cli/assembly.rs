@@ -1,0 +1,158 @@
+//! What was meant by picks, and answers about extractions and proposals.
+
+use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
+use super::report::Report;
+use super::request::{Request, Usage};
+use crate::candidates::Candidates;
+use crate::command::{
+    AcceptFault, Climb, Command, FillHorizon, Move, MovePick, PickFault, PickNode, ReplayPicks, Unfit,
+};
+use crate::project::Project;
+use anyhow::bail;
+use interp::assembly::Operation;
+use interp::evaluate::{
+    EvaluateSettings, HorizonScore, PickScore, PickSettings, TruthIndex, count_picks, evaluate_with,
+};
+use interp::faults::ProposeSettings;
+use interp::holes::FillSettings;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use survey::Progress;
+use survey::model::FaultNetwork;
+use survey::synth::SynthTruth;
+
+/// Three numbers with commas.
+fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
+    let wrong = || format!("{option} {text}: expected INLINE,CROSSLINE,Z, three numbers");
+    let place: [f64; 3] = numbers.try_into().map_err(|_| wrong())?;
+    if text.split(',').count() == 3 && place.iter().all(|number| number.is_finite()) { Ok(place) } else { Err(wrong()) }
+}
+
+pub(super) fn pick(typed: PickArgs) -> Result<Request, Usage> {
+    let climb = if typed.highest_valid { Climb::HighestValid } else { Climb::Levels(typed.up.unwrap_or(0)) };
+    let colour = typed.colour.map(|text| text.parse().map_err(|_| format!("--colour {text}: expected #rrggbb")));
+    let command = PickNode {
+        at: place("--at", &typed.at)?,
+        horizon: typed.horizon,
+        climb,
+        operation: if typed.remove { Operation::Remove } else { Operation::Add },
+        colour: colour.transpose()?,
+    };
+    Ok(Request::Change { project: typed.project, command: Command::Pick(command) })
+}
+
+pub(super) fn climb(typed: ClimbArgs) -> Request {
+    let to = if typed.highest_valid { Move::HighestValid } else { Move::Up(typed.levels) };
+    Request::Change { project: typed.project, command: Command::MovePick(MovePick { id: typed.id, to }) }
+}
+
+pub(super) fn descend(typed: DescendArgs) -> Request {
+    let command = MovePick { id: typed.id, to: Move::Down(typed.levels) };
+    Request::Change { project: typed.project, command: Command::MovePick(command) }
+}
+
+pub(super) fn fill(typed: FillArgs) -> Request {
+    let settings = FillSettings { max_traces: typed.max_traces };
+    let command = Command::FillHorizon(FillHorizon { name: typed.name, settings });
+    Request::Change { project: typed.project, command }
+}
+
+pub(super) fn replay(typed: ReplayArgs) -> Request {
+    let unfit = if typed.drop_unfit { Unfit::Drop } else { Unfit::Refuse };
+    let command = Command::ReplayPicks(ReplayPicks { horizon: typed.name, unfit });
+    Request::Change { project: typed.project, command }
+}
+
+pub(super) fn fault_pick(typed: FaultPickArgs) -> Result<Request, Usage> {
+    let stick = |places: &Vec<String>| places.iter().map(|text| place("--stick", text)).collect();
+    let sticks = typed.sticks.0.iter().map(stick).collect::<Result<Vec<Vec<_>>, Usage>>()?;
+    let command = Command::PickFault(PickFault { name: typed.name, sticks });
+    Ok(Request::Change { project: typed.project, command })
+}
+
+pub(super) fn fault_propose(typed: &FaultProposeArgs) -> Result<Request, Usage> {
+    let usual = ProposeSettings::default();
+    let settings = ProposeSettings {
+        reach: typed.reach.unwrap_or(usual.reach),
+        min_throw: typed.min_throw.unwrap_or(usual.min_throw),
+        min_dip_deg: typed.min_dip.unwrap_or(usual.min_dip_deg),
+        ..usual
+    };
+    if !(1..=200).contains(&settings.reach) {
+        return Err(format!("--reach {}: expected 1 to 200 traces", settings.reach));
+    }
+    if !(settings.min_throw > 0.0 && settings.min_throw.is_finite()) {
+        return Err(format!("--min-throw {}: expected a positive number of samples", settings.min_throw));
+    }
+    if !(settings.min_dip_deg > 0.0 && settings.min_dip_deg < 90.0) {
+        return Err(format!("--min-dip {}: expected degrees between 0 and 90", settings.min_dip_deg));
+    }
+    Ok(Request::ProposeFaults { project: typed.project.clone(), settings })
+}
+
+pub(super) fn fault_accept(project: PathBuf, id: u32, name: String) -> Request {
+    Request::Change { project, command: Command::AcceptFault(AcceptFault { id, name }) }
+}
+
+/// Measures the present extraction against a synthetic survey's truth.
+pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> anyhow::Result<Report> {
+    let project = Project::open(project)?;
+    let truth = SynthTruth::read(truth)?;
+    let candidates = Candidates::load(project.root(), progress)?;
+    let size = candidates.forest.surfaces.size;
+    if size != truth.size {
+        bail!(
+            "the extraction is of {size:?} voxels, the truth of {:?}; give the folder of the survey that the project was imported from",
+            truth.size
+        );
+    }
+    let (settings, picks) = (EvaluateSettings::default(), PickSettings::default());
+    let index = TruthIndex::new(&truth);
+    let found = evaluate_with(&candidates.forest.surfaces, &truth, &index, &settings);
+    let none = FaultNetwork::none();
+    let counts = count_picks(&candidates.forest, &truth, &index, &none, &settings, &picks, progress)?;
+    let mut report = Report::line(found.to_string().trim_end());
+    report.say(format!("\n{:<16} {:>6} {:>8} {:>8}", "picks", "parts", "oracle", "replay"));
+    for count in &counts {
+        let shown = |count: interp::evaluate::PickCount| {
+            if count.reached { count.picks.to_string() } else { format!("({})", count.picks) }
+        };
+        report.say(format!(
+            "{:<16} {:>6} {:>8} {:>8}",
+            count.name,
+            count.parts,
+            shown(count.oracle),
+            shown(count.replay)
+        ));
+    }
+    if counts.iter().any(|count| !(count.oracle.reached && count.replay.reached)) {
+        report.say("(in brackets: 95 % covered at 98 % precision was not reached)");
+    }
+    let horizons: Vec<Value> =
+        found.horizons.iter().zip(&counts).map(|(score, count)| object(score, Some(count))).collect();
+    report.field("horizons", horizons).field("all", object(&found.all, None));
+    Ok(report)
+}
+
+fn object(score: &HorizonScore, picks: Option<&PickScore>) -> Value {
+    let worst = score.worst.map(|worst| {
+        json!({ "surface": worst.surface, "triangles": worst.triangles, "purity": worst.purity() })
+    });
+    let parts: Vec<Value> = score
+        .parts
+        .iter()
+        .map(|part| json!({ "blocks": part.blocks, "nodes": part.nodes, "coverage": part.coverage() }))
+        .collect();
+    json!({
+        "name": score.name,
+        "coverage": score.coverage(),
+        "precision": score.precision(),
+        "purity": score.purity,
+        "worst_surface": worst,
+        "surfaces": score.surfaces,
+        "nodes": score.nodes,
+        "parts": parts,
+        "picks": picks.map(|picks| json!({ "oracle": picks.oracle, "replay": picks.replay })),
+    })
+}

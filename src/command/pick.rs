@@ -1,0 +1,383 @@
+//! Picking: a place becomes a leaf, a leaf a node, a node part of a horizon; and moving a pick later.
+
+use super::assembly::{self, AssemblyReport, rebuild};
+use super::{Effect, Noun, ProjectError};
+use crate::candidates::Candidates;
+use crate::project::Draft;
+use crate::project::document::{Assembly, PickEntry};
+use glam::DVec2;
+use interp::assembly::{
+    AssemblyError, ClimbSettings, Fingerprint, Fit, Hit, Operation, Overlap, Selection, highest_valid, leaf_at,
+    node_above,
+};
+use serde::{Deserialize, Serialize};
+use survey::model::FaultNetwork;
+use survey::{Progress, SurveyGeometry};
+use ttf::Colour;
+
+/// How far to climb above a leaf.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Climb {
+    /// So many levels.
+    Levels(u32),
+    /// To the highest node that does not lie twice over a trace.
+    HighestValid,
+}
+
+/// Picks a node of a surface tree and adds it to a horizon, or takes it out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PickNode {
+    /// Inline, crossline and vertical value.
+    pub at: [f64; 3],
+    /// The horizon; made when it is not there.
+    pub horizon: String,
+    /// How far to climb.
+    pub climb: Climb,
+    /// Add or take out.
+    #[serde(default)]
+    pub operation: Operation,
+    /// Colour of the horizon; absent: as it was, or the next of a list.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
+}
+
+/// Moves a pick up or down its tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MovePick {
+    /// Its number.
+    pub id: u32,
+    /// Where to.
+    pub to: Move,
+}
+
+/// Where a pick moves to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Move {
+    /// So many levels up.
+    Up(u32),
+    /// So many levels down.
+    Down(u32),
+    /// To the highest node without overlap.
+    HighestValid,
+}
+
+/// Makes picks again on the present extraction.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ReplayPicks {
+    /// The horizon; absent: all that were assembled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub horizon: Option<String>,
+    /// What to do with picks that no longer fit.
+    #[serde(default)]
+    pub unfit: Unfit,
+}
+
+/// What becomes of picks that no longer fit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unfit {
+    /// Nothing is changed; they are named.
+    #[default]
+    Refuse,
+    /// They are taken out of the log.
+    Drop,
+}
+
+/// What a pick did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Picked {
+    /// Number of the pick.
+    pub pick: u32,
+    /// The horizon.
+    pub horizon: String,
+    /// What it did to it.
+    pub operation: Operation,
+    /// Leaf at the place.
+    pub leaf: u32,
+    /// Levels above the leaf.
+    pub up: u32,
+    /// Levels from the leaf to the root.
+    pub levels: u32,
+    /// Triangles of the node.
+    pub triangles: u32,
+    /// Overlap of the next higher node, that ended the climb.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped_by: Option<Overlap>,
+    /// The horizon now.
+    pub result: AssemblyReport,
+}
+
+impl std::fmt::Display for Picked {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let verb = if self.operation == Operation::Add { "added to" } else { "taken out of" };
+        write!(
+            f,
+            "pick {}: leaf {}, {} of {} levels up, {} triangles, {verb} \"{}\"",
+            self.pick, self.leaf, self.up, self.levels, self.triangles, self.horizon
+        )?;
+        if let Some(overlap) = &self.stopped_by {
+            write!(f, "; one level higher {} traces would have two nodes", overlap.traces)?;
+        }
+        write!(f, "\n  {}", self.result)
+    }
+}
+
+/// What a replay found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Replayed {
+    /// Picks by how they fit.
+    pub picks: Vec<ReplayedPick>,
+    /// The horizons now.
+    pub horizons: Vec<(String, AssemblyReport)>,
+}
+
+/// A pick that was made again.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ReplayedPick {
+    /// Its number.
+    pub pick: u32,
+    /// How its node compares with what it was.
+    pub fit: Fit,
+    /// Triangles it had and has.
+    pub triangles: [u32; 2],
+}
+
+impl std::fmt::Display for Replayed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let count = |fit| self.picks.iter().filter(|pick| pick.fit == fit).count();
+        write!(f, "{} picks are what they were, {} nearly", count(Fit::Same), count(Fit::Similar))?;
+        let dropped: Vec<String> =
+            self.picks.iter().filter(|p| p.fit == Fit::Different).map(|p| p.pick.to_string()).collect();
+        if !dropped.is_empty() {
+            write!(f, "; no longer fit and are gone: {}", dropped.join(", "))?;
+        }
+        self.horizons.iter().try_for_each(|(name, report)| write!(f, "\n{name}: {report}"))
+    }
+}
+
+/// The leaf at a place in line numbers, within the reach of the extraction.
+fn leaf_near(candidates: &Candidates, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<Hit, ProjectError> {
+    let place = geometry.voxel_from_lines(at[0], at[1]);
+    let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
+    leaf_at(&candidates.forest, voxel, candidates.max_distance).map_err(|error| match error {
+        AssemblyError::Outside { .. } => ProjectError::PickOutside {
+            at,
+            inlines: [geometry.inlines.first, geometry.inlines.last()],
+            crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
+            vertical: [geometry.vertical.first, geometry.vertical.last()],
+        },
+        AssemblyError::NothingNear { distance, nearest, max_distance, .. } => {
+            let lines = geometry.lines_from_voxel(DVec2::new(f64::from(nearest.x), f64::from(nearest.y)));
+            let z = geometry.vertical.value_at(f64::from(nearest.z));
+            ProjectError::NoCandidate { at, nearest: [lines.x, lines.y, z], distance, max_distance }
+        }
+        other => ProjectError::Assembly(other),
+    })
+}
+
+/// Levels from a leaf to its root.
+fn levels(candidates: &Candidates, leaf: u32) -> u32 {
+    let mut node = candidates.forest.leaves[leaf as usize - 1];
+    let mut levels = 0;
+    while let Some(parent) = candidates.forest.nodes[node as usize].parent {
+        (node, levels) = (parent, levels + 1);
+    }
+    levels
+}
+
+/// Node, levels and what ended the climb.
+fn climbed(
+    candidates: &Candidates,
+    leaf: u32,
+    climb: Climb,
+    chosen: &Selection,
+    blocks: &FaultNetwork,
+) -> Result<(u32, u32, Option<Overlap>), ProjectError> {
+    Ok(match climb {
+        Climb::Levels(up) => (node_above(&candidates.forest, leaf, up)?, up, None),
+        Climb::HighestValid => {
+            let found = highest_valid(&candidates.forest, leaf, chosen, blocks, &ClimbSettings::default());
+            (found.node, found.up, found.stopped_by)
+        }
+    })
+}
+
+impl PickNode {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let geometry = draft.document.frame()?.clone();
+        let known = draft.document.horizons.iter().any(|entry| entry.name == self.horizon);
+        let mut log = if known {
+            assembly::log_of(draft, &self.horizon)?
+        } else {
+            draft.document.check_new_name(Noun::Horizon, &self.horizon)?;
+            Assembly { colour: assembly::next_colour(draft), fill: None, picks: Vec::new() }
+        };
+        let candidates = Candidates::load(draft.root(), progress)?;
+        let chosen = assembly::selection(&self.horizon, &log, &candidates)?;
+        let hit = leaf_near(&candidates, &geometry, self.at)?;
+        let blocks = assembly::blocks(draft, progress)?;
+        // What is taken out may overlap with what stays.
+        let beside = if self.operation == Operation::Add { chosen.clone() } else { Selection::default() };
+        let (node, up, stopped_by) = climbed(&candidates, hit.leaf, self.climb, &beside, &blocks)?;
+        let mut own = Selection::default();
+        own.insert(candidates.forest.nodes[node as usize].triangles.clone());
+        let common = own.intersection(&chosen).len();
+        match self.operation {
+            Operation::Add if common == own.len() => {
+                return Err(ProjectError::AlreadyPicked { horizon: self.horizon.clone(), leaf: hit.leaf });
+            }
+            Operation::Remove if common == 0 => {
+                return Err(ProjectError::NotPicked { horizon: self.horizon.clone(), leaf: hit.leaf });
+            }
+            _ => {}
+        }
+        if let Some(colour) = self.colour {
+            log.colour = colour;
+        }
+        let id = next_id(draft);
+        let node = Fingerprint::of(&candidates.forest, node);
+        log.picks.push(PickEntry {
+            id,
+            at: self.at,
+            operation: self.operation,
+            leaf: hit.leaf,
+            up,
+            extraction: candidates.key.clone(),
+            node,
+        });
+        let result = rebuild(draft, &candidates, &blocks, &self.horizon, log, progress)?;
+        Ok(Effect::Picked(Box::new(Picked {
+            pick: id,
+            horizon: self.horizon.clone(),
+            operation: self.operation,
+            leaf: hit.leaf,
+            up,
+            levels: levels(&candidates, hit.leaf),
+            triangles: node.triangles,
+            stopped_by,
+            result,
+        })))
+    }
+}
+
+/// A number that no pick has.
+fn next_id(draft: &Draft) -> u32 {
+    let logs = draft.document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
+    logs.flat_map(|log| &log.picks).map(|pick| pick.id).max().unwrap_or(0) + 1
+}
+
+impl MovePick {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let found = draft.document.horizons.iter().find_map(|entry| {
+            let log = entry.assembly.as_ref()?;
+            let place = log.picks.iter().position(|pick| pick.id == self.id)?;
+            Some((entry.name.clone(), log.clone(), place))
+        });
+        let Some((name, mut log, place)) = found else { return Err(self.unknown(draft)) };
+        let candidates = Candidates::load(draft.root(), progress)?;
+        // Refuses a log of another extraction.
+        assembly::selection(&name, &log, &candidates)?;
+        let blocks = assembly::blocks(draft, progress)?;
+        let PickEntry { leaf, up, operation, .. } = log.picks[place];
+        let climb = match self.to {
+            Move::Up(by) => Climb::Levels(up.saturating_add(by)),
+            Move::Down(by) if by > up => return Err(ProjectError::AtLeaf { pick: self.id, up }),
+            Move::Down(by) => Climb::Levels(up - by),
+            Move::HighestValid => Climb::HighestValid,
+        };
+        let mut rest = log.clone();
+        rest.picks.remove(place);
+        let beside = assembly::selection(&name, &rest, &candidates)?;
+        let (node, up, stopped_by) = climbed(&candidates, leaf, climb, &beside, &blocks)?;
+        let node = Fingerprint::of(&candidates.forest, node);
+        (log.picks[place].up, log.picks[place].node) = (up, node);
+        let result = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+        Ok(Effect::Picked(Box::new(Picked {
+            pick: self.id,
+            horizon: name,
+            operation,
+            leaf,
+            up,
+            levels: levels(&candidates, leaf),
+            triangles: node.triangles,
+            stopped_by,
+            result,
+        })))
+    }
+
+    fn unknown(&self, draft: &Draft) -> ProjectError {
+        let logs = draft.document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
+        ProjectError::UnknownPick {
+            pick: self.id,
+            known: logs.flat_map(|log| &log.picks).map(|pick| pick.id).collect(),
+        }
+    }
+}
+
+impl ReplayPicks {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let geometry = draft.document.frame()?.clone();
+        if let Some(name) = &self.horizon {
+            assembly::log_of(draft, name)?;
+        }
+        let wanted = |name: &str| self.horizon.as_deref().is_none_or(|only| only == name);
+        let logs: Vec<(String, Assembly)> = draft
+            .document
+            .horizons
+            .iter()
+            .filter(|entry| wanted(&entry.name))
+            .filter_map(|entry| Some((entry.name.clone(), entry.assembly.clone()?)))
+            .collect();
+        let candidates = Candidates::load(draft.root(), progress)?;
+        let blocks = assembly::blocks(draft, progress)?;
+        let mut done = Replayed { picks: Vec::new(), horizons: Vec::new() };
+        for (name, mut log) in logs {
+            let mut unfit = Vec::new();
+            log.picks.retain_mut(|pick| {
+                let before = pick.node.triangles;
+                let fit = again(pick, &candidates, &geometry);
+                done.picks.push(ReplayedPick { pick: pick.id, fit, triangles: [before, pick.node.triangles] });
+                if fit == Fit::Different {
+                    unfit.push(pick.id);
+                }
+                fit != Fit::Different
+            });
+            if !unfit.is_empty() && (self.unfit == Unfit::Refuse || log.picks.is_empty()) {
+                return Err(ProjectError::UnfitPicks { horizon: name, picks: unfit });
+            }
+            let report = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+            done.horizons.push((name, report));
+        }
+        Ok(Effect::Replayed(Box::new(done)))
+    }
+}
+
+/// Makes one pick again: at its place, at the level whose node is most like what it was.
+fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> Fit {
+    let Ok(hit) = leaf_near(candidates, geometry, pick.at) else { return Fit::Different };
+    let rank = |fit: Fit| match fit {
+        Fit::Same => 0,
+        Fit::Similar => 1,
+        Fit::Different => 2,
+    };
+    let mut best: Option<(Fit, u32, Fingerprint)> = None;
+    for up in 0..=levels(candidates, hit.leaf) {
+        let Ok(node) = node_above(&candidates.forest, hit.leaf, up) else { break };
+        let now = Fingerprint::of(&candidates.forest, node);
+        let fit = pick.node.compare(&now);
+        if best.as_ref().is_none_or(|(least, ..)| rank(fit) < rank(*least)) {
+            best = Some((fit, up, now));
+        }
+        if now.triangles > 2 * pick.node.triangles {
+            break;
+        }
+    }
+    let Some((fit, up, node)) = best else { return Fit::Different };
+    if fit != Fit::Different {
+        (pick.leaf, pick.up, pick.node) = (hit.leaf, up, node);
+        pick.extraction.clone_from(&candidates.key);
+    }
+    fit
+}

@@ -1,0 +1,139 @@
+//! Proposed faults, kept until one of them is accepted.
+//!
+//! `derived/fault-proposals.json` holds the last proposals with a key of what they were made from: horizons and faults. Proposals of another
+//! state are not accepted, but for the faults that were accepted from them.
+
+use crate::data;
+use crate::error::ProjectError;
+use crate::project::{Document, Project};
+use interp::faults::{Evidence, Proposal, ProposeSettings, propose_faults};
+use interp::reassembly::from_horizon;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use survey::attribute::{DipSettings, SemblanceSettings, dip, semblance};
+use survey::model::FaultNetwork;
+use survey::{Progress, store};
+
+/// What was proposed, and for which state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Proposals {
+    /// Hashes of the horizons.
+    pub horizons: Vec<String>,
+    /// The faults.
+    pub proposals: Vec<Proposal>,
+    /// Unit of vertical values.
+    pub unit: String,
+}
+
+impl fmt::Display for Proposals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.proposals.is_empty() {
+            return write!(f, "the horizons are offset nowhere: no fault is proposed");
+        }
+        for (n, p) in self.proposals.iter().enumerate() {
+            if n > 0 {
+                writeln!(f)?;
+            }
+            let unit = &self.unit;
+            let kind = if p.reverse { "reverse" } else { "normal" };
+            let [a, b] = p.ends;
+            write!(
+                f,
+                "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline {:.0}, crossline {:.0} to inline {:.0}, \
+                 crossline {:.0}, {:.0} to {:.0} {unit}; {} pairs on {}, {:.0} m off",
+                p.id,
+                p.strike_deg,
+                p.dip_deg,
+                p.throw[0],
+                p.throw[1],
+                a[0],
+                a[1],
+                b[0],
+                b[1],
+                p.depth[0],
+                p.depth[1],
+                p.support,
+                p.horizons.join(", "),
+                p.misfit_m
+            )?;
+            if let Some([on, beside]) = p.semblance {
+                write!(f, "; semblance {on:.2} on it, {beside:.2} beside")?;
+            }
+        }
+        Ok(())
+    }
+}
+
+fn path(root: &Path) -> PathBuf {
+    root.join("derived/fault-proposals.json")
+}
+
+fn hashes(document: &Document) -> Vec<String> {
+    document.horizons.iter().map(|entry| entry.hash.clone()).collect()
+}
+
+/// Looks for faults in the project's horizons and keeps what is found.
+///
+/// # Errors
+/// No horizons, data that cannot be read, or cancelled.
+pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progress) -> Result<Proposals, ProjectError> {
+    let document = project.document();
+    let geometry = document.frame()?;
+    if document.horizons.is_empty() {
+        return Err(ProjectError::NoEvidence);
+    }
+    let none = FaultNetwork::none();
+    let mut sheets = Vec::new();
+    for entry in &document.horizons {
+        let horizon = data::read_horizon(project.root(), entry, progress)?;
+        sheets.push(from_horizon(&horizon, geometry, &none));
+    }
+    let horizons: Vec<Evidence> = document
+        .horizons
+        .iter()
+        .zip(&sheets)
+        .map(|(entry, sheets)| Evidence { name: &entry.name, sheets })
+        .collect();
+    let likeness = match document.volumes.iter().find(|entry| entry.geometry.is_none()) {
+        Some(entry) => {
+            let seismic = data::read_volume(project.root(), entry, progress)?;
+            let dips = dip(&seismic, &DipSettings::default(), progress);
+            dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
+        }
+        None => None,
+    };
+    let found = propose_faults(&horizons, geometry, likeness.as_ref(), settings, progress)?;
+    let proposals = Proposals {
+        horizons: hashes(document),
+        proposals: found,
+        unit: geometry.vertical.unit.symbol().to_owned(),
+    };
+    let path = path(project.root());
+    let folder = path.parent().unwrap_or(project.root());
+    std::fs::create_dir_all(folder).map_err(|source| ProjectError::io("written", folder, source))?;
+    let text = serde_json::to_string_pretty(&proposals)
+        .map_err(|error| ProjectError::Malformed { path: path.clone(), detail: error.to_string() })?;
+    store::replace_file(&path, text.as_bytes())?;
+    Ok(proposals)
+}
+
+/// The proposal with a number, if it was made for these horizons, up to what accepting others of them has changed.
+///
+/// # Errors
+/// There is none, or it is of another state.
+pub fn find(root: &Path, document: &Document, id: u32) -> Result<Proposal, ProjectError> {
+    let path = path(root);
+    let text = std::fs::read_to_string(&path).map_err(|_| ProjectError::NoProposals)?;
+    let kept: Proposals = serde_json::from_str(&text).map_err(|_| ProjectError::NoProposals)?;
+    // Accepting one proposal makes the sheets anew; the others were made from the same picks.
+    let accepted = document.faults.iter().any(|fault| fault.source.path == Path::new("proposal"));
+    if !accepted && kept.horizons != hashes(document) {
+        return Err(ProjectError::OutdatedProposals);
+    }
+    let known = kept.proposals.len() as u32;
+    kept.proposals
+        .into_iter()
+        .find(|proposal| proposal.id == id)
+        .ok_or(ProjectError::UnknownProposal { proposal: id, known })
+}

@@ -1,0 +1,192 @@
+//! From a raw volume to horizons by picks: candidates, picking, climbing, taking back, holes, faults.
+
+use crate::program::{bytes, run_in, survey};
+use serde_json::Value;
+use std::path::Path;
+use std::sync::OnceLock;
+use tempfile::TempDir;
+
+/// A clean synthetic survey `s`, imported into `p.petro` with its candidates; made once.
+fn extracted() -> &'static Path {
+    static FOLDER: OnceLock<TempDir> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| {
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let at = folder.path();
+        run_in(at, "synth s --size 72x64x80 --seed 3 --snr 12").done();
+        run_in(at, "import s/survey.sgy p.petro").done();
+        run_in(at, "extract p.petro").done();
+        folder
+    });
+    folder.path()
+}
+
+fn project() -> TempDir {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    crate::program::copy(extracted(), folder.path());
+    folder
+}
+
+/// A place on a true horizon, as typed: the middle node of the largest sheet in its file.
+fn place_on(at: &Path, name: &str) -> String {
+    let text = std::fs::read_to_string(at.join(format!("s/horizons/{name}.csv"))).unwrap();
+    let header: Vec<&str> = text.lines().next().unwrap().split(',').map(str::trim).collect();
+    let column = |wanted: &str| header.iter().position(|name| *name == wanted).unwrap();
+    let columns = [column("inline"), column("crossline"), column("z")];
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split(',').map(|value| value.trim().parse().unwrap_or(f64::NAN)).collect())
+        .collect();
+    // The node nearest to the middle of the survey, between the faults.
+    let off = |row: &Vec<f64>| (row[columns[0]] - 125.0).powi(2) + (row[columns[1]] - 532.0).powi(2);
+    let row = rows.iter().min_by(|a, b| off(a).total_cmp(&off(b))).unwrap();
+    columns.map(|column| row[column].to_string()).join(",")
+}
+
+fn pick(at: &Path, rest: &str) -> Value {
+    run_in(at, &format!("pick p.petro {rest} --json")).done().json()
+}
+
+#[test]
+fn picks_make_a_horizon_that_parameterizes_and_exports() {
+    let folder = project();
+    let at = folder.path();
+    let place = place_on(at, "Bravo");
+    let first = pick(at, &format!("--at {place} --horizon Top --colour #336699"));
+    assert_eq!((first["pick"].as_u64(), first["up"].as_u64()), (Some(1), Some(0)));
+    let nodes = |answer: &Value| answer["result"]["nodes"].as_u64().unwrap();
+    let triangles = |answer: &Value| answer["triangles"].as_u64().unwrap();
+
+    // Up and down again, also later; undo and redo between.
+    let higher = run_in(at, "climb p.petro 1 --highest-valid --json").done().json();
+    assert!(triangles(&higher) >= triangles(&first) && nodes(&higher) >= nodes(&first), "{higher}");
+    let levels = higher["levels"].as_u64().unwrap();
+    run_in(at, "undo p.petro").done();
+    let shown = || run_in(at, "horizon show p.petro Top --json").done().json();
+    assert_eq!(shown()["horizon"]["assembly"]["picks"][0]["up"], 0);
+    assert_eq!(shown()["horizon"]["assembly"]["colour"], "#336699");
+    run_in(at, "redo p.petro").done();
+    assert_eq!(shown()["horizon"]["assembly"]["picks"][0]["up"], higher["up"]);
+    run_in(at, &format!("climb p.petro 1 --levels {}", levels + 1)).failed(&["levels above it"]);
+    let up = higher["up"].as_u64().unwrap();
+    run_in(at, &format!("descend p.petro 1 --levels {}", up + 1)).failed(&["cannot descend"]);
+    run_in(at, "climb p.petro 9").failed(&["no pick 9", "[1]"]);
+
+    // What is there already, what is not, and taking out again.
+    run_in(at, &format!("pick p.petro --at {place} --horizon Top")).failed(&["already"]);
+    let other = place_on(at, "Alpha");
+    run_in(at, &format!("pick p.petro --at {other} --horizon Top --remove")).failed(&["has nothing of"]);
+    if up > 0 {
+        let less = pick(at, &format!("--at {place} --horizon Top --remove"));
+        assert!(nodes(&less) < nodes(&higher), "{less}");
+        run_in(at, "undo p.petro").done();
+    } else {
+        run_in(at, &format!("pick p.petro --at {place} --horizon Top --remove")).failed(&["nothing of", "would be left"]);
+    }
+
+    // A second horizon comes into its place by depth; the same node in both is a conflict.
+    pick(at, &format!("--at {other} --horizon Cover --highest-valid"));
+    let info = run_in(at, "info p.petro --json").done().json();
+    assert_eq!(info["horizons"], serde_json::json!(["Cover", "Top"]));
+    let twice = pick(at, &format!("--at {place} --horizon Cover"));
+    assert_eq!(twice["result"]["conflicts"][0]["conflict"], "shared-leaves", "{twice}");
+    run_in(at, "undo p.petro").done();
+
+    // Straight on: no file between.
+    let filled = run_in(at, "horizon fill p.petro Top --json").done().json();
+    assert_eq!(filled["result"]["holes"].as_array().map(Vec::len), Some(0), "{filled}");
+    run_in(at, "horizon fill p.petro Cover").done();
+    let text = run_in(at, "horizon show p.petro Top").done().stdout;
+    assert!(text.contains("assembled by 1 pick") && text.contains("#336699"), "{text}");
+    run_in(at, "parameterize p.petro --size 24x24x24").done();
+    run_in(at, "export p.petro top.csv --horizon Top").done();
+    run_in(at, "render p.petro top.png --size 200x150").done();
+    let exported = std::fs::read_to_string(at.join("top.csv")).unwrap();
+    assert!(exported.lines().count() > 500);
+}
+
+#[test]
+fn picks_of_another_extraction_are_noticed_and_made_again() {
+    let folder = project();
+    let at = folder.path();
+    let place = place_on(at, "Bravo");
+    pick(at, &format!("--at {place} --horizon Top --highest-valid"));
+    let other = place_on(at, "Alpha");
+    run_in(at, "extract p.petro --max-distance 6").done();
+    run_in(at, &format!("pick p.petro --at {other} --horizon Top")).failed(&["extraction has changed", "[1]"]);
+    run_in(at, "climb p.petro 1").failed(&["extraction has changed"]);
+    // The surfaces are the same; the picks still mean what they meant.
+    let again = run_in(at, "horizon replay p.petro --json").done().json();
+    assert_eq!(again["picks"][0]["fit"], "same", "{again}");
+    run_in(at, &format!("pick p.petro --at {other} --horizon Cover")).done();
+    // Zero crossings are elsewhere: nothing fits, nothing is changed.
+    run_in(at, "extract p.petro --extrema zero").done();
+    let before = bytes(&at.join("p.petro/horizons"));
+    run_in(at, "horizon replay p.petro Top").failed(&["no longer fit"]);
+    assert!(before == bytes(&at.join("p.petro/horizons")));
+}
+
+#[test]
+fn picks_that_cannot_be_made_say_why() {
+    let folder = survey();
+    let at = folder.path();
+    run_in(at, "import s/survey.sgy q.petro").done();
+    run_in(at, "pick q.petro --at 110,520,300 --horizon A").failed(&["candidates"]);
+    let folder = project();
+    let at = folder.path();
+    run_in(at, "pick p.petro --at 90,520,300 --horizon A").failed(&["outside the survey", "101 to 172"]);
+    run_in(at, "pick p.petro --at 110,520,99999 --horizon A").failed(&["outside the survey"]);
+    run_in(at, "evaluate p.petro nowhere").failed(&["truth"]);
+    let place = place_on(at, "Bravo");
+    run_in(at, &format!("pick p.petro --at {place} --horizon A --up 1000")).failed(&["levels above it"]);
+    run_in(at, &format!("horizon add p.petro s/horizons/Alpha.csv --name Alpha")).done();
+    run_in(at, &format!("pick p.petro --at {place} --horizon Alpha")).failed(&["was imported"]);
+    for usage in ["pick p.petro --at 1,2 --horizon A", "pick p.petro --at 1,2,3 --horizon A --up 1 --highest-valid"] {
+        assert_eq!(run_in(at, usage).code, 2, "{usage}");
+    }
+}
+
+#[test]
+fn faults_are_drawn_by_sticks_and_proposed_ones_accepted() {
+    let folder = project();
+    let at = folder.path();
+    let drawn = run_in(at, "fault pick p.petro --name F --stick 140,505,100 150,505,700").done().stdout;
+    assert!(drawn.contains("one stick"), "{drawn}");
+    let drawn = run_in(at, "fault pick p.petro --name F --stick 142,560,100 152,560,700").done().stdout;
+    assert!(drawn.contains("2 sticks"), "{drawn}");
+    run_in(at, "fault pick p.petro --name F --stick 141,530,100 151,530,700 --stick 143,562,100 153,562,700").done();
+    let faults = run_in(at, "fault list p.petro --json").done().json();
+    assert_eq!(faults["faults"].as_array().unwrap().len(), 1);
+    run_in(at, "fault remove p.petro F").done();
+    run_in(at, "fault pick p.petro --name F --stick 140,505,100").failed(&["at least two"]);
+    run_in(at, "fault accept p.petro 1 --name F").failed(&["no faults were proposed"]);
+    run_in(at, "fault propose p.petro").failed(&["no horizons"]);
+    run_in(at, "horizon add p.petro s/horizons/Alpha.csv --name Alpha").done();
+    run_in(at, "horizon add p.petro s/horizons/Bravo.csv --name Bravo").done();
+    let proposed = run_in(at, "fault propose p.petro --json").done().json();
+    let found = proposed["proposals"].as_array().unwrap();
+    assert!(!found.is_empty() && found[0]["horizons"].as_array().unwrap().len() == 2, "{proposed}");
+    run_in(at, "fault accept p.petro 99 --name F").failed(&["no proposal 99"]);
+    run_in(at, "fault accept p.petro 1 --name F").done();
+    let model = run_in(at, "parameterize p.petro --size 16x16x16 --json").done().json();
+    assert!(model["blocks"].as_u64() > Some(1), "{model}");
+}
+
+#[test]
+fn an_extraction_is_measured_against_the_truth() {
+    let folder = project();
+    let at = folder.path();
+    let found = run_in(at, "evaluate p.petro s --json").done().json();
+    let horizons = found["horizons"].as_array().unwrap();
+    assert_eq!(horizons.len(), 5);
+    for horizon in horizons {
+        for figure in ["coverage", "precision", "purity"] {
+            let value = horizon[figure].as_f64().unwrap();
+            assert!((0.0..=1.0).contains(&value), "{horizon}");
+        }
+        assert!(horizon["picks"]["oracle"]["picks"].is_u64() && horizon["picks"]["replay"]["picks"].is_u64());
+    }
+    assert!(horizons[0]["coverage"].as_f64() > Some(0.8), "{found}");
+    let table = run_in(at, "evaluate p.petro s").done().stdout;
+    assert!(table.contains("Unconformity") && table.contains("oracle"), "{table}");
+}
