@@ -221,6 +221,7 @@ pub enum ProjectError {
     OtherLattice {
         /// Its name.
         volume: String,
+    },
     /// A place outside the survey.
     #[error(
         "inline {}, crossline {}, {} lies outside the survey: inlines {} to {}, crosslines {} to {}, {} to {} down",
@@ -408,9 +409,7 @@ impl ProjectError {
             Self::Duplicate { .. } => "choose another --name, or rename or remove the present one first",
             Self::Unknown { .. } => "check the spelling; names are listed by `petroglyph info PROJECT`",
             Self::PickOutside { .. } => "give INLINE,CROSSLINE,Z as line numbers and in the project's vertical unit",
-            Self::NoCandidate { .. } => {
-                "pick there, or extract with another --extrema or a larger --max-distance"
-            }
+            Self::NoCandidate { .. } => "pick there, or extract with another --extrema or a larger --max-distance",
             Self::NotAssembled { .. } => "choose another --horizon; picks make horizons of their own",
             Self::NothingLeft { .. } => "`petroglyph horizon remove` takes a horizon away",
             Self::AlreadyPicked { .. } => "pick elsewhere, or climb higher with --up",

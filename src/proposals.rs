@@ -89,12 +89,8 @@ pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progres
         let horizon = data::read_horizon(project.root(), entry, progress)?;
         sheets.push(from_horizon(&horizon, geometry, &none));
     }
-    let horizons: Vec<Evidence> = document
-        .horizons
-        .iter()
-        .zip(&sheets)
-        .map(|(entry, sheets)| Evidence { name: &entry.name, sheets })
-        .collect();
+    let horizons: Vec<Evidence> =
+        document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
     let likeness = match document.volumes.iter().find(|entry| entry.geometry.is_none()) {
         Some(entry) => {
             let seismic = data::read_volume(project.root(), entry, progress)?;
@@ -104,11 +100,8 @@ pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progres
         None => None,
     };
     let found = propose_faults(&horizons, geometry, likeness.as_ref(), settings, progress)?;
-    let proposals = Proposals {
-        horizons: hashes(document),
-        proposals: found,
-        unit: geometry.vertical.unit.symbol().to_owned(),
-    };
+    let proposals =
+        Proposals { horizons: hashes(document), proposals: found, unit: geometry.vertical.unit.symbol().to_owned() };
     let path = path(project.root());
     let folder = path.parent().unwrap_or(project.root());
     std::fs::create_dir_all(folder).map_err(|source| ProjectError::io("written", folder, source))?;

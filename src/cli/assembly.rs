@@ -136,9 +136,9 @@ pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> any
 }
 
 fn object(score: &HorizonScore, picks: Option<&PickScore>) -> Value {
-    let worst = score.worst.map(|worst| {
-        json!({ "surface": worst.surface, "triangles": worst.triangles, "purity": worst.purity() })
-    });
+    let worst = score
+        .worst
+        .map(|worst| json!({ "surface": worst.surface, "triangles": worst.triangles, "purity": worst.purity() }));
     let parts: Vec<Value> = score
         .parts
         .iter()

@@ -4,9 +4,9 @@ use super::args::{
     Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs,
     VolumeAction,
 };
-use super::{assembly, extraction, interpretation};
 use super::view::View;
 use super::well;
+use super::{assembly, extraction, interpretation};
 use crate::bench;
 use crate::command::{
     AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer, SetScalar,

@@ -5,9 +5,7 @@ use crate::candidates::Candidates;
 use crate::data;
 use crate::project::Draft;
 use crate::project::document::{Assembly, HorizonEntry, Source};
-use interp::assembly::{
-    Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
-};
+use interp::assembly::{Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above};
 use interp::holes::{Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
 use serde::Serialize;
@@ -40,8 +38,8 @@ pub struct AssemblyReport {
     /// Where sheets of one fault block lie over one another; places are inline, crossline, vertical value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overlap: Option<Overlap>,
-    /// Traces of each hole, largest first, with inline and crossline of its middle.
-    pub holes: Vec<HoleReport>,
+    /// What is missing inside it.
+    pub holes: HoleReport,
     /// What was filled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filled: Option<Filled>,
@@ -49,13 +47,18 @@ pub struct AssemblyReport {
     pub conflicts: Vec<Conflict>,
 }
 
-/// A hole, in line numbers.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+/// The holes that a horizon's nodes enclose.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct HoleReport {
-    /// Traces without a node.
+    /// Holes.
+    pub count: usize,
+    /// Traces without a node in all of them.
     pub traces: usize,
+    /// Traces of the largest.
+    pub largest: usize,
     /// Inline and crossline of its middle.
-    pub at: [f64; 2],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f64; 2]>,
 }
 
 impl std::fmt::Display for AssemblyReport {
@@ -78,16 +81,11 @@ impl std::fmt::Display for AssemblyReport {
                 write!(f, "; {} traces across a fault stay empty", filled.across_faults)?;
             }
         }
-        if let Some(largest) = self.holes.first() {
-            let traces: usize = self.holes.iter().map(|hole| hole.traces).sum();
+        if let HoleReport { count, traces, largest, at: Some([inline, crossline]) } = self.holes {
             write!(
                 f,
-                "\n  {} hole{} with {traces} traces, the largest with {} at inline {:.0}, crossline {:.0}",
-                self.holes.len(),
-                plural(self.holes.len()),
-                largest.traces,
-                largest.at[0],
-                largest.at[1]
+                "\n  {count} hole{} with {traces} traces, the largest with {largest} at inline {inline:.0}, crossline {crossline:.0}",
+                plural(count)
             )?;
         }
         self.conflicts.iter().try_for_each(|conflict| write!(f, "\n  conflict: {}", sentence(conflict)))
@@ -185,15 +183,19 @@ pub(super) fn rebuild(
 pub(super) fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyReport {
     let [nx, ny, _] = geometry.size();
     let traces = (0..nx * ny).filter(|&n| sheets.iter().any(|sheet| sheet.z[n].is_finite())).count();
-    let hole = |hole: Hole| HoleReport {
-        traces: hole.traces,
-        at: geometry.lines_from_voxel(glam::DVec2::new(hole.at[0] as f64, hole.at[1] as f64)).to_array(),
-    };
+    let holes = find_holes(sheets, [nx, ny]);
+    let place =
+        |hole: &Hole| geometry.lines_from_voxel(glam::DVec2::new(hole.at[0] as f64, hole.at[1] as f64)).to_array();
     AssemblyReport {
         sheets: sheets.len(),
         nodes: sheets.iter().map(VoxelSheet::nodes).sum(),
         share: traces as f64 / (nx * ny) as f64,
-        holes: find_holes(sheets, [nx, ny]).into_iter().map(hole).collect(),
+        holes: HoleReport {
+            count: holes.len(),
+            traces: holes.iter().map(|hole| hole.traces).sum(),
+            largest: holes.first().map_or(0, |hole| hole.traces),
+            at: holes.first().map(place),
+        },
         ..AssemblyReport::default()
     }
 }
@@ -267,15 +269,12 @@ fn conflicts_with(
         let chosen = entry.assembly.as_ref().and_then(|log| selection(&entry.name, log, candidates).ok());
         all.push((entry.name.clone(), sheets, chosen));
     }
-    let named: Vec<NamedSheets> = all
-        .iter()
-        .map(|(name, sheets, chosen)| NamedSheets { name, sheets, selection: chosen.as_ref() })
-        .collect();
+    let named: Vec<NamedSheets> =
+        all.iter().map(|(name, sheets, chosen)| NamedSheets { name, sheets, selection: chosen.as_ref() }).collect();
     let rules = ContactRules::new(&draft.document.stratigraphy());
     let [nx, ny, _] = geometry.size();
     let may_cross = |young: usize, old: usize| rules.may_cross(young, old);
-    let found =
-        conflicts(Some(&candidates.forest), [nx, ny], &named, may_cross, &ConflictSettings::default());
+    let found = conflicts(Some(&candidates.forest), [nx, ny], &named, may_cross, &ConflictSettings::default());
     let names = |conflict: &Conflict| match conflict {
         Conflict::SharedLeaves { horizons, .. }
         | Conflict::Crossing { horizons, .. }

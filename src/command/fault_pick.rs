@@ -3,9 +3,9 @@
 use super::assembly::rebuild_all;
 use super::{Effect, Noun, ProjectError};
 use crate::data;
-use crate::proposals;
 use crate::project::Draft;
 use crate::project::document::{FaultEntry, FaultSticks, Source};
+use crate::proposals;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -78,20 +78,12 @@ impl PickFault {
         let lines: Vec<Vec<DVec3>> = sticks.iter().map(|stick| stick.iter().map(world).collect()).collect();
         let fault = fault_of_sticks(&self.name, &lines, &geometry)
             .ok_or_else(|| ProjectError::FlatSticks { fault: self.name.clone() })?;
-        let source = Source {
-            path: PathBuf::from("picks"),
-            bytes: 0,
-            reading: format!("drawn with {} sticks", sticks.len()),
-        };
+        let source =
+            Source { path: PathBuf::from("picks"), bytes: 0, reading: format!("drawn with {} sticks", sticks.len()) };
         put(draft, &fault, source)?;
         rebuild_all(draft, progress)?;
         Ok(Effect::Changed {
-            summary: format!(
-                "fault {}: {} sticks, {} triangles",
-                self.name,
-                sticks.len(),
-                fault.mesh.triangles.len()
-            ),
+            summary: format!("fault {}: {} sticks, {} triangles", self.name, sticks.len(), fault.mesh.triangles.len()),
         })
     }
 }

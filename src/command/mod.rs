@@ -20,15 +20,15 @@ mod survey_frame;
 mod texture;
 mod well;
 
+pub use assembly::{AssemblyReport, HoleReport};
 pub use contact::SetContact;
 pub use fault::{AddFault, FaultAdded, RemoveFault, SetTruncation};
-pub use assembly::{AssemblyReport, HoleReport};
 pub use fault_pick::{AcceptFault, PickFault};
 pub use fill::{FillHorizon, HorizonFilled};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
-pub use pick::{Climb, Move, MovePick, PickNode, Picked, Replayed, ReplayedPick, ReplayPicks, Unfit};
+pub use pick::{Climb, Move, MovePick, PickNode, Picked, ReplayPicks, Replayed, ReplayedPick, Unfit};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;

@@ -32,14 +32,14 @@ pub struct PickNode {
     pub at: [f64; 3],
     /// The horizon; made when it is not there.
     pub horizon: String,
-    /// How far to climb.
-    pub climb: Climb,
     /// Add or take out.
     #[serde(default)]
     pub operation: Operation,
     /// Colour of the horizon; absent: as it was, or the next of a list.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
+    /// How far to climb.
+    pub climb: Climb,
 }
 
 /// Moves a pick up or down its tree.

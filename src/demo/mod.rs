@@ -24,10 +24,10 @@ use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use survey::{Contact, Progress};
 use survey::formats::ImportOptions;
 use survey::segy::SegyOptions;
 use survey::synth::{SynthSettings, SynthTruth};
+use survey::{Contact, Progress};
 
 /// Survey, patterns and view.
 #[derive(Debug, Deserialize)]

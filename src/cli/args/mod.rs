@@ -1,7 +1,7 @@
 //! What can be typed.
 
-mod extraction;
 mod assembly;
+mod extraction;
 mod interpretation;
 mod layer;
 mod output;
@@ -9,10 +9,8 @@ mod scene;
 mod segy;
 mod well;
 
+pub(super) use assembly::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
 pub(super) use extraction::ExtractArgs;
-pub(super) use assembly::{
-    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs,
-};
 pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
 };
