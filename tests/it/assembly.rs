@@ -31,7 +31,7 @@ fn place_on(at: &Path, name: &str) -> String {
     let text = std::fs::read_to_string(at.join(format!("s/horizons/{name}.csv"))).unwrap();
     let header: Vec<&str> = text.lines().next().unwrap().split(',').map(str::trim).collect();
     let column = |wanted: &str| header.iter().position(|name| *name == wanted).unwrap();
-    let columns = [column("inline"), column("crossline"), column("z")];
+    let columns = [column("inline"), column("crossline"), column("depth_m")];
     let rows: Vec<Vec<f64>> = text
         .lines()
         .skip(1)
@@ -140,7 +140,7 @@ fn picks_that_cannot_be_made_say_why() {
     run_in(at, "evaluate p.petro nowhere").failed(&["truth"]);
     let place = place_on(at, "Bravo");
     run_in(at, &format!("pick p.petro --at {place} --horizon A --up 1000")).failed(&["levels above it"]);
-    run_in(at, &format!("horizon add p.petro s/horizons/Alpha.csv --name Alpha")).done();
+    run_in(at, "horizon add p.petro s/horizons/Alpha.csv --name Alpha").done();
     run_in(at, &format!("pick p.petro --at {place} --horizon Alpha")).failed(&["was imported"]);
     for usage in ["pick p.petro --at 1,2 --horizon A", "pick p.petro --at 1,2,3 --horizon A --up 1 --highest-valid"] {
         assert_eq!(run_in(at, usage).code, 2, "{usage}");
