@@ -3,7 +3,8 @@
 //! Sizes are points (pixels at a scale of 1). Text on its background has a contrast of at least 7 : 1, weak text of 4.5 : 1.
 
 use eframe::egui::{
-    Color32, Context, CornerRadius, FontFamily, FontId, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2, Visuals,
+    Color32, Context, CornerRadius, FontFamily, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2,
+    Visuals,
 };
 
 /// Ochre, as rock paintings have it.
@@ -22,6 +23,11 @@ pub fn install(ctx: &Context) {
     ctx.set_style_of(Theme::Dark, style(Theme::Dark));
     // Where the desktop does not say: as paper is.
     ctx.options_mut(|options| options.fallback_theme = Theme::Light);
+}
+
+/// The frame of a dialogue in front of everything: room around it, as around a page.
+pub fn dialogue(ctx: &Context) -> Frame {
+    Frame::popup(&ctx.global_style()).inner_margin(Margin::same(20)).corner_radius(CornerRadius::same(10))
 }
 
 fn style(theme: Theme) -> Style {

@@ -5,6 +5,7 @@
 
 use super::notices;
 use crate::app::state::{Action, Choice, Dialogue, Interpreted, Place, State, Target};
+use crate::app::theme;
 use eframe::egui::{Context, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -44,7 +45,7 @@ impl Chooser {
             self.text = self.home.join("").display().to_string();
             self.listed = None;
         }
-        let modal = Modal::new(Id::unique("chooser")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("chooser")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width(640.0_f32.min(ctx.content_rect().width() - 60.0));
             ui.heading(title(choice));
             ui.label(explanation(choice));

@@ -25,6 +25,7 @@ impl Controls {
         ScrollArea::vertical().show(ui, |ui| {
             let scene = &session.view.scene;
             let mut next = scene.clone();
+            ui.add_space(8.0);
             ui.heading("View");
             camera(ui, &mut next, actions);
             ui.add_space(10.0);

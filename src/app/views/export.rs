@@ -2,6 +2,7 @@
 
 use super::notices;
 use crate::app::state::{Action, Dialogue, ExportForm, ExportPlan, Place, Session, Shown, State};
+use crate::app::theme;
 use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit};
 
 /// Largest picture, pixels a side.
@@ -16,7 +17,7 @@ pub fn show(
     is_drawing: bool,
     actions: &mut Vec<Action>,
 ) {
-    let modal = Modal::new(Id::unique("export")).show(ctx, |ui| {
+    let modal = Modal::new(Id::unique("export")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
         ui.set_width(440.0);
         ui.heading("Export the picture");
         notices::show(ui, state, Place::Dialogue, actions);

@@ -2,6 +2,7 @@
 
 use super::notices;
 use crate::app::state::{Action, Place, State, Target};
+use crate::app::theme;
 use crate::app::work::Work;
 use crate::app::work::scan::{self, Found, SurveyScan};
 use crate::command::ImportVolume;
@@ -51,7 +52,7 @@ impl Import {
         }
         self.rescan(ctx, work);
         let room = ctx.content_rect().size();
-        let modal = Modal::new(Id::unique("import")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("import")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width((room.x - 120.0).clamp(560.0, 1040.0));
             let file = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
             ui.heading(format!("Read {file}"));
@@ -331,6 +332,6 @@ fn map(ui: &mut Ui, texture: &TextureHandle, geometry: &SurveyGeometry) {
         "inline {}, crossline {}: X {:.0}, Y {:.0}",
         geometry.inlines.first, geometry.crosslines.first, first.x, first.y
     );
-    ui.painter().circle_filled(place(world[0]), 4.0, crate::app::theme::accent(ui.visuals()));
+    ui.painter().circle_filled(place(world[0]), 4.0, theme::accent(ui.visuals()));
     ui.weak(format!("dot: {text}"));
 }

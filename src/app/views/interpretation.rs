@@ -3,6 +3,7 @@
 use super::layers::contact_name;
 use super::notices;
 use crate::app::state::{Action, Interpreted, Place, Session, State};
+use crate::app::theme;
 use crate::app::work::Work;
 use crate::app::work::scan::{self, Found, InterpretationScan};
 use crate::command::{AddFault, AddHorizon, Age, Command};
@@ -41,7 +42,7 @@ impl Interpretation {
             *self = Self { path: path.to_owned(), name, ..Self::default() };
         }
         self.rescan(session, work, kind);
-        let modal = Modal::new(Id::unique("interpretation")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("interpretation")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width(620.0);
             ui.heading(if kind == Interpreted::Fault { "Add a fault" } else { "Add a horizon" });
             ui.weak(path.display().to_string());

@@ -3,6 +3,7 @@
 use super::notices;
 use super::tiles::Tiles;
 use crate::app::state::{Action, Choice, Dialogue, Place, Session, State};
+use crate::app::theme;
 use crate::app::work::Swatches;
 use crate::command::{Command, SetLayer};
 use eframe::egui::{Context, Id, Modal, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, WidgetInfo, vec2};
@@ -32,7 +33,7 @@ impl Patterns {
         actions: &mut Vec<Action>,
     ) {
         let room = ctx.content_rect().size();
-        let modal = Modal::new(Id::unique("patterns")).show(ctx, |ui| {
+        let modal = Modal::new(Id::unique("patterns")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width((room.x - 120.0).clamp(400.0, 940.0));
             ui.heading(format!("Pattern of {layer}"));
             notices::show(ui, state, Place::Dialogue, actions);
@@ -100,7 +101,7 @@ fn tile(ui: &mut Ui, pattern: &Pattern, swatches: &Swatches, tiles: &mut Tiles) 
         let style = LayerStyle::textured("", pattern.colour, &pattern.name);
         tiles.paint(ui, swatches, &style, picture);
         if response.hovered() || response.has_focus() {
-            let stroke = Stroke::new(2.0, crate::app::theme::accent(ui.visuals()));
+            let stroke = Stroke::new(2.0, theme::accent(ui.visuals()));
             ui.painter().rect_stroke(picture.expand(2.0), 4.0, stroke, eframe::egui::StrokeKind::Inside);
         }
         let painter = ui.painter_at(caption);

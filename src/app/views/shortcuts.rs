@@ -4,6 +4,7 @@ use crate::app::state::faces::{self, Face, Owner};
 use crate::app::state::{
     Action, Choice, Compare, Dialogue, ExportForm, Layout, Panel, Session, StandardView, State, camera,
 };
+use crate::app::theme;
 use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};
 use glam::DVec2;
 use render::Scene;
@@ -175,7 +176,7 @@ pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
 
 /// Shows the table.
 pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
-    let modal = Modal::new(Id::unique("shortcuts")).show(ctx, |ui| {
+    let modal = Modal::new(Id::unique("shortcuts")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
         ui.set_width(620.0);
         ui.heading("Shortcuts");
         ScrollArea::vertical().max_height(ctx.content_rect().height() - 200.0).show(ui, |ui| {
