@@ -195,9 +195,6 @@ pub enum ProjectError {
     /// An attribute could not be computed.
     #[error(transparent)]
     Attribute(#[from] survey::attribute::AttributeError),
-    /// There is nothing to compute from.
-    #[error("the project has no volume; import one with `petroglyph import SURVEY.sgy PROJECT`")]
-    NoVolume,
     /// The interpretation does not make a solid model.
     #[error(transparent)]
     Model(#[from] survey::model::ModelError),
@@ -219,8 +216,8 @@ pub enum ProjectError {
     /// No candidates yet.
     #[error("the project has no horizon candidates yet")]
     NotExtracted,
-    /// Nothing to extract from.
-    #[error("the project has no volume on its own lattice to extract horizon candidates from")]
+    /// Nothing to compute from.
+    #[error("the project has no volume on its own lattice")]
     NoVolume,
     /// A volume whose voxels are not the project's.
     #[error("volume \"{volume}\" lies on another lattice than the project")]
@@ -462,7 +459,6 @@ impl ProjectError {
             | Self::Store(_)
             | Self::Assembly(_)
             | Self::Attribute(_)
-            | Self::NoVolume
             | Self::Model(_)
             | Self::Param(_)
             | Self::Interp(_)

@@ -86,6 +86,7 @@ fn project(folder: &Path) -> PathBuf {
         name: None,
         polarity: Default::default(),
         options: Default::default(),
+        memory_bytes: None,
     };
     let mut commands = vec![Command::Import(import)];
     for (name, z) in [("Top", 30.0), ("Base", 80.0)] {

@@ -220,6 +220,7 @@ impl Import {
                     name: (!name.is_empty()).then(|| name.to_owned()),
                     polarity: self.polarity,
                     options: self.options.clone(),
+                    memory_bytes: None,
                 });
                 let into = (target == Target::NewProject).then(|| PathBuf::from(self.root.trim()));
                 actions.push(Action::Import { command, into });
