@@ -30,7 +30,7 @@ pub fn write_envelope(
     memory_bytes: u64,
     progress: &Progress,
 ) -> Result<(), AttributeError> {
-    write_blocks(path, source, info, memory_bytes, 0, progress, |volume, quiet| envelope(volume, quiet))
+    write_blocks(path, source, info, memory_bytes, 0, progress, envelope)
 }
 
 /// Writes the semblance of a stored volume, along its own dips, to `path`.

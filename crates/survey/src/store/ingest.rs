@@ -22,6 +22,9 @@ use std::fs;
 use std::ops::Range;
 use std::path::Path;
 
+/// Least and greatest value of bricks, by their index.
+type BrickRanges = Vec<(usize, [f32; 2])>;
+
 /// Says in a folder what is being written to it; gone when the volume is complete.
 const MARKER: &str = "unfinished";
 
@@ -250,7 +253,7 @@ impl Ingest<'_> {
                     let (start, extent) = grid.extent(place);
                     let samples = Samples { values: &samples, first, size: block_size };
                     let ranges = samples.brick_ranges(start, extent, &self.mask, size);
-                    grid.write(place, &samples.values, first, block_size, bytes)?;
+                    grid.write(place, samples.values, first, block_size, bytes)?;
                     self.progress.step(1)?;
                     Ok(ranges)
                 })
@@ -283,7 +286,7 @@ impl Ingest<'_> {
         let together =
             (self.settings.memory_bytes / LEVEL_BYTES).clamp(1, rayon::current_num_threads() as u64) as usize;
         for group in places.chunks(together) {
-            let found: Vec<(bool, Vec<(usize, [f32; 2])>)> = group
+            let found: Vec<(bool, BrickRanges)> = group
                 .par_iter()
                 .map(|&place| {
                     let (start, part) = grid.extent(place);
