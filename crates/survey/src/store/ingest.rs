@@ -23,7 +23,7 @@ use std::ops::Range;
 use std::path::Path;
 
 /// Least and greatest value of bricks, by their index.
-type BrickRanges = Vec<(usize, [f32; 2])>;
+type IndexedRanges = Vec<(usize, [f32; 2])>;
 
 /// Says in a folder what is being written to it; gone when the volume is complete.
 const MARKER: &str = "unfinished";
@@ -286,7 +286,7 @@ impl Ingest<'_> {
         let together =
             (self.settings.memory_bytes / LEVEL_BYTES).clamp(1, rayon::current_num_threads() as u64) as usize;
         for group in places.chunks(together) {
-            let found: Vec<(bool, BrickRanges)> = group
+            let found: Vec<(bool, IndexedRanges)> = group
                 .par_iter()
                 .map(|&place| {
                     let (start, part) = grid.extent(place);
