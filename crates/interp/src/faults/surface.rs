@@ -333,8 +333,9 @@ fn solve(matrix: &mut [[f64; TERMS]; TERMS], right: &mut [f64; TERMS], count: us
         right.swap(column, pivot);
         for row in column + 1..count {
             let factor = matrix[row][column] / matrix[column][column];
-            for k in column..count {
-                matrix[row][k] -= factor * matrix[column][k];
+            let (above, below) = matrix.split_at_mut(row);
+            for (value, pivot) in below[0][column..count].iter_mut().zip(&above[column][column..count]) {
+                *value -= factor * pivot;
             }
             right[row] -= factor * right[column];
         }

@@ -145,10 +145,10 @@ impl Path<'_> {
 #[inline(always)]
 fn exit_t(ray: &Ray, brick: [i32; 3], around: i32) -> f32 {
     let mut exit = f32::MAX;
-    for axis in 0..3 {
+    for (axis, first) in brick.into_iter().enumerate() {
         let d = ray.direction[axis];
         if d.abs() > 1e-6 {
-            let border = if d > 0.0 { brick[axis] + 1 + around } else { brick[axis] - around };
+            let border = if d > 0.0 { first + 1 + around } else { first - around };
             exit = exit.min(((border * BRICK as i32) as f32 - ray.origin[axis]) / d);
         }
     }
