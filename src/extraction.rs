@@ -154,13 +154,13 @@ pub fn export_points(project: &Project, out: &Path, progress: &Progress) -> Resu
     progress.begin("writing candidates", forest.surfaces.surfaces.len() as u64);
     let mut count = 0;
     for (surface, part) in forest.surfaces.surfaces.iter().enumerate() {
-        for n in part.vertices.start as usize..part.vertices.end as usize {
-            let vertex = forest.surfaces.vertices[n];
-            if leaf_of[n] != 0 {
+        let own = part.vertices.start as usize..part.vertices.end as usize;
+        for (vertex, &leaf) in forest.surfaces.vertices[own.clone()].iter().zip(&leaf_of[own]) {
+            if leaf != 0 {
                 let inline = frame.inlines.number_at(vertex.x.into());
                 let crossline = frame.crosslines.number_at(vertex.y.into());
                 let z = frame.vertical.value_at(vertex.z.into());
-                writeln!(file, "{inline},{crossline},{z:.3},{},{}", leaf_of[n], surface + 1).map_err(fail)?;
+                writeln!(file, "{inline},{crossline},{z:.3},{leaf},{}", surface + 1).map_err(fail)?;
                 count += 1;
             }
         }

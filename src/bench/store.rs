@@ -6,7 +6,7 @@ use crate::error::ProjectError;
 use serde::Serialize;
 use std::fmt;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::Instant;
 use survey::attribute::{DipSettings, SemblanceSettings, dip, semblance};
 use survey::segy::{self, SegyFile, SegyOptions, WriteOptions};
@@ -130,7 +130,7 @@ fn measure(side: usize, kept: &Path, own: &Path, progress: &Progress) -> Result<
 }
 
 /// From the file to the store as `import` does it, without the project around it.
-fn ingest(file: &Path, zarr: &PathBuf, progress: &Progress) -> Result<(), ProjectError> {
+fn ingest(file: &Path, zarr: &Path, progress: &Progress) -> Result<(), ProjectError> {
     let opened = SegyFile::open(file, &SegyOptions::default(), progress)?;
     let info = VolumeInfo::of(opened.geometry()?);
     let supply = |block: &Block| {

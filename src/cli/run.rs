@@ -9,7 +9,8 @@ use crate::error::Noun;
 use crate::pipeline::Stage;
 use crate::project::Project;
 use crate::{
-    app, bench, data, demo, derived, extraction, library, picture, pipeline, proposals, scene, style, synth, volume_file,
+    app, bench, data, demo, derived, extraction, library, picture, pipeline, proposals, scene, style, synth,
+    volume_file,
 };
 use anyhow::Context;
 use render::Scene;

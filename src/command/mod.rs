@@ -49,6 +49,7 @@ use survey::{Progress, SurveyGeometry};
 /// A change to a project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
+#[expect(clippy::large_enum_variant, reason = "one at a time, never in bulk")]
 pub enum Command {
     /// Begin a project, with a survey frame or without.
     Create {

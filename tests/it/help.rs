@@ -60,9 +60,8 @@ fn every_help_shows_an_example() {
 #[test]
 fn what_is_not_built_yet_is_not_promised() {
     let help = run(["--help"]).done().stdout;
-    for later in ["review"] {
-        assert!(!help.lines().any(|line| line.trim_start().starts_with(later)), "{later}: {help}");
-    }
+    let later = "review";
+    assert!(!help.lines().any(|line| line.trim_start().starts_with(later)), "{later}: {help}");
 }
 
 #[test]

@@ -10,6 +10,6 @@ mod extraction;
 mod help;
 mod program;
 mod safety;
+mod see_through;
 mod store;
 mod well;
-mod see_through;

@@ -11,8 +11,8 @@ mod segy;
 mod well;
 
 pub(super) use assembly::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
-pub(super) use extraction::ExtractArgs;
 pub(super) use attribute::AttributeArgs;
+pub(super) use extraction::ExtractArgs;
 pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
 };

@@ -6,8 +6,8 @@ use image::RgbaImage;
 use render::media::{Colouring, EmptySpace, LayerOpacity, MediumColour, white_ramp};
 use render::reference::render;
 use render::{
-    Background, Camera, Candidates, Faces, Inputs, Media, Medium, NamedVolume, Occlusion, Outlines, PickedHorizon,
-    Picked, Projection, Scene, Scope, Shading, VoxelBox, WellPath, pick,
+    Background, Camera, Candidates, Faces, Inputs, Media, Medium, NamedVolume, Occlusion, Outlines, Picked,
+    PickedHorizon, Projection, Scene, Scope, Shading, VoxelBox, WellPath, pick,
 };
 use survey::synth::closed_form::ClosedForm;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
