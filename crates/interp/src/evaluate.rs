@@ -4,7 +4,8 @@
 //!
 //! - **coverage**: share of its nodes (a node is the horizon on one trace in one fault block) that have a vertex of some surface within
 //!   the tolerance, also for each part that faults, erosion and walls leave connected;
-//! - **precision**: share of the vertices of the surfaces whose majority is this horizon that lie on it within the tolerance;
+//! - **precision**: share of the vertices of the surfaces whose majority is this horizon that lie on it within the tolerance; surfaces
+//!   that lie on no reflector with most of their vertices, such as those along side lobes, are nobody's;
 //! - **purity**, *per surface*: of a surface's vertices that lie on any true reflector, the share that lies on the one most of them lie on. A
 //!   horizon's figure is the vertex-weighted mean over the surfaces whose majority it is; the worst large surface is named.
 //!
@@ -175,7 +176,8 @@ fn sum_up(
     settings: &EvaluateSettings,
     wanted: impl Fn(usize) -> bool,
 ) -> HorizonScore {
-    let own = || scores.iter().filter(|score| score.majority.is_some_and(&wanted));
+    let of_reflectors = |score: &&SurfaceScore| 2 * score.on_any >= score.vertices;
+    let own = || scores.iter().filter(of_reflectors).filter(|score| score.majority.is_some_and(&wanted));
     let vertices = own().map(|score| score.vertices).sum();
     let weighted: f64 = own().map(|score| score.purity() * score.vertices as f64).sum();
     let large = own().filter(|score| score.triangles >= settings.large_triangles);

@@ -90,6 +90,9 @@ fn off_every_reflector_is_imprecise_but_pure() {
     let found = evaluate(&surfaces, &truth, &EvaluateSettings::default());
     assert_eq!(found.horizons[0].purity, 1.0);
     assert!((found.horizons[0].precision() - 0.5).abs() < 1e-12);
+    // With one vertex more off than on, it is no surface of a reflector.
+    surfaces.surfaces[0].vertices.start += 1;
+    assert_eq!(evaluate(&surfaces, &truth, &EvaluateSettings::default()).horizons[0].surfaces, 0);
 }
 
 /// The normal and the reverse fault separate; around the tip of the dying fault blocks 1 and 2 are one part.
