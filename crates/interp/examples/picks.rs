@@ -23,7 +23,7 @@ const SHORTFALLS: &str = "\n\
 \x20 does not. The candidates are pure but in pieces: growing cuts along fault planes and lets no narrow front through, so a part of a horizon\n\
 \x20 comes in several surfaces, and no climb crosses from one to another.\n\
 - Proposed faults: a trace needs the rims of assembled horizons on both sides. One pick on each part covers too little of each horizon in noise; the\n\
-\x20 more of a horizon is assembled, the better the proposals. The fault that dies out was not found: its throw is small over most of its length.\n\
+\x20 more of a horizon is assembled, the better the proposals. The fault that dies out was not found; why is not settled.\n\
 ";
 /// Parts of fewer traces are not picked for the fault search.
 const FEWEST_TRACES: usize = 200;
