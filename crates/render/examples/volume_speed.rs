@@ -56,8 +56,8 @@ fn volume(side: usize) -> Volume<f32> {
             ((n / (side * side)) as f32 * scale, (n / side % side) as f32 * scale, (n % side) as f32 * scale);
         let bend = 9.0 * (x * 0.021).sin() + 7.0 * (y * 0.027).cos();
         let mut hash = n as u32;
-        hash = (hash ^ hash >> 16).wrapping_mul(0x45d9_f3b);
-        hash = (hash ^ hash >> 16).wrapping_mul(0x45d9_f3b);
+        hash = (hash ^ hash >> 16).wrapping_mul(0x045d_9f3b);
+        hash = (hash ^ hash >> 16).wrapping_mul(0x045d_9f3b);
         let noise = ((hash ^ hash >> 16) & 0xffff) as f32 / 65_535.0 - 0.5;
         ((z + bend) * 0.35).sin() * (0.6 + 0.4 * (x * 0.05 + y * 0.04).sin()) + 0.6 * noise
     });
