@@ -111,7 +111,7 @@ fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox, running: &Running) {
         };
         let (guard, progress) = running.begin("Preparing the picture", Place::Block, outbox.wake.clone());
         shared.0.lock().unwrap_or_else(PoisonError::into_inner).progress = Some(progress.clone());
-        let loaded = super::compute(|| load(&wanted, &mut kept, &progress));
+        let loaded = load(&wanted, &mut kept, &progress);
         drop(guard);
         match loaded {
             Ok(rocks) => outbox.send(Event::Ready { root: wanted.root, rocks }),
@@ -136,7 +136,8 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     let project = Project::open(&wanted.root)?;
     // Half-way needs everything that any blend needs.
     let scene = Scene { blend: 0.5, exaggeration: wanted.exaggeration, ..Scene::default() };
-    let rocks = Arc::new(RwLock::new(pipeline::load(&project, &scene, progress)?));
+    let loaded = super::compute(|| pipeline::load(&project, &scene, progress))?;
+    let rocks = Arc::new(RwLock::new(loaded));
     *kept = Some(Kept { root: wanted.root.clone(), key, volumes, rocks: rocks.clone() });
     Ok(rocks)
 }

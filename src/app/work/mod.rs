@@ -187,6 +187,9 @@ impl Work {
 }
 
 /// Computes on all processors but one: that one is the window's, so that it stays at hand while work goes on.
+///
+/// A job must take no lock on what is loaded: the thread that holds it may be waiting for these processors. Locks are
+/// taken before, by the caller.
 fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
     let pool = POOL.get_or_init(|| {

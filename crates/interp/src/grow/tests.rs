@@ -180,8 +180,11 @@ fn ours_is_purer_than_the_papers_on_a_faulted_survey() {
     let [ours, papers] = both().map(|settings| {
         let surfaces = grown(&survey.seismic, &settings);
         check(&surfaces);
-        evaluate(&surfaces, &survey.truth, &EvaluateSettings::default()).all
+        let found = evaluate(&surfaces, &survey.truth, &EvaluateSettings::default());
+        // Over all surfaces, so that merged ones count whatever else they run along.
+        let [on_one, on_any] = found.surfaces.iter().fold([0, 0], |sum, s| [sum[0] + s.on_majority, sum[1] + s.on_any]);
+        (on_one as f64 / on_any as f64, found.all.coverage())
     });
-    assert!(ours.purity > 0.95 && papers.purity < 0.8, "{} {}", ours.purity, papers.purity);
-    assert!(ours.coverage() > 0.94, "{}", ours.coverage());
+    assert!(ours.0 > 0.95 && papers.0 < 0.8, "{} {}", ours.0, papers.0);
+    assert!(ours.1 > 0.94, "{}", ours.1);
 }

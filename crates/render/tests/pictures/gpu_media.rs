@@ -103,7 +103,7 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 horizons: horizons.clone(),
                 scope: Scope::NearHorizons,
                 reach: 3.0,
-                ..none(vec![ramp.clone()], occlusion)
+                ..none(vec![ramp], occlusion)
             }),
         ),
         (
