@@ -2,12 +2,12 @@
 //!
 //! A tracked horizon ends at a fault and goes on behind it, higher or lower. So:
 //!
-//! 1. [`edges`]: the rims of each horizon's pieces, with the way out and the plane the piece lies in there.
-//! 2. [`pairs`]: rims that face one another with an offset. The middle of a pair lies on the fault; the offset of the two planes there is the
+//! 1. `edges`: the rims of each horizon's pieces, with the way out and the plane the piece lies in there.
+//! 2. `pairs`: rims that face one another with an offset. The middle of a pair lies on the fault; the offset of the two planes there is the
 //!    throw. Rims without an offset are those of holes.
-//! 3. [`traces`]: pairs of one horizon that follow one another along strike, with throws of one sign, are the fault's trace on it; traces on several
+//! 3. `traces`: pairs of one horizon that follow one another along strike, with throws of one sign, are the fault's trace on it; traces on several
 //!    horizons that lie one above the other on one steep surface are one fault.
-//! 4. [`surface`]: a smooth surface through them, the least squares quadratic of the distance across strike over strike and depth.
+//! 4. `surface`: a smooth surface through them, the least squares quadratic of the distance across strike over strike and depth.
 //!    It goes on to where the throw, continued linearly, is nothing; to the walls that its traces reach; up and down to the next
 //!    horizon that passes it unbroken, or through the volume.
 //!

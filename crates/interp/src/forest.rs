@@ -8,7 +8,7 @@
 //! cost(S) = min over planes ∫_S d² dA + 1e-12 · area(S),
 //! ```
 //!
-//! and the first term is the smallest eigenvalue of the central second moment of S (see [`moments`](self::moments)).
+//! and the first term is the smallest eigenvalue of the central second moment of S (see `moments`).
 //!
 //! **Departure: no priority queue.** No plane fits a larger set better, so cost(S ∪ T) ≥ cost(S), and the cost of joining A ∪ B with C is never
 //! below the lesser of those of joining A or B with C. For such (reducible) costs, merging any two parts that are each other's

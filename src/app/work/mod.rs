@@ -1,8 +1,8 @@
 //! Everything that takes time, away from the window's thread.
 //!
 //! [`Work`] hands orders to threads and collects their [`Event`]s; [`Running`] lists what is under way, with progress and a way to stop it.
-//! Commands on the project go one after the other ([`project`]); data are read and models built by [`data`]; pictures
-//! ([`picture`]) and sections ([`slice`]) are drawn for the latest wish only.
+//! Commands on the project go one after the other (`project`); data are read and models built by [`data`]; pictures
+//! ([`picture`]) and sections ([`mod@slice`]) are drawn for the latest wish only.
 //!
 //! Invariant: no call from the window's thread waits.
 

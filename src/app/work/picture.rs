@@ -1,6 +1,6 @@
 //! Pictures of the block for the screen: coarse at once, then full, then smooth, always for the latest wish.
 //!
-//! The time that one ray took last time decides how coarse the first picture is, so that it comes within [`COARSE_S`] on any machine. A
+//! The time that one ray took last time decides how coarse the first picture is, so that it comes within `COARSE_S` on any machine. A
 //! coarse picture is always finished, or nothing would be seen while the camera moves; finer ones are given up for a newer wish.
 
 use super::{Event, Outbox, Rocks, spawn};

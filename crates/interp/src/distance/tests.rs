@@ -115,7 +115,7 @@ fn overlapping_folded_steep_and_torn_surfaces_are_exact() {
     let steep = |x: f32, y: f32| 4.0 * x + 0.5 * y - 20.0;
     let flat = |_: f32, _: f32| 30.0;
     let torn = |n: usize, x: usize, y: usize| match n {
-        0 => (x + 2 * y) % 7 != 0,
+        0 => !(x + 2 * y).is_multiple_of(7),
         1 => hash(x as f32 + 0.5, y as f32) > 0.4,
         2 => y > 6,
         _ => x < 3 || (x > 12 && y < 9),

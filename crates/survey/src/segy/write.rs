@@ -120,7 +120,7 @@ pub fn write(
 /// mask of live traces, `None` = all.
 ///
 /// # Errors
-/// As [`write`], and [`SegyProblem::Source`] for what the source answers.
+/// As [`write()`], and [`SegyProblem::Source`] for what the source answers.
 pub fn write_lines(
     path: &Path,
     geometry: &SurveyGeometry,
