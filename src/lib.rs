@@ -22,6 +22,7 @@ pub mod pipeline;
 pub mod project;
 pub mod proposals;
 pub mod scene;
+pub mod shown_candidates;
 pub mod style;
 pub mod synth;
 pub mod volume_file;

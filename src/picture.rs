@@ -75,7 +75,7 @@ impl Painter {
         progress: &Progress,
     ) -> Result<(RgbaImage, Stage), RenderError> {
         let start = Instant::now();
-        let scene = &Scene { raw: scene.raw.clone().or_else(|| loaded.raw.clone()), ..scene.clone() };
+        let scene = &loaded.complete(scene);
         let volumes = loaded.named_volumes();
         let wells = loaded.well_paths();
         let inputs = loaded.inputs(&volumes, &wells);

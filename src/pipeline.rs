@@ -2,12 +2,12 @@
 //! needs and nothing more, and what was computed before is taken from `derived/`.
 
 use crate::error::ProjectError;
-use crate::horizon_distance::HorizonDistances;
 use crate::project::{Document, Project, placement};
+use crate::shown_candidates::ShownCandidates;
 use crate::{data, derived, library, style};
 use glam::{DVec3, Vec3};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
-use render::{FaceData, Inputs, Lookup, NamedVolume, Scene, VoxelBox, WellPath};
+use render::{Inputs, Lookup, NamedVolume, Scene, VoxelBox, WellPath};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use survey::model::{ModelSettings, StructuralModel};
@@ -168,8 +168,8 @@ pub struct Loaded {
     pub raw: Option<RawColour>,
     /// Wells, in voxels.
     pub wells: Vec<LoadedWell>,
-    /// Distances to the horizons, where the scene shows them.
-    pub distances: Option<HorizonDistances>,
+    /// Horizon candidates, where the scene shows them or horizons in volumes.
+    pub candidates: Option<ShownCandidates>,
     /// Compiled styles.
     pub tables: Option<TtfTables>,
     /// Unlike that of anything else loaded by this process: renderers keep what they uploaded while it stays the same.
@@ -227,18 +227,24 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
         let volume = data::read_volume(project.root(), entry, progress)?;
         volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
     }
-    let shows_distances = !scene.media.horizons.is_empty() || scene.face_data != FaceData::Rock;
-    let distances = match &rock {
-        Some(rock) if shows_distances => Some(HorizonDistances::new(&rock.model, progress)?),
-        _ => None,
-    };
+    let candidates = ShownCandidates::load(project, scene, rock.as_ref().map(|rock| &rock.model), progress)?;
     let mut wells = Vec::new();
     for entry in &document.wells {
         let well = data::read_well(project.root(), entry)?;
         let tops = well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, &geometry)).collect();
         wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(&geometry), tops });
     }
-    Ok(Loaded { wells, distances, geometry, rock, volumes, packed, raw: functions.raw, tables, version: new_version() })
+    Ok(Loaded {
+        wells,
+        candidates,
+        geometry,
+        rock,
+        volumes,
+        packed,
+        raw: functions.raw,
+        tables,
+        version: new_version(),
+    })
 }
 
 /// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so
@@ -262,6 +268,16 @@ pub(crate) fn block_extent(
 }
 
 impl Loaded {
+    /// A scene with all that only the project knows: colours of raw data where it states none, and the leaves of horizons it names.
+    pub fn complete(&self, scene: &Scene) -> Scene {
+        let mut scene = Scene { raw: scene.raw.clone().or_else(|| self.raw.clone()), ..scene.clone() };
+        match &self.candidates {
+            Some(candidates) => candidates.complete(&mut scene),
+            None => scene.media.horizons.retain(|horizon| horizon.name.is_none()),
+        }
+        scene
+    }
+
     /// The volumes as renderers take them.
     pub fn named_volumes(&self) -> Vec<NamedVolume<'_>> {
         let named = self.volumes.iter();
@@ -282,7 +298,7 @@ impl Loaded {
             packed: self.packed.as_ref(),
             tables: self.tables.as_ref(),
             volumes,
-            candidates: self.distances.as_ref().map(HorizonDistances::candidates),
+            candidates: self.candidates.as_ref().map(ShownCandidates::candidates),
             wells,
             version: self.version,
         }

@@ -5,7 +5,8 @@ use crate::project::Document;
 use crate::style;
 use render::media::{Colouring, LayerOpacity, MediumColour, white_ramp};
 use render::{
-    Background, Faces, Ground, Medium, Occlusion, Outlines, Phong, PickedHorizon, Scene, Scope, Shading, Stroke,
+    Background, FaceData, Faces, Ground, Medium, Occlusion, Outlines, Phong, PickedHorizon, Scene, Scope, Shading,
+    Stroke,
 };
 use ttf::{Colour, ColourMap, RgbaFunction, RgbaStop};
 
@@ -111,10 +112,12 @@ impl SeeThrough {
     /// The project has no such volume, or none at all.
     pub fn change(&self, scene: &mut Scene, document: &Document) -> Result<(), ProjectError> {
         for (n, shown) in self.horizons.iter().enumerate() {
-            let index = document.position(Noun::Horizon, &shown.name)?;
+            let entry = &document.horizons[document.position(Noun::Horizon, &shown.name)?];
+            let own = entry.assembly.as_ref().map(|log| log.colour);
             scene.media.horizons.push(PickedHorizon {
-                leaves: vec![index as u32 + 1],
-                colour: shown.colour.unwrap_or(HORIZON_COLOURS[n % HORIZON_COLOURS.len()]),
+                name: Some(entry.name.clone()),
+                leaves: Vec::new(),
+                colour: shown.colour.or(own).unwrap_or(HORIZON_COLOURS[n % HORIZON_COLOURS.len()]),
                 colouring: Colouring::Own,
                 opacity: shown.opacity,
                 thickness: 1.0,
@@ -178,6 +181,28 @@ impl SeeThrough {
         scene.media.cut_outs = vec![Medium { volume: raw.volume, function, layers, colour: MediumColour::Function }];
         Ok(())
     }
+}
+
+/// Where no face of rock shows leaves, the horizons shown in the volume tell theirs apart; without one, all candidates are shown.
+pub fn leaves_in_volume(scene: &mut Scene) {
+    if scene.face_data != FaceData::Leaves || scene.media.faces != Faces::None {
+        return;
+    }
+    let horizons = &mut scene.media.horizons;
+    if horizons.is_empty() {
+        horizons.push(PickedHorizon {
+            name: None,
+            leaves: Vec::new(),
+            colour: Colour::WHITE,
+            colouring: Colouring::ByLeaf,
+            opacity: 1.0,
+            thickness: 1.0,
+            emission: 0.0,
+            paint: None,
+        });
+    }
+    horizons.iter_mut().for_each(|horizon| horizon.colouring = Colouring::ByLeaf);
+    scene.face_data = FaceData::Rock;
 }
 
 /// The stops of a function, and enough between them to bend its opacity.

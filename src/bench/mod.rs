@@ -208,7 +208,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
             rock: Some(rock),
             volumes: Vec::new(),
             packed: Some(packed),
-            distances: None,
+            candidates: None,
             wells: Vec::new(),
             raw: None,
             tables: Some(tables),

@@ -20,6 +20,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let mut scene = choose(&project, request.scene.as_deref())?;
     request.see_through.change(&mut scene, document)?;
     request.view.change(&mut scene, document.frame()?);
+    scene::leaves_in_volume(&mut scene);
     if document.volumes.is_empty() && document.horizons.is_empty() {
         anyhow::bail!(
             "the project has neither horizons nor a volume, so there is nothing to draw; add a horizon or import a volume"

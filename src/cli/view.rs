@@ -21,6 +21,7 @@ pub(super) struct View {
     cuts: Vec<Cut>,
     ground: Option<Option<Ground>>,
     face_data: Option<FaceData>,
+    tree_level: Option<u32>,
     outlines: Option<Outlines>,
     global_frequency: Option<f32>,
     samples: Option<u32>,
@@ -82,12 +83,13 @@ impl TryFrom<ViewArgs> for View {
             cuts,
             ground: switch("--ground", typed.ground.as_deref(), Some(Ground::default()), None)?,
             face_data: match typed.show.as_deref() {
-                None => None,
+                None => typed.level.map(|_| FaceData::Leaves),
                 Some("rock") => Some(FaceData::Rock),
                 Some("leaves") => Some(FaceData::Leaves),
                 Some("distance") => Some(FaceData::Distance),
                 Some(other) => return Err(format!("--show {other}: expected rock, leaves or distance")),
             },
+            tree_level: typed.level,
             outlines: switch("--outlines", typed.outlines.as_deref(), Outlines::default(), Outlines::none())?,
             global_frequency: typed.global_frequency,
             samples: typed.samples,
@@ -143,6 +145,7 @@ impl View {
         scene.roaming_box = self.roaming_box.map(|lines| voxel_box(lines, geometry)).or(scene.roaming_box);
         scene.ground = self.ground.unwrap_or(scene.ground);
         scene.face_data = self.face_data.unwrap_or(scene.face_data);
+        scene.tree_level = self.tree_level.unwrap_or(scene.tree_level);
         scene.outlines = self.outlines.unwrap_or(scene.outlines);
         scene.global_frequency = self.global_frequency.unwrap_or(scene.global_frequency);
         scene.samples = self.samples.unwrap_or(scene.samples);

@@ -5,7 +5,10 @@ use crate::candidates::Candidates;
 use crate::data;
 use crate::project::Draft;
 use crate::project::document::{Assembly, HorizonEntry, Source};
-use interp::assembly::{Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above};
+use interp::Forest;
+use interp::assembly::{
+    AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
+};
 use interp::holes::{Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
 use serde::Serialize;
@@ -125,11 +128,19 @@ pub(super) fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> 
     if !outdated.is_empty() {
         return Err(ProjectError::OutdatedPicks { horizon: name.to_owned(), picks: outdated });
     }
+    Ok(picked_selection(log, &candidates.forest)?)
+}
+
+/// The nodes of a log whose picks are all of the extraction that the trees are of.
+///
+/// # Errors
+/// A pick above its tree.
+pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, AssemblyError> {
     let mut nodes = Vec::with_capacity(log.picks.len());
     for pick in &log.picks {
-        nodes.push((node_above(&candidates.forest, pick.leaf, pick.up)?, pick.operation));
+        nodes.push((node_above(forest, pick.leaf, pick.up)?, pick.operation));
     }
-    Ok(assemble(&candidates.forest, nodes))
+    Ok(assemble(forest, nodes))
 }
 
 /// A colour for the next horizon.

@@ -22,6 +22,7 @@ mod survey_frame;
 mod texture;
 mod well;
 
+pub(crate) use assembly::picked_selection;
 pub use assembly::{AssemblyReport, HoleReport};
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;

@@ -2,6 +2,7 @@
 
 use crate::program::{bytes, run_in, survey};
 use serde_json::Value;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::OnceLock;
 use tempfile::TempDir;
@@ -190,4 +191,48 @@ fn an_extraction_is_measured_against_the_truth() {
     assert!(horizons[0]["coverage"].as_f64() > Some(0.8), "{found}");
     let table = run_in(at, "evaluate p.petro s").done().stdout;
     assert!(table.contains("Unconformity") && table.contains("oracle"), "{table}");
+}
+
+#[test]
+fn pictures_show_the_extraction_and_the_nodes_picked() {
+    let folder = project();
+    let at = folder.path();
+    let picture = |options: &str| {
+        run_in(at, &format!("render p.petro a.png --size 160x120 --samples 1 --device cpu {options}")).done();
+        image::open(at.join("a.png")).unwrap().to_rgb8()
+    };
+    // Levels of the trees: fewer and fewer colours, the same places.
+    let colours = |options: &str| {
+        let all: BTreeSet<[u8; 3]> = picture(options).pixels().map(|pixel| pixel.0.map(|c| c / 16)).collect();
+        all.len()
+    };
+    let [leaves, nodes, surfaces] = ["0", "2", "40"].map(|level| colours(&format!("--level {level} --outlines off")));
+    assert!(leaves >= nodes && nodes > surfaces, "{leaves} {nodes} {surfaces}");
+    assert!(picture("--show distance") != picture("--show leaves"));
+
+    // A horizon shows what was picked, and more of it after a climb.
+    let place = place_on(at, "Bravo");
+    pick(at, &format!("--at {place} --horizon Top --colour #ff0000"));
+    let view = "--technique occlusion --horizon Top --scope near --clear-below 0.9 --elevation 60";
+    let red = |image: &image::RgbImage| image.pixels().filter(|p| p.0[0] > 90 && p.0[1] < 60 && p.0[2] < 60).count();
+    let first = red(&picture(view));
+    assert!(first > 20, "{first}");
+    let climbed = run_in(at, "climb p.petro 1 --highest-valid --json").done().json();
+    let wider = red(&picture(view));
+    if climbed["levels"].as_u64() > Some(0) {
+        assert!(wider > first, "{wider} {first}");
+    }
+    let by_leaf = picture(&format!("{view} --show leaves"));
+    assert!(red(&by_leaf) < wider, "leaves are told apart by colour");
+
+    // Picks of another extraction give way to the horizon's sheets.
+    run_in(at, "extract p.petro --max-distance 6").done();
+    assert!(red(&picture(view)) > 20);
+    std::fs::remove_dir_all(at.join("p.petro/derived/candidates.zarr")).unwrap();
+    assert!(red(&picture(view)) > 20);
+    let warned = run_in(at, "render p.petro a.png --size 80x60 --samples 1 --show leaves").done();
+    assert!(warned.stderr.contains("no horizon candidates"), "{}", warned.stderr);
+    run_in(at, "render p.petro a.png --show leaves --level 2").failed(&["no horizon candidates", "petroglyph extract"]);
+    run_in(at, "horizon remove p.petro Top").done();
+    run_in(at, "render p.petro a.png --show distance").failed(&["no horizon candidates", "petroglyph extract"]);
 }

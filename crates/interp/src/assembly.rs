@@ -57,6 +57,13 @@ pub fn assemble(forest: &Forest, picks: impl IntoIterator<Item = (u32, Operation
     selection
 }
 
+/// Ids of the leaves that a selection holds, ascending.
+pub fn selected_leaves(forest: &Forest, selection: &Selection) -> Vec<u32> {
+    let leaves = (1u32..).zip(&forest.leaves);
+    let held = leaves.filter(|(_, node)| selection.contains(forest.nodes[**node as usize].triangles.start));
+    held.map(|(id, _)| id).collect()
+}
+
 /// Id of the leaf that owns a triangle.
 pub(crate) fn leaf_of(forest: &Forest, triangle: u32) -> u32 {
     forest.leaves.partition_point(|&node| forest.nodes[node as usize].triangles.start <= triangle) as u32

@@ -23,6 +23,7 @@
 
 mod cluster;
 mod dual;
+mod level;
 mod moments;
 mod prune;
 mod split;

@@ -65,6 +65,9 @@ pub struct Scene {
     pub cut_outs: Vec<VoxelBox>,
     /// What faces show. Default the rock.
     pub face_data: FaceData,
+    /// Levels of the surface trees above the leaves at which leaves are told apart, where they are; who brings the candidates groups them so. Default 0:
+    /// leaves.
+    pub tree_level: u32,
     /// How wells are drawn.
     pub wells: WellStyle,
     /// What is seen through, in the cut-outs and around them.
@@ -89,6 +92,7 @@ impl Default for Scene {
             outlines: Outlines::default(),
             cut_outs: Vec::new(),
             face_data: FaceData::Rock,
+            tree_level: 0,
             wells: WellStyle::default(),
             media: Media::default(),
         }

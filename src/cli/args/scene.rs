@@ -87,9 +87,12 @@ pub(in crate::cli) struct ViewArgs {
     /// Relief of the topmost horizon instead of a flat top
     #[arg(long, value_name = "on|off")]
     pub(in crate::cli) ground: Option<String>,
-    /// What faces show: the rock, the leaves of horizon candidates in colours, or the distance to the nearest candidate
+    /// What faces show: the rock, the leaves of horizon candidates in colours, or the distance to the nearest candidate. In a volume seen through, leaves colour the horizons shown, or all candidates
     #[arg(long, value_name = "rock|leaves|distance")]
     pub(in crate::cli) show: Option<String>,
+    /// Tell leaves apart by the nodes this many levels up their surface trees; 0 = leaves. Shows leaves unless --show says otherwise
+    #[arg(long, value_name = "N")]
+    pub(in crate::cli) level: Option<u32>,
     /// Lines along horizons, faults and edges
     #[arg(long, value_name = "on|off")]
     pub(in crate::cli) outlines: Option<String>,

@@ -55,24 +55,45 @@ impl Forest {
         }
         check(&surfaces)?;
         let mut forest = Self { surfaces, ..Self::default() };
-        let (count, triangles) = (tables.nodes.len() as u32, forest.surfaces.triangles.len() as u32);
-        for (index, [parent, a, b, surface, first, end]) in tables.nodes.into_iter().enumerate() {
+        let triangles = forest.surfaces.triangles.len() as u32;
+        let reached = forest.read_nodes(tables.nodes, forest.surfaces.surfaces.len(), triangles)?;
+        if forest.roots.len() != forest.surfaces.surfaces.len() || reached != triangles {
+            return damaged("there are not as many trees as surfaces");
+        }
+        Ok(forest)
+    }
+
+    /// The trees that rows of nodes describe, without vertices and triangles: enough to climb, and to tell leaves.
+    ///
+    /// # Errors
+    /// [`Error::DamagedForest`] when they contradict each other.
+    pub fn of_nodes(nodes: Vec<[u32; 6]>) -> Result<Self, Error> {
+        let mut forest = Self::default();
+        forest.read_nodes(nodes, usize::MAX, u32::MAX)?;
+        Ok(forest)
+    }
+
+    /// Takes rows of nodes; answers the end of the last leaf's triangles.
+    fn read_nodes(&mut self, nodes: Vec<[u32; 6]>, surfaces: usize, triangles: u32) -> Result<u32, Error> {
+        let damaged = |fact| Err(Error::DamagedForest { fact });
+        let count = nodes.len() as u32;
+        for (index, [parent, a, b, surface, first, end]) in nodes.into_iter().enumerate() {
             let index = index as u32;
             let below = |child: u32| child > index && child < count;
             let leaf = a == NONE && b == NONE;
             if !(leaf || below(a) && below(b)) || !(parent == NONE || parent < index) {
                 return damaged("a node stands before its parent");
             }
-            if surface as usize >= forest.surfaces.surfaces.len() || first > end || end > triangles {
+            if surface as usize >= surfaces || first > end || end > triangles {
                 return damaged("a node has triangles that are not there");
             }
             if parent == NONE {
-                forest.roots.push(index);
+                self.roots.push(index);
             }
             if leaf {
-                forest.leaves.push(index);
+                self.leaves.push(index);
             }
-            forest.nodes.push(Node {
+            self.nodes.push(Node {
                 parent: (parent != NONE).then_some(parent),
                 children: (!leaf).then_some([a, b]),
                 surface,
@@ -80,16 +101,13 @@ impl Forest {
             });
         }
         let mut reached = 0;
-        for &leaf in &forest.leaves {
-            let range = &forest.nodes[leaf as usize].triangles;
+        for &leaf in &self.leaves {
+            let range = &self.nodes[leaf as usize].triangles;
             if range.start != reached {
                 return damaged("leaves do not follow one another");
             }
             reached = range.end;
         }
-        if forest.roots.len() != forest.surfaces.surfaces.len() || reached != triangles {
-            return damaged("there are not as many trees as surfaces");
-        }
-        Ok(forest)
+        Ok(reached)
     }
 }

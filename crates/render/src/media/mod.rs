@@ -205,6 +205,9 @@ impl Default for Occlusion {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PickedHorizon {
+    /// The horizon of an interpretation that it is: who brings the candidates puts that horizon's leaves below. Absent: the leaves as they are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
     /// Its leaves' ids; none = every leaf there is.
     #[serde(default)]
     pub leaves: Vec<u32>,

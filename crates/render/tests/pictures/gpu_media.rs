@@ -68,6 +68,7 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
         |surroundings: Vec<Medium>, shading| Media { faces: Faces::None, surroundings, shading, ..Media::default() };
     let occlusion = Shading::Occlusion(Occlusion::default());
     let picked = |first: u32, colour: Colour, emission: f32| PickedHorizon {
+        name: None,
         leaves: (first..first + 10).collect(),
         colour,
         colouring: Colouring::Own,

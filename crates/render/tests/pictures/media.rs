@@ -343,6 +343,7 @@ fn an_emitter_lights_a_white_wall_in_its_colour() {
         scope,
         surroundings: vec![medium("v", white_ramp(2.0, 0.5))],
         horizons: vec![PickedHorizon {
+            name: None,
             leaves: vec![7],
             colour: glowing,
             colouring: Colouring::Own,

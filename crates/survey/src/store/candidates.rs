@@ -377,8 +377,16 @@ impl StoredCandidates {
             z: self.table::<f32, 1>("forest/z", progress)?.into_iter().map(|[z]| z).collect(),
             triangles: self.table("forest/triangles", progress)?,
             surfaces: self.table("forest/surfaces", progress)?,
-            nodes: self.table("forest/nodes", progress)?,
+            nodes: self.read_nodes(progress)?,
         })
+    }
+
+    /// The trees alone: rows of `forest/nodes`.
+    ///
+    /// # Errors
+    /// [`StoreError`].
+    pub fn read_nodes(&self, progress: &Progress) -> Result<Vec<[u32; 6]>, StoreError> {
+        self.table("forest/nodes", progress)
     }
 
     fn table<T: StoredSample, const N: usize>(
