@@ -2,7 +2,7 @@
 //! faces (P-horiz 5.2).
 //!
 //! The distance of a voxel to a sheet z = h(x, y) is |z − h|/√(1 + |∇h|²), exact for a plane; it is told as far as the codes reach. Among candidates that are
-//! there already a horizon wins within [`OWN`] voxels and where it is nearer. Voxel space.
+//! there already a horizon wins within two voxels and where it is nearer. Voxel space.
 
 use glam::Vec3;
 use rayon::prelude::*;
