@@ -286,6 +286,12 @@ pub enum ProjectError {
         /// The leaf.
         leaf: u32,
     },
+    /// Picks of several horizons at once.
+    #[error("picks of \"{}\" and \"{}\" cannot be made in one step", horizons[0], horizons[1])]
+    SeveralHorizons {
+        /// Two of them.
+        horizons: [String; 2],
+    },
     /// A pick that is not there.
     #[error("there is no pick {pick}; {}", if known.is_empty() { "nothing was picked yet".to_owned() } else { format!("there are: {known:?}") })]
     UnknownPick {
@@ -417,6 +423,7 @@ impl ProjectError {
             Self::NothingLeft { .. } => "`petroglyph horizon remove` takes a horizon away",
             Self::AlreadyPicked { .. } => "pick elsewhere, or climb higher with --up",
             Self::NotPicked { .. } => "`petroglyph horizon show` lists the picks and their places",
+            Self::SeveralHorizons { .. } => "make the picks of each horizon in a step of their own",
             Self::UnknownPick { .. } => "`petroglyph horizon show PROJECT NAME` lists the picks with their numbers",
             Self::AtLeaf { .. } => "take the leaf out with `petroglyph pick --remove`, or extract with smaller leaves",
             Self::OutdatedPicks { .. } => {

@@ -8,7 +8,7 @@ use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
 use crate::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
-    RenameHorizon, SetContact, SetTruncation,
+    RemovePick, RenameHorizon, SetContact, SetHorizonColour, SetTruncation,
 };
 use crate::memory;
 use crate::project::Polarity;
@@ -140,6 +140,14 @@ pub(super) fn horizon(action: HorizonAction) -> Result<Request, Usage> {
         }
         HorizonAction::Fill(typed) => assembly::fill(typed),
         HorizonAction::Replay(typed) => assembly::replay(typed),
+        HorizonAction::Unpick { project, id } => {
+            Request::Change { project, command: Command::RemovePick(RemovePick { id }) }
+        }
+        HorizonAction::Colour { project, name, colour } => {
+            let colour = colour.parse().map_err(|_| format!("colour {colour}: expected #rrggbb"))?;
+            let command = Command::SetHorizonColour(SetHorizonColour { horizon: name, colour });
+            Request::Change { project, command }
+        }
         HorizonAction::Contact { project, name, contact: text } => {
             let contact = contact("contact", &text)?;
             Request::Change { project, command: Command::SetContact(SetContact { horizon: name, contact }) }

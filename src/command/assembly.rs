@@ -5,6 +5,7 @@ use crate::candidates::Candidates;
 use crate::data;
 use crate::project::Draft;
 use crate::project::document::{Assembly, HorizonEntry, Source};
+use crate::project::Document;
 use interp::Forest;
 use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
@@ -12,7 +13,7 @@ use interp::assembly::{
 use interp::holes::{Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use survey::model::{ContactRules, FaultNetwork, ModelSettings};
 use survey::{Contact, Horizon, Progress, SurveyGeometry, store};
 use ttf::Colour;
@@ -96,7 +97,7 @@ impl std::fmt::Display for AssemblyReport {
 }
 
 /// A conflict in words.
-fn sentence(conflict: &Conflict) -> String {
+pub(crate) fn sentence(conflict: &Conflict) -> String {
     match conflict {
         Conflict::SharedLeaves { horizons: [a, b], leaves, triangles } => {
             format!("\"{a}\" and \"{b}\" share {triangles} triangles of {} leaves", leaves.len())
@@ -112,17 +113,17 @@ fn sentence(conflict: &Conflict) -> String {
 }
 
 /// The faults of the project as blocks.
-pub(super) fn blocks(draft: &Draft, progress: &Progress) -> Result<FaultNetwork, ProjectError> {
-    let faults = draft.document.faults.iter().map(|entry| data::read_fault(draft.root(), entry));
+pub(crate) fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<FaultNetwork, ProjectError> {
+    let faults = document.faults.iter().map(|entry| data::read_fault(root, entry));
     let faults = faults.collect::<Result<Vec<_>, _>>()?;
-    Ok(FaultNetwork::build(draft.document.frame()?, &faults, &ModelSettings::default(), progress)?)
+    Ok(FaultNetwork::build(document.frame()?, &faults, &ModelSettings::default(), progress)?)
 }
 
 /// The nodes of a log on the extraction at hand.
 ///
 /// # Errors
 /// [`ProjectError::OutdatedPicks`] when some of them are of another extraction.
-pub(super) fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<Selection, ProjectError> {
+pub(crate) fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<Selection, ProjectError> {
     let outdated: Vec<u32> =
         log.picks.iter().filter(|pick| pick.extraction != candidates.key).map(|pick| pick.id).collect();
     if !outdated.is_empty() {
@@ -144,8 +145,8 @@ pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Select
 }
 
 /// A colour for the next horizon.
-pub(super) fn next_colour(draft: &Draft) -> Colour {
-    let assembled = draft.document.horizons.iter().filter(|entry| entry.assembly.is_some()).count();
+pub(crate) fn next_colour(document: &Document) -> Colour {
+    let assembled = document.horizons.iter().filter(|entry| entry.assembly.is_some()).count();
     let [red, green, blue] = COLOURS[assembled % COLOURS.len()];
     Colour::new(red, green, blue)
 }
@@ -178,20 +179,22 @@ pub(super) fn rebuild(
     };
     let mut report = report_on(&assembled.sheets, &geometry);
     report.filled = filled;
-    let overlap = assembled.overlap;
-    if overlap.traces > 0 {
-        let at = geometry.lines_from_voxel(glam::DVec2::new(f64::from(overlap.at[0]), f64::from(overlap.at[1])));
-        let z = geometry.vertical.value_at(f64::from(overlap.at[2]));
-        report.overlap = Some(Overlap { at: [at.x as f32, at.y as f32, z as f32], ..overlap });
-    }
+    report.overlap = overlap_in_lines(assembled.overlap, &geometry);
     let horizon = to_horizon(name, &assembled.sheets, &geometry);
     put(draft, &horizon, Some(log), progress)?;
     report.conflicts = conflicts_with(draft, candidates, blocks, name, &assembled.sheets, progress)?;
     Ok(report)
 }
 
+/// An overlap, if there is one, at its place in line numbers.
+pub(crate) fn overlap_in_lines(overlap: Overlap, geometry: &SurveyGeometry) -> Option<Overlap> {
+    let at = geometry.lines_from_voxel(glam::DVec2::new(f64::from(overlap.at[0]), f64::from(overlap.at[1])));
+    let z = geometry.vertical.value_at(f64::from(overlap.at[2]));
+    (overlap.traces > 0).then_some(Overlap { at: [at.x as f32, at.y as f32, z as f32], ..overlap })
+}
+
 /// Counts and holes of sheets.
-pub(super) fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyReport {
+pub(crate) fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyReport {
     let [nx, ny, _] = geometry.size();
     let traces = (0..nx * ny).filter(|&n| sheets.iter().any(|sheet| sheet.z[n].is_finite())).count();
     let holes = find_holes(sheets, [nx, ny]);
@@ -271,26 +274,38 @@ fn conflicts_with(
     let geometry = draft.document.frame()?;
     let mut all = Vec::new();
     for entry in &draft.document.horizons {
-        let own = entry.name == name;
-        let sheets = if own {
+        all.push(if entry.name == name {
             sheets.to_vec()
         } else {
             from_horizon(&data::read_horizon(draft.root(), entry, progress)?, geometry, blocks)
-        };
-        let chosen = entry.assembly.as_ref().and_then(|log| selection(&entry.name, log, candidates).ok());
-        all.push((entry.name.clone(), sheets, chosen));
+        });
     }
-    let named: Vec<NamedSheets> =
-        all.iter().map(|(name, sheets, chosen)| NamedSheets { name, sheets, selection: chosen.as_ref() }).collect();
-    let rules = ContactRules::new(&draft.document.stratigraphy());
+    let all: Vec<&[VoxelSheet]> = all.iter().map(Vec::as_slice).collect();
+    let found = conflicts_of(&draft.document, Some(candidates), &all)?;
+    Ok(found.into_iter().filter(|conflict| conflict.horizons().iter().any(|n| n == name)).collect())
+}
+
+/// Conflicts between all horizons of a project, given by their sheets, in line numbers.
+pub(crate) fn conflicts_of(
+    document: &Document,
+    candidates: Option<&Candidates>,
+    sheets: &[&[VoxelSheet]],
+) -> Result<Vec<Conflict>, ProjectError> {
+    let geometry = document.frame()?;
+    let chosen: Vec<Option<Selection>> = document
+        .horizons
+        .iter()
+        .map(|entry| selection(&entry.name, entry.assembly.as_ref()?, candidates?).ok())
+        .collect();
+    let each = document.horizons.iter().zip(sheets).zip(&chosen);
+    let named: Vec<NamedSheets> = each
+        .map(|((entry, sheets), chosen)| NamedSheets { name: &entry.name, sheets, selection: chosen.as_ref() })
+        .collect();
+    let rules = ContactRules::new(&document.stratigraphy());
     let [nx, ny, _] = geometry.size();
     let may_cross = |young: usize, old: usize| rules.may_cross(young, old);
-    let found = conflicts(Some(&candidates.forest), [nx, ny], &named, may_cross, &ConflictSettings::default());
-    let names = |conflict: &Conflict| match conflict {
-        Conflict::SharedLeaves { horizons, .. }
-        | Conflict::Crossing { horizons, .. }
-        | Conflict::Swapped { horizons, .. } => horizons.clone(),
-    };
+    let forest = candidates.map(|candidates| &candidates.forest);
+    let found = conflicts(forest, [nx, ny], &named, may_cross, &ConflictSettings::default());
     let in_lines = |conflict: Conflict| match conflict {
         Conflict::Crossing { horizons, above, below, worst, at: [x, y] } => {
             let lines = geometry.lines_from_voxel(glam::DVec2::new(x as f64, y as f64));
@@ -299,7 +314,7 @@ fn conflicts_with(
         }
         other => other,
     };
-    Ok(found.into_iter().filter(|conflict| names(conflict).iter().any(|n| n == name)).map(in_lines).collect())
+    Ok(found.into_iter().map(in_lines).collect())
 }
 
 /// Makes all assembled horizons anew, after the faults have changed. Those whose picks are of another extraction stay as they are; a warning says so.
@@ -317,7 +332,7 @@ pub(super) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
         progress.warn("the assembled horizons are as they were: there is no extraction to assemble them from");
         return Ok(());
     };
-    let blocks = blocks(draft, progress)?;
+    let blocks = blocks(draft.root(), &draft.document, progress)?;
     for (name, log) in logs {
         match rebuild(draft, &candidates, &blocks, &name, log, progress) {
             Ok(_) => {}

@@ -38,7 +38,7 @@ impl std::fmt::Display for HorizonFilled {
 impl FillHorizon {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Horizon, &self.name)?;
-        let blocks = assembly::blocks(draft, progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let result = match draft.document.horizons[index].assembly.clone() {
             Some(mut log) => {
                 let candidates = Candidates::load(draft.root(), progress)?;

@@ -4,7 +4,7 @@
 //! overwrites nothing and can fail at any point: [`crate::Project::apply`] discards the draft then. Undo needs nothing
 //! from a command, because every state is remembered.
 
-mod assembly;
+pub(crate) mod assembly;
 mod attribute;
 mod contact;
 mod fault;
@@ -14,7 +14,7 @@ mod horizon;
 mod import;
 mod layer;
 mod order;
-mod pick;
+pub(crate) mod pick;
 mod scalar;
 mod scene;
 mod stored;
@@ -33,7 +33,7 @@ pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub(crate) use import::IMPORTING;
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
-pub use pick::{Climb, Move, MovePick, PickNode, Picked, ReplayPicks, Replayed, ReplayedPick, Unfit};
+pub use pick::{Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick, SetHorizonColour, Unfit};
 pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
@@ -72,8 +72,14 @@ pub enum Command {
     RemoveHorizon(RemoveHorizon),
     /// Add a node of a surface tree to a horizon, or take it out.
     Pick(PickNode),
+    /// Make several picks of one horizon.
+    PickSeveral(PickNodes),
     /// Move a pick up or down its tree.
     MovePick(MovePick),
+    /// Take a pick out of its horizon's log.
+    RemovePick(RemovePick),
+    /// Give an assembled horizon another colour.
+    SetHorizonColour(SetHorizonColour),
     /// Make picks again on the present extraction.
     ReplayPicks(ReplayPicks),
     /// Fill the holes of a horizon.
@@ -157,7 +163,10 @@ impl Command {
             Self::RenameHorizon(change) => change.execute(draft),
             Self::RemoveHorizon(change) => change.execute(draft),
             Self::Pick(change) => change.execute(draft, progress),
+            Self::PickSeveral(change) => change.execute(draft, progress),
             Self::MovePick(change) => change.execute(draft, progress),
+            Self::RemovePick(change) => change.execute(draft, progress),
+            Self::SetHorizonColour(change) => change.execute(draft),
             Self::ReplayPicks(change) => change.execute(draft, progress),
             Self::FillHorizon(change) => change.execute(draft, progress),
             Self::PickFault(change) => change.execute(draft, progress),

@@ -158,7 +158,7 @@ impl std::fmt::Display for Replayed {
 }
 
 /// The leaf at a place in line numbers, within the reach of the extraction.
-fn leaf_near(candidates: &Candidates, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<Hit, ProjectError> {
+pub(crate) fn leaf_near(candidates: &Candidates, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<Hit, ProjectError> {
     let place = geometry.voxel_from_lines(at[0], at[1]);
     let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
     leaf_at(&candidates.forest, voxel, candidates.max_distance).map_err(|error| match error {
@@ -178,7 +178,7 @@ fn leaf_near(candidates: &Candidates, geometry: &SurveyGeometry, at: [f64; 3]) -
 }
 
 /// Levels from a leaf to its root.
-fn levels(candidates: &Candidates, leaf: u32) -> u32 {
+pub(crate) fn levels(candidates: &Candidates, leaf: u32) -> u32 {
     let mut node = candidates.forest.leaves[leaf as usize - 1];
     let mut levels = 0;
     while let Some(parent) = candidates.forest.nodes[node as usize].parent {
@@ -206,21 +206,50 @@ fn climbed(
 
 impl PickNode {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        let geometry = draft.document.frame()?.clone();
-        let known = draft.document.horizons.iter().any(|entry| entry.name == self.horizon);
-        let mut log = if known {
-            assembly::log_of(draft, &self.horizon)?
-        } else {
-            draft.document.check_new_name(Noun::Horizon, &self.horizon)?;
-            Assembly { colour: assembly::next_colour(draft), fill: None, picks: Vec::new() }
-        };
+        let mut log = self.log(draft)?;
         let candidates = Candidates::load(draft.root(), progress)?;
-        let chosen = assembly::selection(&self.horizon, &log, &candidates)?;
-        let hit = leaf_near(&candidates, &geometry, self.at)?;
-        let blocks = assembly::blocks(draft, progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let id = next_id(draft);
+        let stopped_by = self.enter(&mut log, id, draft.document.frame()?, &candidates, &blocks)?;
+        let PickEntry { leaf, up, node, .. } = log.picks[log.picks.len() - 1];
+        let result = rebuild(draft, &candidates, &blocks, &self.horizon, log, progress)?;
+        Ok(Effect::Picked(Box::new(Picked {
+            pick: id,
+            horizon: self.horizon.clone(),
+            operation: self.operation,
+            leaf,
+            up,
+            levels: levels(&candidates, leaf),
+            triangles: node.triangles,
+            stopped_by,
+            result,
+        })))
+    }
+
+    /// The log of its horizon, or an empty one for a new horizon.
+    fn log(&self, draft: &Draft) -> Result<Assembly, ProjectError> {
+        let known = draft.document.horizons.iter().any(|entry| entry.name == self.horizon);
+        if known {
+            return assembly::log_of(draft, &self.horizon);
+        }
+        draft.document.check_new_name(Noun::Horizon, &self.horizon)?;
+        Ok(Assembly { colour: assembly::next_colour(&draft.document), fill: None, picks: Vec::new() })
+    }
+
+    /// Puts it at the end of a log; answers what ended the climb.
+    fn enter(
+        &self,
+        log: &mut Assembly,
+        id: u32,
+        geometry: &SurveyGeometry,
+        candidates: &Candidates,
+        blocks: &FaultNetwork,
+    ) -> Result<Option<Overlap>, ProjectError> {
+        let chosen = assembly::selection(&self.horizon, log, candidates)?;
+        let hit = leaf_near(candidates, geometry, self.at)?;
         // What is taken out may overlap with what stays.
         let beside = if self.operation == Operation::Add { chosen.clone() } else { Selection::default() };
-        let (node, up, stopped_by) = climbed(&candidates, hit.leaf, self.climb, &beside, &blocks)?;
+        let (node, up, stopped_by) = climbed(candidates, hit.leaf, self.climb, &beside, blocks)?;
         let mut own = Selection::default();
         own.insert(candidates.forest.nodes[node as usize].triangles.clone());
         let common = own.intersection(&chosen).len();
@@ -236,8 +265,6 @@ impl PickNode {
         if let Some(colour) = self.colour {
             log.colour = colour;
         }
-        let id = next_id(draft);
-        let node = Fingerprint::of(&candidates.forest, node);
         log.picks.push(PickEntry {
             id,
             at: self.at,
@@ -245,20 +272,87 @@ impl PickNode {
             leaf: hit.leaf,
             up,
             extraction: candidates.key.clone(),
-            node,
+            node: Fingerprint::of(&candidates.forest, node),
         });
-        let result = rebuild(draft, &candidates, &blocks, &self.horizon, log, progress)?;
-        Ok(Effect::Picked(Box::new(Picked {
-            pick: id,
-            horizon: self.horizon.clone(),
-            operation: self.operation,
-            leaf: hit.leaf,
-            up,
-            levels: levels(&candidates, hit.leaf),
-            triangles: node.triangles,
-            stopped_by,
-            result,
-        })))
+        Ok(stopped_by)
+    }
+}
+
+/// Makes several picks of one horizon at once, as a lasso does: one step of the history.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PickNodes {
+    /// The picks, first to last; all of the same horizon.
+    pub picks: Vec<PickNode>,
+}
+
+impl PickNodes {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let Some(first) = self.picks.first() else {
+            return Ok(Effect::Changed { summary: "no picks".to_owned() });
+        };
+        if let Some(other) = self.picks.iter().find(|pick| pick.horizon != first.horizon) {
+            return Err(ProjectError::SeveralHorizons { horizons: [first.horizon.clone(), other.horizon.clone()] });
+        }
+        let mut log = first.log(draft)?;
+        let candidates = Candidates::load(draft.root(), progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let id = next_id(draft);
+        for (n, pick) in self.picks.iter().enumerate() {
+            pick.enter(&mut log, id + n as u32, draft.document.frame()?, &candidates, &blocks)?;
+        }
+        rebuild(draft, &candidates, &blocks, &first.horizon, log, progress)?;
+        Ok(Effect::Changed { summary: format!("{} picks of {}", self.picks.len(), first.horizon) })
+    }
+}
+
+/// Takes a pick out of its horizon's log, as if it had never been made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RemovePick {
+    /// Its number.
+    pub id: u32,
+}
+
+impl RemovePick {
+    pub(super) fn execute(self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let (name, mut log, place) = find(draft, self.id)?;
+        log.picks.remove(place);
+        let candidates = Candidates::load(draft.root(), progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+        Ok(Effect::Changed { summary: format!("pick {} taken back", self.id) })
+    }
+}
+
+/// A pick by its number: its horizon, that horizon's log, its place there.
+fn find(draft: &Draft, id: u32) -> Result<(String, Assembly, usize), ProjectError> {
+    let logs = || draft.document.horizons.iter().filter_map(|entry| Some((entry, entry.assembly.as_ref()?)));
+    let found = logs().find_map(|(entry, log)| {
+        let place = log.picks.iter().position(|pick| pick.id == id)?;
+        Some((entry.name.clone(), log.clone(), place))
+    });
+    found.ok_or_else(|| ProjectError::UnknownPick {
+        pick: id,
+        known: logs().flat_map(|(_, log)| &log.picks).map(|pick| pick.id).collect(),
+    })
+}
+
+/// Gives an assembled horizon another colour.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SetHorizonColour {
+    /// The horizon.
+    pub horizon: String,
+    /// Its colour.
+    pub colour: Colour,
+}
+
+impl SetHorizonColour {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Horizon, &self.horizon)?;
+        let Some(log) = &mut draft.document.horizons[index].assembly else {
+            return Err(ProjectError::NotAssembled { horizon: self.horizon.clone() });
+        };
+        log.colour = self.colour;
+        Ok(Effect::Changed { summary: format!("colour of {}", self.horizon) })
     }
 }
 
@@ -270,16 +364,11 @@ fn next_id(draft: &Draft) -> u32 {
 
 impl MovePick {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
-        let found = draft.document.horizons.iter().find_map(|entry| {
-            let log = entry.assembly.as_ref()?;
-            let place = log.picks.iter().position(|pick| pick.id == self.id)?;
-            Some((entry.name.clone(), log.clone(), place))
-        });
-        let Some((name, mut log, place)) = found else { return Err(self.unknown(draft)) };
+        let (name, mut log, place) = find(draft, self.id)?;
         let candidates = Candidates::load(draft.root(), progress)?;
         // Refuses a log of another extraction.
         assembly::selection(&name, &log, &candidates)?;
-        let blocks = assembly::blocks(draft, progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let PickEntry { leaf, up, operation, .. } = log.picks[place];
         let climb = match self.to {
             Move::Up(by) => Climb::Levels(up.saturating_add(by)),
@@ -306,14 +395,6 @@ impl MovePick {
             result,
         })))
     }
-
-    fn unknown(&self, draft: &Draft) -> ProjectError {
-        let logs = draft.document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
-        ProjectError::UnknownPick {
-            pick: self.id,
-            known: logs.flat_map(|log| &log.picks).map(|pick| pick.id).collect(),
-        }
-    }
 }
 
 impl ReplayPicks {
@@ -331,7 +412,7 @@ impl ReplayPicks {
             .filter_map(|entry| Some((entry.name.clone(), entry.assembly.clone()?)))
             .collect();
         let candidates = Candidates::load(draft.root(), progress)?;
-        let blocks = assembly::blocks(draft, progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let mut done = Replayed { picks: Vec::new(), horizons: Vec::new() };
         for (name, mut log) in logs {
             let mut unfit = Vec::new();

@@ -79,6 +79,24 @@ pub(in crate::cli) enum HorizonAction {
     /// Make the picks of horizons again, after another extraction
     #[command(after_help = "Example:\n  petroglyph horizon replay north.petro")]
     Replay(ReplayArgs),
+    /// Take a pick back, as if it had never been made
+    #[command(after_help = "Example:\n  petroglyph horizon unpick north.petro 3")]
+    Unpick {
+        /// Project folder
+        project: PathBuf,
+        /// Number of the pick
+        id: u32,
+    },
+    /// Give an assembled horizon another colour
+    #[command(after_help = "Example:\n  petroglyph horizon colour north.petro \"Top Chalk\" #0072b2")]
+    Colour {
+        /// Project folder
+        project: PathBuf,
+        /// Horizon
+        name: String,
+        /// Colour, #rrggbb
+        colour: String,
+    },
     /// Say what a horizon does to its neighbours
     #[command(after_help = "Example:\n  petroglyph horizon contact north.petro \"Base Tertiary\" erosional")]
     Contact {

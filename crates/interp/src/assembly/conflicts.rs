@@ -67,6 +67,17 @@ pub enum Conflict {
     },
 }
 
+impl Conflict {
+    /// The two horizons.
+    pub fn horizons(&self) -> &[String; 2] {
+        match self {
+            Self::SharedLeaves { horizons, .. } | Self::Crossing { horizons, .. } | Self::Swapped { horizons, .. } => {
+                horizons
+            }
+        }
+    }
+}
+
 /// Compares every two horizons, given youngest first. `may_cross(young, old)` says which pairs a contact rule lets cut each other.
 pub fn conflicts(
     forest: Option<&Forest>,
