@@ -8,6 +8,7 @@ use crate::{data, derived, library, style};
 use glam::{DVec3, Vec3};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
 use render::{Inputs, Lookup, NamedVolume, Scene, VoxelBox, WellPath};
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use survey::model::{ModelSettings, StructuralModel};
@@ -220,20 +221,9 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
     }
     wanted.extend(scene.media.all().map(|medium| medium.volume.as_str()));
     wanted.extend(scene.media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str())));
-    let mut volumes = Vec::new();
-    for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
-        let covers = placement::covers(&geometry, entry.geometry.as_ref().unwrap_or(&geometry))
-            .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
-        let volume = data::read_volume(project.root(), entry, progress)?;
-        volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
-    }
+    let volumes = read_volumes(project.root(), document, &geometry, &wanted, progress)?;
     let candidates = ShownCandidates::load(project, scene, rock.as_ref().map(|rock| &rock.model), progress)?;
-    let mut wells = Vec::new();
-    for entry in &document.wells {
-        let well = data::read_well(project.root(), entry)?;
-        let tops = well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, &geometry)).collect();
-        wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(&geometry), tops });
-    }
+    let wells = read_wells(project.root(), document, &geometry)?;
     Ok(Loaded {
         wells,
         candidates,
@@ -245,6 +235,55 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
         tables,
         version: new_version(),
     })
+}
+
+/// Reads what interpreting needs: the raw volume, the wells, and of the extraction what `scene` shows; no model, whatever horizons there are.
+///
+/// # Errors
+/// Damaged data, or cancelled.
+pub(crate) fn load_bare(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
+    let document = project.document();
+    let geometry = document.frame()?.clone();
+    let raw = style::of_project(document).raw;
+    let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).collect();
+    Ok(Loaded {
+        rock: None,
+        volumes: read_volumes(project.root(), document, &geometry, &wanted, progress)?,
+        packed: None,
+        wells: read_wells(project.root(), document, &geometry)?,
+        candidates: ShownCandidates::load(project, scene, None, progress)?,
+        tables: None,
+        version: new_version(),
+        raw,
+        geometry,
+    })
+}
+
+fn read_volumes(
+    root: &Path,
+    document: &Document,
+    geometry: &SurveyGeometry,
+    wanted: &[&str],
+    progress: &Progress,
+) -> Result<Vec<LoadedVolume>, ProjectError> {
+    let mut volumes = Vec::new();
+    for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
+        let covers = placement::covers(geometry, entry.geometry.as_ref().unwrap_or(geometry))
+            .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
+        let volume = data::read_volume(root, entry, progress)?;
+        volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
+    }
+    Ok(volumes)
+}
+
+fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Result<Vec<LoadedWell>, ProjectError> {
+    let mut wells = Vec::new();
+    for entry in &document.wells {
+        let well = data::read_well(root, entry)?;
+        let tops = well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, geometry)).collect();
+        wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(geometry), tops });
+    }
+    Ok(wells)
 }
 
 /// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so

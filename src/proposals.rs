@@ -116,6 +116,19 @@ pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progres
 /// # Errors
 /// There is none, or it is of another state.
 pub fn find(root: &Path, document: &Document, id: u32) -> Result<Proposal, ProjectError> {
+    let kept = kept(root, document)?;
+    let known = kept.proposals.len() as u32;
+    kept.proposals
+        .into_iter()
+        .find(|proposal| proposal.id == id)
+        .ok_or(ProjectError::UnknownProposal { proposal: id, known })
+}
+
+/// The proposals that were made for these horizons, up to what accepting some of them has changed.
+///
+/// # Errors
+/// There are none, or they are of another state.
+pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError> {
     let path = path(root);
     let text = std::fs::read_to_string(&path).map_err(|_| ProjectError::NoProposals)?;
     let kept: Proposals = serde_json::from_str(&text).map_err(|_| ProjectError::NoProposals)?;
@@ -124,9 +137,5 @@ pub fn find(root: &Path, document: &Document, id: u32) -> Result<Proposal, Proje
     if !accepted && kept.horizons != hashes(document) {
         return Err(ProjectError::OutdatedProposals);
     }
-    let known = kept.proposals.len() as u32;
-    kept.proposals
-        .into_iter()
-        .find(|proposal| proposal.id == id)
-        .ok_or(ProjectError::UnknownProposal { proposal: id, known })
+    Ok(kept)
 }

@@ -16,6 +16,8 @@
 pub mod error;
 pub mod state;
 #[cfg(test)]
+mod picking_tests;
+#[cfg(test)]
 mod tests;
 pub mod theme;
 pub mod views;

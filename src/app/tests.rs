@@ -16,10 +16,10 @@ use survey::{Contact, Progress, SurveyGeometry, VerticalUnit, Volume};
 /// Longest wait for a worker before a test gives up; far beyond what any needs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-type Driven = Harness<'static, Option<Window>>;
+pub(super) type Driven = Harness<'static, Option<Window>>;
 
 /// A window that keeps its settings in `folder`, with a project open if one is named.
-fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
+pub(super) fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
     let settings = folder.join("settings/window.toml");
     let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
         let make = || Window::new(ui.ctx(), Some(settings.clone()), project.clone());
@@ -28,12 +28,12 @@ fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
     Harness::builder().with_size([1280.0, 800.0]).build_ui_state(show, None)
 }
 
-fn state(harness: &Driven) -> &State {
+pub(super) fn state(harness: &Driven) -> &State {
     harness.state().as_ref().unwrap().state()
 }
 
 /// Draws frames until something is so.
-fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
+pub(super) fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
     let start = Instant::now();
     loop {
         harness.step();
@@ -46,17 +46,17 @@ fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
     }
 }
 
-fn click(harness: &mut Driven, label: &str) {
+pub(super) fn click(harness: &mut Driven, label: &str) {
     harness.get_by_label(label).click();
     // A dialogue is laid out unseen in its first frame.
     harness.run_steps(3);
 }
 
-fn geometry() -> SurveyGeometry {
+pub(super) fn geometry() -> SurveyGeometry {
     SurveyGeometry::regular([24, 20, 32], 25.0, 4.0, VerticalUnit::Milliseconds)
 }
 
-fn survey(folder: &Path) -> PathBuf {
+pub(super) fn survey(folder: &Path) -> PathBuf {
     let path = folder.join("north.sgy");
     let samples = (0..24 * 20 * 32).map(|n| ((n % 32) as f32 * 0.7).sin()).collect();
     let volume = Volume::from_samples([24, 20, 32], samples).unwrap();
@@ -78,7 +78,7 @@ fn horizon(folder: &Path, name: &str, z: f32) -> PathBuf {
 }
 
 /// A project with a volume and two horizons.
-fn project(folder: &Path) -> PathBuf {
+pub(super) fn project(folder: &Path) -> PathBuf {
     let root = folder.join("north.petro");
     let mut new = Project::create(&root, None).unwrap();
     let import = crate::command::ImportVolume {
@@ -104,7 +104,7 @@ fn project(folder: &Path) -> PathBuf {
     new.publish().unwrap().root().to_owned()
 }
 
-fn open(folder: &Path) -> Driven {
+pub(super) fn open(folder: &Path) -> Driven {
     let root = project(folder);
     let mut harness = driven(folder, Some(root));
     wait(&mut harness, "the picture is drawn", |harness| {
@@ -113,7 +113,7 @@ fn open(folder: &Path) -> Driven {
     harness
 }
 
-fn document(harness: &Driven) -> crate::project::Document {
+pub(super) fn document(harness: &Driven) -> crate::project::Document {
     Project::open(&state(harness).session.as_ref().unwrap().root).unwrap().document().clone()
 }
 

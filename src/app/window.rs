@@ -2,15 +2,16 @@
 
 use super::error::WindowError;
 use super::state::{
-    Action, Appearance, Dialogue, Layout, Notice, Panel as Side, Place, Remembered, SliceKind, State, Task,
+    Action, Appearance, Dialogue, Layout, Notice, Panel as Side, Picking, Place, Remembered, SliceKind, State, Task,
 };
 use super::theme;
 use super::views::{
     bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, functions::Functions,
-    import::Import, interpretation::Interpretation, layers::Layers, map::MapView, notices, patterns::Patterns,
-    pointed::Pointed, sections::Sections, shortcuts, start, status, tiles::Tiles,
+    import::Import, interpretation::Interpretation, layers::Layers, map::MapView, notices, overlay::Overlay,
+    patterns::Patterns, picking::PickingPanel, pointed::Pointed, sections::Sections, shortcuts, start, status, tiles::Tiles,
 };
-use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
+use super::state::picking::Pick;
+use super::work::{Event, Purpose, Rocks, Swatches, Wake, Wanted, Work};
 use crate::command::Command;
 use eframe::egui::{self, CentralPanel, Context, Frame, Panel, ThemePreference, Ui};
 use std::path::PathBuf;
@@ -66,6 +67,12 @@ pub struct Window {
     patterns: Patterns,
     import: Import,
     interpretation: Interpretation,
+    picking: PickingPanel,
+    overlay: Overlay,
+    /// State of the project that its interpretation was last asked for.
+    followed: Option<(PathBuf, u32)>,
+    /// Selection that was last asked for, and the interpretation it was asked of.
+    selected: Option<(Option<(Pick, Option<String>)>, u64)>,
     tiles: Tiles,
     swatches: Swatches,
     chooser: Chooser,
@@ -74,6 +81,8 @@ pub struct Window {
     rocks: Option<(Rocks, u64)>,
     wanted: Option<Wanted>,
     marked: Instant,
+    /// What was selected or drawn when the view was last written down.
+    unsaved: Option<(Option<Pick>, usize, usize)>,
 }
 
 impl Window {
@@ -97,6 +106,10 @@ impl Window {
             patterns: Patterns::default(),
             import: Import::default(),
             interpretation: Interpretation::default(),
+            picking: PickingPanel::default(),
+            overlay: Overlay::default(),
+            followed: None,
+            selected: None,
             tiles: Tiles::default(),
             swatches: Swatches::start(wake),
             chooser: Chooser::default(),
@@ -105,6 +118,7 @@ impl Window {
             rocks: None,
             wanted: None,
             marked: Instant::now(),
+            unsaved: None,
         };
         window.appear(ctx);
         if let Some(project) = project {
@@ -135,11 +149,19 @@ impl Window {
                 self.block.copy(&self.ctx);
             }
             if matches!(task, Task::Release) {
-                (self.rocks, self.wanted, self.pointed) = (None, None, None);
-                self.block = BlockView::default();
+                self.forget();
             }
             self.work.run(task, place);
         }
+    }
+
+    /// Lets go of what was made of a project.
+    fn forget(&mut self) {
+        (self.rocks, self.wanted, self.pointed) = (None, None, None);
+        (self.followed, self.selected) = (None, None);
+        self.block = BlockView::default();
+        self.overlay = Overlay::default();
+        self.picking = PickingPanel::default();
     }
 
     /// Where a failure of the task is shown.
@@ -149,6 +171,16 @@ impl Window {
             _ if self.state.dialogue.is_some() => Place::Dialogue,
             Command::SetLayer(_) | Command::ResetLayer(_) | Command::SetContact(_) => Place::Layers,
             Command::AddScene(_) | Command::RemoveScene(_) => Place::Scenes,
+            Command::Pick(_)
+            | Command::PickSeveral(_)
+            | Command::MovePick(_)
+            | Command::RemovePick(_)
+            | Command::ReplayPicks(_)
+            | Command::FillHorizon(_)
+            | Command::SetHorizonColour(_)
+            | Command::PickFault(_)
+            | Command::AcceptFault(_) => Place::Interpret,
+            _ if self.is_interpreting() => Place::Interpret,
             _ => Place::Data,
         }
     }
@@ -174,8 +206,7 @@ impl Window {
         while let Some(event) = self.work.next_event() {
             match event {
                 Event::Opened(snapshot) => {
-                    (self.rocks, self.wanted) = (None, None);
-                    self.block = BlockView::default();
+                    self.forget();
                     self.act(Action::Opened(snapshot));
                 }
                 Event::Changed(snapshot) => {
@@ -197,6 +228,20 @@ impl Window {
                 Event::Drawn(drawn) => self.block.receive(ctx, drawn),
                 Event::Sliced(picture) => self.sections.receive(ctx, picture),
                 Event::Mapped(picture) => self.map.receive(ctx, picture),
+                Event::Interpreted(shown) => {
+                    if let Some(session) = self.state.session.as_ref().filter(|session| session.root == shown.root) {
+                        self.overlay.receive(session, shown);
+                    }
+                }
+                Event::Selected(shown) => {
+                    if let Some(session) = &self.state.session {
+                        self.overlay.select(session, shown);
+                    }
+                }
+                Event::Picking(step) => self.act(Action::Picking(step)),
+                Event::Erased(picks) => {
+                    self.act(Action::Apply(Box::new(Command::PickSeveral(crate::command::PickNodes { picks }))));
+                }
                 Event::Exported(path) => {
                     self.act(Action::Answered);
                     self.act(Action::Tell(Notice::note(Place::Scenes, format!("written: {}", path.display()))));
@@ -215,10 +260,50 @@ impl Window {
         self.layers.draft_of(&mut document);
         self.functions.draft_of(&mut document);
         let exaggeration = session.view.scene.exaggeration;
-        let wanted = Wanted { root: session.root.clone(), document, exaggeration };
+        let root = session.root.clone();
+        let wanted = if session.view.panel == Side::Interpret {
+            // Picks change horizons and faults; what they are made on stays.
+            document.horizons.clear();
+            document.faults.clear();
+            document.sticks.clear();
+            document.layer_names.clear();
+            Wanted { root, document, exaggeration: 1.0, purpose: Purpose::Interpret }
+        } else {
+            Wanted { root, document, exaggeration, purpose: Purpose::Illustrate }
+        };
         if self.wanted.as_ref() != Some(&wanted) {
             self.work.load(wanted.clone());
             self.wanted = Some(wanted);
+        }
+    }
+
+    fn is_interpreting(&self) -> bool {
+        self.state.session.as_ref().is_some_and(|session| session.view.panel == Side::Interpret)
+    }
+
+    /// Has the interpretation read and the selection drawn when they have changed.
+    fn keep_interpreted(&mut self) {
+        let Some(session) = self.state.session.as_ref().filter(|session| session.view.panel == Side::Interpret) else {
+            return;
+        };
+        if session.document.geometry.is_none() {
+            return;
+        }
+        let now = (session.root.clone(), session.document.step);
+        if self.followed.as_ref() != Some(&now) {
+            self.work.picks.follow(session.root.clone(), session.document.clone());
+            self.followed = Some(now);
+        }
+        let Picking { pick, horizon, accepted, .. } = &session.view.picking;
+        // What was just accepted is shown until the project has it.
+        let wished = pick.clone().or_else(|| accepted.clone()).map(|pick| (pick, horizon.clone()));
+        let number = self.overlay.interpreted().map_or(0, |shown| shown.number);
+        let selected = Some((wished, number));
+        if self.selected != selected && number > 0 {
+            if let Some((wished, _)) = &selected {
+                self.work.picks.draw(wished.clone());
+            }
+            self.selected = selected;
         }
     }
 
@@ -228,6 +313,7 @@ impl Window {
         self.receive(&ctx);
         self.appear(&ctx);
         self.keep_loaded();
+        self.keep_interpreted();
         let mut actions = Vec::new();
         shortcuts::obey(&ctx, &self.state, &mut actions);
         let running = self.work.running.lines();
@@ -235,7 +321,7 @@ impl Window {
             status::show(ui, self.state.session.as_ref(), self.pointed.as_ref(), &running, self.block.device());
         });
         if self.state.session.is_some() {
-            self.work_page(ui, &mut actions);
+            self.work_page(ui, &running, &mut actions);
         } else {
             CentralPanel::default().show(ui, |ui| start::show(ui, &self.state, !running.is_empty(), &mut actions));
         }
@@ -243,7 +329,14 @@ impl Window {
         for action in actions {
             self.act(action);
         }
-        if self.state.session.is_some() && self.marked.elapsed() > MARK_EVERY {
+        // What is selected or drawn and not yet part of the project is work: it is written down at once.
+        let unsaved = self.state.session.as_ref().map(|session| {
+            let picking = &session.view.picking;
+            (picking.pick.clone(), picking.stick.len(), picking.sticks.len())
+        });
+        let is_work = unsaved != self.unsaved;
+        self.unsaved = unsaved;
+        if self.state.session.is_some() && (is_work || self.marked.elapsed() > MARK_EVERY) {
             self.marked = Instant::now();
             let before = self.state.remembered.left.clone();
             self.state.mark();
@@ -254,7 +347,7 @@ impl Window {
         }
     }
 
-    fn work_page(&mut self, ui: &mut Ui, actions: &mut Vec<Action>) {
+    fn work_page(&mut self, ui: &mut Ui, running: &[super::work::RunningLine], actions: &mut Vec<Action>) {
         let Some(session) = &self.state.session else { return };
         Panel::top("bar").exact_size(44.0).show(ui, |ui| {
             ui.add_space(7.0);
@@ -267,6 +360,7 @@ impl Window {
                     (Side::Layers, "Layers", "The stratigraphic column (L)"),
                     (Side::Data, "Data", "Volumes, horizons, faults and wells (D)"),
                     (Side::Values, "Values", "Colours and textures by value (V)"),
+                    (Side::Interpret, "Interpret", "Candidates, picks and faults (P)"),
                 ] {
                     if ui.selectable_label(session.view.panel == side, name).on_hover_text(hint).clicked() {
                         actions.push(Action::Panel(side));
@@ -279,6 +373,9 @@ impl Window {
                     self.layers.show(ui, &self.state, session, &self.swatches, &mut self.tiles, actions);
                 }
                 Side::Data => self.data.show(ui, &self.state, session, actions),
+                Side::Interpret => {
+                    self.picking.show(ui, &self.state, session, &self.overlay, running, actions);
+                }
                 Side::Values => {
                     notices::show(ui, &self.state, Place::Data, actions);
                     let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
@@ -303,11 +400,11 @@ impl Window {
             }
             let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
             match session.view.layout {
-                Layout::Block => self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, actions),
+                Layout::Block => self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions),
                 Layout::Map => {
                     let (left, right) = ui.available_rect_before_wrap().split_left_right_at_fraction(0.5);
                     ui.scope_builder(egui::UiBuilder::new().max_rect(left), |ui| {
-                        self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, actions);
+                        self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions);
                     });
                     ui.scope_builder(egui::UiBuilder::new().max_rect(right.shrink(6.0)), |ui| {
                         self.map.show(ui, session, rocks, &self.work.maps, actions);
@@ -318,8 +415,8 @@ impl Window {
                     let mut pointed = None;
                     let mut quarter = |ui: &mut Ui, kind: Option<SliceKind>| {
                         let found = match kind {
-                            None => self.block.show(ui, session, rocks, &self.work.drawing, actions),
-                            Some(kind) => self.sections.show(ui, session, kind, rocks, &self.work.slices, actions),
+                            None => self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions),
+                            Some(kind) => self.sections.show(ui, session, kind, rocks, &self.work.slices, &mut self.overlay, actions),
                         };
                         pointed = pointed.take().or(found);
                     };

@@ -3,6 +3,7 @@
 use super::Appearance;
 use super::dialogue::{Dialogue, ExportPlan};
 use super::notice::Notice;
+use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
 use super::view::{Compare, Layout, Panel, StandardView};
 use crate::command::Command;
@@ -67,6 +68,12 @@ pub enum Action {
     Wipe(f32),
     /// Move the sections to a point, voxel.
     Slices([f64; 3]),
+    /// Interpret.
+    Picking(PickingStep),
+    /// Extract candidates of a volume; of the first where none is named.
+    Extract(Option<String>, Box<interp::ExtractSettings>),
+    /// Look for faults in the horizons.
+    ProposeFaults,
     /// Show another panel on the left.
     Panel(Panel),
     /// Show a layer's style.
@@ -101,6 +108,8 @@ pub enum Task {
         /// The project's folder.
         root: PathBuf,
     },
+    /// Something the interpretation needs.
+    Picking(PickingTask),
     /// Draw to a file.
     Export(Box<ExportPlan>),
     /// Put the picture on the clipboard.

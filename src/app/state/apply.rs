@@ -1,6 +1,6 @@
 //! What each action does to the state.
 
-use super::{Action, Compare, Dialogue, Notice, Place, Session, State, Task, View, camera};
+use super::{Action, Compare, Dialogue, Notice, Panel, PickingTask, Place, Session, State, Task, View, camera};
 use crate::scene;
 
 impl State {
@@ -42,6 +42,9 @@ impl State {
                 }
             }
             Action::Tell(notice) => {
+                if notice.failed && notice.place == Place::Interpret {
+                    self.reselect();
+                }
                 self.notices.retain(|known| *known != notice);
                 self.notices.push(notice);
             }
@@ -70,6 +73,15 @@ impl State {
             }
             Action::Export(plan) => return self.task(Task::Export(plan)),
             Action::Copy => return self.task(Task::Copy),
+            Action::Picking(step) => return self.pick(step),
+            Action::Extract(volume, settings) => {
+                self.quieten(Place::Interpret);
+                return self.task(Task::Picking(PickingTask::Extract(volume, settings)));
+            }
+            Action::ProposeFaults => {
+                self.quieten(Place::Interpret);
+                return self.task(Task::Picking(PickingTask::ProposeFaults));
+            }
             Action::Appear(appearance) => {
                 self.remembered.appearance = appearance;
                 return vec![Task::Remember];
@@ -147,6 +159,7 @@ impl State {
     /// The scenes drawn side by side or over one another in the block view: blends and their order.
     pub fn blends(view: &View) -> Vec<f32> {
         match view.compare {
+            _ if view.panel == Panel::Interpret => vec![1.0],
             Compare::Blend => vec![view.scene.blend],
             Compare::SideBySide | Compare::Wipe => vec![0.0, 1.0],
         }

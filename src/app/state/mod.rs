@@ -9,8 +9,10 @@ pub mod camera;
 mod dialogue;
 pub mod faces;
 mod notice;
+pub mod picking;
 pub mod remembered;
 mod session;
+pub mod showing;
 mod view;
 
 #[cfg(test)]
@@ -19,6 +21,7 @@ mod tests;
 pub use action::{Action, Task};
 pub use dialogue::{Choice, Dialogue, ExportForm, ExportPlan, Interpreted, Shown, Target};
 pub use notice::{Notice, Place};
+pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, Tool};
 pub use remembered::{Appearance, Remembered};
 pub use session::{Session, Snapshot};
 pub use view::{Compare, Layout, Panel, SliceKind, StandardView, View};

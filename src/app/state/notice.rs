@@ -13,6 +13,8 @@ pub enum Place {
     Layers,
     /// Volumes, horizons, faults.
     Data,
+    /// Picks, faults, the extraction.
+    Interpret,
     /// Named scenes, view settings and export.
     Scenes,
     /// The dialogue in front.

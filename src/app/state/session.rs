@@ -1,6 +1,6 @@
 //! The open project as the window knows it: a copy of its document, its history, and how it is looked at.
 
-use super::view::View;
+use super::view::{Panel, View};
 use crate::project::{Document, HistoryLine};
 use std::path::PathBuf;
 
@@ -41,11 +41,20 @@ impl Session {
     pub fn renew(&mut self, snapshot: Snapshot) {
         let had_frame = self.document.geometry.is_some();
         let was_bare = self.document.horizons.is_empty();
+        self.view.picking.fit(&self.document, &snapshot.document);
+        self.view.picking.accepted = None;
         self.document = snapshot.document;
         self.history = snapshot.history;
         let illustrates_now = was_bare && !self.document.horizons.is_empty();
         if !had_frame || illustrates_now {
-            self.view.scene = View::of(&self.document).scene;
+            let usual = View::of(&self.document).scene;
+            if self.view.panel == Panel::Interpret {
+                // Who is picking keeps camera, box and cut-outs; the illustration begins when it is looked at.
+                self.view.scene.blend = usual.blend;
+                self.view.scene.ground = usual.ground;
+            } else {
+                self.view.scene = usual;
+            }
         }
         self.view.fit(&self.document);
     }

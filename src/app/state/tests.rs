@@ -13,7 +13,7 @@ fn snapshot(root: &str) -> Box<Snapshot> {
     Box::new(Snapshot { root: root.into(), document, history })
 }
 
-fn open() -> State {
+pub(super) fn open() -> State {
     let mut state = State::default();
     state.apply(Action::Opened(snapshot("a.petro")));
     state

@@ -1,5 +1,6 @@
 //! How a project is looked at: nothing of this belongs to the project until it is kept as a named scene.
 
+use super::picking::Picking;
 use crate::project::Document;
 use crate::scene;
 use render::{Scene, VoxelBox};
@@ -43,6 +44,8 @@ pub enum Panel {
     Data,
     /// Colours and textures by value.
     Values,
+    /// Candidates, picks, faults.
+    Interpret,
 }
 
 /// A section along the lattice.
@@ -126,6 +129,9 @@ pub struct View {
     pub horizon: Option<String>,
     /// Whether handles of box and cut-outs are shown.
     pub handles: bool,
+    /// What is being interpreted.
+    #[serde(default)]
+    pub picking: Picking,
 }
 
 impl View {
@@ -143,6 +149,7 @@ impl View {
             layer: None,
             horizon: None,
             handles: true,
+            picking: Picking::default(),
         }
     }
 

@@ -3,9 +3,11 @@
 //! Two spaces: points of the window, and pixels of the picture (points × the display's scale). Cameras are changed in points: [`camera`]
 //! needs proportions only.
 
+use super::lasso::{self, LassoLine};
+use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use crate::app::state::faces::{self, Handle};
-use crate::app::state::{Action, Compare, Session, State, camera};
+use crate::app::state::{Action, Compare, Lasso, LassoOn, Panel, PickingStep, Session, State, camera, showing};
 use crate::app::theme;
 use crate::app::work::{Drawing, Drawn, PictureWish, Rocks};
 use eframe::egui::{
@@ -43,6 +45,7 @@ pub struct BlockView {
     grab: Option<Grab>,
     /// Wheel travel over a handle not yet used, points.
     wheel: f32,
+    lasso: LassoLine,
     device: String,
 }
 
@@ -93,12 +96,15 @@ impl BlockView {
         session: &Session,
         rocks: Option<(&Rocks, u64)>,
         drawing: &Drawing,
+        overlay: &Overlay,
         actions: &mut Vec<Action>,
     ) -> Option<Pointed> {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Block"));
         let view = &session.view;
-        let rects: Vec<Rect> = match view.compare {
+        let shown = showing::scene(session);
+        let compare = if view.panel == Panel::Interpret { Compare::Blend } else { view.compare };
+        let rects: Vec<Rect> = match compare {
             Compare::SideBySide => {
                 let (left, right) = rect.split_left_right_at_fraction(0.5);
                 vec![left, right]
@@ -112,7 +118,7 @@ impl BlockView {
             .zip(State::blends(view))
             .map(|(rect, blend)| {
                 let size_px = [rect.width(), rect.height()].map(|side| (side * scale).round().max(1.0) as u32);
-                Scene { size_px, blend, background: Background::Transparent, ..view.scene.clone() }
+                Scene { size_px, blend, background: Background::Transparent, ..shown.clone() }
             })
             .collect();
         let pane = response
@@ -121,22 +127,29 @@ impl BlockView {
         let geometry = session.document.geometry.as_ref()?;
         let size = dvec(pane.size());
         let handles = if view.handles { faces::handles(&view.scene, geometry, size) } else { Vec::new() };
-        self.touch(ui, &response, session, pane, rect, &handles, actions);
+        let has_lasso = lasso::is_held(ui, session);
+        if !has_lasso {
+            self.touch(ui, &response, session, pane, rect, &handles, actions);
+        }
         if let Some((rocks, version)) = rocks {
             self.wish(scenes, rocks, version, drawing);
         }
-        self.paint(ui, session, &rects, rect);
+        self.paint(ui, session, compare, &rects, rect);
+        overlay.on_block(ui, session, pane);
+        if let Some(line) = self.lasso.draw(&ui.painter_at(rect), &response, has_lasso) {
+            let corners = line.into_iter().map(|at| dvec(at - pane.min)).collect();
+            let on = LassoOn::Block(Box::new(view.scene.clone()), size);
+            actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));
+        }
         if response.contains_pointer() || self.grab.is_some() {
             self.paint_handles(ui, &handles, pane, response.hover_pos());
         }
         let pointed = response.hover_pos().filter(|_| self.grab.is_none()).and_then(|at| {
             let loaded = rocks?.0.try_read().ok()?;
-            pointed::on_block(&loaded, &view.scene, size, dvec(at - pane.min))
+            pointed::on_block(&loaded, &shown, size, dvec(at - pane.min))
         });
-        if response.clicked()
-            && let Some(pointed) = &pointed
-        {
-            actions.push(Action::Slices(pointed.voxel.to_array()));
+        if let Some(pointed) = &pointed {
+            lasso::click(ui, &response, session, pointed.voxel, actions);
         }
         pointed
     }
@@ -225,7 +238,7 @@ impl BlockView {
         self.wished = Some(wished);
     }
 
-    fn paint(&self, ui: &Ui, session: &Session, rects: &[Rect], whole: Rect) {
+    fn paint(&self, ui: &Ui, session: &Session, compare: Compare, rects: &[Rect], whole: Rect) {
         let painter = ui.painter_at(whole);
         painter.rect_filled(whole, 0.0, paper(ui));
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
@@ -233,7 +246,7 @@ impl BlockView {
         let wipe_x = whole.left() + whole.width() * view.wipe;
         for (index, (rect, texture)) in rects.iter().zip(&self.panes).enumerate() {
             let Some(texture) = texture else { continue };
-            let clip = match (view.compare, index) {
+            let clip = match (compare, index) {
                 (Compare::Wipe, 0) => Rect::from_min_max(rect.min, pos2(wipe_x, rect.max.y)),
                 (Compare::Wipe, _) => Rect::from_min_max(pos2(wipe_x, rect.min.y), rect.max),
                 _ => *rect,
@@ -241,7 +254,7 @@ impl BlockView {
             ui.painter_at(clip).image(texture.id(), fitted(*rect, texture.size_vec2()), uv, Color32::WHITE);
         }
         let accent = theme::accent(ui.visuals());
-        let rule = match view.compare {
+        let rule = match compare {
             Compare::Blend => None,
             Compare::SideBySide => {
                 Some((whole.center().x, Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color)))
@@ -250,7 +263,7 @@ impl BlockView {
         };
         if let Some((x, stroke)) = rule {
             painter.vline(x, whole.y_range(), stroke);
-            if view.compare == Compare::Wipe {
+            if compare == Compare::Wipe {
                 painter.circle_filled(pos2(x, whole.center().y), 8.0, accent);
             }
             let font = FontId::proportional(13.0);

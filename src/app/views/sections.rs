@@ -3,8 +3,10 @@
 //! Spaces: (s, t) of the section, one a sample; points of the window, y down. Both axes are stretched to the view, so a section fills
 //! it whatever its shape; the wheel with Ctrl zooms about the pointer, a drag moves, the wheel alone goes to the next section.
 
+use super::lasso::{self, LassoLine};
+use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
-use crate::app::state::{Action, Session, SliceKind};
+use crate::app::state::{Action, Lasso, LassoOn, Panel, PickingStep, Session, SliceKind};
 use crate::app::theme;
 use crate::app::work::{Rocks, SlicePicture, SliceWish, Slices};
 use eframe::egui::{
@@ -35,11 +37,12 @@ struct Pane {
     middle: Vec2,
     /// Wheel travel not yet used.
     wheel: f32,
+    lasso: LassoLine,
 }
 
 impl Default for Pane {
     fn default() -> Self {
-        Self { texture: None, shown: None, wished: None, zoom: 1.0, middle: vec2(0.5, 0.5), wheel: 0.0 }
+        Self { texture: None, shown: None, wished: None, zoom: 1.0, middle: vec2(0.5, 0.5), wheel: 0.0, lasso: LassoLine::default() }
     }
 }
 
@@ -70,6 +73,7 @@ impl Sections {
         kind: SliceKind,
         rocks: Option<(&Rocks, u64)>,
         slices: &Slices,
+        overlay: &mut Overlay,
         actions: &mut Vec<Action>,
     ) -> Option<Pointed> {
         let geometry = session.document.geometry.as_ref()?;
@@ -88,7 +92,10 @@ impl Sections {
         if !body.is_positive() {
             return None;
         }
-        pane.touch(ui, &response, body);
+        let has_lasso = lasso::is_held(ui, session);
+        if !has_lasso {
+            pane.touch(ui, &response, body);
+        }
         let extent = extent(kind, geometry.size());
         let image = pane.image_rect(body);
         let painter = ui.painter_at(body);
@@ -102,26 +109,31 @@ impl Sections {
         let to_screen = |st: DVec2| {
             image.min + vec2((st.x / extent.x) as f32 * image.width(), (st.y / extent.y) as f32 * image.height())
         };
-        if let Some(picture) = &pane.shown {
+        if let Some(picture) = pane.shown.as_ref().filter(|_| session.view.panel != Panel::Interpret) {
             for line in &picture.lines {
                 let points: Vec<Pos2> = line.points.iter().map(|st| to_screen(*st)).collect();
-                draw_line(&painter, points, line.kind, line.quality);
+                draw_line(&painter, points, line.kind, line.quality, session);
             }
         }
+        overlay.on_section(&painter, session, kind, &to_screen);
         cross(ui, &painter, session, kind, body, &to_screen);
         ticks(ui, whole, body, image, kind, geometry);
-        let st = response.hover_pos().filter(|pointer| body.contains(*pointer)).map(|pointer| {
+        let to_section = |pointer: Pos2| {
             let share = (pointer - image.min) / image.size();
             DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y)
-        })?;
+        };
+        if let Some(line) = pane.lasso.draw(&painter, &response, has_lasso) {
+            let corners = line.into_iter().map(to_section).collect();
+            let on = LassoOn::Section(kind, at);
+            actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));
+        }
+        let st = response.hover_pos().filter(|pointer| body.contains(*pointer)).map(to_section)?;
         if !(st.x >= 0.0 && st.y >= 0.0 && st.x <= extent.x && st.y <= extent.y) {
             return None;
         }
         let voxel = voxel(kind, at, st);
         pane.step(ui, session, kind, actions);
-        if response.clicked() {
-            actions.push(Action::Slices(voxel.to_array()));
-        }
+        lasso::click(ui, &response, session, voxel, actions);
         let loaded = rocks?.0.try_read().ok()?;
         Some(pointed::at_voxel(&loaded, voxel.as_vec3(), Some(kind.axis())))
     }
@@ -258,10 +270,25 @@ pub const HORIZON_COLOURS: [Color32; 8] = [
     Color32::from_rgb(0x66, 0x33, 0x99),
 ];
 
+/// The colour of a horizon: its own, or else that of its place.
+pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
+    match own {
+        Some(colour) => Color32::from_rgb(colour.rgb[0], colour.rgb[1], colour.rgb[2]),
+        None => HORIZON_COLOURS[index % HORIZON_COLOURS.len()],
+    }
+}
+
 /// Solid where picked, dashed where filled, dotted where extrapolated; on a light halo, so that it is seen on any amplitude.
-fn draw_line(painter: &eframe::egui::Painter, points: Vec<Pos2>, kind: LineKind, quality: LineQuality) {
+fn draw_line(
+    painter: &eframe::egui::Painter,
+    points: Vec<Pos2>,
+    kind: LineKind,
+    quality: LineQuality,
+    session: &Session,
+) {
+    let own = |horizon: usize| session.document.horizons.get(horizon)?.assembly.as_ref().map(|log| log.colour);
     let (colour, width) = match kind {
-        LineKind::Horizon { horizon } => (HORIZON_COLOURS[horizon % HORIZON_COLOURS.len()], 2.0),
+        LineKind::Horizon { horizon } => (horizon_colour(own(horizon), horizon), 2.0),
         LineKind::Fault { .. } => (Color32::BLACK, 2.2),
         LineKind::Frame => return,
     };

@@ -2,12 +2,13 @@
 
 use crate::app::state::faces::{self, Face, Owner};
 use crate::app::state::{
-    Action, Choice, Compare, Dialogue, ExportForm, Layout, Panel, Session, StandardView, State, camera,
+    Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State, Tool,
+    camera,
 };
 use crate::app::theme;
 use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};
 use glam::DVec2;
-use render::Scene;
+use render::{FaceData, Scene};
 
 /// What a key does to an open project.
 type Deed = fn(&Session) -> Option<Action>;
@@ -75,6 +76,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     plain(Key::Num3, "3", "Map", |_| Some(Action::Arrange(Layout::Map))),
     plain(Key::L, "L", "Layers", |_| Some(Action::Panel(Panel::Layers))),
     plain(Key::D, "D", "Data", |_| Some(Action::Panel(Panel::Data))),
+    plain(Key::P, "P", "Interpret", |_| Some(Action::Panel(Panel::Interpret))),
     plain(Key::V, "V", "Values", |_| Some(Action::Panel(Panel::Values))),
     plain(Key::B, "B", "Blend", |_| Some(Action::Compare(Compare::Blend))),
     plain(Key::S, "S", "Side by side", |_| Some(Action::Compare(Compare::SideBySide))),
@@ -116,6 +118,40 @@ pub const SHORTCUTS: &[Shortcut] = &[
     plain(Key::Comma, ",", "Slice above", |session| step(session, 2, -1.0)),
     plain(Key::Period, ".", "Slice below", |session| step(session, 2, 1.0)),
 ];
+
+/// What keys do while interpreting, before anything else.
+pub const INTERPRETING: &[Shortcut] = &[
+    plain(Key::ArrowUp, "Up", "Climb", |_| picking(PickingStep::Climb(1))),
+    plain(Key::ArrowDown, "Down", "Descend", |_| picking(PickingStep::Climb(-1))),
+    plain(Key::H, "H", "Highest valid", |_| picking(PickingStep::HighestValid)),
+    plain(Key::Enter, "Enter", "Add the selection to the horizon; end a stick", |_| picking(PickingStep::Accept)),
+    plain(Key::Escape, "Escape", "Let go of the selection or the stick", |_| picking(PickingStep::GiveUp)),
+    plain(Key::Backspace, "Backspace", "Take the last place of a stick back", |session| {
+        (session.view.picking.tool == Tool::Sticks).then_some(Action::Picking(PickingStep::Backspace))
+    }),
+    plain(Key::N, "N", "New horizon", |_| picking(PickingStep::Begin)),
+    plain(Key::F, "F", "Draw fault sticks, or pick again", |session| {
+        let is_drawing = session.view.picking.tool == Tool::Sticks;
+        picking(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks }))
+    }),
+    plain(Key::O, "O", "See through the block, or its faces", |session| {
+        let is_clear = session.view.picking.look == Look::SeeThrough;
+        picking(PickingStep::Look(if is_clear { Look::Faces } else { Look::SeeThrough }))
+    }),
+    plain(Key::G, "G", "Amplitudes, leaves, distances in turn", |session| {
+        picking(PickingStep::Show(match session.view.picking.show {
+            FaceData::Rock => FaceData::Leaves,
+            FaceData::Leaves => FaceData::Distance,
+            FaceData::Distance => FaceData::Rock,
+        }))
+    }),
+    // Held while dragging, so a press does nothing.
+    plain(Key::L, "L and drag", "Erase what is drawn around", |_| None),
+];
+
+fn picking(step: PickingStep) -> Option<Action> {
+    Some(Action::Picking(step))
+}
 
 fn ask(dialogue: Dialogue) -> Option<Action> {
     Some(Action::Ask(Box::new(dialogue)))
@@ -167,7 +203,8 @@ pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
         actions.push(Action::Ask(Box::new(Dialogue::Shortcuts)));
     }
     let Some(session) = &state.session else { return };
-    for shortcut in SHORTCUTS {
+    let first = if session.view.panel == Panel::Interpret { INTERPRETING } else { &[] };
+    for shortcut in first.iter().chain(SHORTCUTS) {
         if ctx.input_mut(|input| input.consume_key(shortcut.modifiers, shortcut.key)) {
             actions.extend((shortcut.deed)(session));
         }
@@ -179,7 +216,7 @@ pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
     let modal = Modal::new(Id::unique("shortcuts")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
         ui.set_width(620.0);
         ui.heading("Shortcuts");
-        ScrollArea::vertical().max_height(ctx.content_rect().height() - 200.0).show(ui, |ui| {
+        ScrollArea::vertical().max_height(ctx.content_rect().height() - 400.0).show(ui, |ui| {
             ui.columns_const(|columns: &mut [eframe::egui::Ui; 2]| {
                 let half = SHORTCUTS.len().div_ceil(2);
                 for (column, part) in columns.iter_mut().zip(SHORTCUTS.chunks(half)) {
@@ -193,6 +230,18 @@ pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
                 }
             });
         });
+        ui.add_space(6.0);
+        ui.label("While interpreting (P):");
+        Grid::new("interpreting").num_columns(4).spacing([14.0, 5.0]).show(ui, |ui| {
+            for (n, shortcut) in INTERPRETING.iter().enumerate() {
+                ui.strong(shortcut.shown);
+                ui.label(shortcut.name);
+                if n % 2 == 1 {
+                    ui.end_row();
+                }
+            }
+        });
+        ui.add_space(6.0);
         ui.weak("In the block: drag turns it, Shift drag moves it, the wheel zooms, a click moves the sections there.");
         if ui.button("Close").clicked() {
             actions.push(Action::Answered);

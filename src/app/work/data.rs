@@ -28,6 +28,17 @@ pub struct Wanted {
     pub document: Document,
     /// Vertical exaggeration: patterns are sized for it.
     pub exaggeration: f64,
+    /// What for.
+    pub purpose: Purpose,
+}
+
+/// What pictures are drawn for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// To be looked at: with everything that the interpretation makes of the volume.
+    Illustrate,
+    /// To be interpreted: the volume alone, whatever horizons there are, so that no pick has to wait for a model.
+    Interpret,
 }
 
 #[derive(Default)]
@@ -124,6 +135,9 @@ fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox, running: &Running) {
 
 fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
     let document = &wanted.document;
+    if wanted.purpose == Purpose::Interpret {
+        return load_bare(wanted, kept, progress);
+    }
     let key = derived::parameterization_key(document, &ModelSettings::default(), &pipeline::param_settings(document));
     let volumes = needed_volumes(document);
     let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
@@ -137,6 +151,28 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     // Half-way needs everything that any blend needs.
     let scene = Scene { blend: 0.5, exaggeration: wanted.exaggeration, ..Scene::default() };
     let loaded = super::compute(|| pipeline::load(&project, &scene, progress))?;
+    let rocks = Arc::new(RwLock::new(loaded));
+    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, rocks: rocks.clone() });
+    Ok(rocks)
+}
+
+/// What the interpretation is drawn from: the raw volume and the wells.
+fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
+    let document = &wanted.document;
+    let geometry = document.frame()?.clone();
+    let raw = style::of_project(document).raw;
+    let entry = raw.as_ref().and_then(|raw| document.volumes.iter().find(|entry| entry.name == raw.volume));
+    let key = format!("bare {:?}", document.wells);
+    let volumes: Vec<(String, String)> = entry.iter().map(|entry| (entry.name.clone(), entry.hash.clone())).collect();
+    let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
+    if let Some(kept) = kept.as_ref().filter(same) {
+        let mut loaded = kept.rocks.write().unwrap_or_else(PoisonError::into_inner);
+        (loaded.raw, loaded.version) = (raw, pipeline::new_version());
+        drop(loaded);
+        return Ok(kept.rocks.clone());
+    }
+    *kept = None;
+    let loaded = super::compute(|| pipeline::load_bare(&wanted.root, document, geometry, raw, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
     *kept = Some(Kept { root: wanted.root.clone(), key, volumes, rocks: rocks.clone() });
     Ok(rocks)

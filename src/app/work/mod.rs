@@ -8,7 +8,9 @@
 
 pub mod data;
 mod export;
+mod lasso;
 pub mod map;
+pub mod picks;
 pub mod picture;
 mod project;
 pub mod running;
@@ -16,14 +18,16 @@ pub mod scan;
 pub mod slice;
 pub mod swatches;
 
-pub use data::{Rocks, Wanted};
+pub use data::{Purpose, Rocks, Wanted};
 pub use map::{MapPicture, Maps};
+pub use picks::{Interpreted, Picks, ShownFault, ShownHorizon, ShownPick};
 pub use picture::{Drawing, Drawn, PictureWish};
 pub use running::{Running, RunningLine};
 pub use slice::{SlicePicture, SliceWish, Slices};
 pub use swatches::Swatches;
 
-use super::state::{Notice, Place, Snapshot, Task};
+use super::state::{Notice, PickingStep, Place, Snapshot, Task};
+use crate::command::PickNode;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
@@ -48,6 +52,14 @@ pub enum Event {
     Sliced(SlicePicture),
     /// A map.
     Mapped(MapPicture),
+    /// The interpretation was read.
+    Interpreted(Arc<Interpreted>),
+    /// The selected node, ready to be drawn; none where nothing is selected.
+    Selected(Option<Arc<ShownPick>>),
+    /// An answer while interpreting.
+    Picking(PickingStep),
+    /// What a lasso holds, to be taken out.
+    Erased(Vec<PickNode>),
     /// A picture was written.
     Exported(PathBuf),
     /// Something is worth knowing.
@@ -92,6 +104,8 @@ pub struct Work {
     pub slices: Slices,
     /// Maps.
     pub maps: Maps,
+    /// The interpretation.
+    pub picks: Picks,
     root: Option<PathBuf>,
 }
 
@@ -108,6 +122,7 @@ impl Work {
             drawing: Drawing::start(outbox.clone()),
             slices: Slices::start(outbox.clone()),
             maps: Maps::start(outbox.clone()),
+            picks: Picks::start(outbox.clone(), running.clone()),
             outbox,
             running,
             root: None,
@@ -142,6 +157,12 @@ impl Work {
                 Some(root) => project::Order::Redo(root),
                 None => return,
             },
+            Task::Picking(task) => {
+                if let Some(root) = root() {
+                    self.picks.run(task, root);
+                }
+                return;
+            }
             Task::Export(plan) => {
                 if let Some(root) = root() {
                     let (outbox, running) = (self.outbox.clone(), self.running.clone());
@@ -152,6 +173,7 @@ impl Work {
             Task::Release => {
                 self.root = None;
                 self.data.forget();
+                self.picks.forget();
                 return;
             }
             // These are the window's own.
@@ -192,7 +214,17 @@ impl Work {
 /// taken before, by the caller.
 fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
-    let pool = POOL.get_or_init(|| {
+    on(&POOL, job)
+}
+
+/// The same, on threads that pictures are not drawn on: what takes minutes must not keep them waiting.
+fn compute_apart<T: Send>(job: impl FnOnce() -> T + Send) -> T {
+    static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
+    on(&POOL, job)
+}
+
+fn on<T: Send>(pool: &OnceLock<Option<rayon::ThreadPool>>, job: impl FnOnce() -> T + Send) -> T {
+    let pool = pool.get_or_init(|| {
         let threads = std::thread::available_parallelism().map_or(1, |count| count.get().saturating_sub(1).max(1));
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()
     });
