@@ -14,9 +14,9 @@
 //! Deliberately absent: no state of a project lives here that is not on disk, and no drawing of rock.
 
 pub mod error;
-pub mod state;
 #[cfg(test)]
 mod picking_tests;
+pub mod state;
 #[cfg(test)]
 mod tests;
 pub mod theme;

@@ -1,6 +1,7 @@
 //! The window: draws the state, hands actions to it and tasks to the workers.
 
 use super::error::WindowError;
+use super::state::picking::Pick;
 use super::state::{
     Action, Appearance, Dialogue, Layout, Notice, Panel as Side, Picking, Place, Remembered, SliceKind, State, Task,
 };
@@ -8,9 +9,9 @@ use super::theme;
 use super::views::{
     bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, functions::Functions,
     import::Import, interpretation::Interpretation, layers::Layers, map::MapView, notices, overlay::Overlay,
-    patterns::Patterns, picking::PickingPanel, pointed::Pointed, sections::Sections, shortcuts, start, status, tiles::Tiles,
+    patterns::Patterns, picking::PickingPanel, pointed::Pointed, sections::Sections, shortcuts, start, status,
+    tiles::Tiles,
 };
-use super::state::picking::Pick;
 use super::work::{Event, Purpose, Rocks, Swatches, Wake, Wanted, Work};
 use crate::command::Command;
 use eframe::egui::{self, CentralPanel, Context, Frame, Panel, ThemePreference, Ui};
@@ -400,7 +401,9 @@ impl Window {
             }
             let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
             match session.view.layout {
-                Layout::Block => self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions),
+                Layout::Block => {
+                    self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions)
+                }
                 Layout::Map => {
                     let (left, right) = ui.available_rect_before_wrap().split_left_right_at_fraction(0.5);
                     ui.scope_builder(egui::UiBuilder::new().max_rect(left), |ui| {
@@ -416,7 +419,15 @@ impl Window {
                     let mut quarter = |ui: &mut Ui, kind: Option<SliceKind>| {
                         let found = match kind {
                             None => self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions),
-                            Some(kind) => self.sections.show(ui, session, kind, rocks, &self.work.slices, &mut self.overlay, actions),
+                            Some(kind) => self.sections.show(
+                                ui,
+                                session,
+                                kind,
+                                rocks,
+                                &self.work.slices,
+                                &mut self.overlay,
+                                actions,
+                            ),
                         };
                         pointed = pointed.take().or(found);
                     };

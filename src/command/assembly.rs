@@ -3,9 +3,9 @@
 use super::{Noun, ProjectError, order};
 use crate::candidates::Candidates;
 use crate::data;
+use crate::project::Document;
 use crate::project::Draft;
 use crate::project::document::{Assembly, HorizonEntry, Source};
-use crate::project::Document;
 use interp::Forest;
 use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,

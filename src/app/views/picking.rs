@@ -228,8 +228,9 @@ impl PickingPanel {
                 actions.push(Action::Picking(PickingStep::Tint(colour)));
             }
             let mut text = name.to_owned();
-            let edit =
-                ui.name_inputs("Name of the new horizon", |ui| ui.add(TextEdit::singleline(&mut text).desired_width(150.0)));
+            let edit = ui.name_inputs("Name of the new horizon", |ui| {
+                ui.add(TextEdit::singleline(&mut text).desired_width(150.0))
+            });
             if edit.changed() {
                 actions.push(Action::Picking(PickingStep::Name(text)));
             }
@@ -280,7 +281,8 @@ impl PickingPanel {
         if facts.outdated {
             ui.colored_label(ui.visuals().warn_fg_color, "Its picks are of another extraction.");
             if ui.button("Pick again").on_hover_text("Make the same picks on the present extraction").clicked() {
-                let command = crate::command::ReplayPicks { horizon: Some(entry.name.clone()), unfit: Default::default() };
+                let command =
+                    crate::command::ReplayPicks { horizon: Some(entry.name.clone()), unfit: Default::default() };
                 actions.push(apply(Command::ReplayPicks(command)));
             }
         }
@@ -408,7 +410,11 @@ impl PickingPanel {
                 "Proposal {}: {kind}, throw {:.0} {} (up to {:.0}), dips {:.0}°, strikes {:.0}°",
                 proposal.id, proposal.throw[0], shown.unit, proposal.throw[1], proposal.dip_deg, proposal.strike_deg
             ))
-            .on_hover_text(format!("seen by {} pairs on {}", proposal.support, proposal.horizons.join(", ")));
+            .on_hover_text(format!(
+                "seen by {} pairs on {}",
+                proposal.support,
+                proposal.horizons.join(", ")
+            ));
             let name = self.names.entry(proposal.id).or_insert_with(|| proposal.name.clone());
             ui.horizontal(|ui| {
                 let label = format!("Name of proposal {}", proposal.id);

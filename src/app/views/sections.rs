@@ -42,7 +42,15 @@ struct Pane {
 
 impl Default for Pane {
     fn default() -> Self {
-        Self { texture: None, shown: None, wished: None, zoom: 1.0, middle: vec2(0.5, 0.5), wheel: 0.0, lasso: LassoLine::default() }
+        Self {
+            texture: None,
+            shown: None,
+            wished: None,
+            zoom: 1.0,
+            middle: vec2(0.5, 0.5),
+            wheel: 0.0,
+            lasso: LassoLine::default(),
+        }
     }
 }
 

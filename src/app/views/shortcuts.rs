@@ -2,8 +2,8 @@
 
 use crate::app::state::faces::{self, Face, Owner};
 use crate::app::state::{
-    Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State, Tool,
-    camera,
+    Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State,
+    Tool, camera,
 };
 use crate::app::theme;
 use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};

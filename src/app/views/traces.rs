@@ -20,9 +20,7 @@ pub fn of_sheet(sheet: &VoxelSheet, [nx, ny]: [usize; 2], kind: SliceKind, at: f
             let mut lines = Vec::new();
             for x in 0..nx.saturating_sub(1) {
                 for y in 0..ny.saturating_sub(1) {
-                    let corner = |dx: usize, dy: usize| {
-                        DVec3::new((x + dx) as f64, (y + dy) as f64, z(x + dx, y + dy))
-                    };
+                    let corner = |dx: usize, dy: usize| DVec3::new((x + dx) as f64, (y + dy) as f64, z(x + dx, y + dy));
                     let (a, b, c, d) = (corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1));
                     // Most cells lie above or below.
                     let above = [a, b, c, d].iter().filter(|p| p.z < at).count();

@@ -126,7 +126,8 @@ fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox, running: &Running) {
         drop(guard);
         match loaded {
             Ok(rocks) => outbox.send(Event::Ready { root: wanted.root, rocks }),
-            Err(ProjectError::Cancelled(_)) => {}
+            // However deep in a chain of causes it stands, what was cancelled has not failed.
+            Err(_) if progress.check().is_err() => {}
             Err(error) => outbox.send(Event::Told(Notice::failure(Place::Block, &error))),
         }
         outbox.wake();

@@ -116,8 +116,9 @@ mod tests {
 
     #[test]
     fn a_line_holds_what_it_runs_around() {
-        let horseshoe = [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [6.0, 9.0], [6.0, 3.0], [3.0, 3.0], [3.0, 9.0], [0.0, 9.0]]
-            .map(DVec2::from_array);
+        let horseshoe =
+            [[0.0, 0.0], [9.0, 0.0], [9.0, 9.0], [6.0, 9.0], [6.0, 3.0], [3.0, 3.0], [3.0, 9.0], [0.0, 9.0]]
+                .map(DVec2::from_array);
         for (at, is_inside) in [([1.0, 5.0], true), ([4.5, 1.0], true), ([4.5, 5.0], false), ([-1.0, 5.0], false)] {
             assert_eq!(contains(&horseshoe, DVec2::from_array(at)), is_inside, "{at:?}");
         }

@@ -143,7 +143,7 @@ impl Picks {
                 for warning in warnings {
                     outbox.send(Event::Told(Notice::note(Place::Interpret, warning)));
                 }
-                tell(done.map(drop), &outbox);
+                tell(done.map(drop), Some(&progress), &outbox);
                 let _ = orders.send(Order::Renew);
             }),
             PickingTask::ProposeFaults => spawn("proposals", move || {
@@ -157,7 +157,7 @@ impl Picks {
                     let text = "the horizons are offset nowhere: no fault is proposed";
                     outbox.send(Event::Told(Notice::note(Place::Interpret, text)));
                 }
-                tell(done.map(drop), &outbox);
+                tell(done.map(drop), Some(&progress), &outbox);
                 let _ = orders.send(Order::Renew);
             }),
             task => drop(orders.send(Order::Do(task))),
@@ -166,9 +166,10 @@ impl Picks {
 }
 
 /// Tells a failure; what was stopped by the user is none.
-fn tell(done: Result<(), ProjectError>, outbox: &Outbox) {
+fn tell(done: Result<(), ProjectError>, progress: Option<&Progress>, outbox: &Outbox) {
     match done {
-        Ok(()) | Err(ProjectError::Cancelled(_)) => outbox.wake(),
+        Ok(()) => outbox.wake(),
+        Err(_) if progress.is_some_and(|progress| progress.check().is_err()) => outbox.wake(),
         Err(error) => outbox.send(Event::Told(Notice::failure(Place::Interpret, &error))),
     }
 }
@@ -215,7 +216,7 @@ impl Keeper {
             }
             for order in queue {
                 if let Err(error) = self.carry_out(order) {
-                    tell(Err(error), &self.outbox);
+                    tell(Err(error), None, &self.outbox);
                 }
             }
         }
@@ -264,7 +265,8 @@ impl Keeper {
     fn follow(&mut self, root: PathBuf, document: Document) -> Result<(), ProjectError> {
         let geometry = document.frame()?.clone();
         let former = self.followed.take().filter(|former| former.root == root);
-        let (guard, progress) = self.running.begin("Reading the interpretation", Place::Interpret, self.outbox.wake.clone());
+        let (guard, progress) =
+            self.running.begin("Reading the interpretation", Place::Interpret, self.outbox.wake.clone());
         let path = extraction::candidates_path(&root);
         let stored = path.exists().then(|| StoredCandidates::open(&path)).transpose()?;
         let key = stored.as_ref().map(|stored| stored.info().key.clone());
@@ -318,7 +320,8 @@ impl Keeper {
         let [nx, ny, _] = geometry.size();
         let horizons = document.horizons.iter().zip(&all).map(|(entry, sheets)| {
             let log = entry.assembly.as_ref();
-            let chosen = log.zip(candidates.as_ref()).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
+            let chosen =
+                log.zip(candidates.as_ref()).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
             let overlap = chosen.as_ref().zip(candidates.as_ref()).and_then(|(chosen, candidates)| {
                 let found = reassemble(&candidates.forest, chosen, &seeds(log, candidates), blocks).overlap;
                 overlap_in_lines(found, geometry)
