@@ -14,6 +14,7 @@
 //! Deliberately absent: no state of a project lives here that is not on disk, and no drawing of rock.
 
 pub mod error;
+mod hold;
 #[cfg(test)]
 mod picking_tests;
 pub mod state;

@@ -275,7 +275,7 @@ fn the_block_is_seen_through_on_a_key() {
     let mut harness = interpreting(folder.path());
     harness.key_press(Key::O);
     harness.run_steps(2);
-    let scene = super::state::showing::scene(state(&harness).session.as_ref().unwrap());
+    let scene = super::state::showing::scene(state(&harness).session.as_ref().unwrap(), None);
     assert!(matches!(scene.media.shading, render::Shading::Occlusion(_)));
     wait(&mut harness, "the picture is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
     press(&mut harness, pos2(640.0, 420.0), Modifiers::NONE);

@@ -134,6 +134,12 @@ fn the_start_page_opens_begins_and_remembers() {
     harness.step();
     click(&mut harness, "Open");
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+    // While it is open, another window does not offer it.
+    let mut second = driven(folder.path(), None);
+    second.step();
+    assert!(second.query_by_label("Go on").is_none());
+    drop(second);
+    drop(harness);
     let mut next = driven(folder.path(), None);
     next.step();
     // It was not closed, as after a crash: what was open is offered again.

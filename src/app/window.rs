@@ -1,9 +1,11 @@
 //! The window: draws the state, hands actions to it and tasks to the workers.
 
 use super::error::WindowError;
+use super::hold::{Hold, Taken};
 use super::state::picking::Pick;
 use super::state::{
-    Action, Appearance, Dialogue, Layout, Notice, Panel as Side, Picking, Place, Remembered, SliceKind, State, Task,
+    Action, Appearance, Dialogue, Layout, Look, Notice, Panel as Side, Picking, Place, Remembered, SliceKind, State,
+    Task,
 };
 use super::theme;
 use super::views::{
@@ -53,12 +55,17 @@ pub fn run(project: Option<PathBuf>) -> Result<(), WindowError> {
     Ok(())
 }
 
+/// A selection, the horizon it is for, and the interpretation it is to be seen in.
+type Wished = (Option<(Pick, Option<String>)>, u64);
+
 /// The window's content.
 pub struct Window {
     ctx: Context,
     state: State,
     work: Work,
     settings: Option<PathBuf>,
+    /// Keeps the open project from being offered for recovery by another window.
+    hold: Option<Hold>,
     block: BlockView,
     sections: Sections,
     map: MapView,
@@ -73,7 +80,7 @@ pub struct Window {
     /// State of the project that its interpretation was last asked for.
     followed: Option<(PathBuf, u32)>,
     /// Selection that was last asked for, and the interpretation it was asked of.
-    selected: Option<(Option<(Pick, Option<String>)>, u64)>,
+    selected: Option<Wished>,
     tiles: Tiles,
     swatches: Swatches,
     chooser: Chooser,
@@ -90,7 +97,9 @@ impl Window {
     /// Begins with the start page, or with a project; `settings` is the file that outlives the window.
     pub fn new(ctx: &Context, settings: Option<PathBuf>, project: Option<PathBuf>) -> Self {
         theme::install(ctx);
-        let remembered = settings.as_deref().map(Remembered::read).unwrap_or_default();
+        let mut remembered = settings.as_deref().map(Remembered::read).unwrap_or_default();
+        // What another window has open was not left.
+        remembered.left = remembered.left.filter(|left| !Hold::is_elsewhere(&left.root));
         let waking = ctx.clone();
         let wake: Wake = Arc::new(move || waking.request_repaint());
         let mut window = Self {
@@ -98,6 +107,7 @@ impl Window {
             state: State::new(remembered),
             work: Work::start(wake.clone()),
             settings,
+            hold: None,
             block: BlockView::default(),
             sections: Sections::default(),
             map: MapView::default(),
@@ -159,7 +169,7 @@ impl Window {
     /// Lets go of what was made of a project.
     fn forget(&mut self) {
         (self.rocks, self.wanted, self.pointed) = (None, None, None);
-        (self.followed, self.selected) = (None, None);
+        (self.followed, self.selected, self.hold) = (None, None, None);
         self.block = BlockView::default();
         self.overlay = Overlay::default();
         self.picking = PickingPanel::default();
@@ -188,7 +198,12 @@ impl Window {
 
     fn remember(&mut self) {
         let Some(path) = &self.settings else { return };
-        if let Err(error) = self.state.remembered.write(path) {
+        let mut remembered = self.state.remembered.clone();
+        if remembered.left.is_none() {
+            // Another window's project stays on record, should that one crash.
+            remembered.left = Remembered::read(path).left.filter(|left| Hold::is_elsewhere(&left.root));
+        }
+        if let Err(error) = remembered.write(path) {
             let text = format!("recent projects cannot be remembered: {}: {error}", path.display());
             self.state.apply(Action::Tell(Notice::note(Place::Start, text)));
         }
@@ -208,7 +223,18 @@ impl Window {
             match event {
                 Event::Opened(snapshot) => {
                     self.forget();
+                    let taken = Hold::take(&snapshot.root);
                     self.act(Action::Opened(snapshot));
+                    match taken {
+                        Taken::Here(hold) => self.hold = hold,
+                        Taken::Elsewhere(process) => {
+                            let process = process.map_or_else(String::new, |id| format!(" (process {id})"));
+                            let text = format!(
+                                "this project is open in another window too{process}; what is changed there shows here after the next change here"
+                            );
+                            self.act(Action::Tell(Notice::note(Place::Block, text)));
+                        }
+                    }
                 }
                 Event::Changed(snapshot) => {
                     self.act(Action::Changed(snapshot));
@@ -268,7 +294,10 @@ impl Window {
             document.faults.clear();
             document.sticks.clear();
             document.layer_names.clear();
-            Wanted { root, document, exaggeration: 1.0, purpose: Purpose::Interpret }
+            let picking = &session.view.picking;
+            let shows = picking.look == Look::SeeThrough || picking.show != render::FaceData::Rock;
+            let extraction = self.overlay.interpreted().and_then(|shown| shown.key.clone()).filter(|_| shows);
+            Wanted { root, document, exaggeration: 1.0, purpose: Purpose::Interpret { extraction } }
         } else {
             Wanted { root, document, exaggeration, purpose: Purpose::Illustrate }
         };
@@ -402,7 +431,7 @@ impl Window {
             let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
             match session.view.layout {
                 Layout::Block => {
-                    self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions)
+                    self.pointed = self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions);
                 }
                 Layout::Map => {
                     let (left, right) = ui.available_rect_before_wrap().split_left_right_at_fraction(0.5);
@@ -489,6 +518,7 @@ impl eframe::App for Window {
     fn on_exit(&mut self) {
         // Closed properly: there is nothing to recover.
         self.state.remembered.left = None;
+        self.hold = None;
         self.remember();
     }
 }

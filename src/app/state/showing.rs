@@ -3,13 +3,18 @@
 use super::picking::Look;
 use super::{Panel, Session};
 use crate::scene::{SeeThrough, Technique};
-use render::{FaceData, Scene, Scope};
+use render::media::Colouring;
+use render::{FaceData, Media, PickedHorizon, Scene, Scope};
+use ttf::Colour;
 
 /// Values up to this share of the volume's clip are clear in the white function: what is left are the strong reflections.
 const CLEAR_BELOW: f32 = 0.35;
+/// Half of a horizon's thickness where the block is seen through, voxels.
+const THICKNESS: f32 = 1.2;
 
-/// The scene that the block view draws.
-pub fn scene(session: &Session) -> Scene {
+/// The scene that the block view draws; `horizons` are those to be seen in it by their colour and leaves, absent while no candidates are in
+/// memory.
+pub fn scene(session: &Session, horizons: Option<&[(Colour, Vec<u32>)]>) -> Scene {
     let view = &session.view;
     let mut scene = view.scene.clone();
     if view.panel != Panel::Interpret {
@@ -17,8 +22,8 @@ pub fn scene(session: &Session) -> Scene {
     }
     scene.blend = 1.0;
     scene.ground = None;
-    scene.media = render::Media::default();
-    scene.face_data = view.picking.show;
+    scene.media = Media::default();
+    scene.face_data = if horizons.is_some() { view.picking.show } else { FaceData::Rock };
     if view.picking.look == Look::SeeThrough {
         scene.face_data = FaceData::Rock;
         let see = SeeThrough {
@@ -30,8 +35,22 @@ pub fn scene(session: &Session) -> Scene {
         };
         // A project without a volume shows its faces.
         if see.change(&mut scene, &session.document).is_err() {
-            scene.media = render::Media::default();
+            scene.media = Media::default();
+            return scene;
         }
+        let picked = horizons.into_iter().flatten().filter(|(_, leaves)| !leaves.is_empty());
+        scene.media.horizons = picked
+            .map(|(colour, leaves)| PickedHorizon {
+                name: None,
+                leaves: leaves.clone(),
+                colour: *colour,
+                colouring: Colouring::Own,
+                opacity: 1.0,
+                thickness: THICKNESS,
+                emission: 0.0,
+                paint: None,
+            })
+            .collect();
     }
     scene
 }

@@ -7,9 +7,9 @@ use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use crate::app::state::faces::{self, Handle};
-use crate::app::state::{Action, Compare, Lasso, LassoOn, Panel, PickingStep, Session, State, camera, showing};
+use crate::app::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, camera, showing};
 use crate::app::theme;
-use crate::app::work::{Drawing, Drawn, PictureWish, Rocks};
+use crate::app::work::{Drawing, Drawn, PictureWish, Rocks, Touch};
 use eframe::egui::{
     Align2, Color32, ColorImage, CursorIcon, FontId, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense,
     Stroke, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
@@ -23,6 +23,9 @@ const REACH: f32 = 11.0;
 const WHEEL: f64 = 0.0022;
 /// Wheel travel that moves a face by a sample, points.
 const WHEEL_STEP: f32 = 24.0;
+
+/// What white volumes are seen before.
+const BEHIND_VOLUMES: Color32 = Color32::from_rgb(0x2c, 0x33, 0x3a);
 
 /// What the hand holds.
 enum Grab {
@@ -102,7 +105,10 @@ impl BlockView {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Block"));
         let view = &session.view;
-        let shown = showing::scene(session);
+        let has_candidates =
+            rocks.is_some_and(|(rocks, _)| rocks.try_read().is_ok_and(|loaded| loaded.candidates.is_some()));
+        let horizons = has_candidates.then(|| overlay.leaves(session));
+        let shown = showing::scene(session, horizons.as_deref());
         let compare = if view.panel == Panel::Interpret { Compare::Blend } else { view.compare };
         let rects: Vec<Rect> = match compare {
             Compare::SideBySide => {
@@ -148,7 +154,13 @@ impl BlockView {
             let loaded = rocks?.0.try_read().ok()?;
             pointed::on_block(&loaded, &shown, size, dvec(at - pane.min))
         });
-        if let Some(pointed) = &pointed {
+        if let (true, Some((how, at)), Some((rocks, _))) =
+            (is_clear(session), lasso::pick_at(ui, &response, session), rocks)
+        {
+            // What is seen there may lie anywhere behind the face.
+            let scene = Scene { size_px: pane_px(pane), ..shown };
+            drawing.touch(Touch { scene, at: dvec(at - pane.min), how, rocks: rocks.clone() });
+        } else if let Some(pointed) = &pointed {
             lasso::click(ui, &response, session, pointed.voxel, actions);
         }
         pointed
@@ -240,7 +252,7 @@ impl BlockView {
 
     fn paint(&self, ui: &Ui, session: &Session, compare: Compare, rects: &[Rect], whole: Rect) {
         let painter = ui.painter_at(whole);
-        painter.rect_filled(whole, 0.0, paper(ui));
+        painter.rect_filled(whole, 0.0, if is_clear(session) { BEHIND_VOLUMES } else { paper(ui) });
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let view = &session.view;
         let wipe_x = whole.left() + whole.width() * view.wipe;
@@ -293,6 +305,16 @@ impl BlockView {
             painter.circle(at, if is_hot { 7.0 } else { 5.0 }, Color32::WHITE, Stroke::new(2.0, accent));
         }
     }
+}
+
+/// Whether the block is seen through.
+fn is_clear(session: &Session) -> bool {
+    session.view.panel == Panel::Interpret && session.view.picking.look == Look::SeeThrough
+}
+
+/// A pane's size in points, as a picture's.
+fn pane_px(pane: Rect) -> [u32; 2] {
+    [pane.width(), pane.height()].map(|side| side.max(1.0) as u32)
 }
 
 /// The largest rectangle of a picture's shape in the middle of another: a picture of before the view was resized keeps its shape.

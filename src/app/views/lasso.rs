@@ -48,6 +48,21 @@ pub fn is_held(ui: &Ui, session: &Session) -> bool {
             || ui.input(|input| input.key_down(Key::L)) && !ui.ctx().egui_wants_keyboard_input())
 }
 
+/// How a click picks and where, in the window, if it picks.
+pub fn pick_at(ui: &Ui, response: &Response, session: &Session) -> Option<(How, Pos2)> {
+    let picks = response.clicked() && session.view.picking.tool != Tool::Sticks;
+    picks.then(|| response.interact_pointer_pos().map(|at| (how(ui), at))).flatten()
+}
+
+fn how(ui: &Ui) -> How {
+    let modifiers = ui.input(|input| input.modifiers);
+    match (modifiers.shift, modifiers.alt) {
+        (_, true) => How::Remove,
+        (true, _) => How::Extend,
+        _ => How::Replace,
+    }
+}
+
 /// What a click on a place does, voxel.
 pub fn click(ui: &Ui, response: &Response, session: &Session, voxel: DVec3, actions: &mut Vec<Action>) {
     let move_there = Action::Slices(voxel.to_array());
@@ -61,12 +76,7 @@ pub fn click(ui: &Ui, response: &Response, session: &Session, voxel: DVec3, acti
         actions.push(move_there);
     }
     if response.clicked() {
-        let modifiers = ui.input(|input| input.modifiers);
-        let how = match (modifiers.shift, modifiers.alt) {
-            (_, true) => How::Remove,
-            (true, _) => How::Extend,
-            _ => How::Replace,
-        };
+        let how = how(ui);
         actions.push(Action::Picking(match session.view.picking.tool {
             Tool::Sticks => PickingStep::Stick(voxel),
             Tool::Pick | Tool::Lasso => PickingStep::At(voxel, how),

@@ -7,12 +7,13 @@ use super::sections::horizon_colour;
 use super::surfaces::{self, Cells};
 use super::traces::{self, Line};
 use crate::app::state::picking::voxel_of;
-use crate::app::state::{Panel, Session, SliceKind, camera, showing};
+use crate::app::state::{Look, Panel, Session, SliceKind, camera};
 use crate::app::work::{Interpreted, ShownPick};
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use std::sync::Arc;
+use ttf::Colour;
 
 /// How far from a section sticks are drawn on it, traces or samples.
 const NEAR: f64 = 2.5;
@@ -52,6 +53,14 @@ impl Overlay {
     /// The selection as last drawn.
     pub fn selected(&self) -> Option<&ShownPick> {
         self.selected.as_deref()
+    }
+
+    /// The horizons and the selection by colour and leaves, the selection last.
+    pub fn leaves(&self, session: &Session) -> Vec<(Colour, Vec<u32>)> {
+        let shown = self.interpreted.iter().flat_map(|shown| &shown.horizons);
+        let horizons = shown.filter_map(|horizon| Some((horizon.colour?, horizon.leaves.clone())));
+        let own = session.view.picking.colour_in(&session.document);
+        horizons.chain(self.selected.iter().map(|shown| (own, shown.leaves.clone()))).collect()
     }
 
     /// Takes the interpretation in.
@@ -169,14 +178,17 @@ impl Overlay {
             return;
         }
         let Some(geometry) = &session.document.geometry else { return };
-        let scene = showing::scene(session);
+        let scene = &session.view.scene;
         let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
         let selected = Color32::from_rgb(r, g, b).gamma_multiply(OPACITY[1]);
         let horizons =
             self.cells.iter().flat_map(|(colour, cells)| cells.iter().map(|c| (c, colour.gamma_multiply(OPACITY[0]))));
         let picked = self.selected_cells.iter().map(|cells| (cells, selected));
-        surfaces::paint(ui, pane, &scene, geometry, horizons.chain(picked));
-        let view = camera::view(&scene, geometry, DVec2::new(f64::from(pane.width()), f64::from(pane.height())));
+        // Where the block is seen through, the picture shows them itself.
+        if session.view.picking.look == Look::Faces {
+            surfaces::paint(ui, pane, scene, geometry, horizons.chain(picked));
+        }
+        let view = camera::view(scene, geometry, DVec2::new(f64::from(pane.width()), f64::from(pane.height())));
         let painter = ui.painter_at(pane);
         for (stick, colour) in sticks(session) {
             let points = stick.iter().map(|place| {

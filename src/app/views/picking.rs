@@ -105,19 +105,19 @@ impl PickingPanel {
             return;
         }
         let found = shown.and_then(|shown| shown.extraction.as_ref());
-        match found {
-            Some(report) => {
-                ui.label(format!("{} surfaces, {} leaves", report.surfaces, report.leaves));
-            }
-            None => {
-                ui.label("Find every reflection that can be followed; horizons are then put together from them.");
-            }
+        if found.is_none() {
+            ui.label("Find every reflection that can be followed; horizons are then put together from them.");
         }
         let name = if found.is_some() { "Extract again" } else { "Extract" };
         let can = session.document.volumes.iter().any(|entry| entry.geometry.is_none());
-        if ui.add_enabled(can, Button::new(name)).on_disabled_hover_text("Needs a volume").clicked() {
-            actions.push(Action::Extract(self.volume.clone(), Box::new(self.settings.clone())));
-        }
+        ui.horizontal_wrapped(|ui| {
+            if let Some(report) = found {
+                ui.label(format!("{} surfaces, {} leaves", report.surfaces, report.leaves));
+            }
+            if ui.add_enabled(can, Button::new(name)).on_disabled_hover_text("Needs a volume").clicked() {
+                actions.push(Action::Extract(self.volume.clone(), Box::new(self.settings.clone())));
+            }
+        });
         ui.collapsing("How", |ui| self.extraction_settings(ui, session));
     }
 
@@ -298,8 +298,8 @@ impl PickingPanel {
         for conflict in &facts.conflicts {
             ui.colored_label(ui.visuals().warn_fg_color, format!("Conflict: {conflict}."));
         }
-        self.holes(ui, session, entry, facts, actions);
         picks(ui, entry, geometry, actions);
+        self.holes(ui, session, entry, facts, actions);
     }
 
     fn holes(
@@ -490,7 +490,7 @@ fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &Survey
     let [inline, crossline, z] = pick.at;
     ui.label(format!("inline {inline:.0}, crossline {crossline:.0}, {z:.1} {}", geometry.vertical.unit.symbol()));
     let size = facts.map_or_else(String::new, |shown| format!(", {} triangles", shown.triangles));
-    ui.label(format!("level {} of {} above leaf {}{size}", pick.up, pick.levels, pick.leaf));
+    ui.label(format!("level {} of {}{size}", pick.up, pick.levels)).on_hover_text(format!("leaf {}", pick.leaf));
     if let Some(overlap) = facts.filter(|shown| shown.is_wrong).and_then(|shown| shown.overlap.as_ref()) {
         ui.colored_label(
             ui.visuals().warn_fg_color,

@@ -14,6 +14,7 @@ use eframe::egui::{
     TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::{DVec2, DVec3};
+use render::FaceData;
 use std::collections::HashMap;
 use survey::SurveyGeometry;
 use survey::section::{LineKind, LineQuality};
@@ -31,7 +32,7 @@ const WHEEL_STEP: f32 = 24.0;
 struct Pane {
     texture: Option<TextureHandle>,
     shown: Option<SlicePicture>,
-    wished: Option<(f64, u64)>,
+    wished: Option<(f64, u64, FaceData)>,
     zoom: f32,
     /// Which part of the section is in the middle, shares.
     middle: Vec2,
@@ -74,6 +75,7 @@ impl Sections {
     }
 
     /// Shows one section in all the room there is; answers what is under the cursor.
+    #[expect(clippy::too_many_arguments, reason = "a panel is handed the parts of the window it needs, and no others")]
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -87,11 +89,13 @@ impl Sections {
         let geometry = session.document.geometry.as_ref()?;
         let pane = self.panes.entry(kind).or_default();
         let at = session.view.slices[kind.axis()];
+        let is_interpreting = session.view.panel == Panel::Interpret;
+        let show = if is_interpreting { session.view.picking.show } else { FaceData::Rock };
         if let Some((rocks, version)) = rocks
-            && pane.wished != Some((at, version))
+            && pane.wished != Some((at, version, show))
         {
-            pane.wished = Some((at, version));
-            slices.cut(SliceWish { kind, at, rocks: rocks.clone() });
+            pane.wished = Some((at, version, show));
+            slices.cut(SliceWish { kind, at, rocks: rocks.clone(), show });
         }
         header(ui, session, kind, geometry, actions);
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());

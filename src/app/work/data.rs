@@ -9,7 +9,7 @@ use crate::error::ProjectError;
 use crate::pipeline::{self, Loaded};
 use crate::project::{Document, Project};
 use crate::{derived, library, style};
-use render::Scene;
+use render::{FaceData, Scene};
 use std::path::PathBuf;
 use std::sync::{Arc, Condvar, Mutex, PoisonError, RwLock};
 use survey::Progress;
@@ -33,12 +33,15 @@ pub struct Wanted {
 }
 
 /// What pictures are drawn for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Purpose {
     /// To be looked at: with everything that the interpretation makes of the volume.
     Illustrate,
     /// To be interpreted: the volume alone, whatever horizons there are, so that no pick has to wait for a model.
-    Interpret,
+    Interpret {
+        /// The extraction whose candidates are shown; absent where none are, for they take five bytes a voxel.
+        extraction: Option<String>,
+    },
 }
 
 #[derive(Default)]
@@ -136,7 +139,7 @@ fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox, running: &Running) {
 
 fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
     let document = &wanted.document;
-    if wanted.purpose == Purpose::Interpret {
+    if wanted.purpose != Purpose::Illustrate {
         return load_bare(wanted, kept, progress);
     }
     let key = derived::parameterization_key(document, &ModelSettings::default(), &pipeline::param_settings(document));
@@ -157,13 +160,12 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     Ok(rocks)
 }
 
-/// What the interpretation is drawn from: the raw volume and the wells.
+/// What the interpretation is drawn from: the raw volume, the wells, candidates where they are shown.
 fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
     let document = &wanted.document;
-    let geometry = document.frame()?.clone();
     let raw = style::of_project(document).raw;
     let entry = raw.as_ref().and_then(|raw| document.volumes.iter().find(|entry| entry.name == raw.volume));
-    let key = format!("bare {:?}", document.wells);
+    let key = format!("bare {:?} {:?}", wanted.purpose, document.wells);
     let volumes: Vec<(String, String)> = entry.iter().map(|entry| (entry.name.clone(), entry.hash.clone())).collect();
     let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
     if let Some(kept) = kept.as_ref().filter(same) {
@@ -173,7 +175,13 @@ fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> R
         return Ok(kept.rocks.clone());
     }
     *kept = None;
-    let loaded = super::compute(|| pipeline::load_bare(&wanted.root, document, geometry, raw, progress))?;
+    let project = Project::open(&wanted.root)?;
+    let face_data = match &wanted.purpose {
+        Purpose::Interpret { extraction: Some(_) } => FaceData::Leaves,
+        _ => FaceData::Rock,
+    };
+    let scene = Scene { face_data, ..Scene::default() };
+    let loaded = super::compute(|| pipeline::load_bare(&project, &scene, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
     *kept = Some(Kept { root: wanted.root.clone(), key, volumes, rocks: rocks.clone() });
     Ok(rocks)

@@ -21,7 +21,7 @@ pub mod swatches;
 pub use data::{Purpose, Rocks, Wanted};
 pub use map::{MapPicture, Maps};
 pub use picks::{Interpreted, Picks, ShownFault, ShownHorizon, ShownPick};
-pub use picture::{Drawing, Drawn, PictureWish};
+pub use picture::{Drawing, Drawn, PictureWish, Touch};
 pub use running::{Running, RunningLine};
 pub use slice::{SlicePicture, SliceWish, Slices};
 pub use swatches::Swatches;

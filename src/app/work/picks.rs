@@ -17,7 +17,7 @@ use crate::project::{Document, Project};
 use crate::{data, extraction, proposals};
 use glam::DVec3;
 use interp::ExtractReport;
-use interp::assembly::{ClimbSettings, Occupancy, Overlap, Selection, highest_valid, node_above};
+use interp::assembly::{ClimbSettings, Occupancy, Overlap, Selection, highest_valid, node_above, selected_leaves};
 use interp::faults::{Proposal, ProposeSettings};
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
@@ -38,6 +38,8 @@ pub struct ShownHorizon {
     pub colour: Option<Colour>,
     /// Where it is.
     pub sheets: Arc<Vec<VoxelSheet>>,
+    /// Its leaves.
+    pub leaves: Vec<u32>,
     /// Coverage and overlap; places in line numbers.
     pub report: AssemblyReport,
     /// Its holes, largest first.
@@ -70,6 +72,8 @@ pub struct Interpreted {
     pub faults: Vec<ShownFault>,
     /// What the present extraction found; absent where there is none.
     pub extraction: Option<ExtractReport>,
+    /// Identifies that extraction.
+    pub key: Option<String>,
     /// Faults proposed for the horizons as they are.
     pub proposals: Vec<(Proposal, ShownFault)>,
     /// Unit of the throws of these.
@@ -84,6 +88,8 @@ pub struct ShownPick {
     pub sheets: Vec<VoxelSheet>,
     /// Triangles of the node.
     pub triangles: usize,
+    /// Its leaves.
+    pub leaves: Vec<u32>,
     /// Where it would lie over the horizon or itself, in line numbers.
     pub overlap: Option<Overlap>,
     /// Whether that is more than noise makes.
@@ -331,6 +337,10 @@ impl Keeper {
                 name: entry.name.clone(),
                 colour: log.map(|log| log.colour),
                 sheets: sheets.clone(),
+                leaves: chosen
+                    .as_ref()
+                    .zip(candidates.as_ref())
+                    .map_or_else(Vec::new, |(chosen, candidates)| selected_leaves(&candidates.forest, chosen)),
                 report: AssemblyReport { overlap, ..report_on(sheets, geometry) },
                 holes: find_holes(sheets, [nx, ny]),
                 conflicts: mine.map(sentence).collect(),
@@ -343,7 +353,8 @@ impl Keeper {
         let (proposals, unit) = proposed(root, document, geometry);
         self.number += 1;
         let (root, step) = (root.clone(), document.step);
-        Ok(Interpreted { root, step, number: self.number, horizons, faults, extraction, proposals, unit })
+        let key = candidates.as_ref().map(|candidates| candidates.key.clone());
+        Ok(Interpreted { root, step, number: self.number, horizons, faults, extraction, key, proposals, unit })
     }
 
     fn erase(&self, lasso: &Lasso, horizon: &str) -> Result<(), ProjectError> {
@@ -432,7 +443,8 @@ impl Followed {
         let (vertices, traces) = (occupancy.vertices() - before.0, overlap.traces - before.1);
         let is_wrong = traces as f64 > ClimbSettings::default().tolerated_share * vertices as f64;
         let overlap = overlap_in_lines(Overlap { traces, ..overlap }, &self.geometry);
-        Ok(Some(ShownPick { pick, sheets, triangles: range.len(), overlap, is_wrong }))
+        let leaves = forest.leaves_under(node).collect();
+        Ok(Some(ShownPick { pick, sheets, triangles: range.len(), leaves, overlap, is_wrong }))
     }
 }
 

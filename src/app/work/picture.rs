@@ -4,8 +4,9 @@
 //! coarse picture is always finished, or nothing would be seen while the camera moves; finer ones are given up for a newer wish.
 
 use super::{Event, Outbox, Rocks, spawn};
-use crate::app::state::{Notice, Place};
+use crate::app::state::{How, Notice, PickingStep, Place};
 use crate::picture::{Device, Painter};
+use glam::DVec2;
 use image::RgbaImage;
 use render::{RenderError, Scene};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
@@ -34,6 +35,19 @@ pub struct PictureWish {
     pub is_moving: bool,
 }
 
+/// A click on a picture in which something may be seen behind its faces.
+#[derive(Clone)]
+pub struct Touch {
+    /// The picture, with a size in points.
+    pub scene: Scene,
+    /// Where, points from its upper left corner.
+    pub at: DVec2,
+    /// What the click does.
+    pub how: How,
+    /// What the picture was drawn from.
+    pub rocks: Rocks,
+}
+
 /// A picture.
 pub struct Drawn {
     /// Of which wish.
@@ -51,6 +65,7 @@ pub struct Drawn {
 #[derive(Default)]
 struct Slot {
     wish: Option<PictureWish>,
+    touch: Option<Touch>,
     /// Of the picture being drawn, if it may be given up.
     progress: Option<Progress>,
     ended: bool,
@@ -76,6 +91,11 @@ impl Drawing {
             slot.wish = Some(wish);
             slot.progress.iter().for_each(Progress::cancel);
         });
+    }
+
+    /// Finds what is seen at a place of a picture, and picks it.
+    pub fn touch(&self, touch: Touch) {
+        self.change(|slot| slot.touch = Some(touch));
     }
 
     fn change(&self, change: impl FnOnce(&mut Slot)) {
@@ -115,6 +135,12 @@ impl Artist {
                         return;
                     }
                     slot.progress = None;
+                    if let Some(touch) = slot.touch.take() {
+                        drop(slot);
+                        self.find(&touch);
+                        slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+                        continue;
+                    }
                     if let Some(wish) = slot.wish.take() {
                         break wish;
                     }
@@ -124,6 +150,21 @@ impl Artist {
             if let Err(error) = self.satisfy(&wish, shared) {
                 self.outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
             }
+        }
+    }
+
+    /// What is seen at a place becomes a click on it.
+    fn find(&self, touch: &Touch) {
+        let loaded = touch.rocks.read().unwrap_or_else(PoisonError::into_inner);
+        let scene = loaded.complete(&touch.scene);
+        let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
+        match render::pick::pick(&scene, &loaded.inputs(&volumes, &wells), touch.at) {
+            Ok(Some(seen)) => {
+                let step = PickingStep::At(seen.voxel.as_dvec3(), touch.how);
+                self.outbox.send(Event::Picking(step));
+            }
+            Ok(None) => {}
+            Err(error) => self.outbox.send(Event::Told(Notice::failure(Place::Interpret, &error))),
         }
     }
 

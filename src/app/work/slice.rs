@@ -8,7 +8,8 @@ use crate::app::state::SliceKind;
 use crate::pipeline::Loaded;
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};
-use render::{NamedVolume, VoxelBox};
+use render::leaves;
+use render::{Candidates, FaceData, NamedVolume, VoxelBox};
 use std::collections::HashMap;
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use survey::section::{LineKind, LineQuality, Section, SectionPlane};
@@ -25,6 +26,8 @@ pub struct SliceWish {
     pub at: f64,
     /// What it is cut from.
     pub rocks: Rocks,
+    /// What it shows; amplitudes where there are no candidates in memory.
+    pub show: FaceData,
 }
 
 /// A line of a section.
@@ -103,7 +106,7 @@ fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox) {
             }
         };
         let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
-        let picture = cut(&loaded, wish.kind, wish.at);
+        let picture = cut(&loaded, wish.kind, wish.at, wish.show);
         drop(loaded);
         outbox.send(Event::Sliced(picture));
     }
@@ -120,7 +123,7 @@ pub fn plane(kind: SliceKind, at: f64, size: [usize; 3]) -> SectionPlane {
 }
 
 /// Cuts what is loaded.
-pub fn cut(loaded: &Loaded, kind: SliceKind, at: f64) -> SlicePicture {
+pub fn cut(loaded: &Loaded, kind: SliceKind, at: f64, show: FaceData) -> SlicePicture {
     let plane = plane(kind, at, loaded.geometry.size());
     let lines = loaded.rock.as_ref().map_or_else(Vec::new, |rock| {
         let section = Section::new(&rock.model, &plane);
@@ -128,7 +131,35 @@ pub fn cut(loaded: &Loaded, kind: SliceKind, at: f64) -> SlicePicture {
         let lines = section.lines.into_iter().filter(|line| is_interpreted(line.kind));
         lines.map(|line| SliceLine { kind: line.kind, quality: line.quality, points: line.points }).collect()
     });
-    SlicePicture { kind, at, image: raster(loaded, &plane), lines }
+    let mut image = raster(loaded, &plane);
+    if let Some(shown) = loaded.candidates.as_ref().filter(|_| show != FaceData::Rock) {
+        lay_candidates(&mut image, &plane, &shown.candidates(), show);
+    }
+    SlicePicture { kind, at, image, lines }
+}
+
+/// Leaves in their colours over the raw data, or distances in its place.
+fn lay_candidates(image: &mut RgbaImage, plane: &SectionPlane, candidates: &Candidates, show: FaceData) {
+    let (origin, s_axis, t_axis) = (plane.origin.as_vec3(), plane.s_axis.as_vec3(), plane.t_axis.as_vec3());
+    for (s, t, pixel) in image.enumerate_pixels_mut() {
+        let point: Vec3 = origin + s_axis * s as f32 + t_axis * t as f32;
+        let distance = candidates.distance_at(point);
+        let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
+        if show == FaceData::Distance {
+            let tone = byte(leaves::distance_tone(distance));
+            *pixel = Rgba([tone, tone, tone, 0xff]);
+            continue;
+        }
+        let group = candidates.group(candidates.leaf_at(point));
+        let cover = leaves::cover(distance);
+        if group != 0 && cover > 0.0 {
+            let colour = leaves::leaf_colour(group).to_array().map(byte);
+            for (channel, leaf) in colour.into_iter().enumerate() {
+                let below = f32::from(pixel.0[channel]);
+                pixel.0[channel] = (below + (f32::from(leaf) - below) * cover + 0.5) as u8;
+            }
+        }
+    }
 }
 
 /// Raw data on the plane; light grey where there are none.
