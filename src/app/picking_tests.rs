@@ -73,6 +73,10 @@ fn candidates_are_extracted_from_the_panel() {
     harness.key_press(Key::P);
     harness.run_steps(3);
     assert_eq!(state(&harness).session.as_ref().unwrap().view.panel, Panel::Interpret);
+    click(&mut harness, "How");
+    for label in ["Least front width", "Least leaf", "Reach", "Peaks"] {
+        assert!(harness.query_all_by_label(label).count() > 0, "{label}");
+    }
     click(&mut harness, "Extract");
     wait(&mut harness, "the surfaces are counted", |harness| harness.query_by_label_contains("surfaces,").is_some());
     assert!(crate::extraction::candidates_path(&root).exists());
@@ -280,4 +284,41 @@ fn the_block_is_seen_through_on_a_key() {
     wait(&mut harness, "the picture is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
     press(&mut harness, pos2(640.0, 420.0), Modifiers::NONE);
     assert!(state(&harness).notices.iter().all(|notice| !notice.failed), "{:?}", state(&harness).notices);
+}
+
+#[test]
+fn a_fence_runs_along_the_corners_clicked_on_the_slice() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = interpreting(folder.path());
+    harness.key_press(Key::Num4);
+    harness.run_steps(3);
+    assert_eq!(state(&harness).session.as_ref().unwrap().view.layout, Layout::Fence);
+    click_in(&mut harness, "Slice section", [-60.0, -80.0], Modifiers::NONE);
+    click_in(&mut harness, "Slice section", [70.0, 20.0], Modifiers::NONE);
+    click_in(&mut harness, "Slice section", [20.0, 90.0], Modifiers::NONE);
+    assert_eq!(state(&harness).session.as_ref().unwrap().view.fence.len(), 3);
+    wait(&mut harness, "the fence is cut", |harness| harness.query_by_label("Fence section").is_some());
+    click(&mut harness, "Last corner back");
+    assert_eq!(state(&harness).session.as_ref().unwrap().view.fence.len(), 2);
+    // What is clicked on the fence is picked as on any section.
+    click_in(&mut harness, "Fence section", [10.0, 10.0], Modifiers::NONE);
+    wait(&mut harness, "a leaf is selected", |harness| picking(harness).pick.is_some());
+}
+
+#[test]
+fn a_well_comes_in_through_its_dialogue() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = project(folder.path());
+    let path = folder.path().join("W-1.csv");
+    std::fs::write(&path, "md_m,x_m,y_m,tvdss_m\n0,250,250,0\n40,250,250,40\n100,260,250,99\n").unwrap();
+    let mut harness = driven(folder.path(), Some(root));
+    wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+    let ask = Action::Ask(Box::new(super::state::Dialogue::Well { path }));
+    harness.state_mut().as_mut().unwrap().act(ask);
+    wait(&mut harness, "the files are read", |harness| {
+        harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())
+    });
+    click(&mut harness, "Add");
+    wait(&mut harness, "the well is there", |harness| document(harness).wells.len() == 1);
+    assert_eq!(document(&harness).wells[0].name, "W-1");
 }

@@ -9,10 +9,10 @@ use super::state::{
 };
 use super::theme;
 use super::views::{
-    bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, functions::Functions,
-    import::Import, interpretation::Interpretation, layers::Layers, map::MapView, notices, overlay::Overlay,
-    patterns::Patterns, picking::PickingPanel, pointed::Pointed, sections::Sections, shortcuts, start, status,
-    tiles::Tiles,
+    bar, block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView,
+    functions::Functions, import::Import, interpretation::Interpretation, layers::Layers, map::MapView, notices,
+    overlay::Overlay, patterns::Patterns, picking::PickingPanel, pointed::Pointed, sections::Sections, shortcuts,
+    start, status, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Purpose, Rocks, Swatches, Wake, Wanted, Work};
 use crate::command::Command;
@@ -68,6 +68,7 @@ pub struct Window {
     hold: Option<Hold>,
     block: BlockView,
     sections: Sections,
+    fence: FenceView,
     map: MapView,
     layers: Layers,
     data: Data,
@@ -75,6 +76,7 @@ pub struct Window {
     patterns: Patterns,
     import: Import,
     interpretation: Interpretation,
+    well: WellDialogue,
     picking: PickingPanel,
     overlay: Overlay,
     /// State of the project that its interpretation was last asked for.
@@ -110,6 +112,7 @@ impl Window {
             hold: None,
             block: BlockView::default(),
             sections: Sections::default(),
+            fence: FenceView::default(),
             map: MapView::default(),
             layers: Layers::default(),
             data: Data::default(),
@@ -117,6 +120,7 @@ impl Window {
             patterns: Patterns::default(),
             import: Import::default(),
             interpretation: Interpretation::default(),
+            well: WellDialogue::default(),
             picking: PickingPanel::default(),
             overlay: Overlay::default(),
             followed: None,
@@ -240,7 +244,12 @@ impl Window {
                     self.act(Action::Changed(snapshot));
                     let has_waited = matches!(
                         self.state.dialogue,
-                        Some(Dialogue::Survey { .. } | Dialogue::Interpretation { .. } | Dialogue::Choose(_))
+                        Some(
+                            Dialogue::Survey { .. }
+                                | Dialogue::Interpretation { .. }
+                                | Dialogue::Well { .. }
+                                | Dialogue::Choose(_)
+                        )
                     );
                     if has_waited {
                         self.act(Action::Answered);
@@ -254,6 +263,7 @@ impl Window {
                 }
                 Event::Drawn(drawn) => self.block.receive(ctx, drawn),
                 Event::Sliced(picture) => self.sections.receive(ctx, picture),
+                Event::Fenced(picture) => self.fence.receive(ctx, picture),
                 Event::Mapped(picture) => self.map.receive(ctx, picture),
                 Event::Interpreted(shown) => {
                     if let Some(session) = self.state.session.as_ref().filter(|session| session.root == shown.root) {
@@ -443,6 +453,20 @@ impl Window {
                     });
                     ui.advance_cursor_after_rect(left.union(right));
                 }
+                Layout::Fence => {
+                    let (left, right) = ui.available_rect_before_wrap().split_left_right_at_fraction(0.4);
+                    let mut pointed = None;
+                    ui.scope_builder(egui::UiBuilder::new().max_rect(left.shrink(3.0)), |ui| {
+                        let (slices, overlay) = (&self.work.slices, &mut self.overlay);
+                        pointed = self.sections.show(ui, session, SliceKind::Slice, rocks, slices, overlay, actions);
+                    });
+                    ui.scope_builder(egui::UiBuilder::new().max_rect(right.shrink(3.0)), |ui| {
+                        let found = self.fence.show(ui, session, rocks, &self.work.slices, &self.overlay, actions);
+                        pointed = pointed.take().or(found);
+                    });
+                    ui.advance_cursor_after_rect(left.union(right));
+                    self.pointed = pointed;
+                }
                 Layout::Sections => {
                     let mut pointed = None;
                     let mut quarter = |ui: &mut Ui, kind: Option<SliceKind>| {
@@ -480,6 +504,7 @@ impl Window {
                     self.interpretation.show(ctx, &self.state, session, &self.work, path, *kind, actions);
                 }
             }
+            Some(Dialogue::Well { path }) => self.well.show(ctx, &self.state, &self.work, path, actions),
             Some(Dialogue::Patterns { layer, interval }) => {
                 if let Some(session) = &self.state.session {
                     let (swatches, tiles) = (&self.swatches, &mut self.tiles);

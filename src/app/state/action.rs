@@ -68,6 +68,8 @@ pub enum Action {
     Wipe(f32),
     /// Move the sections to a point, voxel.
     Slices([f64; 3]),
+    /// Lay the fence through these corners, voxel x and y.
+    Fence(Vec<[f64; 2]>),
     /// Interpret.
     Picking(PickingStep),
     /// Extract candidates of a volume; of the first where none is named.

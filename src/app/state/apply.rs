@@ -115,6 +115,10 @@ impl State {
                 view.slices = at;
                 view.fit(&session.document);
             }
+            Action::Fence(corners) => {
+                view.fence = corners;
+                view.fit(&session.document);
+            }
             Action::Panel(panel) => view.panel = panel,
             Action::Layer(layer) => view.layer = layer,
             Action::Horizon(horizon) => view.horizon = horizon,

@@ -16,6 +16,8 @@ pub enum Choice {
     Horizon,
     /// A fault file.
     Fault,
+    /// A well's deviation file.
+    Well,
     /// A picture to tile layers with.
     Texture,
     /// A folder for the demonstration.
@@ -58,6 +60,11 @@ pub enum Dialogue {
         path: PathBuf,
         /// What it holds.
         kind: Interpreted,
+    },
+    /// How to read a well.
+    Well {
+        /// Where it runs.
+        path: PathBuf,
     },
     /// Which pattern a layer gets.
     Patterns {

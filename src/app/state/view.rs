@@ -18,6 +18,8 @@ pub enum Layout {
     Sections,
     /// A horizon as a map beside the block.
     Map,
+    /// The slice, and a section along a line drawn on it.
+    Fence,
 }
 
 /// How raw and illustrated stand beside each other.
@@ -121,6 +123,9 @@ pub struct View {
     pub wipe: f32,
     /// The point the sections run through, voxel.
     pub slices: [f64; 3],
+    /// Corners of the fence, voxel x and y.
+    #[serde(default)]
+    pub fence: Vec<[f64; 2]>,
     /// What the left panel shows.
     pub panel: Panel,
     /// The layer whose style is shown.
@@ -145,6 +150,7 @@ impl View {
             compare: Compare::Blend,
             wipe: 0.5,
             slices: size.map(|count| (count / 2) as f64),
+            fence: Vec::new(),
             panel: Panel::Layers,
             layer: None,
             horizon: None,
@@ -170,6 +176,9 @@ impl View {
         let last = VoxelBox::of_size(geometry.size()).max;
         for (at, last) in self.slices.iter_mut().zip(last) {
             *at = at.clamp(0.0, last).round();
+        }
+        for corner in &mut self.fence {
+            *corner = [0, 1].map(|axis| corner[axis].clamp(0.0, last[axis]));
         }
         self.layer = self.layer.take().filter(|name| document.layers().contains(name));
         self.horizon = self.horizon.take().filter(|name| document.horizons.iter().any(|entry| entry.name == *name));

@@ -18,6 +18,7 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
             (Arrangement::Block, "Block", "The block alone (1)"),
             (Arrangement::Sections, "Sections", "The block and three sections through one point (2)"),
             (Arrangement::Map, "Map", "A horizon as a map with contours (3)"),
+            (Arrangement::Fence, "Fence", "A section along a line drawn on the slice (4)"),
         ] {
             if ui.selectable_label(session.view.layout == layout, name).on_hover_text(hint).clicked() {
                 actions.push(Action::Arrange(layout));
@@ -56,6 +57,7 @@ fn menu(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>
             ("Add a volume…", ask(Choice::MoreSurvey), true),
             ("Add a horizon…", ask(Choice::Horizon), has_frame),
             ("Add a fault…", ask(Choice::Fault), has_frame),
+            ("Add a well…", ask(Choice::Well), has_frame),
             ("Add a tile…", ask(Choice::Texture), true),
             ("Close", Action::Close, true),
         ] {

@@ -151,6 +151,7 @@ impl Chooser {
             Choice::MoreSurvey => Dialogue::Survey { path, target: Target::OpenProject },
             Choice::Horizon => Dialogue::Interpretation { path, kind: Interpreted::Horizon },
             Choice::Fault => Dialogue::Interpretation { path, kind: Interpreted::Fault },
+            Choice::Well => Dialogue::Well { path },
         };
         self.choice = None;
         actions.push(Action::Ask(Box::new(dialogue)));
@@ -200,6 +201,7 @@ fn title(choice: Choice) -> &'static str {
         Choice::MoreSurvey => "Add a volume",
         Choice::Horizon => "Add a horizon",
         Choice::Fault => "Add a fault",
+        Choice::Well => "Add a well",
         Choice::Texture => "Add a tile of your own",
         Choice::Demo => "Make the demonstration",
     }
@@ -214,6 +216,7 @@ fn explanation(choice: Choice) -> &'static str {
         Choice::Horizon => {
             "Irap, ZMAP+, CPS-3, EarthVision, Petrel, Charisma, OpendTect, TSurf, CSV and plain columns."
         }
+        Choice::Well => "The deviation as CSV; tops, logs and checkshots are asked for next.",
         Choice::Fault => "Sticks (OpendTect, Charisma), TSurf, or points.",
         Choice::Texture => "A PNG, JPEG or SVG that repeats without seams.",
         Choice::Demo => "A folder for it. It takes about a minute and 60 MB.",

@@ -144,9 +144,6 @@ fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 }
 
 fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    if session.document.wells.is_empty() {
-        return;
-    }
     ui.heading("Wells");
     for entry in &session.document.wells {
         ui.horizontal(|ui| {
@@ -157,6 +154,7 @@ fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             }
         });
     }
+    add(ui, "Add a well…", Choice::Well, session.document.geometry.is_some(), actions);
     ui.add_space(10.0);
 }
 

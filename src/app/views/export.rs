@@ -3,7 +3,7 @@
 use super::notices;
 use crate::app::state::{Action, Dialogue, ExportForm, ExportPlan, Place, Session, Shown, State};
 use crate::app::theme;
-use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit};
+use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
 
 /// Largest picture, pixels a side.
 const LARGEST: u32 = 16_000;
@@ -73,7 +73,8 @@ pub fn show(
         }
         ui.horizontal(|ui| {
             let can = !is_drawing && !is_too_large && !next.path.trim().is_empty();
-            if ui.add_enabled(can, Button::new("Export")).clicked() {
+            let is_entered = can && ui.input(|input| input.key_pressed(Key::Enter));
+            if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || is_entered {
                 let plan = ExportPlan { scene: session.view.scene.clone(), form: next.clone() };
                 actions.push(Action::Export(Box::new(plan)));
             }

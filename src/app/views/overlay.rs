@@ -142,6 +142,32 @@ impl Overlay {
         }
     }
 
+    /// Draws on a fence: its corners in voxels.
+    pub fn on_fence(
+        &self,
+        painter: &Painter,
+        session: &Session,
+        corners: &[DVec2],
+        to_screen: &impl Fn(DVec2) -> Pos2,
+    ) {
+        let (Some(shown), Some(geometry)) = (&self.interpreted, &session.document.geometry) else { return };
+        let [nx, ny, _] = geometry.size();
+        let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
+        let horizons = shown.horizons.iter().enumerate().flat_map(|(index, horizon)| {
+            let colour = horizon_colour(horizon.colour, index);
+            horizon.sheets.iter().map(move |sheet| (sheet, colour, 2.0))
+        });
+        let selected = self.selected.iter().flat_map(|shown| &shown.sheets);
+        let selected = selected.map(|sheet| (sheet, Color32::from_rgb(r, g, b), 4.0));
+        for (sheet, colour, width) in horizons.chain(selected) {
+            for line in traces::along(sheet, [nx, ny], corners) {
+                let points: Vec<Pos2> = line.iter().map(|st| to_screen(*st)).collect();
+                painter.add(Shape::line(points.clone(), Stroke::new(width + 2.0, Color32::from_white_alpha(150))));
+                painter.add(Shape::line(points, Stroke::new(width, colour)));
+            }
+        }
+    }
+
     fn lines_on(&self, session: &Session, kind: SliceKind, at: f64) -> Lines {
         let (Some(shown), Some(geometry)) = (&self.interpreted, &session.document.geometry) else {
             return Lines::default();

@@ -6,7 +6,7 @@
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
-use crate::app::state::{Action, Lasso, LassoOn, Panel, PickingStep, Session, SliceKind};
+use crate::app::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, Session, SliceKind};
 use crate::app::theme;
 use crate::app::work::{Rocks, SlicePicture, SliceWish, Slices};
 use eframe::egui::{
@@ -128,6 +128,7 @@ impl Sections {
             }
         }
         overlay.on_section(&painter, session, kind, &to_screen);
+        fence_line(ui, &painter, session, kind, &to_screen);
         cross(ui, &painter, session, kind, body, &to_screen);
         ticks(ui, whole, body, image, kind, geometry);
         let to_section = |pointer: Pos2| {
@@ -145,7 +146,15 @@ impl Sections {
         }
         let voxel = voxel(kind, at, st);
         pane.step(ui, session, kind, actions);
-        lasso::click(ui, &response, session, voxel, actions);
+        if kind == SliceKind::Slice && session.view.layout == Layout::Fence {
+            if response.clicked() {
+                let mut fence = session.view.fence.clone();
+                fence.push([voxel.x, voxel.y]);
+                actions.push(Action::Fence(fence));
+            }
+        } else {
+            lasso::click(ui, &response, session, voxel, actions);
+        }
         let loaded = rocks?.0.try_read().ok()?;
         Some(pointed::at_voxel(&loaded, voxel.as_vec3(), Some(kind.axis())))
     }
@@ -291,7 +300,7 @@ pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
 }
 
 /// Solid where picked, dashed where filled, dotted where extrapolated; on a light halo, so that it is seen on any amplitude.
-fn draw_line(
+pub(super) fn draw_line(
     painter: &eframe::egui::Painter,
     points: Vec<Pos2>,
     kind: LineKind,
@@ -313,6 +322,26 @@ fn draw_line(
     }
 }
 
+/// Where the fence runs, on the slice.
+fn fence_line(
+    ui: &Ui,
+    painter: &eframe::egui::Painter,
+    session: &Session,
+    kind: SliceKind,
+    to_screen: &impl Fn(DVec2) -> Pos2,
+) {
+    if kind != SliceKind::Slice || session.view.layout != Layout::Fence {
+        return;
+    }
+    let points: Vec<Pos2> = session.view.fence.iter().map(|at| to_screen(DVec2::from_array(*at))).collect();
+    let accent = theme::accent(ui.visuals());
+    painter.add(Shape::line(points.clone(), Stroke::new(5.0, Color32::from_white_alpha(180))));
+    painter.add(Shape::line(points.clone(), Stroke::new(2.5, accent)));
+    for point in points {
+        painter.circle(point, 4.0, Color32::WHITE, Stroke::new(2.0, accent));
+    }
+}
+
 /// Where the other two sections run.
 fn cross(
     ui: &Ui,
@@ -330,7 +359,7 @@ fn cross(
 }
 
 /// The least of 1, 2, 5 × 10ⁿ that is not less.
-fn round_step(least: f64) -> f64 {
+pub(super) fn round_step(least: f64) -> f64 {
     let decade = 10f64.powf(least.max(1e-9).log10().floor());
     [1.0, 2.0, 5.0, 10.0]
         .into_iter()

@@ -6,8 +6,10 @@ use crate::app::state::{
     Tool, camera,
 };
 use crate::app::theme;
+use crate::command::{Command, FillHorizon};
 use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};
 use glam::DVec2;
+use interp::holes::FillSettings;
 use render::{FaceData, Scene};
 
 /// What a key does to an open project.
@@ -74,6 +76,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
     plain(Key::Num1, "1", "Block alone", |_| Some(Action::Arrange(Layout::Block))),
     plain(Key::Num2, "2", "Block and sections", |_| Some(Action::Arrange(Layout::Sections))),
     plain(Key::Num3, "3", "Map", |_| Some(Action::Arrange(Layout::Map))),
+    plain(Key::Num4, "4", "Fence", |_| Some(Action::Arrange(Layout::Fence))),
     plain(Key::L, "L", "Layers", |_| Some(Action::Panel(Panel::Layers))),
     plain(Key::D, "D", "Data", |_| Some(Action::Panel(Panel::Data))),
     plain(Key::P, "P", "Interpret", |_| Some(Action::Panel(Panel::Interpret))),
@@ -145,6 +148,18 @@ pub const INTERPRETING: &[Shortcut] = &[
             FaceData::Distance => FaceData::Rock,
         }))
     }),
+    plain(Key::E, "E", "Extract candidates", |session| {
+        let can = session.document.volumes.iter().any(|entry| entry.geometry.is_none());
+        can.then(|| Action::Extract(None, Box::default()))
+    }),
+    plain(Key::Y, "Y", "Fill the holes of the horizon", |session| {
+        let name = session.view.picking.horizon.clone()?;
+        session.document.horizons.iter().find(|entry| entry.name == name)?;
+        let command = FillHorizon { name, settings: FillSettings::default() };
+        Some(Action::Apply(Box::new(Command::FillHorizon(command))))
+    }),
+    plain(Key::Q, "Q", "Look for faults", |_| Some(Action::ProposeFaults)),
+    plain(Key::P, "P", "Back to the layers", |_| Some(Action::Panel(Panel::Layers))),
     // Held while dragging, so a press does nothing.
     plain(Key::L, "L and drag", "Erase what is drawn around", |_| None),
 ];

@@ -4,6 +4,7 @@
 //! found cell by cell as everywhere on the two triangles of a cell. A mesh is cut triangle by triangle. Space: (s, t) of the section, one a sample.
 
 use crate::app::state::SliceKind;
+use crate::app::work::fence::{place, stations};
 use glam::{DVec2, DVec3};
 use interp::reassembly::VoxelSheet;
 
@@ -35,6 +36,16 @@ pub fn of_sheet(sheet: &VoxelSheet, [nx, ny]: [usize; 2], kind: SliceKind, at: f
             lines
         }
     }
+}
+
+/// Where a sheet meets a fence: the nearest trace's value at every trace's length along it.
+pub fn along(sheet: &VoxelSheet, [nx, ny]: [usize; 2], corners: &[DVec2]) -> Vec<Line> {
+    let length = stations(corners).last().copied().unwrap_or(0.0);
+    runs((0..=length.floor() as usize).map(|s| {
+        let at = place(corners, s as f64).round();
+        let is_inside = at.x >= 0.0 && at.y >= 0.0 && at.x < nx as f64 && at.y < ny as f64;
+        if is_inside { f64::from(sheet.z[at.x as usize * ny + at.y as usize]) } else { f64::NAN }
+    }))
 }
 
 /// Runs of consecutive values; a single one is a short dash, so that it is seen.
@@ -112,6 +123,14 @@ mod tests {
         for point in lines.iter().flatten() {
             assert!((2.0 + point.x + 0.5 * point.y - 4.6).abs() < 1e-6, "{point}");
         }
+    }
+
+    #[test]
+    fn along_a_fence_the_plane_rises_leg_by_leg() {
+        let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0]].map(DVec2::from_array);
+        let lines = along(&plane(), [5, 4], &corners);
+        let z: Vec<f64> = lines.iter().flatten().map(|point| point.y).collect();
+        assert_eq!(z, [2.0, 3.0, 4.0, 5.0, 5.5, 6.0]);
     }
 
     #[test]

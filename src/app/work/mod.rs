@@ -8,6 +8,7 @@
 
 pub mod data;
 mod export;
+pub mod fence;
 mod lasso;
 pub mod map;
 pub mod picks;
@@ -50,6 +51,8 @@ pub enum Event {
     Drawn(Drawn),
     /// A section.
     Sliced(SlicePicture),
+    /// A section along a line.
+    Fenced(fence::FencePicture),
     /// A map.
     Mapped(MapPicture),
     /// The interpretation was read.

@@ -3,6 +3,7 @@
 //! The raster has one pixel a sample; lines are in its coordinates, voxel from the section's first sample: s to the right, t down. An
 //! inline runs along crosslines, a crossline along inlines, a slice has inlines to the right and crosslines down.
 
+use super::fence::{self, FenceWish};
 use super::{Event, Outbox, Rocks, spawn};
 use crate::app::state::SliceKind;
 use crate::pipeline::Loaded;
@@ -56,6 +57,7 @@ pub struct SlicePicture {
 #[derive(Default)]
 struct Slot {
     wishes: HashMap<SliceKind, SliceWish>,
+    fence: Option<FenceWish>,
     ended: bool,
 }
 
@@ -78,6 +80,11 @@ impl Slices {
         self.change(|slot| drop(slot.wishes.insert(wish.kind, wish)));
     }
 
+    /// Cuts this fence next, instead of another.
+    pub fn cut_fence(&self, wish: FenceWish) {
+        self.change(|slot| slot.fence = Some(wish));
+    }
+
     fn change(&self, change: impl FnOnce(&mut Slot)) {
         change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
         self.shared.1.notify_one();
@@ -90,6 +97,12 @@ impl Drop for Slices {
     }
 }
 
+/// What is cut next.
+enum Next {
+    Slice(SliceWish),
+    Fence(FenceWish),
+}
+
 fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox) {
     loop {
         let wish = {
@@ -100,15 +113,24 @@ fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox) {
                 }
                 let next = SliceKind::ALL.into_iter().find_map(|kind| slot.wishes.remove(&kind));
                 if let Some(wish) = next {
-                    break wish;
+                    break Next::Slice(wish);
+                }
+                if let Some(wish) = slot.fence.take() {
+                    break Next::Fence(wish);
                 }
                 slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
             }
         };
-        let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
-        let picture = cut(&loaded, wish.kind, wish.at, wish.show);
-        drop(loaded);
-        outbox.send(Event::Sliced(picture));
+        outbox.send(match wish {
+            Next::Slice(wish) => {
+                let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
+                Event::Sliced(cut(&loaded, wish.kind, wish.at, wish.show))
+            }
+            Next::Fence(wish) => {
+                let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
+                Event::Fenced(fence::cut(&loaded, &wish.corners, wish.show))
+            }
+        });
     }
 }
 
@@ -125,63 +147,67 @@ pub fn plane(kind: SliceKind, at: f64, size: [usize; 3]) -> SectionPlane {
 /// Cuts what is loaded.
 pub fn cut(loaded: &Loaded, kind: SliceKind, at: f64, show: FaceData) -> SlicePicture {
     let plane = plane(kind, at, loaded.geometry.size());
-    let lines = loaded.rock.as_ref().map_or_else(Vec::new, |rock| {
-        let section = Section::new(&rock.model, &plane);
-        let is_interpreted = |kind: LineKind| !matches!(kind, LineKind::Frame | LineKind::Fault { real: false, .. });
-        let lines = section.lines.into_iter().filter(|line| is_interpreted(line.kind));
-        lines.map(|line| SliceLine { kind: line.kind, quality: line.quality, points: line.points }).collect()
-    });
-    let mut image = raster(loaded, &plane);
-    if let Some(shown) = loaded.candidates.as_ref().filter(|_| show != FaceData::Rock) {
-        lay_candidates(&mut image, &plane, &shown.candidates(), show);
-    }
-    SlicePicture { kind, at, image, lines }
-}
-
-/// Leaves in their colours over the raw data, or distances in its place.
-fn lay_candidates(image: &mut RgbaImage, plane: &SectionPlane, candidates: &Candidates, show: FaceData) {
-    let (origin, s_axis, t_axis) = (plane.origin.as_vec3(), plane.s_axis.as_vec3(), plane.t_axis.as_vec3());
-    for (s, t, pixel) in image.enumerate_pixels_mut() {
-        let point: Vec3 = origin + s_axis * s as f32 + t_axis * t as f32;
-        let distance = candidates.distance_at(point);
-        let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
-        if show == FaceData::Distance {
-            let tone = byte(leaves::distance_tone(distance));
-            *pixel = Rgba([tone, tone, tone, 0xff]);
-            continue;
-        }
-        let group = candidates.group(candidates.leaf_at(point));
-        let cover = leaves::cover(distance);
-        if group != 0 && cover > 0.0 {
-            let colour = leaves::leaf_colour(group).to_array().map(byte);
-            for (channel, leaf) in colour.into_iter().enumerate() {
-                let below = f32::from(pixel.0[channel]);
-                pixel.0[channel] = (below + (f32::from(leaf) - below) * cover + 0.5) as u8;
-            }
-        }
-    }
-}
-
-/// Raw data on the plane; light grey where there are none.
-fn raster(loaded: &Loaded, plane: &SectionPlane) -> RgbaImage {
     let [width, height] = plane.extent.map(|extent| extent.round() as u32 + 1);
-    let blank = Rgba([0xdc, 0xdc, 0xda, 0xff]);
-    let mut image = RgbaImage::from_pixel(width, height, blank);
-    let Some(raw) = &loaded.raw else { return image };
-    let Some(volume) = loaded.volumes.iter().find(|volume| volume.name == raw.volume) else { return image };
-    let volume = NamedVolume { name: &volume.name, volume: &volume.volume, covers: volume.covers };
-    let colours = raw.function.bake(COLOURS);
-    let [low, high] = raw.function.domain;
-    let scale = (COLOURS - 1) as f32 / (high - low).max(f32::MIN_POSITIVE);
+    let mut image = RgbaImage::from_pixel(width, height, Rgba([0xdc, 0xdc, 0xda, 0xff]));
     let (origin, s_axis, t_axis) = (plane.origin.as_vec3(), plane.s_axis.as_vec3(), plane.t_axis.as_vec3());
+    let colour = raw_colour(loaded);
+    let shown = loaded.candidates.as_ref().filter(|_| show != FaceData::Rock);
+    let candidates = shown.map(|shown| shown.candidates());
     for (s, t, pixel) in image.enumerate_pixels_mut() {
         let point: Vec3 = origin + s_axis * s as f32 + t_axis * t as f32;
-        let value = volume.sample(point);
-        if value.is_nan() {
-            continue;
+        if let Some(found) = colour(point) {
+            *pixel = found;
         }
-        let colour = colours[((value - low) * scale).clamp(0.0, (COLOURS - 1) as f32) as usize];
-        *pixel = Rgba([colour[0], colour[1], colour[2], 1.0].map(|c| (c * 255.0 + 0.5) as u8));
+        if let Some(candidates) = &candidates {
+            lay_candidates(pixel, candidates, point, show);
+        }
     }
-    image
+    SlicePicture { kind, at, image, lines: lines_of(loaded, &plane) }
+}
+
+/// Where horizons and faults meet a plane.
+pub(super) fn lines_of(loaded: &Loaded, plane: &SectionPlane) -> Vec<SliceLine> {
+    let Some(rock) = &loaded.rock else { return Vec::new() };
+    let section = Section::new(&rock.model, plane);
+    let is_interpreted = |kind: LineKind| !matches!(kind, LineKind::Frame | LineKind::Fault { real: false, .. });
+    let lines = section.lines.into_iter().filter(|line| is_interpreted(line.kind));
+    lines.map(|line| SliceLine { kind: line.kind, quality: line.quality, points: line.points }).collect()
+}
+
+/// The colour of the raw data at a place; none where there are no data.
+pub(super) fn raw_colour(loaded: &Loaded) -> impl Fn(Vec3) -> Option<Rgba<u8>> + '_ {
+    let raw = loaded.raw.as_ref();
+    let found = raw.and_then(|raw| Some((raw, loaded.volumes.iter().find(|volume| volume.name == raw.volume)?)));
+    let baked = found.map(|(raw, volume)| {
+        let [low, high] = raw.function.domain;
+        let scale = (COLOURS - 1) as f32 / (high - low).max(f32::MIN_POSITIVE);
+        let volume = NamedVolume { name: &volume.name, volume: &volume.volume, covers: volume.covers };
+        (volume, raw.function.bake(COLOURS), low, scale)
+    });
+    move |point| {
+        let (volume, colours, low, scale) = baked.as_ref()?;
+        let value = volume.sample(point);
+        let colour = colours[((value - low) * scale).clamp(0.0, (COLOURS - 1) as f32) as usize];
+        (!value.is_nan()).then(|| Rgba([colour[0], colour[1], colour[2], 1.0].map(|c| (c * 255.0 + 0.5) as u8)))
+    }
+}
+
+/// A leaf in its colour over the raw data, or the distance in its place.
+pub(super) fn lay_candidates(pixel: &mut Rgba<u8>, candidates: &Candidates, point: Vec3, show: FaceData) {
+    let distance = candidates.distance_at(point);
+    let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
+    if show == FaceData::Distance {
+        let tone = byte(leaves::distance_tone(distance));
+        *pixel = Rgba([tone, tone, tone, 0xff]);
+        return;
+    }
+    let group = candidates.group(candidates.leaf_at(point));
+    let cover = leaves::cover(distance);
+    if group != 0 && cover > 0.0 {
+        let colour = leaves::leaf_colour(group).to_array().map(byte);
+        for (channel, leaf) in colour.into_iter().enumerate() {
+            let below = f32::from(pixel.0[channel]);
+            pixel.0[channel] = (below + (f32::from(leaf) - below) * cover + 0.5) as u8;
+        }
+    }
 }
