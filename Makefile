@@ -6,6 +6,7 @@
 #   make bench   how long our stages take on this machine
 #   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, scipy, xtgeo, segyio, lasio)
 #   make fuzz    two seconds of made-up input for every parser; make fuzz-long ten minutes each
+#   make scenario   the interpreter's day by mouse and keys in the real window (Xvfb, xdotool, ImageMagick)
 #   make gallery the pictures of docs/gallery.md
 #   make accuracy   measures accuracy anew into docs/accuracy.md
 #   make extraction measures the quality of horizon candidates into docs/extraction.md
@@ -19,7 +20,7 @@ PETROGLYPH = target/debug/petroglyph
 
 PYTHON ?= python3
 
-.PHONY: demo gallery test check bench accuracy extraction check-peers fuzz fuzz-long setup build
+.PHONY: demo gallery test check bench accuracy extraction check-peers scenario fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
@@ -47,6 +48,9 @@ check-peers: build
 
 extraction: setup
 	cargo run --locked -p petroglyph-interp --example extraction > $(OUT_EXTRACTION).part && mv $(OUT_EXTRACTION).part $(OUT_EXTRACTION)
+
+scenario: build
+	tests/scenario.sh $(PETROGLYPH) out/scenario
 
 fuzz: setup
 	fuzz/run.sh 2
