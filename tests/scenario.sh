@@ -43,7 +43,7 @@ open() {
 look() { import -window root "shot-$1.png"; }
 key() { xdotool key --clearmodifiers "$@"; acts=$((acts + $#)); sleep 0.7; }
 click() { xdotool mousemove "$1" "$2"; sleep 0.5; xdotool click 1; acts=$((acts + 1)); sleep 0.7; }
-step() { sed -n 's/^step = //p' window.petro/project.toml; }
+step() { sed -n 's/^step = //p' window.petro/project.toml | head -n 1; }
 # Waits until something is so.
 until_so() {
     tries=0

@@ -1,7 +1,7 @@
 //! The line at the top: the project, undo and redo, what fills the middle, raw against illustrated.
 
 use crate::app::state::{
-    Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Session, State,
+    Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, State,
 };
 use eframe::egui::{Align, Button, Layout, RichText, Slider, Ui};
 use render::Scene;
@@ -24,8 +24,11 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
                 actions.push(Action::Arrange(layout));
             }
         }
-        ui.separator();
-        comparison(ui, session, actions);
+        // Interpreting is done on the raw volume: there is nothing to compare it with.
+        if session.view.panel != Panel::Interpret {
+            ui.separator();
+            comparison(ui, session, actions);
+        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if ui.button("?").on_hover_text("Shortcuts (?)").clicked() {
                 actions.push(Action::Ask(Box::new(Dialogue::Shortcuts)));
@@ -112,7 +115,8 @@ fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         }
         if session.view.compare == Compare::Blend {
             let mut blend = session.view.scene.blend;
-            let name = ui.weak("illustrated … raw");
+            let name = ui.weak("to raw");
+            ui.spacing_mut().slider_width = 80.0;
             let slider = ui.add(Slider::new(&mut blend, 0.0..=1.0).fixed_decimals(2));
             if slider.labelled_by(name.id).on_hover_text("0 is illustrated, 1 is raw").changed() {
                 actions.push(Action::Show(Box::new(Scene { blend, ..session.view.scene.clone() })));

@@ -1,6 +1,6 @@
 //! Picked surfaces before the block, drawn at once: sheets as shaded cells, as through glass, without waiting for a picture.
 //!
-//! A sheet is drawn in at most [`CELLS`] cells along each axis, from the far ones to the near ones. A cell is lighter the more it faces the viewer.
+//! A sheet is drawn in at most `CELLS` cells along each axis, from the far ones to the near ones. A cell is lighter the more it faces the viewer.
 //! Spaces: voxels; points of the window.
 
 use crate::app::state::camera;
