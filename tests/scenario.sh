@@ -93,8 +93,8 @@ sleep 3
 key g; sleep 5; look 8-leaves
 key g; sleep 5; look 9-distances
 key g
-key 1; key o; sleep 20; look 10-through
-key o
+key 1; sleep 20; look 10-through
+key o; sleep 6; look 10-faces
 key p; sleep 12; look 11-illustrated
 key ctrl+e; sleep 2; look 12-export
 key Return

@@ -274,13 +274,19 @@ fn a_new_horizon_is_named_coloured_and_a_selection_outlives_the_window() {
 }
 
 #[test]
-fn the_block_is_seen_through_on_a_key() {
+fn the_block_is_seen_through_or_not_on_a_key() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
-    harness.key_press(Key::O);
-    harness.run_steps(2);
-    let scene = super::state::showing::scene(state(&harness).session.as_ref().unwrap(), None);
-    assert!(matches!(scene.media.shading, render::Shading::Occlusion(_)));
+    let is_clear = |harness: &Driven| {
+        let scene = super::state::showing::scene(state(harness).session.as_ref().unwrap(), None);
+        matches!(scene.media.shading, render::Shading::Occlusion(_))
+    };
+    assert!(is_clear(&harness));
+    for expected in [false, true] {
+        harness.key_press(Key::O);
+        harness.run_steps(2);
+        assert_eq!(is_clear(&harness), expected);
+    }
     wait(&mut harness, "the picture is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
     press(&mut harness, pos2(640.0, 420.0), Modifiers::NONE);
     assert!(state(&harness).notices.iter().all(|notice| !notice.failed), "{:?}", state(&harness).notices);

@@ -37,9 +37,9 @@ pub enum Tool {
 #[serde(rename_all = "kebab-case")]
 pub enum Look {
     /// Its faces, with the horizons in front of them as through glass.
-    #[default]
     Faces,
     /// Seen through, in the occlusion slicer with a white function (P-horiz 6).
+    #[default]
     SeeThrough,
 }
 

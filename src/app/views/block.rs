@@ -141,7 +141,11 @@ impl BlockView {
             self.wish(scenes, rocks, version, drawing);
         }
         self.paint(ui, session, compare, &rects, rect);
-        overlay.on_block(ui, session, pane);
+        // Where the block is seen through, the picture shows the horizons itself, once it is drawn.
+        if !is_clear(session) || !self.is_settled() {
+            overlay.surfaces_on_block(ui, session, pane);
+        }
+        overlay.sticks_on_block(ui, session, pane);
         if let Some(line) = self.lasso.draw(&ui.painter_at(rect), &response, has_lasso) {
             let corners = line.into_iter().map(|at| dvec(at - pane.min)).collect();
             let on = LassoOn::Block(Box::new(view.scene.clone()), size);

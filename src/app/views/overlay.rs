@@ -7,7 +7,7 @@ use super::sections::horizon_colour;
 use super::surfaces::{self, Cells};
 use super::traces::{self, Line};
 use crate::app::state::picking::voxel_of;
-use crate::app::state::{Look, Panel, Session, SliceKind, camera};
+use crate::app::state::{Panel, Session, SliceKind, camera};
 use crate::app::work::{Interpreted, ShownPick};
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::{DVec2, DVec3};
@@ -198,8 +198,8 @@ impl Overlay {
         }
     }
 
-    /// Draws before the block.
-    pub fn on_block(&self, ui: &Ui, session: &Session, pane: Rect) {
+    /// Draws horizons and the selection before the block.
+    pub fn surfaces_on_block(&self, ui: &Ui, session: &Session, pane: Rect) {
         if session.view.panel != Panel::Interpret {
             return;
         }
@@ -210,10 +210,16 @@ impl Overlay {
         let horizons =
             self.cells.iter().flat_map(|(colour, cells)| cells.iter().map(|c| (c, colour.gamma_multiply(OPACITY[0]))));
         let picked = self.selected_cells.iter().map(|cells| (cells, selected));
-        // Where the block is seen through, the picture shows them itself.
-        if session.view.picking.look == Look::Faces {
-            surfaces::paint(ui, pane, scene, geometry, horizons.chain(picked));
+        surfaces::paint(ui, pane, scene, geometry, horizons.chain(picked));
+    }
+
+    /// Draws sticks before the block.
+    pub fn sticks_on_block(&self, ui: &Ui, session: &Session, pane: Rect) {
+        let Some(geometry) = &session.document.geometry else { return };
+        if session.view.panel != Panel::Interpret {
+            return;
         }
+        let scene = &session.view.scene;
         let view = camera::view(scene, geometry, DVec2::new(f64::from(pane.width()), f64::from(pane.height())));
         let painter = ui.painter_at(pane);
         for (stick, colour) in sticks(session) {

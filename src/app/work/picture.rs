@@ -8,7 +8,7 @@ use crate::app::state::{How, Notice, PickingStep, Place};
 use crate::picture::{Device, Painter};
 use glam::DVec2;
 use image::RgbaImage;
-use render::{RenderError, Scene};
+use render::{Media, RenderError, Scene, Shading};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Instant;
 use survey::Progress;
@@ -17,6 +17,8 @@ use survey::Progress;
 const COARSE_S: f64 = 0.09;
 /// Largest factor by which a first picture is coarser.
 const COARSEST: u32 = 8;
+/// Most cells of a slice of light in a coarse picture.
+const COARSE_CELLS: u32 = 96;
 /// Samples a pixel along each axis of the last picture.
 const SMOOTH_SAMPLES: u32 = 2;
 /// Weight of the latest measurement of the time a ray takes.
@@ -111,6 +113,19 @@ impl Drop for Drawing {
             slot.progress.iter().for_each(Progress::cancel);
         });
     }
+}
+
+/// Media of a picture that is coarser by a factor: light and samples are coarser too, for they cost what pixels do not.
+fn media_for(media: &Media, divisor: u32) -> Media {
+    let mut media = media.clone();
+    if divisor > 1 {
+        media.samples_per_voxel *= 0.5;
+        if let Shading::Occlusion(occlusion) = &mut media.shading {
+            occlusion.slices_per_voxel *= 0.5;
+            occlusion.max_cells = occlusion.max_cells.min(COARSE_CELLS);
+        }
+    }
+    media
 }
 
 struct Artist {
@@ -213,7 +228,7 @@ impl Artist {
         };
         let scene = &wish.scenes[pane];
         let size_px = scene.size_px.map(|side| side.div_ceil(divisor).max(1));
-        let scene = Scene { size_px, samples, ..scene.clone() };
+        let scene = Scene { size_px, samples, media: media_for(&scene.media, divisor), ..scene.clone() };
         let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();
         let (image, _) = super::compute(|| painter.draw(&scene, &loaded, progress))?;
