@@ -102,9 +102,11 @@ def trace(k, region, meta, steps=48):
 
 def read_segy(folder, rounds=5):
     """GB/s at which segyio's own whole-cube reading fills an array, the quickest of several rounds."""
+    import importlib.metadata
+
     import segyio
 
-    result = {"segyio": segyio.__version__}
+    result = {"segyio": importlib.metadata.version("segyio")}
     for name in ("ieee", "ibm"):
         seconds = []
         for _ in range(rounds):

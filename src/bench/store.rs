@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 use survey::attribute::{DipSettings, SemblanceSettings, dip, semblance};
 use survey::segy::{self, SegyFile, SegyOptions, WriteOptions};
-use survey::store::{self, Block, StoredVolume, VolumeInfo, WriteSettings};
+use survey::store::{StoredVolume, VolumeInfo, WriteSettings};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
 /// Each section is read so often; the shortest time counts, as on the other side.
@@ -100,7 +100,7 @@ fn measure(side: usize, kept: &Path, own: &Path, progress: &Progress) -> Result<
         let mut best = f64::INFINITY;
         for _ in 0..REPEATS {
             let begun = Instant::now();
-            stored.read_box::<f32>(0, start, size)?;
+            stored.read_box_f32(0, start, size)?;
             best = best.min(begun.elapsed().as_secs_f64() * 1e3);
         }
         Ok(best)
@@ -133,12 +133,7 @@ fn measure(side: usize, kept: &Path, own: &Path, progress: &Progress) -> Result<
 fn ingest(file: &Path, zarr: &Path, progress: &Progress) -> Result<(), ProjectError> {
     let opened = SegyFile::open(file, &SegyOptions::default(), progress)?;
     let info = VolumeInfo::of(opened.geometry()?);
-    let supply = |block: &Block| {
-        Ok(opened.read_block::<f32>(block.inlines.clone(), block.crosslines.clone(), progress)?.0.into())
-    };
-    let live = opened.live();
-    let settings = WriteSettings::default();
-    store::write_volume_blocks(zarr, opened.size(), live.as_deref(), &info, &settings, supply, progress)?;
+    opened.store(zarr, "bench", &info, WriteSettings::default().memory_bytes, progress)?;
     Ok(())
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
 use survey::segy::{ExactType, SegyFile, SegyOptions};
-use survey::store::{self, Block, Ingested, LineOrder, StoreError, StoredSample, VolumeInfo, WriteSettings};
+use survey::store::{Ingested, StoreError, StoredSample, VolumeInfo};
 use survey::{Progress, SurveyGeometry};
 
 /// Reads a SEG-Y volume into the project. The first one gives the survey frame; others must lie in it.
@@ -129,16 +129,9 @@ impl ImportVolume {
         new: &Path,
         progress: &Progress,
     ) -> Result<Ingested, ProjectError> {
-        let ingest = match file.exact_type() {
-            ExactType::Int8 => Self::ingest_as::<i8>,
-            ExactType::Uint8 => Self::ingest_as::<u8>,
-            ExactType::Int16 => Self::ingest_as::<i16>,
-            ExactType::Uint16 => Self::ingest_as::<u16>,
-            ExactType::Float32 => Self::ingest_as::<f32>,
-        };
         let partial = folder.join(new.file_name().unwrap_or_default());
         keep_only(folder, &partial);
-        let done = ingest(self, file, geometry, &partial, progress)?;
+        let done = self.ingest_into(file, geometry, &partial, progress)?;
         let fail = |source| ProjectError::io("written", new, source);
         if let Some(parent) = new.parent() {
             fs::create_dir_all(parent).map_err(fail)?;
@@ -149,7 +142,7 @@ impl ImportVolume {
         Ok(done)
     }
 
-    fn ingest_as<T: StoredSample>(
+    fn ingest_into(
         &self,
         file: &SegyFile,
         geometry: &SurveyGeometry,
@@ -161,21 +154,10 @@ impl ImportVolume {
             source: Some(self.path.display().to_string()),
             ..VolumeInfo::of(geometry.clone())
         };
-        let order = if file.info().sorted_by == "crossline" { LineOrder::Crosslines } else { LineOrder::Inlines };
         let memory_bytes = self.memory_bytes.unwrap_or_else(memory::half_of_available);
-        let settings = WriteSettings { memory_bytes, order };
-        let mut non_finite = 0;
-        let supply = |block: &Block| {
-            let (samples, bad) = file.read_block::<T>(block.inlines.clone(), block.crosslines.clone(), progress)?;
-            file.release();
-            non_finite += bad;
-            Ok(samples.into())
-        };
-        let live = file.live();
-        let fingerprint = self.fingerprint::<T>(file)?;
-        let (size, live) = (file.size(), live.as_deref());
-        let done = store::resume_volume(partial, &fingerprint, size, live, &info, &settings, supply, progress);
-        let done = done.map_err(cancelled_within)?;
+        let fingerprint = self.fingerprint(file)?;
+        let stored = file.store(partial, &fingerprint, &info, memory_bytes, progress).map_err(cancelled_within)?;
+        let (done, non_finite) = (stored.ingested, stored.non_finite);
         if done.kept > 0 {
             progress.warn(&format!(
                 "an interrupted import of this file went on: {} of {} files were there and whole",
@@ -189,7 +171,7 @@ impl ImportVolume {
     }
 
     /// Stands for the file as it is now, and for what was said about it.
-    fn fingerprint<T: StoredSample>(&self, file: &SegyFile) -> Result<String, ProjectError> {
+    fn fingerprint(&self, file: &SegyFile) -> Result<String, ProjectError> {
         let fail = |source| ProjectError::io("read", &self.path, source);
         let facts = fs::metadata(&self.path).map_err(fail)?;
         let modified = facts.modified().ok().and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
@@ -201,7 +183,7 @@ impl ImportVolume {
             "options": self.options,
             "polarity": self.polarity,
             "size": file.size(),
-            "type": T::TYPE,
+            "type": type_name(file.exact_type()),
         })
         .to_string())
     }

@@ -73,7 +73,7 @@ pub fn write_dip(
     })?;
     let [p, q] = [StoredVolume::open(inline.0)?, StoredVolume::open(crossline.0)?];
     let geometry = &angle.1.geometry;
-    let supply = |block: &Block| -> Result<Cow<'static, [f32]>, SourceError> {
+    let supply = |block: &Block, _| -> Result<Cow<'static, [f32]>, SourceError> {
         progress.check()?;
         let (start, size) = span(block, geometry.size());
         let dips = DipVolumes { inline: p.read_box(0, start, size)?, crossline: q.read_box(0, start, size)? };
@@ -118,7 +118,7 @@ fn write_blocks(
     compute: impl Fn(&Volume<f32>, &Progress) -> Result<Volume<f32>, AttributeError>,
 ) -> Result<(), AttributeError> {
     let size = source.size(0);
-    let supply = |block: &Block| -> Result<Cow<'static, [f32]>, SourceError> {
+    let supply = |block: &Block, _| -> Result<Cow<'static, [f32]>, SourceError> {
         let (start, part) = span(block, size);
         let low = [start[0].saturating_sub(reach), start[1].saturating_sub(reach), 0];
         let high = [0, 1, 2].map(|axis| (start[axis] + part[axis] + reach).min(size[axis]));

@@ -5,9 +5,21 @@ use super::error::{SegyError, SegyProblem};
 use super::file::SegyFile;
 use super::sample::SampleFormat;
 use crate::progress::Progress;
-use crate::store::StoredSample;
+use crate::store::{
+    Block, Ingested, LineOrder, StoreError, StoredSample, VolumeInfo, WriteSettings, resume_volume,
+};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::path::Path;
+
+/// A file in the store.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct StoredFile {
+    /// What was written.
+    pub ingested: Ingested,
+    /// Samples that were no numbers and became 0.
+    pub non_finite: u64,
+}
 
 /// Traces that a thread reads one after the other.
 const TRACES_TOGETHER: usize = 128;
@@ -40,8 +52,56 @@ impl SegyFile {
         }
     }
 
+    /// Writes the file's samples to the store at `path`, in their [`SegyFile::exact_type`], in at most `memory_bytes` (where a column of shards
+    /// needs no more), and goes on where an earlier call with the same `fingerprint` was interrupted (see [`resume_volume`]).
+    ///
+    /// # Errors
+    /// [`StoreError`]; a cancel comes as [`StoreError::Source`] with the [`SegyError`] or as [`StoreError::Cancelled`].
+    pub fn store(
+        &self,
+        path: &Path,
+        fingerprint: &str,
+        info: &VolumeInfo,
+        memory_bytes: u64,
+        progress: &Progress,
+    ) -> Result<StoredFile, StoreError> {
+        // The type is chosen here, so that what is made for it is compiled with this crate's optimisations whoever calls.
+        let store = match self.exact_type() {
+            ExactType::Int8 => Self::store_as::<i8>,
+            ExactType::Uint8 => Self::store_as::<u8>,
+            ExactType::Int16 => Self::store_as::<i16>,
+            ExactType::Uint16 => Self::store_as::<u16>,
+            ExactType::Float32 => Self::store_as::<f32>,
+        };
+        store(self, path, fingerprint, info, memory_bytes, progress)
+    }
+
+    fn store_as<T: StoredSample>(
+        &self,
+        path: &Path,
+        fingerprint: &str,
+        info: &VolumeInfo,
+        memory_bytes: u64,
+        progress: &Progress,
+    ) -> Result<StoredFile, StoreError> {
+        let order = if self.info().sorted_by == "crossline" { LineOrder::Crosslines } else { LineOrder::Inlines };
+        let settings = WriteSettings { memory_bytes, order };
+        let mut non_finite = 0;
+        let supply = |block: &Block, room: Vec<T>| {
+            let (samples, bad) =
+                self.read_block(block.inlines.clone(), block.crosslines.clone(), room, progress)?;
+            self.release();
+            non_finite += bad;
+            Ok(samples.into())
+        };
+        let live = self.live();
+        let ingested =
+            resume_volume(path, fingerprint, self.size(), live.as_deref(), info, &settings, supply, progress)?;
+        Ok(StoredFile { ingested, non_finite })
+    }
+
     /// The samples of a range of inlines and crosslines, `[inline][crossline][sample]`, 0 where there is no trace; and how many
-    /// of them were no numbers and became 0. Memory: the block, and 24 bytes a trace.
+    /// of them were no numbers and became 0. `room` is memory to use. Memory: the block, and 40 bytes a trace.
     ///
     /// # Errors
     /// [`SegyProblem::Cancelled`].
@@ -49,15 +109,23 @@ impl SegyFile {
         &self,
         inlines: Range<usize>,
         crosslines: Range<usize>,
+        room: Vec<T>,
         progress: &Progress,
     ) -> Result<(Vec<T>, u64), SegyError> {
         let [_, _, samples] = self.size();
-        let mut block = vec![T::from_f32(0.0); inlines.len() * crosslines.len() * samples];
+        let mut block = room;
+        block.resize(inlines.len() * crosslines.len() * samples, T::from_f32(0.0));
         let places = inlines.flat_map(|x| crosslines.clone().map(move |y| (x, y)));
         let mut traces: Vec<(usize, (usize, usize), &mut [T])> = block
             .chunks_mut(samples)
             .zip(places)
-            .filter_map(|(out, (x, y))| Some((self.trace_at(x, y)?, (x, y), out)))
+            .filter_map(|(out, (x, y))| match self.trace_at(x, y) {
+                Some(trace) => Some((trace, (x, y), out)),
+                None => {
+                    out.fill(T::from_f32(0.0));
+                    None
+                }
+            })
             .collect();
         traces.sort_unstable_by_key(|(trace, ..)| *trace);
         let read = traces

@@ -1,6 +1,9 @@
 //! Trace header fields of all traces, read in one pass over the file.
 //!
 //! Memory: 4 bytes a trace for a field that varies within a block of traces, none for a block in which it is constant.
+//!
+//! Headers lie a trace apart, each in memory that nothing has touched yet. They are first copied side by side: the copies do not depend
+//! on one another, so that the processor waits for many of them at once, and the fields are then picked from the cache.
 
 use std::borrow::Cow;
 
@@ -40,7 +43,25 @@ impl Column {
 
     /// The value of every trace in file order.
     pub fn iter(&self) -> impl Iterator<Item = i32> + '_ {
-        (0..self.count).map(|trace| self.at(trace))
+        self.blocks.iter().enumerate().flat_map(|(index, block)| {
+            let (values, constant, count) = match block {
+                Block::Constant(value) => (&[][..], *value, BLOCK.min(self.count - (index << BLOCK_BITS))),
+                Block::Varying(values) => (&values[..], 0, 0),
+            };
+            values.iter().copied().chain(std::iter::repeat_n(constant, count))
+        })
+    }
+
+    /// The value of every trace in file order, side by side.
+    pub fn to_vec(&self) -> Vec<i32> {
+        let mut all = Vec::with_capacity(self.count);
+        for block in &self.blocks {
+            match block {
+                Block::Constant(value) => all.resize((all.len() + BLOCK).min(self.count), *value),
+                Block::Varying(values) => all.extend_from_slice(values),
+            }
+        }
+        all
     }
 
     /// The value that all traces share, if they do.
@@ -79,11 +100,11 @@ impl Columns {
         progress.begin("reading trace headers", count as u64);
         let blocks: Vec<Vec<Block>> = (0..count.div_ceil(BLOCK))
             .into_par_iter()
-            .map(|block| {
+            .map_init(Vec::new, |headers: &mut Vec<u8>, block| {
                 let range = block * BLOCK..((block + 1) * BLOCK).min(count);
-                let column = |field: &Field| {
-                    Block::new(range.clone().map(|trace| field.get(traces.header(trace), traces.order)).collect())
-                };
+                headers.clear();
+                range.clone().for_each(|trace| headers.extend_from_slice(traces.header(trace)));
+                let column = |field: &Field| Block::new(field.get_all(headers, traces.header_bytes, traces.order));
                 let row = fields.iter().map(column).collect();
                 progress.step(range.len() as u64)?;
                 Ok(row)

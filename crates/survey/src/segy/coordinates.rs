@@ -77,6 +77,7 @@ impl<'a> Coordinates<'a> {
     }
 
     /// X and Y of a trace; none if both are 0.
+    #[inline]
     pub fn of(&self, trace: usize) -> Option<DVec2> {
         let (x, y) = (self.x.at(trace), self.y.at(trace));
         let world = match self.number_type {
@@ -221,8 +222,12 @@ impl Place {
         let Some((coordinates, fit)) = locate(lattice, lines, columns, options) else {
             return Ok(Self::assumed(lattice, columns, unit, options, findings));
         };
-        columns.get(Field::I16(at::COORDINATE_UNIT)).iter().try_for_each(refuse_angles)?;
-        note_unknown_units(columns.get(Field::I16(at::COORDINATE_UNIT)), findings);
+        let units = columns.get(Field::I16(at::COORDINATE_UNIT));
+        match units.constant() {
+            Some(unit) => refuse_angles(unit)?,
+            None => units.iter().try_for_each(refuse_angles)?,
+        }
+        note_unknown_units(units, findings);
         note_fit(&coordinates, &fit, unit, options, findings);
         Ok(Self {
             bytes: Some(coordinates.bytes),

@@ -8,6 +8,7 @@
 
 use std::borrow::Cow;
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use super::SegyOptions;
@@ -217,7 +218,7 @@ pub(super) fn detect(
     let is_open = |stated: Option<u16>, byte: u16| stated.is_none_or(|stated| stated == byte);
     let number_type = options.line_type.unwrap_or_default();
     let candidates: Vec<Candidate> = CONVENTIONS
-        .iter()
+        .par_iter()
         .filter(|(i, x, _)| is_open(options.inline_byte, *i) && is_open(options.crossline_byte, *x))
         .map(|&(inline, crossline, convention)| search.evaluate([inline, crossline], number_type, convention, MIN_FILL))
         .collect();

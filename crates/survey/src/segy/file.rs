@@ -331,6 +331,9 @@ fn dead_traces(columns: &Columns, count: usize, findings: &mut Findings) -> Vec<
         findings.warning("every trace is flagged dead (byte 29 is 2); the flag is ignored".to_owned());
         return vec![false; count];
     }
+    if id.constant().is_some() {
+        return vec![false; count];
+    }
     let dead: Vec<bool> = id.iter().map(|id| id == 2).collect();
     let number = dead.iter().filter(|&&dead| dead).count();
     if number > 0 {
@@ -380,6 +383,9 @@ fn note_lattice(detected: &Detected, options: &SegyOptions, findings: &mut Findi
 fn weights(columns: &Columns, options: &SegyOptions, findings: &mut Findings) -> Option<Column> {
     let weights = columns.get(Field::I16(at::WEIGHT));
     let is_used = |weight: i32| (1..=MAX_WEIGHT).contains(&weight.abs());
+    if weights.constant().is_some_and(|weight| !is_used(weight)) {
+        return None;
+    }
     if options.trace_weight == TraceWeight::Ignore || !weights.iter().any(is_used) {
         return None;
     }

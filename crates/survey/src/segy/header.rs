@@ -222,6 +222,30 @@ impl Field {
             Self::F64(byte) => integer(f64::from_be_bytes(order.get(header, usize::from(byte) - 1))),
         }
     }
+
+    /// [`Field::get`] of trace headers that lie side by side, each of `header_bytes`.
+    pub fn get_all(self, headers: &[u8], header_bytes: usize, order: ByteOrder) -> Vec<i32> {
+        /// The loop over headers for one type of number.
+        fn each<const N: usize>(
+            headers: std::slice::ChunksExact<'_, u8>,
+            byte: u16,
+            order: ByteOrder,
+            convert: impl Fn([u8; N]) -> i32,
+        ) -> Vec<i32> {
+            let offset = usize::from(byte) - 1;
+            match order {
+                ByteOrder::Big => headers.map(|header| convert(ByteOrder::Big.get(header, offset))).collect(),
+                ByteOrder::Little => headers.map(|header| convert(ByteOrder::Little.get(header, offset))).collect(),
+            }
+        }
+        let headers = headers.chunks_exact(header_bytes);
+        match self {
+            Self::I32(byte) => each(headers, byte, order, i32::from_be_bytes),
+            Self::I16(byte) => each(headers, byte, order, |bytes| i32::from(i16::from_be_bytes(bytes))),
+            Self::U16(byte) => each(headers, byte, order, |bytes| i32::from(u16::from_be_bytes(bytes))),
+            Self::F64(byte) => each(headers, byte, order, |bytes| integer(f64::from_be_bytes(bytes))),
+        }
+    }
 }
 
 /// The number that starts where a 4-byte field starts, from that field: every type but [`NumberType::F64`].

@@ -3,6 +3,8 @@
 //! The step of an axis is the greatest common divisor of the differences of its numbers, so decimated and stepped
 //! lines need no hint and a missing line stays a gap. The direction is the order in which the file counts.
 
+use glam::DVec2;
+
 use super::columns::Column;
 use super::header::NO_INTEGER;
 use super::options::KeptDuplicate;
@@ -68,12 +70,16 @@ impl Lattice {
         skip: Option<(i32, i32)>,
         kept: KeptDuplicate,
     ) -> Result<Self, Flaw> {
-        let pairs = || inline.iter().zip(crossline.iter());
+        let ranges = [inline.range, crossline.range];
+        let (inline, crossline) = rayon::join(|| inline.to_vec(), || crossline.to_vec());
+        let pairs = || inline.iter().copied().zip(crossline.iter().copied());
         let is_numbered = |pair: &(i32, i32)| Some(*pair) != skip;
-        let count = pairs().count();
-        let limit = MAX_PLACES_PER_TRACE * count as u64 + 1024;
-        let inlines = Axis::find(pairs().filter(is_numbered), limit)?;
-        let crosslines = Axis::find(pairs().filter(is_numbered).map(|(i, x)| (x, i)), limit)?;
+        let limit = MAX_PLACES_PER_TRACE * inline.len() as u64 + 1024;
+        let (inlines, crosslines) = rayon::join(
+            || Axis::find(pairs().filter(is_numbered), ranges[0], limit),
+            || Axis::find(pairs().filter(is_numbered).map(|(i, x)| (x, i)), ranges[1], limit),
+        );
+        let (inlines, crosslines) = (inlines?, crosslines?);
         let places = (inlines.count as u64).saturating_mul(crosslines.count as u64);
         if places > limit {
             return Err(Flaw::Scattered(places));
@@ -136,6 +142,11 @@ impl Lattice {
         [inlines, crosslines].map(|lines| lines.into_iter().filter(|&occupied| occupied).count())
     }
 
+    /// Inline and crossline index of a place, counted along the crosslines.
+    pub fn index_at(&self, place: usize) -> DVec2 {
+        DVec2::new((place / self.crosslines.count) as f64, (place % self.crosslines.count) as f64)
+    }
+
     /// Inline and crossline index and trace of every filled place.
     pub fn traces(&self) -> impl Iterator<Item = (usize, usize, usize)> + Clone + '_ {
         self.trace_of
@@ -180,9 +191,9 @@ struct Axis {
 }
 
 impl Axis {
-    /// From `(number, number of the other axis)` in file order.
-    fn find(pairs: impl Iterator<Item = (i32, i32)>, limit: u64) -> Result<Self, Flaw> {
-        let mut numbers: Vec<i32> = Vec::new();
+    /// From `(number, number of the other axis)` in file order; numbers lie in `range`.
+    fn find(pairs: impl Iterator<Item = (i32, i32)>, range: [i32; 2], limit: u64) -> Result<Self, Flaw> {
+        let mut numbers = Numbers::within(range);
         // Steps up and down: among traces of one other line, and among all.
         let mut along = [0_usize; 2];
         let mut any = [0_usize; 2];
@@ -197,15 +208,9 @@ impl Axis {
                     along[usize::from(number < last_number)] += 1;
                 }
             }
-            numbers.push(number);
-            // Runs repeat for every line of the other axis: fold them now and then, so that memory stays small.
-            if numbers.len() >= 1 << 20 && numbers.len().is_power_of_two() {
-                numbers.sort_unstable();
-                numbers.dedup();
-            }
+            numbers.insert(number);
         }
-        numbers.sort_unstable();
-        numbers.dedup();
+        let numbers = numbers.ascending();
         let (Some(&low), Some(&high)) = (numbers.first(), numbers.last()) else {
             return Err(Flaw::AllZero);
         };
@@ -222,6 +227,55 @@ impl Axis {
     fn line_axis(&self) -> LineAxis {
         let (first, step) = if self.descending { (self.high, -self.step) } else { (self.low, self.step) };
         LineAxis { first: first as i32, step: step as i32, count: self.count }
+    }
+}
+
+/// A set of line numbers.
+enum Numbers {
+    /// Which of the numbers from the first one on occur.
+    Marked(i32, Vec<bool>),
+    /// Those of a range too wide for that, some more than once.
+    Listed(Vec<i32>),
+}
+
+impl Numbers {
+    /// Marks are kept for so many numbers.
+    const MAX_MARKS: i64 = 1 << 20;
+
+    fn within([low, high]: [i32; 2]) -> Self {
+        let count = i64::from(high) - i64::from(low) + 1;
+        match usize::try_from(count) {
+            Ok(marks) if count <= Self::MAX_MARKS => Self::Marked(low, vec![false; marks]),
+            _ => Self::Listed(Vec::new()),
+        }
+    }
+
+    fn insert(&mut self, number: i32) {
+        match self {
+            Self::Marked(low, marks) => marks[(i64::from(number) - i64::from(*low)) as usize] = true,
+            Self::Listed(numbers) => {
+                numbers.push(number);
+                // Runs repeat for every line of the other axis: fold them now and then, so that memory stays small.
+                if numbers.len() >= 1 << 20 && numbers.len().is_power_of_two() {
+                    numbers.sort_unstable();
+                    numbers.dedup();
+                }
+            }
+        }
+    }
+
+    /// Each once, from the least.
+    fn ascending(self) -> Vec<i32> {
+        match self {
+            Self::Marked(low, marks) => {
+                (low..=i32::MAX).zip(marks).filter(|(_, is_there)| *is_there).map(|(number, _)| number).collect()
+            }
+            Self::Listed(mut numbers) => {
+                numbers.sort_unstable();
+                numbers.dedup();
+                numbers
+            }
+        }
     }
 }
 

@@ -55,7 +55,7 @@ mod tests;
 
 use std::path::Path;
 
-pub use block::ExactType;
+pub use block::{ExactType, StoredFile};
 pub use detect::{Candidate, Verdict};
 pub use error::{SegyError, SegyProblem};
 pub use file::SegyFile;

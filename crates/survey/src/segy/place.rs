@@ -5,14 +5,18 @@
 //! some traces lie more than half a bin and three medians off, the fit is repeated without them.
 
 use glam::{DMat2, DVec2};
+use rayon::prelude::*;
 
-use super::lines::Lattice;
+use super::lines::{Lattice, NO_TRACE};
 
 /// Half a bin: beyond it a trace would be nearer to another place of the lattice.
 pub(super) const MAX_RESIDUAL_BINS: f64 = 0.5;
 
 /// The fit takes every n-th trace of files that have more than this: 1 ‰ of a bin needs far fewer.
 const MAX_POINTS: usize = 1 << 16;
+
+/// Places that are looked at one after the other.
+const RUN: usize = 1 << 13;
 
 /// A fitted place, in the unit of the coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -35,33 +39,49 @@ pub(super) struct Placement {
 
 impl Placement {
     /// Fits X and Y, as `world_of` gives them for a trace; none if those traces, or their coordinates, lie on a line.
-    pub fn fit(lattice: &Lattice, world_of: impl Fn(usize) -> Option<DVec2>) -> Option<Self> {
-        let points = || lattice.traces().map(|(i, j, trace)| (DVec2::new(i as f64, j as f64), world_of(trace), trace));
-        let located = || points().filter_map(|(at, world, trace)| world.map(|world| (at, world, trace)));
-        let total = located().count();
-        let sample = located().step_by(total.div_ceil(MAX_POINTS).max(1)).map(|(at, world, _)| (at, world));
-        let affine = robust_fit(&sample.collect::<Vec<_>>())?;
-        let (mut sum_sq, mut used, mut max_bins, mut worst_trace) = (0.0, 0_usize, 0.0, 0);
-        for (at, world, trace) in located() {
-            let bins = affine.residual_bins(at, world);
-            if bins > max_bins {
-                (max_bins, worst_trace) = (bins, trace);
-            }
-            if bins <= MAX_RESIDUAL_BINS {
-                sum_sq += bins * bins;
-                used += 1;
-            }
-        }
+    pub fn fit(lattice: &Lattice, world_of: impl Fn(usize) -> Option<DVec2> + Sync) -> Option<Self> {
+        // In runs of places whose results are put together in order: the same on any number of threads.
+        let runs = || {
+            lattice.trace_of.par_chunks(RUN).enumerate().map(|(run, traces)| {
+                let first = run * RUN;
+                let filled = traces.iter().enumerate().filter(|(_, trace)| **trace != NO_TRACE);
+                filled.map(move |(n, &trace)| (lattice.index_at(first + n), trace as usize))
+            })
+        };
+        let located: Vec<usize> =
+            runs().map(|run| run.filter(|(_, trace)| world_of(*trace).is_some()).count()).collect();
+        let total: usize = located.iter().sum();
+        let step = total.div_ceil(MAX_POINTS).max(1);
+        let before: Vec<usize> = located
+            .iter()
+            .scan(0, |sum, count| Some(std::mem::replace(sum, *sum + count)))
+            .collect();
+        let sample: Vec<Vec<(DVec2, DVec2)>> = runs()
+            .zip(&before)
+            .map(|(run, &before)| {
+                let points = run.filter_map(|(at, trace)| Some((at, world_of(trace)?)));
+                points.skip((step - before % step) % step).step_by(step).collect()
+            })
+            .collect();
+        let affine = robust_fit(&sample.concat())?;
+        let residuals: Vec<Residuals> = runs()
+            .map(|run| {
+                let points = run.filter_map(|(at, trace)| Some((at, world_of(trace)?, trace)));
+                let residuals = points.map(|(at, world, trace)| (affine.residual_bins(at, world), trace));
+                residuals.fold(Residuals::default(), Residuals::with)
+            })
+            .collect();
+        let all = residuals.into_iter().fold(Residuals::default(), Residuals::and);
         Some(Self {
             origin: affine.origin,
             inline_vector: affine.linear.x_axis,
             crossline_vector: affine.linear.y_axis,
-            rms_bins: (sum_sq / used.max(1) as f64).sqrt(),
-            max_bins,
-            worst_trace,
+            rms_bins: (all.sum_sq / all.used.max(1) as f64).sqrt(),
+            max_bins: all.max,
+            worst_trace: all.worst_trace,
             traces: total,
-            outliers: total - used,
-            without: points().count() - total,
+            outliers: total - all.used,
+            without: lattice.filled() - total,
         })
     }
 
@@ -74,6 +94,34 @@ impl Placement {
     pub fn skew(&self) -> f64 {
         self.inline_vector.dot(self.crossline_vector).abs()
             / (self.inline_vector.length() * self.crossline_vector.length())
+    }
+}
+
+/// Distances of traces from their places, in bins.
+#[derive(Debug, Clone, Copy, Default)]
+struct Residuals {
+    /// Of those that are used.
+    sum_sq: f64,
+    used: usize,
+    max: f64,
+    worst_trace: usize,
+}
+
+impl Residuals {
+    fn with(mut self, (bins, trace): (f64, usize)) -> Self {
+        if bins > self.max {
+            (self.max, self.worst_trace) = (bins, trace);
+        }
+        if bins <= MAX_RESIDUAL_BINS {
+            self.sum_sq += bins * bins;
+            self.used += 1;
+        }
+        self
+    }
+
+    fn and(self, later: Self) -> Self {
+        let worst = if later.max > self.max { later } else { self };
+        Self { sum_sq: self.sum_sq + later.sum_sq, used: self.used + later.used, ..worst }
     }
 }
 

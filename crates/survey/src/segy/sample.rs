@@ -28,6 +28,7 @@ impl ByteOrder {
     }
 
     /// `N` bytes at `offset`, most significant first.
+    #[inline]
     pub(super) fn get<const N: usize>(self, bytes: &[u8], offset: usize) -> [u8; N] {
         let mut value = [0; N];
         value.copy_from_slice(&bytes[offset..offset + N]);

@@ -5,11 +5,12 @@
 //! earlier call, ended by a kill or a power cut, left whole: shards get their names only when they are complete, and their
 //! checksums are verified before they are kept.
 
-use super::array::{StoredArray, create_volume, write_array, write_group};
+use super::array::{create_volume, write_array, write_group};
 use super::error::StoreError;
 use super::header::write_header;
 use super::layout::{BRICK, Layout};
-use super::pyramid::{halve, halved, needed};
+use super::pyramid::{Halving, LevelBox, halved, needed};
+use super::ranges::{BrickRanges, IndexedRanges, Samples};
 use super::replacement::Replacement;
 use super::sample::StoredSample;
 use super::shard::{ShardGrid, Shards};
@@ -21,15 +22,16 @@ use std::borrow::Cow;
 use std::fs;
 use std::ops::Range;
 use std::path::Path;
-
-/// Least and greatest value of bricks, by their index.
-type IndexedRanges = Vec<(usize, [f32; 2])>;
+use std::sync::Mutex;
 
 /// Says in a folder what is being written to it; gone when the volume is complete.
 const MARKER: &str = "unfinished";
 
-/// Bytes that making one shard of a further level takes: 262³ samples and what they become.
+/// Bytes that making one shard of a further level takes at most: the mapped files of 262³ samples, and what they become.
 const LEVEL_BYTES: u64 = 160 << 20;
+
+/// Shards of a further level that a thread makes, at most, before files are unmapped.
+const SHARDS_TOGETHER: u64 = 4;
 
 /// Memory that is used where nobody says otherwise.
 const DEFAULT_MEMORY: u64 = 2 << 30;
@@ -93,13 +95,14 @@ pub fn write_volume<T: StoredSample>(
     let [_, ny, nz] = volume.size();
     // Blocks of whole inlines are borrowed as they are.
     let settings = WriteSettings { memory_bytes: u64::MAX, order: LineOrder::Inlines };
-    let block = |block: &Block| {
+    let block = |block: &Block, _| {
         Ok(Cow::Borrowed(&volume.samples()[block.inlines.start * ny * nz..block.inlines.end * ny * nz]))
     };
     write_volume_blocks(path, volume.size(), volume.live(), info, &settings, block, progress).map(|_| ())
 }
 
-/// Stores a volume whose samples are supplied block by block, `[inline][crossline][sample]`. `live` is the mask of recorded
+/// Stores a volume whose samples are supplied block by block, `[inline][crossline][sample]`; memory of an earlier block is offered for the
+/// next one, with whatever it holds. `live` is the mask of recorded
 /// traces, `None` = all.
 ///
 /// # Errors
@@ -110,7 +113,7 @@ pub fn write_volume_blocks<'a, T: StoredSample>(
     live: Option<&[bool]>,
     info: &VolumeInfo,
     settings: &WriteSettings,
-    supply: impl FnMut(&Block) -> Result<Cow<'a, [T]>, SourceError>,
+    supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'a, [T]>, SourceError>,
     progress: &Progress,
 ) -> Result<Ingested, StoreError> {
     let mask = mask_of(size, live, info)?;
@@ -135,7 +138,7 @@ pub fn resume_volume<'a, T: StoredSample>(
     live: Option<&[bool]>,
     info: &VolumeInfo,
     settings: &WriteSettings,
-    supply: impl FnMut(&Block) -> Result<Cow<'a, [T]>, SourceError>,
+    supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'a, [T]>, SourceError>,
     progress: &Progress,
 ) -> Result<Ingested, StoreError> {
     let mask = mask_of(size, live, info)?;
@@ -189,19 +192,20 @@ impl Ingest<'_> {
         &self,
         size: [usize; 3],
         info: &VolumeInfo,
-        supply: impl FnMut(&Block) -> Result<Cow<'b, [T]>, SourceError>,
+        supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'b, [T]>, SourceError>,
     ) -> Result<Ingested, StoreError> {
         write_header(self.group, KIND, info)?;
         write_group(self.group, "minmax", serde_json::Map::new())?;
         let bytes: Vec<u8> = self.mask.iter().map(|&live| u8::from(live)).collect();
         let layout = Layout::map([size[0], size[1]], ["inline", "crossline"]);
         write_array(self.group, "live", layout, 0, &bytes, self.progress)?;
-        let mut done = self.write_full(size, supply)?;
+        let (mut done, mut grid) = self.write_full(size, supply)?;
         let (mut fine, mut fine_mask, mut level) = (size, Cow::Borrowed(&self.mask), 0);
         while fine.iter().any(|&n| n > BRICK) {
             level += 1;
             let mask = every_second(&fine_mask, [fine[0], fine[1]]);
-            let added = self.write_level::<T>(level, fine, &fine_mask, &mask)?;
+            let (added, coarse) = self.write_level::<T>(level, grid, &fine_mask, &mask)?;
+            grid = coarse;
             done = Ingested { files: done.files + added.files, kept: done.kept + added.kept };
             (fine, fine_mask) = (halved(fine), Cow::Owned(mask));
         }
@@ -212,13 +216,15 @@ impl Ingest<'_> {
     fn write_full<'b, T: StoredSample>(
         &self,
         size: [usize; 3],
-        mut supply: impl FnMut(&Block) -> Result<Cow<'b, [T]>, SourceError>,
-    ) -> Result<Ingested, StoreError> {
+        mut supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'b, [T]>, SourceError>,
+    ) -> Result<(Ingested, ShardGrid), StoreError> {
         let grid = create_volume::<T>(self.group, "0", size)?;
         let counts = grid.counts();
         let mut shards = Shards::new(grid.clone(), self.group, "0");
         let mut done = Ingested { files: counts.iter().product(), kept: 0 };
         let mut ranges = BrickRanges::of(size);
+        let rooms = Rooms::<Vec<u8>>::default();
+        let mut spare = Vec::new();
         self.progress.begin("storing the volume", done.files as u64);
         for [columns_x, columns_y] in column_blocks::<T>(&grid, self.settings) {
             let places: Vec<[usize; 3]> = columns_x
@@ -228,7 +234,8 @@ impl Ingest<'_> {
             if places.par_iter().all(|&place| shards.is_whole::<T>(place)) {
                 for &place in &places {
                     let (start, extent) = grid.extent(place);
-                    ranges.take(brick_ranges(&shards.read_box::<T>(start, extent)?, start, extent, &self.mask, size));
+                    let values = shards.read_box::<T>(start, extent)?;
+                    ranges.take(Samples { values: &values, first: start, size: extent }.ranges(start, extent, &self.mask, size));
                     self.progress.step(1)?;
                 }
                 done.kept += places.len();
@@ -240,64 +247,88 @@ impl Ingest<'_> {
                 columns.start * grid.shard[axis]..(columns.end * grid.shard[axis]).min(size[axis])
             };
             let block = Block { inlines: span(&columns_x, 0), crosslines: span(&columns_y, 1) };
-            let samples = supply(&block).map_err(|source| StoreError::Source { path: self.path.to_owned(), source })?;
+            let supplied = supply(&block, std::mem::take(&mut spare));
+            let values = supplied.map_err(|source| StoreError::Source { path: self.path.to_owned(), source })?;
             let first = [block.inlines.start, block.crosslines.start, 0];
             let block_size = [block.inlines.len(), block.crosslines.len(), size[2]];
             let expected = block_size.iter().product();
-            if samples.len() != expected {
-                return Err(StoreError::SizeMismatch { what: "a block of samples", expected, found: samples.len() });
+            if values.len() != expected {
+                return Err(StoreError::SizeMismatch { what: "a block of samples", expected, found: values.len() });
             }
-            let found: Vec<Vec<(usize, [f32; 2])>> = places
+            let samples = Samples { values: &values, first, size: block_size };
+            let found: Vec<IndexedRanges> = places
                 .par_iter()
-                .map_init(Vec::new, |bytes, &place| {
-                    let (start, extent) = grid.extent(place);
-                    let samples = Samples { values: &samples, first, size: block_size };
-                    let ranges = samples.brick_ranges(start, extent, &self.mask, size);
-                    grid.write(place, samples.values, first, block_size, bytes)?;
+                .map(|&place| {
+                    let found = rooms.with(|bytes| self.write_shard(&grid, place, &samples, &self.mask, bytes))?;
                     self.progress.step(1)?;
-                    Ok(ranges)
+                    Ok(found)
                 })
                 .collect::<Result<_, StoreError>>()?;
             found.into_iter().for_each(|found| ranges.take(found));
+            if let Cow::Owned(values) = values {
+                spare = values;
+            }
         }
         ranges.write(self.group, 0)?;
-        Ok(done)
+        Ok((done, grid))
     }
 
-    /// Writes level `level` from the level before, of size `fine`.
+    /// Writes a shard from samples that hold all of it, and finds the ranges of its bricks.
+    fn write_shard<T: StoredSample>(
+        &self,
+        grid: &ShardGrid,
+        place: [usize; 3],
+        samples: &Samples<'_, T>,
+        mask: &[bool],
+        bytes: &mut Vec<u8>,
+    ) -> Result<IndexedRanges, StoreError> {
+        let mut found = Vec::new();
+        grid.write(place, samples.values, samples.first, samples.size, bytes, |from, inside| {
+            found.extend(samples.ranges(from, inside, mask, grid.shape));
+        })?;
+        Ok(found)
+    }
+
+    /// Writes level `level` from the level before, whose files are `fine`.
     fn write_level<T: StoredSample>(
         &self,
         level: usize,
-        fine: [usize; 3],
+        fine: ShardGrid,
         fine_mask: &[bool],
         mask: &[bool],
-    ) -> Result<Ingested, StoreError> {
-        let size = halved(fine);
+    ) -> Result<(Ingested, ShardGrid), StoreError> {
+        let size = halved(fine.shape);
         let name = level.to_string();
-        let mut source = StoredArray::open(self.group, &(level - 1).to_string())?;
+        let fine_size = fine.shape;
+        let mut source = Shards::new(fine, self.group, &(level - 1).to_string());
         let grid = create_volume::<T>(self.group, &name, size)?;
         let shards = Shards::new(grid.clone(), self.group, &name);
         let counts = grid.counts();
         let mut done = Ingested { files: counts.iter().product(), kept: 0 };
         let mut ranges = BrickRanges::of(size);
+        let rooms = Rooms::<LevelRoom<T>>::default();
         self.progress.begin(&format!("storing level {level}"), done.files as u64);
         let places: Vec<[usize; 3]> =
             (0..done.files).map(|n| [n / (counts[1] * counts[2]), n / counts[2] % counts[1], n % counts[2]]).collect();
-        let together =
-            (self.settings.memory_bytes / LEVEL_BYTES).clamp(1, rayon::current_num_threads() as u64) as usize;
+        let most = SHARDS_TOGETHER * rayon::current_num_threads() as u64;
+        let together = (self.settings.memory_bytes / LEVEL_BYTES).clamp(1, most) as usize;
         for group in places.chunks(together) {
             let found: Vec<(bool, IndexedRanges)> = group
                 .par_iter()
                 .map(|&place| {
+                    self.progress.check()?;
                     let (start, part) = grid.extent(place);
                     if shards.is_whole::<T>(place) {
-                        let samples = shards.read_box::<T>(start, part)?;
-                        return Ok((true, brick_ranges(&samples, start, part, mask, size)));
+                        let values = shards.read_box::<T>(start, part)?;
+                        let samples = Samples { values: &values, first: start, size: part };
+                        return Ok((true, samples.ranges(start, part, mask, size)));
                     }
-                    let coarse = coarser::<T>(&source, [fine, size], [start, part], [fine_mask, mask])?;
-                    let found = brick_ranges(&coarse, start, part, mask, size);
-                    grid.write(place, &coarse, start, part, &mut Vec::new())?;
-                    Ok((false, found))
+                    let found = rooms.with(|room| {
+                        room.fill(&source, [fine_size, size], [start, part], [fine_mask, mask])?;
+                        let samples = Samples { values: &room.coarse, first: start, size: part };
+                        self.write_shard(&grid, place, &samples, mask, &mut room.bytes)
+                    });
+                    Ok((false, found?))
                 })
                 .collect::<Result<_, StoreError>>()?;
             for (is_kept, found) in found {
@@ -308,30 +339,81 @@ impl Ingest<'_> {
             source.release();
         }
         ranges.write(self.group, level)?;
-        Ok(done)
+        Ok((done, grid))
     }
 }
 
-/// The box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, the masks likewise.
-fn coarser<T: StoredSample>(
-    source: &StoredArray,
-    [fine, size]: [[usize; 3]; 2],
-    [start, part]: [[usize; 3]; 2],
-    [fine_mask, mask]: [&[bool]; 2],
-) -> Result<Vec<T>, StoreError> {
-    let need = [0, 1, 2].map(|axis| needed(start[axis], part[axis], fine[axis]));
-    let (first, box_size) = (need.map(|n| n.0), need.map(|n| n.1));
-    let samples = source.read_box::<T>(&first, &box_size)?;
-    let values = live_values(&samples, first, box_size, fine_mask, fine[1]);
-    drop(samples);
-    let halves = halve(&values, box_size, first, start, part);
-    drop(values);
-    let mut coarse = vec![T::from_f32(0.0); halves.len()];
-    let traces = coarse.par_chunks_mut(part[2]).zip(halves.par_chunks(part[2])).enumerate();
-    traces
-        .filter(|(n, _)| mask[(start[0] + n / part[1]) * size[1] + start[1] + n % part[1]])
-        .for_each(|(_, (out, halves))| out.iter_mut().zip(halves).for_each(|(out, &half)| *out = T::from_f32(half)));
-    Ok(coarse)
+/// Memory that threads use in turn: fresh memory costs more than what is done in it.
+struct Rooms<R>(Mutex<Vec<R>>);
+
+impl<R> Default for Rooms<R> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<R: Default> Rooms<R> {
+    fn with<T>(&self, work: impl FnOnce(&mut R) -> T) -> T {
+        // The lock is held for a push or a pop, which cannot panic half way.
+        let locked = || self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut room = locked().pop().unwrap_or_default();
+        let result = work(&mut room);
+        locked().push(room);
+        result
+    }
+}
+
+/// What making a shard of a further level needs.
+struct LevelRoom<T> {
+    halving: Halving,
+    coarse: Vec<T>,
+    bytes: Vec<u8>,
+}
+
+impl<T> Default for LevelRoom<T> {
+    fn default() -> Self {
+        Self { halving: Halving::default(), coarse: Vec::new(), bytes: Vec::new() }
+    }
+}
+
+impl<T: StoredSample> LevelRoom<T> {
+    /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, the masks likewise.
+    fn fill(
+        &mut self,
+        source: &Shards,
+        [fine, size]: [[usize; 3]; 2],
+        [start, part]: [[usize; 3]; 2],
+        [fine_mask, mask]: [&[bool]; 2],
+    ) -> Result<(), StoreError> {
+        let need = [0, 1, 2].map(|axis| needed(start[axis], part[axis], fine[axis]));
+        let (first, box_size) = (need.map(|n| n.0), need.map(|n| n.1));
+        let view = source.view::<T>(first, box_size)?;
+        let coarse = &mut self.coarse;
+        coarse.resize(part.iter().product(), T::from_f32(0.0));
+        let is_live = |x: usize, y: usize| fine_mask[(first[0] + x) * fine[1] + first[1] + y];
+        self.halving.run(
+            LevelBox { first, size: box_size },
+            LevelBox { first: start, size: part },
+            |x, y, trace| {
+                let live = is_live(x, y);
+                if live {
+                    view.read_trace(x, y, trace);
+                }
+                live
+            },
+            |x, slab| {
+                let out = coarse[x * slab.len()..(x + 1) * slab.len()].chunks_exact_mut(part[2]);
+                for (y, (out, halves)) in out.zip(slab.chunks_exact(part[2])).enumerate() {
+                    if mask[(start[0] + x) * size[1] + start[1] + y] {
+                        out.iter_mut().zip(halves).for_each(|(out, &half)| *out = T::from_f32(half));
+                    } else {
+                        out.fill(T::from_f32(0.0));
+                    }
+                }
+            },
+        );
+        Ok(())
+    }
 }
 
 /// Columns of shards that are written together, `[along x, along y]`.
@@ -347,119 +429,5 @@ fn column_blocks<T>(grid: &ShardGrid, settings: &WriteSettings) -> Vec<[Range<us
     match settings.order {
         LineOrder::Inlines => (0..nx).flat_map(|x| parts(ny).map(move |part| [x..x + 1, part])).collect(),
         LineOrder::Crosslines => (0..ny).flat_map(|y| parts(nx).map(move |part| [part, y..y + 1])).collect(),
-    }
-}
-
-/// Samples as floats, NaN where the trace is dead.
-fn live_values<T: StoredSample>(
-    samples: &[T],
-    first: [usize; 3],
-    size: [usize; 3],
-    mask: &[bool],
-    ny: usize,
-) -> Vec<f32> {
-    let mut values = vec![0.0f32; samples.len()];
-    values.par_chunks_mut(size[2]).zip(samples.par_chunks(size[2])).enumerate().for_each(|(n, (out, trace))| {
-        let live = mask[(first[0] + n / size[1]) * ny + first[1] + n % size[1]];
-        for (value, sample) in out.iter_mut().zip(trace) {
-            *value = if live { sample.to_f32() } else { f32::NAN };
-        }
-    });
-    values
-}
-
-/// A box of samples whose first voxel is `first`.
-struct Samples<'a, T> {
-    values: &'a [T],
-    first: [usize; 3],
-    size: [usize; 3],
-}
-
-impl<T: StoredSample> Samples<'_, T> {
-    /// Least and greatest live sample of each brick of the box from `start` of size `part`, with the brick's number in a volume of
-    /// `volume` voxels; `start` is a multiple of the brick. NaN is passed over.
-    fn brick_ranges(
-        &self,
-        start: [usize; 3],
-        part: [usize; 3],
-        mask: &[bool],
-        volume: [usize; 3],
-    ) -> Vec<(usize, [f32; 2])> {
-        let counts = volume.map(|n| n.div_ceil(BRICK));
-        let inside = part.map(|n| n.div_ceil(BRICK));
-        let mut found = vec![[f32::INFINITY, f32::NEG_INFINITY]; inside.iter().product()];
-        for x in start[0]..start[0] + part[0] {
-            for y in (start[1]..start[1] + part[1]).filter(|y| mask[x * volume[1] + y]) {
-                let row = ((x - self.first[0]) * self.size[1] + y - self.first[1]) * self.size[2];
-                let from = row + start[2] - self.first[2];
-                let column = ((x - start[0]) / BRICK * inside[1] + (y - start[1]) / BRICK) * inside[2];
-                for (b, part) in self.values[from..from + part[2]].chunks(BRICK).enumerate() {
-                    let range = &mut found[column + b];
-                    *range = widened(*range, part);
-                }
-            }
-        }
-        let number = |n: usize| {
-            let place = [n / (inside[1] * inside[2]), n / inside[2] % inside[1], n % inside[2]];
-            let at = [0, 1, 2].map(|axis| start[axis] / BRICK + place[axis]);
-            (at[0] * counts[1] + at[1]) * counts[2] + at[2]
-        };
-        found.into_iter().enumerate().map(|(n, range)| (number(n), range)).collect()
-    }
-}
-
-/// [`Samples::brick_ranges`] of a box that is the part itself.
-fn brick_ranges<T: StoredSample>(
-    values: &[T],
-    start: [usize; 3],
-    part: [usize; 3],
-    mask: &[bool],
-    volume: [usize; 3],
-) -> Vec<(usize, [f32; 2])> {
-    Samples { values, first: start, size: part }.brick_ranges(start, part, mask, volume)
-}
-
-/// A range and the samples, in lanes that become vector instructions; comparisons with NaN are false.
-fn widened<T: StoredSample>([low, high]: [f32; 2], samples: &[T]) -> [f32; 2] {
-    const LANES: usize = 8;
-    let (mut lows, mut highs) = ([low; LANES], [high; LANES]);
-    let (chunks, rest) = samples.as_chunks::<LANES>();
-    for chunk in chunks {
-        for lane in 0..LANES {
-            let value = chunk[lane].to_f32();
-            lows[lane] = if value < lows[lane] { value } else { lows[lane] };
-            highs[lane] = if value > highs[lane] { value } else { highs[lane] };
-        }
-    }
-    let rest = rest.iter().map(|value| value.to_f32()).filter(|value| !value.is_nan());
-    let low = rest.clone().chain(lows).fold(f32::INFINITY, f32::min);
-    let high = rest.chain(highs).fold(f32::NEG_INFINITY, f32::max);
-    [low, high]
-}
-
-/// Least and greatest value of each brick.
-struct BrickRanges {
-    counts: [usize; 3],
-    ranges: Vec<[f32; 2]>,
-}
-
-impl BrickRanges {
-    fn of(size: [usize; 3]) -> Self {
-        let counts = size.map(|n| n.div_ceil(BRICK));
-        Self { counts, ranges: vec![[f32::NAN; 2]; counts.iter().product()] }
-    }
-
-    /// Takes in the ranges of some bricks; those without a value stay NaN.
-    fn take(&mut self, found: Vec<(usize, [f32; 2])>) {
-        for (brick, [low, high]) in found.into_iter().filter(|(_, [low, high])| low <= high) {
-            self.ranges[brick] = [low, high];
-        }
-    }
-
-    fn write(&self, group: &Path, level: usize) -> Result<(), StoreError> {
-        let [x, y, z] = self.counts;
-        let layout = Layout::whole(&[x, y, z, 2], vec!["brick_inline", "brick_crossline", "brick_sample", "minmax"]);
-        let values = self.ranges.as_flattened();
-        write_array(group, &format!("minmax/{level}"), layout, f32::NAN, values, &Progress::silent())
     }
 }

@@ -23,6 +23,7 @@ mod ingest;
 mod layout;
 mod parameterization;
 mod pyramid;
+mod ranges;
 mod replacement;
 mod sample;
 mod shard;

@@ -3,14 +3,25 @@
 //! Every axis is low-passed by the half-band filter (−1, 0, 9, 16, 9, 0, −1)/32 and every second sample is kept, so that voxel m of
 //! level L lies exactly at voxel m·2ᴸ of the full volume. What is missing (NaN: a dead trace, a sample beyond the wall) is left
 //! out and the remaining weights are normalised; where the middle itself is missing, the result is.
+//!
+//! The axes are filtered one after the other, trace by trace and slab by slab (a slab is an inline of the box): what is between
+//! two steps fits the processor's cache. Traces are nearly always there or missing as a whole; rows of samples remember which, and the sums
+//! over whole rows are vector instructions. Every value is summed in the order of the lags, so that a box is bit by bit a part of the whole.
 
-use rayon::prelude::*;
+/// Lags whose weights are not 0, counted from −[`REACH`], and the weights.
+const TAPS: [(usize, f32); 5] = [(0, -1.0), (2, 9.0), (3, 16.0), (4, 9.0), (6, -1.0)];
 
-/// Weights for lags −3 … 3.
-const HALF_BAND: [f32; 7] = [-1.0, 0.0, 9.0, 16.0, 9.0, 0.0, -1.0];
+/// The one of the middle.
+const MIDDLE: usize = 2;
+
+/// Their sum, a power of two.
+const SUM: f32 = 32.0;
 
 /// Reach of the filter.
 const REACH: usize = 3;
+
+/// Slabs that the filter across them needs at a time.
+const WINDOW: usize = 2 * REACH + 1;
 
 /// Size of the next level.
 pub(super) fn halved(size: [usize; 3]) -> [usize; 3] {
@@ -24,66 +35,271 @@ pub(super) fn needed(start: usize, count: usize, fine_count: usize) -> (usize, u
     (first, last - first + 1)
 }
 
-/// A box of the coarser level from the box of the finer level that [`needed`] names; `first` and `start` are their first
-/// voxels, each in its own level.
-pub(super) fn halve(
-    fine: &[f32],
-    fine_size: [usize; 3],
-    first: [usize; 3],
-    start: [usize; 3],
-    size: [usize; 3],
-) -> Vec<f32> {
-    let [nx, ny, nz] = fine_size;
-    let middle = |axis: usize, n: usize| 2 * (start[axis] + n) - first[axis];
-    // Along z, trace by trace.
-    let mut along_z = vec![0.0f32; nx * ny * size[2]];
-    along_z.par_chunks_mut(size[2]).zip(fine.par_chunks(nz)).for_each(|(out, trace)| {
-        for (n, value) in out.iter_mut().enumerate() {
-            *value = weighted(middle(2, n), nz, |at| trace[at]);
-        }
-    });
-    // Along y, slab by slab.
-    let row = size[2];
-    let mut along_y = vec![0.0f32; nx * size[1] * row];
-    along_y.par_chunks_mut(size[1] * row).zip(along_z.par_chunks(ny * row)).for_each(|(out, slab)| {
-        for (n, value) in out.iter_mut().enumerate() {
-            *value = weighted(middle(1, n / row), ny, |at| slab[at * row + n % row]);
-        }
-    });
-    // Along x, across slabs.
-    let slab = size[1] * row;
-    let mut coarse = vec![0.0f32; size[0] * slab];
-    coarse.par_chunks_mut(slab).enumerate().for_each(|(x, out)| {
-        for (n, value) in out.iter_mut().enumerate() {
-            *value = weighted(middle(0, x), nx, |at| along_y[at * slab + n]);
-        }
-    });
-    coarse
+/// What a row of samples holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Row {
+    /// Numbers throughout.
+    Whole,
+    /// Nothing; its values are not defined.
+    Missing,
+    /// Numbers and NaN.
+    Mixed,
 }
 
-/// The filter at position `middle` of `count` values.
-fn weighted(middle: usize, count: usize, value_at: impl Fn(usize) -> f32) -> f32 {
-    if value_at(middle).is_nan() {
-        return f32::NAN;
+impl Row {
+    fn of(values: &[f32]) -> Self {
+        match values.iter().map(|value| u32::from(value.is_nan())).sum::<u32>() as usize {
+            0 => Self::Whole,
+            missing if missing == values.len() => Self::Missing,
+            _ => Self::Mixed,
+        }
     }
-    let (mut sum, mut weights) = (0.0, 0.0);
-    for (lag, weight) in HALF_BAND.iter().enumerate() {
-        let at = (middle + lag).wrapping_sub(REACH);
-        if *weight != 0.0 && at < count {
-            let value = value_at(at);
-            if !value.is_nan() {
-                sum += weight * value;
-                weights += weight;
+}
+
+/// Rows of one length, and what each holds.
+#[derive(Debug, Default)]
+struct Rows {
+    length: usize,
+    values: Vec<f32>,
+    kinds: Vec<Row>,
+}
+
+impl Rows {
+    fn reset(&mut self, count: usize, length: usize) {
+        self.length = length;
+        self.values.resize(count * length, 0.0);
+        self.kinds.resize(count, Row::Missing);
+    }
+
+    fn get(&self, row: usize) -> (&[f32], Row) {
+        (&self.values[row * self.length..(row + 1) * self.length], self.kinds[row])
+    }
+}
+
+/// Boxes of one level.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LevelBox {
+    /// First voxel, in its own level.
+    pub first: [usize; 3],
+    /// Voxels along each axis.
+    pub size: [usize; 3],
+}
+
+/// Makes boxes of a coarser level. Its memory is kept from one box to the next.
+#[derive(Debug, Default)]
+pub(super) struct Halving {
+    trace: Vec<f32>,
+    evens: Vec<f32>,
+    odds: Vec<f32>,
+    /// Traces of a slab, halved along z.
+    along_z: Rows,
+    /// Slabs halved along z and y: slab x of the finer box is entry x modulo the window.
+    along_y: [Rows; WINDOW],
+    slab: Vec<f32>,
+}
+
+impl Halving {
+    /// Makes `coarse` from `fine`, the box that [`needed`] names. `supply` fills in the trace at x, y of the finer box, NaN where it has no
+    /// sample, and answers whether there is any; `take` receives slab after slab of the coarser box.
+    pub fn run(
+        &mut self,
+        fine: LevelBox,
+        coarse: LevelBox,
+        mut supply: impl FnMut(usize, usize, &mut [f32]) -> bool,
+        mut take: impl FnMut(usize, &[f32]),
+    ) {
+        let [nx, ny, nz] = fine.size;
+        let [_, rows, length] = coarse.size;
+        let middle = |axis: usize, n: usize| 2 * (coarse.first[axis] + n) - fine.first[axis];
+        self.trace.resize(nz, 0.0);
+        self.slab.resize(rows * length, 0.0);
+        self.along_z.reset(ny, length);
+        let mut done = 0;
+        for x in 0..nx {
+            for y in 0..ny {
+                let kind = if supply(x, y, &mut self.trace) { Row::of(&self.trace) } else { Row::Missing };
+                self.along_z.kinds[y] = kind;
+                if kind != Row::Missing {
+                    self.halve_trace(y, middle(2, 0), kind);
+                }
+            }
+            let slab = &mut self.along_y[x % WINDOW];
+            slab.reset(rows, length);
+            for row in 0..rows {
+                let out = &mut slab.values[row * length..(row + 1) * length];
+                slab.kinds[row] = filter(out, taps(middle(1, row), ny).map(|at| at.map(|at| self.along_z.get(at))));
+            }
+            // Every slab of the coarser box that needs no later one.
+            while done < coarse.size[0] && (middle(0, done) + REACH).min(nx - 1) == x {
+                let taps = taps(middle(0, done), nx);
+                for row in 0..rows {
+                    let out = &mut self.slab[row * length..(row + 1) * length];
+                    filter(out, taps.map(|at| at.map(|at| self.along_y[at % WINDOW].get(row))));
+                }
+                take(done, &self.slab);
+                done += 1;
             }
         }
     }
+
+    /// Halves the trace into row `y`; `first` is its sample at which the first one of the result lies.
+    fn halve_trace(&mut self, y: usize, first: usize, kind: Row) {
+        let length = self.along_z.length;
+        let out = &mut self.along_z.values[y * length..(y + 1) * length];
+        let trace = &self.trace;
+        let single = |n: usize| weighted(taps(first + 2 * n, trace.len()).map(|at| at.map(|at| trace[at])));
+        // Results whose samples are all there.
+        let low = REACH.saturating_sub(first).div_ceil(2).min(length);
+        let high = match trace.len().checked_sub(REACH + first) {
+            Some(reached @ 1..) if kind == Row::Whole => ((reached - 1) / 2 + 1).clamp(low, length),
+            _ => low,
+        };
+        out[..low].iter_mut().enumerate().for_each(|(n, out)| *out = single(n));
+        out[high..].iter_mut().enumerate().for_each(|(n, out)| *out = single(high + n));
+        if low < high {
+            let (pairs, last) = trace[first + 2 * low - REACH..].as_chunks::<2>();
+            self.evens.clear();
+            self.odds.clear();
+            self.evens.extend(pairs.iter().map(|pair| pair[0]).chain(last.iter().copied()));
+            self.odds.extend(pairs.iter().map(|pair| pair[1]));
+            let (evens, odds) = (&self.evens[..], &self.odds[1..]);
+            let count = high - low;
+            let even = |from: usize| &evens[from..from + count];
+            let sides = even(0).iter().zip(even(1)).zip(even(2).iter().zip(even(3)));
+            for ((out, middle), ((a, b), (d, e))) in out[low..high].iter_mut().zip(&odds[..count]).zip(sides) {
+                *out = whole([*a, *b, *middle, *d, *e]);
+            }
+        }
+        self.along_z.kinds[y] = if kind == Row::Whole { Row::Whole } else { Row::of(out) };
+    }
+}
+
+/// Positions of the samples about `middle` that are among `count`.
+fn taps(middle: usize, count: usize) -> [Option<usize>; 5] {
+    TAPS.map(|(lag, _)| Some((middle + lag).wrapping_sub(REACH)).filter(|&at| at < count))
+}
+
+/// The filter on five numbers.
+fn whole([a, b, c, d, e]: [f32; 5]) -> f32 {
+    let [wa, wb, wc, wd, we] = TAPS.map(|(_, weight)| weight);
+    (wa * a + wb * b + wc * c + wd * d + we * e) / SUM
+}
+
+/// The filter on what there is of five samples.
+fn weighted(samples: [Option<f32>; 5]) -> f32 {
+    if samples[MIDDLE].is_none_or(f32::is_nan) {
+        return f32::NAN;
+    }
+    let (mut sum, mut weights) = (0.0, 0.0);
+    for (sample, (_, weight)) in samples.into_iter().zip(TAPS) {
+        if let Some(value) = sample.filter(|value| !value.is_nan()) {
+            sum += weight * value;
+            weights += weight;
+        }
+    }
     sum / weights
+}
+
+/// The filter across rows, those that there are; what the result holds.
+fn filter(out: &mut [f32], rows: [Option<(&[f32], Row)>; 5]) -> Row {
+    let rows = rows.map(|row| row.filter(|(_, kind)| *kind != Row::Missing));
+    if rows[MIDDLE].is_none() {
+        out.fill(f32::NAN);
+        return Row::Missing;
+    }
+    if rows.iter().flatten().any(|(_, kind)| *kind == Row::Mixed) {
+        for (n, out) in out.iter_mut().enumerate() {
+            *out = weighted(rows.map(|row| row.map(|(values, _)| values[n])));
+        }
+        return Row::of(out);
+    }
+    if let [Some((a, _)), Some((b, _)), Some((c, _)), Some((d, _)), Some((e, _))] = rows {
+        let sides = a.iter().zip(b).zip(d.iter().zip(e));
+        for ((out, middle), ((a, b), (d, e))) in out.iter_mut().zip(c).zip(sides) {
+            *out = whole([*a, *b, *middle, *d, *e]);
+        }
+        return Row::Whole;
+    }
+    out.fill(0.0);
+    let mut weights = 0.0;
+    for (values, weight) in rows.iter().zip(TAPS).filter_map(|(row, (_, weight))| Some((row.as_ref()?.0, weight))) {
+        out.iter_mut().zip(values).for_each(|(out, value)| *out += weight * value);
+        weights += weight;
+    }
+    out.iter_mut().for_each(|out| *out /= weights);
+    Row::Whole
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::f32::consts::PI;
+
+    /// A box of the coarser level from the box of the finer one.
+    fn halve(fine: &[f32], fine_size: [usize; 3], first: [usize; 3], start: [usize; 3], size: [usize; 3]) -> Vec<f32> {
+        let [_, ny, nz] = fine_size;
+        let mut coarse = Vec::new();
+        Halving::default().run(
+            LevelBox { first, size: fine_size },
+            LevelBox { first: start, size },
+            |x, y, trace| {
+                trace.copy_from_slice(&fine[(x * ny + y) * nz..][..nz]);
+                true
+            },
+            |_, slab| coarse.extend_from_slice(slab),
+        );
+        coarse
+    }
+
+    /// The same, one sample after the other, straight from the definition.
+    fn halve_plainly(fine: &[f32], size: [usize; 3]) -> Vec<f32> {
+        let mut values = fine.to_vec();
+        let mut size = size;
+        for axis in [2, 1, 0] {
+            let stride: usize = size[axis + 1..].iter().product();
+            let count = size[axis];
+            let mut half = size;
+            half[axis] = count.div_ceil(2);
+            values = (0..half.iter().product())
+                .map(|n: usize| {
+                    let (before, m, after) = (n / stride / half[axis], n / stride % half[axis], n % stride);
+                    let samples = taps(2 * m, count).map(|at| at.map(|at| values[(before * count + at) * stride + after]));
+                    weighted(samples)
+                })
+                .collect();
+            size = half;
+        }
+        values
+    }
+
+    #[test]
+    fn rows_give_what_single_samples_give_bit_by_bit() {
+        let mut state = 1u32;
+        for size in [[1, 1, 1], [2, 3, 4], [9, 8, 7], [13, 5, 40], [6, 11, 65]] {
+            for holes in 0..4 {
+                let [_, ny, nz] = size;
+                let fine: Vec<f32> = (0..size.iter().product())
+                    .map(|n: usize| {
+                        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                        let column = n / nz;
+                        // Missing traces, missing slabs, missing samples.
+                        let is_missing = match holes {
+                            1 => column % 5 == 2,
+                            2 => column / ny % 3 == 1,
+                            3 => state >> 28 == 0 || column % 7 == 3,
+                            _ => false,
+                        };
+                        if is_missing { f32::NAN } else { (state >> 8) as f32 / 65_536.0 - 100.0 }
+                    })
+                    .collect();
+                let rows = halve(&fine, size, [0; 3], [0; 3], halved(size));
+                let bits = |values: &[f32]| -> Vec<Option<u32>> {
+                    values.iter().map(|v| (!v.is_nan()).then(|| (v + 0.0).to_bits())).collect()
+                };
+                assert_eq!(bits(&rows), bits(&halve_plainly(&fine, size)), "{size:?} {holes}");
+            }
+        }
+    }
 
     fn line(values: &[f32]) -> Vec<f32> {
         let n = values.len();

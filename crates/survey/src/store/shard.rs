@@ -77,8 +77,15 @@ impl ShardGrid {
         (start, [0, 1, 2].map(|axis| self.shard[axis].min(self.shape[axis] - start[axis])))
     }
 
+    /// Voxels of the chunk at `place` that are inside the volume.
+    fn chunk_extent(&self, place: [usize; 3]) -> Span {
+        let start = [0, 1, 2].map(|axis| place[axis] * self.chunk[axis]);
+        Span { start, size: [0, 1, 2].map(|axis| self.chunk[axis].min(self.shape[axis] - start[axis])) }
+    }
+
     /// Writes the shard at `index` from `samples` of `size` whose first voxel is `first`; they hold at least what of the shard is inside
-    /// the volume. `bytes` is room, kept between calls.
+    /// the volume. `bytes` is room, kept between calls. `visit` sees the first voxel and the size of every chunk just before its samples
+    /// are copied, which then are in the processor's cache.
     pub fn write<T: StoredSample>(
         &self,
         index: [usize; 3],
@@ -86,21 +93,23 @@ impl ShardGrid {
         first: [usize; 3],
         size: [usize; 3],
         bytes: &mut Vec<u8>,
+        visit: impl FnMut([usize; 3], [usize; 3]),
     ) -> Result<(), StoreError> {
-        self.encode(index, samples, first, size, bytes);
+        let length = self.encode(index, samples, first, size, bytes, visit);
         let path = self.folder.join(Self::key(index));
         let fail = |source| StoreError::io("written", &path, source);
         let partial = path.with_extension("part");
-        let written = match fs::write(&partial, &*bytes) {
+        let written = match fs::write(&partial, &bytes[..length]) {
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 let parent = partial.parent().unwrap_or(&self.folder);
-                fs::create_dir_all(parent).and_then(|()| fs::write(&partial, &*bytes))
+                fs::create_dir_all(parent).and_then(|()| fs::write(&partial, &bytes[..length]))
             }
             written => written,
         };
         written.and_then(|()| fs::rename(&partial, &path)).map_err(fail)
     }
 
+    /// Lays the shard out in `bytes`, and returns its length.
     fn encode<T: StoredSample>(
         &self,
         index: [usize; 3],
@@ -108,13 +117,17 @@ impl ShardGrid {
         first: [usize; 3],
         size: [usize; 3],
         bytes: &mut Vec<u8>,
-    ) {
+        mut visit: impl FnMut([usize; 3], [usize; 3]),
+    ) -> usize {
         let [nx, ny, nz] = self.chunks();
         let (start, _) = self.extent(index);
         let mut entries: Vec<u64> = Vec::with_capacity(2 * nx * ny * nz);
-        let zero = T::from_f32(0.0);
-        let mut chunk = vec![zero; self.samples_in_chunk()];
-        bytes.clear();
+        let chunk_bytes = self.samples_in_chunk() * size_of::<T>();
+        let most = nx * ny * nz * (chunk_bytes + CHECKSUM + ENTRY) + CHECKSUM;
+        if bytes.len() < most {
+            bytes.resize(most, 0);
+        }
+        let mut end = 0;
         for n in 0..nx * ny * nz {
             let place = [n / (ny * nz), n / nz % ny, n % nz];
             let from = [0, 1, 2].map(|axis| start[axis] + place[axis] * self.chunk[axis]);
@@ -123,29 +136,36 @@ impl ShardGrid {
                 entries.extend([ABSENT; 2]);
                 continue;
             }
+            visit(from, inside);
+            let (chunk, checksum) = bytes[end..end + chunk_bytes + CHECKSUM].split_at_mut(chunk_bytes);
             if inside != self.chunk {
-                chunk.fill(zero);
+                chunk.fill(0);
             }
+            // Whether any bit is set: then the chunk is not the fill value throughout.
+            let mut is_filled = false;
             for x in 0..inside[0] {
                 for y in 0..inside[1] {
                     let at =
                         ((from[0] - first[0] + x) * size[1] + from[1] - first[1] + y) * size[2] + from[2] - first[2];
-                    let to = (x * self.chunk[1] + y) * self.chunk[2];
-                    chunk[to..to + inside[2]].copy_from_slice(&samples[at..at + inside[2]]);
+                    let to = (x * self.chunk[1] + y) * self.chunk[2] * size_of::<T>();
+                    let row: &[u8] = cast_slice(&samples[at..at + inside[2]]);
+                    is_filled = is_filled || row.iter().any(|byte| *byte != 0);
+                    chunk[to..to + row.len()].copy_from_slice(row);
                 }
             }
-            if chunk.iter().all(|value| *value == zero) {
+            if !is_filled {
                 entries.extend([ABSENT; 2]);
                 continue;
             }
-            let offset = bytes.len();
-            bytes.extend_from_slice(cast_slice(&chunk));
-            bytes.extend(crc32c::crc32c(&bytes[offset..]).to_le_bytes());
-            entries.extend([offset as u64, (bytes.len() - offset) as u64]);
+            checksum.copy_from_slice(&crc32c::crc32c(chunk).to_le_bytes());
+            entries.extend([end as u64, (chunk_bytes + CHECKSUM) as u64]);
+            end += chunk_bytes + CHECKSUM;
         }
-        let index_at = bytes.len();
-        bytes.extend_from_slice(cast_slice(&entries));
-        bytes.extend(crc32c::crc32c(&bytes[index_at..]).to_le_bytes());
+        let index: &[u8] = cast_slice(&entries);
+        bytes[end..end + index.len()].copy_from_slice(index);
+        end += index.len();
+        bytes[end..end + CHECKSUM].copy_from_slice(&crc32c::crc32c(index).to_le_bytes());
+        end + CHECKSUM
     }
 }
 
@@ -307,6 +327,33 @@ impl Shards {
         Ok(out)
     }
 
+    /// A box whose traces are read one by one from the mapped chunks; the checksums of chunks that are wholly inside are verified.
+    pub fn view<T: StoredSample>(&self, start: [usize; 3], size: [usize; 3]) -> Result<BoxView<'_, T>, StoreError> {
+        let grid = &self.grid;
+        let span = Span { start, size };
+        let chunks = grid.chunks();
+        let first = [0, 1, 2].map(|axis| start[axis] / grid.chunk[axis]);
+        let counts = [0, 1, 2].map(|axis| (span.end(axis) - 1) / grid.chunk[axis] + 1 - first[axis]);
+        let mut views = Vec::with_capacity(counts.iter().product());
+        for n in 0..counts.iter().product() {
+            let inside = [n / (counts[1] * counts[2]), n / counts[2] % counts[1], n % counts[2]];
+            let place = [0, 1, 2].map(|axis| first[axis] + inside[axis]);
+            let index = [0, 1, 2].map(|axis| place[axis] / chunks[axis]);
+            let inner = [0, 1, 2].map(|axis| place[axis] % chunks[axis]);
+            let shard = self.shard::<T>(index)?;
+            let number = (inner[0] * chunks[1] + inner[1]) * chunks[2] + inner[2];
+            if span.covers(&grid.chunk_extent(place)) && !shard.is_whole(number) {
+                return Err(self.damaged(index, "the checksum of a chunk does not fit"));
+            }
+            let range = shard.chunks[number].clone();
+            match try_cast_slice::<u8, T>(&shard.map[range]) {
+                Ok(samples) => views.push(samples),
+                Err(_) => return Err(self.damaged(index, "its chunks are not aligned")),
+            }
+        }
+        Ok(BoxView { chunk: grid.chunk, start, first, counts, chunks: views })
+    }
+
     /// Copies the part `span` of the box `whole`; `out` is that part.
     fn copy<T: StoredSample>(&self, whole: &Span, span: &Span, out: &mut [T]) -> Result<(), StoreError> {
         let grid = &self.grid;
@@ -325,11 +372,7 @@ impl Shards {
                     if range.is_empty() {
                         continue;
                     }
-                    let extent = Span {
-                        start: [0, 1, 2].map(|axis| place[axis] * grid.chunk[axis]),
-                        size: [0, 1, 2]
-                            .map(|axis| grid.chunk[axis].min(grid.shape[axis] - place[axis] * grid.chunk[axis])),
-                    };
+                    let extent = grid.chunk_extent(place);
                     if whole.covers(&extent) && !shard.is_whole(number) {
                         return Err(self.damaged(index, "the checksum of a chunk does not fit"));
                     }
@@ -341,6 +384,39 @@ impl Shards {
             }
         }
         Ok(())
+    }
+}
+
+/// A box of a volume, in the chunks that hold it.
+pub(super) struct BoxView<'a, T> {
+    chunk: [usize; 3],
+    start: [usize; 3],
+    /// The first chunk, and how many there are.
+    first: [usize; 3],
+    counts: [usize; 3],
+    /// Their samples; none where they are the fill value.
+    chunks: Vec<&'a [T]>,
+}
+
+impl<T: StoredSample> BoxView<'_, T> {
+    /// The samples of the trace at x, y of the box, as floats.
+    pub fn read_trace(&self, x: usize, y: usize, out: &mut [f32]) {
+        let at = [self.start[0] + x, self.start[1] + y];
+        let place = [0, 1].map(|axis| at[axis] / self.chunk[axis] - self.first[axis]);
+        let row = (at[0] % self.chunk[0] * self.chunk[1] + at[1] % self.chunk[1]) * self.chunk[2];
+        let column = (place[0] * self.counts[1] + place[1]) * self.counts[2];
+        let mut from = self.start[2] % self.chunk[2];
+        let mut rest = out;
+        for chunk in &self.chunks[column..column + self.counts[2]] {
+            let (part, after) = rest.split_at_mut(rest.len().min(self.chunk[2] - from));
+            match chunk.get(row + from..) {
+                Some(samples) if !chunk.is_empty() => {
+                    part.iter_mut().zip(samples).for_each(|(out, sample)| *out = sample.to_f32());
+                }
+                _ => part.fill(0.0),
+            }
+            (rest, from) = (after, 0);
+        }
     }
 }
 

@@ -201,7 +201,7 @@ fn slabs_and_threads_make_the_same_bytes() {
     let path = dir.path().join("slabs");
     let row = SIZE[1] * SIZE[2];
     let mut asked = Vec::new();
-    let slab = |block: &Block| {
+    let slab = |block: &Block, _| {
         assert_eq!(block.crosslines, 0..SIZE[1]);
         asked.push(block.inlines.clone());
         Ok(original.samples()[block.inlines.start * row..block.inlines.end * row].to_vec().into())
@@ -219,7 +219,7 @@ fn a_source_that_fails_or_a_cancel_leaves_the_old_volume() {
     write_volume(&path, &volume(size), &info(size), &quiet()).unwrap();
     let before = content(dir.path());
     let slab =
-        |_: &Block| -> Result<std::borrow::Cow<'static, [f32]>, SourceError> { Err("trace 5 is cut off".into()) };
+        |_: &Block, _| -> Result<std::borrow::Cow<'static, [f32]>, SourceError> { Err("trace 5 is cut off".into()) };
     let settings = WriteSettings::default();
     let error = write_volume_blocks(&path, size, None, &info(size), &settings, slab, &quiet()).unwrap_err();
     assert!(error.source().unwrap().to_string().contains("trace 5"));
@@ -253,7 +253,7 @@ fn little_memory_makes_small_blocks_in_the_order_of_the_source_and_the_same_byte
         (LineOrder::Crosslines, 2, 3),
     ] {
         let mut asked = Vec::new();
-        let supply = |block: &Block| {
+        let supply = |block: &Block, _| {
             asked.push(block.clone());
             Ok(block_of(&original, block).into())
         };
@@ -276,7 +276,7 @@ fn an_interrupted_volume_goes_on_where_it_was_and_ends_the_same() {
     let settings = WriteSettings { memory_bytes: 1, order: LineOrder::Inlines };
     let resume = |fingerprint: &str, stop_after: usize| {
         let mut supplied = 0;
-        let supply = |block: &Block| {
+        let supply = |block: &Block, _| {
             if supplied == stop_after {
                 return Err("the program was killed".into());
             }
