@@ -1,6 +1,7 @@
 #!/bin/sh
-# Fuzzes every target: fuzz/run.sh SECONDS [TARGET...]. Seconds are for each target; 0 runs what is in the corpus once.
-# A finding stops the run, and its input is kept in fuzz/findings. Needs a C++ compiler beside Rust (libFuzzer is C++).
+# Fuzzes the parsers: fuzz/run.sh SECONDS [TARGET...]. Seconds are for each target; 0 runs what is in the corpus once. Without targets all
+# but `documents` are run, for which the whole program is compiled once more. A finding stops the run, and its input is kept in
+# fuzz/findings. Needs a C++ compiler beside Rust (libFuzzer is C++).
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:?seconds for each target}
@@ -8,34 +9,36 @@ shift
 build=${CARGO_TARGET_DIR:-target}/debug
 corpus=fuzz/corpus
 findings=fuzz/findings
+# Inputs are small: threads would only wait for one another.
+export RAYON_NUM_THREADS=1
 
-# Compiles the programs named after the features; $1 may set a compiler wrapper.
+# Compiles the programs named after the features, with coverage counters.
 compile() {
-    wrapper=$1 features=$2
-    shift 2
+    features=$1
+    shift
     for program in "$@"; do set -- "$@" --bin "fuzz-$program"; shift; done
-    RUSTC_WORKSPACE_WRAPPER=$wrapper cargo build --locked -q -p petroglyph-fuzz --features "$features" "$@"
+    RUSTC_WORKSPACE_WRAPPER=$PWD/fuzz/instrument.sh CARGO_INCREMENTAL=0 \
+        cargo build --locked -q -p petroglyph-fuzz --features "$features" "$@"
 }
-instrument=$PWD/fuzz/instrument.sh
-compile "" "" seeds
-compile "$instrument" libfuzzer segy segy-headers surface
+# Has a program write the inputs that fuzzing starts from.
+seed() {
+    FUZZ_SEEDS=$corpus "$build/fuzz-$1" -runs=0 >"$findings/seeds.log" 2>&1 || { cat "$findings/seeds.log" >&2; exit 1; }
+}
 mkdir -p "$findings"
-"$build/fuzz-seeds" "$corpus"
-case "${*:-documents}" in
-    *documents*)
-        compile "" documents document-seeds
-        compile "$instrument" libfuzzer,documents documents
-        "$build/fuzz-document-seeds" "$corpus"
-        ;;
+compile libfuzzer segy segy-headers surface well
+seed segy
+case " $* " in
+    *" documents "*) compile libfuzzer,documents documents && seed documents ;;
 esac
 
-[ $# -gt 0 ] || set -- $(ls "$corpus")
+[ $# -gt 0 ] || set -- $(ls "$corpus" | grep -v '^documents$')
 total=0
 for target in "$@"; do
     program=$target
     FUZZ_FORMAT=
     case $target in
         surface-*) program=surface FUZZ_FORMAT=${target#surface-} ;;
+        well-*) program=well FUZZ_FORMAT=${target#well-} ;;
     esac
     export FUZZ_FORMAT
     limit="-max_total_time=$seconds"

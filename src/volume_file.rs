@@ -66,6 +66,8 @@ pub fn write(
     let format = format.unwrap_or(match stored.type_name().as_str() {
         "int8" => WriteFormat::Int8,
         "int16" => WriteFormat::Int16,
+        "uint8" => WriteFormat::Uint8,
+        "uint16" => WriteFormat::Uint16,
         _ => WriteFormat::Ieee32,
     });
     let origin =

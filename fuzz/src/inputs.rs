@@ -1,6 +1,7 @@
 //! What seeds are made of: an interpretation for our writers, and one small file of each format that we do not write.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use survey::well::{Survey, WellPath};
 use survey::{Fault, Horizon, NodeGrid, Quality, Sheet, SurveyGeometry, TriangleMesh};
 
 /// A dipping horizon with a hole, and a fault of four triangles.
@@ -17,6 +18,30 @@ pub fn interpretation(geometry: &SurveyGeometry) -> (Horizon, Fault) {
     };
     (horizon, Fault { name: "F1".to_owned(), mesh, truncated_by: None })
 }
+
+/// A well that builds up from the vertical to 60 degrees.
+pub fn well_path() -> WellPath {
+    let surveys = [(0.0, 0.0), (500.0, 0.0), (1500.0, 60.0), (3000.0, 60.0)]
+        .map(|(md_m, inclination_deg)| Survey { md_m, inclination_deg, azimuth_deg: 45.0 });
+    match WellPath::minimum_curvature(DVec2::new(500.0, 700.0), 25.0, &surveys) {
+        Ok(path) => path,
+        Err(error) => panic!("{error}"),
+    }
+}
+
+/// Kind and content of files of wells.
+pub const WELL_FILES: &[(&str, &str)] = &[
+    ("deviation", "# WELL NAME: A-1\n# KB 25\nMD,INC,AZI\n0,0,0\n500,0,0\n1500,60,45\n"),
+    ("deviation", "MD(ft) X Y TVDSS\n0 500 700 -25\n1000 500 700 975\n2000 900 700 1800\n"),
+    ("tops", "Well Surface MD\nA-1 \"Top Chalk\" 812.5\nA-1 Base 1204\n"),
+    ("tops", "surface,tvdss_m\nTop A,700\nTop B,900.5\n"),
+    ("checkshot", "TVDSS TWT\n0 0\n500 480\n1500 1210\n"),
+    ("checkshot", "MD(m),OWT(s)\n25,0\n1000,0.41\n"),
+    (
+        "las",
+        "~Version\nVERS. 2.0 :\nWRAP. NO :\n~Well\nSTRT.M 100 :\nSTOP.M 101 :\nSTEP.M 0.5 :\nNULL. -999.25 :\nWELL. A-1 :\n~Curve\nDEPT.M :\nGR.API : gamma\n~Ascii\n100 45.5\n100.5 -999.25\n101 47\n",
+    ),
+];
 
 /// Format and content.
 pub const HAND_WRITTEN: &[(&str, &str)] = &[

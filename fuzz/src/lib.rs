@@ -4,8 +4,9 @@
 //! [`LARGEST_ALLOCATION`] bytes: inputs are a few kilobytes, and no header may make a parser reserve what the file cannot fill.
 
 pub mod inputs;
+pub mod seeds;
 
-pub use inputs::{HAND_WRITTEN, interpretation};
+pub use inputs::{HAND_WRITTEN, WELL_FILES, interpretation, well_path};
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::{Path, PathBuf};

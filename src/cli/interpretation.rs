@@ -186,11 +186,17 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
 
 pub(super) fn export(typed: ExportArgs) -> Result<Request, Usage> {
     if let Some(volume) = typed.volume {
-        let formats =
-            [(1, WriteFormat::Ibm32), (3, WriteFormat::Int16), (5, WriteFormat::Ieee32), (8, WriteFormat::Int8)];
+        let formats = [
+            (1, WriteFormat::Ibm32),
+            (3, WriteFormat::Int16),
+            (5, WriteFormat::Ieee32),
+            (8, WriteFormat::Int8),
+            (11, WriteFormat::Uint16),
+            (16, WriteFormat::Uint8),
+        ];
         let format = typed.format_code.map(|code| {
             let found = formats.iter().find(|(known, _)| *known == code).map(|(_, format)| *format);
-            found.ok_or_else(|| format!("--format-code {code}: expected 1, 3, 5 or 8"))
+            found.ok_or_else(|| format!("--format-code {code}: expected 1, 3, 5, 8, 11 or 16"))
         });
         let format = format.transpose()?;
         return Ok(Request::ExportVolume { project: typed.project, out: typed.out, volume, format });

@@ -24,7 +24,9 @@ pub struct LineAxis {
 impl LineAxis {
     /// Number of the last line.
     pub fn last(&self) -> i32 {
-        self.first + self.step * (self.count.max(1) as i32 - 1)
+        // The number itself fits; the way to it may not.
+        let last = i64::from(self.first) + i64::from(self.step) * (self.count.max(1) as i64 - 1);
+        last as i32
     }
 
     /// Fractional index of a (fractional) line number.
@@ -256,6 +258,13 @@ impl SurveyGeometry {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_last_line_is_found_over_the_whole_range_of_numbers() {
+        assert_eq!(LineAxis { first: i32::MAX, step: -5, count: 858_993_460 }.last(), i32::MIN);
+        assert_eq!(LineAxis { first: i32::MIN, step: i32::MAX, count: 3 }.last(), i32::MAX - 1);
+        assert_eq!(LineAxis { first: 100, step: -2, count: 6 }.last(), 90);
+    }
 
     fn rotated() -> SurveyGeometry {
         let (sin, cos) = 0.5_f64.sin_cos();

@@ -261,8 +261,8 @@ pub(in crate::cli) struct ExportArgs {
     /// Volume to write, as SEG-Y
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) volume: Option<String>,
-    /// SEG-Y sample format: 1 IBM float, 3 16-bit integer, 5 IEEE float, 8 8-bit integer [default: as the volume is stored]
-    #[arg(long, value_name = "1|3|5|8", requires = "volume")]
+    /// SEG-Y sample format: 1 IBM float, 3 16-bit integer, 5 IEEE float, 8 8-bit integer, 11 and 16 unsigned 16-bit and 8-bit integer [default: as the volume is stored]
+    #[arg(long, value_name = "1|3|5|8|11|16", requires = "volume")]
     pub(in crate::cli) format_code: Option<u16>,
     /// ZMAP+ and CPS-3, which hold no rotated grids: resample such a grid, or refuse it [default: resample]
     #[arg(long, value_name = "resample|refuse")]

@@ -1,4 +1,4 @@
-//! SEG-Y revision 1, written: standard bytes, dead and missing traces left out.
+//! SEG-Y revision 1, written: standard bytes, dead and missing traces left out. Unsigned integers need revision 2, which then is written.
 //!
 //! The file is written under another name beside its target and renamed when it is complete, so that a full disk or a
 //! cancel leaves nothing behind.
@@ -34,6 +34,10 @@ pub enum WriteFormat {
     Int16,
     /// Integer, 1 byte (code 8).
     Int8,
+    /// Unsigned integer, 2 bytes (code 11, revision 2).
+    Uint16,
+    /// Unsigned integer, 1 byte (code 16, revision 2).
+    Uint8,
 }
 
 impl WriteFormat {
@@ -45,6 +49,16 @@ impl WriteFormat {
             Self::Int32 => SampleFormat::Int32,
             Self::Int16 => SampleFormat::Int16,
             Self::Int8 => SampleFormat::Int8,
+            Self::Uint16 => SampleFormat::Uint16,
+            Self::Uint8 => SampleFormat::Uint8,
+        }
+    }
+
+    /// Bytes 3501 and 3502: the revision that has the format.
+    fn revision(self) -> [u8; 2] {
+        match self {
+            Self::Uint16 | Self::Uint8 => [2, 0],
+            _ => [1, 0],
         }
     }
 
@@ -55,6 +69,8 @@ impl WriteFormat {
             Self::Int32 => Some([f64::from(i32::MIN), f64::from(i32::MAX)]),
             Self::Int16 => Some([f64::from(i16::MIN), f64::from(i16::MAX)]),
             Self::Int8 => Some([f64::from(i8::MIN), f64::from(i8::MAX)]),
+            Self::Uint16 => Some([0.0, f64::from(u16::MAX)]),
+            Self::Uint8 => Some([0.0, f64::from(u8::MAX)]),
         }
     }
 }
@@ -260,11 +276,15 @@ impl<'a> Plan<'a> {
         put(3225, self.options.format.sample_format().code());
         put(3229, 4);
         put(3255, 1);
-        put(3501, 0x0100);
         put(3503, 1);
         order.put(&mut header, 3200, 1_i32.to_be_bytes());
         order.put(&mut header, 3204, 1_i32.to_be_bytes());
         order.put(&mut header, 3296, ORDER_CONSTANT.to_be_bytes());
+        // Revision 1 has one number of two bytes here, revision 2 two of one byte, whatever the order.
+        match self.options.format.revision() {
+            [2, minor] => header[3500..3502].copy_from_slice(&[2, minor]),
+            revision => order.put(&mut header, 3500, revision),
+        }
         header
     }
 
@@ -359,8 +379,9 @@ impl<'a> Plan<'a> {
             // A float that is not a number becomes 0 by the cast.
             let integer = rounded.clamp(low, high) as i32;
             match size {
-                1 => bytes[0] = (integer as i8).cast_unsigned(),
-                2 => order.put(bytes, 0, (integer as i16).to_be_bytes()),
+                // The low bytes of a number in range are those of the narrow one, signed or not.
+                1 => bytes[0] = integer as u8,
+                2 => order.put(bytes, 0, (integer as u16).to_be_bytes()),
                 _ => order.put(bytes, 0, integer.to_be_bytes()),
             }
         }

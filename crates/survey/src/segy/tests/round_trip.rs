@@ -47,12 +47,14 @@ impl Random {
         }
     }
 
-    /// Integers that every format holds, or any floats.
+    /// Integers that the format holds, or any floats.
     fn volume(&mut self, size: [usize; 3], format: WriteFormat) -> Volume<f32> {
         let mut volume = Volume::filled(size, 0.0);
         for value in volume.samples_mut() {
             *value = match format {
                 WriteFormat::Ieee32 | WriteFormat::Ibm32 => (self.signed() * 3e4) as f32,
+                WriteFormat::Uint16 => (self.signed().abs() * 65_535.0).round() as f32,
+                WriteFormat::Uint8 => (self.signed().abs() * 255.0).round() as f32,
                 _ => (self.signed() * 127.0).round() as f32,
             };
         }
@@ -65,8 +67,16 @@ fn every_format_and_order_on_random_surveys() {
     let mut random = Random(20_261_121);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("volume.sgy");
-    let formats = [WriteFormat::Ieee32, WriteFormat::Ibm32, WriteFormat::Int32, WriteFormat::Int16, WriteFormat::Int8];
-    for round in 0..150 {
+    let formats = [
+        WriteFormat::Ieee32,
+        WriteFormat::Ibm32,
+        WriteFormat::Int32,
+        WriteFormat::Int16,
+        WriteFormat::Int8,
+        WriteFormat::Uint16,
+        WriteFormat::Uint8,
+    ];
+    for round in 0..182 {
         let format = formats[round % formats.len()];
         let byte_order = [ByteOrder::Big, ByteOrder::Little][round / formats.len() % 2];
         let geometry = random.geometry();

@@ -1,4 +1,4 @@
-//! Writes the inputs that fuzzing starts from, by our own writers: `fuzz-seeds CORPUS` makes a folder for each target.
+//! The inputs that fuzzing starts from, most of them by our own writers.
 
 use std::fs;
 use std::path::Path;
@@ -9,20 +9,33 @@ use survey::{Progress, Volume};
 
 type Done = Result<(), Box<dyn std::error::Error>>;
 
-fn main() -> Done {
-    let Some(corpus) = std::env::args_os().nth(1) else {
-        return Err("give the folder to write into".into());
-    };
+/// Makes a folder for each target in the folder that the environment names (`FUZZ_SEEDS`), if it names one.
+///
+/// # Panics
+/// When they cannot be written.
+pub fn write_if_asked() {
+    let Some(corpus) = std::env::var_os("FUZZ_SEEDS") else { return };
     let corpus = Path::new(&corpus);
-    segy_seeds(corpus)?;
-    surface_seeds(corpus)
+    let written = segy_seeds(corpus).and_then(|()| surface_seeds(corpus)).and_then(|()| well_seeds(corpus));
+    if let Err(error) = written {
+        panic!("{}: {error}", corpus.display());
+    }
+}
+
+fn well_seeds(corpus: &Path) -> Done {
+    for (n, (kind, text)) in crate::WELL_FILES.iter().enumerate() {
+        let folder = corpus.join(format!("well-{kind}"));
+        fs::create_dir_all(&folder)?;
+        fs::write(folder.join(format!("hand-written-{n}")), text)?;
+    }
+    Ok(())
 }
 
 fn segy_seeds(corpus: &Path) -> Done {
     let (whole, headers) = (corpus.join("segy"), corpus.join("segy-headers"));
     fs::create_dir_all(&whole)?;
     fs::create_dir_all(&headers)?;
-    let mut geometry = fuzz::survey();
+    let mut geometry = crate::survey();
     geometry.inlines.count = 3;
     geometry.crosslines.count = 4;
     geometry.vertical.count = 3;
@@ -53,8 +66,8 @@ fn segy_seeds(corpus: &Path) -> Done {
 }
 
 fn surface_seeds(corpus: &Path) -> Done {
-    let geometry = fuzz::survey();
-    let (horizon, fault) = fuzz::interpretation(&geometry);
+    let geometry = crate::survey();
+    let (horizon, fault) = crate::interpretation(&geometry);
     let detected = corpus.join("surface-detected");
     fs::create_dir_all(&detected)?;
     for format in Format::all() {
@@ -65,7 +78,7 @@ fn surface_seeds(corpus: &Path) -> Done {
             write_horizon(&folder.join("horizon"), &horizon, &geometry, format).is_ok(),
             write_fault(&folder.join("fault"), &fault, &geometry, format).is_ok(),
         ];
-        for (name, text) in fuzz::HAND_WRITTEN {
+        for (name, text) in crate::HAND_WRITTEN {
             if *name == format.name() {
                 fs::write(folder.join("hand-written"), text)?;
                 fs::write(detected.join(*name), text)?;

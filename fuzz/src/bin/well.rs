@@ -1,0 +1,24 @@
+//! A file of a well. The environment names its kind (`FUZZ_FORMAT`): `deviation`, `tops`, `checkshot` or `las`.
+
+#![no_main]
+
+use std::path::Path;
+use std::sync::LazyLock;
+
+use survey::well::{WellOptions, WellPath, describe, parse_checkshot, parse_deviation, parse_las, parse_tops};
+
+static KIND: LazyLock<String> = LazyLock::new(|| std::env::var("FUZZ_FORMAT").unwrap_or_default());
+static PATH: LazyLock<WellPath> = LazyLock::new(fuzz::well_path);
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    let text = String::from_utf8_lossy(data);
+    let (file, options, mut notes) = (Path::new("input"), WellOptions::default(), Vec::new());
+    let _ = describe(file, &text);
+    match KIND.as_str() {
+        "deviation" => drop(parse_deviation(file, &text, &options)),
+        "tops" => drop(parse_tops(file, &text, &PATH, &options, &mut notes)),
+        "checkshot" => drop(parse_checkshot(file, &text, &PATH, &options, &mut notes)),
+        "las" => drop(parse_las(file, &text)),
+        other => panic!("FUZZ_FORMAT {other} is no kind of well file"),
+    }
+});
