@@ -21,8 +21,11 @@ pub fn interpretation(geometry: &SurveyGeometry) -> (Horizon, Fault) {
 
 /// A well that builds up from the vertical to 60 degrees.
 pub fn well_path() -> WellPath {
-    let surveys = [(0.0, 0.0), (500.0, 0.0), (1500.0, 60.0), (3000.0, 60.0)]
-        .map(|(md_m, inclination_deg)| Survey { md_m, inclination_deg, azimuth_deg: 45.0 });
+    let surveys = [(0.0, 0.0), (500.0, 0.0), (1500.0, 60.0), (3000.0, 60.0)].map(|(md_m, inclination_deg)| Survey {
+        md_m,
+        inclination_deg,
+        azimuth_deg: 45.0,
+    });
     match WellPath::minimum_curvature(DVec2::new(500.0, 700.0), 25.0, &surveys) {
         Ok(path) => path,
         Err(error) => panic!("{error}"),

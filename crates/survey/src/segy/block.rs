@@ -5,9 +5,7 @@ use super::error::{SegyError, SegyProblem};
 use super::file::SegyFile;
 use super::sample::SampleFormat;
 use crate::progress::Progress;
-use crate::store::{
-    Block, Ingested, LineOrder, StoreError, StoredSample, VolumeInfo, WriteSettings, resume_volume,
-};
+use crate::store::{Block, Ingested, LineOrder, StoreError, StoredSample, VolumeInfo, WriteSettings, resume_volume};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::path::Path;
@@ -88,8 +86,7 @@ impl SegyFile {
         let settings = WriteSettings { memory_bytes, order };
         let mut non_finite = 0;
         let supply = |block: &Block, room: Vec<T>| {
-            let (samples, bad) =
-                self.read_block(block.inlines.clone(), block.crosslines.clone(), room, progress)?;
+            let (samples, bad) = self.read_block(block.inlines.clone(), block.crosslines.clone(), room, progress)?;
             self.release();
             non_finite += bad;
             Ok(samples.into())

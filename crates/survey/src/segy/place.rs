@@ -52,10 +52,8 @@ impl Placement {
             runs().map(|run| run.filter(|(_, trace)| world_of(*trace).is_some()).count()).collect();
         let total: usize = located.iter().sum();
         let step = total.div_ceil(MAX_POINTS).max(1);
-        let before: Vec<usize> = located
-            .iter()
-            .scan(0, |sum, count| Some(std::mem::replace(sum, *sum + count)))
-            .collect();
+        let before: Vec<usize> =
+            located.iter().scan(0, |sum, count| Some(std::mem::replace(sum, *sum + count))).collect();
         let sample: Vec<Vec<(DVec2, DVec2)>> = runs()
             .zip(&before)
             .map(|(run, &before)| {

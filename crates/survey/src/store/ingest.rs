@@ -235,7 +235,9 @@ impl Ingest<'_> {
                 for &place in &places {
                     let (start, extent) = grid.extent(place);
                     let values = shards.read_box::<T>(start, extent)?;
-                    ranges.take(Samples { values: &values, first: start, size: extent }.ranges(start, extent, &self.mask, size));
+                    ranges.take(
+                        Samples { values: &values, first: start, size: extent }.ranges(start, extent, &self.mask, size),
+                    );
                     self.progress.step(1)?;
                 }
                 done.kept += places.len();

@@ -263,7 +263,8 @@ mod tests {
             values = (0..half.iter().product())
                 .map(|n: usize| {
                     let (before, m, after) = (n / stride / half[axis], n / stride % half[axis], n % stride);
-                    let samples = taps(2 * m, count).map(|at| at.map(|at| values[(before * count + at) * stride + after]));
+                    let samples =
+                        taps(2 * m, count).map(|at| at.map(|at| values[(before * count + at) * stride + after]));
                     weighted(samples)
                 })
                 .collect();

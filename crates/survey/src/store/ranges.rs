@@ -63,9 +63,7 @@ impl Range {
             highs[lane] = if value > highs[lane] { value } else { highs[lane] };
         };
         for chunk in chunks {
-            for lane in 0..LANES {
-                widen(lane, chunk[lane].to_f32());
-            }
+            chunk.iter().enumerate().for_each(|(lane, value)| widen(lane, value.to_f32()));
         }
         rest.iter().enumerate().for_each(|(lane, value)| widen(lane, value.to_f32()));
         (self.lows, self.highs) = (lows, highs);
