@@ -5,7 +5,7 @@
 #   make check   formatting, lints and documentation, warnings denied
 #   make bench   how long our stages take on this machine
 #   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, scipy, xtgeo, segyio, lasio)
-#   make fuzz    two seconds of made-up input for every parser; make fuzz-long ten minutes each
+#   make fuzz    a second of made-up input for every parser; make fuzz-long ten minutes each
 #   make scenario   the interpreter's day by mouse and keys in the real window (Xvfb, xdotool, ImageMagick)
 #   make gallery the pictures of docs/gallery.md
 #   make accuracy   measures accuracy anew into docs/accuracy.md
@@ -53,7 +53,7 @@ scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario
 
 fuzz: setup
-	fuzz/run.sh 2
+	fuzz/run.sh 1
 
 fuzz-long: setup
 	fuzz/run.sh 600
@@ -61,11 +61,11 @@ fuzz-long: setup
 bench: build
 	$(PETROGLYPH) bench --quick
 
-# What Rust alone does not bring: a C compiler for the compression library, and a Vulkan driver (Mesa's software
+# What Rust alone does not bring: a C compiler for the compression library, a C++ one for the fuzzer, and a Vulkan driver (Mesa's software
 # driver serves where there is no GPU). Skipped at once when all is there.
 setup:
 	@missing=""; \
-	command -v cc >/dev/null || missing="$$missing build-essential"; \
+	{ command -v cc && command -v c++; } >/dev/null || missing="$$missing build-essential"; \
 	PATH="$$PATH:/sbin:/usr/sbin" ldconfig -p 2>/dev/null | grep -q 'libvulkan\.so\.1' || missing="$$missing libvulkan1"; \
 	ls /usr/share/vulkan/icd.d /etc/vulkan/icd.d 2>/dev/null | grep -q json || missing="$$missing mesa-vulkan-drivers"; \
 	[ -z "$$missing" ] && exit 0; \
@@ -77,6 +77,6 @@ setup:
 	else \
 		echo "These system packages are missing:$$missing"; \
 		echo "On Debian or Ubuntu, as root: apt-get install$$missing"; \
-		echo "Elsewhere: a C compiler, the Vulkan loader, and a Vulkan driver (Mesa's lavapipe serves without a GPU)."; \
+		echo "Elsewhere: a C and C++ compiler, the Vulkan loader, and a Vulkan driver (Mesa's lavapipe serves without a GPU)."; \
 		exit 1; \
 	fi

@@ -1,8 +1,9 @@
 //! How fast a SEG-Y cube comes into memory: IEEE and IBM floats, headers understood, every trace decoded and measured.
 //!
 //! The file was just written, so the system holds it in memory: what is timed is our work and not the disk. `bench/peers.py` times
-//! segyio on the same files.
+//! segyio on the same files. A third file goes into the store and out of it.
 
+use super::StoreMeasured;
 use crate::error::ProjectError;
 use serde::Serialize;
 use std::fmt;
@@ -34,6 +35,8 @@ pub struct SegyReads {
     pub threads: usize,
     /// The files.
     pub reads: Vec<SegyRead>,
+    /// Into the store and out of it.
+    pub store: StoreMeasured,
 }
 
 impl fmt::Display for SegyReads {
@@ -45,7 +48,7 @@ impl fmt::Display for SegyReads {
                 read.side, read.format, read.gb_per_second, self.threads
             )?;
         }
-        Ok(())
+        write!(f, "{}", self.store)
     }
 }
 
@@ -77,5 +80,6 @@ pub fn run(side: usize, folder: &Path, progress: &Progress) -> Result<SegyReads,
         let gb_per_second = (side * side * side * size_of::<f32>()) as f64 / 1e9 / quickest;
         reads.push(SegyRead { format: name, side, seconds, gb_per_second });
     }
-    Ok(SegyReads { threads: rayon::current_num_threads(), reads })
+    let store = super::store::run(side, Some(folder), progress)?;
+    Ok(SegyReads { threads: rayon::current_num_threads(), reads, store })
 }

@@ -79,7 +79,7 @@ pub(in crate::cli) struct BenchArgs {
     /// Write the model that is measured here as NumPy files, to time other programs on
     #[arg(long, value_name = "DIR")]
     pub(in crate::cli) dump: Option<PathBuf>,
-    /// Measure instead how fast a SEG-Y cube is read, with files in this folder, which stay there for other programs
+    /// Measure instead how fast a SEG-Y cube is read and stored, with files in this folder, which stay there for other programs
     #[arg(long, value_name = "DIR", conflicts_with = "dump")]
     pub(in crate::cli) segy: Option<PathBuf>,
 }

@@ -5,10 +5,9 @@
 //! chunk, crc32c, chunk, crc32c, …, (offset u64, length u64) for each place of the shard, crc32c
 //! ```
 //!
-//! Chunks that hold only the fill value are left out (offset and length all ones). Chunks are **not compressed**: float samples of
-//! seismic lose about a tenth to zstd, and a section through a volume then costs the decoding of every chunk it touches, sixty-four
-//! times the data it needs. Uncompressed chunks are mapped into memory, and a section copies only its own samples: measured at 512³,
-//! see `docs/performance.md`.
+//! Chunks that hold only the fill value are left out (offset and length all ones). Chunks are **not compressed**: zstd would take
+//! a tenth off real 16-bit volumes and a third off floats (`docs/performance.md`), but a section through a volume then costs the decoding of every chunk it touches,
+//! sixty-four times the data it needs. Uncompressed chunks are mapped into memory, and a section copies only its own samples.
 //!
 //! A shard is written beside its place and renamed, so that a killed program leaves whole shards only. Reading a whole chunk checks its
 //! checksum; reading a part of one does not.
