@@ -220,6 +220,7 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
         wanted.push(&raw.volume);
     }
     wanted.extend(scene.media.all().map(|medium| medium.volume.as_str()));
+    wanted.extend(scene.media.isosurface_volumes().map(String::as_str));
     wanted.extend(scene.media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str())));
     let volumes = read_volumes(project.root(), document, &geometry, &wanted, progress)?;
     let candidates = ShownCandidates::load(project, scene, rock.as_ref().map(|rock| &rock.model), progress)?;

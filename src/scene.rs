@@ -5,8 +5,8 @@ use crate::project::Document;
 use crate::style;
 use render::media::{Colouring, LayerOpacity, MediumColour, white_ramp};
 use render::{
-    Background, FaceData, Faces, Ground, Medium, Occlusion, Outlines, Phong, PickedHorizon, Scene, Scope, Shading,
-    Stroke,
+    Background, FaceData, Faces, Ground, Interleaved, Isosurface, Medium, Occlusion, Outlines, Phong, PickedHorizon,
+    Scalar, Scene, Scope, Shading, Stroke,
 };
 use ttf::{Colour, ColourMap, RgbaFunction, RgbaStop};
 
@@ -60,6 +60,8 @@ pub enum Technique {
     Phong,
     /// The volume seen through, unshaded.
     Volume,
+    /// The volume seen through, by its gradients and by what lies in front in stripes (P-horiz, figure 5).
+    Interleaved,
 }
 
 /// What a view shows through, where it was said.
@@ -73,6 +75,8 @@ pub struct SeeThrough {
     pub clear_below: f32,
     /// Horizons shown in it.
     pub horizons: Vec<ShownHorizon>,
+    /// Surfaces of one value; with these and no volume named the volume itself is not shown.
+    pub isosurfaces: Vec<ShownIsosurface>,
     /// Where the volume shows.
     pub scope: Scope,
 }
@@ -90,6 +94,19 @@ pub struct ShownHorizon {
     pub emission: f32,
 }
 
+/// A surface of one value, of a volume or of k'.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShownIsosurface {
+    /// Of what.
+    pub of: Scalar,
+    /// The value.
+    pub value: f32,
+    /// Its colour; absent: one of its own.
+    pub colour: Option<Colour>,
+    /// Its opacity.
+    pub opacity: f32,
+}
+
 /// Colours of horizons shown without one: pink first, as selections have been in the literature.
 const HORIZON_COLOURS: [Colour; 6] = [
     Colour::new(0xe8, 0x5a, 0x9b),
@@ -99,6 +116,10 @@ const HORIZON_COLOURS: [Colour; 6] = [
     Colour::new(0xee, 0x7a, 0x3a),
     Colour::new(0x8f, 0x74, 0xc9),
 ];
+
+/// Colours of isosurfaces shown without one.
+const ISOSURFACE_COLOURS: [Colour; 3] =
+    [Colour::new(0xd8, 0xb3, 0x65), Colour::new(0x5a, 0xb4, 0xac), Colour::new(0xc5, 0x7d, 0x8f)];
 
 /// Background of volumes seen through: their white needs something darker behind it.
 const BEHIND_VOLUMES: Colour = Colour::new(0x2c, 0x33, 0x3a);
@@ -125,6 +146,18 @@ impl SeeThrough {
                 paint: None,
             });
         }
+        for (n, shown) in self.isosurfaces.iter().enumerate() {
+            if let Scalar::Volume(name) = &shown.of {
+                document.position(Noun::Volume, name)?;
+            }
+            scene.media.isosurfaces.push(Isosurface {
+                of: shown.of.clone(),
+                value: shown.value,
+                colour: shown.colour.unwrap_or(ISOSURFACE_COLOURS[n % ISOSURFACE_COLOURS.len()]),
+                opacity: shown.opacity,
+                thickness: 1.0,
+            });
+        }
         if self.scope != Scope::Everywhere {
             scene.media.scope = self.scope;
         }
@@ -132,6 +165,7 @@ impl SeeThrough {
             Some(Technique::Occlusion) => Shading::Occlusion(Occlusion::default()),
             Some(Technique::Phong) => Shading::Phong(Phong::default()),
             Some(Technique::Volume) => Shading::Unshaded,
+            Some(Technique::Interleaved) => Shading::Interleaved(Interleaved::default()),
             None | Some(Technique::Illustrate) => return self.fill_cut_outs(scene, document),
         };
         scene.media.shading = shading;
@@ -143,7 +177,8 @@ impl SeeThrough {
                 scene.outlines.edges = Stroke { width_px: 1.4, colour: EDGES_OF_VOLUMES };
             }
         }
-        if scene.media.surroundings.is_empty() || self.medium.is_some() {
+        let surfaces_alone = !scene.media.isosurfaces.is_empty() && self.medium.is_none();
+        if self.medium.is_some() || scene.media.surroundings.is_empty() && !surfaces_alone {
             let raw = style::raw_colour(document, self.medium.as_deref(), ColourMap::Grey, None)?;
             let [low, high] = raw.function.domain;
             let mut function = white_ramp(high, self.clear_below);

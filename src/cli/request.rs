@@ -13,12 +13,12 @@ use crate::command::{
     SetVelocity,
 };
 use crate::picture::Device;
-use crate::scene::{SeeThrough, ShownHorizon, Technique};
+use crate::scene::{SeeThrough, ShownHorizon, ShownIsosurface, Technique};
 use glam::DVec2;
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
-use render::Scope;
+use render::{Scalar, Scope};
 use std::path::PathBuf;
 use survey::formats::{ExportOptions, Format, ImportOptions};
 use survey::segy::{SegyOptions, WriteFormat};
@@ -261,9 +261,10 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         Some("illustrate") => Some(Technique::Illustrate),
         Some("occlusion") => Some(Technique::Occlusion),
         Some("phong") => Some(Technique::Phong),
+        Some("interleaved") => Some(Technique::Interleaved),
         Some("volume") => Some(Technique::Volume),
         Some(other) => {
-            return Err(format!("--technique {other}: expected illustrate, occlusion, phong or volume"));
+            return Err(format!("--technique {other}: expected illustrate, occlusion, phong, interleaved or volume"));
         }
     };
     if !(typed.clear_below >= -1.0 && typed.clear_below < 1.0) {
@@ -294,6 +295,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
             medium: typed.medium,
             clear_below: typed.clear_below,
             horizons: typed.horizon.iter().map(|text| shown_horizon(text)).collect::<Result<_, _>>()?,
+            isosurfaces: typed.isosurface.iter().map(|text| shown_isosurface(text)).collect::<Result<_, _>>()?,
             scope: match typed.scope.as_str() {
                 "everywhere" => Scope::Everywhere,
                 "near" => Scope::NearHorizons,
@@ -318,6 +320,20 @@ fn shown_horizon(text: &str) -> Result<ShownHorizon, Usage> {
         return Err(format!("--horizon {text}: expected NAME,#RRGGBB,OPACITY,LIGHT"));
     }
     Ok(ShownHorizon { name, colour, opacity, emission })
+}
+
+/// NAME,VALUE[,#RRGGBB[,OPACITY]]
+fn shown_isosurface(text: &str) -> Result<ShownIsosurface, Usage> {
+    let usage = || format!("--isosurface {text}: expected NAME,VALUE[,#RRGGBB[,OPACITY]]");
+    let parts: Vec<&str> = text.split(',').collect();
+    let number = |part: &str| part.parse::<f32>().map_err(|_| usage());
+    let ([name, value] | [name, value, _] | [name, value, _, _]) = parts[..] else { return Err(usage()) };
+    Ok(ShownIsosurface {
+        of: if name == "k" { Scalar::Depth } else { Scalar::Volume(name.to_owned()) },
+        value: number(value)?,
+        colour: parts.get(2).map(|part| colour(part)).transpose()?,
+        opacity: parts.get(3).map_or(Ok(1.0), |part| number(part))?,
+    })
 }
 
 fn colour(text: &str) -> Result<Colour, Usage> {

@@ -20,6 +20,7 @@ pub(super) struct View {
     roaming_box: Option<LineBox>,
     cuts: Vec<Cut>,
     ground: Option<Option<Ground>>,
+    ground_opacity: Option<f32>,
     face_data: Option<FaceData>,
     tree_level: Option<u32>,
     outlines: Option<Outlines>,
@@ -82,6 +83,7 @@ impl TryFrom<ViewArgs> for View {
             roaming_box: typed.roaming_box.map(|text| numbers("--box", &text, ',')).transpose()?,
             cuts,
             ground: switch("--ground", typed.ground.as_deref(), Some(Ground::default()), None)?,
+            ground_opacity: typed.ground_opacity,
             face_data: match typed.show.as_deref() {
                 None => typed.level.map(|_| FaceData::Leaves),
                 Some("rock") => Some(FaceData::Rock),
@@ -144,6 +146,9 @@ impl View {
         scene.camera.zoom = self.zoom.unwrap_or(scene.camera.zoom);
         scene.roaming_box = self.roaming_box.map(|lines| voxel_box(lines, geometry)).or(scene.roaming_box);
         scene.ground = self.ground.unwrap_or(scene.ground);
+        if let (Some(ground), Some(opacity)) = (&mut scene.ground, self.ground_opacity) {
+            ground.opacity = opacity;
+        }
         scene.face_data = self.face_data.unwrap_or(scene.face_data);
         scene.tree_level = self.tree_level.unwrap_or(scene.tree_level);
         scene.outlines = self.outlines.unwrap_or(scene.outlines);

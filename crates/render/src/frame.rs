@@ -5,9 +5,9 @@ use crate::error::RenderError;
 use crate::ground::Relief;
 use crate::inputs::{Candidates, Inputs, NamedVolume};
 use crate::leaves::FaceData;
-use crate::media::Faces;
 use crate::media::field::Field;
 use crate::media::prepared::Preparations;
+use crate::media::{Faces, Scalar};
 use crate::outline;
 use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
@@ -24,6 +24,11 @@ pub const MAX_VOLUMES: usize = 6;
 /// Colour under raw data where there is nothing else.
 const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
 
+/// A scene that shows surfaces of k' without an interpretation.
+pub(crate) const NO_DEPTHS: RenderError = RenderError::Missing {
+    what: "horizons for surfaces of k'",
+    remedy: "add horizons and parameterize the project, or name a volume",
+};
 /// A scene that shows candidates which are not there.
 pub(crate) const NO_CANDIDATES: RenderError = RenderError::Missing {
     what: "horizon candidates",
@@ -82,7 +87,8 @@ impl<'a> Frame<'a> {
         let rock = resolve_rock(scene, inputs)?;
         let tables = resolve_tables(scene, inputs, rock.is_some())?;
         let mut tables = tables;
-        let media: Vec<&String> = scene.media.all().map(|m| &m.volume).chain(paints(scene)).collect();
+        let media: Vec<&String> =
+            scene.media.all().map(|m| &m.volume).chain(paints(scene)).chain(scene.media.isosurface_volumes()).collect();
         for name in &media {
             if !tables.volumes.contains(name) {
                 tables.volumes.push((*name).clone());
@@ -129,7 +135,7 @@ impl<'a> Frame<'a> {
             tables,
             volumes,
             rock,
-            illustrated: rock.is_some() && !hidden,
+            illustrated: rock.is_some() && (!hidden || shows_depths(scene)),
             relief,
             voxel_m: DVec3::new(metric.x_axis.length(), metric.y_axis.length(), metric.z_axis.length()).as_vec3(),
         })
@@ -225,6 +231,11 @@ fn set_raw(tables: &mut TtfTables, raw: &RawColour) {
     tables.globals.raw_domain = raw.function.domain;
     tables.globals.stop_count = tables.stops.len() as u32;
     tables.globals.no_data = raw.no_data.map_or([0.0; 4], |colour| rgba(colour, 1.0));
+}
+
+/// Whether flat coordinates are looked up inside the block.
+pub(crate) fn shows_depths(scene: &Scene) -> bool {
+    scene.media.isosurfaces.iter().any(|surface| surface.of == Scalar::Depth)
 }
 
 /// Volumes painted on horizons.

@@ -61,6 +61,8 @@ pub struct Relief {
     pub light: Vec3,
     /// Strength of the hill shading.
     pub hill_shade: f32,
+    /// Opacity.
+    pub opacity: f32,
     /// Voxel covector → display covector.
     pub display_normal_from_voxel: Mat3,
 }
@@ -110,6 +112,7 @@ impl Relief {
             longest_m: longest as f32,
             light: DVec3::new(bearing.sin(), bearing.cos(), 1.0).normalize().as_vec3(),
             hill_shade: ground.hill_shade,
+            opacity: ground.opacity,
             display_normal_from_voxel: view.display_from_voxel().inverse().transpose().as_mat3(),
         }
     }

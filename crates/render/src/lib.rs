@@ -36,7 +36,9 @@ pub use error::{RenderError, SceneError};
 pub use faces::Renderer;
 pub use inputs::{Candidates, Inputs, NamedVolume};
 pub use leaves::FaceData;
-pub use media::{Faces, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading};
+pub use media::{
+    Faces, Interleaved, Isosurface, Media, Medium, Occlusion, Phong, PickedHorizon, Scalar, Scope, Shading,
+};
 pub use outline::{Outlines, Stroke};
 pub use pick::{Pick, Picked, pick};
 pub use scene::{Background, Ground, Lookup, Scene};

@@ -50,7 +50,7 @@ pub struct Pick {
 pub fn pick(scene: &Scene, inputs: &Inputs, pixel: DVec2) -> Result<Option<Pick>, RenderError> {
     let frame = Frame::new(scene, inputs, &mut Preparations::default())?;
     let ray = Ray::from(frame.view.ray(pixel));
-    let hit = stopping_hit(&frame, &ray);
+    let hit = stopping_hit(&frame, &ray, f32::MIN);
     let seen = frame.field.as_ref().and_then(|field| first_seen(field, &frame.solid, &ray, hit.t()));
     let (what, t) = match (seen, hit) {
         (Some((t, _)), _) => (Picked::Medium, t),

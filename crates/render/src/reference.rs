@@ -6,6 +6,7 @@
 use crate::error::RenderError;
 use crate::frame::Frame;
 use crate::inputs::Inputs;
+use crate::media::interleaved::{halves, interleave};
 use crate::media::light::LightVolume;
 use crate::media::prepared::Preparations;
 use crate::outline;
@@ -36,6 +37,10 @@ impl CpuRenderer {
     /// # Errors
     /// A scene without a picture, missing inputs, or cancellation.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        if let Some(([first, second], stripes)) = halves(scene) {
+            let first = self.render(&first, inputs, progress)?;
+            return Ok(interleave(first, &self.render(&second, inputs, progress)?, stripes));
+        }
         draw(&Frame::new(scene, inputs, &mut self.kept)?, progress)
     }
 }

@@ -143,11 +143,13 @@ pub struct Ground {
     /// Bearing the light comes from, degrees clockwise from north, turning with the camera: 0 = from behind the block.
     /// Default −45, so from the upper left, as maps have it.
     pub light_deg: f32,
+    /// Opacity of the relief; through it the back faces of cut-outs and what is seen through below are seen, not the rock's inside. Default 1.
+    pub opacity: f32,
 }
 
 impl Default for Ground {
     fn default() -> Self {
-        Self { hill_shade: 0.35, light_deg: -45.0 }
+        Self { hill_shade: 0.35, light_deg: -45.0, opacity: 1.0 }
     }
 }
 
@@ -187,6 +189,7 @@ impl Scene {
         number("the face tone", f64::from(self.face_tone), 0.0, 0.5)?;
         if let Some(ground) = self.ground {
             number("the hill shading", f64::from(ground.hill_shade), 0.0, 1.0)?;
+            number("the ground's opacity", f64::from(ground.opacity), 0.0, 1.0)?;
             number("the light's bearing", f64::from(ground.light_deg), -3600.0, 3600.0)?;
         }
         self.camera.validate()?;

@@ -17,18 +17,34 @@ use glam::{Vec3, Vec4};
 use survey::model::Region;
 use ttf::{FaceFrame, FlatFootprint, FlatPoint, ShadePoint, linear_from_srgb, srgb_from_linear};
 
-/// Straight RGBA along one ray.
+/// Straight RGBA along one ray: what stops it, and what is behind ground that lets light through.
 pub(crate) fn trace(frame: &Frame, light: Option<&LightVolume>, view_ray: &ViewRay) -> Vec4 {
     let ray = Ray::from(*view_ray);
-    let hit = stopping_hit(frame, &ray);
+    let hit = stopping_hit(frame, &ray, f32::MIN);
+    let front = seen(frame, light, view_ray, hit, f32::MIN);
+    let Hit::Ground(ground) = hit else { return front };
+    if front.w >= 1.0 {
+        return front;
+    }
+    let after = frame.solid.next_span(&ray, ground.t).map_or(f32::INFINITY, |span| span.end);
+    let behind = seen(frame, light, view_ray, stopping_hit(frame, &ray, after), ground.t);
+    let rest = behind.w * (1.0 - front.w);
+    let alpha = front.w + rest;
+    let sum = linear(front.truncate()) * front.w + linear(behind.truncate()) * rest;
+    encoded(sum / alpha.max(1e-6)).extend(alpha)
+}
+
+/// Straight RGBA of a hit with the media between `start` and it.
+fn seen(frame: &Frame, light: Option<&LightVolume>, view_ray: &ViewRay, hit: Hit, start: f32) -> Vec4 {
+    let ray = Ray::from(*view_ray);
     let behind = match hit {
         Hit::Background => Vec4::from_array(frame.background),
         Hit::Face(hit) => face_colour(frame, view_ray, &hit).extend(1.0),
-        Hit::Ground(hit) => ground_colour(frame, &hit).extend(1.0),
+        Hit::Ground(hit) => ground_colour(frame, &hit).extend(frame.relief.as_ref().map_or(1.0, |r| r.opacity)),
         Hit::Well(hit) => hit.colour.extend(1.0),
     };
     let Some(field) = &frame.field else { return behind };
-    let gathered = gather(field, light, &frame.solid, &ray, hit.t());
+    let gathered = gather(field, light, &frame.solid, &ray, [start, hit.t()]);
     let mut far = linear(behind.truncate());
     if let (Some(light), true) = (light, hit.t().is_finite()) {
         far *= light.at(ray.at(hit.t()));
@@ -50,22 +66,22 @@ pub(crate) fn encoded(linear: Vec3) -> Vec3 {
     Vec3::from_array(linear.to_array().map(|c| srgb_from_linear(c.clamp(0.0, 1.0))))
 }
 
-/// What stops a ray in this scene: a well, or the first face or ground, one of the cut-outs' back faces or ground, or nothing.
-pub(crate) fn stopping_hit(frame: &Frame, ray: &Ray) -> Hit {
-    let hit = stopping_rock(frame, ray);
+/// What stops a ray in this scene at or after distance `start`: a well, or the first face or ground, one of the cut-outs' back faces or ground, or nothing.
+pub(crate) fn stopping_hit(frame: &Frame, ray: &Ray, start: f32) -> Hit {
+    let hit = stopping_rock(frame, ray, start);
     match frame.tubes.as_ref().and_then(|tubes| tubes.hit(ray, hit.t())) {
-        Some(well) => Hit::Well(well),
-        None => hit,
+        Some(well) if well.t > start => Hit::Well(well),
+        _ => hit,
     }
 }
 
-fn stopping_rock(frame: &Frame, ray: &Ray) -> Hit {
+fn stopping_rock(frame: &Frame, ray: &Ray, start: f32) -> Hit {
     match frame.scene.media.faces {
-        Faces::All => first_hit(frame, ray),
+        Faces::All => first_hit(frame, ray, start),
         Faces::None => Hit::Background,
         Faces::CutOuts => {
             let Some([enter, _]) = frame.solid.box_interval(ray) else { return Hit::Background };
-            let mut from = f32::MIN;
+            let mut from = start;
             for _ in 0..=frame.solid.cut_outs.len() + 1 {
                 let Some(span) = frame.solid.next_span(ray, from) else { return Hit::Background };
                 let front = span.entry.t <= enter + TOUCH;
@@ -106,9 +122,9 @@ impl Hit {
     }
 }
 
-/// The first face of rock, or the ground behind faces of air.
-pub(crate) fn first_hit(frame: &Frame, ray: &Ray) -> Hit {
-    let mut from = f32::MIN;
+/// The first face of rock at or after distance `start`, or the ground behind faces of air.
+pub(crate) fn first_hit(frame: &Frame, ray: &Ray, start: f32) -> Hit {
+    let mut from = start;
     for _ in 0..=frame.solid.cut_outs.len() + 1 {
         let Some(span) = frame.solid.next_span(ray, from) else { return Hit::Background };
         let (Some(relief), Some(Rock { model, .. })) = (&frame.relief, frame.rock) else {

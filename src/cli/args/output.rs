@@ -16,9 +16,9 @@ pub(in crate::cli) struct RenderArgs {
     /// Dots per inch, written into the picture: sets its printed size
     #[arg(long, value_name = "D", default_value_t = 300.0)]
     pub(in crate::cli) dpi: f64,
-    /// Way of drawing: illustrate (textured faces), occlusion (the volume seen through, shaded without gradients), phong (by gradients) or volume
-    /// (unshaded) [default: as the view says, else illustrate]
-    #[arg(long, value_name = "illustrate|occlusion|phong|volume")]
+    /// Way of drawing: illustrate (textured faces), occlusion (the volume seen through, shaded without gradients), phong (by gradients), interleaved
+    /// (both, in stripes) or volume (unshaded) [default: as the view says, else illustrate]
+    #[arg(long, value_name = "illustrate|occlusion|phong|interleaved|volume")]
     pub(in crate::cli) technique: Option<String>,
     /// Volume that is seen through; with textured faces it fills the cut-outs, in layers that have an opacity if there are any [default: the volume shown as
     /// raw data]
@@ -30,6 +30,10 @@ pub(in crate::cli) struct RenderArgs {
     /// Horizon shown in the volume, with its colour, opacity and the light it gives off; repeat it for several
     #[arg(long, value_name = "NAME[,#RRGGBB[,OPACITY[,LIGHT]]]")]
     pub(in crate::cli) horizon: Vec<String>,
+    /// Surface of one value in the volume: of a volume by its name, or of `k`, the layer from the bottom (counted from 0) plus k; without --medium the volume
+    /// itself is not shown; repeat it for several
+    #[arg(long, value_name = "NAME,VALUE[,#RRGGBB[,OPACITY]]")]
+    pub(in crate::cli) isosurface: Vec<String>,
     /// Where the volume shows: everywhere, near the horizons shown, or away from them
     #[arg(long, value_name = "everywhere|near|away", default_value = "everywhere")]
     pub(in crate::cli) scope: String,

@@ -87,6 +87,9 @@ pub(in crate::cli) struct ViewArgs {
     /// Relief of the topmost horizon instead of a flat top
     #[arg(long, value_name = "on|off")]
     pub(in crate::cli) ground: Option<String>,
+    /// Opacity of that relief
+    #[arg(long, value_name = "0..1")]
+    pub(in crate::cli) ground_opacity: Option<f32>,
     /// What faces show: the rock, the leaves of horizon candidates in colours, or the distance to the nearest candidate. In a volume seen through, leaves colour the horizons shown, or all candidates
     #[arg(long, value_name = "rock|leaves|distance")]
     pub(in crate::cli) show: Option<String>,

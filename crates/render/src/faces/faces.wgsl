@@ -32,9 +32,9 @@ struct FaceParams {
     map_low: vec2<f32>,
     map_cells: vec2<u32>,
     ground_horizons: u32,
+    ground_opacity: f32,
     padding_0: u32,
     padding_1: u32,
-    padding_2: u32,
     // Pixels of the tile: left, top, width, height.
     tile: vec4<u32>,
     // Smallest and largest corner of each cut-out.
@@ -51,7 +51,7 @@ const LOOKUP_RAW: u32 = 0u;
 const LOOKUP_EXACT: u32 = 1u;
 const LOOKUP_PACKED: u32 = 2u;
 
-// 1 where the ground is shown.
+// 1 where the ground is shown, 2 where it lets light through.
 override with_ground: u32 = 0u;
 
 // A ray with its change per sample step.
@@ -108,37 +108,37 @@ fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
     return with_candidates(p, shade(point, axis, p)) * params.tones[axis];
 }
 
-// The first rock on a ray, or with `faces_shown` = FACES_CUT_OUTS the first that does not begin at the roaming box; or the ground.
+// The first rock on a ray from a distance on, or with `faces_shown` = FACES_CUT_OUTS the first that does not begin at the roaming box; or the ground.
 struct Stop {
     span: SolidSpan,
     ground: GroundHit,
 }
 
-fn stopping_hit(ray: PixelRay) -> Stop {
+fn stopping_hit(ray: PixelRay, from: f32) -> Stop {
     var stop: Stop;
     if faces_shown == FACES_ALL && with_ground == 0u {
-        stop.span = next_span(ray.origin, ray.direction, LOWEST);
+        stop.span = next_span(ray.origin, ray.direction, from);
         return stop;
     }
     if faces_shown != FACES_ALL && faces_shown != FACES_CUT_OUTS {
         return stop;
     }
     let outer = cross_box(ray.origin, ray.direction, params.box_low.xyz, params.box_high.xyz);
-    var start = LOWEST;
+    var start = from;
     for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
         stop.span = next_span(ray.origin, ray.direction, start);
         if !stop.span.found {
             break;
         }
         var is_rock = true;
-        if with_ground == 1u {
+        if with_ground != 0u {
             is_rock = probe_at(stop.span.point).is_rock;
         }
         if is_rock && (faces_shown == FACES_ALL || stop.span.t > outer.enter + TOUCH) {
             break;
         }
         stop.span.found = false;
-        if with_ground == 1u && !is_rock {
+        if with_ground != 0u && !is_rock {
             stop.ground = march(ray.origin, ray.direction, stop.span.t, stop.span.end);
             if stop.ground.found {
                 break;
@@ -149,36 +149,62 @@ fn stopping_hit(ray: PixelRay) -> Stop {
     return stop;
 }
 
-fn trace(ray: PixelRay) -> vec4<f32> {
-    let hit = stopping_hit(ray);
+// What stops a ray with the media between `start` and it: straight colour; where the ground stopped it, else negative.
+struct Seen {
+    colour: vec4<f32>,
+    stop: f32,
+}
+
+fn seen(ray: PixelRay, from: f32, start: f32) -> Seen {
+    let hit = stopping_hit(ray, from);
     var behind = params.background;
     var stop = HIGHEST;
+    var is_ground = false;
     if hit.span.found {
         behind = vec4(face_colour(ray, hit.span.t, hit.span.point, hit.span.axis), 1.0);
         stop = hit.span.t;
-    } else if with_ground == 1u && hit.ground.found {
-        behind = vec4(ground_colour(hit.ground), 1.0);
+    } else if with_ground != 0u && hit.ground.found {
+        behind = vec4(ground_colour(hit.ground), params.ground_opacity);
         stop = dot(hit.ground.point - ray.origin, ray.direction);
+        is_ground = true;
     }
     if with_wells == 1u {
         let well = well_hit(ray.origin, ray.direction, stop);
-        if well.w < stop {
+        if well.w < stop && well.w > from {
             behind = vec4(well.xyz, 1.0);
             stop = well.w;
+            is_ground = false;
         }
     }
+    var result: Seen;
+    result.colour = behind;
+    result.stop = select(-1.0, stop, is_ground);
     if with_media == 0u {
-        return behind;
+        return result;
     }
-    let gathered = gather(ray.origin, ray.direction, stop);
+    let gathered = gather(ray.origin, ray.direction, start, stop);
     var far = to_linear(behind.rgb);
     if shading == OCCLUSION && stop < HIGHEST {
         far *= light_at(ray.origin + ray.direction * stop);
     } else if gathered.passes == 1.0 {
-        return behind;
+        return result;
     }
     let sum = gathered.colour + far * (behind.a * gathered.passes);
     let alpha = 1.0 - gathered.passes * (1.0 - behind.a);
+    result.colour = vec4(to_encoded(sum / max(alpha, 1e-6)), alpha);
+    return result;
+}
+
+fn trace(ray: PixelRay) -> vec4<f32> {
+    let front = seen(ray, LOWEST, LOWEST);
+    if with_ground != 2u || front.stop < 0.0 || front.colour.a >= 1.0 {
+        return front.colour;
+    }
+    let span = next_span(ray.origin, ray.direction, front.stop);
+    let behind = seen(ray, select(HIGHEST, span.end, span.found), front.stop).colour;
+    let rest = behind.a * (1.0 - front.colour.a);
+    let alpha = front.colour.a + rest;
+    let sum = to_linear(front.colour.rgb) * front.colour.a + to_linear(behind.rgb) * rest;
     return vec4(to_encoded(sum / max(alpha, 1e-6)), alpha);
 }
 

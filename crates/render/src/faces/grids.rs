@@ -11,6 +11,7 @@
 use super::layout::GridInfo;
 use crate::error::RenderError;
 use crate::frame::Frame;
+use crate::frame::shows_depths;
 use crate::gpu::Gpu;
 use crate::outline::{FaceRect, face_rects};
 use glam::DVec3;
@@ -31,6 +32,8 @@ const FAR_LEVELS: f32 = 3.0;
 pub struct Seen {
     faces: Vec<FaceRect>,
     ground: Option<[DVec3; 2]>,
+    /// Whether the inside of the block is looked at, all of it.
+    inside: bool,
 }
 
 impl Seen {
@@ -39,7 +42,7 @@ impl Seen {
         let mut faces = face_rects(&frame.solid, &frame.view);
         faces.retain(|face| face.faces_camera);
         let ground = frame.relief.as_ref().map(|_| frame.solid.roaming_box.map(|corner| corner.as_dvec3()));
-        Self { faces, ground }
+        Self { faces, ground, inside: shows_depths(frame.scene) }
     }
 }
 
@@ -118,6 +121,10 @@ fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &Seen) -> Vec<Windo
         return windows;
     }
     let whole = Window { first: 0, end: grid.levels.min(usize::from(u16::MAX)) as u16 };
+    if seen.inside {
+        windows.fill(whole);
+        return windows;
+    }
     // The columns around an interval of positions along an axis, as the lookup clamps them.
     let around = |low: f64, high: f64, axis: usize| {
         let cell = |at: f64| {

@@ -33,7 +33,8 @@ pub struct FaceParams {
     pub map_low: [f32; 2],
     pub map_cells: [u32; 2],
     pub ground_horizons: u32,
-    pub padding: [u32; 3],
+    pub ground_opacity: f32,
+    pub padding: [u32; 2],
     pub tile: [u32; 4],
     pub cut_outs: [[f32; 4]; 2 * MAX_CUT_OUTS],
 }
@@ -141,7 +142,8 @@ impl FaceParams {
             map_low: [0.0; 2],
             map_cells: [1; 2],
             ground_horizons: 0,
-            padding: [0; 3],
+            ground_opacity: 1.0,
+            padding: [0; 2],
             tile: [0; 4],
             cut_outs,
         };
@@ -153,6 +155,7 @@ impl FaceParams {
             params.map_low = relief.map_low.to_array();
             params.map_cells = relief.map_cells.map(|n| n as u32);
             params.ground_horizons = relief.horizons.len() as u32;
+            params.ground_opacity = relief.opacity;
             params.relief = [relief.z_range[0], relief.z_range[1], relief.steepest, relief.longest_m];
         }
         params

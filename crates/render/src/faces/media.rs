@@ -79,6 +79,7 @@ pub struct MediaVariant {
     with_layers: u32,
     face_data: u32,
     with_wells: u32,
+    isosurfaces: u32,
 }
 
 impl MediaVariant {
@@ -99,10 +100,12 @@ impl MediaVariant {
         Self {
             face_data,
             with_wells,
+            isosurfaces: field.isosurfaces.len() as u32,
             with_media: 1,
             shading: match field.shading {
                 Shading::Unshaded => 0,
-                Shading::Phong(_) => 1,
+                // Each stripe is drawn as its own scene.
+                Shading::Phong(_) | Shading::Interleaved(_) => 1,
                 Shading::Occlusion(_) => 2,
             },
             faces_shown,
@@ -113,10 +116,11 @@ impl MediaVariant {
     }
 
     /// Names and values of the overrides.
-    pub fn constants(&self) -> [(&'static str, f64); 8] {
+    pub fn constants(&self) -> [(&'static str, f64); 9] {
         [
             ("face_data", f64::from(self.face_data)),
             ("with_wells", f64::from(self.with_wells)),
+            ("isosurfaces", f64::from(self.isosurfaces)),
             ("with_media", f64::from(self.with_media)),
             ("shading", f64::from(self.shading)),
             ("faces_shown", f64::from(self.faces_shown)),
@@ -196,6 +200,13 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
     params.bricks = [x, y, z, words.len() as u32];
     words.extend_from_slice(&field.bricks.words);
     add_horizons(frame, field, words, &mut params);
+    params.cells[3] = words.len() as u32;
+    for surface in &field.isosurfaces {
+        let slot = surface.medium.as_ref().map_or(NONE, |medium| slot(frame, medium));
+        let [r, g, b] = surface.colour.to_array();
+        add(words, &[r, g, b, surface.extinction, surface.thickness, surface.value]);
+        words.extend([slot, 0]);
+    }
     params
 }
 

@@ -44,7 +44,7 @@ struct MediaParams {
     forward: vec4<f32>,
     // Lower left corner and side of a cell in view coordinates; factor on the occlusion.
     grid: vec4<f32>,
-    // Cells right and up, slices; w unused.
+    // Cells right and up, slices; first word of the isosurfaces.
     cells: vec4<u32>,
     // Bricks along x, y, z, and their first word.
     bricks: vec4<u32>,
@@ -77,6 +77,7 @@ override faces_shown: u32 = 0u;
 override media_count: u32 = 0u;
 override with_leaves: u32 = 0u;
 override with_layers: u32 = 0u;
+override isosurfaces: u32 = 0u;
 
 const PHONG: u32 = 1u;
 const OCCLUSION: u32 = 2u;
@@ -94,6 +95,7 @@ const SPENT: f32 = 1e-3;
 const SOFT: f32 = 0.25;
 const NO_DATA_BELOW: f32 = -1e30;
 const HORIZON_WORDS: u32 = 12u;
+const ISOSURFACE_WORDS: u32 = 8u;
 
 fn word(at: u32) -> f32 {
     return bitcast<f32>(relief_map[at]);
@@ -275,8 +277,30 @@ fn horizon_at(p: vec3<f32>) -> HorizonAt {
     return found;
 }
 
+// The share of a place that an isosurface takes (w), and the gradient there.
+fn isosurface_at(record: u32, p: vec3<f32>) -> vec4<f32> {
+    var value = 0.0;
+    var gradient = vec3(0.0);
+    let slot = relief_map[record + 6u];
+    if slot != NONE {
+        value = medium_value(slot, p);
+        if value < NO_DATA_BELOW {
+            return vec4(0.0);
+        }
+        gradient = medium_gradient(slot, p);
+    } else if lookup == LOOKUP_EXACT {
+        let block = block_at(p);
+        let layer = layer_at(p, block);
+        let flat = flat_exact(p, layer, block);
+        value = f32(layer) + flat.ijk.z;
+        gradient = flat.dk;
+    }
+    let distance = abs(value - word(record + 5u)) / max(length(gradient), 1e-12);
+    return vec4(gradient, clamp((word(record + 4u) - distance) / (2.0 * SOFT) + 0.5, 0.0, 1.0));
+}
+
 fn matter_at(p: vec3<f32>, place: u32, brick: u32, towards: vec3<f32>) -> Matter {
-    if with_leaves == 0u && media_count == 1u {
+    if with_leaves == 0u && media_count == 1u && isosurfaces == 0u {
         var nothing: Matter;
         if media.media[0].place != place {
             return nothing;
@@ -289,10 +313,24 @@ fn matter_at(p: vec3<f32>, place: u32, brick: u32, towards: vec3<f32>) -> Matter
         horizon = horizon_at(p);
     }
     var sum: Matter;
-    let rest = 1.0 - horizon.cover;
+    var rest = 1.0 - horizon.cover;
     let scope = media.leaves.z;
     let in_scope = !(scope == SCOPE_NEAR && horizon.distance > media.scales.z)
         && !(scope == SCOPE_AWAY && horizon.distance <= media.scales.z);
+    for (var n = 0u; n < isosurfaces; n += 1u) {
+        let record = media.cells.w + ISOSURFACE_WORDS * n;
+        let surface = isosurface_at(record, p);
+        if surface.w > 0.0 {
+            var colour = vec3(word(record), word(record + 1u), word(record + 2u));
+            if shading == PHONG {
+                colour = lit(surface.xyz, colour, towards);
+            }
+            let kappa = word(record + 3u) * surface.w;
+            sum.extinction += kappa;
+            sum.colour += colour * kappa;
+            rest *= 1.0 - surface.w;
+        }
+    }
     if rest > 0.0 && in_scope {
         for (var n = 0u; n < media_count; n += 1u) {
             if media.media[n].place == place {
@@ -385,8 +423,8 @@ fn through(
     return gathered;
 }
 
-// What a ray meets in the roaming box before `stop`.
-fn gather(origin: vec3<f32>, direction: vec3<f32>, stop: f32) -> Gathered {
+// What a ray meets in the roaming box between two distances.
+fn gather(origin: vec3<f32>, direction: vec3<f32>, start: f32, stop: f32) -> Gathered {
     var gathered: Gathered;
     gathered.passes = 1.0;
     let outer = cross_box(origin, direction, params.box_low.xyz, params.box_high.xyz);
@@ -399,13 +437,14 @@ fn gather(origin: vec3<f32>, direction: vec3<f32>, stop: f32) -> Gathered {
     let units = metres / media.scales.y;
     let last = min(outer.exit, stop);
     if params.cut_count == 0u {
-        if last > outer.enter + TOUCH && faces_shown != FACES_ALL {
-            gathered = through(origin, direction, outer.enter, last, SURROUNDINGS, towards, units, gathered);
+        let from = max(outer.enter, start);
+        if last > from + TOUCH && faces_shown != FACES_ALL {
+            gathered = through(origin, direction, from, last, SURROUNDINGS, towards, units, gathered);
         }
         return gathered;
     }
     // Each round takes a cut-out's stretch, then the rock behind it: two stretches a round.
-    var t = outer.enter;
+    var t = max(outer.enter, start);
     for (var round = 0u; round < 2u * (params.cut_count + 1u); round += 1u) {
         if t + TOUCH >= last || gathered.passes <= SPENT {
             break;

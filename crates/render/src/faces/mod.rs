@@ -21,6 +21,7 @@ use crate::error::RenderError;
 use crate::frame::{Flat, Frame, MAX_VOLUMES};
 use crate::gpu::Gpu;
 use crate::inputs::Inputs;
+use crate::media::interleaved::{halves, interleave};
 use crate::media::prepared::Preparations;
 use crate::outline;
 use crate::scene::Scene;
@@ -180,6 +181,10 @@ impl Renderer {
     /// # Errors
     /// A scene without a picture, missing inputs, cancellation, or what the device says.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        if let Some(([first, second], stripes)) = halves(scene) {
+            let first = self.render(&first, inputs, progress)?;
+            return Ok(interleave(first, &self.render(&second, inputs, progress)?, stripes));
+        }
         let frame = Frame::new(scene, inputs, &mut self.kept)?;
         self.upload(&frame, inputs)?;
         let mut image = self.draw(&frame, progress)?;
@@ -238,7 +243,7 @@ impl Renderer {
                 Some(Flat::Exact(_)) => 1,
                 Some(Flat::Packed(_)) => 2,
             },
-            with_ground: u32::from(frame.relief.is_some()),
+            with_ground: frame.relief.as_ref().map_or(0, |relief| if relief.opacity < 1.0 { 2 } else { 1 }),
             with_raw: u32::from(frame.tables.globals.raw_volume != NONE),
             with_scalars: u32::from(frame.illustrated && !frame.tables.scalars.is_empty()),
             volume_count: frame.volumes.len() as u32,

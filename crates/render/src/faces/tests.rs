@@ -69,7 +69,7 @@ fn structs_have_the_same_layout() {
     let m = &module();
     check!(m, FaceParams: origin, origin_dx, origin_dy, direction, direction_dx, direction_dy, box_low, box_high,
         background, voxel_m, tones, light, display_normal_x, display_normal_y, display_normal_z, relief, reference_px,
-        samples, cut_count, map_low, map_cells, ground_horizons, tile, cut_outs);
+        samples, cut_count, map_low, map_cells, ground_horizons, ground_opacity, tile, cut_outs);
     check!(m, SheetInfo: origin, size, offset);
     check!(m, FaultInfo: u, v, w, surface);
     check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);

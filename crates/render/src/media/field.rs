@@ -3,12 +3,13 @@
 //! Voxel space; extinction per unit of length ([`Field::unit_m`] metres of display space), colours linear.
 
 use super::bricks::{BrickContent, Bricks, LayerLooks, LayerMap, MIXED};
+use super::isosurface::{Depths, FieldIsosurface, Scalar};
 use super::prepared::{Preparations, Prepared};
 use super::table::{NO_DATA, NO_DATA_BELOW, Table, extinction};
-use super::{Colouring, EmptySpace, Faces, Media, Phong, Scope, Shading};
+use super::{Colouring, EmptySpace, Faces, Media, Phong, Scope, Shading, white_ramp};
 use crate::camera::View;
 use crate::error::RenderError;
-use crate::frame::NO_CANDIDATES;
+use crate::frame::{NO_CANDIDATES, NO_DEPTHS};
 use crate::inputs::{Candidates, Inputs, NamedVolume, SLACK};
 use crate::leaves::{BORDER_TONE, leaf_colour};
 use glam::{Mat3, Vec3};
@@ -83,6 +84,8 @@ pub struct Field<'a> {
     pub media: Vec<FieldMedium<'a>>,
     /// Horizons by their leaves.
     pub horizons: Option<FieldHorizons<'a>>,
+    /// Surfaces of one value.
+    pub isosurfaces: Vec<FieldIsosurface<'a>>,
     /// Space that shows nothing.
     pub bricks: Bricks,
     /// How the media are lit.
@@ -104,6 +107,7 @@ pub struct Field<'a> {
     /// Direction to the light in display space, unit.
     pub light: Vec3,
     model: Option<&'a StructuralModel>,
+    depths: Option<Depths<'a>>,
 }
 
 /// Half of the border over which a horizon fades, voxels.
@@ -176,6 +180,11 @@ impl<'a> FieldMedium<'a> {
         sum * 0.5 * self.scale
     }
 
+    /// Smallest and largest sample between two voxel positions; `None` where there is none.
+    pub fn range(&self, low: Vec3, high: Vec3) -> Option<[f32; 2]> {
+        self.prepared.range(&self.volume, low, high)
+    }
+
     /// Whether a brick can show it.
     fn shows(&self, low: Vec3, high: Vec3, layer: u8) -> bool {
         let Some([a, b]) = self.prepared.range(&self.volume, low, high) else { return false };
@@ -221,6 +230,19 @@ impl<'a> Field<'a> {
             made.layers = LayerLooks::new(medium, tables, model, ground_is_shown);
             resolved.push(made);
         }
+        let depths = match (inputs.model, inputs.param) {
+            (Some(model), Some(param)) => Some(Depths { model, param }),
+            _ => None,
+        };
+        let mut isosurfaces = Vec::new();
+        for surface in &media.isosurfaces {
+            let medium = match &surface.of {
+                Scalar::Volume(name) => Some(resolve(name, &white_ramp(1.0, 0.0), Place::Surroundings)?),
+                Scalar::Depth if depths.is_none() => return Err(NO_DEPTHS),
+                Scalar::Depth => None,
+            };
+            isosurfaces.push(FieldIsosurface::new(surface, medium));
+        }
         let horizons = match (media.horizons.is_empty(), inputs.candidates) {
             (true, _) => None,
             (false, None) => {
@@ -261,6 +283,7 @@ impl<'a> Field<'a> {
         let mut field = Self {
             media: resolved,
             horizons,
+            isosurfaces,
             bricks: Bricks { size: [1; 3], words: vec![0] },
             shading: media.shading,
             faces: media.faces,
@@ -272,13 +295,15 @@ impl<'a> Field<'a> {
             display_normal_from_voxel: display_from_voxel.inverse().transpose().as_mat3(),
             light,
             model,
+            depths,
         };
         field.bricks = field.fill_bricks(inputs.geometry.size(), media.empty_space);
         Ok(Some(field))
     }
 
     fn fill_bricks(&self, samples: [usize; 3], empty_space: EmptySpace) -> Bricks {
-        let layered = self.media.iter().any(|m| m.layers.is_some());
+        let layered = self.media.iter().any(|m| m.layers.is_some())
+            || self.isosurfaces.iter().any(|surface| surface.medium.is_none());
         let map = self.model.filter(|_| layered).map(LayerMap::new);
         Bricks::new(samples, |brick| {
             let layer = map.as_ref().map_or(MIXED, |map| map.layer(brick));
@@ -287,6 +312,7 @@ impl<'a> Field<'a> {
             let shows = |place: Place| {
                 empty_space == EmptySpace::Sampled
                     || near.is_some_and(|near| near.shows)
+                    || self.isosurfaces.iter().any(|surface| surface.shows(low, high, layer))
                     || (self.scope != Scope::NearHorizons || near.is_some_and(|near| near.distance <= self.reach + 1.0))
                         && self.media.iter().any(|m| m.place == place && m.shows(low, high, layer))
             };
@@ -297,7 +323,7 @@ impl<'a> Field<'a> {
     /// What is at a point of a place, in a brick with this word. `towards` points to the viewer, unit, in display space.
     #[inline(always)]
     pub fn at(&self, p: Vec3, place: Place, word: u32, towards: Vec3) -> Matter {
-        if self.media.len() == 1 && self.horizons.is_none() {
+        if self.media.len() == 1 && self.horizons.is_none() && self.isosurfaces.is_empty() {
             let medium = &self.media[0];
             return if medium.place == place { self.of_medium(medium, p, word, towards) } else { Matter::default() };
         }
@@ -343,13 +369,26 @@ impl<'a> Field<'a> {
     /// Several media and horizons at one place.
     fn mixed(&self, p: Vec3, place: Place, word: u32, towards: Vec3) -> Matter {
         let horizon = self.horizons.as_ref().map(|h| h.at(p)).unwrap_or_default();
-        let rest = 1.0 - horizon.cover;
+        let mut rest = 1.0 - horizon.cover;
         let in_scope = match self.scope {
             Scope::Everywhere => true,
             Scope::NearHorizons => horizon.distance <= self.reach,
             Scope::AwayFromHorizons => horizon.distance > self.reach,
         };
         let mut sum = Matter::default();
+        for surface in &self.isosurfaces {
+            let (cover, gradient) = surface.at(p, self.depths);
+            if cover > 0.0 {
+                let colour = match self.shading {
+                    Shading::Phong(phong) => self.lit(&phong, gradient, surface.colour, towards),
+                    _ => surface.colour,
+                };
+                let kappa = surface.extinction * cover;
+                sum.extinction += kappa;
+                sum.colour += colour * kappa;
+                rest *= 1.0 - cover;
+            }
+        }
         if rest > 0.0 && in_scope {
             for medium in self.media.iter().filter(|m| m.place == place) {
                 let one = self.of_medium(medium, p, word, towards);

@@ -246,7 +246,7 @@ fn column(field: &Field, view: &View, solid: &Solid, grid: &LightGrid, n: usize)
     let norm = direction.length();
     let ray = Ray { origin: origin.as_vec3(), direction: (direction / norm).as_vec3() };
     let mut list = Vec::new();
-    stretches(solid, &ray, f32::INFINITY, |stretch| {
+    stretches(solid, &ray, [f32::MIN, f32::INFINITY], |stretch| {
         if stretch.place == Place::CutOut || field.faces != Faces::All {
             list.push((stretch.t.map(|t| t / norm as f32), stretch.place));
         }

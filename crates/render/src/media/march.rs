@@ -44,11 +44,11 @@ pub struct Stretch {
     pub place: Place,
 }
 
-/// Calls `found` for each stretch of a ray in the roaming box up to `stop`, front to back.
-pub fn stretches(solid: &Solid, ray: &Ray, stop: f32, mut found: impl FnMut(Stretch)) {
+/// Calls `found` for each stretch of a ray in the roaming box between `start` and `stop`, front to back.
+pub fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: impl FnMut(Stretch)) {
     let Some([enter, exit]) = solid.box_interval(ray) else { return };
     let last = exit.min(stop);
-    let mut t = enter;
+    let mut t = enter.max(start);
     let mut add = |from: f32, to: f32, place: Place| {
         if to > from + TOUCH {
             found(Stretch { t: [from, to], place });
@@ -68,13 +68,13 @@ pub fn stretches(solid: &Solid, ray: &Ray, stop: f32, mut found: impl FnMut(Stre
     }
 }
 
-/// Gathers what a ray meets before `stop`.
-pub fn gather(field: &Field, light: Option<&LightVolume>, solid: &Solid, ray: &Ray, stop: f32) -> Gathered {
+/// Gathers what a ray meets between two distances.
+pub fn gather(field: &Field, light: Option<&LightVolume>, solid: &Solid, ray: &Ray, between: [f32; 2]) -> Gathered {
     let mut gathered = Gathered::default();
     let along = field.display_from_voxel * ray.direction;
     let metres = along.length();
     let towards = -along / metres;
-    stretches(solid, ray, stop, |stretch| {
+    stretches(solid, ray, between, |stretch| {
         let path = Path { field, light, ray, towards, units: metres / field.unit_m };
         // Rock that is drawn as faces is not looked into.
         if gathered.passes > SPENT && (stretch.place == Place::CutOut || field.faces != Faces::All) {
@@ -159,7 +159,7 @@ fn exit_t(ray: &Ray, brick: [i32; 3], around: i32) -> f32 {
 pub fn first_seen(field: &Field, solid: &Solid, ray: &Ray, stop: f32) -> Option<(f32, Place)> {
     let along = field.display_from_voxel * ray.direction;
     let mut found = None;
-    stretches(solid, ray, stop, |stretch| {
+    stretches(solid, ray, [f32::MIN, stop], |stretch| {
         let looked_into = stretch.place == Place::CutOut || field.faces != Faces::All;
         if found.is_none() && looked_into {
             let towards = -along.normalize_or_zero();
@@ -196,7 +196,7 @@ mod tests {
         let ray = Ray { origin: Vec3::new(-5.0, 5.0, 5.0), direction: Vec3::X };
         let all = |stop: f32| {
             let mut list = Vec::new();
-            stretches(&solid, &ray, stop, |s| list.push((s.t[0], s.t[1], s.place == Place::CutOut)));
+            stretches(&solid, &ray, [f32::MIN, stop], |s| list.push((s.t[0], s.t[1], s.place == Place::CutOut)));
             list
         };
         let whole = [(5.0, 7.0, false), (7.0, 9.0, true), (9.0, 13.0, false), (13.0, 15.0, true)];

@@ -16,10 +16,15 @@
 
 pub mod bricks;
 pub mod field;
+pub mod interleaved;
+pub mod isosurface;
 pub mod light;
 pub mod march;
 pub mod prepared;
 pub mod table;
+
+pub use interleaved::Interleaved;
+pub use isosurface::{Isosurface, Scalar};
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
@@ -29,6 +34,8 @@ use ttf::{Colour, RgbaFunction, RgbaStop};
 pub const MAX_MEDIA: usize = 4;
 /// Most horizons that a scene shows by their leaves.
 pub const MAX_HORIZONS: usize = 255;
+/// Most isosurfaces in a scene.
+pub const MAX_ISOSURFACES: usize = 4;
 
 /// What is seen through, and how it is lit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -52,6 +59,8 @@ pub struct Media {
     pub surroundings: Vec<Medium>,
     /// Horizons shown by the leaves of their trees (P-horiz 5.2).
     pub horizons: Vec<PickedHorizon>,
+    /// Surfaces of one value, wherever media are.
+    pub isosurfaces: Vec<Isosurface>,
 }
 
 impl Default for Media {
@@ -66,6 +75,7 @@ impl Default for Media {
             cut_outs: Vec::new(),
             surroundings: Vec::new(),
             horizons: Vec::new(),
+            isosurfaces: Vec::new(),
         }
     }
 }
@@ -156,6 +166,8 @@ pub enum Shading {
     Phong(Phong),
     /// Without gradients: by what lies in front (P-horiz 5.1).
     Occlusion(Occlusion),
+    /// Both in stripes, to compare them.
+    Interleaved(Interleaved),
 }
 
 /// Light reflected by surfaces of equal value, two-sided: `ambient + diffuse·|n·l|` on the colour, and `specular·|n·h|^shininess` of white.
@@ -277,7 +289,10 @@ pub fn white_ramp(clip: f32, start: f32) -> RgbaFunction {
 impl Media {
     /// Whether anything is seen through.
     pub fn is_empty(&self) -> bool {
-        self.cut_outs.is_empty() && self.surroundings.is_empty() && self.horizons.is_empty()
+        self.cut_outs.is_empty()
+            && self.surroundings.is_empty()
+            && self.horizons.is_empty()
+            && self.isosurfaces.is_empty()
     }
 
     /// All media, those of the surroundings first.
@@ -306,22 +321,29 @@ impl Media {
                 limit: MAX_HORIZONS,
             });
         }
-        match self.shading {
-            Shading::Unshaded => {}
-            Shading::Phong(phong) => {
-                number("the ambient light", phong.ambient, 0.0, 10.0)?;
-                number("the diffuse light", phong.diffuse, 0.0, 10.0)?;
-                number("the specular light", phong.specular, 0.0, 10.0)?;
-                number("the shininess", phong.shininess, 0.0, 1000.0)?;
-                phong.light.iter().try_for_each(|&c| number("the light's direction", c, -1e6, 1e6))?;
+        let (phong, occlusion) = match self.shading {
+            Shading::Unshaded => (None, None),
+            Shading::Phong(phong) => (Some(phong), None),
+            Shading::Occlusion(occlusion) => (None, Some(occlusion)),
+            Shading::Interleaved(both) => {
+                number("the stripes", both.stripes as f32, 1.0, 1024.0)?;
+                (Some(both.phong), Some(both.occlusion))
             }
-            Shading::Occlusion(occlusion) => {
-                number("the spread of occlusion", occlusion.spread, 0.0, 16.0)?;
-                number("the strength of occlusion", occlusion.strength, 0.0, 100.0)?;
-                number("the slices a voxel", occlusion.slices_per_voxel, 0.05, 16.0)?;
-                number("the cells of a slice", occlusion.max_cells as f32, 8.0, 2048.0)?;
-            }
+        };
+        if let Some(phong) = phong {
+            number("the ambient light", phong.ambient, 0.0, 10.0)?;
+            number("the diffuse light", phong.diffuse, 0.0, 10.0)?;
+            number("the specular light", phong.specular, 0.0, 10.0)?;
+            number("the shininess", phong.shininess, 0.0, 1000.0)?;
+            phong.light.iter().try_for_each(|&c| number("the light's direction", c, -1e6, 1e6))?;
         }
+        if let Some(occlusion) = occlusion {
+            number("the spread of occlusion", occlusion.spread, 0.0, 16.0)?;
+            number("the strength of occlusion", occlusion.strength, 0.0, 100.0)?;
+            number("the slices a voxel", occlusion.slices_per_voxel, 0.05, 16.0)?;
+            number("the cells of a slice", occlusion.max_cells as f32, 8.0, 2048.0)?;
+        }
+        self.validate_isosurfaces()?;
         for horizon in &self.horizons {
             number("a horizon's opacity", horizon.opacity, 0.0, 1.0)?;
             number("a horizon's thickness", horizon.thickness, 0.0, 9.0)?;

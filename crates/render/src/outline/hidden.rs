@@ -27,7 +27,7 @@ const BISECTIONS: usize = 7;
 pub(super) fn covered_by(frame: &Frame, p: DVec3) -> f64 {
     let view_ray = frame.view.ray(frame.view.project(p));
     let t = (p - view_ray.origin).dot(view_ray.direction);
-    t - f64::from(first_hit(frame, &Ray::from(view_ray)).t())
+    t - f64::from(first_hit(frame, &Ray::from(view_ray), f32::MIN).t())
 }
 
 /// Whether the media in front of a point hide lines there: less than half of the light passes.
@@ -39,7 +39,7 @@ fn is_veiled(frame: &Frame, p: DVec3) -> bool {
         return true;
     }
     let Some(field) = &frame.field else { return false };
-    gather(field, None, &frame.solid, &ray, t as f32).passes < 0.5
+    gather(field, None, &frame.solid, &ray, [f32::MIN, t as f32]).passes < 0.5
 }
 
 /// Whether the block's surface is at `p` and nothing is in front of it.

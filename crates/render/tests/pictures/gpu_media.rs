@@ -5,8 +5,8 @@ use crate::media::medium;
 use render::compare::compare;
 use render::media::{Colouring, LayerOpacity, MediumColour, Paint, white_ramp};
 use render::{
-    Background, Camera, Candidates, FaceData, Faces, Ground, Media, Medium, NamedVolume, Occlusion, Outlines, Phong,
-    PickedHorizon, Projection, Renderer, Scene, Scope, Shading, VoxelBox, WellPath,
+    Background, Camera, Candidates, FaceData, Faces, Ground, Interleaved, Isosurface, Media, Medium, NamedVolume,
+    Occlusion, Outlines, Phong, PickedHorizon, Projection, Renderer, Scalar, Scene, Scope, Shading, VoxelBox, WellPath,
 };
 use survey::Progress;
 use survey::synth::{SynthSettings, Synthetic};
@@ -104,7 +104,7 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 horizons: horizons.clone(),
                 scope: Scope::NearHorizons,
                 reach: 3.0,
-                ..none(vec![ramp], occlusion)
+                ..none(vec![ramp.clone()], occlusion)
             }),
         ),
         (
@@ -114,6 +114,40 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 ground: Some(Ground::default()),
                 media: Media {
                     cut_outs: vec![colours.clone(), Medium { colour: MediumColour::Layers, ..colours.clone() }],
+                    ..Media::default()
+                },
+                ..base.clone()
+            },
+        ),
+        ("isosurfaces", {
+            let surface = |of: Scalar, value: f32, opacity: f32| Isosurface {
+                of,
+                value,
+                colour: Colour::new(230, 180, 90),
+                opacity,
+                thickness: 1.0,
+            };
+            let surfaces = vec![
+                surface(Scalar::Volume("seismic".into()), 0.4 * clip, 0.5),
+                surface(Scalar::Depth, 2.5, 1.0),
+                surface(Scalar::Volume("impedance".into()), 5000.0, 1.0),
+            ];
+            let shading = Shading::Phong(Phong::default());
+            with(Media { isosurfaces: surfaces, samples_per_voxel: 4.0, ..none(vec![ramp.clone()], shading) })
+        }),
+        ("interleaved", {
+            let both = Interleaved { stripes: 3, ..Interleaved::default() };
+            with(none(vec![ramp.clone()], Shading::Interleaved(both)))
+        }),
+        (
+            "ground that lets light through",
+            Scene {
+                cut_outs: cut_outs.clone(),
+                ground: Some(Ground { opacity: 0.4, ..Ground::default() }),
+                media: Media {
+                    faces: Faces::CutOuts,
+                    surroundings: vec![impedance.clone()],
+                    cut_outs: vec![colours.clone()],
                     ..Media::default()
                 },
                 ..base.clone()

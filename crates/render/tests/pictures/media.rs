@@ -6,8 +6,8 @@ use image::RgbaImage;
 use render::media::{Colouring, EmptySpace, LayerOpacity, MediumColour, white_ramp};
 use render::reference::render;
 use render::{
-    Background, Camera, Candidates, Faces, Inputs, Media, Medium, NamedVolume, Occlusion, Outlines, Picked,
-    PickedHorizon, Projection, Scene, Scope, Shading, VoxelBox, WellPath, pick,
+    Background, Camera, Candidates, Faces, Ground, Inputs, Isosurface, Media, Medium, NamedVolume, Occlusion, Outlines,
+    Picked, PickedHorizon, Projection, Scalar, Scene, Scope, Shading, VoxelBox, WellPath, pick,
 };
 use survey::synth::closed_form::ClosedForm;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
@@ -460,4 +460,86 @@ fn what_is_under_a_pixel_is_what_shows_there() {
     let faces = Scene { media: Media::default(), blend: 1.0, raw: Some(raw), ..scene.clone() };
     let face = pick(&faces, &inputs, view.project(DVec3::new(20.0, 0.0, 16.0))).unwrap().unwrap();
     assert_eq!((face.what, face.voxel.y, face.values[0]), (Picked::Face, 0.0, 0.0));
+}
+
+#[test]
+fn an_isosurface_is_where_its_value_is_and_hides_what_is_behind() {
+    // v = y: the surface v = 12 is the plane y = 12, seen head on after an absorbing stretch of known length.
+    let side = 33;
+    let geometry = cubic(side);
+    let mut volume = Volume::filled([side; 3], 0.0f32);
+    for x in 0..side {
+        for y in 0..side {
+            volume.trace_mut(x, y).fill(y as f32);
+        }
+    }
+    let volumes = [NamedVolume::whole("v", &volume)];
+    let inputs = Inputs::raw(&geometry, &volumes);
+    let colour = Colour::new(200, 120, 40);
+    let surface =
+        |opacity: f32| Isosurface { of: Scalar::Volume("v".into()), value: 12.0, colour, opacity, thickness: 1.0 };
+    let media = |opacity: f32| Media {
+        faces: Faces::None,
+        samples_per_voxel: 8.0,
+        isosurfaces: vec![surface(opacity)],
+        ..Media::default()
+    };
+    let opaque = draw(&head_on([33, 33], media(1.0)), &inputs);
+    assert_eq!(opaque.get_pixel(16, 16).0, [200, 120, 40, 255]);
+    // A shell of two voxels, whose soft borders add half a border to each side: 1 − (1 − α₀)².
+    let thin = draw(&head_on([33, 33], media(0.3)), &inputs);
+    let expected = byte((1.0 - 0.7f64.powi(2)) * f64::from(ttf::linear_from_srgb(200.0 / 255.0)));
+    assert!((f64::from(thin.get_pixel(16, 16).0[0]) - expected).abs() < 2.0, "{:?} {expected}", thin.get_pixel(16, 16));
+    let found = pick(&head_on([33, 33], media(1.0)), &inputs, DVec2::splat(16.5)).unwrap().unwrap();
+    assert!((found.voxel.y - 11.0).abs() < 0.5 && found.what == Picked::Medium, "{found:?}");
+    let sparse = Media { empty_space: EmptySpace::Sampled, ..media(0.3) };
+    assert_eq!(draw(&head_on([33, 33], sparse), &inputs), thin);
+    let missing = Media { isosurfaces: vec![Isosurface { of: Scalar::Depth, ..surface(1.0) }], ..media(1.0) };
+    let error = render(&head_on([9, 9], missing), &inputs, &Progress::silent()).unwrap_err();
+    assert!(error.to_string().contains("k'"), "{error}");
+}
+
+#[test]
+fn a_surface_of_k_lies_between_its_horizons() {
+    let geometry = SurveyGeometry::regular([41, 31, 41], 25.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::dipping(&geometry, &[14.0, 27.0], 12.0, 30.0);
+    let block = Block::of(&closed, &TransferFunctions::default(), &TextureLibrary::builtin().unwrap());
+    let surface =
+        Isosurface { of: Scalar::Depth, value: 1.5, colour: Colour::new(250, 250, 250), opacity: 1.0, thickness: 1.0 };
+    let media = Media { faces: Faces::None, isosurfaces: vec![surface], ..Media::default() };
+    let scene = Scene { media, outlines: Outlines::none(), size_px: [60, 45], samples: 1, ..Scene::default() };
+    let inputs = block.inputs(&[]);
+    let mut found = 0;
+    for n in 0..40 {
+        let Some(hit) = pick(&scene, &inputs, DVec2::new(10.0 + f64::from(n), 22.0)).unwrap() else { continue };
+        // Halfway between the two planes, and the shell's half thickness and half a step of the ray off.
+        let z = |h: usize| block.model.horizon_z(h, 0, hit.voxel.x, hit.voxel.y);
+        let away = (hit.voxel.z - 0.5 * (z(0) + z(1))).abs();
+        assert!(away < 1.6, "{away} samples off at {}", hit.voxel);
+        found += 1;
+    }
+    assert!(found > 10, "{found}");
+}
+
+#[test]
+fn ground_lets_as_much_light_through_as_its_opacity_says() {
+    let geometry = SurveyGeometry::regular([41, 31, 41], 25.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[10.0, 27.0]);
+    let block = Block::of(&closed, &TransferFunctions::default(), &TextureLibrary::builtin().unwrap());
+    let with = |opacity: f32| Scene {
+        camera: Camera { elevation_deg: 90.0, ..Camera::default() },
+        ground: Some(Ground { opacity, ..Ground::default() }),
+        outlines: Outlines::none(),
+        background: Background::Colour(Colour::BLACK),
+        size_px: [20, 16],
+        samples: 1,
+        ..Scene::default()
+    };
+    let at = |opacity: f32| {
+        let pixel = draw(&with(opacity), &block.inputs(&[])).get_pixel(10, 8).0;
+        f64::from(ttf::linear_from_srgb(f32::from(pixel[1]) / 255.0))
+    };
+    // Before a black background the light that is left is the opacity's share.
+    let (opaque, half, none) = (at(1.0), at(0.5), at(0.0));
+    assert!(opaque > 0.05 && (half - 0.5 * opaque).abs() < 0.01 && none == 0.0, "{opaque} {half} {none}");
 }

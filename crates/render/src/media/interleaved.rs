@@ -1,0 +1,63 @@
+//! Two kinds of light side by side in one picture (P-horiz, figure 5): stripes by gradients and without them in turn, so that an eye compares them on the same
+//! structure.
+//!
+//! Both pictures are drawn whole and then interleaved: nothing in one depends on the other, and every renderer draws them alike.
+
+use super::{Occlusion, Phong, Shading};
+use crate::scene::Scene;
+use image::RgbaImage;
+use serde::{Deserialize, Serialize};
+
+/// Stripes by gradients and by occlusion in turn.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Interleaved {
+    /// The light of the first stripe from the left, and of every other.
+    pub phong: Phong,
+    /// The light of those between.
+    pub occlusion: Occlusion,
+    /// Upright stripes over the width of the picture. Default 8.
+    pub stripes: u32,
+}
+
+impl Default for Interleaved {
+    fn default() -> Self {
+        Self { phong: Phong::default(), occlusion: Occlusion::default(), stripes: 8 }
+    }
+}
+
+/// The two pictures of an interleaved scene.
+pub(crate) fn halves(scene: &Scene) -> Option<([Scene; 2], u32)> {
+    let Shading::Interleaved(settings) = scene.media.shading else { return None };
+    let with = |shading| {
+        let mut half = scene.clone();
+        half.media.shading = shading;
+        half
+    };
+    Some(([with(Shading::Phong(settings.phong)), with(Shading::Occlusion(settings.occlusion))], settings.stripes))
+}
+
+/// Every other stripe from the second picture.
+pub(crate) fn interleave(mut first: RgbaImage, second: &RgbaImage, stripes: u32) -> RgbaImage {
+    let width = u64::from(first.width().max(1));
+    for (x, y, pixel) in first.enumerate_pixels_mut() {
+        if u64::from(x) * u64::from(stripes) / width % 2 == 1 {
+            *pixel = *second.get_pixel(x, y);
+        }
+    }
+    first
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use image::Rgba;
+
+    #[test]
+    fn stripes_take_turns() {
+        let [a, b] = [1, 2].map(|v| RgbaImage::from_pixel(10, 2, Rgba([v; 4])));
+        let both = interleave(a, &b, 4);
+        let row: Vec<u8> = (0..10).map(|x| both.get_pixel(x, 1).0[0]).collect();
+        assert_eq!(row, [1, 1, 1, 2, 2, 1, 1, 1, 2, 2]);
+    }
+}
