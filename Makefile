@@ -30,7 +30,7 @@ demo: build
 
 # The pictures of docs/gallery.md, from the demonstration's project.
 gallery: demo
-	docs/gallery.sh $(PETROGLYPH) $(OUT)/demo.petro docs/gallery
+	PETROGLYPH=$(PETROGLYPH) docs/gallery.sh $(OUT) docs/gallery
 
 test: setup
 	cargo test --workspace --locked

@@ -1,40 +1,93 @@
-#!/bin/sh
-# Draws the pictures of docs/gallery.md from a project with volumes `seismic` and `impedance` and horizons Alpha, Bravo, Gamma (the demonstration's):
-#   docs/gallery.sh PETROGLYPH PROJECT FOLDER
-# Each picture takes seconds on two cores. Extra options go to every picture: GALLERY_OPTIONS='--size 800x600 --samples 1'.
-set -eu
-petroglyph=$1
-project=$2
-folder=$3
+#!/usr/bin/env bash
+# Draws the pictures of docs/gallery.md:
+#   docs/gallery.sh DEMO FOLDER
+# DEMO is the folder of `petroglyph demo`; a second survey with little noise is made beside it for horizons that are picked. With PETROGLYPH_DATA, the folder of the
+# data files, F3 is drawn too. Extra options go to every picture: GALLERY_OPTIONS='--size 1600x1200'.
+set -euo pipefail
+demo=$1
+folder=$2
+petroglyph=${PETROGLYPH:-target/debug/petroglyph}
 mkdir -p "$folder"
 draw() {
-    name=$1
-    shift
+    local project=$1 name=$2
+    shift 2
     # shellcheck disable=SC2086
-    "$petroglyph" render "$project" "$folder/$name.png" --size 900x675 --samples 2 --dpi 200 ${GALLERY_OPTIONS:-} "$@"
+    "$petroglyph" render "$project" "$folder/$name.png" --size 640x480 --samples 3 --dpi 200 ${GALLERY_OPTIONS:-} "$@" > /dev/null
 }
-cut="--cut nearest,0.55,0.5 --outlines on"
 
-# P-illus 8, 9 and 12: scalar textures and the blend.
-for blend in 0 0.35 0.65 1; do
-    draw "blend-$blend" $cut --ground on --blend "$blend"
+# P-illus 8 and 9: a layer's texture, a volume's textures over it; the same with colour.
+illus=$demo/demo.petro
+cut="--cut nearest,0.55,0.5 --outlines on"
+"$petroglyph" scalar set "$illus" impedance --interval -inf,6.1e6,gravel,1 --interval 6.9e6,inf,dolostone,1
+draw "$illus" illus-08-textures-of-a-volume $cut --ground on
+"$petroglyph" raw "$illus" --volume impedance --map strata
+draw "$illus" illus-09-with-colour $cut --ground on --blend 0.45
+"$petroglyph" undo "$illus"
+"$petroglyph" undo "$illus"
+# P-illus 10: a volume in the cut-out before textured back faces.
+draw "$illus" illus-10-volume-in-the-cut-out $cut --ground off --medium seismic --clear-below 0.55
+# P-illus 11: a layer left standing, high amplitudes in turquoise.
+"$petroglyph" layer set "$illus" Limestone --opacity 1
+draw "$illus" illus-11-extruding-layer --scene docs/extruding.toml $cut --ground off --exaggeration 1.4
+"$petroglyph" undo "$illus"
+# P-illus 12: the blend.
+for blend in 0 0.5 1; do
+    draw "$illus" "illus-12-blend-$blend" $cut --ground on --blend "$blend"
 done
-# P-illus 10 and 11: a volume in the cut-out, whole and in a layer that was left standing.
-draw cut-out-volume $cut --ground off --medium seismic --clear-below 0.2
-"$petroglyph" layer set "$project" Limestone --opacity 1
-draw cut-out-layer $cut --ground off --medium seismic --clear-below 0
-"$petroglyph" undo "$project"
-# P-horiz 5: gradients, and none.
-draw phong --technique phong --clear-below 0.25
-draw occlusion --technique occlusion --clear-below 0.25
-draw unshaded --technique volume --clear-below 0.25
-# P-horiz 4: distances on faces; 6 and 7: horizons in the volume.
-draw distance $cut --ground off --show distance
-draw leaves $cut --ground off --show leaves --blend 1
-draw horizons --technique occlusion --clear-below 0.35 --horizon Alpha --horizon Bravo
-draw horizon-semi-transparent --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,0.25 --horizon Bravo
-draw horizon-top-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,1,1 --horizon Bravo
-draw horizon-bottom-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,0.5 --horizon Bravo,#f2c12e,1,1.2
-draw horizons-both-glowing --technique occlusion --clear-below 0.35 --horizon Alpha,#e85a9b,1,1 --horizon Bravo,#f2c12e,1,1
-draw horizons-near --technique occlusion --scope near --clear-below 0.1 --horizon Alpha --horizon Bravo
-draw horizons-away --technique occlusion --scope away --clear-below 0.35 --horizon Alpha,#e85a9b,0.02
+
+# P-horiz: two horizons picked from an extraction.
+picked=$demo/picked.petro
+rm -rf "$picked" "$demo/clear"
+"$petroglyph" synth "$demo/clear" --size 144x144x112 --seed 7 --snr 20
+"$petroglyph" import "$demo/clear/survey.sgy" "$picked"
+"$petroglyph" extract "$picked"
+volume="--technique occlusion"
+# P-horiz 4: leaves over the data, and the distance to the nearest.
+draw "$picked" horiz-04-leaves --blend 1 --show leaves --box 110,244,510,644,180,1110 --cut nearest,0.5,0.5
+draw "$picked" horiz-04-distance --blend 1 --show distance --box 110,244,510,644,180,1110 --cut nearest,0.5,0.5
+# P-horiz 5: gradients, none, and both in stripes.
+for technique in phong occlusion interleaved; do
+    draw "$picked" "horiz-05-$technique" --technique "$technique" --clear-below 0.2
+done
+# P-horiz 6: a pick climbs its tree, in the end too far.
+"$petroglyph" pick "$picked" --at 190,566,528.6 --horizon A --colour '#e85a9b'
+low="--box 150,244,510,644,420,1110 --azimuth 320 --elevation 40"
+draw "$picked" horiz-06-a-leaf $volume $low --clear-below 0.8 --horizon A
+"$petroglyph" climb "$picked" 1 --levels 4
+draw "$picked" horiz-06-b-four-levels-up $volume $low --clear-below 0.8 --horizon A
+"$petroglyph" climb "$picked" 1
+"$petroglyph" climb "$picked" 1
+draw "$picked" horiz-06-c-too-far $volume $low --clear-below 0.8 --horizon A
+# P-horiz 3: the leaves of that surface, and their nodes three levels up.
+draw "$picked" horiz-03-leaves $volume $low --scope near --clear-below 0.98 --horizon A --level 0
+draw "$picked" horiz-03-three-levels-up $volume $low --scope near --clear-below 0.98 --horizon A --level 3
+"$petroglyph" horizon remove "$picked" A
+# P-horiz 7: two horizons.
+for place in 115,583,260.1 145,569,338.4 221,575,195.9; do
+    "$petroglyph" pick "$picked" --at $place --horizon Top --colour '#e85a9b' --highest-valid || true
+done
+for place in 120,577,558.2 153,567,778 189,569,513 229,573,456; do
+    "$petroglyph" pick "$picked" --at $place --horizon Base --colour '#f2c12e' --highest-valid || true
+done
+both="--box 101,244,501,644,240,1110 --clear-below 0.45 --azimuth 35 --elevation 35"
+draw "$picked" horiz-07-two-horizons $volume $both --horizon Top --horizon Base
+draw "$picked" horiz-07-semi-transparent $volume $both --horizon 'Top,#e85a9b,0.2' --horizon Base
+draw "$picked" horiz-07-top-glows $volume $both --horizon 'Top,#e85a9b,1,1' --horizon Base
+draw "$picked" horiz-07-both-glow $volume $both --horizon 'Top,#e85a9b,1,1' --horizon 'Base,#f2c12e,1,1'
+"$petroglyph" raw "$picked" --map grey
+cube="--technique illustrate --blend 1 --ground off --outlines on --exaggeration 1.6 --azimuth 35 --elevation 35"
+draw "$picked" horiz-07-extruding-from-a-cube $cube --cut nearest,0.7,0.6 --horizon Top --horizon Base
+printf 'md,inclination,azimuth\n0,0,0\n300,0,0\n1150,35,60\n' > "$demo/A-1.csv"
+"$petroglyph" well add "$picked" "$demo/A-1.csv" --name A-1 --head 430700,6780900 --kb 0
+draw "$picked" horiz-07-with-a-well $cube --cut nearest,0.8,0.75 --horizon 'Top,#e85a9b,0.3' --horizon Base --medium seismic --clear-below 0.75
+
+# F3.
+if [ -n "${PETROGLYPH_DATA:-}" ]; then
+    f3=$demo/f3.petro
+    rm -rf "$f3"
+    "$petroglyph" import "$PETROGLYPH_DATA/volumes/f3_depth_il300-427_xl720-975_int16.sgy" "$f3"
+    "$petroglyph" extract "$f3"
+    place="--box 300,427,720,975,1202.4,1826.4 --exaggeration 3"
+    draw "$f3" f3-occlusion $volume $place --clear-below 0.15
+    draw "$f3" f3-leaves $place --cut nearest,0.5,0.4 --blend 1 --level 3
+fi

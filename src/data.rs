@@ -77,6 +77,22 @@ pub fn read_volume(root: &Path, entry: &VolumeEntry, progress: &Progress) -> Res
     Ok(StoredVolume::open(&root.join(&entry.file))?.read_f32(0, progress)?)
 }
 
+/// Reads a volume of the project in `root` at the finest level of its pyramid that fits into so many bytes, the coarsest where none does; answers the level too.
+///
+/// # Errors
+/// Missing or damaged data, or cancelled.
+pub fn read_volume_within(
+    root: &Path,
+    entry: &VolumeEntry,
+    bytes: u64,
+    progress: &Progress,
+) -> Result<(Volume<f32>, usize), ProjectError> {
+    let stored = StoredVolume::open(&root.join(&entry.file))?;
+    let fits = |level: &usize| stored.size(*level).iter().map(|&n| n as u64).product::<u64>() * 4 <= bytes;
+    let level = (0..stored.level_count()).find(fits).unwrap_or(stored.level_count() - 1);
+    Ok((stored.read_f32(level, progress)?, level))
+}
+
 /// Reads a horizon of the project in `root`.
 ///
 /// # Errors

@@ -4,7 +4,7 @@
 use crate::error::ProjectError;
 use crate::project::{Document, Project, placement};
 use crate::shown_candidates::ShownCandidates;
-use crate::{data, derived, library, style};
+use crate::{data, derived, library, memory, style};
 use glam::{DVec3, Vec3};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
 use render::{Inputs, Lookup, NamedVolume, Scene, VoxelBox, WellPath};
@@ -188,6 +188,19 @@ pub(crate) fn new_version() -> u64 {
 /// # Errors
 /// Damaged data, an interpretation that makes no solid model, styles that cannot be drawn, or cancelled.
 pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
+    load_within(project, scene, memory::half_of_available(), progress)
+}
+
+/// The same with at most so many bytes for the samples of each volume; larger ones come from a coarser level of their pyramid, and a warning says so.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_within(
+    project: &Project,
+    scene: &Scene,
+    volume_bytes: u64,
+    progress: &Progress,
+) -> Result<Loaded, ProjectError> {
     let document = project.document();
     let geometry = document.frame()?.clone();
     // Raw data alone needs no interpretation, but outlines and ground do.
@@ -222,7 +235,7 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
     wanted.extend(scene.media.all().map(|medium| medium.volume.as_str()));
     wanted.extend(scene.media.isosurface_volumes().map(String::as_str));
     wanted.extend(scene.media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str())));
-    let volumes = read_volumes(project.root(), document, &geometry, &wanted, progress)?;
+    let volumes = read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?;
     let candidates = ShownCandidates::load(project, scene, rock.as_ref().map(|rock| &rock.model), progress)?;
     let wells = read_wells(project.root(), document, &geometry)?;
     Ok(Loaded {
@@ -249,7 +262,14 @@ pub(crate) fn load_bare(project: &Project, scene: &Scene, progress: &Progress) -
     let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).collect();
     Ok(Loaded {
         rock: None,
-        volumes: read_volumes(project.root(), document, &geometry, &wanted, progress)?,
+        volumes: read_volumes(
+            project.root(),
+            document,
+            &geometry,
+            &wanted,
+            memory::half_of_available(),
+            progress,
+        )?,
         packed: None,
         wells: read_wells(project.root(), document, &geometry)?,
         candidates: ShownCandidates::load(project, scene, None, progress)?,
@@ -265,13 +285,23 @@ fn read_volumes(
     document: &Document,
     geometry: &SurveyGeometry,
     wanted: &[&str],
+    volume_bytes: u64,
     progress: &Progress,
 ) -> Result<Vec<LoadedVolume>, ProjectError> {
     let mut volumes = Vec::new();
     for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
         let covers = placement::covers(geometry, entry.geometry.as_ref().unwrap_or(geometry))
             .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
-        let volume = data::read_volume(root, entry, progress)?;
+        let (volume, level) = data::read_volume_within(root, entry, volume_bytes, progress)?;
+        if level > 0 {
+            let apart = 1 << level;
+            progress.warn(&format!(
+                "volume {} is shown by one sample in {apart} along each axis, to fit into memory",
+                entry.name
+            ));
+        }
+        let full = entry.geometry.as_ref().unwrap_or(geometry).size();
+        let covers = at_level(covers, full, volume.size(), level);
         volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
     }
     Ok(volumes)
@@ -285,6 +315,13 @@ fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Re
         wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(geometry), tops });
     }
     Ok(wells)
+/// Voxel positions of the first and last sample of a level of a pyramid, whose sample m lies at m·2^level of the full volume.
+fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) -> VoxelBox {
+    let max = |axis: usize| {
+        let share = ((size[axis].saturating_sub(1)) << level) as f64 / full[axis].saturating_sub(1).max(1) as f64;
+        covers.min[axis] + (covers.max[axis] - covers.min[axis]) * if level == 0 { 1.0 } else { share }
+    };
+    VoxelBox { min: covers.min, max: [max(0), max(1), max(2)] }
 }
 
 /// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so

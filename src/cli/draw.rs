@@ -5,7 +5,7 @@ use super::request::RenderRequest;
 use super::run::scene_file;
 use crate::picture::{self, Painter};
 use crate::project::Project;
-use crate::{pipeline, scene};
+use crate::{memory, pipeline, scene};
 use render::Scene;
 use std::path::Path;
 use survey::{Progress, VerticalUnit};
@@ -31,7 +31,8 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         scene.blend = 0.0;
     }
     scene.validate(document.frame()?)?;
-    let loaded = pipeline::load(&project, &scene, progress)?;
+    let volume_bytes = request.volume_bytes.unwrap_or_else(memory::half_of_available);
+    let loaded = pipeline::load_within(&project, &scene, volume_bytes, progress)?;
     let mut painter = Painter::new(request.device, progress)?;
     let (image, stage) = painter.draw(&scene, &loaded, progress)?;
     picture::write_png(&request.out, &image, request.dpi)?;

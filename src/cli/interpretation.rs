@@ -39,7 +39,7 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
 }
 
 /// Bytes of `2G` and the like.
-fn bytes(option: &str, typed: Option<&str>) -> Result<Option<u64>, Usage> {
+pub(super) fn bytes(option: &str, typed: Option<&str>) -> Result<Option<u64>, Usage> {
     let parsed = |text| {
         memory::parse_bytes(text).ok_or_else(|| format!("{option} {text}: expected bytes such as 2G, 800M or 64K"))
     };

@@ -89,6 +89,8 @@ pub(super) struct RenderRequest {
     pub(super) view: View,
     pub(super) dpi: f64,
     pub(super) device: Device,
+    /// Most bytes for the samples of a volume.
+    pub(super) volume_bytes: Option<u64>,
     /// What is seen through, where it was said.
     pub(super) see_through: SeeThrough,
 }
@@ -289,6 +291,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         scene: typed.scene,
         view: typed.view.try_into()?,
         dpi: typed.dpi,
+        volume_bytes: interpretation::bytes("--volume-memory", typed.volume_memory.as_deref())?,
         device,
         see_through: SeeThrough {
             technique,

@@ -67,6 +67,10 @@ impl Gpu {
         let internal = self.device.push_error_scope(wgpu::ErrorFilter::Internal);
         let result = commands();
         let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
+        if result.is_err() || errors.iter().any(Option::is_some) {
+            // Whether the device was lost is only said to those who ask; the answer comes by the callback.
+            let _ = self.device.poll(wgpu::PollType::Poll);
+        }
         if let Some(reason) = self.lost_reason() {
             return Err(RenderError::DeviceLost { reason });
         }

@@ -40,6 +40,9 @@ pub(in crate::cli) struct RenderArgs {
     /// What draws: the graphics adapter, or the processor when there is none; or one of them
     #[arg(long, value_name = "auto|gpu|cpu", default_value = "auto")]
     pub(in crate::cli) device: String,
+    /// Most memory for the samples of one volume, such as 2G; a larger one is shown by a coarser level of its pyramid [default: half of what is free]
+    #[arg(long, value_name = "BYTES")]
+    pub(in crate::cli) volume_memory: Option<String>,
     #[command(flatten)]
     pub(in crate::cli) view: ViewArgs,
 }

@@ -114,17 +114,17 @@ struct Stop {
     ground: GroundHit,
 }
 
-fn stopping_hit(ray: PixelRay, from: f32) -> Stop {
+fn stopping_hit(ray: PixelRay, after: f32) -> Stop {
     var stop: Stop;
     if faces_shown == FACES_ALL && with_ground == 0u {
-        stop.span = next_span(ray.origin, ray.direction, from);
+        stop.span = next_span(ray.origin, ray.direction, after);
         return stop;
     }
     if faces_shown != FACES_ALL && faces_shown != FACES_CUT_OUTS {
         return stop;
     }
     let outer = cross_box(ray.origin, ray.direction, params.box_low.xyz, params.box_high.xyz);
-    var start = from;
+    var start = after;
     for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
         stop.span = next_span(ray.origin, ray.direction, start);
         if !stop.span.found {
@@ -155,8 +155,8 @@ struct Seen {
     stop: f32,
 }
 
-fn seen(ray: PixelRay, from: f32, start: f32) -> Seen {
-    let hit = stopping_hit(ray, from);
+fn seen(ray: PixelRay, after: f32, start: f32) -> Seen {
+    let hit = stopping_hit(ray, after);
     var behind = params.background;
     var stop = HIGHEST;
     var is_ground = false;
@@ -170,7 +170,7 @@ fn seen(ray: PixelRay, from: f32, start: f32) -> Seen {
     }
     if with_wells == 1u {
         let well = well_hit(ray.origin, ray.direction, stop);
-        if well.w < stop && well.w > from {
+        if well.w < stop && well.w > after {
             behind = vec4(well.xyz, 1.0);
             stop = well.w;
             is_ground = false;

@@ -437,9 +437,9 @@ fn gather(origin: vec3<f32>, direction: vec3<f32>, start: f32, stop: f32) -> Gat
     let units = metres / media.scales.y;
     let last = min(outer.exit, stop);
     if params.cut_count == 0u {
-        let from = max(outer.enter, start);
-        if last > from + TOUCH && faces_shown != FACES_ALL {
-            gathered = through(origin, direction, from, last, SURROUNDINGS, towards, units, gathered);
+        let first = max(outer.enter, start);
+        if last > first + TOUCH && faces_shown != FACES_ALL {
+            gathered = through(origin, direction, first, last, SURROUNDINGS, towards, units, gathered);
         }
         return gathered;
     }

@@ -176,11 +176,26 @@ impl Renderer {
         &self.gpu.adapter_name
     }
 
-    /// Draws the scene.
+    /// Gives the device up, as a driver does that is restarted: what follows is the same, so that it can be tried out.
+    pub fn lose_device(&self) {
+        self.gpu.device.destroy();
+    }
+
+    /// Draws the scene. A device that is lost is opened anew, once, with all that it held.
     ///
     /// # Errors
     /// A scene without a picture, missing inputs, cancellation, or what the device says.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        match self.render_once(scene, inputs, progress) {
+            Err(RenderError::DeviceLost { .. }) => {
+                *self = Self::headless()?;
+                self.render_once(scene, inputs, progress)
+            }
+            drawn => drawn,
+        }
+    }
+
+    fn render_once(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
         if let Some(([first, second], stripes)) = halves(scene) {
             let first = self.render(&first, inputs, progress)?;
             return Ok(interleave(first, &self.render(&second, inputs, progress)?, stripes));

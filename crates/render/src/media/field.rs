@@ -130,9 +130,11 @@ impl<'a> FieldMedium<'a> {
             return NO_DATA;
         }
         let clamped = index.clamp(Vec3::ZERO, last);
-        let low = clamped.floor().min((last - 1.0).max(Vec3::ZERO));
-        let f = clamped - low;
-        let (x, y, z) = (low.x as usize, low.y as usize, low.z as usize);
+        // Cut to integers: these are not negative, and rounding down would be a call.
+        let cell = |axis: usize| (clamped[axis] as i32).min(size[axis].saturating_sub(2) as i32);
+        let [x, y, z] = [cell(0), cell(1), cell(2)];
+        let f = clamped - Vec3::new(x as f32, y as f32, z as f32);
+        let [x, y, z] = [x as usize, y as usize, z as usize];
         let dz = usize::from(size[2] > 1);
         let dy = if size[1] > 1 { size[2] } else { 0 };
         let dx = if size[0] > 1 { size[1] * size[2] } else { 0 };
@@ -178,6 +180,11 @@ impl<'a> FieldMedium<'a> {
             difference(at(dx + 1), at(dx - 1)),
         );
         sum * 0.5 * self.scale
+    }
+
+    /// Its samples without NaN.
+    pub(super) fn samples(&self) -> &[f32] {
+        self.prepared.samples(&self.volume)
     }
 
     /// Smallest and largest sample between two voxel positions; `None` where there is none.

@@ -198,11 +198,13 @@ impl LightVolume {
         let [nu, nv, slices] = self.grid.size;
         let last = Vec3::new((nu - 1) as f32, (nv - 1) as f32, slices as f32);
         let q = q.clamp(Vec3::ZERO, last);
-        let low = q.floor().min((last - 1.0).max(Vec3::ZERO));
-        let f = q - low;
+        // Cut to integers: these are not negative, and rounding down would be a call.
+        let cell = |axis: usize| (q[axis] as i32).min((last[axis] as i32 - 1).max(0));
+        let [x, y, z] = [cell(0), cell(1), cell(2)];
+        let f = q - Vec3::new(x as f32, y as f32, z as f32);
         let du = usize::from(nu > 1);
         let dv = if nv > 1 { nu } else { 0 };
-        let start = (low.z as usize * nv + low.y as usize) * nu + low.x as usize;
+        let start = (z as usize * nv + y as usize) * nu + x as usize;
         let dw = nu * nv;
         let values = &self.lambda[start..];
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
@@ -272,6 +274,9 @@ impl Column {
             }
             let length = units * (to - from) / (ends[1] - ends[0]);
             let Matter { extinction, emission, .. } = field.at(p, place, word, self.towards);
+            if extinction <= 0.0 {
+                continue;
+            }
             let alpha = absorbed(extinction * length);
             sum.0 += absorbed(extinction) * length;
             sum.1 += alpha * (1.0 - sum.1);

@@ -21,6 +21,7 @@ pub mod isosurface;
 pub mod light;
 pub mod march;
 pub mod prepared;
+mod single;
 pub mod table;
 
 pub use interleaved::Interleaved;

@@ -68,11 +68,11 @@ impl Table {
 pub fn absorbed(x: f32) -> f32 {
     // e^(−x) = 2^(−n) · 2^(−f), the latter by its series around ½.
     let y = (x * std::f32::consts::LOG2_E).min(126.0);
-    let n = y.floor();
-    let f = (y - n - 0.5) * -std::f32::consts::LN_2;
+    let n = y as i32;
+    let f = (y - n as f32 - 0.5) * -std::f32::consts::LN_2;
     let series =
         1.0 + f * (1.0 + f * (0.5 + f * (1.0 / 6.0 + f * (1.0 / 24.0 + f * (1.0 / 120.0 + f * (1.0 / 720.0))))));
-    let power = f32::from_bits(((127 - n as i32) as u32) << 23);
+    let power = f32::from_bits(((127 - n) as u32) << 23);
     1.0 - power * std::f32::consts::FRAC_1_SQRT_2 * series
 }
 

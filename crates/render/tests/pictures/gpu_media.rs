@@ -252,3 +252,24 @@ fn gpu_and_cpu_see_through_the_same() {
     }
     assert!(wrong.is_empty(), "{wrong:?}");
 }
+
+#[test]
+fn a_lost_device_is_opened_anew() {
+    if std::env::var("PETROGLYPH_GPU_TESTS").is_ok_and(|value| value == "skip") {
+        eprintln!("skipped: PETROGLYPH_GPU_TESTS=skip");
+        return;
+    }
+    let geometry = survey::SurveyGeometry::regular([9; 3], 10.0, 10.0, survey::VerticalUnit::Metres);
+    let volume = survey::Volume::filled([9; 3], 0.7f32);
+    let volumes = [NamedVolume::whole("v", &volume)];
+    let inputs = render::Inputs { version: 1, ..render::Inputs::raw(&geometry, &volumes) };
+    let media = Media { faces: Faces::None, surroundings: vec![medium("v", white_ramp(1.0, 0.0))], ..Media::default() };
+    let scene = Scene { size_px: [40, 30], samples: 1, media, ..Scene::default() };
+    let mut renderer = Renderer::headless().expect("a Vulkan driver, or PETROGLYPH_GPU_TESTS=skip");
+    let quiet = Progress::silent();
+    let before = renderer.render(&scene, &inputs, &quiet).unwrap();
+    for _ in 0..2 {
+        renderer.lose_device();
+        assert!(renderer.render(&scene, &inputs, &quiet).unwrap() == before);
+    }
+}
