@@ -56,3 +56,34 @@ fn a_cut_out_is_filled_with_a_volume_in_the_layers_that_have_an_opacity() {
     assert!(shown.pixels().filter(|p| p.0[0] > 90 && p.0[1] < 40).count() > 200, "the horizon is red");
     run_in(at, "render p.petro a.png --technique occlusion --horizon Omega").failed(&["Omega"]);
 }
+
+#[test]
+fn surfaces_stripes_translucent_ground_and_coarse_volumes_are_drawn() {
+    let folder = project();
+    let at = folder.path();
+    // A surface of k' by itself, and of a volume.
+    let surface = picture(at, "--technique phong --isosurface k,2.5,#ff0000 --outlines off --ground off");
+    assert!(surface.pixels().filter(|p| p.0[0] > 60 && p.0[1] < 50 && p.0[2] < 60).count() > 100, "a red surface");
+    picture(at, "--technique occlusion --isosurface impedance,6000000,#00ff00,0.5");
+    run_in(at, "render p.petro a.png --isosurface nothing,3").failed(&["nothing"]);
+    assert_eq!(run_in(at, "render p.petro a.png --isosurface seismic").code, 2);
+    // Stripes of two kinds of light.
+    let [phong, occlusion, both] =
+        ["phong", "occlusion", "interleaved"].map(|technique| picture(at, &format!("--technique {technique}")));
+    for x in 0..both.width() {
+        let whole = if x * 8 / both.width() % 2 == 0 { &phong } else { &occlusion };
+        assert!((0..both.height()).all(|y| both.get_pixel(x, y) == whole.get_pixel(x, y)), "column {x}");
+    }
+    // Ground that lets light through, over white.
+    let ground = |opacity: &str| picture(at, &format!("--ground on --ground-opacity {opacity}"));
+    assert!(light(&ground("0.3")) > light(&ground("1")));
+    assert_eq!(run_in(at, "render p.petro a.png --ground on --ground-opacity 2").code, 1);
+    // A volume that does not fit, by every second sample.
+    let fine = picture(at, "--technique volume");
+    let run = run_in(at, &format!("render p.petro a.png {SMALL} --technique volume --volume-memory 100K")).done();
+    assert!(run.stderr.contains("one sample in 2"), "{}", run.stderr);
+    let coarse = image::open(at.join("a.png")).unwrap().to_rgb8();
+    let difference: u32 = fine.pixels().zip(coarse.pixels()).map(|(a, b)| u32::from(a.0[0].abs_diff(b.0[0]))).sum();
+    let mean = difference / (fine.width() * fine.height());
+    assert!(fine != coarse && mean < 40, "{mean}");
+}

@@ -137,7 +137,7 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
         }),
         ("interleaved", {
             let both = Interleaved { stripes: 3, ..Interleaved::default() };
-            with(none(vec![ramp.clone()], Shading::Interleaved(both)))
+            with(none(vec![ramp], Shading::Interleaved(both)))
         }),
         (
             "ground that lets light through",
