@@ -12,7 +12,7 @@ draw() {
     local project=$1 name=$2
     shift 2
     # shellcheck disable=SC2086
-    "$petroglyph" render "$project" "$folder/$name.png" --size 640x480 --samples 3 --dpi 200 ${GALLERY_OPTIONS:-} "$@" > /dev/null
+    "$petroglyph" render "$project" "$folder/$name.png" --size 540x405 --samples 3 --dpi 200 ${GALLERY_OPTIONS:-} "$@" > /dev/null
 }
 
 # P-illus 8 and 9: a layer's texture, a volume's textures over it; the same with colour.
@@ -70,16 +70,15 @@ for place in 120,577,558.2 153,567,778 189,569,513 229,573,456; do
     "$petroglyph" pick "$picked" --at $place --horizon Base --colour '#f2c12e' --highest-valid || true
 done
 both="--box 101,244,501,644,240,1110 --clear-below 0.45 --azimuth 35 --elevation 35"
-draw "$picked" horiz-07-two-horizons $volume $both --horizon Top --horizon Base
 draw "$picked" horiz-07-semi-transparent $volume $both --horizon 'Top,#e85a9b,0.2' --horizon Base
-draw "$picked" horiz-07-top-glows $volume $both --horizon 'Top,#e85a9b,1,1' --horizon Base
-draw "$picked" horiz-07-both-glow $volume $both --horizon 'Top,#e85a9b,1,1' --horizon 'Base,#f2c12e,1,1'
+draw "$picked" horiz-07-top-glows $volume $both --horizon 'Top,#e85a9b,1,0.3' --horizon Base
+draw "$picked" horiz-07-both-glow $volume $both --horizon 'Top,#e85a9b,1,0.3' --horizon 'Base,#f2c12e,1,0.3'
 "$petroglyph" raw "$picked" --map grey
 cube="--technique illustrate --blend 1 --ground off --outlines on --exaggeration 1.6 --azimuth 35 --elevation 35"
 draw "$picked" horiz-07-extruding-from-a-cube $cube --cut nearest,0.7,0.6 --horizon Top --horizon Base
 printf 'md,inclination,azimuth\n0,0,0\n300,0,0\n1150,35,60\n' > "$demo/A-1.csv"
 "$petroglyph" well add "$picked" "$demo/A-1.csv" --name A-1 --head 430700,6780900 --kb 0
-draw "$picked" horiz-07-with-a-well $cube --cut nearest,0.8,0.75 --horizon 'Top,#e85a9b,0.3' --horizon Base --medium seismic --clear-below 0.75
+draw "$picked" horiz-07-with-a-well $cube --cut nearest,0.8,0.75 --horizon 'Top,#e85a9b,0.3' --horizon Base
 
 # F3.
 if [ -n "${PETROGLYPH_DATA:-}" ]; then

@@ -197,6 +197,11 @@ impl SeeThrough {
         if self.technique == Some(Technique::Illustrate) {
             scene.media.faces = Faces::All;
         }
+        // Surfaces of one colour have no shape without light.
+        let surfaces = !(self.horizons.is_empty() && self.isosurfaces.is_empty());
+        if surfaces && scene.media.shading == Shading::Unshaded {
+            scene.media.shading = Shading::Occlusion(Occlusion::default());
+        }
         let Some(name) = &self.medium else { return Ok(()) };
         let mut raw = style::raw_colour(document, Some(name), ColourMap::Seismics, None)?;
         if let Some(own) = document.style.raw.as_ref().filter(|own| own.volume == *name) {

@@ -79,11 +79,16 @@ fn surfaces_stripes_translucent_ground_and_coarse_volumes_are_drawn() {
     assert!(light(&ground("0.3")) > light(&ground("1")));
     assert_eq!(run_in(at, "render p.petro a.png --ground on --ground-opacity 2").code, 1);
     // A volume that does not fit, by every second sample.
-    let fine = picture(at, "--technique volume");
-    let run = run_in(at, &format!("render p.petro a.png {SMALL} --technique volume --volume-memory 100K")).done();
-    assert!(run.stderr.contains("one sample in 2"), "{}", run.stderr);
-    let coarse = image::open(at.join("a.png")).unwrap().to_rgb8();
-    let difference: u32 = fine.pixels().zip(coarse.pixels()).map(|(a, b)| u32::from(a.0[0].abs_diff(b.0[0]))).sum();
-    let mean = difference / (fine.width() * fine.height());
-    assert!(fine != coarse && mean < 40, "{mean}");
+    run_in(at, "synth t --size 72x24x24 --seed 3 --snr 9").done();
+    run_in(at, "import t/survey.sgy q.petro").done();
+    let whole = |options: &str| {
+        let line = format!("render q.petro a.png {SMALL} --technique volume --clear-below -0.5 {options}");
+        let run = run_in(at, &line).done();
+        (run.stderr, image::open(at.join("a.png")).unwrap().to_rgb8())
+    };
+    let (fine, coarse) = (whole(""), whole("--volume-memory 100K"));
+    assert!(!fine.0.contains("one sample in") && coarse.0.contains("one sample in 2"), "{} {}", fine.0, coarse.0);
+    let apart = |(a, b): (&image::Rgb<u8>, &image::Rgb<u8>)| u32::from(a.0[0].abs_diff(b.0[0]));
+    let mean = fine.1.pixels().zip(coarse.1.pixels()).map(apart).sum::<u32>() / (fine.1.width() * fine.1.height());
+    assert!(fine.1 != coarse.1 && mean < 40, "{mean}");
 }

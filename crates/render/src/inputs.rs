@@ -1,7 +1,7 @@
 //! What a scene is drawn from: borrowed data of the project, in voxel space.
 
 use crate::error::RenderError;
-use crate::leaves::BORDER;
+use crate::leaves::{BORDER, BORDER_REACH};
 use crate::voxel_box::VoxelBox;
 use crate::wells::WellPath;
 use glam::Vec3;
@@ -77,8 +77,12 @@ impl Candidates<'_> {
 
     /// Leaf of the nearest sample.
     pub fn leaf_at(&self, p: Vec3) -> u32 {
+        self.leaf[self.nearest_sample(p)]
+    }
+
+    fn nearest_sample(&self, p: Vec3) -> usize {
         let index = |axis: usize| ((p[axis] + 0.5).max(0.0) as usize).min(self.size[axis] - 1);
-        self.leaf[(index(0) * self.size[1] + index(1)) * self.size[2] + index(2)]
+        (index(0) * self.size[1] + index(1)) * self.size[2] + index(2)
     }
 
     /// The number that a leaf is coloured by; 0 = not shown.
@@ -86,10 +90,16 @@ impl Candidates<'_> {
         self.groups.map_or(leaf, |groups| groups.get(leaf as usize).copied().unwrap_or(0))
     }
 
-    /// Whether a place lies beside another group: its neighbours aside in x or y belong to different ones.
+    /// Whether a place lies beside another group: its neighbours aside in x or y are near their surfaces and belong to different ones.
     pub fn is_border(&self, p: Vec3) -> bool {
-        let group = |aside: Vec3| self.group(self.leaf_at(p + aside));
-        group(Vec3::X * BORDER) != group(Vec3::X * -BORDER) || group(Vec3::Y * BORDER) != group(Vec3::Y * -BORDER)
+        let group = |aside: Vec3| {
+            let at = self.nearest_sample(p + aside);
+            let near = f32::from(self.distance[at]) * self.voxels_per_step <= BORDER_REACH;
+            if near { self.group(self.leaf[at]) } else { 0 }
+        };
+        let differ = |a: u32, b: u32| a != b && a != 0 && b != 0;
+        differ(group(Vec3::X * BORDER), group(Vec3::X * -BORDER))
+            || differ(group(Vec3::Y * BORDER), group(Vec3::Y * -BORDER))
     }
 
     /// Distance by trilinear interpolation, voxels.

@@ -9,6 +9,7 @@ const HALF_WIDTH: f32 = 0.8;
 const FADE: f32 = 0.5;
 const BLACK_AT: f32 = 10.0;
 const BORDER: f32 = 0.75;
+const BORDER_REACH: f32 = 2.0;
 const BORDER_TONE: f32 = 0.35;
 
 fn leaf_colour(id: u32) -> vec3<f32> {
@@ -31,10 +32,23 @@ fn leaf_group(leaf: u32) -> u32 {
     return relief_map[media.leaves.w + leaf];
 }
 
+// The group of the nearest sample, 0 where that is far from its surface.
+fn group_near(p: vec3<f32>) -> u32 {
+    let at = min(vec3<u32>(max(p + 0.5, vec3(0.0))), media.candidates.xyz - 1u);
+    if textureLoad(distances, at.zyx, 0).r * 255.0 * media.scales.w > BORDER_REACH {
+        return 0u;
+    }
+    return leaf_group(textureLoad(leaf_ids, at.zyx, 0).r);
+}
+
+fn differ(a: u32, b: u32) -> bool {
+    return a != b && a != 0u && b != 0u;
+}
+
 fn is_border(p: vec3<f32>) -> bool {
     let x = vec3(BORDER, 0.0, 0.0);
     let y = vec3(0.0, BORDER, 0.0);
-    return leaf_group(leaf_at(p + x)) != leaf_group(leaf_at(p - x)) || leaf_group(leaf_at(p + y)) != leaf_group(leaf_at(p - y));
+    return differ(group_near(p + x), group_near(p - x)) || differ(group_near(p + y), group_near(p - y));
 }
 
 // The colour of a face with the candidates it is to show.

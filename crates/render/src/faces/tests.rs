@@ -139,6 +139,7 @@ fn constants_are_the_same() {
         ("FADE", f64::from(leaves::FADE)),
         ("BLACK_AT", f64::from(leaves::BLACK_AT)),
         ("BORDER", f64::from(leaves::BORDER)),
+        ("BORDER_REACH", f64::from(leaves::BORDER_REACH)),
         ("BORDER_TONE", f64::from(leaves::BORDER_TONE)),
         ("RIM_LIGHT", f64::from(wells::RIM_LIGHT)),
     ] {

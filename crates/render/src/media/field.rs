@@ -308,6 +308,13 @@ impl<'a> Field<'a> {
         Ok(Some(field))
     }
 
+    /// The one volume of a place where there is nothing to ask but its function.
+    pub fn plain(&self, place: Place) -> Option<&FieldMedium<'a>> {
+        let [medium] = &self.media[..] else { return None };
+        let alone = self.horizons.is_none() && self.isosurfaces.is_empty() && medium.layers.is_none();
+        (alone && medium.place == place).then_some(medium)
+    }
+
     fn fill_bricks(&self, samples: [usize; 3], empty_space: EmptySpace) -> Bricks {
         let layered = self.media.iter().any(|m| m.layers.is_some())
             || self.isosurfaces.iter().any(|surface| surface.medium.is_none());

@@ -20,7 +20,7 @@
 
 use super::field::{Field, Matter, Place};
 use super::march::stretches;
-use super::table::absorbed;
+use super::table::{NO_DATA_BELOW, absorbed};
 use super::{Faces, Occlusion, Shading};
 use crate::camera::View;
 use crate::visible::{Ray, Solid};
@@ -138,7 +138,8 @@ impl LightVolume {
         let cells = nu * nv;
         let emits = field.horizons.as_ref().is_some_and(|h| h.horizons.iter().any(|one| one.emission > 0.0));
         let columns: Vec<Column> = (0..cells).into_par_iter().map(|n| column(field, view, solid, &grid, n)).collect();
-        let mut lambda = vec![1.0f32; cells * (slices + 1)];
+        // Every value is written below, by the threads: zeros cost nothing until then.
+        let mut lambda = vec![0.0f32; cells * (slices + 1)];
         let mut emission = emits.then(|| vec![Vec3::ZERO; cells * (slices + 1)]);
         let mut occluded = vec![0.0f32; cells];
         let mut blurred = vec![0.0f32; cells];
@@ -273,6 +274,16 @@ impl Column {
                 continue;
             }
             let length = units * (to - from) / (ends[1] - ends[0]);
+            if let Some(medium) = field.plain(place) {
+                let value = medium.sample(p);
+                if value > NO_DATA_BELOW {
+                    let entry = medium.table.index(value);
+                    let alpha = absorbed(medium.table.extinctions[entry] * length);
+                    sum.0 += medium.table.opacities[entry] * length;
+                    sum.1 += alpha * (1.0 - sum.1);
+                }
+                continue;
+            }
             let Matter { extinction, emission, .. } = field.at(p, place, word, self.towards);
             if extinction <= 0.0 {
                 continue;

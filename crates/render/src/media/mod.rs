@@ -175,21 +175,21 @@ pub enum Shading {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Phong {
-    /// Light without direction. Default 0.25.
+    /// Light without direction. Default 0.2.
     pub ambient: f32,
-    /// Light by the angle to the surface. Default 0.75.
+    /// Light by the angle to the surface. Default 0.65.
     pub diffuse: f32,
-    /// Strength of highlights. Default 0.2.
+    /// Strength of highlights. Default 0.15.
     pub specular: f32,
     /// Exponent of highlights. Default 20.
     pub shininess: f32,
-    /// Direction to the light: right, up, towards the viewer. Default (−0.4, 0.6, 1).
+    /// Direction to the light: right, up, towards the viewer. Default (−0.7, 0.8, 0.6): from the side, so that shapes show.
     pub light: [f32; 3],
 }
 
 impl Default for Phong {
     fn default() -> Self {
-        Self { ambient: 0.25, diffuse: 0.75, specular: 0.2, shininess: 20.0, light: [-0.4, 0.6, 1.0] }
+        Self { ambient: 0.2, diffuse: 0.65, specular: 0.15, shininess: 20.0, light: [-0.7, 0.8, 0.6] }
     }
 }
 

@@ -56,10 +56,9 @@ pub struct Position([i32; 3]);
 impl<'f> Single<'f> {
     /// The one medium of a place; `None` where there is more to ask than a volume.
     pub fn of(field: &'f Field, place: Place, ray: &Ray, towards: Vec3) -> Option<Self> {
-        let [medium] = &field.media[..] else { return None };
-        let plain = field.horizons.is_none() && field.isosurfaces.is_empty() && medium.layers.is_none();
+        let medium = field.plain(place)?;
         let size = medium.volume.volume.size();
-        if !plain || medium.place != place || size.iter().any(|&n| !(4..1 << (31 - PLACES)).contains(&n)) {
+        if size.iter().any(|&n| !(4..1 << (31 - PLACES)).contains(&n)) {
             return None;
         }
         let (scale, offset) = medium.volume.index_from_voxel();
@@ -110,11 +109,15 @@ impl<'f> Single<'f> {
             return None;
         }
         let table = &self.medium.table;
-        let [r, g, b, extinction] = table.entries[table.index(value)];
+        let entry = table.index(value);
+        let extinction = table.extinctions[entry];
         if extinction <= 0.0 {
             return None;
         }
-        let mut colour = Vec3::new(r, g, b);
+        let mut colour = match table.uniform {
+            Some(colour) => Vec3::from_array(colour),
+            None => Vec3::from_slice(&table.entries[entry]),
+        };
         if let Some(lit) = &self.lit {
             colour = lit.on(self.differences(cell, f), colour);
         }

@@ -23,6 +23,12 @@ pub fn extinction(opacity: f32) -> f32 {
 pub struct Table {
     /// Linear red, green, blue and extinction by entry.
     pub entries: Vec<[f32; 4]>,
+    /// The extinctions alone: what most samples ask for, small enough to stay at hand.
+    pub extinctions: Vec<f32>,
+    /// The opacity of one unit by entry.
+    pub opacities: Vec<f32>,
+    /// The colour of all entries, where they have the same.
+    pub uniform: Option<[f32; 3]>,
     /// Value of the first entry.
     pub low: f32,
     /// Entries per unit of value.
@@ -48,13 +54,25 @@ impl Table {
             visible_before.push(count);
         }
         let [low, high] = function.domain;
-        Self { entries, low, scale: (ENTRIES - 1) as f32 / (high - low), visible_before }
+        let extinctions: Vec<f32> = entries.iter().map(|entry| entry[3]).collect();
+        let opacities = extinctions.iter().map(|&kappa| absorbed(kappa)).collect();
+        let first = [entries[0][0], entries[0][1], entries[0][2]];
+        let uniform = entries.iter().all(|entry| entry[..3] == first).then_some(first);
+        Self {
+            entries,
+            extinctions,
+            opacities,
+            uniform,
+            low,
+            scale: (ENTRIES - 1) as f32 / (high - low),
+            visible_before,
+        }
     }
 
     /// The entry of a value that is data.
     #[inline(always)]
     pub fn index(&self, value: f32) -> usize {
-        (((value - self.low) * self.scale + 0.5).clamp(0.0, (ENTRIES - 1) as f32)) as usize
+        (((value - self.low) * self.scale + 0.5).clamp(0.0, (ENTRIES - 1) as f32)) as i32 as usize
     }
 
     /// Whether any value between two is visible.
