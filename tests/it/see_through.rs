@@ -79,7 +79,7 @@ fn surfaces_stripes_translucent_ground_and_coarse_volumes_are_drawn() {
     assert!(light(&ground("0.3")) > light(&ground("1")));
     assert_eq!(run_in(at, "render p.petro a.png --ground on --ground-opacity 2").code, 1);
     // A volume that does not fit, by every second sample.
-    run_in(at, "synth t --size 72x24x24 --seed 3 --snr 9").done();
+    run_in(at, "synth t --size 72x24x48 --seed 3 --snr 9").done();
     run_in(at, "import t/survey.sgy q.petro").done();
     let whole = |options: &str| {
         let line = format!("render q.petro a.png {SMALL} --technique volume --clear-below -0.5 {options}");
