@@ -262,14 +262,7 @@ pub(crate) fn load_bare(project: &Project, scene: &Scene, progress: &Progress) -
     let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).collect();
     Ok(Loaded {
         rock: None,
-        volumes: read_volumes(
-            project.root(),
-            document,
-            &geometry,
-            &wanted,
-            memory::half_of_available(),
-            progress,
-        )?,
+        volumes: read_volumes(project.root(), document, &geometry, &wanted, memory::half_of_available(), progress)?,
         packed: None,
         wells: read_wells(project.root(), document, &geometry)?,
         candidates: ShownCandidates::load(project, scene, None, progress)?,
@@ -315,6 +308,8 @@ fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Re
         wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(geometry), tops });
     }
     Ok(wells)
+}
+
 /// Voxel positions of the first and last sample of a level of a pyramid, whose sample m lies at m·2^level of the full volume.
 fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) -> VoxelBox {
     let max = |axis: usize| {

@@ -30,6 +30,7 @@ pub fn scene(session: &Session, horizons: Option<&[(Colour, Vec<u32>)]>) -> Scen
             technique: Some(Technique::Occlusion),
             medium: None,
             clear_below: CLEAR_BELOW,
+            isosurfaces: Vec::new(),
             horizons: Vec::new(),
             scope: Scope::Everywhere,
         };
