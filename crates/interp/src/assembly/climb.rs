@@ -9,14 +9,17 @@ use survey::model::FaultNetwork;
 /// How far a climb may go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClimbSettings {
-    /// Share of a node's vertices that may lie over others in one fault block. A few do in noise, where a front passes above or below a
-    /// speckle and meets again; a reflector merged with another overlaps by far more. Default 0.002.
+    /// Share of a node's vertices that may lie over others of the node in one fault block. A few do in noise, where a front passes above or
+    /// below a speckle and meets again; a reflector merged with another overlaps by far more. Default 0.02.
     pub tolerated_share: f64,
+    /// Share of a node's vertices that may lie over what is chosen already. While faults are not interpreted, the two sides of a reverse fault lie
+    /// over one another in a strip; another reflector lies over all of it. Default 0.1.
+    pub tolerated_beside: f64,
 }
 
 impl Default for ClimbSettings {
     fn default() -> Self {
-        Self { tolerated_share: 0.002 }
+        Self { tolerated_share: 0.02, tolerated_beside: 0.1 }
     }
 }
 
@@ -59,7 +62,8 @@ pub fn highest_valid(
         occupancy.add(range.clone());
     }
     // What overlaps already is not this node's doing.
-    let before = (occupancy.vertices(), occupancy.overlap().traces);
+    let before = (occupancy.vertices(), occupancy.overlap());
+    occupancy.set_apart();
     let mut node = forest.leaves[leaf as usize - 1];
     let mut added = forest.nodes[node as usize].triangles.clone();
     occupancy.add(added.clone());
@@ -69,9 +73,12 @@ pub fn highest_valid(
         occupancy.add(wider.start..added.start);
         occupancy.add(added.end..wider.end);
         let overlap = occupancy.overlap();
-        let (vertices, traces) = (occupancy.vertices() - before.0, overlap.traces - before.1);
-        if traces as f64 > settings.tolerated_share * vertices as f64 {
-            return Climbed { node, up, stopped_by: Some(Overlap { traces, ..overlap }) };
+        let vertices = (occupancy.vertices() - before.0) as f64;
+        let beside = overlap.beside - before.1.beside;
+        let traces = overlap.traces - before.1.traces;
+        let itself = (traces - beside) as f64;
+        if itself > settings.tolerated_share * vertices || beside as f64 > settings.tolerated_beside * vertices {
+            return Climbed { node, up, stopped_by: Some(Overlap { traces, beside, ..overlap }) };
         }
         (node, added, up) = (parent, wider, up + 1);
     }

@@ -13,6 +13,8 @@ use survey::model::FaultNetwork;
 pub struct Overlap {
     /// Vertices that share trace and fault block with one that was there before.
     pub traces: usize,
+    /// Those of them that share it with a vertex of before [`Occupancy::set_apart`].
+    pub beside: usize,
     /// The largest distance between two such vertices, samples.
     pub apart: f32,
     /// Where that is: inline index, crossline index, sample.
@@ -30,6 +32,8 @@ pub struct Occupancy<'a> {
     /// First entry of each trace.
     heads: Vec<u32>,
     entries: Vec<Entry>,
+    /// Entries before this one are of others.
+    others: usize,
     overlap: Overlap,
 }
 
@@ -49,8 +53,14 @@ impl<'a> Occupancy<'a> {
             seen: vec![0; surfaces.vertices.len().div_ceil(64)],
             heads: vec![NONE; surfaces.size[0] * surfaces.size[1]],
             entries: Vec::new(),
+            others: 0,
             overlap: Overlap::default(),
         }
+    }
+
+    /// What was added so far is others', and overlaps with it are counted apart.
+    pub fn set_apart(&mut self) {
+        self.others = self.entries.len();
     }
 
     /// Adds the vertices of triangles; those added before count once.
@@ -67,11 +77,12 @@ impl<'a> Occupancy<'a> {
             let block = self.blocks.block_at(place);
             let trace = usize::from(vertex.x) * surfaces.size[1] + usize::from(vertex.y);
             let mut at = self.heads[trace];
-            let mut taken = false;
+            let (mut taken, mut beside) = (false, false);
             while at != NONE {
                 let entry = &self.entries[at as usize];
                 if entry.block == block {
                     taken = true;
+                    beside |= (at as usize) < self.others;
                     let apart = (entry.z - vertex.z).abs();
                     if apart > self.overlap.apart {
                         (self.overlap.apart, self.overlap.at) = (apart, place.to_array());
@@ -80,6 +91,7 @@ impl<'a> Occupancy<'a> {
                 at = entry.next;
             }
             self.overlap.traces += usize::from(taken);
+            self.overlap.beside += usize::from(beside);
             self.entries.push(Entry { z: vertex.z, block, next: self.heads[trace] });
             self.heads[trace] = self.entries.len() as u32 - 1;
         }

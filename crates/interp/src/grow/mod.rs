@@ -12,6 +12,7 @@
 //! | faults: planes along which many links do; they cut links | `planes` |
 //! | closed cells, the opening of the least width, connected windows | `cells` |
 //! | what is left over goes to the surface that it fits best | `flood` |
+//! | pieces that meet along most of their common boundary are joined | `merge` |
 //! | triangles | `assemble` |
 //!
 //! Surfaces are connected over necks of `core_width` traces first; what the flood does not reach is connected over necks of `min_front_width`.
@@ -24,6 +25,7 @@ mod dip;
 mod evidence;
 mod flood;
 mod links;
+mod merge;
 mod ours;
 mod paper;
 mod planes;
@@ -64,6 +66,9 @@ pub struct GrowSettings {
     /// Least evidence along a plane for it to be a fault that cuts surfaces (see `planes`). Default 25; the less, the more cuts.
     /// Infinite turns the search for faults off.
     pub fault_evidence: f32,
+    /// Share of the boundary of two pieces of a surface that must speak for joining them (see `merge`). Default 0.5; the less, the fewer and
+    /// larger surfaces. More than 1 joins none.
+    pub join_share: f32,
     /// Inlines read at a time; does not change the result. Default 16.
     pub slab_inlines: usize,
 }
@@ -76,6 +81,7 @@ impl Default for GrowSettings {
             min_front_width: 4,
             core_width: 10,
             fault_evidence: 25.0,
+            join_share: 0.5,
             slab_inlines: 16,
         }
     }

@@ -6,7 +6,7 @@
 
 use super::evidence::{self, Noise};
 use super::links::{self, Links, NEXT_X, NEXT_Y, NONE};
-use super::{GrowSettings, assemble, cells, dip, flood, planes};
+use super::{GrowSettings, assemble, cells, dip, flood, merge, planes};
 use crate::extrema::Extrema;
 use crate::surfaces::Surfaces;
 use rayon::prelude::*;
@@ -107,5 +107,8 @@ fn labels(kind: &Linked, broken: &[[bool; 2]], settings: &GrowSettings) -> Vec<u
         narrow
     };
     flood::flood(links, evidence, &mut labels);
+    if settings.join_share <= 1.0 {
+        merge::merge(extrema, links, broken, &mut labels, settings.join_share);
+    }
     labels
 }

@@ -1,0 +1,329 @@
+//! Joins pieces of one surface by the evidence along their whole common boundary.
+//!
+//! The cuts at necks and planes leave more pieces than there are surfaces: noise breaks a surface anywhere, a fault along all of it. What
+//! tells them apart is the boundary as a whole. Where a piece A ends between two neighbouring traces and a piece B
+//! begins there, they *meet*: for them where an unbroken link leads from one to the other, against them where
+//! the link is broken, or where there is none and B begins within [`FACING_REACH`] samples. Two pieces are joined when enough of their boundary is for it, and
+//! when they do not lie over one another: a leak across a fault is a neck in a long boundary at which the pieces face without a link.
+//!
+//! Pairs are joined in the order of their share (ties: more links, then lesser numbers); what is joined meets its neighbours with the sums of both. The
+//! order follows from the extrema alone, so the result is a set as the rest of growing is.
+
+use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
+use crate::extrema::Extrema;
+use rayon::prelude::*;
+use std::cmp::Ordering;
+use std::collections::{BinaryHeap, HashMap};
+
+/// Samples up and down within which a piece that begins is the possible continuation of one that ends.
+const FACING_REACH: f32 = 12.0;
+
+/// Links for it that two pieces must meet with.
+const LEAST_LINKS: u32 = 6;
+
+/// Traces that two pieces may both lie on, as a share of the smaller's; noise folds a rim over a rim.
+const TOLERATED_OVERLAP: f32 = 0.01;
+
+/// How two pieces meet: links for it, and places against it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Contact {
+    joined: u32,
+    against: u32,
+}
+
+impl Contact {
+    fn share(self) -> f32 {
+        self.joined as f32 / (self.joined + self.against).max(1) as f32
+    }
+
+    fn add(&mut self, other: Self) {
+        self.joined += other.joined;
+        self.against += other.against;
+    }
+}
+
+/// A pair that could be joined, by its share.
+struct Candidate {
+    contact: Contact,
+    pair: [u32; 2],
+}
+
+impl Candidate {
+    fn key(&self) -> (f32, u32, std::cmp::Reverse<[u32; 2]>) {
+        (self.contact.share(), self.contact.joined, std::cmp::Reverse(self.pair))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Candidate {}
+
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let (a, b) = (self.key(), other.key());
+        a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2))
+    }
+}
+
+/// Joins labels whose boundary is for it with at least `least_share`.
+pub(super) fn merge(extrema: &Extrema, links: &Links, broken: &[[bool; 2]], labels: &mut [u32], least_share: f32) {
+    let mut pieces = Pieces::of(extrema, labels);
+    pieces.meet(contacts(extrema, links, broken, &pieces.piece));
+    pieces.join_all(least_share);
+    if std::env::var("DBG").is_ok() {
+        for (a, meets) in pieces.meets.iter().enumerate() { for (b, c) in meets { if (a as u32) < *b && pieces.traces[a].len() > 1200 && pieces.traces[*b as usize].len() > 1200 && c.joined > 25 && c.share() > 0.15 {
+            let (f, m) = (&pieces.traces[a], &pieces.traces[*b as usize]); let (f, m) = if f.len() < m.len() { (f, m) } else { (m, f) };
+            eprintln!("{a} {b}: {} {} traces, joined {} against {} overlap {}", f.len(), m.len(), c.joined, c.against, overlap(f, m, 1 << 30)); } } }
+    }
+    let Pieces { piece, into, .. } = &mut pieces;
+    let roots: Vec<u32> = (0..into.len() as u32).map(|p| root(into, p)).collect();
+    labels.par_iter_mut().zip(piece).for_each(|(label, piece)| {
+        if *piece != NONE {
+            *label = roots[*piece as usize];
+        }
+    });
+}
+
+/// Pieces of a kind.
+struct Pieces {
+    /// Piece of each extremum, or [`NONE`]; numbered in the order of first extrema.
+    piece: Vec<u32>,
+    /// What each was joined into; itself while it stands.
+    into: Vec<u32>,
+    /// Traces of each, ascending.
+    traces: Vec<Vec<u32>>,
+    /// Sum of the logarithms of amplitude of each, and count.
+    strength: Vec<(f64, f64)>,
+    /// How each meets others.
+    meets: Vec<HashMap<u32, Contact>>,
+}
+
+fn root(into: &[u32], mut piece: u32) -> u32 {
+    while into[piece as usize] != piece {
+        piece = into[piece as usize];
+    }
+    piece
+}
+
+impl Pieces {
+    fn of(extrema: &Extrema, labels: &[u32]) -> Self {
+        let mut number = vec![NONE; labels.len()];
+        let mut piece = vec![NONE; labels.len()];
+        let mut traces: Vec<Vec<u32>> = Vec::new();
+        let mut strength: Vec<(f64, f64)> = Vec::new();
+        let [nx, ny, _] = extrema.size;
+        for trace in 0..nx * ny {
+            for v in extrema.on_trace(trace / ny, trace % ny) {
+                let label = labels[v];
+                if label == NONE {
+                    continue;
+                }
+                let number = &mut number[label as usize];
+                if *number == NONE {
+                    *number = traces.len() as u32;
+                    traces.push(Vec::new());
+                    strength.push((0.0, 0.0));
+                }
+                piece[v] = *number;
+                let (sum, count) = &mut strength[*number as usize];
+                *sum += f64::from(extrema.amplitude[v].ln());
+                *count += 1.0;
+                let own = &mut traces[*number as usize];
+                if own.last() != Some(&(trace as u32)) {
+                    own.push(trace as u32);
+                }
+            }
+        }
+        let into = (0..traces.len() as u32).collect();
+        let meets = vec![HashMap::new(); traces.len()];
+        Self { piece, into, traces, strength, meets }
+    }
+
+    fn meet(&mut self, contacts: Vec<([u32; 2], Contact)>) {
+        for ([a, b], contact) in contacts {
+            self.meets[a as usize].entry(b).or_default().add(contact);
+            self.meets[b as usize].entry(a).or_default().add(contact);
+        }
+    }
+
+    /// Joins the pair of the greatest share as long as there is one that may be.
+    fn join_all(&mut self, least_share: f32) {
+        let most_contrast: f64 = std::env::var("CON").map_or(0.45, |t| t.parse().unwrap());
+        let may = |contact: &Contact| contact.joined >= LEAST_LINKS && contact.share() >= least_share;
+        let mut queue: BinaryHeap<Candidate> = BinaryHeap::new();
+        for (a, meets) in self.meets.iter().enumerate() {
+            let a = a as u32;
+            let later = meets.iter().filter(|&(&b, contact)| a < b && may(contact));
+            queue.extend(later.map(|(&b, &contact)| Candidate { contact, pair: [a, b] }));
+        }
+        while let Some(Candidate { contact, pair: [a, b] }) = queue.pop() {
+            // What has changed since is in the queue anew.
+            if self.meets[a as usize].get(&b) != Some(&contact) {
+                continue;
+            }
+            let (few, many) = (&self.traces[a as usize], &self.traces[b as usize]);
+            let (few, many) = if few.len() <= many.len() { (few, many) } else { (many, few) };
+            let tolerated = (TOLERATED_OVERLAP * few.len() as f32) as usize;
+            if self.contrast(a, b) > most_contrast || overlap(few, many, tolerated) > tolerated {
+                self.meets[a as usize].remove(&b);
+                self.meets[b as usize].remove(&a);
+                continue;
+            }
+            let (kept, gone) = if self.meets[a as usize].len() >= self.meets[b as usize].len() { (a, b) } else { (b, a) };
+            self.join(kept, gone);
+            for (&other, &contact) in &self.meets[kept as usize] {
+                if may(&contact) {
+                    queue.push(Candidate { contact, pair: [kept.min(other), kept.max(other)] });
+                }
+            }
+        }
+    }
+
+    /// Ratio of the mean amplitudes, as a logarithm.
+    fn contrast(&self, a: u32, b: u32) -> f64 {
+        let [a, b] = [a, b].map(|p| self.strength[p as usize]).map(|(sum, count)| sum / count);
+        (a - b).abs()
+    }
+
+    fn join(&mut self, kept: u32, gone: u32) {
+        self.into[gone as usize] = kept;
+        let (sum, count) = self.strength[gone as usize];
+        self.strength[kept as usize].0 += sum;
+        self.strength[kept as usize].1 += count;
+        let added = std::mem::take(&mut self.traces[gone as usize]);
+        let own = std::mem::take(&mut self.traces[kept as usize]);
+        self.traces[kept as usize] = united(&own, &added);
+        for (other, contact) in std::mem::take(&mut self.meets[gone as usize]) {
+            self.meets[other as usize].remove(&gone);
+            if other != kept {
+                self.meets[kept as usize].entry(other).or_default().add(contact);
+                let sum = self.meets[kept as usize][&other];
+                self.meets[other as usize].insert(kept, sum);
+            }
+        }
+    }
+}
+
+/// Traces in both lists, counted to one more than `enough`.
+fn overlap(few: &[u32], mut many: &[u32], enough: usize) -> usize {
+    let mut count = 0;
+    for trace in few {
+        many = &many[many.partition_point(|other| other < trace)..];
+        count += usize::from(many.first() == Some(trace));
+        if count > enough || many.is_empty() {
+            break;
+        }
+    }
+    count
+}
+
+/// Both lists in one, ascending.
+fn united(a: &[u32], b: &[u32]) -> Vec<u32> {
+    let mut all = Vec::with_capacity(a.len() + b.len());
+    let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
+    while let (Some(&&x), Some(&&y)) = (a.peek(), b.peek()) {
+        all.push(x.min(y));
+        if x <= y {
+            a.next();
+        }
+        if y <= x {
+            b.next();
+        }
+    }
+    all.extend(a);
+    all.extend(b);
+    all
+}
+
+/// How pieces meet, by pair in ascending order.
+fn contacts(extrema: &Extrema, links: &Links, broken: &[[bool; 2]], piece: &[u32]) -> Vec<([u32; 2], Contact)> {
+    let [nx, ny, _] = extrema.size;
+    let mut all: Vec<([u32; 2], Contact)> = (0..nx)
+        .into_par_iter()
+        .flat_map_iter(|x| {
+            let mut found = Vec::new();
+            for y in 0..ny {
+                for (axis, there) in [(0, (x + 1 < nx).then_some((x + 1, y))), (1, (y + 1 < ny).then_some((x, y + 1)))] {
+                    if let Some((x2, y2)) = there {
+                        let place = Place { extrema, links, broken, piece, axis };
+                        place.meet(extrema.on_trace(x, y), extrema.on_trace(x2, y2), &mut found);
+                    }
+                }
+            }
+            summed(found)
+        })
+        .collect();
+    all.par_sort_unstable_by_key(|(pair, _)| *pair);
+    summed_sorted(&all)
+}
+
+fn summed(mut found: Vec<([u32; 2], Contact)>) -> Vec<([u32; 2], Contact)> {
+    found.sort_unstable_by_key(|(pair, _)| *pair);
+    summed_sorted(&found)
+}
+
+fn summed_sorted(found: &[([u32; 2], Contact)]) -> Vec<([u32; 2], Contact)> {
+    let sum = |same: &[([u32; 2], Contact)]| {
+        let mut sum = Contact::default();
+        same.iter().for_each(|(_, contact)| sum.add(*contact));
+        (same[0].0, sum)
+    };
+    found.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
+}
+
+/// Two neighbouring traces.
+struct Place<'a> {
+    extrema: &'a Extrema,
+    links: &'a Links,
+    broken: &'a [[bool; 2]],
+    piece: &'a [u32],
+    axis: usize,
+}
+
+impl Place<'_> {
+    /// Adds how the pieces that end on one trace meet those that begin on the next.
+    fn meet(
+        &self,
+        from: std::ops::Range<usize>,
+        to: std::ops::Range<usize>,
+        found: &mut Vec<([u32; 2], Contact)>,
+    ) {
+        let (next, back) = (&self.links.to[[NEXT_X, NEXT_Y][self.axis]], &self.links.to[[BACK_X, BACK_Y][self.axis]]);
+        let Self { piece, extrema, .. } = *self;
+        let goes_on = |link: u32, own: u32| link != NONE && piece[link as usize] == own;
+        let mut first = to.start;
+        for v in from {
+            let a = piece[v];
+            if a == NONE || goes_on(next[v], a) {
+                continue;
+            }
+            let linked = next[v];
+            let z = extrema.z[v];
+            while first < to.end && extrema.z[first] < z - FACING_REACH {
+                first += 1;
+            }
+            for w in first..to.end {
+                if extrema.z[w] > z + FACING_REACH {
+                    break;
+                }
+                let b = piece[w];
+                if b == NONE || b == a || goes_on(back[w], b) {
+                    continue;
+                }
+                let joined = w as u32 == linked && !self.broken[v][self.axis];
+                let contact = if joined { Contact { joined: 1, against: 0 } } else { Contact { joined: 0, against: 1 } };
+                found.push(([a.min(b), a.max(b)], contact));
+            }
+        }
+    }
+}
