@@ -15,6 +15,7 @@ pub(super) fn extract(typed: ExtractArgs) -> Result<Request, Usage> {
         method,
         extrema: kinds.collect::<Result<_, _>>()?,
         min_front_width: typed.min_front_width,
+        join_share: typed.join_share,
         ..GrowSettings::default()
     };
     let settings = ExtractSettings {

@@ -15,13 +15,16 @@ use survey::synth::{SynthSettings, Synthetic};
 
 /// Signal-to-noise ratios.
 const SNR: [f64; 3] = [10.0, 3.0, 1.5];
+/// Seeds that were not looked at while the method was made.
+const HELD_OUT: [u64; 2] = [4, 5];
 /// What the tables show.
 const SHORTFALLS: &str = "\n\
 ## What falls short, and why\n\
 \n\
-- Picks: at most parts + 2 is asked for. On clean data the oracle keeps to it for the horizons above the unconformity (3 picks for 3 parts); elsewhere it\n\
-\x20 does not. The candidates are pure but in pieces: growing cuts along fault planes and lets no narrow front through, so a part of a horizon\n\
-\x20 comes in several surfaces, and no climb crosses from one to another.\n\
+- Picks: at most parts + 2 is asked for. At SNR 3 all horizons but Charlie keep to it on the seeds the method was made with, nearly everywhere by both interpreters. Charlie\n\
+\x20 does not: where it thins out below the unconformity no extremum is within a sample of it on 2 to 3 % of its nodes, so that 95 % leaves little room, and surfaces\n\
+\x20 go on along side lobes there, which the replay takes with them.\n\
+- Seeds 4 and 5 were not looked at while the method was made. In seed 5 the throw of a fault is near a period, and Charlie and Delta leak through it.\n\
 - Proposed faults: a trace needs the rims of assembled horizons on both sides. One pick on each part covers too little of each horizon in noise; the\n\
 \x20 more of a horizon is assembled, the better the proposals. The fault that dies out was not found; why is not settled.\n\
 ";
@@ -34,16 +37,16 @@ fn main() -> Result<(), Box<dyn Error>> {
     let seeds: u64 = arguments.next().map_or(Ok(3), |text| text.parse())?;
     let progress = Progress::silent();
     let (mut extraction, mut faults) = (String::new(), String::new());
-    for snr in SNR {
-        for seed in 1..=seeds {
-            let settings = SynthSettings { size: [size; 3], seed, snr: Some(snr), ..SynthSettings::default() };
-            let survey = Synthetic::generate(&settings, &progress)?;
-            let surfaces = grow_surfaces(&survey.seismic, &GrowSettings::default(), &progress)?;
-            let forest = Forest::build(surfaces, &ForestSettings::default(), &progress)?;
-            extraction += &extraction_rows(&survey, &forest, snr, seed, &progress)?;
-            faults += &fault_rows(&survey, &forest, snr, seed, &progress)?;
-            eprintln!("SNR {snr}, seed {seed}: done");
-        }
+    let cases = SNR.into_iter().flat_map(|snr| (1..=seeds).map(move |seed| (snr, seed)));
+    let held_out = HELD_OUT.into_iter().map(|seed| (3.0, seed)).filter(|_| seeds > 1);
+    for (snr, seed) in cases.chain(held_out) {
+        let settings = SynthSettings { size: [size; 3], seed, snr: Some(snr), ..SynthSettings::default() };
+        let survey = Synthetic::generate(&settings, &progress)?;
+        let surfaces = grow_surfaces(&survey.seismic, &GrowSettings::default(), &progress)?;
+        let forest = Forest::build(surfaces, &ForestSettings::default(), &progress)?;
+        extraction += &extraction_rows(&survey, &forest, snr, seed, &progress)?;
+        faults += &fault_rows(&survey, &forest, snr, seed, &progress)?;
+        eprintln!("SNR {snr}, seed {seed}: done");
     }
     println!("# Picks\n");
     println!(

@@ -151,6 +151,26 @@ fn the_highest_valid_node_is_the_last_one_without_overlap() {
     assert_eq!(highest_valid(&forest, 8, &selected, &none, &settings).up, 3);
 }
 
+/// Without the fault, the sides of a reverse fault overlap in a strip; a reflector on top of another does everywhere.
+#[test]
+fn a_climb_tolerates_a_strip_over_what_is_chosen_and_not_more() {
+    let left = |x: usize, _: usize| (x <= 16).then_some(20.0);
+    let right = |from: usize| move |x: usize, _: usize| (x >= from).then_some(30.0);
+    let none = FaultNetwork::none();
+    let climbed = |from: usize| {
+        let right = right(from);
+        let forest = forest_of(SIZE, &[&[&left], &[&right]], 128);
+        let mut chosen = Selection::default();
+        chosen.insert(forest.surfaces.surfaces[0].triangles.clone());
+        let leaf = leaf_at(&forest, Vec3::new(30.0, 8.0, 30.0), 1.0).unwrap().leaf;
+        highest_valid(&forest, leaf, &chosen, &none, &ClimbSettings::default())
+    };
+    // One trace of 17 is 6 %, five of 21 are 24 %.
+    assert!(climbed(16).stopped_by.is_none());
+    let overlap = climbed(12).stopped_by.unwrap();
+    assert!(overlap.beside > 0 && overlap.beside == overlap.traces, "{overlap:?}");
+}
+
 fn network() -> (SurveyGeometry, FaultNetwork) {
     let geometry = SurveyGeometry::regular(SIZE, 10.0, 10.0, VerticalUnit::Metres);
     let model = ClosedForm::flat(&geometry, &[20.0]).with_fault(45.0, 6.0);

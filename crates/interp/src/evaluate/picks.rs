@@ -256,9 +256,7 @@ impl<'a> Target<'a> {
             };
             let node = highest_valid(self.forest, hit.leaf, &selected, blocks, &settings.climb).node;
             selected.insert(self.forest.nodes[node as usize].triangles.clone());
-            let b = (picked.vertices, picked.on);
             self.take(&mut picked, node);
-            if std::env::var("RDBG").is_ok() { eprintln!("    seed {at:?} distance {:.2} kind {:?} node +{} vertices +{} on", hit.distance, self.forest.surfaces.surfaces[self.forest.nodes[node as usize].surface as usize].extremum, picked.vertices - b.0, picked.on - b.1); }
             picks += 1;
         }
         Ok(self.count(picks, &picked, settings))

@@ -3,8 +3,10 @@
 //! The cuts at necks and planes leave more pieces than there are surfaces: noise breaks a surface anywhere, a fault along all of it. What
 //! tells them apart is the boundary as a whole. Where a piece A ends between two neighbouring traces and a piece B
 //! begins there, they *meet*: for them where an unbroken link leads from one to the other, against them where
-//! the link is broken, or where there is none and B begins within [`FACING_REACH`] samples. Two pieces are joined when enough of their boundary is for it, and
-//! when they do not lie over one another: a leak across a fault is a neck in a long boundary at which the pieces face without a link.
+//! the link is broken, or where there is none and B begins within `FACING_REACH` samples. A link that a plane broke and that itself says little
+//! counts for neither: planes are long, and cut reflectors that go on beside others that end. Two pieces are joined when enough of their
+//! boundary is for it, when they are alike in amplitude, and when they do not lie over one another: a leak across a fault is a neck in a
+//! long boundary at which the pieces face without a link.
 //!
 //! Pairs are joined in the order of their share (ties: more links, then lesser numbers); what is joined meets its neighbours with the sums of both. The
 //! order follows from the extrema alone, so the result is a set as the rest of growing is.
@@ -23,6 +25,12 @@ const LEAST_LINKS: u32 = 6;
 
 /// Traces that two pieces may both lie on, as a share of the smaller's; noise folds a rim over a rim.
 const TOLERATED_OVERLAP: f32 = 0.01;
+
+/// Greatest evidence, in quarters, of a link of its own at which a break that a plane makes of it is in doubt: four times what noise makes.
+const DOUBTFUL: u8 = 16;
+
+/// Greatest logarithm of the ratio of the pieces' mean amplitudes: 1.6 times. A side lobe that goes on where a reflector ends is weaker.
+const MOST_CONTRAST: f64 = 0.45;
 
 /// How two pieces meet: links for it, and places against it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -76,16 +84,18 @@ impl Ord for Candidate {
 }
 
 /// Joins labels whose boundary is for it with at least `least_share`.
-pub(super) fn merge(extrema: &Extrema, links: &Links, broken: &[[bool; 2]], labels: &mut [u32], least_share: f32) {
+pub(super) fn merge(
+    extrema: &Extrema,
+    links: &Links,
+    broken: &[[bool; 2]],
+    evidence: &[[u8; 2]],
+    labels: &mut [u32],
+    least_share: f32,
+) {
     let mut pieces = Pieces::of(extrema, labels);
-    pieces.meet(contacts(extrema, links, broken, &pieces.piece));
+    pieces.meet(contacts(extrema, links, broken, evidence, &pieces.piece));
     pieces.join_all(least_share);
-    if std::env::var("DBG").is_ok() {
-        for (a, meets) in pieces.meets.iter().enumerate() { for (b, c) in meets { if (a as u32) < *b && pieces.traces[a].len() > 1200 && pieces.traces[*b as usize].len() > 1200 && c.joined > 25 && c.share() > 0.15 {
-            let (f, m) = (&pieces.traces[a], &pieces.traces[*b as usize]); let (f, m) = if f.len() < m.len() { (f, m) } else { (m, f) };
-            eprintln!("{a} {b}: {} {} traces, joined {} against {} overlap {}", f.len(), m.len(), c.joined, c.against, overlap(f, m, 1 << 30)); } } }
-    }
-    let Pieces { piece, into, .. } = &mut pieces;
+    let Pieces { piece, into, .. } = &pieces;
     let roots: Vec<u32> = (0..into.len() as u32).map(|p| root(into, p)).collect();
     labels.par_iter_mut().zip(piece).for_each(|(label, piece)| {
         if *piece != NONE {
@@ -158,7 +168,6 @@ impl Pieces {
 
     /// Joins the pair of the greatest share as long as there is one that may be.
     fn join_all(&mut self, least_share: f32) {
-        let most_contrast: f64 = std::env::var("CON").map_or(0.45, |t| t.parse().unwrap());
         let may = |contact: &Contact| contact.joined >= LEAST_LINKS && contact.share() >= least_share;
         let mut queue: BinaryHeap<Candidate> = BinaryHeap::new();
         for (a, meets) in self.meets.iter().enumerate() {
@@ -174,12 +183,13 @@ impl Pieces {
             let (few, many) = (&self.traces[a as usize], &self.traces[b as usize]);
             let (few, many) = if few.len() <= many.len() { (few, many) } else { (many, few) };
             let tolerated = (TOLERATED_OVERLAP * few.len() as f32) as usize;
-            if self.contrast(a, b) > most_contrast || overlap(few, many, tolerated) > tolerated {
+            if self.contrast(a, b) > MOST_CONTRAST || overlap(few, many, tolerated) > tolerated {
                 self.meets[a as usize].remove(&b);
                 self.meets[b as usize].remove(&a);
                 continue;
             }
-            let (kept, gone) = if self.meets[a as usize].len() >= self.meets[b as usize].len() { (a, b) } else { (b, a) };
+            let (kept, gone) =
+                if self.meets[a as usize].len() >= self.meets[b as usize].len() { (a, b) } else { (b, a) };
             self.join(kept, gone);
             for (&other, &contact) in &self.meets[kept as usize] {
                 if may(&contact) {
@@ -246,16 +256,23 @@ fn united(a: &[u32], b: &[u32]) -> Vec<u32> {
 }
 
 /// How pieces meet, by pair in ascending order.
-fn contacts(extrema: &Extrema, links: &Links, broken: &[[bool; 2]], piece: &[u32]) -> Vec<([u32; 2], Contact)> {
+fn contacts(
+    extrema: &Extrema,
+    links: &Links,
+    broken: &[[bool; 2]],
+    evidence: &[[u8; 2]],
+    piece: &[u32],
+) -> Vec<([u32; 2], Contact)> {
     let [nx, ny, _] = extrema.size;
     let mut all: Vec<([u32; 2], Contact)> = (0..nx)
         .into_par_iter()
         .flat_map_iter(|x| {
             let mut found = Vec::new();
             for y in 0..ny {
-                for (axis, there) in [(0, (x + 1 < nx).then_some((x + 1, y))), (1, (y + 1 < ny).then_some((x, y + 1)))] {
+                for (axis, there) in [(0, (x + 1 < nx).then_some((x + 1, y))), (1, (y + 1 < ny).then_some((x, y + 1)))]
+                {
                     if let Some((x2, y2)) = there {
-                        let place = Place { extrema, links, broken, piece, axis };
+                        let place = Place { extrema, links, broken, evidence, piece, axis };
                         place.meet(extrema.on_trace(x, y), extrema.on_trace(x2, y2), &mut found);
                     }
                 }
@@ -286,18 +303,14 @@ struct Place<'a> {
     extrema: &'a Extrema,
     links: &'a Links,
     broken: &'a [[bool; 2]],
+    evidence: &'a [[u8; 2]],
     piece: &'a [u32],
     axis: usize,
 }
 
 impl Place<'_> {
     /// Adds how the pieces that end on one trace meet those that begin on the next.
-    fn meet(
-        &self,
-        from: std::ops::Range<usize>,
-        to: std::ops::Range<usize>,
-        found: &mut Vec<([u32; 2], Contact)>,
-    ) {
+    fn meet(&self, from: std::ops::Range<usize>, to: std::ops::Range<usize>, found: &mut Vec<([u32; 2], Contact)>) {
         let (next, back) = (&self.links.to[[NEXT_X, NEXT_Y][self.axis]], &self.links.to[[BACK_X, BACK_Y][self.axis]]);
         let Self { piece, extrema, .. } = *self;
         let goes_on = |link: u32, own: u32| link != NONE && piece[link as usize] == own;
@@ -321,9 +334,70 @@ impl Place<'_> {
                     continue;
                 }
                 let joined = w as u32 == linked && !self.broken[v][self.axis];
-                let contact = if joined { Contact { joined: 1, against: 0 } } else { Contact { joined: 0, against: 1 } };
+                if !joined && w as u32 == linked && self.evidence[v][self.axis] <= DOUBTFUL {
+                    continue;
+                }
+                let contact =
+                    if joined { Contact { joined: 1, against: 0 } } else { Contact { joined: 0, against: 1 } };
                 found.push(([a.min(b), a.max(b)], contact));
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_of_traces_unite_and_overlap() {
+        assert_eq!(united(&[1, 4, 9], &[0, 4, 10]), [0, 1, 4, 9, 10]);
+        assert_eq!(overlap(&[1, 4, 9], &[0, 4, 9, 10], 9), 2);
+        assert_eq!(overlap(&[1, 4, 9, 10], &[0, 1, 4, 9, 10], 1), 2);
+        assert_eq!(overlap(&[], &[1], 0), 0);
+    }
+
+    /// Pieces with these counts of traces, far apart, and how they meet.
+    fn pieces(traces: &[std::ops::Range<u32>], amplitude: &[f32], meets: &[([u32; 2], [u32; 2])]) -> Pieces {
+        let mut pieces = Pieces {
+            piece: Vec::new(),
+            into: (0..traces.len() as u32).collect(),
+            traces: traces.iter().map(|range| range.clone().collect()).collect(),
+            strength: amplitude.iter().map(|a| (f64::from(a.ln()), 1.0)).collect(),
+            meets: vec![HashMap::new(); traces.len()],
+        };
+        pieces.meet(meets.iter().map(|&(pair, [joined, against])| (pair, Contact { joined, against })).collect());
+        pieces
+    }
+
+    fn joined(mut pieces: Pieces, least_share: f32) -> Vec<u32> {
+        pieces.join_all(least_share);
+        (0..pieces.into.len() as u32).map(|p| root(&pieces.into, p)).collect()
+    }
+
+    #[test]
+    fn a_boundary_for_it_joins_and_a_neck_or_a_few_links_do_not() {
+        let traces = [0..100, 100..200, 200..300, 300..400];
+        let meets = [([0, 1], [60, 10]), ([1, 2], [9, 90]), ([2, 3], [LEAST_LINKS - 1, 0])];
+        let roots = joined(pieces(&traces, &[1.0; 4], &meets), 0.3);
+        assert_eq!(roots[0], roots[1]);
+        assert!(roots[1] != roots[2] && roots[2] != roots[3]);
+    }
+
+    #[test]
+    fn the_sums_of_both_decide_what_is_joined_next() {
+        // Neither alone would be enough: together 40 of 70.
+        let traces = [0..100, 100..200, 200..300];
+        let meets = [([0, 1], [50, 0]), ([0, 2], [5, 0]), ([1, 2], [35, 30])];
+        let roots = joined(pieces(&traces, &[1.0; 3], &meets), 0.55);
+        assert!(roots.iter().all(|&r| r == roots[0]));
+    }
+
+    #[test]
+    fn what_lies_over_one_another_or_is_much_weaker_stays_apart() {
+        let over = joined(pieces(&[0..100, 50..150], &[1.0; 2], &[([0, 1], [60, 0])]), 0.3);
+        assert_ne!(over[0], over[1]);
+        let lobe = joined(pieces(&[0..100, 100..200], &[1.0, 0.4], &[([0, 1], [60, 0])]), 0.3);
+        assert_ne!(lobe[0], lobe[1]);
     }
 }

@@ -66,7 +66,7 @@ pub struct GrowSettings {
     /// Least evidence along a plane for it to be a fault that cuts surfaces (see `planes`). Default 25; the less, the more cuts.
     /// Infinite turns the search for faults off.
     pub fault_evidence: f32,
-    /// Share of the boundary of two pieces of a surface that must speak for joining them (see `merge`). Default 0.5; the less, the fewer and
+    /// Share of the boundary of two pieces of a surface that must speak for joining them (see `merge`). Default 0.3; the less, the fewer and
     /// larger surfaces. More than 1 joins none.
     pub join_share: f32,
     /// Inlines read at a time; does not change the result. Default 16.
@@ -81,7 +81,7 @@ impl Default for GrowSettings {
             min_front_width: 4,
             core_width: 10,
             fault_evidence: 25.0,
-            join_share: 0.5,
+            join_share: 0.3,
             slab_inlines: 16,
         }
     }
@@ -95,6 +95,12 @@ pub enum GrowError<E = std::convert::Infallible> {
     FrontWidth {
         /// Asked for.
         found: usize,
+    },
+    /// The share of a boundary makes no sense.
+    #[error("{found} is no share of a boundary; give 0.3 (a good choice) to 1, or more to join nothing")]
+    JoinShare {
+        /// Asked for.
+        found: f32,
     },
     /// Nothing to follow.
     #[error("no kind of extremum to grow on; ask for peaks, troughs or zero crossings")]
@@ -137,6 +143,9 @@ pub fn grow_slabs<S: SlabSource>(
 ) -> Result<Surfaces, GrowError<S::Error>> {
     if settings.min_front_width < 2 {
         return Err(GrowError::FrontWidth { found: settings.min_front_width });
+    }
+    if settings.join_share.is_nan() || settings.join_share <= 0.0 {
+        return Err(GrowError::JoinShare { found: settings.join_share });
     }
     let mut kinds = settings.extrema.clone();
     kinds.sort_unstable();

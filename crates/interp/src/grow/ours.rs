@@ -108,7 +108,7 @@ fn labels(kind: &Linked, broken: &[[bool; 2]], settings: &GrowSettings) -> Vec<u
     };
     flood::flood(links, evidence, &mut labels);
     if settings.join_share <= 1.0 {
-        merge::merge(extrema, links, broken, &mut labels, settings.join_share);
+        merge::merge(extrema, links, broken, evidence, &mut labels, settings.join_share);
     }
     labels
 }

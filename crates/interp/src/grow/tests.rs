@@ -142,6 +142,8 @@ fn bad_volumes_have_defined_results() {
     let volume = Volume::filled([4, 4, 4], 0.0f32);
     assert!(matches!(grow_surfaces(&volume, &nothing, &Progress::silent()), Err(GrowError::NoExtrema)));
     assert!(matches!(grow_surfaces(&volume, &narrow, &Progress::silent()), Err(GrowError::FrontWidth { found: 1 })));
+    let unlike = GrowSettings { join_share: -0.1, ..GrowSettings::default() };
+    assert!(matches!(grow_surfaces(&volume, &unlike, &Progress::silent()), Err(GrowError::JoinShare { .. })));
     let cancelled = Progress::silent();
     cancelled.cancel();
     assert!(grow_surfaces(&volume, &GrowSettings::default(), &cancelled).is_err());
