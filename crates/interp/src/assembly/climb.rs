@@ -10,16 +10,16 @@ use survey::model::FaultNetwork;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClimbSettings {
     /// Share of a node's vertices that may lie over others of the node in one fault block. A few do in noise, where a front passes above or
-    /// below a speckle and meets again; a reflector merged with another overlaps by far more. Default 0.01.
+    /// below a speckle and meets again; a reflector merged with another overlaps by far more. Default 0.02.
     pub tolerated_share: f64,
-    /// Share of a node's vertices that may lie over what is chosen already while no fault is interpreted: the two sides of a reverse fault
-    /// lie over one another in a strip, another reflector lies over all of it. Default 0.1. Once faults tell the sides apart, `tolerated_share` holds.
+    /// Share of a node's vertices that may lie over what is chosen already. Where a fault is not interpreted, or not quite where it is, the two
+    /// sides of a reverse fault lie over one another in a strip; another reflector lies over all of it. Default 0.1.
     pub tolerated_beside: f64,
 }
 
 impl Default for ClimbSettings {
     fn default() -> Self {
-        Self { tolerated_share: 0.01, tolerated_beside: 0.1 }
+        Self { tolerated_share: 0.02, tolerated_beside: 0.1 }
     }
 }
 
@@ -64,8 +64,6 @@ pub fn highest_valid(
     // What overlaps already is not this node's doing.
     let before = (occupancy.vertices(), occupancy.overlap());
     occupancy.set_apart();
-    let tolerated_beside =
-        if blocks.surfaces().is_empty() { settings.tolerated_beside } else { settings.tolerated_share };
     let mut node = forest.leaves[leaf as usize - 1];
     let mut added = forest.nodes[node as usize].triangles.clone();
     occupancy.add(added.clone());
@@ -79,7 +77,7 @@ pub fn highest_valid(
         let beside = overlap.beside - before.1.beside;
         let traces = overlap.traces - before.1.traces;
         let itself = (traces - beside) as f64;
-        if itself > settings.tolerated_share * vertices || beside as f64 > tolerated_beside * vertices {
+        if itself > settings.tolerated_share * vertices || beside as f64 > settings.tolerated_beside * vertices {
             return Climbed { node, up, stopped_by: Some(Overlap { traces, beside, ..overlap }) };
         }
         (node, added, up) = (parent, wider, up + 1);
