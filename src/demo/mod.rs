@@ -7,7 +7,8 @@
 use crate::command::{
     AddFault, AddScene, Climb, Command, Effect, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
 };
-use crate::error::ProjectError;
+use crate::data;
+use crate::error::{Noun, ProjectError};
 use crate::extraction;
 use crate::picture::{self, Device, Painter};
 use crate::pipeline::{self, Stage};
@@ -159,27 +160,46 @@ fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> anyho
 /// Parts of a horizon with fewer traces are not picked.
 const FEWEST_TRACES: usize = 200;
 
-/// Picks every part of every horizon once, climbing to the highest valid node, and fills the holes. Answers the count of picks.
+/// Times that a horizon is looked at again for what its picks have left out.
+const LOOKS: usize = 3;
+
+/// Samples within which a place of a horizon counts as picked.
+const NEAR_SAMPLES: f64 = 2.0;
+
+/// Picks every part of every horizon, then the middle of what that left out, climbing to the highest valid node, and fills the holes. Answers the
+/// count of picks.
 fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> anyhow::Result<usize> {
     let truth = SynthTruth::read(&files.truth)?;
     let frame = project.document().frame()?.clone();
     let mut picks = 0;
     for (h, horizon) in files.horizons.iter().enumerate() {
-        for place in Parts::of(&truth, h).middles(&truth, h, FEWEST_TRACES) {
-            let lines = frame.lines_from_voxel(place.truncate());
-            let pick = PickNode {
-                at: [lines.x, lines.y, frame.vertical.value_at(place.z)],
-                horizon: horizon.name.clone(),
-                climb: Climb::HighestValid,
-                operation: Operation::Add,
-                colour: None,
-            };
-            match project.apply(&Command::Pick(pick), progress) {
-                Ok(Effect::Picked(_)) => picks += 1,
-                // A part that noise has swallowed, or that another pick has reached.
-                Err(ProjectError::NoCandidate { .. } | ProjectError::AlreadyPicked { .. }) | Ok(_) => {}
-                Err(error) => return Err(error.into()),
+        let parts = Parts::of(&truth, h);
+        let mut left = parts.clone();
+        for _ in 0..LOOKS {
+            for place in left.middles(&truth, h, FEWEST_TRACES) {
+                let lines = frame.lines_from_voxel(place.truncate());
+                let pick = PickNode {
+                    at: [lines.x, lines.y, frame.vertical.value_at(place.z)],
+                    horizon: horizon.name.clone(),
+                    climb: Climb::HighestValid,
+                    operation: Operation::Add,
+                    colour: None,
+                };
+                match project.apply(&Command::Pick(pick), progress) {
+                    Ok(Effect::Picked(_)) => picks += 1,
+                    // A part that noise has swallowed, or that another pick has reached.
+                    Err(ProjectError::NoCandidate { .. } | ProjectError::AlreadyPicked { .. }) | Ok(_) => {}
+                    Err(error) => return Err(error.into()),
+                }
             }
+            let document = project.document();
+            let Ok(entry) = document.position(Noun::Horizon, &horizon.name) else { continue };
+            let picked = data::read_horizon(project.root(), &document.horizons[entry], progress)?;
+            let ny = truth.size[1];
+            left = parts.without(&truth, h, |x, y, z| {
+                let depths = picked.sheets.iter().map(|sheet| f64::from(sheet.depth[x * ny + y]));
+                depths.into_iter().any(|depth| (frame.vertical.index_of(depth) - z).abs() <= NEAR_SAMPLES)
+            });
         }
         let fill = FillHorizon { name: horizon.name.clone(), settings: FillSettings::default() };
         project.apply(&Command::FillHorizon(fill), progress)?;

@@ -90,6 +90,22 @@ impl Parts {
         Self { traces, part, blocks: found }
     }
 
+    /// What of the parts `is_taken` leaves; it is asked with inline index, crossline index and sample index of every node.
+    pub fn without(
+        &self,
+        truth: &SynthTruth,
+        horizon: usize,
+        is_taken: impl Fn(usize, usize, f64) -> bool + Sync,
+    ) -> Self {
+        let ny = truth.size[1];
+        let left = self.part.par_iter().enumerate().map(|(node, &part)| {
+            let (x, y) = (node % self.traces / ny, node % ny);
+            let z = || truth.sheet_z(horizon, (node / self.traces) as u16, x as f64, y as f64);
+            if part == NONE || is_taken(x, y, z()) { NONE } else { part }
+        });
+        Self { part: left.collect(), ..self.clone() }
+    }
+
     /// One place in the middle of each part of at least `fewest` nodes, voxels: where someone who sees the horizon would pick it.
     pub fn middles(&self, truth: &SynthTruth, horizon: usize, fewest: usize) -> Vec<DVec3> {
         let [nx, ny, _] = truth.size;
