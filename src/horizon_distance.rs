@@ -60,7 +60,7 @@ impl Adding<'_> {
     /// One trace: each block's sheets, where that block is.
     fn fill(&self, [x, y]: [usize; 2], distance: &mut [u8], leaf: &mut [u32]) {
         let (fx, fy) = (x as f32, y as f32);
-        let own = (OWN * STEPS / self.farthest) as u8;
+        let own = (OWN * STEPS / self.farthest).round() as u8;
         for block in 0..self.model.block_count() as u16 {
             for &h in self.which {
                 let slope = self.model.sheet(h, block).sample(fx, fy).gradient.length();

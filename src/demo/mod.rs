@@ -161,7 +161,7 @@ fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> anyho
 const FEWEST_TRACES: usize = 200;
 
 /// Times that a horizon is looked at again for what its picks have left out.
-const LOOKS: usize = 3;
+const LOOKS: usize = 2;
 
 /// Samples within which a place of a horizon counts as picked.
 const NEAR_SAMPLES: f64 = 2.0;
