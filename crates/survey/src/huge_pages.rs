@@ -1,7 +1,7 @@
 //! Memory for a whole volume, in large pages where the system has them.
 //!
-//! The first write to each page of fresh memory costs a fault. 131 072 pages of 4 KiB for a cube of 512³ floats cost more than
-//! decoding it: 0.31 s of processor time in the kernel against 0.10 s in pages of 2 MiB, of 0.38 and 0.14 s in all.
+//! The first write to each page of fresh memory costs a fault: 131 072 pages of 4 KiB for a cube of 512³ floats, 256 of 2 MiB. Decoding a
+//! sample costs less than its share of the former.
 
 /// `count` zeros. The memory is first touched, and so placed, by the threads that write to it.
 pub(crate) fn zeroed(count: usize) -> Vec<f32> {

@@ -1,6 +1,6 @@
 //! The interpretation over the pictures: horizons, the selected node, faults, sticks and proposals on sections and on the block.
 //!
-//! Horizons have their own colours, the selection is broader and the brighter part of a line is what is selected. Proposed faults are dashed.
+//! Horizons have their own colours, the selection is broader and the brighter part of a line is what is selected. Proposed faults are dark red.
 //! Spaces: (s, t) of a section; voxels; points of the window.
 
 use super::sections::horizon_colour;

@@ -316,12 +316,12 @@ impl PickingPanel {
             ui.weak("no holes");
             return;
         }
-        let plural = if holes.len() == 1 { "" } else { "s" };
-        ui.label(format!("{} hole{plural} with {traces} traces", holes.len()));
+        let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+        ui.label(format!("{} with {}", counted(holes.len(), "hole"), counted(traces, "trace")));
         ui.horizontal_wrapped(|ui| {
             for hole in holes.iter().take(HOLES) {
                 let hint = "Move the sections through this hole";
-                if ui.small_button(format!("{} traces", hole.traces)).on_hover_text(hint).clicked() {
+                if ui.small_button(counted(hole.traces, "trace")).on_hover_text(hint).clicked() {
                     let [x, y] = hole.at.map(|at| at as f64);
                     actions.push(Action::Slices([x, y, session.view.slices[2]]));
                 }

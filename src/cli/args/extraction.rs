@@ -21,7 +21,7 @@ pub(in crate::cli) struct ExtractArgs {
     pub(in crate::cli) min_front_width: usize,
     /// Share of the common boundary of two pieces of a surface that must speak for joining them: the less, the fewer and larger surfaces; more
     /// than 1 joins none
-    #[arg(long, value_name = "SHARE", default_value_t = 0.3)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.4)]
     pub(in crate::cli) join_share: f32,
     /// Fewest triangles of a leaf of a surface's tree
     #[arg(long, value_name = "N", default_value_t = 500)]

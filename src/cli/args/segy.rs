@@ -41,7 +41,7 @@ pub(in crate::cli) struct SegyArgs {
     #[arg(long, value_name = "FORMAT")]
     pub(in crate::cli) sample_format: Option<String>,
     /// Sample interval, in the vertical unit
-    #[arg(long, value_name = "STEP")]
+    #[arg(long, value_name = "STEP", allow_hyphen_values = true)]
     pub(in crate::cli) interval: Option<f64>,
     /// Value of the first sample, in the vertical unit
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
@@ -53,7 +53,7 @@ pub(in crate::cli) struct SegyArgs {
     #[arg(long, value_name = "UNIT")]
     pub(in crate::cli) coordinate_unit: Option<String>,
     /// Ignore X and Y: square bins of this size in metres, from 0, 0
-    #[arg(long = "bin", value_name = "M")]
+    #[arg(long = "bin", value_name = "M", allow_hyphen_values = true)]
     pub(in crate::cli) bin_m: Option<f64>,
     /// Trace weight N at byte 169: apply (2^-N, the standard), inverse (2^N) or ignore [default: apply]
     #[arg(long, value_name = "WORD")]

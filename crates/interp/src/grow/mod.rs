@@ -66,7 +66,7 @@ pub struct GrowSettings {
     /// Least evidence along a plane for it to be a fault that cuts surfaces (see `planes`). Default 25; the less, the more cuts.
     /// Infinite turns the search for faults off.
     pub fault_evidence: f32,
-    /// Share of the boundary of two pieces of a surface that must speak for joining them (see `merge`). Default 0.3; the less, the fewer and
+    /// Share of the boundary of two pieces of a surface that must speak for joining them (see `merge`). Default 0.4; the less, the fewer and
     /// larger surfaces. More than 1 joins none.
     pub join_share: f32,
     /// Inlines read at a time; does not change the result. Default 16.
@@ -81,7 +81,7 @@ impl Default for GrowSettings {
             min_front_width: 4,
             core_width: 10,
             fault_evidence: 25.0,
-            join_share: 0.3,
+            join_share: 0.4,
             slab_inlines: 16,
         }
     }
@@ -97,7 +97,7 @@ pub enum GrowError<E = std::convert::Infallible> {
         found: usize,
     },
     /// The share of a boundary makes no sense.
-    #[error("{found} is no share of a boundary; give 0.3 (a good choice) to 1, or more to join nothing")]
+    #[error("{found} is no share of a boundary; give 0.4 (a good choice) to 1, or more to join nothing")]
     JoinShare {
         /// Asked for.
         found: f32,
