@@ -27,7 +27,7 @@ const SHORTFALLS: &str = "\n\
 \x20 go on along side lobes there, which the replay takes with them.\n\
 - Seeds 4 and 5 were not looked at while the method was made. In seed 5 the throw of a fault is near a period, and Charlie and Delta leak through it.\n\
 - Proposed faults: a trace needs the rims of assembled horizons on both sides. One pick on each part covers too little of each horizon in noise; the\n\
-\x20 more of a horizon is assembled, the better the proposals. The fault that dies out was not found; why is not settled.\n\
+\x20 more of a horizon is assembled, the better the proposals. The fault that dies out was found on one seed of five; why not on the others is not settled.\n\
 ";
 /// Parts of fewer traces are not picked for the fault search.
 const FEWEST_TRACES: usize = 200;
