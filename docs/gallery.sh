@@ -49,15 +49,14 @@ draw "$picked" horiz-04-distance --blend 1 --show distance --box 110,244,510,644
 for technique in phong occlusion interleaved; do
     draw "$picked" "horiz-05-$technique" --technique "$technique" --clear-below 0.2
 done
-# P-horiz 6: a pick climbs its tree, in the end too far.
+# P-horiz 6: a pick climbs its tree to the whole surface.
 "$petroglyph" pick "$picked" --at 190,566,528.6 --horizon A --colour '#e85a9b'
 low="--box 150,244,510,644,420,1110 --azimuth 320 --elevation 40"
 draw "$picked" horiz-06-a-leaf $volume $low --clear-below 0.8 --horizon A
-"$petroglyph" climb "$picked" 1 --levels 4
-draw "$picked" horiz-06-b-four-levels-up $volume $low --clear-below 0.8 --horizon A
-"$petroglyph" climb "$picked" 1
-"$petroglyph" climb "$picked" 1
-draw "$picked" horiz-06-c-too-far $volume $low --clear-below 0.8 --horizon A
+"$petroglyph" climb "$picked" 1 --levels 3
+draw "$picked" horiz-06-b-three-levels-up $volume $low --clear-below 0.8 --horizon A
+"$petroglyph" climb "$picked" 1 --highest-valid
+draw "$picked" horiz-06-c-highest-valid $volume $low --clear-below 0.8 --horizon A
 # P-horiz 3: the leaves of that surface, and their nodes three levels up.
 draw "$picked" horiz-03-leaves $volume $low --scope near --clear-below 0.98 --horizon A --level 0
 draw "$picked" horiz-03-three-levels-up $volume $low --scope near --clear-below 0.98 --horizon A --level 3
