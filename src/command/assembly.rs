@@ -19,7 +19,7 @@ use survey::{Contact, Horizon, Progress, SurveyGeometry, store};
 use ttf::Colour;
 
 /// Colours that horizons get in turn.
-const COLOURS: [[u8; 3]; 8] = [
+pub(crate) const HORIZON_COLOURS: [[u8; 3]; 8] = [
     [0xd5, 0x5e, 0x00],
     [0x00, 0x72, 0xb2],
     [0x00, 0x9e, 0x73],
@@ -147,7 +147,7 @@ pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Select
 /// A colour for the next horizon.
 pub(crate) fn next_colour(document: &Document) -> Colour {
     let assembled = document.horizons.iter().filter(|entry| entry.assembly.is_some()).count();
-    let [red, green, blue] = COLOURS[assembled % COLOURS.len()];
+    let [red, green, blue] = HORIZON_COLOURS[assembled % HORIZON_COLOURS.len()];
     Colour::new(red, green, blue)
 }
 

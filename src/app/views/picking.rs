@@ -5,6 +5,7 @@ use super::{notices, overlay::Overlay};
 use crate::app::state::picking::voxel_of;
 use crate::app::state::{Action, Look, PickingStep, Place, Session, State, Tool};
 use crate::app::work::{Interpreted, RunningLine, ShownHorizon};
+use crate::command::assembly::HORIZON_COLOURS;
 use crate::command::{
     AcceptFault, Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, SetHorizonColour,
 };
@@ -19,21 +20,9 @@ use render::FaceData;
 use survey::SurveyGeometry;
 use ttf::Colour;
 
-/// Colours offered for horizons.
-const COLOURS: [[u8; 3]; 12] = [
-    [0xd5, 0x5e, 0x00],
-    [0x00, 0x72, 0xb2],
-    [0x00, 0x9e, 0x73],
-    [0xcc, 0x79, 0xa7],
-    [0xe6, 0x9f, 0x00],
-    [0x56, 0xb4, 0xe9],
-    [0x8c, 0x51, 0x0a],
-    [0x54, 0x27, 0x88],
-    [0xb8, 0xa8, 0x00],
-    [0xc0, 0x18, 0x2c],
-    [0x1b, 0x78, 0x37],
-    [0x30, 0x30, 0x30],
-];
+/// Colours offered for horizons beside those that they get in turn.
+const MORE_COLOURS: [[u8; 3]; 4] = [[0xb8, 0xa8, 0x00], [0xc0, 0x18, 0x2c], [0x1b, 0x78, 0x37], [0x30, 0x30, 0x30]];
+
 /// Holes listed at most.
 const HOLES: usize = 5;
 
@@ -545,7 +534,7 @@ fn palette(ui: &mut Ui, colour: Colour, name: &str) -> Option<Colour> {
         eframe::egui::containers::menu::MenuButton::from_button(button)
             .ui(ui, |ui| {
                 Grid::new("colours").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
-                    for (n, rgb) in COLOURS.into_iter().enumerate() {
+                    for (n, rgb) in HORIZON_COLOURS.into_iter().chain(MORE_COLOURS).enumerate() {
                         let button = Button::new("").fill(paint(rgb)).stroke(Stroke::NONE).min_size(vec2(26.0, 20.0));
                         if ui.add(button).clicked() {
                             chosen = Some(Colour::new(rgb[0], rgb[1], rgb[2]));

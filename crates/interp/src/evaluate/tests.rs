@@ -1,3 +1,5 @@
+//! Measures of surfaces and picks on truths made by hand, where every figure is known.
+
 use super::*;
 use crate::surfaces::{Extremum, Surface, Vertex};
 use survey::Progress;

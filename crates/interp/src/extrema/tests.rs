@@ -1,3 +1,5 @@
+//! Refined extrema on closed forms, in slabs, beside dead traces and on plateaus.
+
 use super::*;
 use std::f64::consts::TAU;
 

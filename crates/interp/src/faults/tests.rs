@@ -1,3 +1,5 @@
+//! Proposed faults beside the surfaces that offset the horizons.
+
 use super::*;
 use crate::reassembly::from_horizon;
 use survey::model::FaultNetwork;

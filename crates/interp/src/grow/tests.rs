@@ -1,3 +1,5 @@
+//! Both growings on layered, faulted and degenerate volumes; what must not depend on order, slabs or threads.
+
 use super::*;
 use crate::evaluate::{EvaluateSettings, evaluate};
 use survey::synth::{SynthSettings, Synthetic};

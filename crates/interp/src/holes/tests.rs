@@ -1,3 +1,5 @@
+//! Holes filled beside closed forms, and never across a fault.
+
 use super::*;
 use survey::model::ModelSettings;
 use survey::synth::closed_form::ClosedForm;
