@@ -1,10 +1,11 @@
-//! How long volumes take to draw: `cargo run -p petroglyph-render --example volume_speed -- [--side N] [--size WxH] [--device cpu|gpu|both] [--dump FILE]`.
+//! How long volumes take to draw: `cargo run -p petroglyph-render --example volume_speed -- [--side N] [--size WxH] [--device cpu|gpu|both] [--only TEXT]
+//! [--keep FOLDER] [--dump FILE]`.
 //!
 //! Needs nothing but a Vulkan driver (none with `--device cpu`). A closed-form volume of bent layers with noise is drawn with one sample a voxel in a parallel
 //! projection over a corner: unshaded, by gradients, and with carried occlusion at one slice a voxel; each with a dense function (every sample
 //! shows a little, no ray ends early), a typical one (the white ramp) and a sparse one (the strongest values only), the sparse one also without
 //! skipping. Printed per picture, the best of three after a first that compiles and uploads: seconds by the clock, seconds of processor time of this
-//! process, millions of samples a second. `--dump` writes the volume as raw 32-bit floats for `bench/peers.py --volume`, which draws the same
+//! process, millions of samples a second. `--only` draws the pictures whose name begins so, `--keep` saves them. `--dump` writes the volume as raw 32-bit floats for `bench/peers.py --volume`, which draws the same
 //! picture with VTK.
 
 use image::RgbaImage;
@@ -26,10 +27,12 @@ struct Options {
     device: String,
     dump: Option<String>,
     keep: Option<String>,
+    only: String,
 }
 
 fn options() -> Result<Options, Box<dyn Error>> {
-    let mut options = Options { side: 256, size_px: [800, 800], device: "both".into(), dump: None, keep: None };
+    let mut options =
+        Options { side: 256, size_px: [800, 800], device: "both".into(), dump: None, keep: None, only: String::new() };
     let mut arguments = std::env::args().skip(1);
     while let Some(name) = arguments.next() {
         let value = arguments.next().ok_or_else(|| format!("{name} needs a value"))?;
@@ -42,7 +45,8 @@ fn options() -> Result<Options, Box<dyn Error>> {
             "--device" => options.device = value,
             "--dump" => options.dump = Some(value),
             "--keep" => options.keep = Some(value),
-            other => return Err(format!("{other}: expected --side, --size, --device, --dump or --keep").into()),
+            "--only" => options.only = value,
+            other => return Err(format!("{other}: expected --side, --size, --device, --dump, --keep or --only").into()),
         }
     }
     Ok(options)
@@ -154,7 +158,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut adapter = if options.device == "cpu" { None } else { Some(Renderer::headless()?) };
     let [width, height] = options.size_px;
     println!("{0}³ voxels, {width} x {height} pixels, one sample a voxel, 32-bit floats", options.side);
-    for (name, scene) in scenes(options.size_px) {
+    for (name, scene) in scenes(options.size_px).into_iter().filter(|(name, _)| name.starts_with(&options.only)) {
         let report = |device: &str, (wall, spent, image): (f64, f64, RgbaImage)| -> Result<(), Box<dyn Error>> {
             println!("{name:<34} {device:<24} {wall:8.3} s  {spent:7.2} s of processor");
             if let Some(folder) = &options.keep {

@@ -3,11 +3,12 @@
 //! Each pixel takes `samples` × `samples` rays on a regular grid. A ray finds the first point of the block
 //! ([`crate::visible`]), which is coloured and averaged with its pixel's others on sRGB-encoded, alpha-weighted values.
 
+use crate::camera::ViewRay;
 use crate::error::RenderError;
 use crate::frame::Frame;
 use crate::inputs::Inputs;
 use crate::media::interleaved::{halves, interleave};
-use crate::media::light::LightVolume;
+use crate::media::light::{Asked, LightVolume};
 use crate::media::prepared::Preparations;
 use crate::outline;
 use crate::scene::Scene;
@@ -47,12 +48,17 @@ impl CpuRenderer {
 
 /// Pixels along a side of what one task draws.
 const TILE: u32 = 32;
+/// Pixels along a side of what is traced together.
+const BLOCK: usize = 8;
 /// Tiles drawn before they are put into the picture.
 const TILES_AT_ONCE: usize = 4096;
 
 fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
     let light = match &frame.field {
-        Some(field) => LightVolume::new(field, &frame.view, &frame.solid, &frame.roaming_box, progress)?,
+        Some(field) => {
+            let asked = if frame.tubes.is_some() { Asked::Everywhere } else { Asked::Block };
+            LightVolume::new(field, &frame.view, &frame.solid, &frame.roaming_box, asked, progress)?
+        }
         None => None,
     };
     let [width, height] = frame.scene.size_px;
@@ -67,8 +73,16 @@ fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
             .map(|tile| {
                 let (left, top) = (tile % across * TILE, tile / across * TILE);
                 let (right, bottom) = ((left + TILE).min(width), (top + TILE).min(height));
-                let places = (top..bottom).flat_map(|y| (left..right).map(move |x| (x, y)));
-                let pixels = places.map(|(x, y)| pixel(frame, light.as_ref(), x, y)).collect();
+                let mut pixels = vec![[0; 4]; ((right - left) * (bottom - top)) as usize];
+                for y in (top..bottom).step_by(BLOCK) {
+                    for x in (left..right).step_by(BLOCK) {
+                        let (across, down) = ((right - x).min(BLOCK as u32), (bottom - y).min(BLOCK as u32));
+                        for (n, pixel) in (0..).zip(block(frame, light.as_ref(), [x, y], [across, down])) {
+                            let (column, row) = (x - left + n % across, y - top + n / across);
+                            pixels[(row * (right - left) + column) as usize] = pixel;
+                        }
+                    }
+                }
                 progress.step(1).map(|()| (left, top, pixels))
             })
             .collect::<Result<_, _>>()?;
@@ -83,19 +97,24 @@ fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
     Ok(image)
 }
 
-/// The averaged colour of one pixel, straight 8-bit RGBA.
-fn pixel(frame: &Frame, light: Option<&LightVolume>, x: u32, y: u32) -> [u8; 4] {
+/// The averaged colours of a block of pixels, straight 8-bit RGBA, row by row.
+fn block(frame: &Frame, light: Option<&LightVolume>, [left, top]: [u32; 2], [across, down]: [u32; 2]) -> Vec<[u8; 4]> {
     let samples = frame.scene.samples;
-    let mut sum = Vec4::ZERO;
-    for sub_y in 0..samples {
-        for sub_x in 0..samples {
-            let offset = DVec2::new(f64::from(sub_x) + 0.5, f64::from(sub_y) + 0.5) / f64::from(samples);
-            let view_ray = frame.view.ray(DVec2::new(f64::from(x), f64::from(y)) + offset);
-            let colour = trace(frame, light, &view_ray);
-            sum += (colour.truncate() * colour.w).extend(colour.w);
-        }
-    }
-    straight_bytes(sum / (samples * samples) as f32)
+    let per_pixel = samples * samples;
+    let rays: Vec<ViewRay> = (0..across * down * per_pixel)
+        .map(|n| {
+            let (pixel, sub) = (n / per_pixel, n % per_pixel);
+            let corner = DVec2::new(f64::from(left + pixel % across), f64::from(top + pixel / across));
+            let offset = DVec2::new(f64::from(sub % samples) + 0.5, f64::from(sub / samples) + 0.5);
+            frame.view.ray(corner + offset / f64::from(samples))
+        })
+        .collect();
+    let colours = trace(frame, light, &rays);
+    let average = |colours: &[Vec4]| {
+        let sum: Vec4 = colours.iter().map(|colour| (colour.truncate() * colour.w).extend(colour.w)).sum();
+        straight_bytes(sum / per_pixel as f32)
+    };
+    colours.chunks(per_pixel as usize).map(average).collect()
 }
 
 /// 8-bit straight RGBA of a premultiplied colour.

@@ -9,53 +9,78 @@ use crate::ground::GroundHit;
 use crate::inputs::NamedVolume;
 use crate::leaves::{FaceData, cover, distance_tone, leaf_colour};
 use crate::media::Faces;
+use crate::media::bundle::gather_all;
 use crate::media::light::LightVolume;
-use crate::media::march::gather;
 use crate::visible::{FaceHit, Ray, TOUCH};
 use crate::wells::WellHit;
 use glam::{Vec3, Vec4};
 use survey::model::Region;
 use ttf::{FaceFrame, FlatFootprint, FlatPoint, ShadePoint, linear_from_srgb, srgb_from_linear};
 
-/// Straight RGBA along one ray: what stops it, and what is behind ground that lets light through.
-pub(crate) fn trace(frame: &Frame, light: Option<&LightVolume>, view_ray: &ViewRay) -> Vec4 {
-    let ray = Ray::from(*view_ray);
-    let hit = stopping_hit(frame, &ray, f32::MIN);
-    let front = seen(frame, light, view_ray, hit, f32::MIN);
-    let Hit::Ground(ground) = hit else { return front };
-    if front.w >= 1.0 {
-        return front;
+/// Straight RGBA along rays: what stops each, and what is behind ground that lets light through. Quickest for neighbours in the picture.
+pub(crate) fn trace(frame: &Frame, light: Option<&LightVolume>, view_rays: &[ViewRay]) -> Vec<Vec4> {
+    let looks: Vec<Look> = view_rays
+        .iter()
+        .map(|view_ray| {
+            let ray = Ray::from(*view_ray);
+            Look { view_ray, ray, hit: stopping_hit(frame, &ray, f32::MIN), start: f32::MIN }
+        })
+        .collect();
+    let mut colours = seen(frame, light, &looks);
+    let mut through = Vec::new();
+    let mut behind = Vec::new();
+    for (n, look) in looks.iter().enumerate() {
+        if let Hit::Ground(ground) = look.hit
+            && colours[n].w < 1.0
+        {
+            let after = frame.solid.next_span(&look.ray, ground.t).map_or(f32::INFINITY, |span| span.end);
+            through.push(n);
+            behind.push(Look { hit: stopping_hit(frame, &look.ray, after), start: ground.t, ..*look });
+        }
     }
-    let after = frame.solid.next_span(&ray, ground.t).map_or(f32::INFINITY, |span| span.end);
-    let behind = seen(frame, light, view_ray, stopping_hit(frame, &ray, after), ground.t);
-    let rest = behind.w * (1.0 - front.w);
-    let alpha = front.w + rest;
-    let sum = linear(front.truncate()) * front.w + linear(behind.truncate()) * rest;
-    encoded(sum / alpha.max(1e-6)).extend(alpha)
+    for (n, behind) in through.into_iter().zip(seen(frame, light, &behind)) {
+        let front = colours[n];
+        let rest = behind.w * (1.0 - front.w);
+        let alpha = front.w + rest;
+        let sum = linear(front.truncate()) * front.w + linear(behind.truncate()) * rest;
+        colours[n] = encoded(sum / alpha.max(1e-6)).extend(alpha);
+    }
+    colours
 }
 
-/// Straight RGBA of a hit with the media between `start` and it.
-fn seen(frame: &Frame, light: Option<&LightVolume>, view_ray: &ViewRay, hit: Hit, start: f32) -> Vec4 {
-    let ray = Ray::from(*view_ray);
-    let behind = match hit {
+/// A ray from `start` to what stops it.
+#[derive(Clone, Copy)]
+struct Look<'r> {
+    view_ray: &'r ViewRay,
+    ray: Ray,
+    hit: Hit,
+    start: f32,
+}
+
+/// Straight RGBA of hits with the media in front of them.
+fn seen(frame: &Frame, light: Option<&LightVolume>, looks: &[Look]) -> Vec<Vec4> {
+    let behind = |look: &Look| match look.hit {
         Hit::Background => Vec4::from_array(frame.background),
-        Hit::Face(hit) => face_colour(frame, view_ray, &hit).extend(1.0),
+        Hit::Face(hit) => face_colour(frame, look.view_ray, &hit).extend(1.0),
         Hit::Ground(hit) => ground_colour(frame, &hit).extend(frame.relief.as_ref().map_or(1.0, |r| r.opacity)),
         Hit::Well(hit) => hit.colour.extend(1.0),
     };
-    let Some(field) = &frame.field else { return behind };
-    let gathered = gather(field, light, &frame.solid, &ray, [start, hit.t()]);
-    let mut far = linear(behind.truncate());
-    if let (Some(light), true) = (light, hit.t().is_finite()) {
-        far *= light.at(ray.at(hit.t()));
-    }
-    if gathered.passes == 1.0 && far == linear(behind.truncate()) {
-        return behind;
-    }
-    // Premultiplied by what is covered, then straight again.
-    let sum = gathered.colour + far * (behind.w * gathered.passes);
-    let alpha = 1.0 - gathered.passes * (1.0 - behind.w);
-    encoded(sum / alpha.max(1e-6)).extend(alpha)
+    let Some(field) = &frame.field else { return looks.iter().map(behind).collect() };
+    let rays: Vec<(Ray, [f32; 2])> = looks.iter().map(|look| (look.ray, [look.start, look.hit.t()])).collect();
+    let gathered = gather_all(field, light, &frame.solid, &rays);
+    let colours = looks.iter().zip(gathered).map(|(look, gathered)| {
+        let behind = behind(look);
+        let lit = light.filter(|_| look.hit.t().is_finite()).map(|light| light.at(look.ray.at(look.hit.t())));
+        if gathered.passes == 1.0 && lit.is_none_or(|lit| lit == Vec3::ONE) {
+            return behind;
+        }
+        let far = linear(behind.truncate()) * lit.unwrap_or(Vec3::ONE);
+        // Premultiplied by what is covered, then straight again.
+        let sum = gathered.colour + far * (behind.w * gathered.passes);
+        let alpha = 1.0 - gathered.passes * (1.0 - behind.w);
+        encoded(sum / alpha.max(1e-6)).extend(alpha)
+    });
+    colours.collect()
 }
 
 pub(crate) fn linear(encoded: Vec3) -> Vec3 {

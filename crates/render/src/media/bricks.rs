@@ -59,7 +59,8 @@ impl Bricks {
     /// The brick around a voxel position.
     #[inline(always)]
     pub fn at(&self, p: Vec3) -> [i32; 3] {
-        [0, 1, 2].map(|axis| ((p[axis] * (1.0 / BRICK as f32)) as i32).clamp(0, self.size[axis] as i32 - 1))
+        let along = |v: f32, axis: usize| ((v * (1.0 / BRICK as f32)) as i32).clamp(0, self.size[axis] as i32 - 1);
+        [along(p.x, 0), along(p.y, 1), along(p.z, 2)]
     }
 
     /// Its word.
@@ -68,10 +69,55 @@ impl Bricks {
         self.words[(x as usize * self.size[1] + y as usize) * self.size[2] + z as usize]
     }
 
+    /// The first of some places in a brick that shows something, in the surroundings (`shift` 0) or in the cut-outs (8), from place `n` on; `end` where there is none.
+    #[inline(always)]
+    pub fn first_shown(&self, line: &Line, mut n: u32, end: u32, shift: u32) -> u32 {
+        while n < end {
+            let brick = self.at(line.at + line.per * n as f32);
+            let distance = (self.word(brick) >> shift & 255) as i32;
+            if distance == 0 {
+                return n;
+            }
+            n = line.leaves(brick, distance - 1).max(n + 1);
+        }
+        end
+    }
+
     /// Voxel positions of its corners.
     pub fn corners(brick: [usize; 3]) -> [Vec3; 2] {
         let low = Vec3::from_array(brick.map(|n| (n * BRICK) as f32));
         [low, low + BRICK as f32]
+    }
+}
+
+/// Evenly spaced places on a straight line, voxels.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Line {
+    /// The first.
+    pub at: Vec3,
+    /// The way to the next.
+    pub per: Vec3,
+    inverse: Vec3,
+}
+
+impl Line {
+    /// From the first place, and the way to the next.
+    pub fn new(at: Vec3, per: Vec3) -> Self {
+        Self { at, per, inverse: per.recip() }
+    }
+
+    /// The first place behind a brick grown by `around` bricks to every side.
+    #[inline(always)]
+    fn leaves(&self, [x, y, z]: [i32; 3], around: i32) -> u32 {
+        let along = |first: i32, at: f32, per: f32, inverse: f32| {
+            let border = if per > 0.0 { first + 1 + around } else { first - around };
+            let places = ((border * BRICK as i32) as f32 - at) * inverse;
+            // Not so where the line is parallel to the border.
+            if places >= 0.0 { places } else { f32::MAX }
+        };
+        let (at, per, inverse) = (self.at, self.per, self.inverse);
+        let (x, y) = (along(x, at.x, per.x, inverse.x), along(y, at.y, per.y, inverse.y));
+        (x.min(y).min(along(z, at.z, per.z, inverse.z)) as u32).saturating_add(1)
     }
 }
 

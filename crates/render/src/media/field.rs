@@ -4,13 +4,15 @@
 
 use super::bricks::{BrickContent, Bricks, LayerLooks, LayerMap, MIXED};
 use super::isosurface::{Depths, FieldIsosurface, Scalar};
+use super::lit::Lit;
 use super::prepared::{Preparations, Prepared};
-use super::table::{NO_DATA, NO_DATA_BELOW, Table, extinction};
+use super::samples::Samples;
+use super::table::{NO_DATA_BELOW, Table, extinction};
 use super::{Colouring, EmptySpace, Faces, Media, Phong, Scope, Shading, white_ramp};
 use crate::camera::View;
 use crate::error::RenderError;
 use crate::frame::{NO_CANDIDATES, NO_DEPTHS};
-use crate::inputs::{Candidates, Inputs, NamedVolume, SLACK};
+use crate::inputs::{Candidates, Inputs, NamedVolume};
 use crate::leaves::{BORDER_TONE, leaf_colour};
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
@@ -123,68 +125,24 @@ impl<'a> FieldMedium<'a> {
     /// Trilinear value at a voxel position; below [`NO_DATA_BELOW`] where there is none.
     #[inline(always)]
     pub fn sample(&self, p: Vec3) -> f32 {
-        let size = self.volume.volume.size();
-        let index = p * self.scale + self.offset;
-        let last = Vec3::new((size[0] - 1) as f32, (size[1] - 1) as f32, (size[2] - 1) as f32);
-        if !(index.cmpge(Vec3::splat(-SLACK)).all() && index.cmple(last + SLACK).all()) {
-            return NO_DATA;
-        }
-        let clamped = index.clamp(Vec3::ZERO, last);
-        // Cut to integers: these are not negative, and rounding down would be a call.
-        let cell = |axis: usize| (clamped[axis] as i32).min(size[axis].saturating_sub(2) as i32);
-        let [x, y, z] = [cell(0), cell(1), cell(2)];
-        let f = clamped - Vec3::new(x as f32, y as f32, z as f32);
-        let [x, y, z] = [x as usize, y as usize, z as usize];
-        let dz = usize::from(size[2] > 1);
-        let dy = if size[1] > 1 { size[2] } else { 0 };
-        let dx = if size[0] > 1 { size[1] * size[2] } else { 0 };
-        let values = &self.prepared.samples(&self.volume)[(x * size[1] + y) * size[2] + z..];
-        let along_z = |at: usize| values[at] + (values[at + dz] - values[at]) * f.z;
-        let (a, b) = (along_z(0), along_z(dy));
-        let (c, d) = (along_z(dx), along_z(dx + dy));
-        let (near, far) = (a + (b - a) * f.y, c + (d - c) * f.y);
-        near + (far - near) * f.x
+        self.samples().value(p * self.scale + self.offset)
     }
 
     /// Central differences over one sample to either side, per voxel of the survey; zero where a neighbour is missing.
     #[inline]
     pub fn gradient(&self, p: Vec3) -> Vec3 {
-        let difference = |ahead: f32, behind: f32| {
-            if ahead < NO_DATA_BELOW || behind < NO_DATA_BELOW { 0.0 } else { ahead - behind }
-        };
-        let size = self.volume.volume.size();
-        let index = p * self.scale + self.offset;
-        let low = index.floor();
-        let inside = |axis: usize| low[axis] >= 1.0 && low[axis] + 2.0 < size[axis] as f32;
-        if !(inside(0) && inside(1) && inside(2)) {
-            let step = self.scale.recip();
-            let along = |axis: Vec3| difference(self.sample(p + axis), self.sample(p - axis));
-            let sum = Vec3::new(along(Vec3::X * step.x), along(Vec3::Y * step.y), along(Vec3::Z * step.z));
-            return sum * 0.5 * self.scale;
-        }
-        // All six places have the same fractions: the cell is found once.
-        let f = index - low;
-        let (dy, dx) = (size[2], size[1] * size[2]);
-        let middle = (low.x as usize * size[1] + low.y as usize) * size[2] + low.z as usize;
-        let values = &self.prepared.samples(&self.volume)[middle - dx..middle + 2 * dx + dy + 2];
-        let at = |start: usize| {
-            let along_z = |at: usize| values[at] + (values[at + 1] - values[at]) * f.z;
-            let (a, b) = (along_z(start), along_z(start + dy));
-            let (c, d) = (along_z(start + dx), along_z(start + dx + dy));
-            let (near, far) = (a + (b - a) * f.y, c + (d - c) * f.y);
-            near + (far - near) * f.x
-        };
-        let sum = Vec3::new(
-            difference(at(2 * dx), at(0)),
-            difference(at(dx + dy), at(dx - dy)),
-            difference(at(dx + 1), at(dx - 1)),
-        );
-        sum * 0.5 * self.scale
+        self.samples().differences(p * self.scale + self.offset) * 0.5 * self.scale
     }
 
-    /// Its samples without NaN.
-    pub(super) fn samples(&self) -> &[f32] {
-        self.prepared.samples(&self.volume)
+    /// Scale and offset from voxel positions to sample numbers.
+    pub(super) fn index_from_voxel(&self) -> (Vec3, Vec3) {
+        (self.scale, self.offset)
+    }
+
+    /// Its samples.
+    #[inline(always)]
+    pub(super) fn samples(&self) -> Samples<'_> {
+        Samples::new(self.prepared.samples(&self.volume), self.volume.volume.size())
     }
 
     /// Smallest and largest sample between two voxel positions; `None` where there is none.
@@ -308,11 +266,11 @@ impl<'a> Field<'a> {
         Ok(Some(field))
     }
 
-    /// The one volume of a place where there is nothing to ask but its function.
-    pub fn plain(&self, place: Place) -> Option<&FieldMedium<'a>> {
+    /// The one medium, where there is nothing else to see and nothing to ask but its function.
+    pub fn alone(&self) -> Option<&FieldMedium<'a>> {
         let [medium] = &self.media[..] else { return None };
         let alone = self.horizons.is_none() && self.isosurfaces.is_empty() && medium.layers.is_none();
-        (alone && medium.place == place).then_some(medium)
+        alone.then_some(medium)
     }
 
     fn fill_bricks(&self, samples: [usize; 3], empty_space: EmptySpace) -> Bricks {
@@ -365,7 +323,7 @@ impl<'a> Field<'a> {
         if let Shading::Phong(phong) = self.shading
             && extinction > 0.0
         {
-            colour = self.lit(&phong, medium.gradient(p), colour, towards);
+            colour = self.lit(phong, medium.gradient(p), colour, towards);
         }
         Matter { extinction, colour, emission: Vec3::ZERO }
     }
@@ -394,7 +352,7 @@ impl<'a> Field<'a> {
             let (cover, gradient) = surface.at(p, self.depths);
             if cover > 0.0 {
                 let colour = match self.shading {
-                    Shading::Phong(phong) => self.lit(&phong, gradient, surface.colour, towards),
+                    Shading::Phong(phong) => self.lit(phong, gradient, surface.colour, towards),
                     _ => surface.colour,
                 };
                 let kappa = surface.extinction * cover;
@@ -424,12 +382,8 @@ impl<'a> Field<'a> {
     }
 
     /// A colour under Phong's light.
-    fn lit(&self, phong: &Phong, gradient: Vec3, colour: Vec3, towards: Vec3) -> Vec3 {
-        let normal = (self.display_normal_from_voxel * gradient).normalize_or_zero();
-        let half = (self.light + towards).normalize_or_zero();
-        let diffuse = phong.diffuse * normal.dot(self.light).abs();
-        let specular = phong.specular * normal.dot(half).abs().powf(phong.shininess);
-        colour * (phong.ambient + diffuse) + Vec3::splat(specular)
+    fn lit(&self, phong: Phong, gradient: Vec3, colour: Vec3, towards: Vec3) -> Vec3 {
+        Lit::new(phong, self.light, towards).on(self.display_normal_from_voxel * gradient, colour)
     }
 }
 

@@ -16,17 +16,15 @@
 //! the number of slices in it, since each adds 1; the linear form adds the same for any number.
 //!
 //! G is the 3 × 3 kernel [v/2, 1 − v, v/2] squared, v its variance in cells, at most ½ by the choice of the cell; variances add, so that after a few
-//! slices it is a Gaussian. Nothing comes in from outside the grid.
+//! slices it is a Gaussian. Nothing comes in from outside the grid. How it is carried on the processor: the module `slices`.
 
-use super::field::{Field, Matter, Place};
-use super::march::stretches;
-use super::table::{NO_DATA_BELOW, absorbed};
-use super::{Faces, Occlusion, Shading};
+use super::field::Field;
+use super::slices::{Carried, carry};
+use super::{Occlusion, Shading};
 use crate::camera::View;
-use crate::visible::{Ray, Solid};
+use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
 use glam::{DVec2, DVec3, Mat3, Vec2, Vec3};
-use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
 /// Cells kept free around the block, so that light may leave it sideways.
@@ -101,23 +99,22 @@ impl LightGrid {
     }
 }
 
-/// λ and E of every cell at the front of every slice.
+/// Where the light volume will be read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Asked {
+    /// In the roaming box.
+    Block,
+    /// Beside it too, as at wells that come out of it.
+    Everywhere,
+}
+
+/// λ and E of the cells that matter at the front of every slice.
 pub struct LightVolume {
-    /// Where they are.
-    pub grid: LightGrid,
-    lambda: Vec<f32>,
-    emission: Option<Vec<Vec3>>,
+    grid: LightGrid,
+    carried: Carried,
     /// Cell coordinates and slice from voxel positions, before the division by depth in a perspective.
     linear: Mat3,
     shift: Vec3,
-}
-
-/// A column of cells along the view: its ray per metre of depth, and its stretches of matter by depth.
-struct Column {
-    origin: Vec3,
-    direction: Vec3,
-    towards: Vec3,
-    stretches: Vec<([f32; 2], Place)>,
 }
 
 impl LightVolume {
@@ -130,61 +127,14 @@ impl LightVolume {
         view: &View,
         solid: &Solid,
         roaming_box: &VoxelBox,
+        asked: Asked,
         progress: &Progress,
     ) -> Result<Option<Self>, Cancelled> {
         let Shading::Occlusion(occlusion) = field.shading else { return Ok(None) };
         let grid = LightGrid::new(&occlusion, view, roaming_box, f64::from(field.unit_m));
-        let [nu, nv, slices] = grid.size;
-        let cells = nu * nv;
-        let emits = field.horizons.as_ref().is_some_and(|h| h.horizons.iter().any(|one| one.emission > 0.0));
-        let columns: Vec<Column> = (0..cells).into_par_iter().map(|n| column(field, view, solid, &grid, n)).collect();
-        // Every value is written below, by the threads: zeros cost nothing until then.
-        let mut lambda = vec![0.0f32; cells * (slices + 1)];
-        let mut emission = emits.then(|| vec![Vec3::ZERO; cells * (slices + 1)]);
-        let mut occluded = vec![0.0f32; cells];
-        let mut blurred = vec![0.0f32; cells];
-        let mut glow = vec![Vec3::ZERO; if emits { cells } else { 0 }];
-        let mut blurred_glow = glow.clone();
-        progress.begin("light", slices as u64);
-        for slice in 0..=slices {
-            let side = grid.side_weight(slice);
-            blur(&occluded, &mut blurred, nu, side);
-            let own = &mut lambda[slice * cells..(slice + 1) * cells];
-            own.par_chunks_mut(CHUNK).zip(blurred.par_chunks(CHUNK)).for_each(|(own, blurred)| {
-                for (to, o) in own.iter_mut().zip(blurred) {
-                    *to = 1.0 / (1.0 + grid.strength * o);
-                }
-            });
-            if let Some(emission) = &mut emission {
-                blur(&glow, &mut blurred_glow, nu, side);
-                emission[slice * cells..(slice + 1) * cells].copy_from_slice(&blurred_glow);
-            }
-            if slice == slices {
-                break;
-            }
-            let ends = [grid.depth(slice as f64) as f32, grid.depth(slice as f64 + 1.0) as f32];
-            if emits {
-                let light = occluded.par_chunks_mut(CHUNK).zip(glow.par_chunks_mut(CHUNK));
-                light.enumerate().for_each(|(chunk, (occluded, glow))| {
-                    for (n, (o, e)) in occluded.iter_mut().zip(glow).enumerate() {
-                        let cell = chunk * CHUNK + n;
-                        let (gain, alpha, emitted) = columns[cell].slice(field, ends, grid.slice_units);
-                        *o = blurred[cell] + gain;
-                        *e = blurred_glow[cell] * (1.0 - alpha) + emitted;
-                    }
-                });
-            } else {
-                occluded.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, occluded)| {
-                    for (n, o) in occluded.iter_mut().enumerate() {
-                        let cell = chunk * CHUNK + n;
-                        *o = blurred[cell] + columns[cell].slice(field, ends, grid.slice_units).0;
-                    }
-                });
-            }
-            progress.step(1)?;
-        }
+        let carried = carry(field, view, solid, roaming_box, &grid, asked, progress)?;
         let (linear, shift) = cells_from_voxel(view, &grid);
-        Ok(Some(Self { grid, lambda, emission, linear, shift }))
+        Ok(Some(Self { grid, carried, linear, shift }))
     }
 
     /// λ + E at a voxel position: the light that falls there.
@@ -200,28 +150,46 @@ impl LightVolume {
         let last = Vec3::new((nu - 1) as f32, (nv - 1) as f32, slices as f32);
         let q = q.clamp(Vec3::ZERO, last);
         // Cut to integers: these are not negative, and rounding down would be a call.
-        let cell = |axis: usize| (q[axis] as i32).min((last[axis] as i32 - 1).max(0));
-        let [x, y, z] = [cell(0), cell(1), cell(2)];
-        let f = q - Vec3::new(x as f32, y as f32, z as f32);
-        let du = usize::from(nu > 1);
-        let dv = if nv > 1 { nu } else { 0 };
-        let start = (z as usize * nv + y as usize) * nu + x as usize;
-        let dw = nu * nv;
-        let values = &self.lambda[start..];
+        let slice = (q.z as i32).min((last.z as i32 - 1).max(0));
+        let depth = q.z - slice as f32;
+        let front = self.corners(slice as usize, q.x, q.y);
+        let back = self.corners(slice as usize + 1, q.x, q.y);
         let mix = |a: f32, b: f32, t: f32| a + (b - a) * t;
-        let row = |at: usize| mix(values[at], values[at + du], f.x);
-        let plane = |at: usize| mix(row(at), row(at + dv), f.y);
-        let lambda = Vec3::splat(mix(plane(0), plane(dw), f.z));
-        match &self.emission {
+        let value = |corners: &Corners| {
+            let (a, b) = (&self.carried.lambda[corners.rows[0]..][..2], &self.carried.lambda[corners.rows[1]..][..2]);
+            mix(mix(a[0], a[1], corners.f.x), mix(b[0], b[1], corners.f.x), corners.f.y)
+        };
+        let lambda = Vec3::splat(mix(value(&front), value(&back), depth));
+        match &self.carried.emission {
             None => lambda,
             Some(emission) => {
-                let values = &emission[start..];
-                let row = |at: usize| values[at].lerp(values[at + du], f.x);
-                let plane = |at: usize| row(at).lerp(row(at + dv), f.y);
-                lambda + plane(0).lerp(plane(dw), f.z)
+                let value = |corners: &Corners| {
+                    let row = |at: usize| emission[at].lerp(emission[at + 1], corners.f.x);
+                    row(corners.rows[0]).lerp(row(corners.rows[1]), corners.f.y)
+                };
+                lambda + value(&front).lerp(value(&back), depth)
             }
         }
     }
+
+    /// The cells around a place at the front of a slice; windows are at least two cells wide and high.
+    #[inline(always)]
+    fn corners(&self, slice: usize, x: f32, y: f32) -> Corners {
+        let (window, start) = (&self.carried.windows[slice], self.carried.starts[slice]);
+        let [x0, y0] = [(x as i32).max(0) as usize, (y as i32).max(0) as usize];
+        let x0 = x0.min(window.high[0] - 2).max(window.low[0]);
+        let y0 = y0.min(window.high[1] - 2).max(window.low[1]);
+        let width = window.high[0] - window.low[0];
+        let first = start + (y0 - window.low[1]) * width + (x0 - window.low[0]);
+        let f = Vec2::new(x - x0 as f32, y - y0 as f32).clamp(Vec2::ZERO, Vec2::ONE);
+        Corners { rows: [first, first + width], f }
+    }
+}
+
+/// Where the four cells around a place begin in the lists, row by row, and its place between them.
+struct Corners {
+    rows: [usize; 2],
+    f: Vec2,
 }
 
 /// The map from voxel positions to cell coordinates (integers at cell centres) and slice fronts; in a perspective x and y are in cells times depth, counted
@@ -236,110 +204,4 @@ pub fn cells_from_voxel(view: &View, grid: &LightGrid) -> (Mat3, Vec3) {
     };
     let linear = glam::DMat3::from_diagonal(scale) * linear;
     (linear.as_mat3(), ((shift - origin) * scale).as_vec3())
-}
-
-/// Cells that one task computes.
-const CHUNK: usize = 4096;
-
-/// The cell's own column.
-fn column(field: &Field, view: &View, solid: &Solid, grid: &LightGrid, n: usize) -> Column {
-    let [nu, _, _] = grid.size;
-    let flat = grid.low + DVec2::new((n % nu) as f64 + 0.5, (n / nu) as f64 + 0.5) * grid.cell;
-    let (origin, direction) = view.depth_ray(flat);
-    let norm = direction.length();
-    let ray = Ray { origin: origin.as_vec3(), direction: (direction / norm).as_vec3() };
-    let mut list = Vec::new();
-    stretches(solid, &ray, [f32::MIN, f32::INFINITY], |stretch| {
-        if stretch.place == Place::CutOut || field.faces != Faces::All {
-            list.push((stretch.t.map(|t| t / norm as f32), stretch.place));
-        }
-    });
-    let towards = -(field.display_from_voxel * ray.direction).normalize_or_zero();
-    Column { origin: ray.origin, direction: direction.as_vec3(), towards, stretches: list }
-}
-
-impl Column {
-    /// What a slice between two depths adds: occlusion, opacity, and light given off.
-    fn slice(&self, field: &Field, ends: [f32; 2], units: f32) -> (f32, f32, Vec3) {
-        let mut sum = (0.0, 0.0, Vec3::ZERO);
-        for &([from, to], place) in &self.stretches {
-            let (from, to) = (from.max(ends[0]), to.min(ends[1]));
-            if to <= from {
-                continue;
-            }
-            let p = self.origin + self.direction * (0.5 * (from + to));
-            let word = field.bricks.word(field.bricks.at(p));
-            let shift = if place == Place::CutOut { 8 } else { 0 };
-            if word >> shift & 255 != 0 {
-                continue;
-            }
-            let length = units * (to - from) / (ends[1] - ends[0]);
-            if let Some(medium) = field.plain(place) {
-                let value = medium.sample(p);
-                if value > NO_DATA_BELOW {
-                    let entry = medium.table.index(value);
-                    let alpha = absorbed(medium.table.extinctions[entry] * length);
-                    sum.0 += medium.table.opacities[entry] * length;
-                    sum.1 += alpha * (1.0 - sum.1);
-                }
-                continue;
-            }
-            let Matter { extinction, emission, .. } = field.at(p, place, word, self.towards);
-            if extinction <= 0.0 {
-                continue;
-            }
-            let alpha = absorbed(extinction * length);
-            sum.0 += absorbed(extinction) * length;
-            sum.1 += alpha * (1.0 - sum.1);
-            sum.2 += emission * alpha;
-        }
-        sum
-    }
-}
-
-/// The 3 × 3 kernel with this weight to either side, row by row.
-fn blur<T>(from: &[T], to: &mut [T], width: usize, side: f32)
-where
-    T: Copy + Send + Sync + Default + std::ops::Add<Output = T> + std::ops::Mul<f32, Output = T>,
-{
-    let middle = 1.0 - 2.0 * side;
-    let rows = from.len() / width;
-    to.par_chunks_mut(width * 16).enumerate().for_each(|(block, to)| {
-        let mut column = vec![T::default(); width + 2];
-        for (n, to) in to.chunks_mut(width).enumerate() {
-            let y = block * 16 + n;
-            let row = |y: usize| &from[y * width..(y + 1) * width];
-            for (sum, value) in column[1..].iter_mut().zip(row(y)) {
-                *sum = *value * middle;
-            }
-            for neighbour in [y.checked_sub(1), (y + 1 < rows).then_some(y + 1)].into_iter().flatten() {
-                for (sum, value) in column[1..].iter_mut().zip(row(neighbour)) {
-                    *sum = *sum + *value * side;
-                }
-            }
-            for (x, to) in to.iter_mut().enumerate() {
-                *to = column[x + 1] * middle + (column[x] + column[x + 2]) * side;
-            }
-        }
-    });
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn blurring_spreads_by_its_variance() {
-        let width = 41;
-        let mut field = vec![0.0f32; width * width];
-        field[20 * width + 20] = 1.0;
-        let mut next = field.clone();
-        for _ in 0..9 {
-            blur(&field, &mut next, width, 0.2);
-            std::mem::swap(&mut field, &mut next);
-        }
-        let total: f32 = field.iter().sum();
-        let variance: f32 = field.iter().enumerate().map(|(n, v)| v * ((n % width) as f32 - 20.0).powi(2)).sum();
-        assert!((total - 1.0).abs() < 1e-5 && (variance - 9.0 * 0.4).abs() < 1e-4, "{total} {variance}");
-    }
 }

@@ -12,7 +12,6 @@
 use super::field::{Field, Matter, Place};
 use super::light::LightVolume;
 use super::prepared::BRICK;
-use super::single::Single;
 use super::table::absorbed;
 use super::{Faces, Shading};
 use crate::visible::{Ray, Solid, TOUCH};
@@ -105,7 +104,6 @@ impl Path<'_> {
         let steps = steps as u32;
         let shift = if stretch.place == Place::CutOut { 8 } else { 0 };
         let bricks = &self.field.bricks;
-        let single = Single::of(self.field, stretch.place, self.ray, self.towards);
         let mut n = 0;
         while n < steps {
             let brick = bricks.at(self.ray.at(from + (n as f32 + 0.5) * step_t));
@@ -114,24 +112,7 @@ impl Path<'_> {
             let exit = exit_t(self.ray, brick, (distance - 1).max(0));
             // Compared as numbers before they are cut to integers: an exit may be infinite.
             let next = ((exit - from) / step_t + 0.5).ceil().clamp((n + 1) as f32, steps as f32) as u32;
-            let quick = single.as_ref().filter(|_| distance == 0);
-            let quick =
-                quick.and_then(|one| Some((one, one.positions(from + (n as f32 + 0.5) * step_t, step_t, next - n)?)));
-            if let Some((single, (mut position, stride))) = quick {
-                for n in n..next {
-                    let found = single.at(position);
-                    position = position.plus(stride);
-                    let Some(found) = found else { continue };
-                    let t = from + (n as f32 + 0.5) * step_t;
-                    let alpha = absorbed(found.extinction * step);
-                    let colour = self.light.map_or(found.colour, |light| found.colour * light.at(self.ray.at(t)));
-                    gathered.colour += colour * (alpha * gathered.passes);
-                    gathered.passes *= 1.0 - alpha;
-                    if !seen(t, alpha) || gathered.passes <= SPENT {
-                        return;
-                    }
-                }
-            } else if distance == 0 {
+            if distance == 0 {
                 for n in n..next {
                     let t = from + (n as f32 + 0.5) * step_t;
                     let p = self.ray.at(t);

@@ -12,17 +12,22 @@
 //! extinctions and mix their colours by them. Light is linear; the sum is encoded at the end.
 //!
 //! Where light is shadowed by what lies in front, [`light`] carries occlusion and emission from slice to slice before the
-//! picture is drawn, and [`march`] reads them. Space is skipped by [`bricks`].
+//! picture is drawn, and [`march`] reads them; [`bundle`] does so for many rays at once where one volume is all there is. Space is
+//! skipped by [`bricks`].
 
 pub mod bricks;
+pub mod bundle;
 pub mod field;
 pub mod interleaved;
 pub mod isosurface;
 pub mod light;
+mod lit;
 pub mod march;
 pub mod prepared;
-mod single;
+pub mod samples;
+mod slices;
 pub mod table;
+mod wide;
 
 pub use interleaved::Interleaved;
 pub use isosurface::{Isosurface, Scalar};

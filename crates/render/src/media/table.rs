@@ -2,6 +2,7 @@
 //!
 //! The nearest of [`ENTRIES`] entries is taken, so that a lookup is one load on the GPU; the value's error is 1/4096 of the domain.
 
+use super::samples::whole;
 use ttf::{RgbaFunction, linear_from_srgb};
 
 /// Entries of a table.
@@ -72,7 +73,18 @@ impl Table {
     /// The entry of a value that is data.
     #[inline(always)]
     pub fn index(&self, value: f32) -> usize {
-        (((value - self.low) * self.scale + 0.5).clamp(0.0, (ENTRIES - 1) as f32)) as i32 as usize
+        ((value - self.low) * self.scale + 0.5).clamp(0.0, (ENTRIES - 1) as f32) as i32 as usize
+    }
+
+    /// The entries of many values; of no meaning for those that are not data.
+    #[inline(always)]
+    pub fn entries_of(&self, values: &[f32], entries: &mut [u32]) {
+        const LAST: f32 = (ENTRIES - 1) as f32;
+        for (entry, value) in entries.iter_mut().zip(values) {
+            let place = (value - self.low) * self.scale + 0.5;
+            let place = if place > 0.0 { place } else { 0.0 };
+            *entry = whole(if place < LAST { place } else { LAST }).1;
+        }
     }
 
     /// Whether any value between two is visible.

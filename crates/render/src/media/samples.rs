@@ -1,0 +1,248 @@
+//! Reading a volume between its samples: trilinear values and central differences.
+//!
+//! ```text
+//! v(i) = Σ w·s    over the 8 samples of the cell around i    Δₓ(i) = v(i + x) − v(i − x)
+//! ```
+//!
+//! The two neighbours of a sample in depth lie side by side in memory, so a cell is four pairs: eight numbers in two registers, mixed along x
+//! first, then y, then depth, each step halving them. Differences come from the 4 × 4 × 4 neighbourhood of the same cell, of which 32 samples in twelve short rows
+//! are needed; three interpolated values ahead and three behind are mixed from them.
+//!
+//! Index space: the volume's own sample numbers. A value that needs a missing sample ([`NO_DATA`]) is so far below [`NO_DATA_BELOW`] that it
+//! shows; places outside are missing, and a difference whose either end is missing counts as zero.
+
+use super::table::{NO_DATA, NO_DATA_BELOW};
+use crate::inputs::SLACK;
+use glam::{Vec2, Vec3, Vec4};
+
+/// Places that are read at once.
+pub const BATCH: usize = 64;
+
+/// A volume's samples, z fastest, missing ones as [`NO_DATA`].
+#[derive(Clone, Copy)]
+pub struct Samples<'s> {
+    values: &'s [f32],
+    size: [usize; 3],
+    /// From a sample to the next along each axis; nothing along an axis of one sample.
+    steps: [usize; 3],
+    last: Vec3,
+}
+
+/// Places in index space, coordinate by coordinate.
+pub struct Places {
+    /// x, y and z.
+    pub axes: [[f32; BATCH]; 3],
+}
+
+impl Default for Places {
+    fn default() -> Self {
+        Self { axes: [[0.0; BATCH]; 3] }
+    }
+}
+
+impl<'s> Samples<'s> {
+    /// Samples of a volume of this size.
+    pub fn new(values: &'s [f32], size: [usize; 3]) -> Self {
+        let step = |axis: usize, stride: usize| if size[axis] > 1 { stride } else { 0 };
+        Self {
+            values,
+            size,
+            steps: [step(0, size[1] * size[2]), step(1, size[2]), step(2, 1)],
+            last: Vec3::from_array(size.map(|n| n.saturating_sub(1) as f32)),
+        }
+    }
+
+    /// The value at a place; below [`NO_DATA_BELOW`] where there is none.
+    #[inline(always)]
+    pub fn value(&self, index: Vec3) -> f32 {
+        if !self.contains(index) {
+            return NO_DATA;
+        }
+        let clamped = index.clamp(Vec3::ZERO, self.last);
+        // Cut to integers: these are not negative, and rounding down would be a call.
+        let cell = |axis: usize| (clamped[axis] as i32).min(self.size[axis].saturating_sub(2) as i32);
+        let [x, y, z] = [cell(0), cell(1), cell(2)];
+        let f = clamped - Vec3::new(x as f32, y as f32, z as f32);
+        self.mixed((x as usize * self.size[1] + y as usize) * self.size[2] + z as usize, f)
+    }
+
+    /// The values at the first `count` places.
+    #[inline(always)]
+    pub fn values(&self, places: &Places, count: usize, values: &mut [f32; BATCH]) {
+        let mut starts = [0u32; BATCH];
+        let mut fractions = [[0.0f32; BATCH]; 3];
+        // What a value is at most: all there is inside, nothing outside.
+        let mut most = [f32::MAX; BATCH];
+        for (axis, (places, fractions)) in places.axes.iter().zip(&mut fractions).enumerate() {
+            let (last, rows) = (self.last[axis], self.size[axis] as u32);
+            let deepest = (last - 1.0).max(0.0);
+            for n in 0..BATCH {
+                let place = places[n];
+                let outside = (place < -SLACK) | (place > last + SLACK);
+                most[n] = if outside { NO_DATA } else { most[n] };
+                let place = if place > 0.0 { place } else { 0.0 };
+                let place = if place < last { place } else { last };
+                let (whole, cell) = whole(if place < deepest { place } else { deepest });
+                fractions[n] = place - whole;
+                starts[n] = starts[n].wrapping_mul(rows).wrapping_add(cell);
+            }
+        }
+        for n in 0..count.min(BATCH) {
+            let f = Vec3::new(fractions[0][n], fractions[1][n], fractions[2][n]);
+            let value = self.mixed(starts[n] as usize, f);
+            values[n] = if most[n] < value { most[n] } else { value };
+        }
+    }
+
+    /// The mix of a cell's corners.
+    #[inline(always)]
+    fn mixed(&self, start: usize, f: Vec3) -> f32 {
+        let [dx, dy, dz] = self.steps;
+        let square = |at: usize| {
+            if dz == 1 {
+                let (near, far) = (&self.values[at..at + 2], &self.values[at + dy..at + dy + 2]);
+                Vec4::new(near[0], near[1], far[0], far[1])
+            } else {
+                let (near, far) = (self.values[at], self.values[at + dy]);
+                Vec4::new(near, near, far, far)
+            }
+        };
+        let (near, far) = (square(start), square(start + dx));
+        let square = near + (far - near) * f.x;
+        let (first, second) = (Vec2::new(square.x, square.y), Vec2::new(square.z, square.w));
+        let pair = first + (second - first) * f.y;
+        pair.x + (pair.y - pair.x) * f.z
+    }
+
+    /// v ahead minus v behind, one sample to either side along each axis.
+    #[inline(always)]
+    pub fn differences(&self, index: Vec3) -> Vec3 {
+        let cell = |axis: usize| index[axis] as i32;
+        let [x, y, z] = [cell(0), cell(1), cell(2)];
+        let inside = |cell: i32, axis: usize| cell >= 1 && cell as usize + 2 < self.size[axis];
+        if !(inside(x, 0) && inside(y, 1) && inside(z, 2)) {
+            let along = |axis: Vec3| difference(self.value(index + axis), self.value(index - axis));
+            return Vec3::new(along(Vec3::X), along(Vec3::Y), along(Vec3::Z));
+        }
+        let f = index - Vec3::new(x as f32, y as f32, z as f32);
+        let start = (x as usize * self.size[1] + y as usize) * self.size[2] + z as usize;
+        let [dx, dy, _] = self.steps;
+        // The samples of a column from one above the cell to one below it.
+        let row = |at: usize| Vec4::from_slice(&self.values[at - 1..at + 3]);
+        let mix = |a: Vec4, b: Vec4, t: f32| a + (b - a) * t;
+        let [a, b, c, d] = [row(start), row(start + dy), row(start + dx), row(start + dx + dy)];
+        let (near, far) = (mix(a, b, f.y), mix(c, d, f.y));
+        let middle = mix(near, far, f.x);
+        let before = mix(row(start - dx), row(start - dx + dy), f.y);
+        let after = mix(row(start + 2 * dx), row(start + 2 * dx + dy), f.y);
+        let left = mix(row(start - dy), row(start + dx - dy), f.x);
+        let right = mix(row(start + 2 * dy), row(start + dx + 2 * dy), f.x);
+        let (front, back) = (mix(a, c, f.x), mix(b, d, f.x));
+        let at_depth = |row: Vec4| row.y + (row.z - row.y) * f.z;
+        Vec3::new(
+            difference(at_depth(mix(far, after, f.x)), at_depth(mix(before, near, f.x))),
+            difference(at_depth(mix(back, right, f.y)), at_depth(mix(left, front, f.y))),
+            difference(middle.z + (middle.w - middle.z) * f.z, middle.x + (middle.y - middle.x) * f.z),
+        )
+    }
+
+    /// Whether a place is in the volume.
+    #[inline(always)]
+    fn contains(&self, index: Vec3) -> bool {
+        index.cmpge(Vec3::splat(-SLACK)).all() && index.cmple(self.last + SLACK).all()
+    }
+}
+
+/// A number from 0 to 2²² rounded down, and the same as an integer: without a conversion, of which there is none that keeps to a few lanes' width and
+/// is defined for every number.
+#[inline(always)]
+pub fn whole(number: f32) -> (f32, u32) {
+    // From 2²³ on, floats are integers: adding that rounds, and what it rounds to is in the last bits.
+    const INTEGERS: f32 = 8_388_608.0;
+    let nearest = (number + INTEGERS) - INTEGERS;
+    let below = if nearest > number { nearest - 1.0 } else { nearest };
+    (below, (below + INTEGERS).to_bits() & 0x7f_ffff)
+}
+
+#[inline(always)]
+fn difference(ahead: f32, behind: f32) -> f32 {
+    if ahead < NO_DATA_BELOW || behind < NO_DATA_BELOW { 0.0 } else { ahead - behind }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{NamedVolume, VoxelBox};
+    use survey::Volume;
+
+    /// Numbers in [0, 1) without a pattern.
+    fn noise(n: usize) -> f32 {
+        let mut hash = n as u32 ^ 0x9e37_79b9;
+        for _ in 0..2 {
+            hash = (hash ^ hash >> 16).wrapping_mul(0x045d_9f3b);
+        }
+        (hash >> 8) as f32 / (1 << 24) as f32
+    }
+
+    #[test]
+    fn numbers_are_rounded_down() {
+        for n in 0..4000 {
+            let number = if n % 3 == 0 { n as f32 } else { noise(n) * 4e6 };
+            assert_eq!(whole(number), (number.floor(), number as u32), "{number}");
+        }
+    }
+
+    /// Values by the volume's own reading, from outside to outside, some samples missing.
+    #[test]
+    fn values_are_those_of_the_volume() {
+        for size in [[9, 7, 12], [2, 2, 2], [1, 5, 3], [4, 1, 6], [5, 4, 1], [1, 1, 1]] {
+            let count: usize = size.iter().product();
+            let all: Vec<f32> = (0..count).map(|n| noise(n) * 4.0 - 2.0).collect();
+            let mut volume = Volume::from_samples(size, all).unwrap();
+            if count > 100 {
+                volume.samples_mut()[37] = f32::NAN;
+                volume.samples_mut()[91] = f32::INFINITY;
+            }
+            let covers = VoxelBox { min: [0.0; 3], max: size.map(|n| n.max(2) as f64 - 1.0) };
+            let named = NamedVolume { name: "v", volume: &volume, covers };
+            let patched: Vec<f32> = volume.samples().iter().map(|v| if v.is_finite() { *v } else { NO_DATA }).collect();
+            let samples = Samples::new(&patched, size);
+            let (mut missing, mut places, mut expected) = (0, Places::default(), [0.0; BATCH]);
+            for n in 0..40 * BATCH {
+                let place = |axis: usize| (size[axis] as f32 + 1.0) * noise(3 * n + axis) - 1.0;
+                let (p, lane) = (Vec3::new(place(0), place(1), place(2)), n % BATCH);
+                // An axis of one sample has one place.
+                let p = Vec3::from_array([0, 1, 2].map(|a| if size[a] == 1 { 0.0 } else { p[a] }));
+                let (value, by_volume) = (samples.value(p), named.sample(p));
+                missing += usize::from(by_volume.is_nan());
+                match by_volume.is_nan() {
+                    true => assert!(value < NO_DATA_BELOW, "{size:?} {p} {value}"),
+                    false => assert!((value - by_volume).abs() < 1e-4, "{size:?} {p} {value} {by_volume}"),
+                }
+                (0..3).for_each(|axis| places.axes[axis][lane] = p[axis]);
+                expected[lane] = value;
+                if lane + 1 == BATCH {
+                    let mut values = [0.0; BATCH];
+                    samples.values(&places, BATCH, &mut values);
+                    assert!(values == expected, "{size:?}");
+                }
+            }
+            assert!(missing > 0 || count == 1);
+        }
+    }
+
+    #[test]
+    fn differences_are_those_of_values_ahead_and_behind() {
+        let size = [8, 9, 10];
+        let mut all: Vec<f32> = (0..720).map(noise).collect();
+        all[345] = NO_DATA;
+        let samples = Samples::new(&all, size);
+        for n in 0..3000 {
+            let place = |axis: usize| (size[axis] as f32 - 1.0) * noise(7 * n + axis);
+            let p = Vec3::new(place(0), place(1), place(2));
+            let along = |axis: Vec3| difference(samples.value(p + axis), samples.value(p - axis));
+            let expected = Vec3::new(along(Vec3::X), along(Vec3::Y), along(Vec3::Z));
+            assert!((samples.differences(p) - expected).abs().max_element() < 1e-5, "{p}");
+        }
+    }
+}
