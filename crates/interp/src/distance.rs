@@ -134,7 +134,14 @@ impl<'a> LeafDistances<'a> {
                 let from = y.start + n * BLOCK;
                 let columns = from..(from + BLOCK).min(y.end);
                 progress.check()?;
-                search::block(self.forest, &self.bins, &self.settings, lines.clone(), columns.clone(), &mut rows);
+                let block = search::Block {
+                    forest: self.forest,
+                    bins: &self.bins,
+                    settings: &self.settings,
+                    x: lines.clone(),
+                    y: columns.clone(),
+                };
+                search::block(&block, &mut rows);
                 Ok::<(), Error>(progress.step((lines.len() * columns.len()) as u64)?)
             })?;
         }

@@ -177,6 +177,7 @@ impl CellIndex {
     }
 
     /// Interval that a depth lies in; the first and last reach to infinity.
+    #[inline(always)]
     pub(super) fn interval(&self, z: f32) -> usize {
         // The conversion saturates at 0.
         ((z / INTERVAL as f32) as usize).min(self.counts[2] - 1)
@@ -189,10 +190,15 @@ impl CellIndex {
         brick * CELLS + (x % BRICK) * BRICK + y % BRICK
     }
 
-    /// Triangles of a cell in an interval.
-    pub(super) fn in_cell(&self, x: usize, y: usize, interval: usize) -> &[CellTriangle] {
-        let at = self.place(x, y, interval);
-        &self.triangles[self.starts[at] as usize..self.starts[at + 1] as usize]
+    /// Triangles of a cell, interval by interval from the top; none where the cell is not indexed.
+    #[inline(always)]
+    pub(super) fn below(&self, x: usize, y: usize) -> impl Iterator<Item = (usize, &[CellTriangle])> {
+        let end = [0, 1].map(|axis| self.origin[axis] + self.counts[axis] * BRICK);
+        let is_inside = (self.origin[0]..end[0]).contains(&x) && (self.origin[1]..end[1]).contains(&y);
+        let starts = if is_inside { &self.starts[self.place(x, y, 0)..] } else { &[] };
+        let ends = starts.get(1..).unwrap_or_default();
+        let lists = starts.iter().zip(ends).step_by(CELLS).take(self.counts[2]);
+        lists.enumerate().map(|(n, (&start, &end))| (n, &self.triangles[start as usize..end as usize]))
     }
 
     /// A brick, by its number along x and y in the volume, and the interval of depth.

@@ -30,7 +30,7 @@ fn share(a: f32) -> f32 {
 }
 
 /// Samples done at once.
-pub(super) const LANES: usize = 4;
+pub(super) const LANES: usize = 8;
 
 /// A triangle as the index keeps it: 16 bytes.
 #[derive(Debug, Clone, Copy, Default)]
@@ -42,16 +42,19 @@ pub(super) struct CellTriangle {
 }
 
 impl CellTriangle {
+    #[inline(always)]
     pub(super) fn leaf(&self) -> u32 {
         self.code >> 2
     }
 
+    #[inline(always)]
     pub(super) fn z_range(&self) -> [f32; 2] {
         let [a, b, c] = self.z;
         [lesser(lesser(a, b), c), greater(greater(a, b), c)]
     }
 
     /// z of the corner at `far` (x, y: 0 near, 1 far), if the triangle has one there.
+    #[inline(always)]
     pub(super) fn z_at(&self, far: [u32; 2]) -> Option<f32> {
         let [x, y] = [(self.code >> 1) & 1, self.code & 1];
         match [far[0] ^ x, far[1] ^ y] {
@@ -77,6 +80,7 @@ pub(super) struct FromColumn {
 
 impl FromColumn {
     /// `dx`, `dy`: the column less the cell's near corner.
+    #[inline(always)]
     pub(super) fn new(triangle: &CellTriangle, dx: f32, dy: f32) -> Self {
         let x = if triangle.code & 2 == 0 { dx } else { 1.0 - dx };
         let y = if triangle.code & 1 == 0 { dy } else { 1.0 - dy };
