@@ -94,6 +94,12 @@ fn apart(at: usize, unit: usize, count: usize) -> f32 {
     (unit * count).saturating_sub(at).max(at.saturating_sub((unit + 1) * count)) as f32
 }
 
+/// The last sample that is not below z; the first where all are.
+#[inline(always)]
+fn sample_above(z: f32) -> usize {
+    (z as i32).max(0) as usize
+}
+
 /// What the samples of a column reach at a horizontal distance.
 #[derive(Clone, Copy)]
 struct Reached {
@@ -175,12 +181,14 @@ impl<'a> Column<'a> {
         let last = self.bound.len() - 1;
         for (cell_x, far_x) in [(x, 0), (x.wrapping_sub(1), 1)] {
             for (cell_y, far_y) in [(y, 0), (y.wrapping_sub(1), 1)] {
-                for triangle in self.index.below(cell_x, cell_y).flat_map(|(_, triangles)| triangles) {
-                    if let Some(z) = triangle.z_at([far_x, far_y]) {
-                        let above = (z as usize).min(last);
-                        for sample in [above, (above + 1).min(last)] {
-                            let bound = &mut self.bound[sample];
-                            *bound = lesser((z - sample as f32).abs(), *bound);
+                for (_, triangles) in self.index.below(cell_x, cell_y) {
+                    for triangle in triangles {
+                        if let Some(z) = triangle.z_at([far_x, far_y]) {
+                            let above = sample_above(z).min(last);
+                            for sample in [above, (above + 1).min(last)] {
+                                let bound = &mut self.bound[sample];
+                                *bound = lesser((z - sample as f32).abs(), *bound);
+                            }
                         }
                     }
                 }
@@ -204,14 +212,15 @@ impl<'a> Column<'a> {
         let [dx, dy] = [0, 1].map(|axis| (column[axis] - cell[axis]) as f32);
         let last = self.best_sq.len() - LANES;
         for (interval, triangles) in index.below(cell[0], cell[1]) {
+            let top = if interval == 0 { f32::NEG_INFINITY } else { (interval * INTERVAL) as f32 };
             for triangle in triangles {
                 let [high, low] = triangle.z_range();
                 // One that stands in several intervals is taken in the first.
-                if index.interval(high) != interval {
+                if high < top {
                     continue;
                 }
                 let seen = FromColumn::new(triangle, dx, dy);
-                let middle = ((0.5 * (high + low)) as usize).saturating_sub(LANES / 2 - 1).min(last);
+                let middle = sample_above(0.5 * (high + low)).saturating_sub(LANES / 2 - 1).min(last);
                 self.keep_closest(&seen, middle, triangle.leaf());
                 let mut first = middle;
                 while first > 0 && high - (first - 1) as f32 <= self.bound[first - 1] {
@@ -241,25 +250,28 @@ impl<'a> Column<'a> {
                     continue;
                 }
                 let [dx, dy] = [x as f32 - cell_x as f32, y as f32 - cell_y as f32];
-                for triangle in index.below(cell_x, cell_y).flat_map(|(_, triangles)| triangles) {
-                    let [high, low] = triangle.z_range();
-                    let reached = &self.reached[ring - 1];
-                    let above = (low as usize).min(last + LANES - 1);
-                    let [from_above, from_below] = [reached[above].down >= high, reached[above + 1].up <= low];
-                    if !(from_above || from_below) {
-                        continue;
-                    }
-                    let seen = FromColumn::new(triangle, dx, dy);
-                    let mut end = above + 1;
-                    while end > 0 && self.reached[ring - 1][end - 1].down >= high {
-                        let first = end.saturating_sub(LANES);
-                        self.keep_closest(&seen, first, triangle.leaf());
-                        end = first;
-                    }
-                    let mut first = above + 1;
-                    while first < self.count && self.reached[ring - 1][first].up <= low {
-                        self.keep_closest(&seen, first.min(last), triangle.leaf());
-                        first += LANES;
+                for (interval, triangles) in index.below(cell_x, cell_y) {
+                    let top = if interval == 0 { f32::NEG_INFINITY } else { (interval * INTERVAL) as f32 };
+                    for triangle in triangles {
+                        let [high, low] = triangle.z_range();
+                        let reached = &self.reached[ring - 1];
+                        let above = sample_above(low).min(last + LANES - 1);
+                        let [from_above, from_below] = [reached[above].down >= high, reached[above + 1].up <= low];
+                        if !(from_above | from_below) | (high < top) {
+                            continue;
+                        }
+                        let seen = FromColumn::new(triangle, dx, dy);
+                        let mut end = above + 1;
+                        while end > 0 && self.reached[ring - 1][end - 1].down >= high {
+                            let first = end.saturating_sub(LANES);
+                            self.keep_closest(&seen, first, triangle.leaf());
+                            end = first;
+                        }
+                        let mut first = above + 1;
+                        while first < self.count && self.reached[ring - 1][first].up <= low {
+                            self.keep_closest(&seen, first.min(last), triangle.leaf());
+                            first += LANES;
+                        }
                     }
                 }
             }
@@ -358,11 +370,16 @@ impl<'a> Column<'a> {
         else {
             return;
         };
+        // Whole groups are read before any is written, so that the compiler keeps them in lanes.
+        let (known_sq, known) = (*best_sq, *leaves);
+        let (mut least_sq, mut closest) = ([0.0; LANES], [0; LANES]);
         for lane in 0..LANES {
-            let closer = found[lane] < best_sq[lane] || (found[lane] == best_sq[lane] && leaf < leaves[lane]);
-            best_sq[lane] = if closer { found[lane] } else { best_sq[lane] };
-            leaves[lane] = if closer { leaf } else { leaves[lane] };
+            let is_closer = (found[lane] < known_sq[lane]) | ((found[lane] == known_sq[lane]) & (leaf < known[lane]));
+            least_sq[lane] = if is_closer { found[lane] } else { known_sq[lane] };
+            closest[lane] = if is_closer { leaf } else { known[lane] };
         }
+        *best_sq = least_sq;
+        *leaves = closest;
     }
 
     /// Writes the column down.
