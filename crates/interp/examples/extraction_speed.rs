@@ -137,10 +137,8 @@ fn volume(size: [usize; 3], file: Option<&Path>) -> Result<Volume<f32>, Box<dyn 
     let volume = Synthetic::generate(&settings, &Progress::silent())?.seismic;
     if let Some(path) = file {
         let mut writer = BufWriter::with_capacity(1 << 20, File::create(path)?);
-        let facts = format!(
-            "{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}, {}), }}",
-            size[0], size[1], size[2]
-        );
+        let facts =
+            format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}, {}), }}", size[0], size[1], size[2]);
         writer.write_all(b"\x93NUMPY\x01\x00")?;
         writer.write_all(&(HEADER as u16 - 10).to_le_bytes())?;
         write!(writer, "{facts:<width$}\n", width = HEADER - 11)?;

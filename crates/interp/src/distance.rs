@@ -141,7 +141,7 @@ impl<'a> LeafDistances<'a> {
                     x: lines.clone(),
                     y: columns.clone(),
                 };
-                search::block(&block, &mut rows);
+                search::block(block, &mut rows);
                 Ok::<(), Error>(progress.step((lines.len() * columns.len()) as u64)?)
             })?;
         }

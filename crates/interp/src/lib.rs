@@ -12,6 +12,7 @@ pub mod faults;
 pub mod forest;
 pub mod grow;
 pub mod holes;
+mod lanes;
 pub mod reassembly;
 pub mod surfaces;
 

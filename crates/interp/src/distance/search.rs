@@ -10,6 +10,7 @@ use super::index::{BRICK, CellIndex, INTERVAL, TriangleBins};
 use super::triangle::{CellTriangle, FromColumn, LANES, greater, lesser};
 use super::{BEYOND, BlockRows, DistanceSettings};
 use crate::forest::Forest;
+use crate::lanes::{Wide, widest};
 use std::ops::Range;
 
 /// Samples that are searched together: an interval of the index.
@@ -29,40 +30,35 @@ pub(super) struct Block<'a> {
     pub(super) y: Range<usize>,
 }
 
-/// Computes a block into its lines. The instructions that are used make no difference to the result.
-pub(super) fn block(block: &Block<'_>, rows: &mut BlockRows<'_>) {
-    #[cfg(target_arch = "x86_64")]
-    if is_x86_feature_detected!("avx2") {
-        #[expect(unsafe_code, reason = "twice as fast as the baseline's four lanes; the processor was asked")]
-        unsafe {
-            block_in_eight_lanes(block, rows);
-        }
-        return;
-    }
-    block_in_lanes(block, rows);
-}
-
-/// [`block_in_lanes`], compiled for eight lanes. No fused multiplication, so results are those of any other machine.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn block_in_eight_lanes(block: &Block<'_>, rows: &mut BlockRows<'_>) {
-    block_in_lanes(block, rows);
-}
-
-#[inline(always)]
-fn block_in_lanes(block: &Block<'_>, rows: &mut BlockRows<'_>) {
-    let Block { forest, bins, settings, x, y } = block;
-    let [nx, ny, nz] = forest.surfaces.size;
-    let reach = settings.max_distance.ceil() as usize + 1;
+/// Computes a block into its lines.
+pub(super) fn block(block: Block<'_>, rows: &mut BlockRows<'_>) {
+    let [nx, ny, _] = block.forest.surfaces.size;
+    let reach = block.settings.max_distance.ceil() as usize + 1;
     // The last trace begins no cell, but is a column like any other.
     let around = |range: &Range<usize>, count: usize| range.start.saturating_sub(reach)..(range.end + reach).min(count);
-    let index = CellIndex::new(forest, bins, around(x, nx), around(y, ny));
-    let mut column = Column::new(&index, settings.max_distance, nz);
-    for (row, line) in rows.iter_mut().zip(x.clone()) {
-        for (n, crossline) in y.clone().enumerate() {
-            column.search([line, crossline], if n == 0 { Neighbour::None } else { Neighbour::Before });
-            let at = n * nz..(n + 1) * nz;
-            column.write(settings, &mut row.0[at.clone()], &mut row.1[at]);
+    let index = CellIndex::new(block.forest, block.bins, around(&block.x, nx), around(&block.y, ny));
+    widest(Columns { block, index: &index, rows });
+}
+
+/// The columns of a block.
+struct Columns<'a, 'i, 'r, 'b> {
+    block: Block<'a>,
+    index: &'i CellIndex,
+    rows: &'r mut BlockRows<'b>,
+}
+
+impl Wide for Columns<'_, '_, '_, '_> {
+    #[inline(always)]
+    fn run(self) {
+        let Self { block: Block { forest, settings, x, y, .. }, index, rows } = self;
+        let nz = forest.surfaces.size[2];
+        let mut column = Column::new(index, settings.max_distance, nz);
+        for (row, line) in rows.iter_mut().zip(x) {
+            for (n, crossline) in y.clone().enumerate() {
+                column.search([line, crossline], if n == 0 { Neighbour::None } else { Neighbour::Before });
+                let at = n * nz..(n + 1) * nz;
+                column.write(settings, &mut row.0[at.clone()], &mut row.1[at]);
+            }
         }
     }
 }
@@ -245,7 +241,8 @@ impl<'a> Column<'a> {
         let last = self.best_sq.len() - LANES;
         for cell_x in x.saturating_sub(2)..x + 2 {
             for cell_y in y.saturating_sub(2)..y + 2 {
-                let ring = usize::from(cell_x + 2 == x || cell_x == x + 1) + usize::from(cell_y + 2 == y || cell_y == y + 1);
+                let ring =
+                    usize::from(cell_x + 2 == x || cell_x == x + 1) + usize::from(cell_y + 2 == y || cell_y == y + 1);
                 if ring == 0 {
                     continue;
                 }

@@ -2,75 +2,250 @@
 //!
 //! A closed cell of four corners makes two triangles, split along the diagonal that is less steep; three corners make one. The
 //! order of surfaces, vertices and triangles follows from the extrema alone.
+//!
+//! What a surface has on one inline stands together in the result, so inlines are filled in at the same time once it is counted
+//! how much that is. Triangles are made three times over (to see which extrema they use, to count, to write them down): that is cheaper than to
+//! keep them.
 
 use super::links::{Links, NONE};
 use crate::extrema::Extrema;
 use crate::surfaces::{Surface, Surfaces, Vertex};
 use rayon::prelude::*;
+use survey::{Cancelled, Progress};
 
-/// The surfaces of one kind.
-pub(super) fn surfaces(extrema: &Extrema, links: &Links, labels: &[u32]) -> Surfaces {
-    let [nx, ny, _] = extrema.size;
-    let triangles: Vec<Vec<[u32; 3]>> =
-        (0..nx).into_par_iter().map(|x| triangles_of_inline(extrema, links, labels, x)).collect();
-    let mut used = vec![false; extrema.len()];
-    for &corner in triangles.iter().flatten().flatten() {
-        used[corner as usize] = true;
-    }
-    // Surfaces in the order of their first vertex.
-    let mut rank = vec![NONE; extrema.len()];
-    let mut counts: Vec<[u32; 2]> = Vec::new();
-    for v in (0..extrema.len()).filter(|&v| used[v]) {
-        let label = labels[v] as usize;
-        if rank[label] == NONE {
-            rank[label] = counts.len() as u32;
-            counts.push([0, 0]);
-        }
-        counts[rank[label] as usize][0] += 1;
-    }
-    let surface_of = |v: u32| rank[labels[v as usize] as usize] as usize;
-    for triangle in triangles.iter().flatten() {
-        counts[surface_of(triangle[0])][1] += 1;
-    }
-    let mut reached = [0u32; 2];
-    let mut listed = Vec::with_capacity(counts.len());
-    let mut next = Vec::with_capacity(counts.len());
-    for [vertices, faces] in counts {
-        next.push(reached);
-        listed.push(Surface {
-            extremum: extrema.kind,
-            vertices: reached[0]..reached[0] + vertices,
-            triangles: reached[1]..reached[1] + faces,
-        });
-        reached = [reached[0] + vertices, reached[1] + faces];
-    }
-    let mut vertices = vec![Vertex { x: 0, y: 0, z: 0.0 }; reached[0] as usize];
-    let mut place = vec![NONE; extrema.len()];
-    for x in 0..nx {
-        for y in 0..ny {
-            for v in extrema.on_trace(x, y).filter(|&v| used[v]) {
-                let at = &mut next[surface_of(v as u32)][0];
-                vertices[*at as usize] = Vertex { x: x as u16, y: y as u16, z: extrema.z[v] };
-                place[v] = *at;
-                *at += 1;
-            }
-        }
-    }
-    let mut ordered = vec![[0u32; 3]; reached[1] as usize];
-    for triangle in triangles.iter().flatten() {
-        let at = &mut next[surface_of(triangle[0])][1];
-        ordered[*at as usize] = triangle.map(|corner| place[corner as usize]);
-        *at += 1;
-    }
-    Surfaces { size: extrema.size, vertices, triangles: ordered, surfaces: listed }
+/// The extrema of one kind with their labels; [`NONE`] where there is no surface.
+pub(super) struct Labelled<'e> {
+    pub(super) extrema: &'e Extrema,
+    pub(super) links: Links,
+    pub(super) labels: Vec<u32>,
 }
 
-/// The triangles of the cells whose first corner lies on inline x.
-fn triangles_of_inline(extrema: &Extrema, links: &Links, labels: &[u32], x: usize) -> Vec<[u32; 3]> {
-    let mut triangles = Vec::new();
-    for a in extrema.on_inline(x) {
-        let a = a as u32;
-        let Some([a, b, c, d]) = links.closed(a) else { continue };
+/// One kind with its surfaces numbered.
+struct Numbered<'e> {
+    extrema: &'e Extrema,
+    links: Links,
+    /// Surface of each extremum that a triangle uses, in the order of their first vertices.
+    numbers: Vec<u32>,
+    /// First vertex of each surface.
+    firsts: Vec<Vertex>,
+    /// Index of each vertex in the result, once it is written down.
+    places: Vec<u32>,
+}
+
+/// How much a surface has on an inline: vertices, and triangles of the cells that begin there.
+#[derive(Clone, Copy)]
+struct Count {
+    surface: u32,
+    inline: u32,
+    counts: [u32; 2],
+}
+
+/// Where what a surface has on an inline is written.
+struct Part<'s> {
+    surface: u32,
+    /// Index of the first vertex.
+    first: u32,
+    vertices: &'s mut [Vertex],
+    triangles: &'s mut [[u32; 3]],
+}
+
+/// Steps that [`surfaces`] makes an inline.
+pub(super) const STEPS: usize = 3;
+
+/// The surfaces of all kinds, by their first vertex (ties: in the order given).
+///
+/// # Errors
+/// [`Cancelled`] by the user.
+pub(super) fn surfaces(size: [usize; 3], kinds: Vec<Labelled<'_>>, progress: &Progress) -> Result<Surfaces, Cancelled> {
+    let lines = size[0] as u64;
+    let mut kinds: Vec<Numbered> = kinds.into_par_iter().map(Numbered::new).collect();
+    progress.step(lines)?;
+    let counts: Vec<Vec<Count>> = kinds.par_iter().map(Numbered::count).collect();
+    progress.step(lines)?;
+    let mut order: Vec<(usize, usize)> =
+        kinds.iter().enumerate().flat_map(|(kind, of)| (0..of.firsts.len()).map(move |s| (kind, s))).collect();
+    order.sort_by(|&(kind_a, a), &(kind_b, b)| {
+        let (a, b) = (kinds[kind_a].firsts[a], kinds[kind_b].firsts[b]);
+        (a.x, a.y).cmp(&(b.x, b.y)).then(a.z.total_cmp(&b.z))
+    });
+    let total = |which: usize| counts.iter().flatten().map(|count| count.counts[which] as usize).sum::<usize>();
+    let mut all = Surfaces {
+        size,
+        vertices: vec![Vertex { x: 0, y: 0, z: 0.0 }; total(0)],
+        triangles: vec![[0; 3]; total(1)],
+        surfaces: Vec::with_capacity(order.len()),
+    };
+    // The result is handed out piece by piece, in its order.
+    let mut parts: Vec<Vec<Vec<Part>>> =
+        kinds.iter().map(|_| (0..size[0]).map(|_| Vec::new()).collect::<Vec<_>>()).collect();
+    let starts: Vec<Vec<usize>> = counts.iter().zip(&kinds).map(|(counts, kind)| kind.starts(counts)).collect();
+    let (mut vertices, mut triangles) = (all.vertices.as_mut_slice(), all.triangles.as_mut_slice());
+    let mut reached = [0u32; 2];
+    for (kind, surface) in order {
+        let begin = reached;
+        for count in &counts[kind][starts[kind][surface]..starts[kind][surface + 1]] {
+            let (own, rest) = std::mem::take(&mut vertices).split_at_mut(count.counts[0] as usize);
+            vertices = rest;
+            let (faces, rest) = std::mem::take(&mut triangles).split_at_mut(count.counts[1] as usize);
+            triangles = rest;
+            let part = Part { surface: surface as u32, first: reached[0], vertices: own, triangles: faces };
+            parts[kind][count.inline as usize].push(part);
+            reached = [reached[0] + count.counts[0], reached[1] + count.counts[1]];
+        }
+        all.surfaces.push(Surface {
+            extremum: kinds[kind].extrema.kind,
+            vertices: begin[0]..reached[0],
+            triangles: begin[1]..reached[1],
+        });
+    }
+    kinds.par_iter_mut().zip(&mut parts).for_each(|(kind, parts)| kind.write_vertices(parts));
+    progress.step(lines)?;
+    kinds.par_iter().zip(parts).for_each(|(kind, parts)| kind.write_triangles(parts));
+    Ok(all)
+}
+
+impl<'e> Numbered<'e> {
+    /// Numbers the surfaces of a kind.
+    fn new(labelled: Labelled<'e>) -> Self {
+        let Labelled { extrema, links, labels: mut numbers } = labelled;
+        // Used by a cell that begins on the same inline, and by one that begins on the inline before.
+        let [mut here, mut ahead] = [(); 2].map(|()| vec![false; extrema.len()]);
+        let lines =
+            extrema.split_inlines(&mut here).into_iter().zip(extrema.split_inlines(&mut ahead).into_iter().skip(1));
+        lines.collect::<Vec<_>>().into_par_iter().enumerate().for_each(|(x, (here, ahead))| {
+            let line = extrema.on_inline(x);
+            for a in line.clone() {
+                for corner in Cell::new(extrema, &links, &numbers, a as u32).triangles().iter().flatten() {
+                    let corner = *corner as usize;
+                    if corner < line.end {
+                        here[corner - line.start] = true;
+                    } else {
+                        ahead[corner - line.end] = true;
+                    }
+                }
+            }
+        });
+        let mut ranks = vec![NONE; extrema.len()];
+        let mut firsts = Vec::new();
+        let [nx, ny, _] = extrema.size;
+        for trace in 0..nx * ny {
+            let [x, y] = [trace / ny, trace % ny];
+            for v in extrema.on_trace(x, y) {
+                if !(here[v] | ahead[v]) {
+                    numbers[v] = NONE;
+                    continue;
+                }
+                let rank = &mut ranks[numbers[v] as usize];
+                if *rank == NONE {
+                    *rank = firsts.len() as u32;
+                    firsts.push(Vertex { x: x as u16, y: y as u16, z: extrema.z[v] });
+                }
+                numbers[v] = *rank;
+            }
+        }
+        Self { extrema, links, numbers, firsts, places: ranks }
+    }
+
+    /// Triangles of the cell that begins at an extremum.
+    fn cell(&self, a: usize) -> Cell {
+        Cell::new(self.extrema, &self.links, &self.numbers, a as u32)
+    }
+
+    /// How much each surface has on each inline, by surface.
+    fn count(&self) -> Vec<Count> {
+        let none = || vec![[0u32; 2]; self.firsts.len()];
+        let mut counts: Vec<Count> = (0..self.extrema.size[0])
+            .into_par_iter()
+            .map_init(none, |counts, x| {
+                let mut met = Vec::new();
+                for v in self.extrema.on_inline(x) {
+                    let surface = self.numbers[v];
+                    if surface != NONE {
+                        let count = &mut counts[surface as usize];
+                        if count[0] == 0 && count[1] == 0 {
+                            met.push(surface);
+                        }
+                        count[0] += 1;
+                    }
+                    // Two corners of any triangle lie on this inline, so its surface is met here too.
+                    let cell = self.cell(v);
+                    if cell.count > 0 {
+                        let count = &mut counts[self.numbers[cell.triangles[0][0] as usize] as usize];
+                        if count[0] == 0 && count[1] == 0 {
+                            met.push(self.numbers[cell.triangles[0][0] as usize]);
+                        }
+                        count[1] += cell.count as u32;
+                    }
+                }
+                let take = |surface: u32| Count {
+                    surface,
+                    inline: x as u32,
+                    counts: std::mem::take(&mut counts[surface as usize]),
+                };
+                met.into_iter().map(take).collect::<Vec<_>>()
+            })
+            .flatten_iter()
+            .collect();
+        counts.par_sort_unstable_by_key(|count| (count.surface, count.inline));
+        counts
+    }
+
+    /// Where the counts of each surface begin, and one end more.
+    fn starts(&self, counts: &[Count]) -> Vec<usize> {
+        let surfaces = 0..=self.firsts.len() as u32;
+        surfaces.map(|surface| counts.partition_point(|count| count.surface < surface)).collect()
+    }
+
+    /// Writes the vertices down, inline by inline.
+    fn write_vertices(&mut self, parts: &mut [Vec<Part<'_>>]) {
+        let Self { extrema, numbers, firsts, places, .. } = self;
+        let none = || vec![[0usize; 2]; firsts.len()];
+        let lines = extrema.split_inlines(places).into_par_iter().zip(parts).enumerate();
+        lines.for_each_init(none, |at, (x, (places, parts))| {
+            let start = extrema.on_inline(x).start;
+            parts.iter().enumerate().for_each(|(n, part)| at[part.surface as usize] = [n, 0]);
+            for y in 0..extrema.size[1] {
+                for v in extrema.on_trace(x, y) {
+                    if numbers[v] == NONE {
+                        continue;
+                    }
+                    let [part, reached] = &mut at[numbers[v] as usize];
+                    let part = &mut parts[*part];
+                    part.vertices[*reached] = Vertex { x: x as u16, y: y as u16, z: extrema.z[v] };
+                    places[v - start] = part.first + *reached as u32;
+                    *reached += 1;
+                }
+            }
+        });
+    }
+
+    /// Writes the triangles down, inline by inline.
+    fn write_triangles(&self, parts: Vec<Vec<Part<'_>>>) {
+        let none = || vec![[0usize; 2]; self.firsts.len()];
+        parts.into_par_iter().enumerate().for_each_init(none, |at, (x, mut parts)| {
+            parts.iter().enumerate().for_each(|(n, part)| at[part.surface as usize] = [n, 0]);
+            for v in self.extrema.on_inline(x) {
+                for triangle in self.cell(v).triangles() {
+                    let [part, reached] = &mut at[self.numbers[triangle[0] as usize] as usize];
+                    parts[*part].triangles[*reached] = triangle.map(|corner| self.places[corner as usize]);
+                    *reached += 1;
+                }
+            }
+        });
+    }
+}
+
+/// The triangles of a cell.
+struct Cell {
+    triangles: [[u32; 3]; 2],
+    count: usize,
+}
+
+impl Cell {
+    /// The triangles of the cell that begins at `a`.
+    fn new(extrema: &Extrema, links: &Links, labels: &[u32], a: u32) -> Self {
+        let none = Self { triangles: [[0; 3]; 2], count: 0 };
+        let Some([a, b, c, d]) = links.closed(a) else { return none };
         let label = |v: u32| labels[v as usize];
         let corners = [a, b, d, c];
         // The label that most corners have.
@@ -79,18 +254,21 @@ fn triangles_of_inline(extrema: &Extrema, links: &Links, labels: &[u32], x: usiz
             .map(|&v| label(v))
             .find(|&l| l != NONE && corners.iter().filter(|&&v| label(v) == l).count() >= 3)
         else {
-            continue;
+            return none;
         };
         let steep = |v: u32, w: u32| (extrema.z[v as usize] - extrema.z[w as usize]).abs();
         if let Some(odd) = corners.iter().position(|&v| label(v) != most) {
-            triangles.push([1, 2, 3].map(|step| corners[(odd + step) % 4]));
+            Self { triangles: [[1, 2, 3].map(|step| corners[(odd + step) % 4]), [0; 3]], count: 1 }
         } else if steep(a, d) <= steep(b, c) {
-            triangles.extend([[a, b, d], [a, d, c]]);
+            Self { triangles: [[a, b, d], [a, d, c]], count: 2 }
         } else {
-            triangles.extend([[a, b, c], [b, d, c]]);
+            Self { triangles: [[a, b, c], [b, d, c]], count: 2 }
         }
     }
-    triangles
+
+    fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles[..self.count]
+    }
 }
 
 /// Surfaces of several kinds in one list, by their first vertex (ties: in the order given).

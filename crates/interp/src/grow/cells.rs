@@ -10,14 +10,36 @@ use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
 use super::union_find::UnionFind;
 use crate::extrema::Extrema;
 use rayon::prelude::*;
+use std::cmp::Reverse;
+use survey::{Cancelled, Progress};
 
 /// Extrema handled at a time by one thread.
 const GRAIN: usize = 1 << 14;
 
-/// The component of each extremum (the index of its first window), or [`NONE`].
-pub(super) fn label(extrema: &Extrema, links: &Links, broken: &[[bool; 2]], min_front_width: usize) -> Vec<u32> {
+/// Whether the cell that begins at each extremum is closed and none of its four links is broken.
+pub(super) fn open_cells(links: &Links, broken: &[[bool; 2]]) -> Vec<bool> {
+    let is_open = |a: u32| {
+        links.closed(a).is_some_and(|[a, b, c, _]| {
+            !(broken[a as usize][0] | broken[a as usize][1] | broken[b as usize][1] | broken[c as usize][0])
+        })
+    };
+    (0..broken.len() as u32).into_par_iter().with_min_len(GRAIN).map(is_open).collect()
+}
+
+/// The component of each extremum (the index of its first window), or [`NONE`]; see [`open_cells`].
+///
+/// # Errors
+/// [`Cancelled`] by the user.
+pub(super) fn label(
+    extrema: &Extrema,
+    links: &Links,
+    open: &[bool],
+    min_front_width: usize,
+    progress: &Progress,
+) -> Result<Vec<u32>, Cancelled> {
     let cells = min_front_width - 1;
-    let windows = windows(extrema.len(), links, broken, cells);
+    let windows = windows(extrema, links, open, cells);
+    progress.check()?;
     let mut sets = UnionFind::new(extrema.len());
     for v in 0..extrema.len() as u32 {
         if !windows[v as usize] {
@@ -30,66 +52,83 @@ pub(super) fn label(extrema: &Extrema, links: &Links, broken: &[[bool; 2]], min_
             }
         }
     }
-    let mut label = vec![NONE; extrema.len()];
+    let mut set_of = vec![NONE; extrema.len()];
     let mut count = vec![0u32; extrema.len()];
     for v in 0..extrema.len() as u32 {
         if windows[v as usize] {
             let set = sets.find(v);
-            label[v as usize] = set;
+            set_of[v as usize] = set;
             count[set as usize] += 1;
         }
     }
-    // Each round carries labels one trace along x and y.
-    for _ in 0..cells {
-        label = carried(&label, &count, links);
+    drop((windows, sets));
+    progress.check()?;
+    // Ranks instead of sets, from 1: the more windows the higher, of equals the first.
+    let mut sets: Vec<u32> = (0..extrema.len() as u32).filter(|&set| count[set as usize] > 0).collect();
+    sets.par_sort_unstable_by_key(|&set| (count[set as usize], Reverse(set)));
+    let mut rank = count;
+    for (n, &set) in sets.iter().enumerate() {
+        rank[set as usize] = n as u32 + 1;
     }
-    label
+    let mut labels = set_of;
+    labels.par_iter_mut().with_min_len(GRAIN).for_each(|label| {
+        *label = if *label == NONE { 0 } else { rank[*label as usize] };
+    });
+    carry(extrema, links, &mut labels, rank, cells);
+    progress.check()?;
+    labels.par_iter_mut().with_min_len(GRAIN).for_each(|label| {
+        *label = if *label == 0 { NONE } else { sets[*label as usize - 1] };
+    });
+    Ok(labels)
 }
 
-/// Whether the cell that begins at `a` is closed and none of its four links is broken.
-fn is_open(links: &Links, broken: &[[bool; 2]], a: u32) -> bool {
-    links.closed(a).is_some_and(|[a, b, c, _]| {
-        !(broken[a as usize][0] || broken[a as usize][1] || broken[b as usize][1] || broken[c as usize][0])
-    })
-}
-
-/// Whether each extremum is the first corner of a complete window.
-fn windows(count: usize, links: &Links, broken: &[[bool; 2]], cells: usize) -> Vec<bool> {
-    let mut complete: Vec<bool> =
-        (0..count as u32).into_par_iter().with_min_len(GRAIN).map(|v| is_open(links, broken, v)).collect();
-    for _ in 1..cells {
-        let smaller = complete;
-        complete = (0..count as u32)
-            .into_par_iter()
-            .with_min_len(GRAIN)
-            .map(|v| {
-                smaller[v as usize]
-                    && links.closed(v).is_some_and(|cell| cell[1..].iter().all(|&c| smaller[c as usize]))
-            })
-            .collect();
+/// Whether each extremum is the first corner of a complete window: of as many cells along y of which each begins as many along x.
+fn windows(extrema: &Extrema, links: &Links, open: &[bool], cells: usize) -> Vec<bool> {
+    // Open cells one after the other along x, from this one on, as far as they count. A cell that is open has its links.
+    let most = u16::try_from(cells).unwrap_or(u16::MAX);
+    let mut runs = vec![0u16; extrema.len()];
+    for x in (0..extrema.size[0]).rev() {
+        let line = extrema.on_inline(x);
+        let (these, after) = runs[line.start..].split_at_mut(line.len());
+        these.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(n, run)| {
+            let v = line.start + n;
+            if open[v] {
+                *run = (1 + after[links.to[NEXT_X][v] as usize - line.end]).min(most);
+            }
+        });
     }
-    complete
-}
-
-/// The best label among a vertex and those behind it in x, y and both.
-fn carried(label: &[u32], count: &[u32], links: &Links) -> Vec<u32> {
-    let better = |a: u32, b: u32| {
-        if a == NONE || b == NONE {
-            return a.min(b);
+    // The same along y, of those that are complete along x.
+    extrema.split_inlines(&mut runs).into_par_iter().enumerate().for_each(|(x, line)| {
+        let first = extrema.on_inline(x).start;
+        for n in (0..line.len()).rev() {
+            line[n] =
+                if line[n] < most { 0 } else { (1 + line[links.to[NEXT_Y][first + n] as usize - first]).min(most) };
         }
-        let windows = |label: u32| (count[label as usize], std::cmp::Reverse(label));
-        if windows(b) > windows(a) { b } else { a }
+    });
+    runs.into_iter().map(|run| run == most).collect()
+}
+
+/// Gives every extremum the greatest of the ranks of the windows that cover it: of those up to `cells` behind it along y and then along x.
+///
+/// A chain of links back to the first corner of a window stays within it, where every way leads to the same corner, so one
+/// axis can be done after the other. `room` is as long as `ranks`.
+fn carry(extrema: &Extrema, links: &Links, ranks: &mut Vec<u32>, mut room: Vec<u32>, cells: usize) {
+    let greatest = |rank: u32, back: u32, from: &[u32], start: usize| {
+        if back == NONE { rank } else { rank.max(from[back as usize - start]) }
     };
-    let of = |v: u32| if v == NONE { NONE } else { label[v as usize] };
-    let back = |direction: usize, v: u32| if v == NONE { NONE } else { links.to[direction][v as usize] };
-    (0..label.len() as u32)
-        .into_par_iter()
-        .with_min_len(GRAIN)
-        .map(|v| {
-            let (x, y) = (back(BACK_X, v), back(BACK_Y, v));
-            let both = back(BACK_Y, x);
-            let both = if both != NONE && both == back(BACK_X, y) { both } else { NONE };
-            better(better(of(v), of(x)), better(of(y), of(both)))
-        })
-        .collect()
+    for _ in 0..cells.min(extrema.size[0]) {
+        room.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(v, out)| {
+            *out = greatest(ranks[v], links.to[BACK_X][v], ranks, 0);
+        });
+        std::mem::swap(ranks, &mut room);
+    }
+    extrema.split_inlines(ranks).into_par_iter().enumerate().for_each(|(x, line)| {
+        let first = extrema.on_inline(x).start;
+        for _ in 0..cells.min(extrema.size[1]) {
+            // What is behind comes first, so from the end on no rank is carried further than one trace.
+            for n in (0..line.len()).rev() {
+                line[n] = greatest(line[n], links.to[BACK_Y][first + n], line, first);
+            }
+        }
+    });
 }

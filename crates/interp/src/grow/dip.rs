@@ -7,8 +7,10 @@
 //! Unlike a structure tensor's, these dips do not alias where a reflector steps by more than half a period a trace. Unit: samples a trace.
 
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
+use super::smoothing::{self, Passable, Room};
 use crate::extrema::Extrema;
 use rayon::prelude::*;
+use survey::{Cancelled, Progress};
 
 /// Traces and samples of a brick.
 const BRICK: [usize; 3] = [8, 8, 16];
@@ -148,57 +150,68 @@ const PRIOR: f32 = 0.02;
 
 /// Refines `dips` along the surfaces. A link counts by `w = 1/(1 + (misfit/scale)²)²`; the convolution steps only over links
 /// with a misfit below two scales.
-pub(super) fn along_surfaces(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], scale: f32) -> Vec<[f32; 2]> {
+///
+/// # Errors
+/// [`Cancelled`] by the user; the dips are then as they were.
+pub(super) fn along_surfaces(
+    extrema: &Extrema,
+    links: &Links,
+    dips: &mut [[f32; 2]],
+    scale: f32,
+    room: &mut Room,
+    progress: &Progress,
+) -> Result<(), Cancelled> {
     let count = extrema.len();
-    let misfit =
-        |v: usize, next: usize, axis: usize| extrema.z[next] - extrema.z[v] - 0.5 * (dips[v][axis] + dips[next][axis]);
-    // Sums and weights of the jumps at each extremum: [Σ w·jump_x, Σ w, Σ w·jump_y, Σ w].
-    let mut sums: Vec<[f32; 4]> = (0..count)
-        .into_par_iter()
-        .with_min_len(GRAIN)
-        .map(|v| {
-            let mut sum = [PRIOR * dips[v][0], PRIOR, PRIOR * dips[v][1], PRIOR];
-            for (direction, axis, forward) in DIRECTIONS {
-                let other = links.to[direction][v];
-                if other == NONE {
-                    continue;
-                }
-                let (low, high) = if forward { (v, other as usize) } else { (other as usize, v) };
-                let off = misfit(low, high, axis) / scale;
-                let weight = 1.0 / (1.0 + off * off).powi(2);
-                sum[2 * axis] += weight * (extrema.z[high] - extrema.z[low]);
-                sum[2 * axis + 1] += weight;
+    room.resize(count);
+    let mut marks = vec![0u8; count];
+    // What each link to the next trace says: [w·jump_x, w, w·jump_y, w].
+    (&mut room.spare, &mut marks).into_par_iter().with_min_len(GRAIN).enumerate().for_each(|(v, (said, marks))| {
+        *said = [0.0; 4];
+        *marks = 0;
+        for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
+            let next = links.to[direction][v];
+            if next == NONE {
+                continue;
             }
-            sum
+            let jump = extrema.z[next as usize] - extrema.z[v];
+            let misfit = jump - 0.5 * (dips[v][axis] + dips[next as usize][axis]);
+            let off = misfit / scale;
+            let weight = 1.0 / (1.0 + off * off).powi(2);
+            (said[2 * axis], said[2 * axis + 1]) = (weight * jump, weight);
+            *marks |= u8::from(misfit.abs() < 2.0 * scale) << direction;
+        }
+    });
+    // The same link speaks at its other end.
+    let Room { values, spare } = room;
+    let forward = &marks;
+    let passable: Vec<u8> = values
+        .par_iter_mut()
+        .with_min_len(GRAIN)
+        .enumerate()
+        .map(|(v, sum)| {
+            let own = spare[v];
+            let mut marks = forward[v];
+            for (axis, direction) in [BACK_X, BACK_Y].into_iter().enumerate() {
+                let back = links.to[direction][v];
+                let mut said = [0.0; 2];
+                if back != NONE {
+                    said = [spare[back as usize][2 * axis], spare[back as usize][2 * axis + 1]];
+                    marks |= (forward[back as usize] & 1 << (2 * axis)) << 1;
+                }
+                sum[2 * axis] = PRIOR * dips[v][axis] + own[2 * axis] + said[0];
+                sum[2 * axis + 1] = PRIOR + own[2 * axis + 1] + said[1];
+            }
+            marks
         })
         .collect();
-    let mut smoothed = sums.clone();
-    for round in 0..2 * ROUNDS {
-        let axis = round % 2;
-        smoothed.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(v, out)| {
-            let mut sum = sums[v].map(|s| 2.0 * s);
-            for (direction, _, forward) in DIRECTIONS.into_iter().filter(|&(_, of, _)| of == axis) {
-                let other = links.to[direction][v];
-                if other == NONE {
-                    continue;
-                }
-                let (low, high) = if forward { (v, other as usize) } else { (other as usize, v) };
-                if misfit(low, high, axis).abs() < 2.0 * scale {
-                    for (s, there) in sum.iter_mut().zip(sums[other as usize]) {
-                        *s += there;
-                    }
-                }
-            }
-            *out = sum.map(|s| 0.25 * s);
-        });
-        std::mem::swap(&mut sums, &mut smoothed);
+    for _ in 0..ROUNDS {
+        progress.check()?;
+        smoothing::across(extrema, links, Passable::Marked(&passable), room);
     }
-    sums.into_par_iter().with_min_len(GRAIN).map(|[x, wx, y, wy]| [x / wx, y / wy]).collect()
+    let smoothed = dips.par_iter_mut().with_min_len(GRAIN).zip(&room.values);
+    smoothed.for_each(|(dip, &[x, wx, y, wy])| *dip = [x / wx, y / wy]);
+    progress.step(extrema.size[0] as u64)
 }
 
 /// Extrema handled at a time by one thread.
 const GRAIN: usize = 1 << 14;
-
-/// Index into [`Links::to`], its axis, and whether it leads to the next trace.
-const DIRECTIONS: [(usize, usize, bool); 4] =
-    [(NEXT_X, 0, true), (BACK_X, 0, false), (NEXT_Y, 1, true), (BACK_Y, 1, false)];

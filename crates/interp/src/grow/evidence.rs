@@ -10,8 +10,10 @@
 //! A strong extremum without a partner has the greatest E. E is kept in quarters, at most [`MOST`].
 
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
+use super::smoothing::{self, Four, Room};
 use crate::extrema::Extrema;
 use rayon::prelude::*;
+use survey::{Cancelled, Progress};
 
 /// Greatest E, in quarters.
 pub(super) const MOST: u8 = 100;
@@ -115,17 +117,27 @@ const MOST_SQUARE: f32 = 25.0;
 
 /// E of the links to x + 1 and y + 1 of each extremum, in quarters; for a strong extremum without one [`MOST`], for a weak
 /// one 0.
-pub(super) fn evidence(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], noise: &Noise) -> Vec<[u8; 2]> {
+pub(super) fn evidence(
+    extrema: &Extrema,
+    links: &Links,
+    dips: &[[f32; 2]],
+    noise: &Noise,
+    room: &mut Room,
+    progress: &Progress,
+) -> Result<Vec<[u8; 2]>, Cancelled> {
     let mut found = vec![[0u8; 2]; extrema.len()];
+    room.resize(extrema.len());
     for axis in 0..2 {
-        let signed = smoothed(signed_breaks(extrema, links, dips, noise, axis), links, 1 - axis);
+        signed_breaks(extrema, links, dips, noise, axis, &mut room.values);
+        smoothing::along(extrema, links, 1 - axis, ROUNDS, room, progress)?;
+        let signed = &room.values;
         let variance = [0, 1].map(|which| {
             let mut sample: Vec<f32> =
                 signed.iter().step_by(SPARSE).filter(|s| s[2] > 0.0).map(|s| (s[which] / s[2]).abs()).collect();
             sigma(&mut sample).powi(2).max(LEAST_VARIANCE)
         });
         found.par_iter_mut().with_min_len(1 << 14).enumerate().for_each(|(v, found)| {
-            let [misfit, change, weight] = signed[v];
+            let [misfit, change, weight, _] = signed[v];
             found[axis] = if links.to[2 * axis][v] == NONE {
                 if is_strong(extrema.amplitude[v], noise) { MOST } else { 0 }
             } else {
@@ -133,49 +145,32 @@ pub(super) fn evidence(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], nois
                 (4.0 * 0.5 * (square(misfit, variance[0]) + square(change, variance[1])) + 0.5) as u8
             };
         });
+        progress.step(extrema.size[0] as u64)?;
     }
-    found
+    Ok(found)
 }
 
 /// Misfit and change of amplitude of each link along `axis` in units of the noise, and a weight: 1 where there is a link.
-fn signed_breaks(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], noise: &Noise, axis: usize) -> Vec<[f32; 3]> {
+fn signed_breaks(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], noise: &Noise, axis: usize, signed: &mut [Four]) {
     let next = &links.to[2 * axis];
-    (0..extrema.len())
-        .into_par_iter()
-        .with_min_len(1 << 14)
-        .map(|v| {
-            if next[v] == NONE {
-                return [0.0; 3];
-            }
-            let next = next[v] as usize;
-            let (a, b) = (extrema.amplitude[v], extrema.amplitude[next]);
-            let [place, change] = noise.classes[class(dips[v][axis])];
-            let place = (place * uncertainty(a, b)).hypot(LEAST_MISFIT);
-            let off = misfit(extrema, dips, v, next, axis) / place;
-            [off.clamp(-9.0, 9.0), ((b - a) / change.hypot(LEAST_CHANGE * a.max(b))).clamp(-9.0, 9.0), 1.0]
-        })
-        .collect()
+    signed.par_iter_mut().with_min_len(1 << 14).enumerate().for_each(|(v, signed)| {
+        *signed = [0.0; 4];
+        if next[v] == NONE {
+            return;
+        }
+        let next = next[v] as usize;
+        let (a, b) = (extrema.amplitude[v], extrema.amplitude[next]);
+        let [place, change] = noise.classes[class(dips[v][axis])];
+        let off = misfit(extrema, dips, v, next, axis) / length(place * uncertainty(a, b), LEAST_MISFIT);
+        let change = (b - a) / length(change, LEAST_CHANGE * a.max(b));
+        *signed = [off.clamp(-9.0, 9.0), change.clamp(-9.0, 9.0), 1.0, 0.0];
+    });
 }
 
-/// A binomial along `axis` over the surfaces.
-fn smoothed(mut values: Vec<[f32; 3]>, links: &Links, axis: usize) -> Vec<[f32; 3]> {
-    let (next, back) = (&links.to[2 * axis], &links.to[2 * axis + 1]);
-    let mut other = values.clone();
-    for _ in 0..ROUNDS {
-        other.par_iter_mut().with_min_len(1 << 14).enumerate().for_each(|(v, out)| {
-            let mut sum = values[v].map(|s| 0.5 * s);
-            for there in [next[v], back[v]] {
-                if there != NONE {
-                    for (s, value) in sum.iter_mut().zip(values[there as usize]) {
-                        *s += 0.25 * value;
-                    }
-                }
-            }
-            *out = sum;
-        });
-        std::mem::swap(&mut values, &mut other);
-    }
-    values
+/// (a² + b²)^½, as the C library's `hypotf` has it: computed with twice the digits.
+fn length(a: f32, b: f32) -> f32 {
+    let (a, b) = (f64::from(a), f64::from(b));
+    (a * a + b * b).sqrt() as f32
 }
 
 /// Whether an extremum is too high to be noise.

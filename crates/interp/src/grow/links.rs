@@ -9,6 +9,7 @@
 use crate::extrema::Extrema;
 use rayon::prelude::*;
 use std::ops::Range;
+use survey::{Cancelled, Progress};
 
 /// No extremum.
 pub(super) const NONE: u32 = u32::MAX;
@@ -58,10 +59,19 @@ impl<'e> Side<'e> {
     /// For each extremum its choice on the other trace, which lies `direction` (±1) along `axis`.
     fn choose(&self, other: &Self, axis: usize, direction: f32, reach: f32, chosen: &mut Vec<u32>) {
         chosen.clear();
+        // Neighbours begin their search nearly where the one before did.
+        let mut start = 0;
         for (here, (&z, &amplitude)) in self.z.iter().zip(self.amplitude).enumerate() {
             let expected = z + direction * self.dips.get(here).map_or(0.0, |dip| dip[axis]);
+            let least = expected - reach;
+            while start > 0 && other.z[start - 1] >= least {
+                start -= 1;
+            }
+            while start < other.z.len() && other.z[start] < least {
+                start += 1;
+            }
             let mut best = (f32::INFINITY, NONE);
-            for at in other.z.partition_point(|&z| z < expected - reach)..other.z.len() {
+            for at in start..other.z.len() {
                 let misfit = other.z[at] - expected;
                 if misfit > reach {
                     break;
@@ -91,32 +101,62 @@ fn link(from: &Side, to: &Side, axis: usize, reach: f32, next: &mut [u32], back:
     }
 }
 
-/// All mutual links with continuations expected along `dips` (samples a trace along x and y, one entry an extremum; none: flat), at
-/// most `reach` samples from where they are expected.
-pub(super) fn mutual_links(extrema: &Extrema, dips: &[[f32; 2]], reach: f32) -> Links {
-    let ny = extrema.size[1];
-    let mut to = [(); 4].map(|()| vec![NONE; extrema.len()]);
-    let [next_x, back_x, next_y, back_y] = &mut to;
-    let pairs: Vec<_> =
-        extrema.split_inlines(next_x).into_iter().zip(extrema.split_inlines(back_x).into_iter().skip(1)).collect();
-    pairs.into_par_iter().enumerate().for_each(|(x, (next, back))| {
-        let mut room = [Vec::new(), Vec::new()];
-        let (first, second) = (extrema.on_inline(x).start, extrema.on_inline(x + 1).start);
-        for y in 0..ny {
-            let (from, to) = (extrema.on_trace(x, y), extrema.on_trace(x + 1, y));
-            let (next, back) = (&mut next[from.start - first..], &mut back[to.start - second..]);
-            link(&Side::of(extrema, dips, from), &Side::of(extrema, dips, to), 0, reach, next, back, &mut room);
-        }
-    });
-    let pairs: Vec<_> = extrema.split_inlines(next_y).into_iter().zip(extrema.split_inlines(back_y)).collect();
-    pairs.into_par_iter().enumerate().for_each(|(x, (next, back))| {
-        let mut room = [Vec::new(), Vec::new()];
-        let first = extrema.on_inline(x).start;
-        for y in 1..ny {
-            let (from, to) = (extrema.on_trace(x, y - 1), extrema.on_trace(x, y));
-            let (next, back) = (&mut next[from.start - first..], &mut back[to.start - first..]);
-            link(&Side::of(extrema, dips, from), &Side::of(extrema, dips, to), 1, reach, next, back, &mut room);
-        }
-    });
-    Links { to }
+/// All mutual links (see [`Links::renew`]).
+pub(super) fn mutual_links(
+    extrema: &Extrema,
+    dips: &[[f32; 2]],
+    reach: f32,
+    progress: &Progress,
+) -> Result<Links, Cancelled> {
+    let mut links = Links { to: [(); 4].map(|()| vec![NONE; extrema.len()]) };
+    links.find(extrema, dips, reach, progress)?;
+    Ok(links)
+}
+
+impl Links {
+    /// All mutual links with continuations expected along `dips` (samples a trace along x and y, one entry an extremum; none: flat), at
+    /// most `reach` samples from where they are expected.
+    fn find(&mut self, extrema: &Extrema, dips: &[[f32; 2]], reach: f32, progress: &Progress) -> Result<(), Cancelled> {
+        let ny = extrema.size[1];
+        let [next_x, back_x, next_y, back_y] = &mut self.to;
+        let pairs: Vec<_> =
+            extrema.split_inlines(next_x).into_iter().zip(extrema.split_inlines(back_x).into_iter().skip(1)).collect();
+        pairs.into_par_iter().enumerate().try_for_each(|(x, (next, back))| {
+            progress.check()?;
+            let mut room = [Vec::new(), Vec::new()];
+            let (first, second) = (extrema.on_inline(x).start, extrema.on_inline(x + 1).start);
+            for y in 0..ny {
+                let (from, to) = (extrema.on_trace(x, y), extrema.on_trace(x + 1, y));
+                let (next, back) = (&mut next[from.start - first..], &mut back[to.start - second..]);
+                link(&Side::of(extrema, dips, from), &Side::of(extrema, dips, to), 0, reach, next, back, &mut room);
+            }
+            Ok(())
+        })?;
+        let pairs: Vec<_> = extrema.split_inlines(next_y).into_iter().zip(extrema.split_inlines(back_y)).collect();
+        pairs.into_par_iter().enumerate().try_for_each(|(x, (next, back))| {
+            progress.check()?;
+            let mut room = [Vec::new(), Vec::new()];
+            let first = extrema.on_inline(x).start;
+            for y in 1..ny {
+                let (from, to) = (extrema.on_trace(x, y - 1), extrema.on_trace(x, y));
+                let (next, back) = (&mut next[from.start - first..], &mut back[to.start - first..]);
+                link(&Side::of(extrema, dips, from), &Side::of(extrema, dips, to), 1, reach, next, back, &mut room);
+            }
+            Ok(())
+        })?;
+        progress.step(extrema.size[0] as u64)
+    }
+
+    /// Finds all links anew, in the same memory.
+    pub(super) fn renew(
+        mut self,
+        extrema: &Extrema,
+        dips: &[[f32; 2]],
+        reach: f32,
+        progress: &Progress,
+    ) -> Result<Self, Cancelled> {
+        self.to.par_iter_mut().for_each(|to| to.fill(NONE));
+        self.find(extrema, dips, reach, progress)?;
+        Ok(self)
+    }
 }

@@ -16,6 +16,7 @@ use crate::extrema::Extrema;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
+use survey::{Cancelled, Progress};
 
 /// Samples up and down within which a piece that begins is the possible continuation of one that ends.
 const FACING_REACH: f32 = 12.0;
@@ -84,6 +85,9 @@ impl Ord for Candidate {
 }
 
 /// Joins labels whose boundary is for it with at least `least_share`.
+///
+/// # Errors
+/// [`Cancelled`] by the user.
 pub(super) fn merge(
     extrema: &Extrema,
     links: &Links,
@@ -91,10 +95,12 @@ pub(super) fn merge(
     evidence: &[[u8; 2]],
     labels: &mut [u32],
     least_share: f32,
-) {
+    progress: &Progress,
+) -> Result<(), Cancelled> {
     let mut pieces = Pieces::of(extrema, labels);
     pieces.meet(contacts(extrema, links, broken, evidence, &pieces.piece));
-    pieces.join_all(least_share);
+    progress.check()?;
+    pieces.join_all(least_share, progress)?;
     let Pieces { piece, into, .. } = &pieces;
     let roots: Vec<u32> = (0..into.len() as u32).map(|p| root(into, p)).collect();
     labels.par_iter_mut().zip(piece).for_each(|(label, piece)| {
@@ -102,6 +108,7 @@ pub(super) fn merge(
             *label = roots[*piece as usize];
         }
     });
+    Ok(())
 }
 
 /// Pieces of a kind.
@@ -167,7 +174,7 @@ impl Pieces {
     }
 
     /// Joins the pair of the greatest share as long as there is one that may be.
-    fn join_all(&mut self, least_share: f32) {
+    fn join_all(&mut self, least_share: f32, progress: &Progress) -> Result<(), Cancelled> {
         let may = |contact: &Contact| contact.joined >= LEAST_LINKS && contact.share() >= least_share;
         let mut queue: BinaryHeap<Candidate> = BinaryHeap::new();
         for (a, meets) in self.meets.iter().enumerate() {
@@ -176,6 +183,7 @@ impl Pieces {
             queue.extend(later.map(|(&b, &contact)| Candidate { contact, pair: [a, b] }));
         }
         while let Some(Candidate { contact, pair: [a, b] }) = queue.pop() {
+            progress.check()?;
             // What has changed since is in the queue anew.
             if self.meets[a as usize].get(&b) != Some(&contact) {
                 continue;
@@ -197,6 +205,7 @@ impl Pieces {
                 }
             }
         }
+        Ok(())
     }
 
     /// Ratio of the mean amplitudes, as a logarithm.
@@ -371,7 +380,7 @@ mod tests {
     }
 
     fn joined(mut pieces: Pieces, least_share: f32) -> Vec<u32> {
-        pieces.join_all(least_share);
+        pieces.join_all(least_share, &Progress::silent()).unwrap();
         (0..pieces.into.len() as u32).map(|p| root(&pieces.into, p)).collect()
     }
 

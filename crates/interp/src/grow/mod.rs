@@ -29,6 +29,7 @@ mod merge;
 mod ours;
 mod paper;
 mod planes;
+mod smoothing;
 #[cfg(test)]
 mod tests;
 mod union_find;
@@ -162,13 +163,13 @@ pub fn grow_slabs<S: SlabSource>(
         return Ok(Surfaces { size, ..Surfaces::default() });
     }
     let extrema = find_extrema(source, &kinds, settings.slab_inlines, progress)?;
-    let grown: Vec<Surfaces> = match settings.method {
-        Method::Ours => ours::grow(&extrema, settings, progress)?,
-        Method::Paper => extrema
-            .par_iter()
-            .map(|extrema| paper::grow(extrema, settings.min_front_width, progress))
-            .collect::<Result<_, _>>()?,
-    };
+    if settings.method == Method::Ours {
+        return Ok(ours::grow(&extrema, settings, progress)?);
+    }
+    let grown: Vec<Surfaces> = extrema
+        .par_iter()
+        .map(|extrema| paper::grow(extrema, settings.min_front_width, progress))
+        .collect::<Result<_, _>>()?;
     progress.check()?;
     Ok(assemble::joined(size, &grown))
 }

@@ -6,6 +6,7 @@
 
 use super::evidence::{self, Noise};
 use super::links::{self, Links, NEXT_X, NEXT_Y, NONE};
+use super::smoothing::Room;
 use super::{GrowSettings, assemble, cells, dip, flood, merge, planes};
 use crate::extrema::Extrema;
 use crate::surfaces::Surfaces;
@@ -37,50 +38,68 @@ struct Linked<'e> {
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
-pub(super) fn grow(
-    extrema: &[Extrema],
-    settings: &GrowSettings,
-    progress: &Progress,
-) -> Result<Vec<Surfaces>, Cancelled> {
-    progress.begin("surfaces", 4);
-    let Some(first) = extrema.first() else { return Ok(Vec::new()) };
-    let unguided: Vec<Links> = extrema.par_iter().map(|e| links::mutual_links(e, &[], UNGUIDED_REACH)).collect();
+pub(super) fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Progress) -> Result<Surfaces, Cancelled> {
+    let Some(first) = extrema.first() else { return Ok(Surfaces::default()) };
+    let (size, lines) = (first.size, first.size[0]);
+    progress.begin(
+        "growing surfaces",
+        (lines * (STEPS_OF_A_KIND * extrema.len() + assemble::STEPS) + planes::steps(size)) as u64,
+    );
+    let unguided: Vec<Links> = extrema
+        .par_iter()
+        .map(|e| links::mutual_links(e, &[], UNGUIDED_REACH, progress))
+        .collect::<Result<_, Cancelled>>()?;
     let pairs: Vec<(&Extrema, &Links)> = extrema.iter().zip(&unguided).collect();
-    let field = dip::DipField::new(first.size, &pairs);
-    drop(unguided);
-    progress.step(1)?;
+    let field = dip::DipField::new(size, &pairs);
+    progress.check()?;
+    let mut room = Room::default();
     // One kind after the other: each is parallel inside, and needs most memory while its dips are smoothed.
-    let linked: Vec<Linked> = extrema.iter().map(|extrema| linked(extrema, &field)).collect();
-    progress.step(1)?;
+    let linked: Vec<Linked> = extrema
+        .iter()
+        .zip(unguided)
+        .map(|(extrema, unguided)| linked(extrema, unguided, &field, &mut room, progress))
+        .collect::<Result<_, Cancelled>>()?;
+    drop(room);
     let mut broken = if settings.fault_evidence.is_finite() {
         let kinds: Vec<_> =
             linked.iter().map(|kind| (kind.extrema, &kind.links, kind.evidence.as_slice(), &kind.noise)).collect();
-        planes::cuts(&kinds, settings.fault_evidence)
+        planes::cuts(&kinds, settings.fault_evidence, progress)?
     } else {
+        progress.step(planes::steps(size) as u64)?;
         linked.iter().map(|kind| vec![[false; 2]; kind.extrema.len()]).collect()
     };
-    progress.step(1)?;
-    let grown = linked
+    let labelled = linked
         .into_par_iter()
         .zip(&mut broken)
         .map(|(kind, broken)| {
             break_misfits(&kind, broken);
-            let labels = labels(&kind, broken, settings);
-            assemble::surfaces(kind.extrema, &kind.links, &labels)
+            let labels = labels(&kind, broken, settings, progress)?;
+            Ok(assemble::Labelled { extrema: kind.extrema, links: kind.links, labels })
         })
-        .collect();
-    progress.step(1)?;
-    Ok(grown)
+        .collect::<Result<_, Cancelled>>()?;
+    drop(broken);
+    assemble::surfaces(size, labelled, progress)
 }
 
+/// Steps that each kind of extremum makes an inline: links twice, dips twice, evidence along both axes, labels in four.
+const STEPS_OF_A_KIND: usize = 10;
+
 /// Links, dips and evidence of one kind.
-fn linked<'e>(extrema: &'e Extrema, field: &dip::DipField) -> Linked<'e> {
-    let coarse = field.at_extrema(extrema);
-    let links = links::mutual_links(extrema, &coarse, GUIDED_REACH);
-    let dips = SCALES.iter().fold(coarse, |dips, &scale| dip::along_surfaces(extrema, &links, &dips, scale));
+fn linked<'e>(
+    extrema: &'e Extrema,
+    unguided: Links,
+    field: &dip::DipField,
+    room: &mut Room,
+    progress: &Progress,
+) -> Result<Linked<'e>, Cancelled> {
+    let mut dips = field.at_extrema(extrema);
+    let links = unguided.renew(extrema, &dips, GUIDED_REACH, progress)?;
+    for scale in SCALES {
+        dip::along_surfaces(extrema, &links, &mut dips, scale, room, progress)?;
+    }
     let noise = Noise::measure(extrema, &links, &dips);
-    let evidence = evidence::evidence(extrema, &links, &dips, &noise);
-    Linked { extrema, links, dips, noise, evidence }
+    let evidence = evidence::evidence(extrema, &links, &dips, &noise, room, progress)?;
+    Ok(Linked { extrema, links, dips, noise, evidence })
 }
 
 /// Breaks the links that do not fit the dip.
@@ -95,20 +114,32 @@ fn break_misfits(kind: &Linked, broken: &mut [[bool; 2]]) {
 }
 
 /// The surface of each extremum, or [`NONE`].
-fn labels(kind: &Linked, broken: &[[bool; 2]], settings: &GrowSettings) -> Vec<u32> {
+fn labels(
+    kind: &Linked,
+    broken: &[[bool; 2]],
+    settings: &GrowSettings,
+    progress: &Progress,
+) -> Result<Vec<u32>, Cancelled> {
     let Linked { extrema, links, evidence, .. } = kind;
-    let narrow = cells::label(extrema, links, broken, settings.min_front_width);
+    let lines = extrema.size[0] as u64;
+    let open = cells::open_cells(links, broken);
+    let narrow = cells::label(extrema, links, &open, settings.min_front_width, progress)?;
+    progress.step(lines)?;
     let mut labels = if settings.core_width > settings.min_front_width {
-        let mut cores = cells::label(extrema, links, broken, settings.core_width);
-        flood::flood(links, evidence, &mut cores);
+        let mut cores = cells::label(extrema, links, &open, settings.core_width, progress)?;
+        flood::flood(links, evidence, &mut cores, progress)?;
         cores.iter_mut().zip(narrow).for_each(|(core, narrow)| *core = if *core == NONE { narrow } else { *core });
         cores
     } else {
         narrow
     };
-    flood::flood(links, evidence, &mut labels);
+    drop(open);
+    progress.step(lines)?;
+    flood::flood(links, evidence, &mut labels, progress)?;
+    progress.step(lines)?;
     if settings.join_share <= 1.0 {
-        merge::merge(extrema, links, broken, evidence, &mut labels, settings.join_share);
+        merge::merge(extrema, links, broken, evidence, &mut labels, settings.join_share, progress)?;
     }
-    labels
+    progress.step(lines)?;
+    Ok(labels)
 }

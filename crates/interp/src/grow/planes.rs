@@ -15,7 +15,9 @@
 use super::evidence::{Noise, begins};
 use super::links::{Links, NEXT_X, NEXT_Y, NONE};
 use crate::extrema::Extrema;
+use crate::lanes::{Wide, widest};
 use rayon::prelude::*;
+use survey::{Cancelled, Progress};
 
 /// Samples of a cell: within it the steepest plane scanned shifts by one and a half traces.
 const CELL_SAMPLES: usize = 4;
@@ -46,6 +48,11 @@ const RIDGE: f32 = 0.7;
 /// Traces across within which the ridge is looked for.
 const RIDGE_REACH: usize = 2;
 
+/// Steps that the search makes in a volume of `size`.
+pub(super) fn steps(size: [usize; 3]) -> usize {
+    size[0].div_ceil(CELL_TRACES) + size[1].div_ceil(CELL_TRACES)
+}
+
 /// The cells that the evidence of the links along one axis is summed in: `[along][down][across]`, across including margins.
 struct Grid {
     along: usize,
@@ -62,65 +69,108 @@ impl Grid {
     }
 
     fn index(&self, across: usize, along: usize, z: f32) -> usize {
-        let down = (z.max(0.0) as usize / CELL_SAMPLES).min(self.down - 1);
-        ((along / CELL_TRACES) * self.down + down) * self.width + MARGIN + across
-    }
-
-    fn row(&self, along: usize, down: usize) -> &[i16] {
-        let start = (along * self.down + down) * self.width;
-        &self.cells[start..start + self.width]
+        ((along / CELL_TRACES) * self.down + interval(z, self.down)) * self.width + MARGIN + across
     }
 }
 
-/// Sums `from` shifted by `shift` into `into`, margins apart.
-fn add_shifted(into: &mut [i16], from: &[i16], shift: isize) {
-    let count = into.len() - 2 * MARGIN;
-    let start = (MARGIN as isize + shift) as usize;
-    for (sum, value) in into[MARGIN..MARGIN + count].iter_mut().zip(&from[start..start + count]) {
-        *sum = sum.saturating_add(*value);
-    }
-}
+/// Cells that are summed at once.
+const CELLS: usize = 64;
 
 /// L of every cell.
-fn scan(grid: &Grid) -> Grid {
+fn scan(grid: &Grid, progress: &Progress) -> Result<Grid, Cancelled> {
     let mut best = Grid { cells: vec![0; grid.cells.len()], ..*grid };
     let slab = grid.down * grid.width;
-    best.cells.par_chunks_mut(slab.max(1)).enumerate().for_each(|(along, best)| {
-        let mut striking = vec![0i16; slab];
-        let mut sum = vec![0i16; grid.width];
+    best.cells.par_chunks_mut(slab.max(1)).enumerate().try_for_each_init(
+        || vec![0i16; slab],
+        |striking, (along, best)| {
+            widest(Scan { grid, along, striking, best });
+            progress.step(1)
+        },
+    )?;
+    Ok(best)
+}
+
+/// The scan of the cells at one place along: all planes through them.
+struct Scan<'a> {
+    grid: &'a Grid,
+    along: usize,
+    /// Room for sums along strike.
+    striking: &'a mut [i16],
+    best: &'a mut [i16],
+}
+
+impl Wide for Scan<'_> {
+    #[inline(always)]
+    fn run(self) {
+        let Self { grid, along, striking, best } = self;
+        let width = grid.width;
+        // First of the row of cells `other` down, shifted.
+        let start = |other: usize, shift: f32| ((other * width + MARGIN) as isize + shift.round() as isize) as usize;
+        let mut rows = Vec::with_capacity((2 * HALF_STRIKE.max(HALF_DIP) + 1) as usize);
         for strike in STRIKES {
-            striking.fill(0);
-            for step in -HALF_STRIKE..=HALF_STRIKE {
-                let Some(other) = along.checked_add_signed(step).filter(|&other| other < grid.along) else { continue };
-                let shift = (STRIKE_STEP * (strike * step) as f32 * CELL_TRACES as f32).round() as isize;
-                for down in 0..grid.down {
-                    add_shifted(&mut striking[down * grid.width..][..grid.width], grid.row(other, down), shift);
+            for down in 0..grid.down {
+                rows.clear();
+                for step in -HALF_STRIKE..=HALF_STRIKE {
+                    let other = along.checked_add_signed(step).filter(|&other| other < grid.along);
+                    let shift = STRIKE_STEP * (strike * step) as f32 * CELL_TRACES as f32;
+                    rows.extend(other.map(|other| start(other * grid.down + down, shift)));
                 }
+                let row = &mut striking[down * width + MARGIN..(down + 1) * width - MARGIN];
+                row.fill(i16::MIN);
+                raise(row, &grid.cells, &rows);
             }
             for dip in DIPS {
                 for down in 0..grid.down {
-                    sum.fill(0);
+                    rows.clear();
                     for step in -HALF_DIP..=HALF_DIP {
-                        let Some(other) = down.checked_add_signed(step).filter(|&other| other < grid.down) else {
-                            continue;
-                        };
-                        let shift = (DIP_STEP * (dip * step) as f32 * CELL_SAMPLES as f32).round() as isize;
-                        add_shifted(&mut sum, &striking[other * grid.width..][..grid.width], shift);
+                        let other = down.checked_add_signed(step).filter(|&other| other < grid.down);
+                        let shift = DIP_STEP * (dip * step) as f32 * CELL_SAMPLES as f32;
+                        rows.extend(other.map(|other| start(other, shift)));
                     }
-                    for (best, sum) in best[down * grid.width..][..grid.width].iter_mut().zip(&sum) {
-                        *best = (*best).max(*sum);
-                    }
+                    raise(&mut best[down * width + MARGIN..(down + 1) * width - MARGIN], striking, &rows);
                 }
             }
         }
-    });
-    best
+    }
+}
+
+/// Raises `best` to the sums of the rows of `cells` that begin at `rows`.
+#[inline(always)]
+fn raise(best: &mut [i16], cells: &[i16], rows: &[usize]) {
+    let Some(last) = best.len().checked_sub(CELLS) else {
+        (0..best.len()).for_each(|at| raise_at::<1>(best, cells, rows, at));
+        return;
+    };
+    // The last group may begin within the one before: a maximum may be taken twice.
+    (0..best.len()).step_by(CELLS).for_each(|at| raise_at::<CELLS>(best, cells, rows, at.min(last)));
+}
+
+#[inline(always)]
+fn raise_at<const N: usize>(best: &mut [i16], cells: &[i16], rows: &[usize], at: usize) {
+    let mut sums = [0i16; N];
+    for row in rows {
+        let Some(from) = cells[row + at..].first_chunk::<N>() else { return };
+        for n in 0..N {
+            sums[n] = sums[n].saturating_add(from[n]);
+        }
+    }
+    let Some(best) = best[at..].first_chunk_mut::<N>() else { return };
+    for n in 0..N {
+        best[n] = best[n].max(sums[n]);
+    }
 }
 
 /// For each kind, whether the links to x + 1 and y + 1 of each extremum cross a fault: L of at least `least`.
-pub(super) fn cuts(kinds: &[(&Extrema, &Links, &[[u8; 2]], &Noise)], least: f32) -> Vec<Vec<[bool; 2]>> {
+///
+/// # Errors
+/// [`Cancelled`] by the user.
+pub(super) fn cuts(
+    kinds: &[(&Extrema, &Links, &[[u8; 2]], &Noise)],
+    least: f32,
+    progress: &Progress,
+) -> Result<Vec<Vec<[bool; 2]>>, Cancelled> {
     let mut cut: Vec<Vec<[bool; 2]>> = kinds.iter().map(|(extrema, ..)| vec![[false; 2]; extrema.len()]).collect();
-    let Some((first, ..)) = kinds.first() else { return cut };
+    let Some((first, ..)) = kinds.first() else { return Ok(cut) };
     let [nx, ny, nz] = first.size;
     for axis in 0..2 {
         let (across, along) = if axis == 0 { (nx, ny) } else { (ny, nx) };
@@ -128,7 +178,7 @@ pub(super) fn cuts(kinds: &[(&Extrema, &Links, &[[u8; 2]], &Noise)], least: f32)
         for (extrema, links, evidence, noise) in kinds {
             collect(&mut grid, extrema, links, evidence, noise, axis);
         }
-        let likelihood = scan(&grid);
+        let likelihood = scan(&grid, progress)?;
         drop(grid);
         for ((extrema, ..), cut) in kinds.iter().zip(&mut cut) {
             extrema.split_inlines(cut).into_par_iter().enumerate().for_each(|(x, line)| {
@@ -143,30 +193,40 @@ pub(super) fn cuts(kinds: &[(&Extrema, &Links, &[[u8; 2]], &Noise)], least: f32)
             });
         }
     }
-    cut
+    Ok(cut)
 }
 
-/// Adds the evidence of the links along `axis` of one kind. A pass over the links on one thread: cheap beside the scan.
+/// Adds the evidence of the links along `axis` of one kind.
 fn collect(grid: &mut Grid, extrema: &Extrema, links: &Links, evidence: &[[u8; 2]], noise: &Noise, axis: usize) {
     let [nx, ny, _] = extrema.size;
     let direction = [NEXT_X, NEXT_Y][axis];
-    let last = [nx, ny][axis] - 1;
-    for x in 0..nx {
-        for y in 0..ny {
-            let (across, along) = if axis == 0 { (x, y) } else { (y, x) };
-            for v in extrema.on_trace(x, y) {
-                let value = i16::from(evidence[v][axis]).min(CAP);
-                if across < last && (value > 0 || links.to[direction][v] != NONE) {
-                    let index = grid.index(across, along, extrema.z[v]);
-                    grid.cells[index] = grid.cells[index].saturating_add(value - THRESHOLD);
-                }
-                if across > 0 && begins(extrema, links, v, noise)[axis] {
-                    let index = grid.index(across - 1, along, extrema.z[v]);
-                    grid.cells[index] = grid.cells[index].saturating_add(CAP - THRESHOLD);
+    let (across_count, along_count) = if axis == 0 { (nx, ny) } else { (ny, nx) };
+    let Grid { down, width, .. } = *grid;
+    grid.cells.par_chunks_mut((down * width).max(1)).enumerate().for_each(|(cell, slab)| {
+        let add = |slab: &mut [i16], across: usize, z: f32, value: i16| {
+            let at = &mut slab[interval(z, down) * width + MARGIN + across];
+            *at = at.saturating_add(value);
+        };
+        for along in cell * CELL_TRACES..((cell + 1) * CELL_TRACES).min(along_count) {
+            for across in 0..across_count {
+                let (x, y) = if axis == 0 { (across, along) } else { (along, across) };
+                for v in extrema.on_trace(x, y) {
+                    let value = i16::from(evidence[v][axis]).min(CAP);
+                    if across + 1 < across_count && (value > 0 || links.to[direction][v] != NONE) {
+                        add(slab, across, extrema.z[v], value - THRESHOLD);
+                    }
+                    if across > 0 && begins(extrema, links, v, noise)[axis] {
+                        add(slab, across - 1, extrema.z[v], CAP - THRESHOLD);
+                    }
                 }
             }
         }
-    }
+    });
+}
+
+/// Cell down that a depth lies in.
+fn interval(z: f32, down: usize) -> usize {
+    (z.max(0.0) as usize / CELL_SAMPLES).min(down - 1)
 }
 
 /// Whether the cell at `index` is high enough and on a ridge.

@@ -1,0 +1,135 @@
+//! Binomials 1-2-1 over the surfaces: each extremum with those that it is linked to before and behind it along an axis.
+//!
+//! Four numbers an extremum are smoothed together. What has no partner, or must not be stepped to, leaves its weight out, so
+//! values come with a weight of their own among the four. Rounds along y stay on one inline, so they are done inline by inline while it
+//! is in the cache.
+
+use super::links::{Links, NONE};
+use crate::extrema::Extrema;
+use rayon::prelude::*;
+use survey::{Cancelled, Progress};
+
+/// What is smoothed of an extremum.
+pub(super) type Four = [f32; 4];
+
+/// Two arrays that smoothing works in, kept from one to the next: fresh memory costs more than what is done with it. 32 bytes an extremum.
+#[derive(Default)]
+pub(super) struct Room {
+    /// The values.
+    pub(super) values: Vec<Four>,
+    pub(super) spare: Vec<Four>,
+}
+
+impl Room {
+    /// Room for `count` extrema; what is in it means nothing.
+    pub(super) fn resize(&mut self, count: usize) {
+        self.values.resize(count, [0.0; 4]);
+        self.spare.resize(count, [0.0; 4]);
+    }
+}
+
+/// Which links may be stepped over, one entry an extremum: bit `direction` for [`Links::to`] of it.
+#[derive(Clone, Copy)]
+pub(super) enum Passable<'a> {
+    /// All.
+    All,
+    /// Those whose bit is set.
+    Marked(&'a [u8]),
+}
+
+/// Steps along one axis.
+#[derive(Clone, Copy)]
+struct Steps<'a> {
+    next: &'a [u32],
+    back: &'a [u32],
+    passable: Passable<'a>,
+    axis: usize,
+}
+
+impl<'a> Steps<'a> {
+    fn new(links: &'a Links, passable: Passable<'a>, axis: usize) -> Self {
+        Self { next: &links.to[2 * axis], back: &links.to[2 * axis + 1], passable, axis }
+    }
+
+    /// Where an extremum leads to and where it comes from, or [`NONE`].
+    #[inline(always)]
+    fn around(&self, v: usize) -> [u32; 2] {
+        let (next, back) = (self.next[v], self.back[v]);
+        match self.passable {
+            Passable::All => [next, back],
+            Passable::Marked(marks) => {
+                let marks = marks[v] >> (2 * self.axis);
+                [if marks & 1 != 0 { next } else { NONE }, if marks & 2 != 0 { back } else { NONE }]
+            }
+        }
+    }
+
+    /// One round over the extrema from `first` on; `from` begins at the extremum `start`.
+    #[inline(always)]
+    fn round(&self, first: usize, into: &mut [Four], from: &[Four], start: usize) {
+        for (n, out) in into.iter_mut().enumerate() {
+            let v = first + n;
+            let mut sum = from[v - start].map(|value| 0.5 * value);
+            for there in self.around(v) {
+                // Where there is nothing, nothing times something: cheaper than to decide.
+                let (at, weight) = if there == NONE { (v, 0.0) } else { (there as usize, 0.25) };
+                let value = from[at - start];
+                for (sum, value) in sum.iter_mut().zip(value) {
+                    *sum += weight * value;
+                }
+            }
+            *out = sum;
+        }
+    }
+}
+
+/// `rounds` of the binomial along `axis`, on `room.values`.
+///
+/// # Errors
+/// [`Cancelled`] by the user; the values then mean nothing.
+pub(super) fn along(
+    extrema: &Extrema,
+    links: &Links,
+    axis: usize,
+    rounds: usize,
+    room: &mut Room,
+    progress: &Progress,
+) -> Result<(), Cancelled> {
+    let steps = Steps::new(links, Passable::All, axis);
+    if axis == 1 {
+        extrema.split_inlines(&mut room.values).into_par_iter().enumerate().for_each_init(
+            Vec::new,
+            |other, (x, line)| {
+                let first = extrema.on_inline(x).start;
+                for _ in 0..rounds {
+                    other.clear();
+                    other.extend_from_slice(line);
+                    steps.round(first, line, other, first);
+                }
+            },
+        );
+        return progress.check();
+    }
+    for _ in 0..rounds {
+        progress.check()?;
+        let Room { values, spare } = room;
+        extrema.split_inlines(spare).into_par_iter().enumerate().for_each(|(x, line)| {
+            steps.round(extrema.on_inline(x).start, line, values, 0);
+        });
+        std::mem::swap(values, spare);
+    }
+    Ok(())
+}
+
+/// One round along x, then one along y, on `room.values`.
+pub(super) fn across(extrema: &Extrema, links: &Links, passable: Passable<'_>, room: &mut Room) {
+    let [along_x, along_y] = [0, 1].map(|axis| Steps::new(links, passable, axis));
+    let Room { values, spare } = room;
+    extrema.split_inlines(spare).into_par_iter().enumerate().for_each_init(Vec::new, |between, (x, line)| {
+        let first = extrema.on_inline(x).start;
+        between.resize(line.len(), [0.0; 4]);
+        along_x.round(first, between, values, 0);
+        along_y.round(first, line, between, first);
+    });
+    std::mem::swap(values, spare);
+}
