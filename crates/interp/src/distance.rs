@@ -2,9 +2,9 @@
 //! voxels or vertices, up to a greatest distance.
 //!
 //! Exact by construction: every triangle that could be closer than what is known already is tested, none is approximated. The
-//! volume is worked in blocks of columns, each by itself:
+//! volume is worked some lines at a time, in blocks of columns:
 //!
-//! 1. `index`: the triangles around the block, by cell of the lattice and interval of depth. A triangle lies within one cell, so a column is
+//! 1. `index`: the triangles around the lines, by cell of the lattice and interval of depth. A triangle lies within one cell, so a column is
 //!    `h` away from all triangles of a cell, and a run of samples at least `√(h² + gap²)`.
 //! 2. `search`: down a column, an upper bound from its own extrema and from the column before (distances differ by at most 1 between neighbours),
 //!    then the triangles of the four cells around it, then those of every cell and interval that the bound cannot exclude.
@@ -24,8 +24,10 @@ mod triangle;
 
 use crate::error::Error;
 use crate::forest::Forest;
-use index::TriangleBins;
+use crate::lanes::widest;
+use index::{CellIndex, TriangleLists};
 use rayon::prelude::*;
+use search::Block;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use survey::Progress;
@@ -37,8 +39,11 @@ const FARTHEST: f32 = 254.0;
 /// Greatest distance that may be asked for, voxels: the search is made for short ones.
 const LIMIT: f32 = 64.0;
 
-/// Columns along the edge of a block. Larger blocks index fewer triangles twice, smaller ones need less memory and share out better.
-const BLOCK: usize = 64;
+/// Inlines that are worked on at a time: more need more memory for their index, fewer keep threads waiting for one another.
+const LINES: usize = 64;
+
+/// Crosslines of a block, which one thread works on. The first column of a line knows nothing of its neighbour.
+const BLOCK: usize = 32;
 
 /// How distances are computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -81,11 +86,11 @@ pub struct CandidateColumns {
 
 /// Distances of a forest, ready to be computed for any part of the volume.
 ///
-/// Memory: 4 bytes a triangle, and while it computes some 20 bytes for each triangle near the block that a thread works on.
+/// Memory: 4 bytes a triangle, and while it computes some 20 bytes for each triangle near the lines that it works on.
 pub struct LeafDistances<'a> {
     forest: &'a Forest,
     settings: DistanceSettings,
-    bins: TriangleBins,
+    lists: TriangleLists,
 }
 
 impl<'a> LeafDistances<'a> {
@@ -101,7 +106,7 @@ impl<'a> LeafDistances<'a> {
                 expected: "a number of voxels above 0 and up to 64",
             });
         }
-        Ok(Self { forest, settings: settings.clone(), bins: TriangleBins::new(forest)? })
+        Ok(Self { forest, settings: settings.clone(), lists: TriangleLists::new(forest)? })
     }
 
     /// Computes the columns of a box, block by block on all threads.
@@ -112,7 +117,18 @@ impl<'a> LeafDistances<'a> {
     /// # Panics
     /// When the box is not inside the volume.
     pub fn columns(&self, x: Range<usize>, y: Range<usize>, progress: &Progress) -> Result<CandidateColumns, Error> {
-        let [nx, ny, nz] = self.forest.surfaces.size;
+        self.columns_of(x, y, &mut CellIndex::new(self.forest.surfaces.size), progress)
+    }
+
+    /// [`LeafDistances::columns`] with an index that has not been further on.
+    fn columns_of(
+        &self,
+        x: Range<usize>,
+        y: Range<usize>,
+        index: &mut CellIndex,
+        progress: &Progress,
+    ) -> Result<CandidateColumns, Error> {
+        let size @ [nx, ny, nz] = self.forest.surfaces.size;
         assert!(x.end <= nx && y.end <= ny, "columns {x:?} {y:?} of {nx} x {ny}");
         let count = x.len() * y.len() * nz;
         let (mut distance, mut leaf) = (vec![BEYOND; count], vec![0u32; count]);
@@ -120,9 +136,12 @@ impl<'a> LeafDistances<'a> {
             return Ok(CandidateColumns { x, y, distance, leaf });
         }
         let row = y.len() * nz;
-        // A row of blocks at a time owns whole lines of the result.
-        for first in x.clone().step_by(BLOCK) {
-            let lines = first..(first + BLOCK).min(x.end);
+        let reach = self.settings.max_distance.ceil() as usize + 1;
+        for first in x.clone().step_by(LINES) {
+            let lines = first..(first + LINES).min(x.end);
+            progress.check()?;
+            index.advance(self.forest, &self.lists, first.saturating_sub(reach)..lines.end + reach);
+            let index = &*index;
             let at = (first - x.start) * row..(lines.end - x.start) * row;
             let mut parts: Vec<BlockRows<'_>> = (y.clone().step_by(BLOCK)).map(|_| Vec::new()).collect();
             let rows = distance[at.clone()].chunks_mut(row).zip(leaf[at].chunks_mut(row));
@@ -130,19 +149,13 @@ impl<'a> LeafDistances<'a> {
                 let blocks = distances.chunks_mut(BLOCK * nz).zip(leaves.chunks_mut(BLOCK * nz));
                 parts.iter_mut().zip(blocks).for_each(|(part, row)| part.push(row));
             }
-            parts.into_par_iter().enumerate().with_max_len(1).try_for_each(|(n, mut rows)| {
+            parts.into_par_iter().enumerate().with_max_len(1).try_for_each(|(n, rows)| {
                 let from = y.start + n * BLOCK;
                 let columns = from..(from + BLOCK).min(y.end);
                 progress.check()?;
-                let block = search::Block {
-                    forest: self.forest,
-                    bins: &self.bins,
-                    settings: &self.settings,
-                    x: lines.clone(),
-                    y: columns.clone(),
-                };
-                search::block(block, &mut rows);
-                Ok::<(), Error>(progress.step((lines.len() * columns.len()) as u64)?)
+                let done = (lines.len() * columns.len()) as u64;
+                widest(Block { size, settings: &self.settings, index, x: lines.clone(), y: columns, rows });
+                Ok::<(), Error>(progress.step(done)?)
             })?;
         }
         Ok(CandidateColumns { x, y, distance, leaf })
@@ -160,8 +173,9 @@ impl<'a> LeafDistances<'a> {
     ) -> Result<(), E> {
         let [nx, ny, _] = self.forest.surfaces.size;
         progress.begin("measuring distances to surfaces", (nx * ny) as u64);
+        let mut index = CellIndex::new(self.forest.surfaces.size);
         for first in (0..nx).step_by(lines.max(1)) {
-            take(self.columns(first..(first + lines.max(1)).min(nx), 0..ny, progress)?)?;
+            take(self.columns_of(first..(first + lines.max(1)).min(nx), 0..ny, &mut index, progress)?)?;
         }
         Ok(())
     }

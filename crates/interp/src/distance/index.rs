@@ -1,16 +1,15 @@
 //! Triangles by where they are.
 //!
-//! Coarsely for the whole volume: bins of 16 × 16 cells, as lists of triangle numbers. Finely for the surroundings of one
-//! block: bricks of 4 × 4 cells and 8 samples, in a brick by cell, so that an empty brick is passed over at once. A triangle stands in
-//! every interval of depth that it reaches into, so steep ones need no allowance.
+//! Bricks are of 4 × 4 cells and 8 samples, in a brick by cell, so that an empty brick is passed over at once and a cell is found from any depth. A
+//! triangle stands in every interval of depth that it reaches into, so steep ones need no allowance. For the whole volume there are but
+//! lists of triangle numbers by row of bricks; of the bricks, those rows exist that the lines at work can reach, each made once.
 
 use super::triangle::CellTriangle;
 use crate::error::Error;
 use crate::forest::Forest;
+use rayon::prelude::*;
+use std::collections::VecDeque;
 use std::ops::Range;
-
-/// Edge of a bin, cells.
-const BIN: usize = 16;
 
 /// Edge of a brick, cells.
 pub(super) const BRICK: usize = 4;
@@ -21,9 +20,17 @@ const CELLS: usize = BRICK * BRICK;
 /// Samples of an interval of depth.
 pub(super) const INTERVAL: usize = 8;
 
-/// The triangles of each bin, ascending.
-pub(super) struct TriangleBins {
-    counts: [usize; 2],
+/// Triangles that are put into lists at a time.
+const CHUNK: usize = 1 << 16;
+
+/// The triangles of each row of bricks, ascending.
+pub(super) struct TriangleLists {
+    chunks: Vec<TriangleList>,
+}
+
+/// Those of a range of triangles.
+struct TriangleList {
+    /// First of each row; one more at the end.
     starts: Vec<u32>,
     triangles: Vec<u32>,
 }
@@ -34,44 +41,46 @@ fn cell(forest: &Forest, triangle: [u32; 3]) -> [usize; 2] {
     [a.x.min(b.x).min(c.x).into(), a.y.min(b.y).min(c.y).into()]
 }
 
-impl TriangleBins {
+impl TriangleLists {
     pub(super) fn new(forest: &Forest) -> Result<Self, Error> {
-        let [nx, ny, _] = forest.surfaces.size;
-        let counts = [nx.div_ceil(BIN), ny.div_ceil(BIN)];
         let all = &forest.surfaces.triangles;
-        let bin = |triangle: &[u32; 3]| {
-            let [x, y] = cell(forest, *triangle);
-            (x / BIN) * counts[1] + y / BIN
-        };
-        let mut starts = vec![0u32; counts[0] * counts[1] + 1];
-        for (n, triangle) in all.iter().enumerate() {
-            if !within_a_cell(forest, *triangle) {
+        let chunks = (0..all.len().div_ceil(CHUNK)).into_par_iter();
+        let chunks = chunks.map(|n| TriangleList::new(forest, n * CHUNK..((n + 1) * CHUNK).min(all.len())));
+        Ok(Self { chunks: chunks.collect::<Result<_, Error>>()? })
+    }
+
+    fn of_row(&self, row: usize) -> impl Iterator<Item = u32> {
+        let list = move |chunk: &TriangleList| chunk.starts[row] as usize..chunk.starts[row + 1] as usize;
+        self.chunks.iter().flat_map(move |chunk| chunk.triangles[list(chunk)].iter().copied())
+    }
+}
+
+impl TriangleList {
+    fn new(forest: &Forest, range: Range<usize>) -> Result<Self, Error> {
+        let mut starts = vec![0u32; forest.surfaces.size[0].div_ceil(BRICK) + 1];
+        let mut rows = Vec::with_capacity(range.len());
+        for n in range.clone() {
+            let triangle = forest.surfaces.triangles[n];
+            if !within_a_cell(forest, triangle) {
                 let surface = forest.surfaces.surfaces.partition_point(|part| part.triangles.end as usize <= n);
                 let fact = "a triangle does not lie within one cell of the lattice with its corners on three traces";
                 return Err(Error::MalformedSurfaces { surface, fact });
             }
-            starts[bin(triangle) + 1] += 1;
+            let row = cell(forest, triangle)[0] / BRICK;
+            starts[row + 1] += 1;
+            rows.push(row as u32);
         }
         for n in 1..starts.len() {
             starts[n] += starts[n - 1];
         }
         let mut ends = starts.clone();
-        let mut triangles = vec![0u32; all.len()];
-        for (n, triangle) in all.iter().enumerate() {
-            let at = &mut ends[bin(triangle)];
+        let mut triangles = vec![0u32; range.len()];
+        for (n, row) in range.zip(rows) {
+            let at = &mut ends[row as usize];
             triangles[*at as usize] = n as u32;
             *at += 1;
         }
-        Ok(Self { counts, starts, triangles })
-    }
-
-    /// Bins that have cells in a range of columns, as ranges of triangle lists.
-    fn around(&self, x: &Range<usize>, y: &Range<usize>) -> impl Iterator<Item = &[u32]> {
-        let bins = |range: &Range<usize>, count: usize| range.start / BIN..range.end.div_ceil(BIN).min(count);
-        let columns = bins(y, self.counts[1]);
-        bins(x, self.counts[0])
-            .flat_map(move |i| columns.clone().map(move |j| i * self.counts[1] + j))
-            .map(|bin| &self.triangles[self.starts[bin] as usize..self.starts[bin + 1] as usize])
+        Ok(Self { starts, triangles })
     }
 }
 
@@ -88,13 +97,18 @@ fn within_a_cell(forest: &Forest, triangle: [u32; 3]) -> bool {
     corners.iter().all(near) && a != b && b != c && c != a
 }
 
-/// The triangles around a block.
+/// The triangles around the lines at work, row by row of bricks.
 pub(super) struct CellIndex {
-    /// Near corner of the first brick, cells, a multiple of the brick.
-    origin: [usize; 2],
-    /// Bricks along x, y, z.
-    pub(super) counts: [usize; 3],
-    /// First triangle of each (brick, cell); one more at the end.
+    /// Number of the first row, and all that there are.
+    first: usize,
+    rows: VecDeque<BrickRow>,
+    /// Rows of the volume, bricks of a row, and intervals of depth.
+    counts: [usize; 3],
+}
+
+/// A row of bricks.
+struct BrickRow {
+    /// First triangle of each (brick along y, interval, cell); one more at the end.
     starts: Vec<u32>,
     triangles: Vec<CellTriangle>,
     /// Least and greatest z of the triangles of each brick.
@@ -117,106 +131,134 @@ impl<'a> Brick<'a> {
     }
 }
 
-impl CellIndex {
-    /// Indexes the cells of the columns `x`, `y`.
-    pub(super) fn new(forest: &Forest, bins: &TriangleBins, x: Range<usize>, y: Range<usize>) -> Self {
-        let origin = [x.start / BRICK * BRICK, y.start / BRICK * BRICK];
-        let nz = forest.surfaces.size[2];
-        let counts =
-            [(x.end - origin[0]).div_ceil(BRICK), (y.end - origin[1]).div_ceil(BRICK), nz.div_ceil(INTERVAL).max(1)];
-        let mut index = Self { origin, counts, starts: Vec::new(), triangles: Vec::new(), z_ranges: Vec::new() };
-        let mut starts = vec![0u32; counts.iter().product::<usize>() * CELLS + 1];
-        index.each(forest, bins, &x, &y, |at, _| starts[at + 1] += 1);
-        for n in 1..starts.len() {
-            starts[n] += starts[n - 1];
+/// The triangles of a cell.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Cell<'a> {
+    /// Starts, from the first interval's on.
+    starts: &'a [u32],
+    triangles: &'a [CellTriangle],
+}
+
+impl<'a> Cell<'a> {
+    /// Those in an interval of depth.
+    #[inline(always)]
+    pub(super) fn within(&self, interval: usize) -> &'a [CellTriangle] {
+        match self.starts.get(interval * CELLS..interval * CELLS + 2) {
+            Some(&[start, end]) => &self.triangles[start as usize..end as usize],
+            _ => &[],
         }
-        let mut ends = starts.clone();
-        let mut triangles = vec![CellTriangle::default(); starts[starts.len() - 1] as usize];
-        let mut z_ranges = vec![[f32::INFINITY, f32::NEG_INFINITY]; counts.iter().product()];
-        index.each(forest, bins, &x, &y, |at, triangle| {
-            triangles[ends[at] as usize] = triangle;
-            ends[at] += 1;
-            let ([high, low], range) = (triangle.z_range(), &mut z_ranges[at / CELLS]);
-            *range = [range[0].min(high), range[1].max(low)];
-        });
-        index.z_ranges = z_ranges;
-        index.starts = starts;
-        index.triangles = triangles;
-        index
+    }
+}
+
+impl CellIndex {
+    /// An index of a volume of `size`, of no rows yet.
+    pub(super) fn new(size: [usize; 3]) -> Self {
+        let counts = [size[0].div_ceil(BRICK), size[1].div_ceil(BRICK), size[2].div_ceil(INTERVAL).max(1)];
+        Self { first: 0, rows: VecDeque::new(), counts }
     }
 
-    /// Visits every triangle of the cells at every place where it stands.
-    fn each(
-        &self,
-        forest: &Forest,
-        bins: &TriangleBins,
-        x: &Range<usize>,
-        y: &Range<usize>,
-        mut visit: impl FnMut(usize, CellTriangle),
-    ) {
-        for list in bins.around(x, y) {
-            // Triangles ascend, and so do the leaves they are in.
-            let (mut leaf, mut end) = (0, 0);
-            for &n in list {
-                let corners = forest.surfaces.triangles[n as usize];
-                let [cell_x, cell_y] = cell(forest, corners);
-                if !(x.contains(&cell_x) && y.contains(&cell_y)) {
-                    continue;
-                }
-                if n >= end {
-                    leaf = forest.leaf_of_triangle(n);
-                    end = forest.nodes[forest.leaves[leaf as usize - 1] as usize].triangles.end;
-                }
-                let triangle = cell_triangle(forest, corners, [cell_x, cell_y], leaf);
-                let [top, bottom] = triangle.z_range().map(|z| self.interval(z));
-                for interval in top..=bottom {
-                    visit(self.place(cell_x, cell_y, interval), triangle);
-                }
-            }
+    /// Goes on to the lines `x`, which are further on than any before: makes the rows of their cells and forgets those before.
+    pub(super) fn advance(&mut self, forest: &Forest, lists: &TriangleLists, x: Range<usize>) {
+        let from = x.start / BRICK;
+        while self.first < from && self.rows.pop_front().is_some() {
+            self.first += 1;
         }
+        if self.rows.is_empty() {
+            self.first = from;
+        }
+        let missing = self.first + self.rows.len()..x.end.div_ceil(BRICK).min(self.counts[0]);
+        let [_, bricks, intervals] = self.counts;
+        let made = missing.into_par_iter().with_max_len(1);
+        let made: Vec<BrickRow> = made.map(|row| BrickRow::new(forest, lists, row, [bricks, intervals])).collect();
+        self.rows.extend(made);
+    }
+
+    /// Intervals of depth.
+    pub(super) fn intervals(&self) -> usize {
+        self.counts[2]
     }
 
     /// Interval that a depth lies in; the first and last reach to infinity.
     #[inline(always)]
     pub(super) fn interval(&self, z: f32) -> usize {
-        // The conversion saturates at 0.
-        ((z / INTERVAL as f32) as usize).min(self.counts[2] - 1)
+        interval(z, self.counts[2])
     }
 
-    /// Index into `starts` of a cell in an interval.
-    fn place(&self, x: usize, y: usize, interval: usize) -> usize {
-        let [x, y] = [x - self.origin[0], y - self.origin[1]];
-        let brick = ((x / BRICK) * self.counts[1] + y / BRICK) * self.counts[2] + interval;
-        brick * CELLS + (x % BRICK) * BRICK + y % BRICK
-    }
-
-    /// Triangles of a cell, interval by interval from the top; none where the cell is not indexed.
+    /// The triangles of a cell; none where there is no such cell.
     #[inline(always)]
-    pub(super) fn below(&self, x: usize, y: usize) -> impl Iterator<Item = (usize, &[CellTriangle])> {
-        let end = [0, 1].map(|axis| self.origin[axis] + self.counts[axis] * BRICK);
-        let is_inside = (self.origin[0]..end[0]).contains(&x) && (self.origin[1]..end[1]).contains(&y);
-        let starts = if is_inside { &self.starts[self.place(x, y, 0)..] } else { &[] };
-        let ends = starts.get(1..).unwrap_or_default();
-        let lists = starts.iter().zip(ends).step_by(CELLS).take(self.counts[2]);
-        lists.enumerate().map(|(n, (&start, &end))| (n, &self.triangles[start as usize..end as usize]))
+    pub(super) fn cell(&self, x: usize, y: usize) -> Cell<'_> {
+        let Some(row) = (x / BRICK).checked_sub(self.first).and_then(|row| self.rows.get(row)) else {
+            return Cell::default();
+        };
+        let start = y / BRICK * self.counts[2] * CELLS + (x % BRICK) * BRICK + y % BRICK;
+        // Past the last interval other bricks follow, which are asked for by nobody.
+        Cell { starts: row.starts.get(start..).unwrap_or_default(), triangles: &row.triangles }
     }
 
     /// A brick, by its number along x and y in the volume, and the interval of depth.
     pub(super) fn brick(&self, x: usize, y: usize, interval: usize) -> Brick<'_> {
-        let [x, y] = [x - self.origin[0] / BRICK, y - self.origin[1] / BRICK];
-        let brick = (x * self.counts[1] + y) * self.counts[2] + interval;
-        let starts = &self.starts[brick * CELLS..(brick + 1) * CELLS + 1];
+        let row = &self.rows[x - self.first];
+        let brick = y * self.counts[2] + interval;
+        let starts = &row.starts[brick * CELLS..(brick + 1) * CELLS + 1];
         let is_empty = starts[0] == starts[CELLS];
-        Brick { starts, triangles: &self.triangles, z_range: (!is_empty).then(|| self.z_ranges[brick]) }
+        Brick { starts, triangles: &row.triangles, z_range: (!is_empty).then(|| row.z_ranges[brick]) }
     }
 
     /// Bricks, numbered in the volume, that have cells within `reach` of a column.
     pub(super) fn bricks_within(&self, column: [usize; 2], reach: usize) -> [Range<usize>; 2] {
-        [0, 1].map(|axis| {
-            let first = self.origin[axis] / BRICK;
-            let from = (column[axis].saturating_sub(reach) / BRICK).max(first);
-            from..((column[axis] + reach) / BRICK + 1).min(first + self.counts[axis])
-        })
+        let around = |at: usize, within: Range<usize>| {
+            (at.saturating_sub(reach) / BRICK).max(within.start)..((at + reach) / BRICK + 1).min(within.end)
+        };
+        [around(column[0], self.first..self.first + self.rows.len()), around(column[1], 0..self.counts[1])]
+    }
+}
+
+/// Interval of `count` that a depth lies in.
+#[inline(always)]
+fn interval(z: f32, count: usize) -> usize {
+    // The conversion saturates.
+    ((z * (1.0 / INTERVAL as f32)) as i32).max(0).min(count as i32 - 1) as usize
+}
+
+impl BrickRow {
+    fn new(forest: &Forest, lists: &TriangleLists, row: usize, [bricks, intervals]: [usize; 2]) -> Self {
+        let mut starts = vec![0u32; bricks * intervals * CELLS + 1];
+        let mut found: Vec<(u32, CellTriangle)> = Vec::new();
+        let span = |triangle: &CellTriangle| triangle.z_range().map(|z| interval(z, intervals));
+        // Triangles ascend, and so do the leaves they are in.
+        let (mut leaf, mut end) = (0, 0);
+        for n in lists.of_row(row) {
+            if n >= end {
+                leaf = forest.leaf_of_triangle(n);
+                end = forest.nodes[forest.leaves[leaf as usize - 1] as usize].triangles.end;
+            }
+            let corners = forest.surfaces.triangles[n as usize];
+            let [x, y] = cell(forest, corners);
+            let triangle = cell_triangle(forest, corners, [x, y], leaf);
+            let first = y / BRICK * intervals * CELLS + (x % BRICK) * BRICK + y % BRICK;
+            let [top, bottom] = span(&triangle);
+            for interval in top..=bottom {
+                starts[first + interval * CELLS + 1] += 1;
+            }
+            found.push((first as u32, triangle));
+        }
+        for n in 1..starts.len() {
+            starts[n] += starts[n - 1];
+        }
+        let mut ends = starts.clone();
+        let mut triangles = vec![CellTriangle::default(); starts[starts.len() - 1] as usize];
+        let mut z_ranges = vec![[f32::INFINITY, f32::NEG_INFINITY]; bricks * intervals];
+        for (first, triangle) in found {
+            let [top, bottom] = span(&triangle);
+            for interval in top..=bottom {
+                let at = first as usize + interval * CELLS;
+                triangles[ends[at] as usize] = triangle;
+                ends[at] += 1;
+                let ([high, low], range) = (triangle.z_range(), &mut z_ranges[at / CELLS]);
+                *range = [range[0].min(high), range[1].max(low)];
+            }
+        }
+        Self { starts, triangles, z_ranges }
     }
 }
 

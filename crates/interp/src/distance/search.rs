@@ -1,16 +1,15 @@
-//! The search down the columns of a block.
+//! The search down the columns of a block, run by run of eight samples.
 //!
-//! Bounds are in three rings. The four cells *around* a column hold most answers: there a triangle is tested against the samples near its depth, and
-//! against more as long as the bound does not exclude it (bounds of neighbouring samples differ by at most 1, so one sample beyond the
-//! end speaks for all further ones). The twelve cells *next* to those are at least 1 away, so only samples z with a bound b > 1 can be closer to them: they
-//! reach the depths z ± √(b² − h²), and running maxima and minima of these tell for any triangle whether one does. What is two or more away is asked
-//! run by run, brick by brick, by the samples whose bound is beyond 2.
+//! Cells are asked in three rings. The four *around* a column hold most answers: there a triangle of the run's own depth is tested, and one
+//! above or below it as long as the bound of the nearest sample does not exclude it (bounds of neighbouring samples differ by at most 1, so that
+//! sample speaks for the further ones). The twelve cells *next* to those are at least 1 away, so only samples z whose closest triangle is
+//! b > 1 away can be closer to them, and reach the depths z ± √(b² − 1). What is two or more away is asked, brick by brick, by
+//! runs whose bound is beyond 2.
 
-use super::index::{BRICK, CellIndex, INTERVAL, TriangleBins};
+use super::index::{BRICK, Cell, CellIndex, INTERVAL};
 use super::triangle::{CellTriangle, FromColumn, LANES, greater, lesser};
 use super::{BEYOND, BlockRows, DistanceSettings};
-use crate::forest::Forest;
-use crate::lanes::{Wide, widest};
+use crate::lanes::Wide;
 use std::ops::Range;
 
 /// Samples that are searched together: an interval of the index.
@@ -21,39 +20,23 @@ const _: () = assert!(RUN == LANES);
 /// Added to bounds, so that rounding never excludes what is closest. Voxels.
 const SLACK: f32 = 1e-3;
 
-/// Where a block lies, and what is around it.
-pub(super) struct Block<'a> {
-    pub(super) forest: &'a Forest,
-    pub(super) bins: &'a TriangleBins,
+/// The columns of a block, to be computed into their lines.
+pub(super) struct Block<'a, 'r> {
+    pub(super) size: [usize; 3],
     pub(super) settings: &'a DistanceSettings,
+    /// All that the block can reach.
+    pub(super) index: &'a CellIndex,
     pub(super) x: Range<usize>,
     pub(super) y: Range<usize>,
+    pub(super) rows: BlockRows<'r>,
 }
 
-/// Computes a block into its lines.
-pub(super) fn block(block: Block<'_>, rows: &mut BlockRows<'_>) {
-    let [nx, ny, _] = block.forest.surfaces.size;
-    let reach = block.settings.max_distance.ceil() as usize + 1;
-    // The last trace begins no cell, but is a column like any other.
-    let around = |range: &Range<usize>, count: usize| range.start.saturating_sub(reach)..(range.end + reach).min(count);
-    let index = CellIndex::new(block.forest, block.bins, around(&block.x, nx), around(&block.y, ny));
-    widest(Columns { block, index: &index, rows });
-}
-
-/// The columns of a block.
-struct Columns<'a, 'i, 'r, 'b> {
-    block: Block<'a>,
-    index: &'i CellIndex,
-    rows: &'r mut BlockRows<'b>,
-}
-
-impl Wide for Columns<'_, '_, '_, '_> {
+impl Wide for Block<'_, '_> {
     #[inline(always)]
     fn run(self) {
-        let Self { block: Block { forest, settings, x, y, .. }, index, rows } = self;
-        let nz = forest.surfaces.size[2];
+        let Self { size: [_, _, nz], settings, index, x, y, rows } = self;
         let mut column = Column::new(index, settings.max_distance, nz);
-        for (row, line) in rows.iter_mut().zip(x) {
+        for (row, line) in rows.into_iter().zip(x) {
             for (n, crossline) in y.clone().enumerate() {
                 column.search([line, crossline], if n == 0 { Neighbour::None } else { Neighbour::Before });
                 let at = n * nz..(n + 1) * nz;
@@ -90,19 +73,13 @@ fn apart(at: usize, unit: usize, count: usize) -> f32 {
     (unit * count).saturating_sub(at).max(at.saturating_sub((unit + 1) * count)) as f32
 }
 
-/// The last sample that is not below z; the first where all are.
-#[inline(always)]
-fn sample_above(z: f32) -> usize {
-    (z as i32).max(0) as usize
-}
-
-/// What the samples of a column reach at a horizontal distance.
-#[derive(Clone, Copy)]
-struct Reached {
-    /// Greatest depth that this sample or one above it reaches down to.
-    down: f32,
-    /// Least depth that this sample or one below it reaches up to.
-    up: f32,
+/// A cell near a column: its triangles, and the column less its near corner.
+#[derive(Clone, Copy, Default)]
+struct Near<'a> {
+    cell: Cell<'a>,
+    apart: [f32; 2],
+    /// Squared horizontal distance of the two.
+    h_sq: f32,
 }
 
 /// A column at work. Arrays are filled up to whole runs.
@@ -115,14 +92,11 @@ struct Column<'a> {
     leaf: Vec<u32>,
     /// A distance that the closest triangle is not beyond; differs by at most 1 from sample to sample.
     bound: Vec<f32>,
-    /// What is reached one cell away along an axis, and along both; one entry more than samples, for "none below".
-    reached: [Vec<Reached>; 2],
 }
 
 impl<'a> Column<'a> {
     fn new(index: &'a CellIndex, max: f32, count: usize) -> Self {
         let padded = count.div_ceil(RUN).max(1) * RUN;
-        let nothing = Reached { down: f32::NEG_INFINITY, up: f32::INFINITY };
         Self {
             index,
             max,
@@ -130,7 +104,6 @@ impl<'a> Column<'a> {
             best_sq: vec![max * max; padded],
             leaf: vec![u32::MAX; padded],
             bound: vec![max; padded],
-            reached: [vec![nothing; padded + 1], vec![nothing; padded + 1]],
         }
     }
 
@@ -143,25 +116,44 @@ impl<'a> Column<'a> {
                 Neighbour::Before => best_sq.sqrt() + 1.0,
             };
         }
-        self.bound_by_extrema(column);
+        let (around, next) = self.near(column);
+        self.bound_by_extrema(&around);
         for (best_sq, bound) in self.best_sq.iter_mut().zip(&mut self.bound) {
             *bound = lesser(*bound + SLACK, self.max);
             *best_sq = *bound * *bound;
         }
         self.leaf.fill(u32::MAX);
-        let [x, y] = column;
-        for cell_x in x.saturating_sub(1)..x + 1 {
-            for cell_y in y.saturating_sub(1)..y + 1 {
-                self.visit_around(column, [cell_x, cell_y]);
-            }
-        }
-        self.visit_next(column);
         for run in 0..self.best_sq.len() / RUN {
+            self.visit_around(&around, run);
             let reach = self.reach(run);
+            if reach >= 1.0 {
+                self.visit_next(&next, run);
+            }
             if reach >= 2.0 {
-                self.visit_bricks(column, run, reach);
+                let reach = self.reach(run);
+                if reach >= 2.0 {
+                    self.visit_bricks(column, run, reach);
+                }
             }
         }
+    }
+
+    /// The four cells around a column and the twelve next to those.
+    #[inline(always)]
+    fn near(&self, [x, y]: [usize; 2]) -> ([Near<'a>; 4], [Near<'a>; 12]) {
+        let (mut around, mut next) = ([Near::default(); 4], [Near::default(); 12]);
+        let (mut first, mut second) = (around.iter_mut(), next.iter_mut());
+        for (far_x, far_y) in (0..4).flat_map(|far_x| (0..4).map(move |far_y| (far_x, far_y))) {
+            let off = |far: usize| (far == 0 || far == 3) as usize;
+            let ring = off(far_x) + off(far_y);
+            let Some(near) = (if ring == 0 { first.next() } else { second.next() }) else { continue };
+            // Cells begin two traces before to one behind.
+            if let (Some(cell_x), Some(cell_y)) = ((x + far_x).checked_sub(2), (y + far_y).checked_sub(2)) {
+                let apart = [2.0 - far_x as f32, 2.0 - far_y as f32];
+                *near = Near { cell: self.index.cell(cell_x, cell_y), apart, h_sq: ring as f32 };
+            }
+        }
+        (around, next)
     }
 
     /// How far the closest triangle of any sample of a run can be.
@@ -173,18 +165,17 @@ impl<'a> Column<'a> {
 
     /// Bounds by the triangles' corners on this very trace, and by samples above and below.
     #[inline(always)]
-    fn bound_by_extrema(&mut self, [x, y]: [usize; 2]) {
+    fn bound_by_extrema(&mut self, around: &[Near<'_>; 4]) {
         let last = self.bound.len() - 1;
-        for (cell_x, far_x) in [(x, 0), (x.wrapping_sub(1), 1)] {
-            for (cell_y, far_y) in [(y, 0), (y.wrapping_sub(1), 1)] {
-                for (_, triangles) in self.index.below(cell_x, cell_y) {
-                    for triangle in triangles {
-                        if let Some(z) = triangle.z_at([far_x, far_y]) {
-                            let above = sample_above(z).min(last);
-                            for sample in [above, (above + 1).min(last)] {
-                                let bound = &mut self.bound[sample];
-                                *bound = lesser((z - sample as f32).abs(), *bound);
-                            }
+        for near in around {
+            let far = near.apart.map(|apart| apart as u32);
+            for interval in 0..self.index.intervals() {
+                for triangle in near.cell.within(interval) {
+                    if let Some(z) = triangle.z_at(far) {
+                        let above = ((z as i32).max(0) as usize).min(last);
+                        for sample in [above, (above + 1).min(last)] {
+                            let bound = &mut self.bound[sample];
+                            *bound = lesser((z - sample as f32).abs(), *bound);
                         }
                     }
                 }
@@ -201,32 +192,23 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Tests the triangles of one of the four cells around the column.
+    /// Tests the triangles of the four cells around the column against a run.
     #[inline(always)]
-    fn visit_around(&mut self, column: [usize; 2], cell: [usize; 2]) {
-        let index = self.index;
-        let [dx, dy] = [0, 1].map(|axis| (column[axis] - cell[axis]) as f32);
-        let last = self.best_sq.len() - LANES;
-        for (interval, triangles) in index.below(cell[0], cell[1]) {
-            let top = if interval == 0 { f32::NEG_INFINITY } else { (interval * INTERVAL) as f32 };
-            for triangle in triangles {
-                let [high, low] = triangle.z_range();
-                // One that stands in several intervals is taken in the first.
-                if high < top {
-                    continue;
-                }
-                let seen = FromColumn::new(triangle, dx, dy);
-                let middle = sample_above(0.5 * (high + low)).saturating_sub(LANES / 2 - 1).min(last);
-                self.keep_closest(&seen, middle, triangle.leaf());
-                let mut first = middle;
-                while first > 0 && high - (first - 1) as f32 <= self.bound[first - 1] {
-                    first = first.saturating_sub(LANES);
-                    self.keep_closest(&seen, first, triangle.leaf());
-                }
-                let mut end = middle + LANES;
-                while end < self.count && end as f32 - low <= self.bound[end] {
-                    self.keep_closest(&seen, end.min(last), triangle.leaf());
-                    end += LANES;
+    fn visit_around(&mut self, around: &[Near<'_>; 4], run: usize) {
+        let [first, last] = [run * RUN, (run + 1) * RUN - 1];
+        // The depths that the first sample reaches up to, and the last down to.
+        let [up, down] = [first as f32 - self.bound[first], last as f32 + self.bound[last]];
+        let [top, bottom] = [self.index.interval(up), self.index.interval(down)];
+        for near in around {
+            for interval in top..=bottom {
+                let begin = if interval == top { f32::NEG_INFINITY } else { (interval * INTERVAL) as f32 };
+                for triangle in near.cell.within(interval) {
+                    let [high, low] = triangle.z_range();
+                    // One that stands in several intervals is taken in the first.
+                    if (low < up) | (high > down) | (high < begin) {
+                        continue;
+                    }
+                    self.keep_closest(&FromColumn::new(triangle, near.apart), run, triangle.leaf());
                 }
             }
         }
@@ -234,65 +216,33 @@ impl<'a> Column<'a> {
 
     /// Tests the triangles of the twelve cells that are one away.
     #[inline(always)]
-    fn visit_next(&mut self, column: [usize; 2]) {
-        self.reach_out();
-        let index = self.index;
-        let [x, y] = column;
-        let last = self.best_sq.len() - LANES;
-        for cell_x in x.saturating_sub(2)..x + 2 {
-            for cell_y in y.saturating_sub(2)..y + 2 {
-                let ring =
-                    usize::from(cell_x + 2 == x || cell_x == x + 1) + usize::from(cell_y + 2 == y || cell_y == y + 1);
-                if ring == 0 {
-                    continue;
-                }
-                let [dx, dy] = [x as f32 - cell_x as f32, y as f32 - cell_y as f32];
-                for (interval, triangles) in index.below(cell_x, cell_y) {
-                    let top = if interval == 0 { f32::NEG_INFINITY } else { (interval * INTERVAL) as f32 };
-                    for triangle in triangles {
-                        let [high, low] = triangle.z_range();
-                        let reached = &self.reached[ring - 1];
-                        let above = sample_above(low).min(last + LANES - 1);
-                        let [from_above, from_below] = [reached[above].down >= high, reached[above + 1].up <= low];
-                        if !(from_above | from_below) | (high < top) {
-                            continue;
-                        }
-                        let seen = FromColumn::new(triangle, dx, dy);
-                        let mut end = above + 1;
-                        while end > 0 && self.reached[ring - 1][end - 1].down >= high {
-                            let first = end.saturating_sub(LANES);
-                            self.keep_closest(&seen, first, triangle.leaf());
-                            end = first;
-                        }
-                        let mut first = above + 1;
-                        while first < self.count && self.reached[ring - 1][first].up <= low {
-                            self.keep_closest(&seen, first.min(last), triangle.leaf());
-                            first += LANES;
-                        }
+    fn visit_next(&mut self, next: &[Near<'_>; 12], run: usize) {
+        let begin = (run * RUN) as f32;
+        // The depths that the samples reach one cell away.
+        let [mut up, mut down] = [f32::INFINITY, f32::NEG_INFINITY];
+        for (n, best_sq) in self.best_sq.as_chunks::<RUN>().0[run].iter().enumerate() {
+            let left = best_sq - 1.0;
+            let reach = if left > -SLACK { greater(left, 0.0).sqrt() + SLACK } else { f32::NEG_INFINITY };
+            up = lesser(up, begin + n as f32 - reach);
+            down = greater(down, begin + n as f32 + reach);
+        }
+        if up > down {
+            return;
+        }
+        let [top, bottom] = [self.index.interval(up), self.index.interval(down)];
+        for near in next {
+            for interval in top..=bottom {
+                let from = if interval == top { f32::NEG_INFINITY } else { (interval * INTERVAL) as f32 };
+                for triangle in near.cell.within(interval) {
+                    let [high, low] = triangle.z_range();
+                    if (low < up) | (high > down) | (high < from) {
+                        continue;
+                    }
+                    let best_sq = &self.best_sq.as_chunks::<RUN>().0[run];
+                    if may_be_closer(best_sq, near.h_sq, [high - begin, low - begin]) {
+                        self.keep_closest(&FromColumn::new(triangle, near.apart), run, triangle.leaf());
                     }
                 }
-            }
-        }
-    }
-
-    /// Brings up to date what the samples reach one cell away.
-    #[inline(always)]
-    fn reach_out(&mut self) {
-        for (h_sq, reached) in [1.0, 2.0].into_iter().zip(&mut self.reached) {
-            for (n, (reached, best_sq)) in reached.iter_mut().zip(&self.best_sq).enumerate() {
-                let left = best_sq - h_sq;
-                let reach = if left >= -SLACK { greater(left, 0.0).sqrt() + SLACK } else { f32::NEG_INFINITY };
-                *reached = Reached { down: n as f32 + reach, up: n as f32 - reach };
-            }
-            let mut down = f32::NEG_INFINITY;
-            for reached in reached.iter_mut() {
-                down = greater(down, reached.down);
-                reached.down = down;
-            }
-            let mut up = f32::INFINITY;
-            for reached in reached.iter_mut().rev() {
-                up = lesser(up, reached.up);
-                reached.up = up;
             }
         }
     }
@@ -342,7 +292,7 @@ impl<'a> Column<'a> {
     /// Tests triangles of a cell against a run.
     #[inline(always)]
     fn test(&mut self, place: &Place, triangles: &[CellTriangle]) {
-        let [dx, dy] = [0, 1].map(|axis| place.column[axis] as f32 - place.cell[axis] as f32);
+        let apart = [0, 1].map(|axis| place.column[axis] as f32 - place.cell[axis] as f32);
         let top = (place.run * RUN) as f32;
         for triangle in triangles {
             let [high, low] = triangle.z_range();
@@ -354,19 +304,16 @@ impl<'a> Column<'a> {
             if place.interval > place.top && self.index.interval(high) < place.interval {
                 continue;
             }
-            self.keep_closest(&FromColumn::new(triangle, dx, dy), place.run * RUN, triangle.leaf());
+            self.keep_closest(&FromColumn::new(triangle, apart), place.run, triangle.leaf());
         }
     }
 
-    /// Takes over, for the samples from `first` on, what is closer; of equals the lesser leaf.
+    /// Takes over, for the samples of a run, what is closer; of equals the lesser leaf.
     #[inline(always)]
-    fn keep_closest(&mut self, triangle: &FromColumn, first: usize, leaf: u32) {
-        let found = triangle.distances_sq(first as f32);
-        let (Some(best_sq), Some(leaves)) =
-            (self.best_sq[first..].first_chunk_mut::<LANES>(), self.leaf[first..].first_chunk_mut::<LANES>())
-        else {
-            return;
-        };
+    fn keep_closest(&mut self, triangle: &FromColumn, run: usize, leaf: u32) {
+        let found = triangle.distances_sq((run * RUN) as f32);
+        let best_sq = &mut self.best_sq.as_chunks_mut::<RUN>().0[run];
+        let leaves = &mut self.leaf.as_chunks_mut::<RUN>().0[run];
         // Whole groups are read before any is written, so that the compiler keeps them in lanes.
         let (known_sq, known) = (*best_sq, *leaves);
         let (mut least_sq, mut closest) = ([0.0; LANES], [0; LANES]);

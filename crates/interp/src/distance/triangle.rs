@@ -79,23 +79,20 @@ pub(super) struct FromColumn {
 }
 
 impl FromColumn {
-    /// `dx`, `dy`: the column less the cell's near corner.
+    /// `apart`: the column less the cell's near corner.
     #[inline(always)]
-    pub(super) fn new(triangle: &CellTriangle, dx: f32, dy: f32) -> Self {
+    pub(super) fn new(triangle: &CellTriangle, [dx, dy]: [f32; 2]) -> Self {
         let x = if triangle.code & 2 == 0 { dx } else { 1.0 - dx };
         let y = if triangle.code & 1 == 0 { dy } else { 1.0 - dy };
         let [z, a, b] = triangle.z;
         let (u, v) = (a - z, b - z);
-        Self {
-            w: [x, y],
-            z,
-            u,
-            v,
-            inverse: 1.0 / (1.0 + u * u + v * v),
-            inverse_u: 1.0 / (1.0 + u * u),
-            inverse_v: 1.0 / (1.0 + v * v),
-            inverse_h: 1.0 / (2.0 + (v - u) * (v - u)),
+        // One after the other in memory, so that the four divisions are one.
+        let mut inverses = [1.0 + u * u + v * v, 1.0 + u * u, 1.0 + v * v, 2.0 + (v - u) * (v - u)];
+        for inverse in &mut inverses {
+            *inverse = 1.0 / *inverse;
         }
+        let [inverse, inverse_u, inverse_v, inverse_h] = inverses;
+        Self { w: [x, y], z, u, v, inverse, inverse_u, inverse_v, inverse_h }
     }
 
     /// Squared distances of the samples `first`, `first` + 1, …
