@@ -141,7 +141,7 @@ fn volume(size: [usize; 3], file: Option<&Path>) -> Result<Volume<f32>, Box<dyn 
             format!("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}, {}), }}", size[0], size[1], size[2]);
         writer.write_all(b"\x93NUMPY\x01\x00")?;
         writer.write_all(&(HEADER as u16 - 10).to_le_bytes())?;
-        write!(writer, "{facts:<width$}\n", width = HEADER - 11)?;
+        writeln!(writer, "{facts:<width$}", width = HEADER - 11)?;
         for sample in volume.samples() {
             writer.write_all(&sample.to_le_bytes())?;
         }

@@ -3,6 +3,7 @@
 use super::*;
 use crate::forest::tests::sheets;
 use crate::forest::{Forest, ForestSettings};
+use crate::lanes::Wide;
 use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
 
 fn forest(surfaces: Surfaces, min_leaf_triangles: u32) -> Forest {
@@ -175,6 +176,24 @@ fn blocks_and_threads_leave_no_trace() {
     };
     distances.slabs(13, &silent, take).unwrap();
     assert_eq!(slabs, wanted.distance);
+}
+
+#[test]
+fn four_lanes_and_as_many_as_there_are_make_the_same_bits() {
+    let fold = |x: f32, y: f32| 20.0 + 9.0 * (x / 11.0).sin() * (y / 9.0).cos() + hash(x, y);
+    let size = [23, 20, 45];
+    let forest = forest(sheets(size, &[&fold, &|x, y| fold(x, y) + 2.0 * hash(y, x)], |_, _, _| true), 12);
+    let settings = DistanceSettings::default();
+    let distances = LeafDistances::new(&forest, &settings).unwrap();
+    let wanted = distances.columns(0..size[0], 0..size[1], &Progress::silent()).unwrap();
+    let mut index = CellIndex::new(size);
+    index.advance(&forest, &distances.lists, 0..size[0]);
+    let count = size.iter().product();
+    let (mut distance, mut leaf) = (vec![0; count], vec![0; count]);
+    let rows = distance.chunks_mut(size[1] * size[2]).zip(leaf.chunks_mut(size[1] * size[2])).collect();
+    // Not by `widest`: compiled for any processor.
+    Block { size, settings: &settings, index: &index, x: 0..size[0], y: 0..size[1], rows }.run();
+    assert_eq!((distance, leaf), (wanted.distance, wanted.leaf));
 }
 
 #[test]
