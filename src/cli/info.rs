@@ -17,7 +17,8 @@ pub(super) fn describe(
     reading: &ImportOptions,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
-    if path.is_dir() || !path.exists() {
+    let named_project = path.extension().is_some_and(|extension| extension == "petro");
+    if path.is_dir() || (named_project && !path.exists()) {
         return project(&Project::open(path)?);
     }
     if let Some(report) = info_interpretation::describe(path, reading)? {

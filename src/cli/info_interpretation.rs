@@ -16,7 +16,8 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
         return Ok(None);
     }
     if options.format.is_none() {
-        let text = String::from_utf8_lossy(&std::fs::read(path)?).into_owned();
+        let unreadable = |source| FormatError::Io { action: "read", file: path.to_owned(), source };
+        let text = String::from_utf8_lossy(&std::fs::read(path).map_err(unreadable)?).into_owned();
         if let Some(found) = well::describe(path, &text)? {
             return Ok(Some(well_file(&found)));
         }

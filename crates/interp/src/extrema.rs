@@ -228,9 +228,13 @@ fn maxima(trace: &[f32], sign: f32, found: &mut impl FnMut(f32, f32)) {
             end += 1;
         }
         if end + 1 < count && trace[end + 1] * sign < here && here.is_finite() && before.is_finite() {
-            // Two equal samples have their maximum between them, higher than both.
-            let height = if end == z + 1 { refine::maximum(trace, z, sign).1 } else { here };
-            found(0.5 * (z + end) as f32, height);
+            // Two equal samples have their maximum between them, higher than both; more have been clipped.
+            let (t, height) = if end == z + 1 {
+                (0.5, refine::maximum(trace, z, sign).1)
+            } else {
+                (refine::clipped(trace, z, end, sign), here)
+            };
+            found(z as f32 + t, height);
         }
         z = end + 1;
     }

@@ -54,13 +54,29 @@ fn a_ricker_wavelet_is_found_where_it_is() {
 
 #[test]
 fn a_plateau_counts_once_in_its_middle() {
-    assert_eq!(found(&[0.0, 1.0, 3.0, 3.0, 3.0, 2.0, 0.0], Extremum::Peak), [(3.0, 3.0)]);
+    assert_eq!(found(&[0.0, 1.0, 3.0, 3.0, 3.0, 1.0, 0.0], Extremum::Peak), [(3.0, 3.0)]);
+    assert_eq!(found(&[1.0, 3.0, 3.0, 3.0, 2.0], Extremum::Peak), [(2.0, 3.0)]);
     let two = found(&[0.0, 3.0, 3.0, 1.0], Extremum::Peak)[0];
     assert!(two.0 == 1.5 && two.1 > 3.0 && two.1 < 3.5);
     assert_eq!(found(&[0.0, 3.0, 3.0, 4.0, 1.0], Extremum::Peak).len(), 1);
     assert!(found(&[0.0, 3.0, 3.0], Extremum::Peak).is_empty());
     assert_eq!(found(&[1.0, -2.0, -2.0, 0.0], Extremum::Trough)[0].0, 1.5);
     assert_eq!(found(&[-1.0, 0.0, 0.0, 2.0], Extremum::Zero)[0].0, 1.5);
+}
+
+#[test]
+fn a_clipped_maximum_lies_between_its_flanks() {
+    for tenths in 0..10 {
+        let centre = 12.0 + 0.1 * tenths as f32;
+        let trace: Vec<f32> = (0..25)
+            .map(|z| (900.0 * (std::f32::consts::TAU * (z as f32 - centre) / 12.0).cos()).clamp(-450.0, 450.0))
+            .collect();
+        let &(z, amplitude) = found(&trace, Extremum::Peak)
+            .iter()
+            .min_by(|a, b| (a.0 - centre).abs().total_cmp(&(b.0 - centre).abs()))
+            .unwrap();
+        assert!((z - centre).abs() < 0.06 && amplitude == 450.0, "{z} for {centre}");
+    }
 }
 
 #[test]

@@ -4,19 +4,26 @@
 //!
 //! `m = r/√(c²·(1/a² + 1/b²) + f²)`, `h = (b − a)/√(s² + g²·max(a, b)²)`, `E = ½·m̄²/var m̄ + ½·h̄²/var h̄`
 //!
-//! where c and s are the volume's own, medians over its links in classes of dip, and the bar is a binomial over the surface *across*
+//! where c and s are the volume's own, medians over its links in classes of dip (s of amplitude too), and the bar is a binomial over the surface *across*
 //! the link: along a fault misfits keep their sign and add up, noise does not. Variances are measured (by medians) too, so that on a
 //! continuous reflector E is about 1 at any signal-to-noise ratio. f and g keep clean data from being judged by their last digit.
 //! A strong extremum without a partner has the greatest E. E is kept in quarters, at most [`MOST`].
 
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
 use super::smoothing::{self, Four, Room};
+use super::surroundings::Surroundings;
 use crate::extrema::Extrema;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
 /// Greatest E, in quarters.
 pub(super) const MOST: u8 = 100;
+
+/// E that noise alone makes, in quarters.
+const FROM_NOISE: f32 = 4.0;
+
+/// Greatest E that counts for what is usual around a place, in quarters.
+const LOUD: u8 = 24;
 
 /// What interpolation and curvature may do to a misfit, samples.
 const LEAST_MISFIT: f32 = 0.08;
@@ -36,21 +43,34 @@ const DIP_CLASS: f32 = 0.25;
 /// Classes of dip; the last holds all that is steeper.
 const DIP_CLASSES: usize = 13;
 
+/// Shares of all extrema below the steps from one class of amplitude to the next.
+const HEIGHT_SHARES: [f32; HEIGHT_CLASSES - 1] = [0.5, 0.7, 0.82, 0.9, 0.95, 0.98];
+
+/// Classes of amplitude.
+const HEIGHT_CLASSES: usize = 7;
+
 /// Links that a class needs to be measured; one with fewer takes over from the next less steep one.
 const LEAST_LINKS: usize = 64;
 
 /// What noise does to the links of one kind of extremum.
 #[derive(Debug, Clone)]
 pub(super) struct Noise {
-    /// For each class of dip: c (amplitude × samples) and s (amplitude).
-    classes: [[f32; 2]; DIP_CLASSES],
+    /// For each class of dip c, amplitude × samples.
+    places: [f32; DIP_CLASSES],
+    /// Least amplitude of each class but the first.
+    steps: [f32; HEIGHT_CLASSES - 1],
+    /// For each class of amplitude and of dip s, amplitude.
+    changes: [[f32; DIP_CLASSES]; HEIGHT_CLASSES],
 }
 
 impl Noise {
     /// Measures the noise on every seventh extremum's links, in classes of dip: noise that is alike on neighbouring traces
-    /// at one depth moves the extrema of a flat reflector together, those of a dipping one apart.
+    /// at one depth moves the extrema of a flat reflector together, those of a dipping one apart. Changes of amplitude in classes of
+    /// amplitude too: beside what is added to all samples alike, a reflector's strength itself varies, the more the stronger it is.
     pub(super) fn measure(extrema: &Extrema, links: &Links, dips: &[[f32; 2]]) -> Self {
-        let mut seen: [[Vec<f32>; 2]; DIP_CLASSES] = Default::default();
+        let steps = height_steps(extrema);
+        let mut places: [Vec<f32>; DIP_CLASSES] = Default::default();
+        let mut changes: [[Vec<f32>; DIP_CLASSES]; HEIGHT_CLASSES] = Default::default();
         for v in (0..extrema.len()).step_by(SPARSE) {
             for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
                 let next = links.to[direction][v];
@@ -59,26 +79,54 @@ impl Noise {
                 }
                 let next = next as usize;
                 let (a, b) = (extrema.amplitude[v], extrema.amplitude[next]);
-                let [places, changes] = &mut seen[class(dips[v][axis])];
-                places.push(misfit(extrema, dips, v, next, axis).abs() / uncertainty(a, b));
-                changes.push((a - b).abs());
+                let dip = class(dips[v][axis]);
+                places[dip].push(misfit(extrema, dips, v, next, axis).abs() / uncertainty(a, b));
+                changes[height_class(&steps, a.max(b))][dip].push((a - b).abs());
             }
         }
-        let mut classes = [[0.0; 2]; DIP_CLASSES];
-        for at in 0..DIP_CLASSES {
-            classes[at] = if seen[at][0].len() < LEAST_LINKS && at > 0 {
-                classes[at - 1]
-            } else {
-                seen[at].each_mut().map(|values| sigma(values))
-            };
+        let mut noise = Self { places: [0.0; _], steps, changes: [[0.0; _]; _] };
+        for dip in 0..DIP_CLASSES {
+            let before = dip.checked_sub(1).map(|before| noise.places[before]);
+            noise.places[dip] = measured(&mut places[dip], before);
+            for (height, changes) in changes.iter_mut().enumerate() {
+                let before = match (dip, height) {
+                    (1.., _) => Some(noise.changes[height][dip - 1]),
+                    (0, 1..) => Some(noise.changes[height - 1][0]),
+                    _ => None,
+                };
+                noise.changes[height][dip] = measured(&mut changes[dip], before);
+            }
         }
-        Self { classes }
+        noise
+    }
+
+    /// c and s of a link at a dip, the higher of whose extrema has this amplitude.
+    fn of(&self, amplitude: f32, dip: f32) -> [f32; 2] {
+        let dip = class(dip);
+        [self.places[dip], self.changes[height_class(&self.steps, amplitude)][dip]]
     }
 
     /// s where reflectors are flat.
-    fn amplitude(&self) -> f32 {
-        self.classes[0][1]
+    fn change(&self, amplitude: f32) -> f32 {
+        self.changes[height_class(&self.steps, amplitude)][0]
     }
+}
+
+/// The standard deviation of a class; of the class before it where it has too few links.
+fn measured(values: &mut [f32], before: Option<f32>) -> f32 {
+    before.filter(|_| values.len() < LEAST_LINKS).unwrap_or_else(|| sigma(values))
+}
+
+/// Amplitudes between the classes: the shares of [`HEIGHT_SHARES`] are below.
+fn height_steps(extrema: &Extrema) -> [f32; HEIGHT_CLASSES - 1] {
+    let mut sample: Vec<f32> = extrema.amplitude.iter().step_by(SPARSE).copied().collect();
+    sample.sort_unstable_by(f32::total_cmp);
+    HEIGHT_SHARES.map(|share| sample.get((share * sample.len() as f32) as usize).copied().unwrap_or(f32::INFINITY))
+}
+
+/// Class of an amplitude.
+fn height_class(steps: &[f32; HEIGHT_CLASSES - 1], amplitude: f32) -> usize {
+    steps.iter().filter(|&&step| amplitude > step).count()
 }
 
 /// Class of a dip.
@@ -145,9 +193,27 @@ pub(super) fn evidence(
                 (4.0 * 0.5 * (square(misfit, variance[0]) + square(change, variance[1])) + 0.5) as u8
             };
         });
+        beside_surroundings(extrema, links, &mut found, axis);
         progress.step(extrema.size[0] as u64)?;
     }
     Ok(found)
+}
+
+/// Divides evidence by what is usual around it.
+fn beside_surroundings(extrema: &Extrema, links: &Links, found: &mut [[u8; 2]], axis: usize) {
+    let linked = |v: usize| links.to[2 * axis][v] != NONE;
+    let usual = Surroundings::new(extrema, |v| linked(v).then(|| found[v][axis].min(LOUD)));
+    let ny = extrema.size[1];
+    extrema.split_inlines(found).into_par_iter().enumerate().for_each(|(x, line)| {
+        let first = extrema.on_inline(x).start;
+        for y in 0..ny {
+            for v in extrema.on_trace(x, y).filter(|&v| linked(v)) {
+                let usual = usual.at(x, y, extrema.z[v]) / FROM_NOISE;
+                let value = &mut line[v - first][axis];
+                *value = (f32::from(*value) / usual.max(1.0) + 0.5) as u8;
+            }
+        }
+    });
 }
 
 /// Misfit and change of amplitude of each link along `axis` in units of the noise, and a weight: 1 where there is a link.
@@ -160,7 +226,7 @@ fn signed_breaks(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], noise: &No
         }
         let next = next[v] as usize;
         let (a, b) = (extrema.amplitude[v], extrema.amplitude[next]);
-        let [place, change] = noise.classes[class(dips[v][axis])];
+        let [place, change] = noise.of(a.max(b), dips[v][axis]);
         let off = misfit(extrema, dips, v, next, axis) / length(place * uncertainty(a, b), LEAST_MISFIT);
         let change = (b - a) / length(change, LEAST_CHANGE * a.max(b));
         *signed = [off.clamp(-9.0, 9.0), change.clamp(-9.0, 9.0), 1.0, 0.0];
@@ -175,7 +241,7 @@ fn length(a: f32, b: f32) -> f32 {
 
 /// Whether an extremum is too high to be noise.
 pub(super) fn is_strong(amplitude: f32, noise: &Noise) -> bool {
-    amplitude > 5.0 * noise.amplitude()
+    amplitude > 5.0 * noise.change(amplitude)
 }
 
 /// Strong extrema without a partner behind them, along x and y.

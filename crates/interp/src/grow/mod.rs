@@ -8,7 +8,7 @@
 //! |---|---|
 //! | extrema, refined below the sample | [`crate::extrema`] |
 //! | mutual best links between neighbouring traces, guided by the dip | `links`, `dip` |
-//! | how much each link speaks for a break, beside the volume's own noise | `evidence` |
+//! | how much each link speaks for a break, beside the volume's own noise and what is usual around it | `evidence`, `surroundings` |
 //! | faults: planes along which many links do; they cut links | `planes` |
 //! | closed cells, the opening of the least width, connected windows | `cells` |
 //! | what is left over goes to the surface that it fits best | `flood` |
@@ -29,7 +29,10 @@ mod merge;
 mod ours;
 mod paper;
 mod planes;
+#[cfg(test)]
+mod real_tests;
 mod smoothing;
+mod surroundings;
 #[cfg(test)]
 mod tests;
 mod union_find;

@@ -127,7 +127,7 @@ fn labels(
     progress.step(lines)?;
     let mut labels = if settings.core_width > settings.min_front_width {
         let mut cores = cells::label(extrema, links, &open, settings.core_width, progress)?;
-        flood::flood(links, evidence, &mut cores, progress)?;
+        flood::flood(extrema, links, evidence, &mut cores, progress)?;
         cores.iter_mut().zip(narrow).for_each(|(core, narrow)| *core = if *core == NONE { narrow } else { *core });
         cores
     } else {
@@ -135,7 +135,7 @@ fn labels(
     };
     drop(open);
     progress.step(lines)?;
-    flood::flood(links, evidence, &mut labels, progress)?;
+    flood::flood(extrema, links, evidence, &mut labels, progress)?;
     progress.step(lines)?;
     if settings.join_share <= 1.0 {
         merge::merge(extrema, links, broken, evidence, &mut labels, settings.join_share, progress)?;

@@ -192,3 +192,62 @@ fn ours_is_purer_than_the_papers_on_a_faulted_survey() {
     assert!(ours.0 > 0.95 && papers.0 < 0.8, "{} {}", ours.0, papers.0);
     assert!(ours.1 > 0.94, "{}", ours.1);
 }
+
+/// Layers that are regular above sample 60 and noise, of the same strength, below.
+fn half_chaotic(size: [usize; 3]) -> Volume<f32> {
+    let mut volume = layered(size, 8.0, |x, y| 6.0 + 0.1 * x as f32 + 0.05 * y as f32);
+    let mut state = 7u32;
+    let mut before = 0.0;
+    for value in volume.samples_mut().chunks_mut(size[2]).flat_map(|trace| &mut trace[60..]) {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        before = 0.7 * before + (f32::from((state >> 16) as u16) / 32_768.0 - 1.0) * 900.0;
+        *value = before;
+    }
+    volume
+}
+
+#[test]
+fn a_surface_does_not_lie_over_itself_where_reflectors_are_chaotic() {
+    let surfaces = grown(&half_chaotic([64, 64, 120]), &GrowSettings::default());
+    check(&surfaces);
+    let mut regular = 0;
+    for surface in &surfaces.surfaces {
+        let vertices = &surfaces.vertices[surface.vertices.start as usize..surface.vertices.end as usize];
+        let mut traces: Vec<_> = vertices.iter().map(|v| (v.x, v.y)).collect();
+        traces.dedup();
+        assert!(vertices.len() <= traces.len() + traces.len() / 10 + 8, "{} on {}", vertices.len(), traces.len());
+        regular += usize::from(traces.len() == 64 * 64);
+    }
+    // Peaks and troughs every 8 samples, but for what dips into the noise.
+    assert!(regular >= 5, "{regular}");
+}
+
+#[test]
+fn a_strong_reflector_that_varies_is_no_fault() {
+    // One reflector of twenty times the strength of the others, whose strength changes by a tenth from trace to trace.
+    let mut volume = layered([64, 64, 96], 8.0, |x, y| 10.0 + 0.2 * x as f32 + 0.05 * y as f32);
+    let mut state = 3u32;
+    for x in 0..64 {
+        for y in 0..64 {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            let strength = 20.0 * (0.9 + 0.2 * f32::from((state >> 16) as u16) / 65_536.0);
+            let middle = 10.0 + 0.2 * x as f32 + 0.05 * y as f32 + 32.0;
+            for (z, value) in volume.trace_mut(x, y).iter_mut().enumerate() {
+                if (z as f32 - middle).abs() <= 4.0 {
+                    *value *= strength;
+                }
+            }
+        }
+    }
+    let surfaces = grown(&volume, &GrowSettings::default());
+    check(&surfaces);
+    let on_it = |v: &crate::surfaces::Vertex| (v.z - (42.0 + 0.2 * f32::from(v.x) + 0.05 * f32::from(v.y))).abs() < 1.0;
+    let most = surfaces
+        .surfaces
+        .iter()
+        .map(|s| {
+            surfaces.vertices[s.vertices.start as usize..s.vertices.end as usize].iter().filter(|v| on_it(v)).count()
+        })
+        .max();
+    assert_eq!(most, Some(64 * 64));
+}
