@@ -16,6 +16,7 @@ pub(super) fn extract(typed: ExtractArgs) -> Result<Request, Usage> {
         extrema: kinds.collect::<Result<_, _>>()?,
         min_front_width: typed.min_front_width,
         join_share: typed.join_share,
+        fault_evidence: typed.fault_evidence,
         ..GrowSettings::default()
     };
     let settings = ExtractSettings {

@@ -40,6 +40,7 @@ fn what_cannot_be_extracted_is_a_sentence() {
     run_in(at, "extract p.petro --volume impedance").failed(&["impedance", "another lattice"]);
     run_in(at, "extract p.petro --volume nothing").failed(&["nothing"]);
     run_in(at, "extract p.petro --max-distance 1000").failed(&["max_distance", "64"]);
+    run_in(at, "extract p.petro --fault-evidence=-1").failed(&["-1", "inf"]);
     run_in(at, "extract p.petro --min-leaf-triangles 0").failed(&["min_leaf_triangles"]);
     assert_eq!(run_in(at, "extract p.petro --extrema ridge").code, 2);
     assert_eq!(run_in(at, "export p.petro c.csv").code, 2);

@@ -23,6 +23,10 @@ pub(in crate::cli) struct ExtractArgs {
     /// than 1 joins none
     #[arg(long, value_name = "SHARE", default_value_t = 0.4)]
     pub(in crate::cli) join_share: f32,
+    /// Evidence along a plane that makes it a fault which cuts surfaces: the more is asked, the fewer cuts. For chaotic or clipped data 100 to
+    /// 200; `inf` looks for no faults
+    #[arg(long, value_name = "NATS", default_value_t = 25.0)]
+    pub(in crate::cli) fault_evidence: f32,
     /// Fewest triangles of a leaf of a surface's tree
     #[arg(long, value_name = "N", default_value_t = 500)]
     pub(in crate::cli) min_leaf_triangles: u32,

@@ -106,6 +106,12 @@ pub enum GrowError<E = std::convert::Infallible> {
         /// Asked for.
         found: f32,
     },
+    /// The evidence asked of a fault makes no sense.
+    #[error("{found} is no evidence to ask of a fault; give 25 (a good choice) to 200, or `inf` to look for none")]
+    FaultEvidence {
+        /// Asked for.
+        found: f32,
+    },
     /// Nothing to follow.
     #[error("no kind of extremum to grow on; ask for peaks, troughs or zero crossings")]
     NoExtrema,
@@ -150,6 +156,9 @@ pub fn grow_slabs<S: SlabSource>(
     }
     if settings.join_share.is_nan() || settings.join_share <= 0.0 {
         return Err(GrowError::JoinShare { found: settings.join_share });
+    }
+    if settings.fault_evidence.is_nan() || settings.fault_evidence <= 0.0 {
+        return Err(GrowError::FaultEvidence { found: settings.fault_evidence });
     }
     let mut kinds = settings.extrema.clone();
     kinds.sort_unstable();
