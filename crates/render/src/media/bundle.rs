@@ -30,6 +30,7 @@ use glam::{Mat3, Vec3};
 pub const RAYS: usize = 64;
 /// Samples that a ray takes at a time.
 const LANES: usize = 8;
+const NUMBERS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Gathers what rays meet between two distances each; quick where neighbours in the list are neighbours in the picture.
 pub fn gather_all(
@@ -226,16 +227,16 @@ impl<'b> Bundle<'b> {
         {
             let walker = &mut self.walkers[index];
             walker.n += count as u32;
-            let (mut depth, step) = (walker.depth, walker.step);
-            let mut ended = false;
-            for extinction in &extinctions[..count] {
-                depth += extinction * step;
-                if depth >= spent {
-                    ended = true;
-                    break;
-                }
+            let mut depths = [walker.depth; LANES];
+            let mut depth = walker.depth;
+            for (lane, extinction) in extinctions.iter().enumerate() {
+                depth += if lane < count { extinction * walker.step } else { 0.0 };
+                depths[lane] = depth;
             }
-            walker.depth = depth;
+            // A ray ends at the first sample behind which nothing is seen.
+            let ended = depth >= spent;
+            walker.depth =
+                if ended { depths.into_iter().find(|depth| *depth >= spent).unwrap_or(depth) } else { depth };
             if !ended {
                 on.push(index);
             }
@@ -355,9 +356,11 @@ impl Batch {
     #[inline(always)]
     fn push(&mut self, index: usize, walker: &Walker) {
         let start = self.filled * LANES;
+        let first = walker.n as f32;
         for (axis, places) in self.places.axes.iter_mut().enumerate() {
-            for (lane, place) in places[start..start + LANES].iter_mut().enumerate() {
-                *place = walker.index[axis] + walker.index_per[axis] * (walker.n + lane as u32) as f32;
+            let (at, per) = (walker.index[axis], walker.index_per[axis]);
+            for (place, lane) in places[start..start + LANES].iter_mut().zip(NUMBERS) {
+                *place = at + per * (first + lane);
             }
         }
         self.walkers[self.filled] = (index, LANES.min((walker.steps - walker.n) as usize));

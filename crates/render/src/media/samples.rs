@@ -63,7 +63,7 @@ impl<'s> Samples<'s> {
         let cell = |axis: usize| (clamped[axis] as i32).min(self.size[axis].saturating_sub(2) as i32);
         let [x, y, z] = [cell(0), cell(1), cell(2)];
         let f = clamped - Vec3::new(x as f32, y as f32, z as f32);
-        self.mixed((x as usize * self.size[1] + y as usize) * self.size[2] + z as usize, f)
+        self.mix_of((x as usize * self.size[1] + y as usize) * self.size[2] + z as usize, f)
     }
 
     /// The values at the first `count` places.
@@ -87,31 +87,43 @@ impl<'s> Samples<'s> {
                 starts[n] = starts[n].wrapping_mul(rows).wrapping_add(cell);
             }
         }
-        for n in 0..count.min(BATCH) {
-            let f = Vec3::new(fractions[0][n], fractions[1][n], fractions[2][n]);
-            let value = self.mixed(starts[n] as usize, f);
-            values[n] = if most[n] < value { most[n] } else { value };
+        let values = &mut values[..count.min(BATCH)];
+        // Two calls, so that the neighbours in depth are known to lie side by side in the first: one load.
+        match self.steps {
+            [dx, dy, 1] => self.mix([dx, dy, 1], &starts, &fractions, values),
+            steps => self.mix(steps, &starts, &fractions, values),
+        }
+        for (value, most) in values.iter_mut().zip(&most) {
+            *value = if most < value { *most } else { *value };
+        }
+    }
+
+    /// Mixes of the corners of many cells.
+    #[inline(always)]
+    fn mix(&self, [dx, dy, dz]: [usize; 3], starts: &[u32; BATCH], f: &[[f32; BATCH]; 3], values: &mut [f32]) {
+        // The samples at each corner by the cell's first, lists of one length: a cell that is in one is in all.
+        let cells = self.values.len() - (dx + dy + dz);
+        let corner = |offset: usize| &self.values[offset..offset + cells];
+        let [a, b] = [corner(0), corner(dz)];
+        let [c, d] = [corner(dy), corner(dy + dz)];
+        let [e, g] = [corner(dx), corner(dx + dz)];
+        let [h, i] = [corner(dx + dy), corner(dx + dy + dz)];
+        for (n, value) in values.iter_mut().enumerate() {
+            let at = starts[n] as usize;
+            let (near, far) = (Vec4::new(a[at], b[at], c[at], d[at]), Vec4::new(e[at], g[at], h[at], i[at]));
+            *value = mixed(near, far, Vec3::new(f[0][n], f[1][n], f[2][n]));
         }
     }
 
     /// The mix of a cell's corners.
     #[inline(always)]
-    fn mixed(&self, start: usize, f: Vec3) -> f32 {
+    fn mix_of(&self, start: usize, f: Vec3) -> f32 {
         let [dx, dy, dz] = self.steps;
         let square = |at: usize| {
-            if dz == 1 {
-                let (near, far) = (&self.values[at..at + 2], &self.values[at + dy..at + dy + 2]);
-                Vec4::new(near[0], near[1], far[0], far[1])
-            } else {
-                let (near, far) = (self.values[at], self.values[at + dy]);
-                Vec4::new(near, near, far, far)
-            }
+            let (near, far) = (at, at + dy);
+            Vec4::new(self.values[near], self.values[near + dz], self.values[far], self.values[far + dz])
         };
-        let (near, far) = (square(start), square(start + dx));
-        let square = near + (far - near) * f.x;
-        let (first, second) = (Vec2::new(square.x, square.y), Vec2::new(square.z, square.w));
-        let pair = first + (second - first) * f.y;
-        pair.x + (pair.y - pair.x) * f.z
+        mixed(square(start), square(start + dx), f)
     }
 
     /// v ahead minus v behind, one sample to either side along each axis.
@@ -162,6 +174,15 @@ pub fn whole(number: f32) -> (f32, u32) {
     let nearest = (number + INTEGERS) - INTEGERS;
     let below = if nearest > number { nearest - 1.0 } else { nearest };
     (below, (below + INTEGERS).to_bits() & 0x7f_ffff)
+}
+
+/// The mix of eight numbers: the four of the near side, those of one row side by side, and of the far.
+#[inline(always)]
+fn mixed(near: Vec4, far: Vec4, f: Vec3) -> f32 {
+    let square = near + (far - near) * f.x;
+    let (first, second) = (Vec2::new(square.x, square.y), Vec2::new(square.z, square.w));
+    let pair = first + (second - first) * f.y;
+    pair.x + (pair.y - pair.x) * f.z
 }
 
 #[inline(always)]
