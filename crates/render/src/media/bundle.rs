@@ -18,7 +18,7 @@ use super::Shading;
 use super::bricks::{Bricks, Line};
 use super::field::{Field, FieldMedium, Place};
 use super::light::LightVolume;
-use super::lit::Lit;
+use super::lit::{Surfaces, half_way};
 use super::march::{Gathered, SPENT, gather, stretches};
 use super::samples::{BATCH, Places, Samples};
 use super::table::{NO_DATA_BELOW, absorbed};
@@ -60,6 +60,9 @@ struct Bundle<'b> {
     medium: &'b FieldMedium<'b>,
     samples: Samples<'b>,
     light: Option<&'b LightVolume>,
+    shading: Shading,
+    /// The direction to the light of surfaces, in display space.
+    towards_light: Vec3,
     /// The medium's colour, where that is all there is to know of a sample.
     plain: Option<Vec3>,
     /// Differences per sample → normal in display space.
@@ -93,7 +96,8 @@ struct Walker {
     ray: Ray,
     /// Units of length per voxel of t.
     units: f32,
-    lit: Option<Lit>,
+    /// Between the directions to the light and to the viewer.
+    half: Vec3,
     /// Its legs that are still to come.
     legs: std::ops::Range<usize>,
     /// Voxel positions of the leg's samples.
@@ -120,6 +124,7 @@ struct Batch {
     walkers: [(usize, usize); BATCH / LANES],
     filled: usize,
     seen: [Seen; BATCH],
+    surfaces: Surfaces,
 }
 
 /// A sample that shows something.
@@ -155,11 +160,7 @@ impl<'b> Bundle<'b> {
                     legs.push(Leg { t: stretch.t, steps: (length * field.samples_per_unit).ceil().max(1.0) });
                 }
             });
-            let lit = match field.shading {
-                Shading::Phong(phong) => Some(Lit::new(phong, field.light, -along / metres)),
-                _ => None,
-            };
-            Walker::new(*ray, units, lit, first..legs.len())
+            Walker::new(*ray, units, half_way(field.light, -along / metres), first..legs.len())
         });
         let walkers = walkers.collect();
         Self {
@@ -167,6 +168,8 @@ impl<'b> Bundle<'b> {
             medium,
             samples: medium.samples(),
             light,
+            shading: field.shading,
+            towards_light: field.light,
             plain: plain.map(Vec3::from_array),
             normal: field.display_normal_from_voxel * Mat3::from_diagonal(medium.index_from_voxel().0 * 0.5),
             shift: if medium.place == Place::CutOut { 8 } else { 0 },
@@ -279,28 +282,40 @@ impl<'b> Bundle<'b> {
                 on.push(index);
             }
         }
-        for seen in &batch.seen[..found] {
-            let walker = &self.walkers[seen.walker];
+        let seen = &batch.seen[..found];
+        if let Shading::Phong(phong) = self.shading {
+            for (n, seen) in seen.iter().enumerate() {
+                let walker = &self.walkers[seen.walker];
+                let differences = self.samples.differences(walker.index + walker.index_per * seen.n);
+                let normal = self.normal * differences;
+                [batch.surfaces.normals[0][n], batch.surfaces.normals[1][n], batch.surfaces.normals[2][n]] =
+                    normal.to_array();
+                [batch.surfaces.halves[0][n], batch.surfaces.halves[1][n], batch.surfaces.halves[2][n]] =
+                    walker.half.to_array();
+            }
+            batch.surfaces.light(&phong, self.towards_light);
+        }
+        for (n, seen) in seen.iter().enumerate() {
+            let walker = &mut self.walkers[seen.walker];
             let [r, g, b, _] = self.medium.table.entries[seen.entry];
             let mut colour = Vec3::new(r, g, b);
-            if let Some(lit) = &walker.lit {
-                let differences = self.samples.differences(walker.index + walker.index_per * seen.n);
-                colour = lit.on(self.normal * differences, colour);
+            if matches!(self.shading, Shading::Phong(_)) {
+                colour = colour * batch.surfaces.factor[n] + batch.surfaces.white[n];
             }
             if let Some(light) = self.light {
                 colour *= light.at(walker.line.at + walker.line.per * seen.n);
             }
-            self.walkers[seen.walker].gathered.colour += colour * seen.weight;
+            walker.gathered.colour += colour * seen.weight;
         }
     }
 }
 
 impl Walker {
-    fn new(ray: Ray, units: f32, lit: Option<Lit>, legs: std::ops::Range<usize>) -> Self {
+    fn new(ray: Ray, units: f32, half: Vec3, legs: std::ops::Range<usize>) -> Self {
         Self {
             ray,
             units,
-            lit,
+            half,
             legs,
             line: Line::default(),
             index: Vec3::ZERO,
@@ -349,6 +364,7 @@ impl Batch {
             walkers: [(0, 0); BATCH / LANES],
             filled: 0,
             seen: [Seen::default(); BATCH],
+            surfaces: Surfaces::new(),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Phong's light on a surface of equal value, two-sided: `ambient + diffuse·|n·l|` on the colour, and `specular·|n·h|^shininess` of white.
 
 use super::Phong;
+use super::samples::BATCH;
 use glam::Vec3;
 
 /// The light on what one ray meets.
@@ -11,39 +12,88 @@ pub struct Lit {
     half: Vec3,
 }
 
+/// Surfaces in the same light, component by component.
+pub struct Surfaces {
+    /// Their normals, of any length, in display space.
+    pub normals: [[f32; BATCH]; 3],
+    /// [`half_way`] of their rays.
+    pub halves: [[f32; BATCH]; 3],
+    /// The factor on their colour.
+    pub factor: [f32; BATCH],
+    /// The white that is added.
+    pub white: [f32; BATCH],
+}
+
+/// The direction between those to the light and to the viewer.
+pub fn half_way(light: Vec3, towards: Vec3) -> Vec3 {
+    (light + towards).normalize_or_zero()
+}
+
 impl Lit {
     /// Directions to the light and to the viewer, unit, in display space.
     pub fn new(phong: Phong, light: Vec3, towards: Vec3) -> Self {
-        Self { phong, light, half: (light + towards).normalize_or_zero() }
+        Self { phong, light, half: half_way(light, towards) }
     }
 
     /// A colour under it, on a surface with this normal of any length, in display space.
-    #[inline(always)]
     pub fn on(&self, normal: Vec3, colour: Vec3) -> Vec3 {
-        let length_sq = normal.length_squared();
-        let normal = if length_sq > 1e-24 { normal * length_sq.sqrt().recip() } else { Vec3::ZERO };
-        let diffuse = self.phong.diffuse * normal.dot(self.light).abs();
-        let specular = self.phong.specular * power(normal.dot(self.half).abs(), self.phong.shininess);
-        colour * (self.phong.ambient + diffuse) + Vec3::splat(specular)
+        let [diffuse, specular] = cosines(normal.to_array(), self.light.to_array(), self.half.to_array());
+        let mut specular = [specular];
+        raise(&mut specular, self.phong.shininess);
+        colour * (self.phong.ambient + self.phong.diffuse * diffuse) + Vec3::splat(self.phong.specular * specular[0])
     }
 }
 
-/// x to a power: by squaring where the exponent is a whole number, as it mostly is.
+impl Surfaces {
+    /// None yet.
+    pub fn new() -> Self {
+        Self { normals: [[0.0; BATCH]; 3], halves: [[0.0; BATCH]; 3], factor: [0.0; BATCH], white: [0.0; BATCH] }
+    }
+
+    /// Lights all of them.
+    #[inline(always)]
+    pub fn light(&mut self, phong: &Phong, light: Vec3) {
+        let light = light.to_array();
+        let [x, y, z] = &self.normals;
+        let [hx, hy, hz] = &self.halves;
+        for n in 0..BATCH {
+            let [diffuse, specular] = cosines([x[n], y[n], z[n]], light, [hx[n], hy[n], hz[n]]);
+            self.factor[n] = phong.ambient + phong.diffuse * diffuse;
+            self.white[n] = specular;
+        }
+        raise(&mut self.white, phong.shininess);
+        for white in &mut self.white {
+            *white *= phong.specular;
+        }
+    }
+}
+
+/// |n·l| and |n·h| for the normal made unit; nothing for none.
 #[inline(always)]
-fn power(x: f32, exponent: f32) -> f32 {
+fn cosines(normal: [f32; 3], light: [f32; 3], half: [f32; 3]) -> [f32; 2] {
+    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let length_sq = dot(normal, normal);
+    let inverse = if length_sq > 1e-24 { 1.0 / length_sq.sqrt() } else { 0.0 };
+    [dot(normal, light).abs() * inverse, dot(normal, half).abs() * inverse]
+}
+
+/// Numbers to a power: by squaring where the exponent is a whole number, as it mostly is.
+#[inline(always)]
+fn raise<const N: usize>(numbers: &mut [f32; N], exponent: f32) {
     let mut left = exponent as u32;
     if left as f32 != exponent {
-        return x.powf(exponent);
+        numbers.iter_mut().for_each(|number| *number = number.powf(exponent));
+        return;
     }
-    let (mut product, mut square) = (1.0, x);
+    let mut squares = *numbers;
+    *numbers = [1.0; N];
     while left > 0 {
-        if left & 1 == 1 {
-            product *= square;
+        for (number, square) in numbers.iter_mut().zip(&mut squares) {
+            *number *= if left & 1 == 1 { *square } else { 1.0 };
+            *square *= *square;
         }
-        square *= square;
         left >>= 1;
     }
-    product
 }
 
 #[cfg(test)]
@@ -53,9 +103,30 @@ mod tests {
     #[test]
     fn powers_are_those_of_the_library() {
         for exponent in [0.0f32, 1.0, 2.5, 20.0, 333.0] {
-            for x in [0.0f32, 0.3, 0.97, 1.0] {
-                assert!((power(x, exponent) - x.powf(exponent)).abs() < 1e-5, "{x} {exponent}");
+            let numbers = [0.0f32, 0.3, 0.97, 1.0];
+            let mut powers = numbers;
+            raise(&mut powers, exponent);
+            for (x, power) in numbers.into_iter().zip(powers) {
+                assert!((power - x.powf(exponent)).abs() < 1e-5, "{x} {exponent}");
             }
+        }
+    }
+
+    #[test]
+    fn many_surfaces_are_lit_as_each_is() {
+        let phong = Phong { shininess: 7.0, ..Phong::default() };
+        let (light, mut surfaces) = (Vec3::new(0.6, 0.0, 0.8), Surfaces::new());
+        let vector = |n: usize| Vec3::new((n as f32).sin(), (n as f32 * 1.7).cos(), (n as f32 * 0.3).sin());
+        for n in 0..BATCH {
+            // The first has no normal.
+            let (normal, half) = (vector(n) * n as f32, half_way(light, vector(n + 9).normalize()));
+            (0..3).for_each(|axis| surfaces.normals[axis][n] = normal[axis]);
+            (0..3).for_each(|axis| surfaces.halves[axis][n] = half[axis]);
+        }
+        surfaces.light(&phong, light);
+        for n in 0..BATCH {
+            let one = Lit::new(phong, light, vector(n + 9).normalize()).on(vector(n) * n as f32, Vec3::X);
+            assert_eq!([one.x, one.y], [surfaces.factor[n] + surfaces.white[n], surfaces.white[n]], "{n}");
         }
     }
 
