@@ -88,7 +88,12 @@ pub(crate) fn linear(encoded: Vec3) -> Vec3 {
 }
 
 pub(crate) fn encoded(linear: Vec3) -> Vec3 {
-    Vec3::from_array(linear.to_array().map(|c| srgb_from_linear(c.clamp(0.0, 1.0))))
+    let coded = |c: f32| srgb_from_linear(c.clamp(0.0, 1.0));
+    // Grey, as white media are throughout, takes one power in place of three.
+    if linear.x == linear.y && linear.y == linear.z {
+        return Vec3::splat(coded(linear.x));
+    }
+    Vec3::from_array(linear.to_array().map(coded))
 }
 
 /// What stops a ray in this scene at or after distance `start`: a well, or the first face or ground, one of the cut-outs' back faces or ground, or nothing.

@@ -87,15 +87,16 @@ impl Loops for March<'_, '_> {
 
 /// A stretch of a ray through the medium.
 struct Leg {
-    t: [f32; 2],
-    steps: f32,
+    /// Voxel position of the first sample and the way to the next.
+    at: Vec3,
+    per: Vec3,
+    /// Samples, and their optical length.
+    steps: u32,
+    step: f32,
 }
 
 /// A ray and how far it is.
 struct Walker {
-    ray: Ray,
-    /// Units of length per voxel of t.
-    units: f32,
     /// Between the directions to the light and to the viewer.
     half: Vec3,
     /// Its legs that are still to come.
@@ -156,11 +157,15 @@ impl<'b> Bundle<'b> {
             stretches(solid, ray, *between, |stretch| {
                 // Rock that is drawn as faces is not looked into.
                 if stretch.place == medium.place && (stretch.place == Place::CutOut || field.faces != Faces::All) {
-                    let length = (stretch.t[1] - stretch.t[0]) * units;
-                    legs.push(Leg { t: stretch.t, steps: (length * field.samples_per_unit).ceil().max(1.0) });
+                    let [from, to] = stretch.t;
+                    let steps = ((to - from) * units * field.samples_per_unit).ceil().max(1.0);
+                    let step_t = (to - from) / steps;
+                    let (at, per) = (ray.at(from + 0.5 * step_t), ray.direction * step_t);
+                    legs.push(Leg { at, per, steps: steps as u32, step: step_t * units });
                 }
             });
-            Walker::new(*ray, units, half_way(field.light, -along / metres), first..legs.len())
+            let half = if lit { half_way(field.light, -along / metres) } else { Vec3::ZERO };
+            Walker::new(half, first..legs.len())
         });
         let walkers = walkers.collect();
         Self {
@@ -311,10 +316,8 @@ impl<'b> Bundle<'b> {
 }
 
 impl Walker {
-    fn new(ray: Ray, units: f32, half: Vec3, legs: std::ops::Range<usize>) -> Self {
+    fn new(half: Vec3, legs: std::ops::Range<usize>) -> Self {
         Self {
-            ray,
-            units,
             half,
             legs,
             line: Line::default(),
@@ -342,15 +345,13 @@ impl Walker {
     }
 
     fn begin(&mut self, leg: &Leg, medium: &FieldMedium) {
-        let [from, to] = leg.t;
-        let step_t = (to - from) / leg.steps;
         let (scale, offset) = medium.index_from_voxel();
-        self.line = Line::new(self.ray.at(from + 0.5 * step_t), self.ray.direction * step_t);
-        self.index = self.line.at * scale + offset;
-        self.index_per = self.line.per * scale;
+        self.line = Line::new(leg.at, leg.per);
+        self.index = leg.at * scale + offset;
+        self.index_per = leg.per * scale;
         self.n = 0;
-        self.steps = leg.steps as u32;
-        self.step = step_t * self.units;
+        self.steps = leg.steps;
+        self.step = leg.step;
     }
 }
 
