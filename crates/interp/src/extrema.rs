@@ -76,12 +76,14 @@ impl Extrema {
     }
 
     /// Indices of the extrema on the trace at (x, y).
+    #[inline]
     pub fn on_trace(&self, x: usize, y: usize) -> Range<usize> {
         let trace = x * self.size[1] + y;
         self.offsets[trace] as usize..self.offsets[trace + 1] as usize
     }
 
     /// Indices of the extrema on inline index x.
+    #[inline]
     pub fn on_inline(&self, x: usize) -> Range<usize> {
         let ny = self.size[1];
         self.offsets[x * ny] as usize..self.offsets[(x + 1) * ny] as usize

@@ -164,6 +164,7 @@ impl Forest {
     }
 
     /// Id of the leaf that holds a triangle.
+    #[inline]
     pub fn leaf_of_triangle(&self, triangle: u32) -> u32 {
         self.leaves.partition_point(|&leaf| self.nodes[leaf as usize].triangles.start <= triangle) as u32
     }

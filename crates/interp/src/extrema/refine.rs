@@ -14,6 +14,7 @@ const MAX_SHIFT: f64 = 0.75;
 const STEPS: usize = 3;
 
 /// Offset (−0.75 … 0.75) and height of the maximum of `sign`·trace at sample z, which is greater than its two neighbours.
+#[inline]
 pub fn maximum(trace: &[f32], z: usize, sign: f32) -> (f32, f32) {
     let at = |index: usize| f64::from(trace[index] * sign);
     let [before, here, after] = [at(z - 1), at(z), at(z + 1)];
@@ -69,6 +70,7 @@ pub fn clipped(trace: &[f32], first: usize, last: usize, sign: f32) -> f32 {
 }
 
 /// Offset (0 … 1) and slope of the zero crossing between samples z (negative) and z + 1 (positive).
+#[inline]
 pub fn crossing(trace: &[f32], z: usize) -> (f32, f32) {
     let at = |index: usize| f64::from(trace[index]);
     let [here, after] = [at(z), at(z + 1)];

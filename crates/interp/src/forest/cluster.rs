@@ -95,6 +95,8 @@ pub(super) struct Clusters {
     parent: Vec<u32>,
     /// Moments of each root's part.
     moments: Vec<Moments>,
+    /// Cost of each root's part.
+    costs: Vec<f64>,
     /// First entry and count of each root's neighbours in `arena`; they may be outdated or repeated.
     lists: Vec<[u32; 2]>,
     arena: Vec<u32>,
@@ -123,7 +125,8 @@ impl Clusters {
             lists.push([start, arena.len() as u32 - start]);
         }
         let parent = (0..count as u32).collect();
-        Self { parent, moments, lists, arena, seen: vec![0; count], mark: 0 }
+        let costs = moments.iter().map(Moments::cost).collect();
+        Self { parent, moments, costs, lists, arena, seen: vec![0; count], mark: 0 }
     }
 
     pub(super) fn of_all(patches: &Patches) -> Self {
@@ -142,6 +145,7 @@ impl Clusters {
             }
             for (id, moments, neighbours) in &region.left {
                 all.moments[*id as usize] = *moments;
+                all.costs[*id as usize] = moments.cost();
                 all.lists[*id as usize] = [all.arena.len() as u32, neighbours.len() as u32];
                 all.arena.extend(neighbours);
             }
@@ -187,10 +191,17 @@ impl Clusters {
         if self.list(part).last() == Some(&OUTSIDE) {
             return Nearest::Unknown;
         }
+        // A union costs no less than both parts together, so the cheapest part first rules out most others.
+        let list = self.list(part);
+        let cheapest = list.iter().copied().min_by(|&a, &b| self.costs[a as usize].total_cmp(&self.costs[b as usize]));
         let mut best: Option<(f64, u32)> = None;
-        for &other in self.list(part) {
+        for other in cheapest.into_iter().chain(list.iter().copied().filter(|&other| Some(other) != cheapest)) {
             let (low, high) = (part.min(other) as usize, part.max(other) as usize);
-            let cost = self.moments[low].union(&self.moments[high]).cost();
+            let union = self.moments[low].union(&self.moments[high]);
+            if best.is_some_and(|(least, _)| self.costs[low] + self.costs[high] - union.doubt() > least) {
+                continue;
+            }
+            let cost = union.cost();
             // With one part fixed, the order of pairs of equal cost is that of the other.
             if best.is_none_or(|(least, id)| cost < least || (cost == least && other < id)) {
                 best = Some((cost, other));
@@ -203,6 +214,7 @@ impl Clusters {
     fn merge(&mut self, a: u32, b: u32) -> [u32; 2] {
         let (low, high) = (a.min(b), a.max(b));
         self.moments[low as usize] = self.moments[low as usize].union(&self.moments[high as usize]);
+        self.costs[low as usize] = self.moments[low as usize].cost();
         self.parent[high as usize] = low;
         let start = self.arena.len() as u32;
         for part in [low, high] {

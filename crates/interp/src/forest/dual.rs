@@ -25,6 +25,7 @@ impl Patches {
         self.counts.len()
     }
 
+    #[inline]
     pub(super) fn neighbours_of(&self, patch: u32) -> &[u32] {
         &self.neighbours[self.starts[patch as usize] as usize..self.starts[patch as usize + 1] as usize]
     }
@@ -118,6 +119,7 @@ fn connected_in_tiles(vertices: &[Vertex], triangles: &[[u32; 3]], edges: &[[u32
 }
 
 /// Root of an element; the path to it is halved.
+#[inline]
 pub(super) fn find(parent: &mut [u32], mut element: u32) -> u32 {
     while parent[element as usize] != element {
         let above = parent[parent[element as usize] as usize];

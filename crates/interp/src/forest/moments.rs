@@ -23,6 +23,7 @@ impl Moments {
     pub(super) const EMPTY: Self = Self { area: 0.0, centroid: [0.0; 3], second: [0.0; 6] };
 
     /// Moments of one triangle.
+    #[inline]
     pub(super) fn of_triangle(corners: [[f64; 3]; 3]) -> Self {
         let [a, b, c] = corners;
         let minus = |p: [f64; 3], q: [f64; 3]| [p[0] - q[0], p[1] - q[1], p[2] - q[2]];
@@ -38,6 +39,7 @@ impl Moments {
     }
 
     /// Moments of two sets that share no area.
+    #[inline]
     pub(super) fn union(&self, other: &Self) -> Self {
         let area = self.area + other.area;
         if area == 0.0 {
@@ -59,12 +61,20 @@ impl Moments {
     }
 
     /// Cost of a set: squared distance to its best-fit plane, integrated over the area, and the tie-break.
+    #[inline]
     pub(super) fn cost(&self) -> f64 {
         smallest_eigenvalue(&self.second) + TIE_BREAK * self.area
+    }
+
+    /// What rounding may do to the cost of a set.
+    #[inline]
+    pub(super) fn doubt(&self) -> f64 {
+        1e-14 * (self.second[0] + self.second[1] + self.second[2])
     }
 }
 
 /// Adds `weight · ddᵀ`.
+#[inline]
 fn add_outer(second: &mut [f64; 6], d: [f64; 3], weight: f64) {
     let [x, y, z] = d.map(|component| component * weight);
     let products = [x * d[0], y * d[1], z * d[2], x * d[1], x * d[2], y * d[2]];
@@ -77,6 +87,7 @@ fn add_outer(second: &mut [f64; 6], d: [f64; 3], weight: f64) {
 ///
 /// The characteristic polynomial λ³ − c₂λ² + c₁λ − c₀ has real roots only, so Newton's steps from 0 climb to the smallest without passing it. The error is a
 /// few 1e-16 of the largest eigenvalue, as of any method that works on the matrix.
+#[inline]
 fn smallest_eigenvalue(m: &[f64; 6]) -> f64 {
     let [xx, yy, zz, xy, xz, yz] = *m;
     let (minor_x, minor_y, minor_z) = (yy * zz - yz * yz, xx * zz - xz * xz, xx * yy - xy * xy);

@@ -150,6 +150,7 @@ fn uncertainty(a: f32, b: f32) -> f32 {
 }
 
 /// Misfit of a link to the dips at its ends, samples.
+#[inline]
 pub(super) fn misfit(extrema: &Extrema, dips: &[[f32; 2]], v: usize, next: usize, axis: usize) -> f32 {
     extrema.z[next] - extrema.z[v] - 0.5 * (dips[v][axis] + dips[next][axis])
 }
@@ -240,11 +241,13 @@ fn length(a: f32, b: f32) -> f32 {
 }
 
 /// Whether an extremum is too high to be noise.
+#[inline]
 pub(super) fn is_strong(amplitude: f32, noise: &Noise) -> bool {
     amplitude > 5.0 * noise.change(amplitude)
 }
 
 /// Strong extrema without a partner behind them, along x and y.
+#[inline]
 pub(super) fn begins(extrema: &Extrema, links: &Links, v: usize, noise: &Noise) -> [bool; 2] {
     [BACK_X, BACK_Y].map(|back| links.to[back][v] == NONE && is_strong(extrema.amplitude[v], noise))
 }

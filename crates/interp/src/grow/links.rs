@@ -28,6 +28,7 @@ pub(super) struct Links {
 
 impl Links {
     /// The corners [at, x + 1, y + 1, both] of the cell that begins at `a`, if all four links are there and agree.
+    #[inline]
     pub(super) fn closed(&self, a: u32) -> Option<[u32; 4]> {
         let (b, c) = (self.to[NEXT_X][a as usize], self.to[NEXT_Y][a as usize]);
         if b == NONE || c == NONE {
@@ -57,6 +58,7 @@ impl<'e> Side<'e> {
     }
 
     /// For each extremum its choice on the other trace, which lies `direction` (±1) along `axis`.
+    #[inline]
     fn choose(&self, other: &Self, axis: usize, direction: f32, reach: f32, chosen: &mut Vec<u32>) {
         chosen.clear();
         // Neighbours begin their search nearly where the one before did.

@@ -12,6 +12,7 @@ impl UnionFind {
     }
 
     /// The smallest member of the set of `member`.
+    #[inline]
     pub(super) fn find(&mut self, member: u32) -> u32 {
         let mut at = member;
         loop {
@@ -27,6 +28,7 @@ impl UnionFind {
     }
 
     /// Joins two sets; the representative of the union.
+    #[inline]
     pub(super) fn union(&mut self, a: u32, b: u32) -> u32 {
         let (a, b) = (self.find(a), self.find(b));
         let (low, high) = (a.min(b), a.max(b));
