@@ -2,7 +2,7 @@
 //! `cargo run -p petroglyph-interp --example extraction_speed [SIDE | NXxNYxNZ [ROUNDS [FILE]]]`.
 //!
 //! A synthetic survey at SNR 3 of SIDE³ (256) voxels. For every round and stage: seconds of the clock, seconds of the processor (all
-//! threads), bytes a voxel at the peak beyond what was held before, and a digest of what the stage made. Equal digests are equal results. With FILE,
+//! threads), bytes a voxel held at its peak beyond the volume, and a digest of what the stage made. Equal digests are equal results. With FILE,
 //! the samples are read from there (little-endian float32 after a NumPy header), or written there when it does not exist, for
 //! `python bench/peers.py --amplitude FILE` to time scipy on the same.
 
@@ -30,26 +30,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     let voxels = size.iter().product::<usize>() as f64;
     println!("{}x{}x{} voxels", size[0], size[1], size[2]);
     for _ in 0..rounds {
-        let whole = Stage::begin();
-        let stage = Stage::begin();
+        let resident = status("VmRSS:");
+        let stage = Stage::begin(resident);
         let surfaces = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent())?;
         stage.end("growing", voxels, || digest_of_surfaces(&surfaces));
-        let stage = Stage::begin();
+        let stage = Stage::begin(resident);
         let forest = Forest::build(surfaces, &ForestSettings::default(), &Progress::silent())?;
         stage.end("trees", voxels, || digest_of_forest(&forest));
-        let stage = Stage::begin();
+        let stage = Stage::begin(resident);
         let distances = LeafDistances::new(&forest, &DistanceSettings::default())?;
         let found = distances.columns(0..size[0], 0..size[1], &Progress::silent())?;
         stage.end("distances", voxels, || digest(|hasher| (&found.distance, &found.leaf).hash(hasher)));
         drop(found);
-        let (triangles, leaves) = (forest.surfaces.triangles.len(), forest.leaf_count());
-        whole.end("all, digests too", voxels, || 0);
-        println!("{triangles} triangles, {leaves} leaves");
+        println!("{} triangles, {} leaves", forest.surfaces.triangles.len(), forest.leaf_count());
     }
     Ok(())
 }
 
-/// What was spent before a stage.
+/// What was spent before a stage, and held before the first.
 struct Stage {
     start: Instant,
     processor: f64,
@@ -57,17 +55,17 @@ struct Stage {
 }
 
 impl Stage {
-    fn begin() -> Self {
+    fn begin(resident: f64) -> Self {
         // Forgets the peak so far.
         let _ = fs::write("/proc/self/clear_refs", "5");
-        Self { start: Instant::now(), processor: processor_seconds(), resident: status("VmRSS:") }
+        Self { start: Instant::now(), processor: processor_seconds(), resident }
     }
 
     fn end(self, name: &str, voxels: f64, digest: impl FnOnce() -> u64) {
         let (seconds, processor) = (self.start.elapsed().as_secs_f64(), processor_seconds() - self.processor);
         let bytes = (status("VmHWM:") - self.resident) / voxels;
         println!(
-            "{name:>16}: {seconds:7.3} s, processor {processor:7.2} s, {bytes:5.1} bytes a voxel, digest {:016x}",
+            "{name:>9}: {seconds:7.3} s, processor {processor:7.2} s, {bytes:5.1} bytes a voxel, digest {:016x}",
             digest()
         );
     }

@@ -126,6 +126,7 @@ pub(super) struct Brick<'a> {
 
 impl<'a> Brick<'a> {
     /// Triangles of a cell: row · 4 + column of it.
+    #[inline(always)]
     pub(super) fn in_cell(&self, cell: usize) -> &'a [CellTriangle] {
         &self.triangles[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
@@ -196,6 +197,7 @@ impl CellIndex {
     }
 
     /// A brick, by its number along x and y in the volume, and the interval of depth.
+    #[inline(always)]
     pub(super) fn brick(&self, x: usize, y: usize, interval: usize) -> Brick<'_> {
         let row = &self.rows[x - self.first];
         let brick = y * self.counts[2] + interval;
@@ -205,6 +207,7 @@ impl CellIndex {
     }
 
     /// Bricks, numbered in the volume, that have cells within `reach` of a column.
+    #[inline(always)]
     pub(super) fn bricks_within(&self, column: [usize; 2], reach: usize) -> [Range<usize>; 2] {
         let around = |at: usize, within: Range<usize>| {
             (at.saturating_sub(reach) / BRICK).max(within.start)..((at + reach) / BRICK + 1).min(within.end)

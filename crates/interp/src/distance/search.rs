@@ -248,7 +248,7 @@ impl<'a> Column<'a> {
     }
 
     /// Visits the cells that `reach` reaches and that are two or more away.
-    #[inline(never)]
+    #[inline(always)]
     fn visit_bricks(&mut self, [x, y]: [usize; 2], run: usize, reach: f32) {
         let index = self.index;
         let [bricks_x, bricks_y] = index.bricks_within([x, y], reach as usize + 1);
@@ -280,6 +280,7 @@ impl<'a> Column<'a> {
     }
 
     /// Intervals of depth within reach of a run, at a horizontal distance.
+    #[inline(always)]
     fn intervals(&self, run: usize, reach: f32, h_sq: f32) -> Range<usize> {
         let left = reach * reach - h_sq;
         if left < 0.0 {

@@ -110,27 +110,30 @@ fn near(links: &Links, evidence: &[[u8; 2]], mut near: Vec<bool>) -> Vec<bool> {
 
 /// The links that may be followed to an extremum without a surface, by evidence, each as `v << 1 | axis`.
 fn edges(links: &Links, evidence: &[[u8; 2]], labels: &[u32]) -> Vec<u64> {
-    let visit = |found: &mut dyn FnMut(u8, u64)| {
-        for v in 0..labels.len() {
-            for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
-                let (next, evidence) = (links.to[direction][v], evidence[v][axis]);
-                if next != NONE && evidence <= PASSABLE && (labels[v] == NONE || labels[next as usize] == NONE) {
-                    found(evidence, (v as u64) << 1 | axis as u64);
-                }
-            }
-        }
-    };
     // They are met in the order of the extrema, so it is enough to count.
     let mut starts = [0usize; PASSABLE as usize + 2];
-    visit(&mut |evidence, _| starts[evidence as usize + 1] += 1);
+    each_edge(links, evidence, labels, |evidence, _| starts[evidence as usize + 1] += 1);
     for n in 1..starts.len() {
         starts[n] += starts[n - 1];
     }
     let mut edges = vec![0u64; starts[starts.len() - 1]];
-    visit(&mut |evidence, edge| {
+    each_edge(links, evidence, labels, |evidence, edge| {
         let at = &mut starts[evidence as usize];
         edges[*at] = edge;
         *at += 1;
     });
     edges
+}
+
+/// Calls `found(evidence, edge)` for each of those links, in the order of the extrema.
+#[inline]
+fn each_edge(links: &Links, evidence: &[[u8; 2]], labels: &[u32], mut found: impl FnMut(u8, u64)) {
+    for v in 0..labels.len() {
+        for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
+            let (next, evidence) = (links.to[direction][v], evidence[v][axis]);
+            if next != NONE && evidence <= PASSABLE && (labels[v] == NONE || labels[next as usize] == NONE) {
+                found(evidence, (v as u64) << 1 | axis as u64);
+            }
+        }
+    }
 }
