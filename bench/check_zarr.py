@@ -69,7 +69,74 @@ def check_parameterization(path, group, facts):
     return True
 
 
-CHECKS = {"volume": check_volume, "horizon": check_horizon, "parameterization": check_parameterization}
+def distances_sq(point, corners):
+    """Squared distances of a point to triangles `[n][3][3]`: to the foot on the plane where it is inside, else to the nearest edge."""
+    edges = np.roll(corners, -1, axis=1) - corners
+    normal = np.cross(edges[:, 0], -edges[:, 2])
+    off = ((point - corners[:, 0]) * normal).sum(1) / (normal**2).sum(1)
+    foot = point - off[:, None] * normal
+    sides = (np.cross(edges, foot[:, None] - corners) * normal[:, None]).sum(2)
+    along = np.clip(((point - corners) * edges).sum(2) / (edges**2).sum(2), 0, 1)
+    to_edges = ((point - corners - along[:, :, None] * edges) ** 2).sum(2).min(1)
+    return np.where((sides >= 0).all(1), off**2 * (normal**2).sum(1), to_edges)
+
+
+def check_candidates(path, group, facts):
+    distance, leaf = group["distance"][:], group["leaf"][:]
+    if list(distance.shape) != facts["size"] or distance.shape != leaf.shape:
+        return fail(path, f"distance has {distance.shape}, leaf {leaf.shape}")
+    if ((distance == 255) != (leaf == 0)).any() or leaf.max(initial=0) > facts["leaves"]:
+        return fail(path, "distances and leaf ids contradict each other")
+    forest = group["forest"]
+    trace, z, triangles, nodes = (forest[name][:] for name in ("trace", "z", "triangles", "nodes"))
+    # A leaf has no children; ids count from 1 in the order of the nodes.
+    leaves = nodes[nodes[:, 1] == 0xFFFFFFFF]
+    if len(leaves) != facts["leaves"] or (leaves[1:, 4] != leaves[:-1, 5]).any():
+        return fail(path, f"{len(leaves)} leaves instead of {facts['leaves']}, or with gaps")
+    level, count = (distance, leaf), 0
+    while f"pyramid/{count + 1}" in group:
+        count += 1
+        found = tuple(group[f"pyramid/{count}/{name}"][:] for name in ("distance", "leaf"))
+        level = halved(*level)
+        if any((a != b).any() if a.shape == b.shape else True for a, b in zip(found, level)):
+            return fail(path, f"level {count} does not hold the least of level {count - 1}")
+    # Some voxels against all triangles around them.
+    corners = np.concatenate([trace[triangles].astype(float), z[triangles][:, :, None].astype(float)], axis=2)
+    order = np.argsort(corners[:, :, 0].min(1), kind="stable")
+    first = corners[order, :, 0].min(1)
+    leaf_of = np.repeat(np.arange(1, len(leaves) + 1), leaves[:, 5] - leaves[:, 4])
+    reach, random = facts["max_distance"], np.random.default_rng(1)
+    for voxel in random.integers(0, distance.shape, (500, 3)):
+        near = order[np.searchsorted(first, voxel[0] - reach - 2) : np.searchsorted(first, voxel[0] + reach + 1)]
+        near = near[(np.abs(corners[near, 0] - voxel)[:, 1] <= reach + 1)]
+        exact = np.sqrt(distances_sq(voxel.astype(float), corners[near]))
+        least, at = exact.min(initial=np.inf), tuple(voxel)
+        if distance[at] == 255:
+            right = least > reach - 1e-3
+        else:
+            own = exact[leaf_of[near] == leaf[at]].min(initial=np.inf)
+            right = abs(distance[at] * reach / 254 - least) < reach / 508 + 1e-3 and own < least + 1e-3
+        if not right:
+            return fail(path, f"voxel {voxel}: distance {distance[at]} and leaf {leaf[at]} where {least:.4f} is exact")
+    print(f"{path}: candidates of {distance.shape}, {len(leaves)} leaves, {count} levels; 500 voxels are exact")
+    return True
+
+
+def halved(distance, leaf):
+    """The least distance of each 2 x 2 x 2 voxels, of equal ones with the lesser leaf."""
+    key = distance.astype(np.uint64) << 32 | leaf
+    key = np.pad(key, [(0, n % 2) for n in key.shape], constant_values=np.iinfo(np.uint64).max)
+    parts = [key[x::2, y::2, z::2] for x in (0, 1) for y in (0, 1) for z in (0, 1)]
+    least = np.minimum.reduce(parts)
+    return (least >> 32).astype(distance.dtype), (least & 0xFFFFFFFF).astype(leaf.dtype)
+
+
+CHECKS = {
+    "volume": check_volume,
+    "horizon": check_horizon,
+    "parameterization": check_parameterization,
+    "candidates": check_candidates,
+}
 
 
 def check(path):

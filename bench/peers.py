@@ -128,13 +128,14 @@ def extraction(amplitude):
     trough = (middle < 0) & (middle < amplitude[:, :, :-2]) & (middle <= amplitude[:, :, 2:])
     extrema = np.zeros(amplitude.shape, bool)
     extrema[:, :, 1:-1] = peak | trough
-    started = time.perf_counter()
+    started, busy = time.perf_counter(), processor_seconds()
     distance_transform_edt(~extrema, return_indices=True)
     transformed = time.perf_counter()
     label(extrema, structure=np.ones((3, 3, 3)))
     return {
         "scipy_distance_s": round(transformed - started, 2),
         "scipy_label_s": round(time.perf_counter() - transformed, 2),
+        "scipy_processor_s": round(processor_seconds() - busy, 2),
     }
 
 
@@ -301,6 +302,7 @@ def main():
     parser.add_argument("--keep", help="folder for VTK's pictures")
     parser.add_argument("--scipy", action="store_true", help="time scipy's cKDTree too (minutes)")
     parser.add_argument("--segy", action="store_true", help="time segyio on the cubes of `petroglyph bench --segy DIR`")
+    parser.add_argument("--amplitude", metavar="FILE", help="time scipy's extraction on the samples of this .npy instead")
     parser.add_argument("--store", action="store_true", help="time segyio and MDIO on survey.sgy instead")
     args = parser.parse_args()
     if args.segy:
@@ -308,6 +310,9 @@ def main():
         return
     if args.volume:
         time_vtk(args)
+        return
+    if args.amplitude:
+        print(json.dumps(extraction(np.load(args.amplitude))))
         return
     if args.dir is None:
         parser.error("DIR or --volume is needed")

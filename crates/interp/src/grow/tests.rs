@@ -251,3 +251,56 @@ fn a_strong_reflector_that_varies_is_no_fault() {
         .max();
     assert_eq!(most, Some(64 * 64));
 }
+
+/// Counts the steps of the stage of growing, and cancels at one of them.
+#[derive(Default)]
+struct Watcher {
+    stage: std::sync::Mutex<(bool, u64, u64)>,
+    cancel_at: Option<u64>,
+    progress: std::sync::OnceLock<Progress>,
+}
+
+impl survey::progress::ProgressSink for Watcher {
+    fn begin(&self, stage: &str, total: u64) {
+        *self.stage.lock().unwrap() = (stage == "growing surfaces", total, 0);
+    }
+
+    fn advance(&self, done: u64) {
+        let mut stage = self.stage.lock().unwrap();
+        stage.2 = stage.2.max(done);
+        if stage.0 && self.cancel_at.is_some_and(|at| done >= at) {
+            self.progress.get().unwrap().cancel();
+        }
+    }
+
+    fn warn(&self, _: &str) {}
+}
+
+#[test]
+fn progress_arrives_at_its_end_and_cancel_is_heard_at_any_step() {
+    let settings = SynthSettings { size: [33, 29, 64], snr: Some(3.0), ..SynthSettings::default() };
+    let volume = Synthetic::generate(&settings, &Progress::silent()).unwrap().seismic;
+    let watched = |settings: &GrowSettings, cancel_at: Option<u64>| {
+        let watcher = std::sync::Arc::new(Watcher { cancel_at, ..Watcher::default() });
+        let progress = Progress::new(watcher.clone());
+        watcher.progress.set(progress.clone()).ok().unwrap();
+        let grown = grow_surfaces(&volume, settings, &progress);
+        let (_, total, done) = *watcher.stage.lock().unwrap();
+        (grown, total, done)
+    };
+    let ours = GrowSettings::default();
+    let plain = GrowSettings { core_width: 4, fault_evidence: f32::INFINITY, join_share: 2.0, ..ours.clone() };
+    let troughs = GrowSettings { extrema: vec![Extremum::Trough], ..ours };
+    for settings in [&ours, &plain, &troughs] {
+        let (grown, total, done) = watched(settings, None);
+        assert!(grown.is_ok() && done == total && total > 300, "{done} of {total}");
+    }
+    let (_, total, _) = watched(&ours, None);
+    for part in 0..12 {
+        let at = 1 + part * (total - 1) / 12;
+        let (grown, _, done) = watched(&ours, Some(at));
+        assert!(matches!(grown, Err(GrowError::Cancelled(_))), "cancelled at {at} of {total}");
+        // Each thread may be within a step of an inline's worth.
+        assert!(done >= at && done < total, "cancelled at {at}, went on to {done}");
+    }
+}
