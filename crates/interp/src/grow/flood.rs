@@ -59,11 +59,11 @@ pub(super) fn flood(
         }
     }
     progress.check()?;
-    let layered = layered(extrema, labels);
-    if layered.contains(&true) {
-        let near = near(links, evidence, rooted);
+    let layers = Layers::count(extrema, labels);
+    if layers.any {
+        let near = near(links, evidence, &rooted);
         for (label, near) in labels.iter_mut().zip(near) {
-            if !near && *label != NONE && layered[*label as usize] {
+            if !near && *label != NONE && layers.over_itself(*label) {
                 *label = NONE;
             }
         }
@@ -71,38 +71,63 @@ pub(super) fn flood(
     progress.check()
 }
 
-/// Which labels lie over themselves.
-fn layered(extrema: &Extrema, labels: &[u32]) -> Vec<bool> {
-    let mut counts = vec![[0u32; 2]; labels.len()];
-    let [nx, ny, _] = extrema.size;
-    let mut here: Vec<u32> = Vec::new();
-    for (x, y) in (0..nx).flat_map(|x| (0..ny).map(move |y| (x, y))) {
-        here.clear();
-        here.extend(labels[extrema.on_trace(x, y)].iter().filter(|&&label| label != NONE));
-        here.sort_unstable();
-        for (n, &label) in here.iter().enumerate() {
-            counts[label as usize][usize::from(n > 0 && here[n - 1] == label)] += 1;
-        }
-    }
-    counts.into_iter().map(|[traces, twice]| twice * LAYERED > traces).collect()
+/// How often each label lies on a trace.
+struct Layers {
+    /// For each label: its last trace, counted from 1, its traces, and how often it lies on one again.
+    counts: Vec<[u32; 3]>,
+    /// Whether some label lies over itself.
+    any: bool,
 }
 
-/// Which extrema are at most [`OUTSKIRTS`] passable links from one that is `near` to begin with.
-fn near(links: &Links, evidence: &[[u8; 2]], mut near: Vec<bool>) -> Vec<bool> {
-    let mut front: Vec<u32> = (0..near.len() as u32).filter(|&v| near[v as usize]).collect();
-    for _ in 0..OUTSKIRTS {
-        let mut next_front = Vec::new();
-        for &v in &front {
-            for axis in 0..2 {
-                let (next, back) = (links.to[2 * axis][v as usize], links.to[2 * axis + 1][v as usize]);
-                for (from, to) in [(v, next), (back, back)] {
-                    if to != NONE && !near[to as usize] && evidence[from as usize][axis] <= PASSABLE {
-                        near[to as usize] = true;
-                        next_front.push(to);
+impl Layers {
+    fn count(extrema: &Extrema, labels: &[u32]) -> Self {
+        let mut layers = Self { counts: vec![[0; 3]; labels.len()], any: false };
+        let [nx, ny, _] = extrema.size;
+        let mut met: Vec<u32> = Vec::new();
+        for (x, y) in (0..nx).flat_map(|x| (0..ny).map(move |y| (x, y))) {
+            let trace = (x * ny + y) as u32 + 1;
+            for &label in labels[extrema.on_trace(x, y)].iter().filter(|&&label| label != NONE) {
+                let [last, traces, again] = &mut layers.counts[label as usize];
+                if *last == trace {
+                    *again += 1;
+                } else {
+                    if *last == 0 {
+                        met.push(label);
                     }
+                    (*last, *traces) = (trace, *traces + 1);
                 }
             }
         }
+        layers.any = met.into_iter().any(|label| layers.over_itself(label));
+        layers
+    }
+
+    /// Whether a label lies on too many of its traces again.
+    fn over_itself(&self, label: u32) -> bool {
+        let [_, traces, again] = self.counts[label as usize];
+        again * LAYERED > traces
+    }
+}
+
+/// Which extrema are at most [`OUTSKIRTS`] passable links from one of `rooted`.
+fn near(links: &Links, evidence: &[[u8; 2]], rooted: &[bool]) -> Vec<bool> {
+    let mut near = rooted.to_vec();
+    let mut reach = |v: u32, front: &mut Vec<u32>| {
+        for (axis, to) in links.to.as_chunks::<2>().0.iter().enumerate() {
+            let [next, back] = [to[0][v as usize], to[1][v as usize]];
+            for (from, to) in [(v, next), (back, back)] {
+                if to != NONE && !near[to as usize] && evidence[from as usize][axis] <= PASSABLE {
+                    near[to as usize] = true;
+                    front.push(to);
+                }
+            }
+        }
+    };
+    let mut front = Vec::new();
+    (0..rooted.len() as u32).filter(|&v| rooted[v as usize]).for_each(|v| reach(v, &mut front));
+    for _ in 1..OUTSKIRTS {
+        let mut next_front = Vec::new();
+        front.iter().for_each(|&v| reach(v, &mut next_front));
         front = next_front;
     }
     near
