@@ -35,8 +35,43 @@ for blend in 0 0.5 1; do
     "$petroglyph" render "$project" "$pictures/penobscot-blend-$blend.png" --blend $blend --exaggeration 5 --azimuth 225 --ground off --cut nearest,0.4,0.5 --size 1400x900
 done
 
-# F3: the salt dome, raw.
+# F3: from the raw volume to the block. The samples are clipped and the salt is chaotic, so faults need more evidence than usual.
 project=$out/f3.petro
 "$petroglyph" import "$data/volumes/f3_depth_il300-427_xl720-975_int16.sgy" "$project"
 "$petroglyph" raw "$project" --volume seismic --map grey
-"$petroglyph" render "$project" "$pictures/f3-raw.png" --blend 1 --exaggeration 3 --box 300,427,720,975,1202.4,1826.4 --cut nearest,0.5,0.4 --size 1400x950
+"$petroglyph" extract "$project" --fault-evidence 200
+"$petroglyph" fault pick "$project" --name "Graben, south-east wall" --stick 380,866,1480 380,856,1640 \
+    --stick 385,861,1480 385,850,1640 --stick 395,843,1500 395,833,1670 --stick 405,834,1530 405,825,1670
+"$petroglyph" fault pick "$project" --name "Graben, north-west wall" --stick 385,831,1530 385,838,1650 \
+    --stick 395,815,1530 395,822,1670 --stick 405,801,1540 405,808,1670
+"$petroglyph" fault truncate "$project" "Graben, north-west wall" --by "Graben, south-east wall"
+"$petroglyph" fault pick "$project" --name "Crest, east wall" --stick 336,884,1470 336,877,1610 \
+    --stick 345,881,1480 345,875,1620 --stick 352,879,1480 352,873,1620 --stick 358,879,1490 358,873,1620
+"$petroglyph" fault pick "$project" --name "Crest, west wall" --stick 326,847,1470 326,852,1600 \
+    --stick 340,852,1480 340,858,1610 --stick 352,853,1480 352,859,1620 --stick 358,855,1490 358,861,1620
+pick() { "$petroglyph" pick "$project" --at "$2" --horizon "$1" "${@:3}"; }
+pick "Overburden 1" 364,860,1236 --highest-valid
+pick "Overburden 2" 375,849,1304 --highest-valid
+pick "Top Chalk" 355,849,1488.7 --up 5
+for place in 399,876,1531.2 317,734,1806.3 411,796,1567.3 395,827,1599 421,835,1557 424,823,1573 331,876,1510 314,832,1603; do
+    pick "Top Chalk" $place --highest-valid
+done
+for name in "Overburden 1" "Overburden 2" "Top Chalk"; do
+    "$petroglyph" horizon fill "$project" "$name"
+done
+"$petroglyph" layer set "$project" "above Overburden 1" --name "Upper overburden" --pattern siltstone
+"$petroglyph" layer set "$project" "Overburden 1 - Overburden 2" --name "Middle overburden" --pattern sandstone-bedded
+"$petroglyph" layer set "$project" "Overburden 2 - Top Chalk" --name "Lower overburden" --pattern shale
+"$petroglyph" layer set "$project" "below Top Chalk" --name "Chalk and older" --pattern chalk
+for blend in 0 0.5 1; do
+    "$petroglyph" render "$project" "$pictures/f3-blend-$blend.png" --blend $blend --exaggeration 2.5 --azimuth 145 --elevation 25 --ground off \
+        --box 300,427,720,975,1186.8,1826.4 --cut nearest,0.25,0.6 --size 1400x930
+done
+
+# Penobscot: Horizon B by picks.
+project=$out/picks.petro
+rm -rf "$project"
+"$petroglyph" import "$data/volumes/penobscot_il1207-1456_xl1253-1402_t876-1032_int16.sgy" "$project"
+"$petroglyph" extract "$project" --fault-evidence 200
+"$petroglyph" pick "$project" --at 1207,1298,961.5 --horizon B --highest-valid
+"$petroglyph" pick "$project" --at 1274,1356,963.2 --horizon B --highest-valid
