@@ -169,6 +169,52 @@ fn faults_styles_and_scenes_that_do_not_fit() {
 }
 
 #[test]
+fn pictures_that_there_are_none_of() {
+    let folder = project();
+    let at = folder.path();
+    let sizes = run_in(at, "render p.petro a.png --size 0x0");
+    assert!(sizes.code == 2 && sizes.stderr.contains("--size 0x0"), "{}", sizes.stderr);
+    refused(at, "render p.petro a.png --size 40000x20", &["40000", "32768"]);
+    // The box and cut-outs of no size, and a cut-out beside the box.
+    refused(at, "render p.petro a.png --box 110,110,510,520,40,80", &["roaming box has no volume"]);
+    refused(at, "render p.petro a.png --cut-box 110,120,510,510,40,80", &["cut-out 1 has no volume"]);
+    refused(at, "render p.petro a.png --cut-box 9000,9100,9000,9100,1,2", &["cut-out 1", "outside the roaming box"]);
+    refused(at, "render p.petro a.png --technique volume --medium nothing", &["no volume named \"nothing\""]);
+    // A texture that is in use and gone.
+    image::RgbImage::from_pixel(16, 16, image::Rgb([200, 100, 50])).save(at.join("brick.png")).unwrap();
+    run_in(at, "texture p.petro brick.png").done();
+    run_in(at, "layer set p.petro 'above Alpha' --pattern brick").done();
+    fs::remove_file(at.join("p.petro/textures/brick.png")).unwrap();
+    refused(at, "render p.petro a.png --size 60x40 --samples 1 --device cpu", &["brick.png"]);
+}
+
+#[test]
+fn volumes_with_holes_are_seen_through_around_them() {
+    let folder = survey();
+    let at = folder.path();
+    // Whole traces, and samples of the others: not numbers, or infinite.
+    variant(at, "holes.sgy", |mut bytes| {
+        for (n, trace) in bytes[HEADERS..].chunks_exact_mut(TRACE).enumerate() {
+            for (z, sample) in trace[240..].chunks_exact_mut(4).enumerate() {
+                if n % 17 == 0 || (n + z) % 41 == 0 {
+                    let hole = if z % 2 == 0 { f32::NAN } else { f32::INFINITY };
+                    sample.copy_from_slice(&hole.to_be_bytes());
+                }
+            }
+        }
+        bytes
+    });
+    run_in(at, "import holes.sgy h.petro").done();
+    for technique in ["volume", "phong", "occlusion"] {
+        let line = format!("render h.petro {technique}.png --technique {technique} --clear-below -1");
+        run_in(at, &format!("{line} --size 90x72 --samples 1 --device cpu --background '#000000'")).done();
+        let picture = image::open(at.join(format!("{technique}.png"))).unwrap().to_rgb8();
+        let bright = picture.pixels().filter(|pixel| pixel.0[1] > 60).count();
+        assert!(bright > 200 && bright < 90 * 72, "{technique}: {bright}");
+    }
+}
+
+#[test]
 fn what_is_no_project() {
     let folder = survey();
     let at = folder.path();

@@ -1,7 +1,7 @@
 //! What a scene is drawn from: borrowed data of the project, in voxel space.
 
 use crate::error::RenderError;
-use crate::leaves::{BORDER, BORDER_REACH};
+use crate::leaves::{BORDER, BORDER_REACH, BORDER_STEP};
 use crate::voxel_box::VoxelBox;
 use crate::wells::WellPath;
 use glam::Vec3;
@@ -77,12 +77,15 @@ impl Candidates<'_> {
 
     /// Leaf of the nearest sample.
     pub fn leaf_at(&self, p: Vec3) -> u32 {
-        self.leaf[self.nearest_sample(p)]
+        self.leaf[self.index_of(self.sample_at(p))]
     }
 
-    fn nearest_sample(&self, p: Vec3) -> usize {
-        let index = |axis: usize| ((p[axis] + 0.5).max(0.0) as usize).min(self.size[axis] - 1);
-        (index(0) * self.size[1] + index(1)) * self.size[2] + index(2)
+    fn sample_at(&self, p: Vec3) -> [usize; 3] {
+        [0, 1, 2].map(|axis| ((p[axis] + 0.5).max(0.0) as usize).min(self.size[axis] - 1))
+    }
+
+    fn index_of(&self, [x, y, z]: [usize; 3]) -> usize {
+        (x * self.size[1] + y) * self.size[2] + z
     }
 
     /// The number that a leaf is coloured by; 0 = not shown.
@@ -90,16 +93,39 @@ impl Candidates<'_> {
         self.groups.map_or(leaf, |groups| groups.get(leaf as usize).copied().unwrap_or(0))
     }
 
-    /// Whether a place lies beside another group: its neighbours aside in x or y are near their surfaces and belong to different ones.
+    /// Whether a place lies beside another group: its surface goes on as another group's on a trace to the side.
+    ///
+    /// Surfaces may lie a few samples apart, so it is not enough that a neighbour belongs to another: the surface's own sample is found first, and asked for on the
+    /// neighbouring traces at about that depth.
     pub fn is_border(&self, p: Vec3) -> bool {
-        let group = |aside: Vec3| {
-            let at = self.nearest_sample(p + aside);
-            let near = f32::from(self.distance[at]) * self.voxels_per_step <= BORDER_REACH;
-            if near { self.group(self.leaf[at]) } else { 0 }
+        let place = self.sample_at(p);
+        let own = self.group(self.leaf[self.index_of(place)]);
+        let reach = (1.5 * self.distance_at(p)) as usize + 1;
+        let own_z = self.surface_sample(place, reach, Some(own)).map_or(place[2], |(z, _)| z);
+        let aside = |shift: Vec3| {
+            let [x, y, _] = self.sample_at(p + shift);
+            self.surface_sample([x, y, own_z], BORDER_STEP, None).map_or(0, |(_, group)| group)
         };
         let differ = |a: u32, b: u32| a != b && a != 0 && b != 0;
-        differ(group(Vec3::X * BORDER), group(Vec3::X * -BORDER))
-            || differ(group(Vec3::Y * BORDER), group(Vec3::Y * -BORDER))
+        differ(aside(Vec3::X * BORDER), aside(Vec3::X * -BORDER))
+            || differ(aside(Vec3::Y * BORDER), aside(Vec3::Y * -BORDER))
+    }
+
+    /// The sample of a trace nearest to its surface, of those at most `reach` above and below one and of one group if that is asked, with its group;
+    /// none where all are far from theirs.
+    fn surface_sample(&self, [x, y, z]: [usize; 3], reach: usize, only: Option<u32>) -> Option<(usize, u32)> {
+        let mut nearest = BORDER_REACH;
+        let mut found = None;
+        for z in z.saturating_sub(reach)..=(z + reach).min(self.size[2] - 1) {
+            let at = self.index_of([x, y, z]);
+            let distance = f32::from(self.distance[at]) * self.voxels_per_step;
+            let group = self.group(self.leaf[at]);
+            if distance < nearest && only.is_none_or(|only| only == group) {
+                nearest = distance;
+                found = Some((z, group));
+            }
+        }
+        found
     }
 
     /// Distance by trilinear interpolation, voxels.
@@ -223,6 +249,36 @@ mod tests {
         }
         assert!(named.sample(Vec3::new(9.9, 21.0, 31.0)).is_nan());
         assert!(named.sample(Vec3::new(12.0, 21.0, 34.1)).is_nan());
+    }
+
+    /// Surfaces three samples apart that dip by two samples in three traces, the shallower one changing its leaf at trace 12.
+    #[test]
+    fn a_border_is_where_a_surface_changes_its_leaf_not_where_another_is_near() {
+        let size = [24, 5, 40];
+        let depth = |x: f32| 8.0 + x * 2.0 / 3.0;
+        let lean = 3.0 / 13.0f32.sqrt();
+        let (mut distance, mut leaf) = (Vec::new(), Vec::new());
+        for n in 0..size.iter().product::<usize>() {
+            let (x, z) = (n / (size[1] * size[2]), (n % size[2]) as f32);
+            let below = |k: usize| (z - depth(x as f32) - 3.0 * k as f32).abs() * lean;
+            let nearest = (0..4).min_by(|a, b| below(*a).total_cmp(&below(*b))).unwrap();
+            distance.push((below(nearest) / 0.04).min(255.0) as u8);
+            leaf.push(if nearest == 0 && x >= 12 { 9 } else { nearest as u32 + 1 });
+        }
+        let candidates = Candidates { size, distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
+        candidates.validate().unwrap();
+        for n in 0..900 {
+            // About the shell of one voxel around each surface.
+            let x = 2.0 + (n % 100) as f32 * 0.2;
+            let surface = n / 100 % 3;
+            let off = ((n / 300) as f32 - 1.0) * 0.9 / lean;
+            let p = Vec3::new(x, 2.0, depth(x) + 3.0 * surface as f32 + off);
+            // Where the nearest sample is another surface's, so is the place.
+            let shallowest = [1, 9].contains(&candidates.leaf_at(p));
+            let expected = shallowest && (x - 11.5).abs() < 0.2;
+            let clear = !shallowest || (x - 11.5).abs() > 1.3;
+            assert!(candidates.is_border(p) == expected || !(clear || expected), "{p} {surface}");
+        }
     }
 
     #[test]

@@ -27,8 +27,10 @@ pub const FADE: f32 = 0.5;
 pub const BLACK_AT: f32 = 10.0;
 /// How far aside a leaf's border is looked for, voxels.
 pub const BORDER: f32 = 0.75;
-/// Farther from its surface a sample says nothing of borders: beside it another surface may be as near, voxels.
+/// Farther from its surface a sample says nothing of borders, voxels.
 pub const BORDER_REACH: f32 = 2.0;
+/// Samples that a surface may rise or fall to a neighbouring trace and be found there.
+pub const BORDER_STEP: usize = 1;
 /// Factor on the colour of a border between leaves.
 pub const BORDER_TONE: f32 = 0.35;
 

@@ -10,6 +10,7 @@ const FADE: f32 = 0.5;
 const BLACK_AT: f32 = 10.0;
 const BORDER: f32 = 0.75;
 const BORDER_REACH: f32 = 2.0;
+const BORDER_STEP: u32 = 1u;
 const BORDER_TONE: f32 = 0.35;
 
 fn leaf_colour(id: u32) -> vec3<f32> {
@@ -32,13 +33,32 @@ fn leaf_group(leaf: u32) -> u32 {
     return relief_map[media.leaves.w + leaf];
 }
 
-// The group of the nearest sample, 0 where that is far from its surface.
-fn group_near(p: vec3<f32>) -> u32 {
-    let at = min(vec3<u32>(max(p + 0.5, vec3(0.0))), media.candidates.xyz - 1u);
-    if textureLoad(distances, at.zyx, 0).r * 255.0 * media.scales.w > BORDER_REACH {
-        return 0u;
+const NO_GROUP: vec2<u32> = vec2(NONE, 0u);
+
+fn sample_at(p: vec3<f32>) -> vec3<u32> {
+    return min(vec3<u32>(max(p + 0.5, vec3(0.0))), media.candidates.xyz - 1u);
+}
+
+// The sample of a trace nearest to its surface, of those at most `reach` above and below one and of one group unless `only` is NONE, and its group; NO_GROUP
+// where all are far from theirs.
+fn surface_sample(place: vec3<u32>, reach: u32, only: u32) -> vec2<u32> {
+    var nearest = BORDER_REACH;
+    var found = NO_GROUP;
+    let last = min(place.z + reach, media.candidates.z - 1u);
+    for (var z = place.z - min(place.z, reach); z <= last; z++) {
+        let at = vec3(z, place.y, place.x);
+        let distance = textureLoad(distances, at, 0).r * 255.0 * media.scales.w;
+        let group = leaf_group(textureLoad(leaf_ids, at, 0).r);
+        if distance < nearest && (only == NONE || only == group) {
+            nearest = distance;
+            found = vec2(z, group);
+        }
     }
-    return leaf_group(textureLoad(leaf_ids, at.zyx, 0).r);
+    return found;
+}
+
+fn group_aside(p: vec3<f32>, z: u32) -> u32 {
+    return surface_sample(vec3(sample_at(p).xy, z), BORDER_STEP, NONE).y;
 }
 
 fn differ(a: u32, b: u32) -> bool {
@@ -46,9 +66,13 @@ fn differ(a: u32, b: u32) -> bool {
 }
 
 fn is_border(p: vec3<f32>) -> bool {
+    let place = sample_at(p);
+    let own = leaf_group(textureLoad(leaf_ids, place.zyx, 0).r);
+    let sample = surface_sample(place, u32(1.5 * distance_at(p)) + 1u, own);
+    let z = select(sample.x, place.z, sample.x == NONE);
     let x = vec3(BORDER, 0.0, 0.0);
     let y = vec3(0.0, BORDER, 0.0);
-    return differ(group_near(p + x), group_near(p - x)) || differ(group_near(p + y), group_near(p - y));
+    return differ(group_aside(p + x, z), group_aside(p - x, z)) || differ(group_aside(p + y, z), group_aside(p - y, z));
 }
 
 // The colour of a face with the candidates it is to show.
