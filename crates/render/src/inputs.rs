@@ -95,8 +95,8 @@ impl Candidates<'_> {
 
     /// Whether a place lies beside another group: its surface goes on as another group's on a trace to the side.
     ///
-    /// Surfaces may lie a few samples apart, so it is not enough that a neighbour belongs to another: the surface's own sample is found first, and asked for on the
-    /// neighbouring traces at about that depth.
+    /// Surfaces may lie a few samples apart, so it is not enough that a neighbour belongs to another: the surface's own sample is found first; on the
+    /// neighbouring traces the surface is looked for at about that depth, and only where it does not go on, another.
     pub fn is_border(&self, p: Vec3) -> bool {
         let place = self.sample_at(p);
         let own = self.group(self.leaf[self.index_of(place)]);
@@ -104,7 +104,8 @@ impl Candidates<'_> {
         let own_z = self.surface_sample(place, reach, Some(own)).map_or(place[2], |(z, _)| z);
         let aside = |shift: Vec3| {
             let [x, y, _] = self.sample_at(p + shift);
-            self.surface_sample([x, y, own_z], BORDER_STEP, None).map_or(0, |(_, group)| group)
+            let goes_on = self.surface_sample([x, y, own_z], 2 * BORDER_STEP, Some(own));
+            goes_on.or_else(|| self.surface_sample([x, y, own_z], BORDER_STEP, None)).map_or(0, |(_, group)| group)
         };
         let differ = |a: u32, b: u32| a != b && a != 0 && b != 0;
         differ(aside(Vec3::X * BORDER), aside(Vec3::X * -BORDER))

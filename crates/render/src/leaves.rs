@@ -28,8 +28,8 @@ pub const BLACK_AT: f32 = 10.0;
 /// How far aside a leaf's border is looked for, voxels.
 pub const BORDER: f32 = 0.75;
 /// Farther from its surface a sample says nothing of borders, voxels.
-pub const BORDER_REACH: f32 = 2.0;
-/// Samples that a surface may rise or fall to a neighbouring trace and be found there.
+pub const BORDER_REACH: f32 = 0.75;
+/// Samples that another leaf may lie above or below on a neighbouring trace to be the same surface; the leaf itself may rise or fall by twice that.
 pub const BORDER_STEP: usize = 1;
 /// Factor on the colour of a border between leaves.
 pub const BORDER_TONE: f32 = 0.35;

@@ -9,7 +9,7 @@ const HALF_WIDTH: f32 = 0.8;
 const FADE: f32 = 0.5;
 const BLACK_AT: f32 = 10.0;
 const BORDER: f32 = 0.75;
-const BORDER_REACH: f32 = 2.0;
+const BORDER_REACH: f32 = 0.75;
 const BORDER_STEP: u32 = 1u;
 const BORDER_TONE: f32 = 0.35;
 
@@ -57,8 +57,14 @@ fn surface_sample(place: vec3<u32>, reach: u32, only: u32) -> vec2<u32> {
     return found;
 }
 
-fn group_aside(p: vec3<f32>, z: u32) -> u32 {
-    return surface_sample(vec3(sample_at(p).xy, z), BORDER_STEP, NONE).y;
+// What a surface goes on as on a neighbouring trace: itself where it can, else another group.
+fn group_aside(p: vec3<f32>, z: u32, own: u32) -> u32 {
+    let place = vec3(sample_at(p).xy, z);
+    let goes_on = surface_sample(place, 2u * BORDER_STEP, own);
+    if goes_on.x != NONE {
+        return goes_on.y;
+    }
+    return surface_sample(place, BORDER_STEP, NONE).y;
 }
 
 fn differ(a: u32, b: u32) -> bool {
@@ -72,7 +78,8 @@ fn is_border(p: vec3<f32>) -> bool {
     let z = select(sample.x, place.z, sample.x == NONE);
     let x = vec3(BORDER, 0.0, 0.0);
     let y = vec3(0.0, BORDER, 0.0);
-    return differ(group_aside(p + x, z), group_aside(p - x, z)) || differ(group_aside(p + y, z), group_aside(p - y, z));
+    return differ(group_aside(p + x, z, own), group_aside(p - x, z, own))
+        || differ(group_aside(p + y, z, own), group_aside(p - y, z, own));
 }
 
 // The colour of a face with the candidates it is to show.
