@@ -111,23 +111,36 @@ impl Layers {
 
 /// Which extrema are at most [`OUTSKIRTS`] passable links from one of `rooted`.
 fn near(links: &Links, evidence: &[[u8; 2]], rooted: &[bool]) -> Vec<bool> {
-    let mut near = rooted.to_vec();
-    let mut reach = |v: u32, front: &mut Vec<u32>| {
+    // Calls `found` for what passable links lead to from an extremum; links lead both ways.
+    let around = |v: u32, found: &mut dyn FnMut(u32)| {
         for (axis, to) in links.to.as_chunks::<2>().0.iter().enumerate() {
             let [next, back] = [to[0][v as usize], to[1][v as usize]];
             for (from, to) in [(v, next), (back, back)] {
-                if to != NONE && !near[to as usize] && evidence[from as usize][axis] <= PASSABLE {
-                    near[to as usize] = true;
-                    front.push(to);
+                if to != NONE && evidence[from as usize][axis] <= PASSABLE {
+                    found(to);
                 }
             }
         }
     };
+    // The first link is asked from its other end: fewer are without a root than with one.
+    let mut near = rooted.to_vec();
     let mut front = Vec::new();
-    (0..rooted.len() as u32).filter(|&v| rooted[v as usize]).for_each(|v| reach(v, &mut front));
+    for v in (0..rooted.len() as u32).filter(|&v| !rooted[v as usize]) {
+        around(v, &mut |to| near[v as usize] |= rooted[to as usize]);
+        if near[v as usize] {
+            front.push(v);
+        }
+    }
     for _ in 1..OUTSKIRTS {
         let mut next_front = Vec::new();
-        front.iter().for_each(|&v| reach(v, &mut next_front));
+        for &v in &front {
+            around(v, &mut |to| {
+                if !near[to as usize] {
+                    near[to as usize] = true;
+                    next_front.push(to);
+                }
+            });
+        }
         front = next_front;
     }
     near

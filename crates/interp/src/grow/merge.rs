@@ -237,7 +237,13 @@ impl Pieces {
 fn overlap(few: &[u32], mut many: &[u32], enough: usize) -> usize {
     let mut count = 0;
     for trace in few {
-        many = &many[many.partition_point(|other| other < trace)..];
+        // It is most likely near: ever longer steps first.
+        let mut reach = 1;
+        while reach < many.len() && many[reach] < *trace {
+            reach *= 2;
+        }
+        let end = (reach + 1).min(many.len());
+        many = &many[many[..end].partition_point(|other| other < trace)..];
         count += usize::from(many.first() == Some(trace));
         if count > enough || many.is_empty() {
             break;

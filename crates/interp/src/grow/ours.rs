@@ -1,7 +1,7 @@
 //! Our growing, step by step: links, dips, evidence, cuts, windows, flood (see [`super`]).
 //!
 //! All kinds of extrema share the coarse dip and the faults; they never link to one another. Memory beside the 8 bytes of an extremum:
-//! 16 of links, 8 of dips, 4 of evidence and cuts, and, for one kind at a time, 40 while its dips are smoothed; half a byte a voxel for the
+//! 16 of links, 8 of dips, 4 of evidence and cuts, and, for one kind at a time, 34 while it is smoothed; half a byte a voxel for the
 //! fault planes. With peaks and troughs together every three to four samples that is some 15 bytes a voxel.
 
 use super::evidence::{self, Noise};
