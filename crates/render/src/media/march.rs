@@ -54,6 +54,10 @@ pub fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: i
             found(Stretch { t: [from, to], place });
         }
     };
+    if solid.cut_outs.is_empty() {
+        add(t, last, Place::Surroundings);
+        return;
+    }
     for _ in 0..=solid.cut_outs.len() {
         if t + TOUCH >= last {
             return;
