@@ -28,6 +28,7 @@ pub mod samples;
 mod slices;
 pub mod table;
 mod wide;
+mod windows;
 
 pub use interleaved::Interleaved;
 pub use isosurface::{Isosurface, Scalar};
