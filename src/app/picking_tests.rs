@@ -74,7 +74,7 @@ fn candidates_are_extracted_from_the_panel() {
     harness.run_steps(3);
     assert_eq!(state(&harness).session.as_ref().unwrap().view.panel, Panel::Interpret);
     click(&mut harness, "How");
-    for label in ["Least front width", "Least leaf", "Reach", "Peaks"] {
+    for label in ["Least front width", "Fault evidence", "Join pieces from", "Least leaf", "Reach", "Peaks"] {
         assert!(harness.query_all_by_label(label).count() > 0, "{label}");
     }
     click(&mut harness, "Extract");

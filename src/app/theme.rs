@@ -54,7 +54,7 @@ fn visuals(theme: Theme) -> Visuals {
     let mut visuals = theme.default_visuals();
     let accent = if dark { ACCENT_DARK } else { ACCENT_LIGHT };
     visuals.panel_fill = if dark { Color32::from_rgb(0x22, 0x24, 0x26) } else { Color32::from_rgb(0xf6, 0xf5, 0xf2) };
-    visuals.window_fill = if dark { Color32::from_rgb(0x2a, 0x2c, 0x2f) } else { Color32::WHITE };
+    visuals.window_fill = if dark { Color32::from_rgb(0x2a, 0x2c, 0x2f) } else { Color32::from_rgb(0xf9, 0xf8, 0xf6) };
     visuals.extreme_bg_color = if dark { Color32::from_rgb(0x18, 0x1a, 0x1b) } else { Color32::WHITE };
     visuals.faint_bg_color = grey(0xee, 0x2c);
     visuals.window_stroke = Stroke::new(1.0, grey(0xd4, 0x42));

@@ -1,7 +1,7 @@
 //! Volumes, horizons, faults and wells of the project.
 
 use super::notices;
-use super::sections::HORIZON_COLOURS;
+use super::sections::entry_colour;
 use crate::app::state::{Action, Choice, Dialogue, Place, Session, State};
 use crate::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity,
@@ -42,7 +42,7 @@ impl Data {
         for (index, entry) in session.document.horizons.iter().enumerate() {
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
-                ui.painter().circle_filled(rect.center(), 5.0, HORIZON_COLOURS[index % HORIZON_COLOURS.len()]);
+                ui.painter().circle_filled(rect.center(), 5.0, entry_colour(entry, index));
                 if let Some((_, text)) = self.renaming.as_mut().filter(|(name, _)| *name == entry.name) {
                     let edit = ui.name_inputs("New name", |ui| ui.add(TextEdit::singleline(text).desired_width(150.0)));
                     edit.request_focus();

@@ -8,8 +8,8 @@ use crate::app::work::scan::{self, Found, SurveyScan};
 use crate::command::ImportVolume;
 use crate::project::Polarity;
 use eframe::egui::{
-    Button, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Mesh, Modal, Pos2, Rect, Role, ScrollArea,
-    Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    Align, Button, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect, Role,
+    ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::RgbaImage;
@@ -17,6 +17,11 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use survey::SurveyGeometry;
 use survey::segy::{FileUnit, SegyInfo, SegyOptions};
+
+/// Lines from the left: columns would stretch words over their width.
+fn from_left() -> Layout {
+    Layout::top_down(Align::Min)
+}
 
 /// After a change, so long nothing more must change before the file is read anew.
 const PATIENCE: Duration = Duration::from_millis(250);
@@ -63,12 +68,12 @@ impl Import {
                     .id_salt("reading")
                     .max_height(height)
                     .min_scrolled_height(height)
-                    .show(left, |ui| self.reading(ui));
+                    .show(left, |ui| ui.with_layout(from_left(), |ui| self.reading(ui)));
                 ScrollArea::vertical()
                     .id_salt("evidence")
                     .max_height(height)
                     .min_scrolled_height(height)
-                    .show(right, |ui| self.evidence(ui));
+                    .show(right, |ui| ui.with_layout(from_left(), |ui| self.evidence(ui)));
             });
             ui.separator();
             self.target(ui, state, target, actions);

@@ -4,12 +4,13 @@
 //! a drag of a slider is one step of the history.
 
 use super::notices;
-use super::sections::HORIZON_COLOURS;
+use super::sections::entry_colour;
 use super::tiles::Tiles;
 use crate::app::state::{Action, Choice, Dialogue, Place, Session, State};
 use crate::app::work::Swatches;
 use crate::command::{Command, ResetLayer, SetContact, SetLayer};
 use crate::project::Document;
+use crate::project::document::HorizonEntry;
 use eframe::egui::{
     Button, ComboBox, DragValue, Frame, Grid, Key, Response, Role, ScrollArea, Sense, Slider, Stroke, TextEdit, Ui,
     WidgetInfo, vec2,
@@ -70,7 +71,7 @@ impl Layers {
                 let style = self.style_of(document, index, name);
                 row(ui, session, name, &style, swatches, tiles, actions);
                 if let Some(horizon) = document.horizons.get(index) {
-                    boundary(ui, index, &horizon.name, horizon.contact, actions);
+                    boundary(ui, index, horizon, actions);
                 }
             }
             let chosen = session.view.layer.as_ref().and_then(|name| layers.iter().position(|layer| layer == name));
@@ -210,11 +211,11 @@ fn row(
 }
 
 /// The horizon between two layers, and what it does to them.
-fn boundary(ui: &mut Ui, index: usize, name: &str, contact: Contact, actions: &mut Vec<Action>) {
+fn boundary(ui: &mut Ui, index: usize, horizon: &HorizonEntry, actions: &mut Vec<Action>) {
+    let (name, contact) = (horizon.name.as_str(), horizon.contact);
     ui.horizontal(|ui| {
         let (rect, _) = ui.allocate_exact_size(vec2(SWATCH[0] + 8.0, 16.0), Sense::hover());
-        let colour = HORIZON_COLOURS[index % HORIZON_COLOURS.len()];
-        ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(2.5, colour));
+        ui.painter().hline(rect.x_range(), rect.center().y, Stroke::new(2.5, entry_colour(horizon, index)));
         ui.small(name);
         let mut chosen = contact;
         let combo = ComboBox::from_id_salt(("contact", name)).selected_text(contact_name(contact)).width(96.0);

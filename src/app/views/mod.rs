@@ -2,10 +2,12 @@
 
 pub mod bar;
 pub mod block;
+pub mod candidates;
 pub mod chooser;
 pub mod controls;
 pub mod data;
 pub mod export;
+pub mod faults;
 pub mod fence;
 pub mod functions;
 pub mod import;

@@ -89,7 +89,7 @@ impl Patterns {
 
 /// A tile with its name beneath; answers whether it was clicked.
 fn tile(ui: &mut Ui, pattern: &Pattern, swatches: &Swatches, tiles: &mut Tiles) -> bool {
-    let size = vec2(SWATCH[0], SWATCH[1] + 20.0);
+    let size = vec2(SWATCH[0], SWATCH[1] + 32.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
     let title = match pattern.fgdc {
         Some(number) => format!("{} {number}", pattern.title),
@@ -104,10 +104,10 @@ fn tile(ui: &mut Ui, pattern: &Pattern, swatches: &Swatches, tiles: &mut Tiles) 
             let stroke = Stroke::new(2.0, theme::accent(ui.visuals()));
             ui.painter().rect_stroke(picture.expand(2.0), 4.0, stroke, eframe::egui::StrokeKind::Inside);
         }
-        let painter = ui.painter_at(caption);
         let font = eframe::egui::FontId::proportional(11.5);
         let colour = ui.visuals().text_color();
-        painter.text(caption.left_top() + vec2(1.0, 3.0), eframe::egui::Align2::LEFT_TOP, title, font, colour);
+        let text = ui.painter().layout(title, font, colour, caption.width() - 2.0);
+        ui.painter_at(caption).galley(caption.left_top() + vec2(1.0, 3.0), text, colour);
     }
     response.on_hover_text(&pattern.description).clicked()
 }

@@ -1,5 +1,7 @@
-//! Interpreting: candidates, horizons and their picks, holes, faults.
+//! Interpreting: horizons and their picks, holes; around them candidates and faults.
 
+use super::candidates::CandidatesPanel;
+use super::faults::FaultsPanel;
 use super::sections::horizon_colour;
 use super::{notices, overlay::Overlay};
 use crate::app::state::picking::voxel_of;
@@ -7,15 +9,12 @@ use crate::app::state::{Action, Look, PickingStep, Place, Session, State, Tool};
 use crate::app::work::{Interpreted, RunningLine, ShownHorizon};
 use crate::command::assembly::HORIZON_COLOURS;
 use crate::command::{
-    AcceptFault, Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, SetHorizonColour,
+    Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, SetHorizonColour,
 };
 use crate::project::document::HorizonEntry;
-use eframe::egui::{
-    Button, Color32, ComboBox, DragValue, Grid, ProgressBar, RichText, ScrollArea, Sense, Stroke, TextEdit, Ui, vec2,
-};
+use eframe::egui::{Button, Color32, DragValue, Grid, RichText, ScrollArea, Sense, Stroke, TextEdit, Ui, vec2};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
-use interp::{ExtractSettings, Extremum, Method};
 use render::FaceData;
 use survey::SurveyGeometry;
 use ttf::Colour;
@@ -29,13 +28,11 @@ const HOLES: usize = 5;
 /// The panel, and what is being typed in it.
 #[derive(Default)]
 pub struct PickingPanel {
-    settings: ExtractSettings,
-    volume: Option<String>,
+    candidates: CandidatesPanel,
+    faults: FaultsPanel,
     /// A horizon and its new name.
     renaming: Option<(String, String)>,
     max_traces: usize,
-    /// Names for proposals, by number.
-    names: std::collections::HashMap<u32, String>,
 }
 
 impl PickingPanel {
@@ -57,7 +54,7 @@ impl PickingPanel {
         ScrollArea::vertical().show(ui, |ui| {
             let shown = overlay.interpreted();
             ui.heading("Candidates");
-            self.candidates(ui, session, shown, running, actions);
+            self.candidates.show(ui, session, shown, running, actions);
             ui.add_space(8.0);
             look(ui, session, actions);
             if shown.is_some_and(|shown| shown.extraction.is_some()) {
@@ -70,100 +67,8 @@ impl PickingPanel {
             self.horizons(ui, session, shown, geometry, actions);
             ui.add_space(8.0);
             ui.heading("Faults");
-            self.faults(ui, session, shown, running, geometry, actions);
+            self.faults.show(ui, session, shown, running, geometry, actions);
         });
-    }
-
-    fn candidates(
-        &mut self,
-        ui: &mut Ui,
-        session: &Session,
-        shown: Option<&Interpreted>,
-        running: &[RunningLine],
-        actions: &mut Vec<Action>,
-    ) {
-        if let Some(line) = running.iter().find(|line| line.title == "Extracting") {
-            ui.label(if line.stage.is_empty() { "extracting" } else { &line.stage });
-            ui.horizontal(|ui| {
-                ui.add(ProgressBar::new(line.share().unwrap_or(0.0)).show_percentage().desired_width(180.0));
-                if ui.button("Stop extracting").clicked() {
-                    line.progress.cancel();
-                }
-            });
-            ui.weak("Work goes on meanwhile.");
-            return;
-        }
-        let found = shown.and_then(|shown| shown.extraction.as_ref());
-        if found.is_none() {
-            ui.label("Find every reflection that can be followed; horizons are then put together from them.");
-        }
-        let name = if found.is_some() { "Extract again" } else { "Extract" };
-        let can = session.document.volumes.iter().any(|entry| entry.geometry.is_none());
-        ui.horizontal_wrapped(|ui| {
-            if let Some(report) = found {
-                ui.label(format!("{} surfaces, {} leaves", report.surfaces, report.leaves));
-            }
-            if ui.add_enabled(can, Button::new(name)).on_disabled_hover_text("Needs a volume").clicked() {
-                actions.push(Action::Extract(self.volume.clone(), Box::new(self.settings.clone())));
-            }
-        });
-        ui.collapsing("How", |ui| self.extraction_settings(ui, session));
-    }
-
-    fn extraction_settings(&mut self, ui: &mut Ui, session: &Session) {
-        let settings = &mut self.settings;
-        Grid::new("extraction").num_columns(2).show(ui, |ui| {
-            let own = || session.document.volumes.iter().filter(|entry| entry.geometry.is_none());
-            if own().count() > 1 {
-                let label = ui.label("Volume");
-                let first = own().next().map_or_else(String::new, |entry| entry.name.clone());
-                ui.label_inputs_by(label.id, |ui| {
-                    let text = self.volume.clone().unwrap_or(first);
-                    ComboBox::from_id_salt("extracted").selected_text(text).show_ui(ui, |ui| {
-                        for entry in own() {
-                            ui.selectable_value(&mut self.volume, Some(entry.name.clone()), &entry.name);
-                        }
-                    });
-                });
-                ui.end_row();
-            }
-            ui.label("Method");
-            ui.horizontal(|ui| {
-                ui.selectable_value(&mut settings.grow.method, Method::Ours, "Ours");
-                ui.selectable_value(&mut settings.grow.method, Method::Paper, "Paper's");
-            });
-            ui.end_row();
-            ui.label("Follow");
-            ui.horizontal_wrapped(|ui| {
-                for (kind, name) in
-                    [(Extremum::Peak, "Peaks"), (Extremum::Trough, "Troughs"), (Extremum::Zero, "Zeros")]
-                {
-                    let mut is_followed = settings.grow.extrema.contains(&kind);
-                    if ui.checkbox(&mut is_followed, name).changed() {
-                        settings.grow.extrema.retain(|known| *known != kind);
-                        if is_followed {
-                            settings.grow.extrema.push(kind);
-                        }
-                    }
-                }
-            });
-            ui.end_row();
-            let label = ui.label("Least front width");
-            let drag = DragValue::new(&mut settings.grow.min_front_width).range(2..=64).suffix(" traces");
-            ui.add(drag).labelled_by(label.id);
-            ui.end_row();
-            let label = ui.label("Least leaf");
-            let drag = DragValue::new(&mut settings.forest.min_leaf_triangles).range(1..=100_000).suffix(" triangles");
-            ui.add(drag).labelled_by(label.id);
-            ui.end_row();
-            let label = ui.label("Reach");
-            let drag = DragValue::new(&mut settings.distance.max_distance).range(1.0..=10.0).suffix(" voxels");
-            ui.add(drag).labelled_by(label.id);
-            ui.end_row();
-        });
-        if ui.small_button("Usual settings").clicked() {
-            *settings = ExtractSettings::default();
-        }
     }
 
     fn horizons(
@@ -331,102 +236,10 @@ impl PickingPanel {
             ui.name_inputs("Largest hole to fill", |ui| ui.add(drag));
         });
     }
-
-    fn faults(
-        &mut self,
-        ui: &mut Ui,
-        session: &Session,
-        shown: Option<&Interpreted>,
-        running: &[RunningLine],
-        geometry: &SurveyGeometry,
-        actions: &mut Vec<Action>,
-    ) {
-        let picking = &session.view.picking;
-        let step = |step| Action::Picking(step);
-        let is_drawing = picking.tool == Tool::Sticks;
-        if ui
-            .selectable_label(is_drawing, "Draw sticks")
-            .on_hover_text("Click along the fault on a section; Enter ends a stick (F)")
-            .clicked()
-        {
-            actions.push(step(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks })));
-        }
-        if is_drawing || !picking.sticks.is_empty() {
-            let complete = picking.sticks.len();
-            ui.label(format!(
-                "{complete} stick{} drawn, {} place{} on the next",
-                if complete == 1 { "" } else { "s" },
-                picking.stick.len(),
-                if picking.stick.len() == 1 { "" } else { "s" }
-            ));
-            ui.horizontal(|ui| {
-                if ui.add_enabled(picking.stick.len() > 1, Button::new("End stick")).on_hover_text("Enter").clicked() {
-                    actions.push(step(PickingStep::EndStick));
-                }
-                let some = !(picking.stick.is_empty() && picking.sticks.is_empty());
-                if ui.add_enabled(some, Button::new("Take back")).on_hover_text("Backspace").clicked() {
-                    actions.push(step(PickingStep::Backspace));
-                }
-            });
-            ui.horizontal(|ui| {
-                let mut name = picking.fault.clone();
-                let edit = ui.name_inputs("Name of the fault", |ui| {
-                    ui.add(TextEdit::singleline(&mut name).desired_width(120.0))
-                });
-                if edit.changed() {
-                    actions.push(step(PickingStep::NameFault(name.clone())));
-                }
-                let can = !name.trim().is_empty() && (complete > 0 || picking.stick.len() > 1);
-                if ui.add_enabled(can, Button::new("Make fault")).clicked() {
-                    actions.push(step(PickingStep::MakeFault));
-                }
-            });
-        }
-        for entry in &session.document.faults {
-            ui.label(&entry.name).on_hover_text(&entry.source.reading);
-        }
-        let is_looking = running.iter().any(|line| line.title == "Looking for faults");
-        let can = !session.document.horizons.is_empty() && !is_looking;
-        let hint = "Where horizons are offset, a fault is proposed";
-        if ui.add_enabled(can, Button::new("Look for faults")).on_hover_text(hint).clicked() {
-            actions.push(Action::ProposeFaults);
-        }
-        let Some(shown) = shown else { return };
-        for (proposal, _) in shown.proposals.iter().filter(|(proposal, _)| !picking.dismissed.contains(&proposal.id)) {
-            let kind = if proposal.reverse { "reverse" } else { "normal" };
-            ui.separator();
-            ui.label(format!(
-                "Proposal {}: {kind}, throw {:.0} {} (up to {:.0}), dips {:.0}°, strikes {:.0}°",
-                proposal.id, proposal.throw[0], shown.unit, proposal.throw[1], proposal.dip_deg, proposal.strike_deg
-            ))
-            .on_hover_text(format!(
-                "seen by {} pairs on {}",
-                proposal.support,
-                proposal.horizons.join(", ")
-            ));
-            let name = self.names.entry(proposal.id).or_insert_with(|| proposal.name.clone());
-            ui.horizontal(|ui| {
-                let label = format!("Name of proposal {}", proposal.id);
-                ui.name_inputs(label, |ui| ui.add(TextEdit::singleline(name).desired_width(76.0)));
-                if ui.small_button("Accept").on_hover_text(format!("Accept proposal {}", proposal.id)).clicked() {
-                    let command = AcceptFault { id: proposal.id, name: name.trim().to_owned() };
-                    actions.push(Action::Apply(Box::new(Command::AcceptFault(command))));
-                }
-                if ui.small_button("Dismiss").on_hover_text(format!("Dismiss proposal {}", proposal.id)).clicked() {
-                    actions.push(step(PickingStep::Dismiss(proposal.id)));
-                }
-                if ui.small_button("Go").on_hover_text(format!("Go to proposal {}", proposal.id)).clicked() {
-                    let [a, b] = proposal.ends;
-                    let z = 0.5 * (proposal.depth[0] + proposal.depth[1]);
-                    go(geometry, [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), z], actions);
-                }
-            });
-        }
-    }
 }
 
 /// Moves the sections through a place in line numbers.
-fn go(geometry: &SurveyGeometry, place: [f64; 3], actions: &mut Vec<Action>) {
+pub(super) fn go(geometry: &SurveyGeometry, place: [f64; 3], actions: &mut Vec<Action>) {
     actions.push(Action::Slices(voxel_of(geometry, place).to_array()));
 }
 

@@ -9,6 +9,7 @@ use super::pointed::{self, Pointed};
 use crate::app::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, Session, SliceKind};
 use crate::app::theme;
 use crate::app::work::{Rocks, SlicePicture, SliceWish, Slices};
+use crate::project::document::HorizonEntry;
 use eframe::egui::{
     Align2, Color32, ColorImage, Context, DragValue, FontId, Pos2, Rect, Role, Sense, Shape, Stroke, TextureHandle,
     TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
@@ -280,7 +281,7 @@ fn header(ui: &mut Ui, session: &Session, kind: SliceKind, geometry: &SurveyGeom
 }
 
 /// Colours of horizons, youngest first, told apart by most eyes and on grey.
-pub const HORIZON_COLOURS: [Color32; 8] = [
+const HORIZON_COLOURS: [Color32; 8] = [
     Color32::from_rgb(0x00, 0x9e, 0x73),
     Color32::from_rgb(0xe6, 0x9f, 0x00),
     Color32::from_rgb(0x00, 0x72, 0xb2),
@@ -297,6 +298,11 @@ pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
         Some(colour) => Color32::from_rgb(colour.rgb[0], colour.rgb[1], colour.rgb[2]),
         None => HORIZON_COLOURS[index % HORIZON_COLOURS.len()],
     }
+}
+
+/// The colour that an entry is drawn in.
+pub fn entry_colour(entry: &HorizonEntry, index: usize) -> Color32 {
+    horizon_colour(entry.assembly.as_ref().map(|log| log.colour), index)
 }
 
 /// Solid where picked, dashed where filled, dotted where extrapolated; on a light halo, so that it is seen on any amplitude.
