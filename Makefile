@@ -10,17 +10,19 @@
 #   make gallery the pictures of docs/gallery.md
 #   make accuracy   measures accuracy anew into docs/accuracy.md
 #   make extraction measures the quality of horizon candidates into docs/extraction.md
+#   make picks      measures what they are worth to someone who picks, into docs/picks.md
 
 OUT ?= out/demo
 OUT_ACCURACY ?= docs/accuracy.md
 OUT_EXTRACTION ?= docs/extraction.md
+OUT_PICKS ?= docs/picks.md
 # The Vulkan loader complains where no desktop session has set this.
 export XDG_RUNTIME_DIR ?= /tmp
 PETROGLYPH = target/debug/petroglyph
 
 PYTHON ?= python3
 
-.PHONY: demo gallery test check bench accuracy extraction check-peers scenario fuzz fuzz-long setup build
+.PHONY: demo gallery test check bench accuracy extraction picks check-peers scenario fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
@@ -48,6 +50,9 @@ check-peers: build
 
 extraction: setup
 	cargo run --locked -p petroglyph-interp --example extraction > $(OUT_EXTRACTION).part && mv $(OUT_EXTRACTION).part $(OUT_EXTRACTION)
+
+picks: setup
+	cargo run --locked -p petroglyph-interp --example picks > $(OUT_PICKS).part && mv $(OUT_PICKS).part $(OUT_PICKS)
 
 scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario

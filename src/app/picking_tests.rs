@@ -328,3 +328,13 @@ fn a_well_comes_in_through_its_dialogue() {
     wait(&mut harness, "the well is there", |harness| document(harness).wells.len() == 1);
     assert_eq!(document(&harness).wells[0].name, "W-1");
 }
+
+#[test]
+fn going_back_to_the_layers_waits_for_the_relief_without_complaint() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = interpreting(folder.path());
+    assert!(state(&harness).session.as_ref().unwrap().view.scene.ground.is_some());
+    click(&mut harness, "Layers");
+    wait(&mut harness, "the picture is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
+    assert!(state(&harness).notices.is_empty(), "{:?}", state(&harness).notices);
+}

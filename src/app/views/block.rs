@@ -10,6 +10,7 @@ use crate::app::state::faces::{self, Handle};
 use crate::app::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, camera, showing};
 use crate::app::theme;
 use crate::app::work::{Drawing, Drawn, PictureWish, Rocks, Touch};
+use crate::pipeline::Loaded;
 use eframe::egui::{
     Align2, Color32, ColorImage, CursorIcon, FontId, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense,
     Stroke, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
@@ -105,10 +106,15 @@ impl BlockView {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Block"));
         let view = &session.view;
-        let has_candidates =
-            rocks.is_some_and(|(rocks, _)| rocks.try_read().is_ok_and(|loaded| loaded.candidates.is_some()));
-        let horizons = has_candidates.then(|| overlay.leaves(session));
-        let shown = showing::scene(session, horizons.as_deref());
+        let holds = |part: fn(&Loaded) -> bool| {
+            rocks.is_some_and(|(rocks, _)| rocks.try_read().is_ok_and(|loaded| part(&loaded)))
+        };
+        let horizons = holds(|loaded| loaded.candidates.is_some()).then(|| overlay.leaves(session));
+        let mut shown = showing::scene(session, horizons.as_deref());
+        // After interpreting there is no model yet to take the relief from.
+        if !holds(|loaded| loaded.rock.is_some()) {
+            shown.ground = None;
+        }
         let compare = if view.panel == Panel::Interpret { Compare::Blend } else { view.compare };
         let rects: Vec<Rect> = match compare {
             Compare::SideBySide => {
