@@ -290,7 +290,7 @@ fn main() -> Result<()> {
         "Measured by `make accuracy`; \"ours\" is the exact lookup, \"paper's\" the packed volume at the same resolution with the extrapolated lookup of P-illus 3.4."
     );
     println!(
-        "Closed-form models have {SIDE}³ samples, the synthetic survey {SYNTHETIC_SIDE}³. Tests hold k, angles and boundaries on folds and on the synthetic survey to the aims (boundaries of the synthetic survey at 99 %, not at their worst); the remaining models are measured here alone.\n"
+        "Closed-form models have {SIDE}³ samples, the synthetic survey {SYNTHETIC_SIDE}³. Tests hold k, angles and boundaries on folds and on the synthetic survey to the aims (boundaries of the synthetic survey at 99 %, not at their worst); the remaining models are measured here alone. Extraction and picks have pages of their own, [extraction.md](extraction.md) and [picks.md](picks.md).\n"
     );
     let cases = cases()?;
     k_and_angles(&cases)?;
