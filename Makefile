@@ -4,6 +4,7 @@
 #   make test    all tests
 #   make check   formatting, lints and documentation, warnings denied
 #   make bench   how long our stages take on this machine
+#   make speed   how long pictures take, on the graphics driver and on the processor (small in CI: SPEED_SIDE, SPEED_SIZE)
 #   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, scipy, xtgeo, segyio, lasio)
 #   make fuzz    a second of made-up input for every parser; make fuzz-long ten minutes each
 #   make scenario   the interpreter's day by mouse and keys in the real window (Xvfb, xdotool, ImageMagick)
@@ -16,13 +17,15 @@ OUT ?= out/demo
 OUT_ACCURACY ?= docs/accuracy.md
 OUT_EXTRACTION ?= docs/extraction.md
 OUT_PICKS ?= docs/picks.md
+SPEED_SIDE ?= 128
+SPEED_SIZE ?= 800x800
 # The Vulkan loader complains where no desktop session has set this.
 export XDG_RUNTIME_DIR ?= /tmp
 PETROGLYPH = target/debug/petroglyph
 
 PYTHON ?= python3
 
-.PHONY: demo gallery test check bench accuracy extraction picks check-peers scenario fuzz fuzz-long setup build
+.PHONY: demo gallery test check bench accuracy extraction picks speed check-peers scenario fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
@@ -53,6 +56,10 @@ extraction: setup
 
 picks: setup
 	cargo run --locked -p petroglyph-interp --example picks > $(OUT_PICKS).part && mv $(OUT_PICKS).part $(OUT_PICKS)
+
+speed: setup
+	cargo run --locked -q -p petroglyph-render --example illustration_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE) --repeats 3
+	cargo run --locked -q -p petroglyph-render --example volume_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE)
 
 scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario

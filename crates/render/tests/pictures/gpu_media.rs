@@ -168,6 +168,14 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
             },
         ),
         (
+            "one medium in a cut-out",
+            Scene {
+                cut_outs: cut_outs.clone(),
+                media: Media { cut_outs: vec![colours.clone()], ..Media::default() },
+                ..base.clone()
+            },
+        ),
+        (
             "horizons in a cut-out",
             Scene {
                 cut_outs,

@@ -105,6 +105,9 @@ fn a_cut_out_and_its_surroundings_have_their_own_functions_and_its_back_face_sto
         Scene { cut_outs: vec![open], blend: 1.0, raw: Some(raw.clone()), ..head_on([8, 8], media(Faces::All)) };
     let passes = 0.9f64.powi(16);
     near(draw(&scene, &inputs).get_pixel(4, 4).0.map(f64::from), [0.0, 1.0 - passes, passes]);
+    // The same with one medium alone.
+    let alone = Scene { media: Media { surroundings: Vec::new(), ..scene.media.clone() }, ..scene };
+    near(draw(&alone, &inputs).get_pixel(4, 4).0.map(f64::from), [0.0, 1.0 - passes, passes]);
 }
 
 #[test]
