@@ -71,6 +71,7 @@ done
 both="--box 101,244,501,644,240,1110 --clear-below 0.45 --azimuth 35 --elevation 35"
 draw "$picked" horiz-07-semi-transparent $volume $both --horizon 'Top,#e85a9b,0.2' --horizon Base
 draw "$picked" horiz-07-top-glows $volume $both --horizon 'Top,#e85a9b,1,0.3' --horizon Base
+draw "$picked" horiz-07-bottom-glows $volume $both --horizon 'Top,#e85a9b,0.5' --horizon 'Base,#f2c12e,1,0.3'
 draw "$picked" horiz-07-both-glow $volume $both --horizon 'Top,#e85a9b,1,0.3' --horizon 'Base,#f2c12e,1,0.3'
 "$petroglyph" raw "$picked" --map grey
 cube="--technique illustrate --blend 1 --ground off --outlines on --exaggeration 1.6 --azimuth 35 --elevation 35"
