@@ -65,7 +65,7 @@ done
 "$petroglyph" layer set "$project" "below Top Chalk" --name "Chalk and older" --pattern chalk
 for blend in 0 0.5 1; do
     "$petroglyph" render "$project" "$pictures/f3-blend-$blend.png" --blend $blend --exaggeration 2.5 --azimuth 145 --elevation 25 --ground off \
-        --box 300,427,720,975,1186.8,1826.4 --cut nearest,0.25,0.6 --size 1400x930
+        --box 300,427,756,920,1186.8,1826.4 --cut nearest,0.25,0.6 --size 1400x930
 done
 
 # Penobscot: Horizon B by picks.
