@@ -14,6 +14,7 @@
 //! Semblance is evidence, not a source: its mean on the surface is told beside that on both sides of it. Spaces: rims and pairs are voxel, surfaces
 //! metric (m).
 
+mod bends;
 mod edges;
 mod pairs;
 mod surface;
@@ -115,7 +116,8 @@ pub fn propose_faults(
     let mut found = Vec::new();
     for (h, horizon) in horizons.iter().enumerate() {
         let pieces = edges::Pieces::of(horizon.sheets, [nx, ny]);
-        let pairs = pairs::facing(&pieces, h, settings);
+        let mut pairs = pairs::facing(&pieces, h, settings);
+        pairs.extend(bends::of(horizon.sheets, [nx, ny], h, settings));
         found.extend(traces::along_strike(pairs, settings));
         progress.step(1)?;
     }

@@ -7,7 +7,7 @@ use crate::reassembly::VoxelSheet;
 use glam::Vec2;
 
 /// Neighbouring nodes farther apart than this are not one piece, samples.
-const JUMP: f32 = 5.0;
+pub(super) const JUMP: f32 = 5.0;
 /// Radius of the neighbourhood that a rim's plane is fitted to, traces. Larger is steadier, smaller follows folds.
 const RADIUS: usize = 6;
 /// Rims of gaps with fewer traces are those of holes.
@@ -87,9 +87,14 @@ fn components(size: [usize; 2], joined: impl Fn(usize, usize) -> bool) -> (Vec<u
     (label, sizes)
 }
 
-fn rims_of(z: &[f32], size: [usize; 2]) -> Vec<Rim> {
+/// Numbers the pieces of a sheet; also the size of each.
+pub(super) fn pieces_of(z: &[f32], size: [usize; 2]) -> (Vec<u32>, Vec<usize>) {
     // NaN is in no comparison.
-    let (piece, pieces) = components(size, |a, b| (z[a] - z[b]).abs() <= JUMP);
+    components(size, |a, b| (z[a] - z[b]).abs() <= JUMP)
+}
+
+fn rims_of(z: &[f32], size: [usize; 2]) -> Vec<Rim> {
+    let (piece, pieces) = pieces_of(z, size);
     let (gap, gaps) = components(size, |a, b| z[a].is_nan() && z[b].is_nan());
     let is_open = |n: usize, m: usize| {
         if z[m].is_nan() { gaps[gap[m] as usize] >= SMALL_GAP } else { piece[m] != piece[n] }

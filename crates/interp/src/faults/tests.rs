@@ -50,7 +50,7 @@ fn the_faults_of_a_synthetic_survey_are_found_where_they_are() {
             names.iter().zip(&sheets).map(|(name, sheets)| Evidence { name, sheets }).collect();
         let settings = ProposeSettings::default();
         let found = propose_faults(&evidence, &survey.geometry, None, &settings, &Progress::silent()).unwrap();
-        assert_eq!(found.len(), 3, "{:?}", found.iter().map(|p| (p.support, p.ends)).collect::<Vec<_>>());
+        assert_eq!(found.len(), 3, "{:?}", found.iter().map(|p| (p.support, p.throw, p.reverse, &p.horizons, p.dip_deg, p.misfit_m, p.ends)).collect::<Vec<_>>());
         for (f, truth) in survey.truth.faults.iter().enumerate() {
             // The proposal whose middle is nearest to this fault.
             let distances = |proposal: &Proposal| -> Vec<f64> {
@@ -87,6 +87,46 @@ fn a_horizon_with_holes_has_no_faults() {
     let horizon =
         survey::Horizon { name: "H".into(), sheets: vec![Sheet::new(grid, depth.collect(), Quality::Tracked)] };
     let sheets = from_horizon(&horizon, &geometry, &FaultNetwork::none());
+    let evidence = [Evidence { name: "H", sheets: &sheets }];
+    let found = propose_faults(&evidence, &geometry, None, &ProposeSettings::default(), &Progress::silent()).unwrap();
+    assert!(found.is_empty(), "{:?}", found.iter().map(|p| (p.support, p.throw, p.ends)).collect::<Vec<_>>());
+}
+
+/// A dipping plane over 90 x 80 traces with `step(distance from a line, trace)` added, and noise of 0.25 samples.
+fn stepped(step: impl Fn(f32) -> f32) -> (SurveyGeometry, Vec<VoxelSheet>) {
+    let geometry = SurveyGeometry::regular([90, 80, 60], 25.0, 10.0, VerticalUnit::Metres);
+    let height = |n: usize| {
+        let (x, y) = ((n / 80) as f32, (n % 80) as f32);
+        let noise = (n as u32).wrapping_mul(2_654_435_761).rotate_left(11) % 1000;
+        30.0 + 0.1 * x - 0.05 * y + step((x - 45.0 + 0.3 * (y - 40.0)) / 1.044) + (noise as f32 / 1000.0 - 0.5) * 0.5
+    };
+    let z = (0..90 * 80).map(height).collect();
+    (geometry, vec![VoxelSheet { block: 0, z, quality: vec![Quality::Tracked; 90 * 80] }])
+}
+
+#[test]
+fn a_fault_that_was_tracked_across_is_found_by_its_bend() {
+    // Four samples over three traces, and no gap.
+    let (geometry, sheets) = stepped(|d| 4.0 * (d / 3.0 + 0.5).clamp(0.0, 1.0));
+    let evidence = [Evidence { name: "H", sheets: &sheets }];
+    let found = propose_faults(&evidence, &geometry, None, &ProposeSettings::default(), &Progress::silent()).unwrap();
+    assert_eq!(found.len(), 1, "{:?}", found.iter().map(|p| (p.support, p.throw, p.ends)).collect::<Vec<_>>());
+    let fault = &found[0];
+    assert!((fault.throw[0] - 40.0).abs() < 4.0, "throw {:?} m of 40", fault.throw);
+    for vertex in &fault.mesh.vertices {
+        let p = geometry.voxel_from_world(*vertex);
+        let off = (p.x - 45.0 + 0.3 * (p.y - 40.0)) / 1.044;
+        assert!(off.abs() < 1.0, "{off} traces off at {p}");
+    }
+    let mut ends = fault.ends.map(|end| end[1]);
+    ends.sort_by(f64::total_cmp);
+    assert!(ends[0] < 12.0 && ends[1] > 67.0, "it goes through the survey, not from {:?}", fault.ends);
+}
+
+/// The same offset over twenty traces is a fold.
+#[test]
+fn a_flexure_is_no_fault() {
+    let (geometry, sheets) = stepped(|d| 4.0 * (0.5 + 0.5 * (d / 10.0).tanh()));
     let evidence = [Evidence { name: "H", sheets: &sheets }];
     let found = propose_faults(&evidence, &geometry, None, &ProposeSettings::default(), &Progress::silent()).unwrap();
     assert!(found.is_empty(), "{:?}", found.iter().map(|p| (p.support, p.throw, p.ends)).collect::<Vec<_>>());
