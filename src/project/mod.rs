@@ -27,6 +27,8 @@ pub use document::{Document, Polarity};
 pub use draft::Draft;
 pub use history::{HISTORY_LIMIT, Step};
 
+pub(crate) use storage::at_hand;
+
 use crate::command::{Command, Effect, IMPORTING};
 use crate::error::ProjectError;
 use std::fs;

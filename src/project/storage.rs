@@ -20,6 +20,12 @@ pub(crate) fn new_beside(path: &Path) -> PathBuf {
     path.with_file_name(name)
 }
 
+/// Where data of that name lie now: what a command under way has written and not published yet is under its new name.
+pub(crate) fn at_hand(path: PathBuf) -> PathBuf {
+    let new = new_beside(&path);
+    if !path.exists() && new.exists() { new } else { path }
+}
+
 /// Writes `bytes` to `path` and flushes them to the disk.
 pub(crate) fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
     let fail = |source| ProjectError::io("written", path, source);

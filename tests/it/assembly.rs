@@ -174,6 +174,29 @@ fn faults_are_drawn_by_sticks_and_proposed_ones_accepted() {
     assert!(model["blocks"].as_u64() > Some(1), "{model}");
 }
 
+/// Two horizons are picked first; a fault that is drawn or accepted afterwards makes both anew, in one command.
+#[test]
+fn faults_come_after_picks() {
+    let folder = project();
+    let at = folder.path();
+    for name in ["Alpha", "Bravo"] {
+        let place = place_on(at, name);
+        run_in(at, &format!("pick p.petro --at {place} --horizon {name} --highest-valid")).done();
+    }
+    let sticks = "--stick 140,505,100 150,505,700 --stick 142,560,100 152,560,700";
+    run_in(at, &format!("fault pick p.petro --name Drawn {sticks}")).done();
+    let blocks = |path: &str| {
+        run_in(at, &format!("parameterize {path} --size 16x16x16 --json")).done().json()["blocks"].as_u64()
+    };
+    assert!(blocks("p.petro") > Some(1));
+    for name in ["Alpha", "Bravo"] {
+        let shown = run_in(at, &format!("horizon show p.petro {name} --json")).done().json();
+        assert!(shown["sheets"].as_array().unwrap().len() > 1, "{shown}");
+    }
+    run_in(at, "undo p.petro").done();
+    assert_eq!(blocks("p.petro"), Some(1));
+}
+
 #[test]
 fn an_extraction_is_measured_against_the_truth() {
     let folder = project();

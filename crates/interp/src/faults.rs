@@ -11,7 +11,8 @@
 //!    It goes on to where the throw, continued linearly, is nothing; to the walls that its traces reach; up and down to the next
 //!    horizon that passes it unbroken, or through the volume.
 //!
-//! Semblance is evidence, not a source: its mean on the surface is told beside that on both sides of it. Spaces: rims and pairs are voxel, surfaces
+//! Semblance is evidence, not a source: its mean on the surface is told beside that on both sides of it. It gives a fault its dip where a single
+//! horizon cannot, and what is a bend of one horizon and nothing else is left out unless semblance is less on it than beside. Spaces: rims and pairs are voxel, surfaces
 //! metric (m).
 
 mod bends;
@@ -97,6 +98,9 @@ impl Proposal {
     }
 }
 
+/// How much less semblance is on a fault that only bends one horizon than beside it.
+const BREAK: f32 = 0.02;
+
 /// Looks for faults that offset `horizons`. `semblance` is a volume of the survey's size.
 ///
 /// Cost: a window of [`ProposeSettings::reach`] around each rim node.
@@ -125,9 +129,13 @@ pub fn propose_faults(
     let mut proposals = Vec::new();
     for cluster in clusters {
         progress.check()?;
-        let Some(surface) = surface::Surface::through(&cluster, geometry, settings) else { continue };
+        let Some(surface) = surface::Surface::through(&cluster, geometry, semblance, settings) else { continue };
         let surface = surface.extended(&cluster, horizons, geometry);
-        proposals.push(describe(&surface, &cluster, horizons, geometry, semblance));
+        let proposal = describe(&surface, &cluster, horizons, geometry, semblance);
+        let seen = proposal.semblance.is_none_or(|[on, beside]| on < beside - BREAK);
+        if seen || proposal.horizons.len() > 1 || !cluster.iter().all(|pair| pair.bend) {
+            proposals.push(proposal);
+        }
     }
     proposals.sort_by_key(|proposal| std::cmp::Reverse((proposal.horizons.len(), proposal.support)));
     for (n, proposal) in proposals.iter_mut().enumerate() {

@@ -186,33 +186,51 @@ pub fn to_horizon(name: &str, sheets: &[VoxelSheet], geometry: &SurveyGeometry) 
 }
 
 /// The nodes of a horizon that lie on the survey's lattice, in samples, sorted into fault blocks; the way back from [`to_horizon`]. Sheets on
-/// other grids are sampled at the traces.
+/// other grids are sampled at the traces. What one sheet has in a block stays together: it joins another sheet only where that has no node at all.
 pub fn from_horizon(horizon: &Horizon, geometry: &SurveyGeometry, blocks: &FaultNetwork) -> Vec<VoxelSheet> {
     let [nx, ny, _] = geometry.size();
     let mut sheets: Vec<VoxelSheet> = Vec::new();
-    let survey = NodeGrid::of_survey(geometry);
     for sheet in &horizon.sheets {
-        for trace in 0..nx * ny {
-            let voxel = glam::DVec2::new((trace / ny) as f64, (trace % ny) as f64);
-            let node = sheet.grid.node_at(survey.world_at(voxel));
-            let depth = sheet.depth_at_node(node);
-            if !depth.is_finite() {
+        for part in parts_of(sheet, geometry, blocks) {
+            let free = |other: &&mut VoxelSheet| {
+                other.block == part.block && other.z.iter().zip(&part.z).all(|(a, b)| a.is_nan() || b.is_nan())
+            };
+            let Some(other) = sheets.iter_mut().find(free) else {
+                sheets.push(part);
                 continue;
+            };
+            for trace in (0..nx * ny).filter(|&trace| part.z[trace].is_finite()) {
+                other.z[trace] = part.z[trace];
+                other.quality[trace] = part.quality[trace];
             }
-            let z = geometry.vertical.index_of(f64::from(depth)) as f32;
-            let [u, v] = [node.x.round() as usize, node.y.round() as usize];
-            let quality =
-                sheet.quality[u.min(sheet.grid.count[0] - 1) * sheet.grid.count[1] + v.min(sheet.grid.count[1] - 1)];
-            let block = blocks.block_at(voxel.as_vec2().extend(z));
-            let free = |sheet: &VoxelSheet| sheet.block == block && sheet.z[trace].is_nan();
-            let at = sheets.iter().position(free).unwrap_or_else(|| {
-                sheets.push(VoxelSheet::empty(block, nx * ny));
-                sheets.len() - 1
-            });
-            sheets[at].z[trace] = z;
-            sheets[at].quality[trace] = quality;
         }
     }
     sheets.sort_by_key(|sheet| sheet.block);
     sheets
+}
+
+/// One sheet on the survey's lattice, a part for each fault block that it reaches.
+fn parts_of(sheet: &Sheet, geometry: &SurveyGeometry, blocks: &FaultNetwork) -> Vec<VoxelSheet> {
+    let [nx, ny, _] = geometry.size();
+    let survey = NodeGrid::of_survey(geometry);
+    let mut parts: Vec<VoxelSheet> = Vec::new();
+    for trace in 0..nx * ny {
+        let voxel = glam::DVec2::new((trace / ny) as f64, (trace % ny) as f64);
+        let node = sheet.grid.node_at(survey.world_at(voxel));
+        let depth = sheet.depth_at_node(node);
+        if !depth.is_finite() {
+            continue;
+        }
+        let z = geometry.vertical.index_of(f64::from(depth)) as f32;
+        let [u, v] = [node.x.round() as usize, node.y.round() as usize];
+        let nearest = u.min(sheet.grid.count[0] - 1) * sheet.grid.count[1] + v.min(sheet.grid.count[1] - 1);
+        let block = blocks.block_at(voxel.as_vec2().extend(z));
+        let at = parts.iter().position(|part| part.block == block).unwrap_or_else(|| {
+            parts.push(VoxelSheet::empty(block, nx * ny));
+            parts.len() - 1
+        });
+        parts[at].z[trace] = z;
+        parts[at].quality[trace] = sheet.quality[nearest];
+    }
+    parts
 }

@@ -3,12 +3,12 @@
 use super::*;
 use crate::forest::Node;
 use crate::holes::find_holes;
-use crate::reassembly::{from_horizon, reassemble, to_horizon};
+use crate::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
 use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
 use glam::Vec3;
 use survey::model::{FaultNetwork, ModelSettings};
 use survey::synth::closed_form::ClosedForm;
-use survey::{Progress, SurveyGeometry, VerticalUnit};
+use survey::{Progress, Quality, SurveyGeometry, VerticalUnit};
 
 /// One surface: z over traces; a cell has two triangles where its four corners have a vertex.
 pub(crate) type Height<'a> = &'a dyn Fn(usize, usize) -> Option<f32>;
@@ -218,6 +218,23 @@ fn a_fault_turns_an_overlap_into_two_sheets_of_their_own_blocks() {
         assert!(back.block == sheet.block && back.quality == sheet.quality);
         assert!(back.z.iter().zip(&sheet.z).all(|(a, b)| a == b || a.is_nan() && b.is_nan()));
     }
+}
+
+/// Two sheets that lie over one another in a strip stay what they are, wherever no fault tells them apart.
+#[test]
+fn sheets_that_overlap_come_back_whole() {
+    let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
+    let [nx, ny] = [SIZE[0], SIZE[1]];
+    let sheet = |from: usize, to: usize, z: f32| {
+        let mut sheet = VoxelSheet::empty(0, nx * ny);
+        for trace in from * ny..to * ny {
+            (sheet.z[trace], sheet.quality[trace]) = (z, Quality::Tracked);
+        }
+        sheet
+    };
+    let sheets = [sheet(0, 18, 12.0), sheet(14, nx, 20.0)];
+    let back = from_horizon(&to_horizon("H", &sheets, &geometry), &geometry, &FaultNetwork::none());
+    assert_eq!(back.iter().map(VoxelSheet::nodes).collect::<Vec<_>>(), [18 * ny, (nx - 14) * ny]);
 }
 
 #[test]

@@ -48,7 +48,7 @@ pub(super) fn of(sheets: &[VoxelSheet], size: [usize; 2], horizon: usize, settin
             let edge = edges[n].filter(|edge| is_crest(&edges, size, n, *edge))?;
             let at = [(n / size[1]) as f32, (n % size[1]) as f32, edge.z];
             // A bend is as wide as what was tracked made it: it says nothing of the fault's dip.
-            Some(Pair { horizon, at, across: edge.across, throw: edge.offset, heave: 0.0 })
+            Some(Pair { horizon, at, across: edge.across, throw: edge.offset, heave: 0.0, bend: true })
         };
         (0..z.len()).filter_map(pair).collect::<Vec<_>>()
     };
@@ -140,7 +140,9 @@ impl Disc {
     fn plane(&self, heights: &[f32], side: &[i8], of: i8) -> Option<Plane> {
         let mut m = [0.0f64; 9];
         let mut count = 0;
-        for ((&[i, j], &z), _) in self.nodes.iter().zip(heights).zip(side).filter(|((_, z), s)| **s == of && z.is_finite()) {
+        for ((&[i, j], &z), _) in
+            self.nodes.iter().zip(heights).zip(side).filter(|((_, z), s)| **s == of && z.is_finite())
+        {
             let [i, j, z] = [f64::from(i), f64::from(j), f64::from(z)];
             count += 1;
             let terms = [i, j, z, i * i, i * j, j * j, i * z, j * z, z * z];

@@ -17,6 +17,8 @@ pub struct Pair {
     pub throw: f32,
     /// Traces from the rim behind to the rim that `across` points to, along `across`; negative where they overlap.
     pub heave: f32,
+    /// Whether the horizon was tracked across, and only bends.
+    pub bend: bool,
 }
 
 /// Cosine between one way out and the other reversed; 45° off is still facing.
@@ -70,6 +72,7 @@ pub(super) fn facing(pieces: &Pieces, horizon: usize, settings: &ProposeSettings
                 across,
                 throw: throw(rim, other),
                 heave: (other.place() - rim.place()).dot(across),
+                bend: false,
             });
         }
     }

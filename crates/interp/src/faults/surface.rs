@@ -1,7 +1,7 @@
 //! The smooth surface of a fault: distance across strike as a quadratic of strike and depth.
 //!
 //! `c(s, z) = c₀ + c₁s + c₂z + c₃s² + c₄sz + c₅z²`, least squares, twice with the farthest left out. With horizons at fewer than three depths c₅ is
-//! left out, with one horizon c₂ is the median of heave over throw and c₄ is left out too. Metric space, s and z from the middle.
+//! left out, with one horizon c₂ is the dip along which semblance is least, or the median of heave over throw, and c₄ is left out too. Metric space, s and z from the middle.
 
 use super::pairs::Pair;
 use super::traces::across_m;
@@ -15,8 +15,14 @@ const OUTLIER: f64 = 2.5;
 const MESH: [f64; 2] = [4.0, 6.0];
 /// Ends nearer than this to a wall reach it, traces.
 const TO_WALL: f64 = 8.0;
-/// Farthest that a fault goes on beyond its last pair, in traces.
-const BEYOND: f64 = 30.0;
+/// Farthest that a fault goes on beyond its last pair, in traces and as a share of its length.
+const BEYOND: [f64; 2] = [30.0, 0.5];
+/// Dips tried where the data are asked for one, degrees apart; samples above and below the horizon; at most so many of its places.
+const LEAN_STEP_DEG: f64 = 5.0;
+const LEAN_REACH: i32 = 20;
+const LEAN_PLACES: usize = 400;
+/// How far the least mean semblance must lie below that of all dips.
+const LEAN_CLEAR: f64 = 0.01;
 /// Most coefficients.
 const TERMS: usize = 6;
 
@@ -36,7 +42,12 @@ pub(super) struct Surface {
 
 impl Surface {
     /// Fits a fault's pairs; `None` when it would be flatter than a fault may be.
-    pub fn through(pairs: &[Pair], geometry: &SurveyGeometry, settings: &ProposeSettings) -> Option<Self> {
+    pub fn through(
+        pairs: &[Pair],
+        geometry: &SurveyGeometry,
+        semblance: Option<&Volume<f32>>,
+        settings: &ProposeSettings,
+    ) -> Option<Self> {
         let metric = geometry.metric_from_voxel();
         let across = across_m(pairs, metric);
         let along = across.perp();
@@ -57,6 +68,9 @@ impl Surface {
             2 => &[0, 1, 2, 3, 4],
             _ => &[0, 1, 2, 3, 4, 5],
         };
+        if let (1, Some(volume)) = (levels.len(), semblance) {
+            surface.lean(&points, used, geometry, volume, settings.min_dip_deg)?;
+        }
         for _ in 0..3 {
             surface.fit(&points, used)?;
             let limit = OUTLIER * surface.misfit_m;
@@ -72,6 +86,43 @@ impl Surface {
             surface.z = [surface.z[0].min(p[2]), surface.z[1].max(p[2])];
         }
         (surface.run().1 <= 1.0 / settings.min_dip_deg.to_radians().tan()).then_some(surface)
+    }
+
+    /// Gives a fault that one horizon tells of the dip that the data show: of all to both sides the one on which the semblance around the
+    /// horizon is least. Where none stands out, the dip stays what heave and throw make it.
+    fn lean(
+        &mut self,
+        points: &[[f64; 3]],
+        used: &[usize],
+        geometry: &SurveyGeometry,
+        semblance: &Volume<f32>,
+        min_dip_deg: f64,
+    ) -> Option<()> {
+        let inverse = geometry.metric_from_voxel().inverse();
+        let sample_m = geometry.sample_m();
+        let every = points.len().div_ceil(LEAN_PLACES);
+        let steps = ((90.0 - min_dip_deg) / LEAN_STEP_DEG) as i32;
+        let known = self.c[2];
+        let mut tried = Vec::new();
+        for step in -steps..=steps {
+            self.c[2] = (f64::from(step) * LEAN_STEP_DEG).to_radians().tan();
+            self.fit(points, used)?;
+            let around = |p: &[f64; 3]| {
+                let [s, z] = [p[0], p[2]];
+                (-LEAN_REACH..=LEAN_REACH).map(move |by| [s, z + f64::from(by) * sample_m])
+            };
+            let places = points.iter().step_by(every).flat_map(around).map(|[s, z]| inverse * self.at(s, z));
+            let (sum, count) = places
+                .filter_map(|voxel| value_near(semblance, voxel))
+                .fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
+            if count > 0 {
+                tried.push((sum / count as f64, self.c[2]));
+            }
+        }
+        let mean = tried.iter().map(|(value, _)| value).sum::<f64>() / tried.len().max(1) as f64;
+        let least = tried.iter().min_by(|a, b| a.0.total_cmp(&b.0)).filter(|least| mean - least.0 >= LEAN_CLEAR);
+        self.c[2] = least.map_or(known, |least| least.1);
+        Some(())
     }
 
     fn fit(&mut self, points: &[[f64; 3]], used: &[usize]) -> Option<()> {
@@ -165,7 +216,11 @@ impl Surface {
             let last = reach[end];
             let z = 0.5 * (self.z[0] + self.z[1]);
             let wall = (1..=TO_WALL as usize).any(|k| !inside(self.at(last + sign * k as f64 * bin_m, z)));
-            let by = if wall { 2.0 * TO_WALL * bin_m } else { dies_out(&throw, reach, end).min(BEYOND * bin_m) };
+            let by = if wall {
+                2.0 * TO_WALL * bin_m
+            } else {
+                dies_out(&throw, reach, end).min(BEYOND[0] * bin_m).min(BEYOND[1] * (reach[1] - reach[0]))
+            };
             self.s[end] = last + sign * by;
         }
         let mut used: Vec<usize> = pairs.iter().map(|pair| pair.horizon).collect();
@@ -254,13 +309,20 @@ impl Surface {
     }
 }
 
+/// The value of the nearest voxel; `None` outside, and where there is none.
+fn value_near(volume: &Volume<f32>, voxel: DVec3) -> Option<f64> {
+    let voxel = voxel.round();
+    let inside = (0..3).all(|axis| voxel[axis] >= 0.0 && voxel[axis] < volume.size()[axis] as f64);
+    let value = inside.then(|| volume.at(voxel.x as usize, voxel.y as usize, voxel.z as usize))?;
+    value.is_finite().then_some(f64::from(value))
+}
+
 /// Mean semblance on the surface, and eight traces off it on both sides.
 pub(super) fn semblance_on(surface: &Surface, geometry: &SurveyGeometry, volume: &Volume<f32>) -> [f32; 2] {
     const STATIONS: usize = 64;
     const OFF_TRACES: f64 = 8.0;
     let metric = geometry.metric_from_voxel();
     let inverse = metric.inverse();
-    let size = volume.size();
     let mut sums = [(0.0f64, 0usize); 2];
     for a in 0..STATIONS {
         for b in 0..STATIONS {
@@ -269,14 +331,9 @@ pub(super) fn semblance_on(surface: &Surface, geometry: &SurveyGeometry, volume:
             let p = surface.at(part(surface.s, a), part(surface.z, b));
             for (kind, off) in [(0, 0.0), (1, -OFF_TRACES), (1, OFF_TRACES)] {
                 let q = inverse * (p + (surface.across * (off * metric.x_axis.length())).extend(0.0));
-                let voxel = q.round();
-                let inside = (0..3).all(|axis| voxel[axis] >= 0.0 && voxel[axis] < size[axis] as f64);
-                if inside {
-                    let value = volume.at(voxel.x as usize, voxel.y as usize, voxel.z as usize);
-                    if value.is_finite() {
-                        sums[kind].0 += f64::from(value);
-                        sums[kind].1 += 1;
-                    }
+                if let Some(value) = value_near(volume, q) {
+                    sums[kind].0 += value;
+                    sums[kind].1 += 1;
                 }
             }
         }
