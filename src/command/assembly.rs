@@ -42,6 +42,9 @@ pub struct AssemblyReport {
     /// Where sheets of one fault block lie over one another; places are inline, crossline, vertical value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overlap: Option<Overlap>,
+    /// Nodes left out because they were tracked past a fault, where the sheet of the other side runs.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub past_faults: usize,
     /// What is missing inside it.
     pub holes: HoleReport,
     /// What was filled.
@@ -49,6 +52,10 @@ pub struct AssemblyReport {
     pub filled: Option<Filled>,
     /// Contradictions with other horizons.
     pub conflicts: Vec<Conflict>,
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
 }
 
 /// The holes that a horizon's nodes enclose.
@@ -78,6 +85,9 @@ impl std::fmt::Display for AssemblyReport {
                  descend a pick, or draw the fault between its two parts",
                 overlap.traces, overlap.apart
             )?;
+        }
+        if self.past_faults > 0 {
+            write!(f, "\n  {} nodes tracked past faults left out", self.past_faults)?;
         }
         if let Some(filled) = &self.filled {
             write!(f, "\n  filled {} hole{} with {} nodes", filled.holes, plural(filled.holes), filled.nodes)?;
@@ -179,6 +189,7 @@ pub(super) fn rebuild(
     };
     let mut report = report_on(&assembled.sheets, &geometry);
     report.filled = filled;
+    report.past_faults = assembled.left_out;
     report.overlap = overlap_in_lines(assembled.overlap, &geometry);
     let horizon = to_horizon(name, &assembled.sheets, &geometry);
     put(draft, &horizon, Some(log), progress)?;

@@ -3,7 +3,8 @@
 //! A vertex is an extremum of one trace, so a sheet's node is its z: nothing is interpolated. Vertices go to the fault block they lie in, and
 //! edges between blocks are cut. In each block the mesh is walked breadth first from the picked triangles; the first vertex to reach a trace takes it.
 //! What finds its trace taken is left for a walk of its own and lands on a further sheet of that block: an overlap is kept in sight, and
-//! without interpreted faults that is how the second side of a reverse fault survives. Space: voxels.
+//! without interpreted faults that is how the second side of a reverse fault survives. What tracking left beyond a fault, over or under the sheet
+//! that belongs there, is left out. Space: voxels.
 
 use crate::assembly::{Overlap, Selection};
 use crate::forest::Forest;
@@ -43,6 +44,8 @@ pub struct Reassembled {
     pub sheets: Vec<VoxelSheet>,
     /// Where sheets of one block lie over one another.
     pub overlap: Overlap,
+    /// Count of vertices left out because they lie beyond a fault that their surface was tracked across.
+    pub left_out: usize,
 }
 
 /// No vertex, or none yet.
@@ -61,38 +64,24 @@ pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks:
     let picked = seeds.iter().filter(|&&t| selection.contains(t)).flat_map(|&t| surfaces.triangles[t as usize]);
     let starts = picked.filter_map(|v| mesh.local(v)).chain(0..mesh.vertices.len() as u32);
 
-    let mut sheets: Vec<VoxelSheet> = Vec::new();
-    let mut placed = vec![false; mesh.vertices.len()];
-    // Walk that took a trace last.
-    let mut taken = vec![NONE; nx * ny];
     let trace_of = |v: u32| usize::from(of(v).x) * ny + usize::from(of(v).y);
-    let mut queue = VecDeque::new();
-    for (walk, start) in starts.enumerate() {
-        if placed[start as usize] {
-            continue;
-        }
-        let own = block[start as usize];
-        let mut patch = Vec::new();
-        placed[start as usize] = true;
-        taken[trace_of(start)] = walk as u32;
-        queue.push_back(start);
-        while let Some(v) = queue.pop_front() {
-            patch.push(v);
-            for &next in mesh.neighbours(v) {
-                let trace = trace_of(next);
-                if !placed[next as usize] && block[next as usize] == own && taken[trace] != walk as u32 {
-                    placed[next as usize] = true;
-                    taken[trace] = walk as u32;
-                    queue.push_back(next);
-                }
-            }
-        }
-        let free = |sheet: &VoxelSheet| sheet.block == own && patch.iter().all(|&v| sheet.z[trace_of(v)].is_nan());
+    let mut patches = patches(&mesh, &block, starts, trace_of, nx * ny);
+    let overshoot = overshoots(&patches, &mesh, trace_of, nx * ny);
+    let mut left_out = 0;
+    for (patch, _) in patches.iter_mut().zip(overshoot).filter(|(_, overshoot)| *overshoot) {
+        left_out += patch.vertices.len();
+        patch.vertices.clear();
+    }
+    let mut sheets: Vec<VoxelSheet> = Vec::new();
+    for patch in patches.iter().filter(|patch| !patch.vertices.is_empty()) {
+        let free = |sheet: &VoxelSheet| {
+            sheet.block == patch.block && patch.vertices.iter().all(|&v| sheet.z[trace_of(v)].is_nan())
+        };
         let sheet = sheets.iter().position(free).unwrap_or_else(|| {
-            sheets.push(VoxelSheet::empty(own, nx * ny));
+            sheets.push(VoxelSheet::empty(patch.block, nx * ny));
             sheets.len() - 1
         });
-        for v in patch {
+        for &v in &patch.vertices {
             sheets[sheet].z[trace_of(v)] = of(v).z;
             sheets[sheet].quality[trace_of(v)] = Quality::Tracked;
         }
@@ -100,7 +89,114 @@ pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks:
     // Stable: of one block, the sheet that was begun first stays first.
     sheets.sort_by_key(|sheet| sheet.block);
     let overlap = overlap_of(&sheets, ny);
-    Reassembled { sheets, overlap }
+    Reassembled { sheets, overlap, left_out }
+}
+
+/// Connected vertices of one block, at most one a trace.
+struct Patch {
+    block: u16,
+    vertices: Vec<u32>,
+}
+
+/// Walks the mesh from each start that no walk has reached, within its block.
+fn patches(
+    mesh: &Mesh,
+    block: &[u16],
+    starts: impl Iterator<Item = u32>,
+    trace_of: impl Fn(u32) -> usize,
+    traces: usize,
+) -> Vec<Patch> {
+    let mut patches = Vec::new();
+    let mut placed = vec![false; block.len()];
+    // Walk that took a trace last.
+    let mut taken = vec![NONE; traces];
+    let mut queue = VecDeque::new();
+    for start in starts {
+        if placed[start as usize] {
+            continue;
+        }
+        let walk = patches.len() as u32;
+        let mut patch = Patch { block: block[start as usize], vertices: Vec::new() };
+        placed[start as usize] = true;
+        taken[trace_of(start)] = walk;
+        queue.push_back(start);
+        while let Some(v) = queue.pop_front() {
+            patch.vertices.push(v);
+            for &next in mesh.neighbours(v) {
+                let trace = trace_of(next);
+                if !placed[next as usize] && block[next as usize] == patch.block && taken[trace] != walk {
+                    placed[next as usize] = true;
+                    taken[trace] = walk;
+                    queue.push_back(next);
+                }
+            }
+        }
+        patches.push(patch);
+    }
+    patches
+}
+
+/// Share of a patch that lies over or under a larger one of its block, from which on it can be another block's overshoot.
+const OVERSHOT: f64 = 0.3;
+
+/// Patches of a block with a larger one that reach no farther than this from the fault, traces, can be another block's overshoot too.
+const FRINGE: u32 = 12;
+
+/// Which patches are what tracking left beyond a fault: the continuation of a larger patch in another block, where this block has a larger patch
+/// of its own that runs above or below, or far beyond a fringe along the fault.
+fn overshoots(patches: &[Patch], mesh: &Mesh, trace_of: impl Fn(u32) -> usize, traces: usize) -> Vec<bool> {
+    let mut patch_of = vec![NONE; mesh.vertices.len()];
+    for (p, patch) in patches.iter().enumerate() {
+        patch.vertices.iter().for_each(|&v| patch_of[v as usize] = p as u32);
+    }
+    // The largest patch of each block at each trace; blocks one after the other.
+    let mut largest = vec![NONE; traces];
+    let mut order: Vec<usize> = (0..patches.len()).collect();
+    order.sort_by_key(|&p| (patches[p].block, std::cmp::Reverse(patches[p].vertices.len()), p));
+    let mut found = vec![false; patches.len()];
+    for of_block in order.chunk_by(|&a, &b| patches[a].block == patches[b].block) {
+        largest.fill(NONE);
+        for &p in of_block {
+            let patch = &patches[p];
+            let under = patch.vertices.iter().filter(|&&v| largest[trace_of(v)] != NONE).count();
+            // What lies at the fault: next to a larger patch of another block.
+            let at_fault = |v: &u32| {
+                mesh.neighbours(*v).iter().any(|&m| {
+                    let across = &patches[patch_of[m as usize] as usize];
+                    across.block != patch.block && across.vertices.len() > patch.vertices.len()
+                })
+            };
+            let fault: Vec<u32> = patch.vertices.iter().copied().filter(at_fault).collect();
+            let over = under > 0 && under as f64 >= OVERSHOT * patch.vertices.len() as f64;
+            let second = p != of_block[0];
+            found[p] = !fault.is_empty() && second && (over || reach(mesh, &patch_of, p as u32, fault) <= FRINGE);
+            for &v in &patch.vertices {
+                let at = &mut largest[trace_of(v)];
+                if *at == NONE && !found[p] {
+                    *at = p as u32;
+                }
+            }
+        }
+    }
+    found
+}
+
+/// How far a patch reaches from some of its vertices, steps along its edges.
+fn reach(mesh: &Mesh, patch_of: &[u32], patch: u32, from: Vec<u32>) -> u32 {
+    let mut seen: std::collections::HashSet<u32> = from.iter().copied().collect();
+    let (mut rim, mut steps) = (from, 0);
+    loop {
+        let next: Vec<u32> = rim
+            .iter()
+            .flat_map(|&v| mesh.neighbours(v))
+            .copied()
+            .filter(|&m| patch_of[m as usize] == patch && seen.insert(m))
+            .collect();
+        if next.is_empty() {
+            return steps;
+        }
+        (rim, steps) = (next, steps + 1);
+    }
 }
 
 /// Where further sheets of a block lie over its first.

@@ -220,6 +220,47 @@ fn a_fault_turns_an_overlap_into_two_sheets_of_their_own_blocks() {
     }
 }
 
+/// Both sides were tracked six traces past a vertical fault: once it is drawn, each block keeps its own sheet.
+#[test]
+fn what_was_tracked_past_a_fault_is_left_out() {
+    let left: Height = &|x, _| (x <= 22).then_some(12.0);
+    let right: Height = &|x, _| (x >= 10).then_some(20.0);
+    let forest = forest_of(SIZE, &[&[left], &[right]], 64);
+    let mut all = Selection::default();
+    all.insert(0..forest.surfaces.triangles.len() as u32);
+    let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[16.0]).with_fault(89.9, 2.0);
+    let faulted =
+        FaultNetwork::build(&geometry, &closed.faults, &ModelSettings::default(), &Progress::silent()).unwrap();
+    let open = reassemble(&forest, &all, &[], &FaultNetwork::none());
+    assert!(open.overlap.traces > 0 && open.left_out == 0);
+    let found = reassemble(&forest, &all, &[], &faulted);
+    assert_eq!((found.sheets.len(), found.overlap.traces), (2, 0));
+    assert!(found.left_out > 100, "{}", found.left_out);
+    for sheet in &found.sheets {
+        let heights: std::collections::BTreeSet<u32> =
+            sheet.z.iter().filter(|z| z.is_finite()).map(|z| *z as u32).collect();
+        assert_eq!(heights.len(), 1, "{heights:?}");
+    }
+}
+
+/// The left side's own reflection ends ten traces before the fault; what the right side's tracking left along the fault is no sheet of the left.
+#[test]
+fn a_fringe_along_a_fault_is_left_out() {
+    let left: Height = &|x, _| (x <= 6).then_some(12.0);
+    let right: Height = &|x, _| (x >= 12).then_some(20.0);
+    let forest = forest_of(SIZE, &[&[left], &[right]], 64);
+    let mut all = Selection::default();
+    all.insert(0..forest.surfaces.triangles.len() as u32);
+    let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[16.0]).with_fault(89.9, 2.0);
+    let faulted =
+        FaultNetwork::build(&geometry, &closed.faults, &ModelSettings::default(), &Progress::silent()).unwrap();
+    let found = reassemble(&forest, &all, &[], &faulted);
+    assert!(found.left_out > 0 && found.sheets.len() == 2, "{} left out", found.left_out);
+    assert!(found.sheets.iter().all(|sheet| (0..12 * SIZE[1]).all(|trace| !(sheet.z[trace] >= 20.0))));
+}
+
 /// Two sheets that lie over one another in a strip stay what they are, wherever no fault tells them apart.
 #[test]
 fn sheets_that_overlap_come_back_whole() {
