@@ -1,7 +1,7 @@
 //! How large, how fine, and where to.
 
 use super::notices;
-use crate::app::state::{Action, Dialogue, ExportForm, ExportPlan, Place, Session, Shown, State};
+use crate::app::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
 use crate::app::theme;
 use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
 
@@ -75,8 +75,7 @@ pub fn show(
             let can = !is_drawing && !is_too_large && !next.path.trim().is_empty();
             let is_entered = can && ui.input(|input| input.key_pressed(Key::Enter));
             if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || is_entered {
-                let plan = ExportPlan { scene: session.view.scene.clone(), form: next.clone() };
-                actions.push(Action::Export(Box::new(plan)));
+                actions.push(Action::Export(Box::new(next.clone())));
             }
             if ui.button("Cancel").clicked() {
                 actions.push(Action::Answered);

@@ -16,6 +16,7 @@ use eframe::egui::{Button, Color32, DragValue, Grid, RichText, ScrollArea, Sense
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
 use render::FaceData;
+use std::sync::Arc;
 use survey::SurveyGeometry;
 use ttf::Colour;
 
@@ -52,7 +53,7 @@ impl PickingPanel {
             return;
         };
         ScrollArea::vertical().show(ui, |ui| {
-            let shown = overlay.interpreted();
+            let shown = overlay.interpreted().map(Arc::as_ref);
             ui.heading("Candidates");
             self.candidates.show(ui, session, shown, running, actions);
             ui.add_space(8.0);
@@ -249,7 +250,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.label("Pointer");
         for (tool, name, hint) in [
             (Tool::Pick, "Pick", "Click a reflection: its leaf is selected"),
-            (Tool::Lasso, "Lasso", "Draw around what is to be erased (or hold L)"),
+            (Tool::Lasso, "Lasso", "Draw around what is to be erased (or hold A)"),
         ] {
             if ui.selectable_label(picking.tool == tool, name).on_hover_text(hint).clicked() {
                 actions.push(Action::Picking(PickingStep::Use(tool)));

@@ -1,5 +1,6 @@
 //! Every action by keyboard: one table that is both obeyed and shown.
 
+use super::lasso;
 use crate::app::state::faces::{self, Face, Owner};
 use crate::app::state::{
     Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State,
@@ -161,7 +162,7 @@ pub const INTERPRETING: &[Shortcut] = &[
     plain(Key::Q, "Q", "Look for faults", |_| Some(Action::ProposeFaults)),
     plain(Key::P, "P", "Back to the layers", |_| Some(Action::Panel(Panel::Layers))),
     // Held while dragging, so a press does nothing.
-    plain(Key::L, "L and drag", "Erase what is drawn around", |_| None),
+    plain(lasso::HELD, "A and drag", "Erase what is drawn around", |_| None),
 ];
 
 fn picking(step: PickingStep) -> Option<Action> {
@@ -273,15 +274,21 @@ mod tests {
 
     #[test]
     fn no_key_means_two_things() {
-        for (index, shortcut) in SHORTCUTS.iter().enumerate() {
-            for other in &SHORTCUTS[..index] {
-                assert!(
-                    shortcut.key != other.key || shortcut.modifiers != other.modifiers,
-                    "{} and {}",
-                    shortcut.name,
-                    other.name
-                );
+        for table in [SHORTCUTS, INTERPRETING] {
+            for (index, shortcut) in table.iter().enumerate() {
+                for other in &table[..index] {
+                    let is_other = shortcut.key != other.key || shortcut.modifiers != other.modifiers;
+                    assert!(is_other, "{} and {}", shortcut.name, other.name);
+                }
             }
+        }
+    }
+
+    #[test]
+    fn panels_are_reached_by_the_same_keys_everywhere() {
+        let names = ["Layers", "Data", "Values", "Block alone", "Block and sections", "Map", "Fence"];
+        for shortcut in SHORTCUTS.iter().filter(|shortcut| names.contains(&shortcut.name)) {
+            assert!(INTERPRETING.iter().all(|other| other.key != shortcut.key), "{}", shortcut.name);
         }
     }
 }
