@@ -2,13 +2,14 @@
 
 use super::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
 use super::tests::{Driven, click, document, open, state, wait};
-use crate::command::{AddHorizon, Age, Command, PickFault};
+use crate::command::{Command, PickFault};
 use crate::project::Project;
+use crate::proposals::Proposals;
 use eframe::egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
-use std::path::{Path, PathBuf};
-use survey::formats::ImportOptions;
-use survey::{Contact, Progress};
+use glam::DVec3;
+use interp::faults::Proposal;
+use survey::{Contact, Progress, TriangleMesh};
 
 fn act(harness: &mut Driven, action: Action) {
     harness.state_mut().as_mut().unwrap().act(action);
@@ -43,58 +44,61 @@ fn fault() -> Command {
     Command::PickFault(PickFault { name: "East".into(), sticks: vec![stick(2.0), stick(18.0)] })
 }
 
-/// Inline, crossline and z of a horizon with an offset of 40 ms at a fault that dips to higher inlines.
-fn faulted(folder: &Path, name: &str, gap: i32, z: i32) -> PathBuf {
-    let path = folder.join(format!("{name}.csv"));
-    let mut text = "inline,crossline,z\n".to_owned();
-    for inline in (1..=24).filter(|inline| *inline != gap) {
-        for crossline in 1..=20 {
-            text += &format!("{inline},{crossline},{}\n", if inline < gap { z } else { z + 40 });
-        }
-    }
-    std::fs::write(&path, text).unwrap();
-    path
+/// Two proposals for the horizons as they are, as looking for faults leaves them.
+fn proposed(project: &Project) {
+    let mesh = |x: f64| {
+        let corner = |y: f64, z: f64| DVec3::new(x + z, y, z);
+        let vertices = vec![corner(-50.0, 0.0), corner(550.0, 0.0), corner(550.0, 124.0), corner(-50.0, 124.0)];
+        TriangleMesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] }
+    };
+    let proposal = |id: u32, x: f64| Proposal {
+        id,
+        name: format!("Fault {id}"),
+        mesh: mesh(x),
+        strike_deg: 0.0,
+        dip_deg: 45.0,
+        reverse: false,
+        throw: [12.0, 16.0],
+        ends: [[x / 25.0, 1.0], [x / 25.0, 20.0]],
+        depth: [0.0, 124.0],
+        horizons: vec!["Top".into()],
+        support: 40,
+        misfit_m: 3.0,
+        semblance: None,
+    };
+    let horizons = project.document().horizons.iter().map(|entry| entry.hash.clone()).collect();
+    let proposals = Proposals { horizons, proposals: vec![proposal(1, 150.0), proposal(2, 350.0)], unit: "ms".into() };
+    let folder = project.root().join("derived");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("fault-proposals.json"), serde_json::to_string(&proposals).unwrap()).unwrap();
 }
 
 #[test]
 fn proposed_faults_are_accepted_and_dismissed() {
     let folder = tempfile::tempdir().unwrap();
     let root = super::tests::project(folder.path());
-    let mut project = Project::open(&root).unwrap();
-    for name in ["Top", "Base"] {
-        let remove = crate::command::RemoveHorizon { name: name.into() };
-        project.apply(&Command::RemoveHorizon(remove), &Progress::silent()).unwrap();
-    }
-    for (name, gap, z) in [("Upper", 11, 20), ("Lower", 13, 68)] {
-        let command = AddHorizon {
-            path: faulted(folder.path(), name, gap, z),
-            name: name.into(),
-            contact: Contact::Conformable,
-            age: Age::ByDepth,
-            options: ImportOptions::default(),
-        };
-        project.apply(&Command::AddHorizon(command), &Progress::silent()).unwrap();
-    }
+    proposed(&Project::open(&root).unwrap());
     let mut harness = super::tests::driven(folder.path(), Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
     click(&mut harness, "Interpret");
-    wait(&mut harness, "the horizons are read", |harness| harness.query_all_by_label_contains("%").count() > 0);
-    click(&mut harness, "Look for faults");
-    wait(&mut harness, "one is proposed", |harness| harness.query_by_label_contains("Proposal 1").is_some());
+    wait(&mut harness, "both are listed", |harness| harness.query_all_by_label_contains("Proposal").count() == 2);
     harness.get_by_label("Name of proposal 1");
-    click(&mut harness, "Dismiss");
-    assert!(harness.query_by_label_contains("Proposal 1").is_none());
-    let session = state(&harness).session.as_ref().unwrap();
-    assert_eq!(session.view.picking.dismissed, [1]);
-    // Looking again is another list, in which nothing is dismissed.
-    click(&mut harness, "Look for faults");
-    wait(&mut harness, "it is proposed again", |harness| harness.query_by_label_contains("Proposal 1").is_some());
+    click_last(&mut harness, "Dismiss");
+    assert_eq!(harness.query_all_by_label_contains("Proposal").count(), 1);
+    assert_eq!(state(&harness).session.as_ref().unwrap().view.picking.dismissed, [2]);
     click(&mut harness, "Go");
-    let at = state(&harness).session.as_ref().unwrap().view.slices[0];
-    assert!((8.0..=14.0).contains(&at), "{at}");
+    assert_eq!(state(&harness).session.as_ref().unwrap().view.slices[0], 5.0);
     click(&mut harness, "Accept");
     wait(&mut harness, "the fault is there", |harness| document(harness).faults.len() == 1);
-    wait(&mut harness, "it is no proposal any more", |harness| harness.query_by_label_contains("Proposal 1").is_none());
+    assert_eq!(document(&harness).faults[0].name, "Fault 1");
+    wait(&mut harness, "it is no proposal any more", |harness| {
+        harness.query_all_by_label_contains("Proposal").count() == 0
+    });
+    // Looking again makes another list, in which nothing is dismissed; flat horizons have no offset.
+    click(&mut harness, "Look for faults");
+    assert!(state(&harness).session.as_ref().unwrap().view.picking.dismissed.is_empty());
+    wait(&mut harness, "it is said that there are none", |harness| !state(harness).notices.is_empty());
+    assert!(state(&harness).notices[0].text.contains("no fault is proposed"), "{:?}", state(&harness).notices);
 }
 
 #[test]

@@ -29,15 +29,9 @@ pub fn show(
             ui.label("Size");
             ui.horizontal(|ui| {
                 for (index, name) in ["Width", "Height"].into_iter().enumerate() {
-                    let drag = DragValue::new(&mut next.size_cm[index])
-                        .speed(0.1)
-                        .range(1.0..=120.0)
-                        .max_decimals(2)
-                        .suffix(" cm");
+                    let drag = DragValue::new(&mut next.size_cm[index]).speed(0.1).range(1.0..=120.0).max_decimals(2);
                     ui.name_inputs(name, |ui| ui.add(drag));
-                    if index == 0 {
-                        ui.label("×");
-                    }
+                    ui.label(if index == 0 { "×" } else { "cm" });
                 }
             });
             ui.end_row();

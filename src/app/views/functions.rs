@@ -232,7 +232,10 @@ fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatches) {
         ui.horizontal(|ui| {
             let ordinal = index + 1;
             for (axis, name) in ["Repeats along", "Repeats through"].into_iter().enumerate() {
-                let drag = DragValue::new(&mut interval.factor[axis]).speed(0.02).range(0.05..=50.0).suffix("×");
+                if axis == 1 {
+                    ui.label("×");
+                }
+                let drag = DragValue::new(&mut interval.factor[axis]).speed(0.02).range(0.05..=50.0).max_decimals(2);
                 ui.name_inputs(format!("{name} of {} {ordinal}", function.volume), |ui| ui.add(drag))
                     .on_hover_text(format!("{name}, times the layer's own"));
             }

@@ -50,7 +50,8 @@ pub fn run(project: Option<PathBuf>, frame_times: Option<&Path>) -> Result<(), W
         .with_app_id("petroglyph")
         .with_inner_size(SIZE)
         .with_min_inner_size(LEAST);
-    let options = eframe::NativeOptions { viewport, ..eframe::NativeOptions::default() };
+    // Dithering is for gradients, which there are none of here, and a software driver pays for it at every pixel.
+    let options = eframe::NativeOptions { viewport, dithering: false, ..eframe::NativeOptions::default() };
     eframe::run_native(
         "Petroglyph",
         options,
