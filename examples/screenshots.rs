@@ -234,6 +234,7 @@ impl Tour {
         self.shoot("add-well")?;
         self.click("Add");
         self.settle();
+        self.act(Action::Answered);
         self.act(Action::Panel(Panel::Data));
         self.shoot("well")?;
         self.act(Action::Undo);
@@ -266,7 +267,7 @@ impl Tour {
         let (mut path, mut log) = ("md_m,x_m,y_m,tvdss_m\n".to_owned(), String::new());
         for step in 0..=20 {
             let share = f64::from(step) / 20.0;
-            let at = geometry.world_from_voxel(DVec3::new(nx * (0.45 + 0.1 * share), ny * 0.5, 0.0));
+            let at = geometry.world_from_voxel(DVec3::new(nx * (0.49 + 0.02 * share), ny * 0.5, 0.0));
             path += &format!("{},{:.1},{:.1},{}\n", share * deepest_m, at.x, at.y, share * deepest_m * 0.99);
             log += &format!("{:.1} {:.2}\n", share * deepest_m, 60.0 + 30.0 * (share * 9.0).sin());
         }
@@ -307,6 +308,9 @@ impl Tour {
         self.picking(PickingStep::Show(FaceData::Rock));
         self.picking(PickingStep::Look(Look::Faces));
         self.act(Action::Arrange(Layout::Map));
+        let session = self.window().state().session.as_ref().context("a project is open")?;
+        let holed = session.document.horizons.get(3).map(|entry| entry.name.clone());
+        self.act(Action::Horizon(holed));
         self.shoot("interpret-map")?;
         self.act(Action::Arrange(Layout::Fence));
         self.shoot("interpret-fence")?;
@@ -314,8 +318,7 @@ impl Tour {
         self.act(Action::Arrange(Layout::Sections));
         self.act(Action::ProposeFaults);
         self.settle();
-        let pointer = self.harness.get_by_label("Look for faults").rect().center();
-        self.harness.event(Event::PointerMoved(pointer));
+        self.harness.event(Event::PointerMoved(egui::pos2(160.0, 0.6 * self.size[1] as f32)));
         let delta = vec2(0.0, -20_000.0);
         let unit = egui::MouseWheelUnit::Point;
         let (phase, modifiers, source) = (egui::TouchPhase::Move, Modifiers::NONE, egui::MouseWheelSource::Unknown);

@@ -20,8 +20,8 @@ use ttf::Colour;
 
 /// How far from a section sticks are drawn on it, traces or samples.
 const NEAR: f64 = 2.5;
-/// Opacity of horizons before the block, and of the selection.
-const OPACITY: [f32; 2] = [0.55, 0.85];
+/// Opacity before the block: of horizons, of the one that is picked, and of the selection.
+const OPACITY: [f32; 3] = [0.22, 0.6, 0.85];
 
 /// What lines on a section were made of: the interpretation, the selection, how many proposals are dismissed, and where.
 type Made<P> = (u64, usize, usize, P);
@@ -246,9 +246,13 @@ impl Overlay {
         let Some(geometry) = &session.document.geometry else { return };
         let scene = &session.view.scene;
         let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
-        let selected = Color32::from_rgb(r, g, b).gamma_multiply(OPACITY[1]);
-        let horizons =
-            self.cells.iter().flat_map(|(colour, cells)| cells.iter().map(|c| (c, colour.gamma_multiply(OPACITY[0]))));
+        let selected = Color32::from_rgb(r, g, b).gamma_multiply(OPACITY[2]);
+        let names = self.interpreted.iter().flat_map(|shown| &shown.horizons).map(|horizon| &horizon.name);
+        let horizons = self.cells.iter().zip(names).flat_map(|((colour, cells), name)| {
+            let is_picked = session.view.picking.horizon.as_ref() == Some(name);
+            let colour = colour.gamma_multiply(OPACITY[usize::from(is_picked)]);
+            cells.iter().map(move |cells| (cells, colour))
+        });
         let picked = self.selected_cells.iter().map(|cells| (cells, selected));
         surfaces::paint(ui, pane, scene, geometry, horizons.chain(picked));
     }

@@ -34,6 +34,8 @@ pub struct PickingPanel {
     /// A horizon and its new name.
     renaming: Option<(String, String)>,
     max_traces: usize,
+    /// Whether sticks were being drawn, and how many faults were proposed, in the frame before.
+    open: (bool, usize),
 }
 
 impl PickingPanel {
@@ -68,7 +70,13 @@ impl PickingPanel {
             self.horizons(ui, session, shown, geometry, actions);
             ui.add_space(8.0);
             ui.heading("Faults");
-            self.faults.show(ui, session, shown, running, geometry, actions);
+            let faults = ui.scope(|ui| self.faults.show(ui, session, shown, running, geometry, actions)).response;
+            // Who begins to draw, or is proposed something, need not look for where.
+            let open = (session.view.picking.tool == Tool::Sticks, shown.map_or(0, |shown| shown.proposals.len()));
+            if open != self.open && (open.0 || open.1 > 0) {
+                ui.scroll_to_rect(faults.rect, None);
+            }
+            self.open = open;
         });
     }
 

@@ -128,9 +128,9 @@ pub const INTERPRETING: &[Shortcut] = &[
     plain(Key::ArrowUp, "Up", "Climb", |_| picking(PickingStep::Climb(1))),
     plain(Key::ArrowDown, "Down", "Descend", |_| picking(PickingStep::Climb(-1))),
     plain(Key::H, "H", "Highest valid", |_| picking(PickingStep::HighestValid)),
-    plain(Key::Enter, "Enter", "Add the selection to the horizon; end a stick", |_| picking(PickingStep::Accept)),
+    plain(Key::Enter, "Enter", "Add to the horizon; end a stick", |_| picking(PickingStep::Accept)),
     plain(Key::Escape, "Escape", "Let go of the selection or the stick", |_| picking(PickingStep::GiveUp)),
-    plain(Key::Backspace, "Backspace", "Take the last place of a stick back", |session| {
+    plain(Key::Backspace, "Backspace", "Take a stick's last place back", |session| {
         (session.view.picking.tool == Tool::Sticks).then_some(Action::Picking(PickingStep::Backspace))
     }),
     plain(Key::N, "N", "New horizon", |_| picking(PickingStep::Begin)),
@@ -227,16 +227,22 @@ pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
     }
 }
 
-/// Shows the table.
+/// Shows the table: two columns for everywhere, one for interpreting.
 pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
+    let room = ctx.content_rect().size();
     let modal = Modal::new(Id::unique("shortcuts")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
-        ui.set_width(620.0);
+        ui.set_width((room.x - 100.0).min(1060.0));
         ui.heading("Shortcuts");
-        ScrollArea::vertical().max_height(ctx.content_rect().height() - 400.0).show(ui, |ui| {
-            ui.columns_const(|columns: &mut [eframe::egui::Ui; 2]| {
-                let half = SHORTCUTS.len().div_ceil(2);
-                for (column, part) in columns.iter_mut().zip(SHORTCUTS.chunks(half)) {
-                    Grid::new(("shortcuts", part[0].shown)).num_columns(2).spacing([18.0, 6.0]).show(column, |ui| {
+        ui.add_space(4.0);
+        // Nothing here is to be hit with a finger: rows as high as their words.
+        ui.spacing_mut().interact_size.y = 0.0;
+        ScrollArea::vertical().max_height(room.y - 190.0).show(ui, |ui| {
+            ui.columns_const(|columns: &mut [eframe::egui::Ui; 3]| {
+                let (first, second) = SHORTCUTS.split_at(SHORTCUTS.len().div_ceil(2));
+                let parts = [("Everywhere", first), ("", second), ("While interpreting (P)", INTERPRETING)];
+                for (column, (title, part)) in columns.iter_mut().zip(parts) {
+                    column.strong(title);
+                    Grid::new(("shortcuts", part[0].shown)).num_columns(2).spacing([16.0, 5.0]).show(column, |ui| {
                         for shortcut in part {
                             ui.strong(shortcut.shown);
                             ui.label(shortcut.name);
@@ -245,17 +251,6 @@ pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
                     });
                 }
             });
-        });
-        ui.add_space(6.0);
-        ui.label("While interpreting (P):");
-        Grid::new("interpreting").num_columns(4).spacing([14.0, 5.0]).show(ui, |ui| {
-            for (n, shortcut) in INTERPRETING.iter().enumerate() {
-                ui.strong(shortcut.shown);
-                ui.label(shortcut.name);
-                if n % 2 == 1 {
-                    ui.end_row();
-                }
-            }
         });
         ui.add_space(6.0);
         ui.weak("In the block: drag turns it, Shift drag moves it, the wheel zooms, a click moves the sections there.");

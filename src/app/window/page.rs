@@ -15,7 +15,7 @@ impl Window {
             ui.add_space(7.0);
             bar::show(ui, &self.state, session, actions);
         });
-        Panel::left("side").default_size(300.0).min_size(240.0).show(ui, |ui| {
+        Panel::left("side").default_size(316.0).min_size(240.0).show(ui, |ui| {
             ui.add_space(6.0);
             ui.horizontal(|ui| {
                 for (side, name, hint) in [
