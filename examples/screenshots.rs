@@ -17,8 +17,8 @@ use petroglyph::app::Window;
 use petroglyph::app::raster::Raster;
 use petroglyph::app::state::picking::voxel_of;
 use petroglyph::app::state::{
-    Action, Appearance, Choice, Compare, Dialogue, How, Interpreted, Layout, Look, Notice, Panel, PickingStep, Place,
-    Target,
+    Action, Appearance, Choice, Compare, Dialogue, ExportForm, How, Interpreted, Layout, Look, Notice, Panel,
+    PickingStep, Place, Target,
 };
 use render::FaceData;
 use std::path::{Path, PathBuf};
@@ -126,7 +126,7 @@ impl Tour {
 
     /// The picture of what is shown, once nothing is under way.
     fn shoot(&mut self, name: &str) -> anyhow::Result<()> {
-        if !self.names.is_empty() && !self.names.iter().any(|wanted| wanted == name) {
+        if !self.is_wanted(name) {
             return Ok(());
         }
         self.settle();
@@ -142,6 +142,21 @@ impl Tour {
         image.save(&path).with_context(|| format!("{} could not be written", path.display()))?;
         println!("{}", path.display());
         Ok(())
+    }
+
+    /// What is on the screen as it is exported.
+    fn print(&mut self, name: &str) {
+        if self.is_wanted(name) {
+            let path = self.out.join(format!("{name}-{}.png", self.suffix));
+            let form = ExportForm { dpi: 150.0, ..ExportForm::new(path.display().to_string()) };
+            self.act(Action::Export(Box::new(form)));
+            self.settle();
+            println!("{}", path.display());
+        }
+    }
+
+    fn is_wanted(&self, name: &str) -> bool {
+        self.names.is_empty() || self.names.iter().any(|wanted| wanted == name)
     }
 
     fn ask(&mut self, dialogue: Dialogue) {
@@ -166,11 +181,13 @@ impl Tour {
         self.shoot("block")?;
         self.act(Action::Compare(Compare::SideBySide));
         self.shoot("side-by-side")?;
+        self.print("print-side-by-side");
         self.act(Action::Compare(Compare::Wipe));
         self.shoot("wipe")?;
         self.act(Action::Compare(Compare::Blend));
         self.act(Action::Arrange(Layout::Sections));
         self.shoot("sections")?;
+        self.print("print-sections");
         self.act(Action::Arrange(Layout::Map));
         self.shoot("map")?;
         self.click("Thickness");
@@ -181,6 +198,7 @@ impl Tour {
         let [nx, ny, _] = self.geometry().size().map(|count| count as f64);
         self.act(Action::Fence(vec![[0.1 * nx, 0.2 * ny], [0.5 * nx, 0.7 * ny], [0.9 * nx, 0.3 * ny]]));
         self.shoot("fence")?;
+        self.print("print-fence");
         self.act(Action::Arrange(Layout::Block));
         Ok(())
     }
@@ -294,6 +312,7 @@ impl Tour {
         self.act(Action::Arrange(Layout::Sections));
         self.act(Action::Slices(at.to_array()));
         self.shoot("interpret-sections")?;
+        self.print("print-interpret-sections");
         self.picking(PickingStep::Begin);
         self.settle();
         self.picking(PickingStep::At(at, How::Replace));
@@ -312,6 +331,7 @@ impl Tour {
         let holed = session.document.horizons.get(3).map(|entry| entry.name.clone());
         self.act(Action::Horizon(holed));
         self.shoot("interpret-map")?;
+        self.print("print-interpret-map");
         self.act(Action::Arrange(Layout::Fence));
         self.shoot("interpret-fence")?;
         self.sticks()?;

@@ -216,7 +216,7 @@ fn ranges(ui: &mut Ui, histogram: &Histogram, function: &ScalarTtf) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 44.0), Sense::hover());
     let name = format!("Histogram of {}", function.volume);
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-    let (marked, rest) = (theme::accent(ui.visuals()), ui.visuals().weak_text_color());
+    let (marked, rest) = (theme::accent(ui.visuals()), ui.visuals().weak_text_color().to_opaque());
     histogram.paint(&ui.painter_at(rect), rect, |value| {
         let is_in = function.intervals.iter().any(|interval| (interval.range[0]..interval.range[1]).contains(&value));
         if is_in { marked } else { rest }
