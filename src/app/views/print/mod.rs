@@ -10,7 +10,7 @@ use super::parts::{Part, parts};
 use super::sections::entry_colour;
 use super::{fence::FenceView, map::MapView, overlay::Overlay, sections::Sections};
 use crate::app::raster;
-use crate::app::state::{ExportForm, Panel, Session, Shown, State, showing};
+use crate::app::state::{ExportForm, Layout, Panel, Session, Shown, State, showing};
 use crate::app::work::map::{self, MapSource, MapWish, Mapped};
 use crate::app::work::{Rocks, compute, fence, slice};
 use crate::error::ProjectError;
@@ -63,7 +63,9 @@ impl Page {
         let [width, height] = self.form.size_px();
         let has_legend = self.form.legend == Shown::Yes && !self.session.document.horizons.is_empty();
         let legend_px = if has_legend { px(sheet::LEGEND_MM) as u32 } else { 0 };
-        let strip_px = if self.form.scale_bar == Shown::Yes { px(sheet::STRIP_MM) as u32 } else { 0 };
+        // Sections have numbers along their edges; a scale is the block's.
+        let strip_px =
+            if self.form.scale_bar == Shown::Yes && self.has_block() { px(sheet::STRIP_MM) as u32 } else { 0 };
         let size_px = [width.saturating_sub(legend_px).max(1), height.saturating_sub(strip_px).max(1)];
         let scene = self.scene();
         let mut page = RgbaImage::from_pixel(width, height, paper(scene.background));
@@ -88,6 +90,10 @@ impl Page {
 
     fn geometry(&self) -> Result<survey::SurveyGeometry, ProjectError> {
         Ok(self.session.document.frame()?.clone())
+    }
+
+    fn has_block(&self) -> bool {
+        self.session.view.layout != Layout::Fence
     }
 
     fn is_interpreting(&self) -> bool {
@@ -210,7 +216,7 @@ impl Page {
         });
     }
 
-    /// The layers with their patterns; while interpreting, the horizons with their colours.
+    /// The layers with their patterns; the horizons with their colours where only lines are seen.
     fn legend(
         &self,
         page: &mut RgbaImage,
@@ -219,7 +225,7 @@ impl Page {
         project: &Project,
     ) -> Result<(), ProjectError> {
         let document = &self.session.document;
-        if self.is_interpreting() {
+        if self.is_interpreting() || !self.has_block() {
             let entries = document.horizons.iter().enumerate();
             let named = entries.map(|(index, entry)| (plain(entry_colour(entry, index)), entry.name.clone()));
             sheet::horizons(page, corner, px, &named.collect::<Vec<_>>());
