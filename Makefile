@@ -9,6 +9,7 @@
 #   make fuzz    a second of made-up input for every parser; make fuzz-long ten minutes each
 #   make scenario   the interpreter's day by mouse and keys in the real window (Xvfb, xdotool, ImageMagick)
 #   make gallery the pictures of docs/gallery.md
+#   make screenshots   every panel of the window, without a display (SIZES, APPEARANCES)
 #   make accuracy   measures accuracy anew into docs/accuracy.md
 #   make extraction measures the quality of horizon candidates into docs/extraction.md
 #   make picks      measures what they are worth to someone who picks, into docs/picks.md
@@ -23,9 +24,11 @@ SPEED_SIZE ?= 800x800
 export XDG_RUNTIME_DIR ?= /tmp
 PETROGLYPH = target/debug/petroglyph
 
+SIZES ?= 1280x800 2560x1440
+APPEARANCES ?= light dark
 PYTHON ?= python3
 
-.PHONY: demo gallery test check bench accuracy extraction picks speed check-peers scenario fuzz fuzz-long setup build
+.PHONY: demo gallery screenshots test check bench accuracy extraction picks speed check-peers scenario fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
@@ -36,6 +39,14 @@ demo: build
 # The pictures of docs/gallery.md, from the demonstration's project.
 gallery: demo
 	PETROGLYPH=$(PETROGLYPH) docs/gallery.sh $(OUT) docs/gallery
+
+# The demonstration's project is copied: its panels change it on the way.
+screenshots: demo
+	cargo build --locked --example screenshots
+	for size in $(SIZES); do for appearance in $(APPEARANCES); do \
+		rm -rf out/screenshots/demo && mkdir -p out/screenshots && cp -r $(OUT) out/screenshots/demo && \
+		target/debug/examples/screenshots out/screenshots/demo out/screenshots $$size $$appearance || exit 1; \
+	done; done
 
 test: setup
 	cargo test --workspace --locked

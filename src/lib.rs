@@ -14,6 +14,7 @@ pub mod demo;
 pub mod derived;
 pub mod error;
 pub mod extraction;
+mod held;
 pub mod horizon_distance;
 pub mod library;
 mod memory;

@@ -1,5 +1,7 @@
 //! Why there is no window.
 
+use std::path::PathBuf;
+
 /// A window could not be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
@@ -24,6 +26,14 @@ pub enum WindowError {
     Failed {
         /// What the system said.
         reason: String,
+    },
+    /// The table of frame times.
+    #[error("{} cannot be written: {source}", path.display())]
+    FrameTimes {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
     },
 }
 

@@ -13,13 +13,16 @@
 //!
 //! Deliberately absent: no state of a project lives here that is not on disk, and no drawing of rock.
 
+#[cfg(test)]
+mod command_tests;
 pub mod error;
 mod hold;
 #[cfg(test)]
 mod picking_tests;
+pub mod raster;
 pub mod state;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 pub mod theme;
 pub mod views;
 pub mod window;

@@ -78,7 +78,7 @@ fn horizon(folder: &Path, name: &str, z: f32) -> PathBuf {
 }
 
 /// A project with a volume and two horizons.
-pub(super) fn project(folder: &Path) -> PathBuf {
+pub(crate) fn project(folder: &Path) -> PathBuf {
     let root = folder.join("north.petro");
     let mut new = Project::create(&root, None).unwrap();
     let import = crate::command::ImportVolume {

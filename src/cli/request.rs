@@ -64,7 +64,7 @@ pub(super) enum Request {
     /// Draw a picture.
     Render(RenderRequest),
     /// Open the window.
-    Window { project: Option<PathBuf> },
+    Window { project: Option<PathBuf>, frame_times: Option<PathBuf> },
     /// Draw all patterns.
     Patterns { out: PathBuf, project: Option<PathBuf> },
     /// Measure stages.
@@ -136,7 +136,7 @@ impl TryFrom<Action> for Request {
                 segy: super::segy::segy_options(&segy)?,
                 reading: interpretation::import_options(reading)?,
             },
-            Action::View { project } => Self::Window { project },
+            Action::View { project, frame_times } => Self::Window { project, frame_times },
             Action::Import(typed) => {
                 Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
             }

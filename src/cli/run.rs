@@ -37,9 +37,9 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
 
 /// Does it.
 pub(super) fn run(request: Request) -> Result<Report, Failure> {
-    if let Request::Window { project } = request {
+    if let Request::Window { project, frame_times } = request {
         // The window shows progress itself, and Ctrl-C is to end it at once.
-        app::run(project)?;
+        app::run(project, frame_times.as_deref())?;
         return Ok(Report::default());
     }
     let (terminal, progress) = Terminal::start();

@@ -3,6 +3,7 @@
 use super::{Noun, ProjectError, order};
 use crate::candidates::Candidates;
 use crate::data;
+use crate::held::Held;
 use crate::project::Document;
 use crate::project::Draft;
 use crate::project::document::{Assembly, HorizonEntry, Source};
@@ -14,6 +15,7 @@ use interp::holes::{Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use survey::model::{ContactRules, FaultNetwork, ModelSettings};
 use survey::{Contact, Horizon, Progress, SurveyGeometry, store};
 use ttf::Colour;
@@ -122,11 +124,16 @@ pub(crate) fn sentence(conflict: &Conflict) -> String {
     }
 }
 
-/// The faults of the project as blocks.
-pub(crate) fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<FaultNetwork, ProjectError> {
-    let faults = document.faults.iter().map(|entry| data::read_fault(root, entry));
-    let faults = faults.collect::<Result<Vec<_>, _>>()?;
-    Ok(FaultNetwork::build(document.frame()?, &faults, &ModelSettings::default(), progress)?)
+/// The faults of the project as blocks; they take longer to make than all else that a pick needs, so whoever makes several picks holds them.
+pub(crate) fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
+    static HELD: Held<(SurveyGeometry, Vec<String>), FaultNetwork> = Held::nothing();
+    let geometry = document.frame()?;
+    let key = document.faults.iter().map(|entry| format!("{} {} {:?}", entry.name, entry.hash, entry.truncated_by));
+    HELD.get_or_make((geometry.clone(), key.collect()), || {
+        let faults = document.faults.iter().map(|entry| data::read_fault(root, entry));
+        let faults = faults.collect::<Result<Vec<_>, _>>()?;
+        Ok(FaultNetwork::build(geometry, &faults, &ModelSettings::default(), progress)?)
+    })
 }
 
 /// The nodes of a log on the extraction at hand.

@@ -4,6 +4,8 @@
 //! pictures: illustrative, raw, and half-way between. Of the truth no more is used than one place on each part, as someone has it who
 //! sees the reflector. The look is in `look.toml`.
 
+use crate::candidates::Candidates;
+use crate::command::assembly::blocks;
 use crate::command::{
     AddFault, AddScene, Climb, Command, Effect, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
 };
@@ -171,6 +173,9 @@ const NEAR_SAMPLES: f64 = 2.0;
 fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> anyhow::Result<usize> {
     let truth = SynthTruth::read(&files.truth)?;
     let frame = project.document().frame()?.clone();
+    // Held for all picks, so that none has to make them anew.
+    let _candidates = Candidates::load(project.root(), progress)?;
+    let _blocks = blocks(project.root(), project.document(), progress)?;
     let mut picks = 0;
     for (h, horizon) in files.horizons.iter().enumerate() {
         let parts = Parts::of(&truth, h);

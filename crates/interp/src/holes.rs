@@ -29,6 +29,13 @@ pub struct Hole {
     nodes: Vec<u32>,
 }
 
+impl Hole {
+    /// Its traces, inline index times crosslines plus crossline index, ascending.
+    pub fn nodes(&self) -> &[u32] {
+        &self.nodes
+    }
+}
+
 /// What to fill.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]

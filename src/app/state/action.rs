@@ -1,7 +1,7 @@
 //! What can happen, and what follows from it for others.
 
 use super::Appearance;
-use super::dialogue::{Dialogue, ExportPlan};
+use super::dialogue::{Dialogue, ExportForm};
 use super::notice::Notice;
 use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
@@ -51,7 +51,7 @@ pub enum Action {
         into: Option<PathBuf>,
     },
     /// Draw to a file.
-    Export(Box<ExportPlan>),
+    Export(Box<ExportForm>),
     /// Put the picture on the clipboard.
     Copy,
     /// Show another picture: camera, box, cut-outs, blend.
@@ -113,7 +113,7 @@ pub enum Task {
     /// Something the interpretation needs.
     Picking(PickingTask),
     /// Draw to a file.
-    Export(Box<ExportPlan>),
+    Export(Box<ExportForm>),
     /// Put the picture on the clipboard.
     Copy,
     /// Let go of the open project.

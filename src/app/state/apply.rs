@@ -71,7 +71,7 @@ impl State {
                     None => Task::Apply(Box::new(crate::Command::Import(*command))),
                 }];
             }
-            Action::Export(plan) => return self.task(Task::Export(plan)),
+            Action::Export(form) => return self.task(Task::Export(form)),
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {
@@ -80,6 +80,10 @@ impl State {
             }
             Action::ProposeFaults => {
                 self.quieten(Place::Interpret);
+                // Numbers of former proposals mean nothing in the next list.
+                if let Some(session) = &mut self.session {
+                    session.view.picking.dismissed.clear();
+                }
                 return self.task(Task::Picking(PickingTask::ProposeFaults));
             }
             Action::Appear(appearance) => {

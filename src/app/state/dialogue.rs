@@ -1,6 +1,5 @@
 //! What the window asks for in front of everything else.
 
-use render::Scene;
 use std::path::PathBuf;
 
 /// What a file or folder is chosen for.
@@ -91,7 +90,7 @@ pub struct ExportForm {
     pub size_cm: [f64; 2],
     /// Dots an inch.
     pub dpi: f64,
-    /// Patterns with the layers' names beside the block.
+    /// Patterns with the layers' names beside the picture; while interpreting, the horizons' colours.
     pub legend: Shown,
     /// Lengths below the block.
     pub scale_bar: Shown,
@@ -104,15 +103,6 @@ pub enum Shown {
     Yes,
     /// It is not.
     No,
-}
-
-/// A picture to be drawn.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ExportPlan {
-    /// What it shows; its size is that of the whole picture.
-    pub scene: Scene,
-    /// What was asked for.
-    pub form: ExportForm,
 }
 
 impl ExportForm {

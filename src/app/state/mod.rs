@@ -19,7 +19,7 @@ mod view;
 mod tests;
 
 pub use action::{Action, Task};
-pub use dialogue::{Choice, Dialogue, ExportForm, ExportPlan, Interpreted, Shown, Target};
+pub use dialogue::{Choice, Dialogue, ExportForm, Interpreted, Shown, Target};
 pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, Tool};
 pub use remembered::{Appearance, Remembered};

@@ -13,7 +13,7 @@ use crate::app::work::{Drawing, Drawn, PictureWish, Rocks, Touch};
 use crate::pipeline::Loaded;
 use eframe::egui::{
     Align2, Color32, ColorImage, CursorIcon, FontId, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense,
-    Stroke, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+    Stroke, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use render::{Background, Scene};
@@ -25,8 +25,11 @@ const WHEEL: f64 = 0.0022;
 /// Wheel travel that moves a face by a sample, points.
 const WHEEL_STEP: f32 = 24.0;
 
+/// A view is narrow for two blocks beside one another below this width, heights.
+const NARROW: f32 = 1.4;
+
 /// What white volumes are seen before.
-const BEHIND_VOLUMES: Color32 = Color32::from_rgb(0x2c, 0x33, 0x3a);
+pub const BEHIND_VOLUMES: Color32 = Color32::from_rgb(0x2c, 0x33, 0x3a);
 
 /// What the hand holds.
 enum Grab {
@@ -115,15 +118,8 @@ impl BlockView {
         if !holds(|loaded| loaded.rock.is_some()) {
             shown.ground = None;
         }
-        let compare = if view.panel == Panel::Interpret { Compare::Blend } else { view.compare };
-        let rects: Vec<Rect> = match compare {
-            Compare::SideBySide => {
-                let (left, right) = rect.split_left_right_at_fraction(0.5);
-                vec![left, right]
-            }
-            Compare::Blend => vec![rect],
-            Compare::Wipe => vec![rect, rect],
-        };
+        let compare = compare(session);
+        let rects = panes(compare, rect);
         let scale = ui.pixels_per_point();
         let scenes: Vec<Scene> = rects
             .iter()
@@ -264,36 +260,13 @@ impl BlockView {
         let painter = ui.painter_at(whole);
         painter.rect_filled(whole, 0.0, if is_clear(session) { BEHIND_VOLUMES } else { paper(ui) });
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
-        let view = &session.view;
-        let wipe_x = whole.left() + whole.width() * view.wipe;
+        let wipe = session.view.wipe;
         for (index, (rect, texture)) in rects.iter().zip(&self.panes).enumerate() {
             let Some(texture) = texture else { continue };
-            let clip = match (compare, index) {
-                (Compare::Wipe, 0) => Rect::from_min_max(rect.min, pos2(wipe_x, rect.max.y)),
-                (Compare::Wipe, _) => Rect::from_min_max(pos2(wipe_x, rect.min.y), rect.max),
-                _ => *rect,
-            };
+            let clip = clip(compare, index, *rect, wipe);
             ui.painter_at(clip).image(texture.id(), fitted(*rect, texture.size_vec2()), uv, Color32::WHITE);
         }
-        let accent = theme::accent(ui.visuals());
-        let rule = match compare {
-            Compare::Blend => None,
-            Compare::SideBySide => {
-                Some((whole.center().x, Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color)))
-            }
-            Compare::Wipe => Some((wipe_x, Stroke::new(2.0, accent))),
-        };
-        if let Some((x, stroke)) = rule {
-            painter.vline(x, whole.y_range(), stroke);
-            if compare == Compare::Wipe {
-                painter.circle_filled(pos2(x, whole.center().y), 8.0, accent);
-            }
-            let font = FontId::proportional(13.0);
-            let colour = ui.visuals().text_color();
-            let top = whole.top() + 10.0;
-            painter.text(pos2(x - 12.0, top), Align2::RIGHT_TOP, "illustrated", font.clone(), colour);
-            painter.text(pos2(x + 12.0, top), Align2::LEFT_TOP, "raw", font, colour);
-        }
+        rule(ui, compare, whole, wipe);
     }
 
     fn paint_handles(&self, ui: &Ui, handles: &[Handle], pane: Rect, pointer: Option<Pos2>) {
@@ -317,8 +290,71 @@ impl BlockView {
     }
 }
 
+/// How pictures are compared: while interpreting there is only one.
+pub fn compare(session: &Session) -> Compare {
+    if session.view.panel == Panel::Interpret { Compare::Blend } else { session.view.compare }
+}
+
+/// Where each of the compared pictures lies. Blocks are broader than high: in a narrow view two stand one over the other.
+pub fn panes(compare: Compare, rect: Rect) -> Vec<Rect> {
+    match compare {
+        Compare::SideBySide => {
+            let (first, second) = if is_narrow(rect) {
+                rect.split_top_bottom_at_fraction(0.5)
+            } else {
+                rect.split_left_right_at_fraction(0.5)
+            };
+            vec![first, second]
+        }
+        Compare::Blend => vec![rect],
+        Compare::Wipe => vec![rect, rect],
+    }
+}
+
+fn is_narrow(rect: Rect) -> bool {
+    rect.width() < NARROW * rect.height()
+}
+
+/// The part of a pane that its picture is seen in.
+pub fn clip(compare: Compare, index: usize, rect: Rect, wipe: f32) -> Rect {
+    let wipe_x = rect.left() + rect.width() * wipe;
+    match (compare, index) {
+        (Compare::Wipe, 0) => Rect::from_min_max(rect.min, pos2(wipe_x, rect.max.y)),
+        (Compare::Wipe, _) => Rect::from_min_max(pos2(wipe_x, rect.min.y), rect.max),
+        _ => rect,
+    }
+}
+
+/// What parts compared pictures, and which is which.
+pub fn rule(ui: &Ui, compare: Compare, whole: Rect, wipe: f32) {
+    let painter = ui.painter_at(whole);
+    let thin = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
+    let (at, align) = match compare {
+        Compare::Blend => return,
+        Compare::SideBySide if is_narrow(whole) => {
+            painter.hline(whole.x_range(), whole.center().y, thin);
+            ([whole.min, whole.left_center()].map(|at| at + vec2(12.0, 10.0)), [Align2::LEFT_TOP; 2])
+        }
+        _ => {
+            let accent = theme::accent(ui.visuals());
+            let is_wipe = compare == Compare::Wipe;
+            let x = if is_wipe { whole.left() + whole.width() * wipe } else { whole.center().x };
+            painter.vline(x, whole.y_range(), if is_wipe { Stroke::new(2.0, accent) } else { thin });
+            if is_wipe {
+                painter.circle_filled(pos2(x, whole.center().y), 8.0, accent);
+            }
+            let top = pos2(x, whole.top() + 10.0);
+            ([top - vec2(12.0, 0.0), top + vec2(12.0, 0.0)], [Align2::RIGHT_TOP, Align2::LEFT_TOP])
+        }
+    };
+    for ((at, align), text) in at.into_iter().zip(align).zip(["illustrated", "raw"]) {
+        // Pictures lie on light paper in either theme.
+        painter.text(at, align, text, FontId::proportional(13.0), Color32::from_gray(0x20));
+    }
+}
+
 /// Whether the block is seen through.
-fn is_clear(session: &Session) -> bool {
+pub fn is_clear(session: &Session) -> bool {
     session.view.panel == Panel::Interpret && session.view.picking.look == Look::SeeThrough
 }
 

@@ -1,7 +1,7 @@
 //! How large, how fine, and where to.
 
 use super::notices;
-use crate::app::state::{Action, Dialogue, ExportForm, ExportPlan, Place, Session, Shown, State};
+use crate::app::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
 use crate::app::theme;
 use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
 
@@ -29,15 +29,9 @@ pub fn show(
             ui.label("Size");
             ui.horizontal(|ui| {
                 for (index, name) in ["Width", "Height"].into_iter().enumerate() {
-                    let drag = DragValue::new(&mut next.size_cm[index])
-                        .speed(0.1)
-                        .range(1.0..=120.0)
-                        .max_decimals(2)
-                        .suffix(" cm");
+                    let drag = DragValue::new(&mut next.size_cm[index]).speed(0.1).range(1.0..=120.0).max_decimals(2);
                     ui.name_inputs(name, |ui| ui.add(drag));
-                    if index == 0 {
-                        ui.label("×");
-                    }
+                    ui.label(if index == 0 { "×" } else { "cm" });
                 }
             });
             ui.end_row();
@@ -75,8 +69,7 @@ pub fn show(
             let can = !is_drawing && !is_too_large && !next.path.trim().is_empty();
             let is_entered = can && ui.input(|input| input.key_pressed(Key::Enter));
             if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || is_entered {
-                let plan = ExportPlan { scene: session.view.scene.clone(), form: next.clone() };
-                actions.push(Action::Export(Box::new(plan)));
+                actions.push(Action::Export(Box::new(next.clone())));
             }
             if ui.button("Cancel").clicked() {
                 actions.push(Action::Answered);

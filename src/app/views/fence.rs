@@ -49,7 +49,7 @@ impl FenceView {
         session: &Session,
         rocks: Option<(&Rocks, u64)>,
         slices: &Slices,
-        overlay: &Overlay,
+        overlay: &mut Overlay,
         actions: &mut Vec<Action>,
     ) -> Option<Pointed> {
         let geometry = session.document.geometry.as_ref()?;
@@ -70,10 +70,27 @@ impl FenceView {
         }
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Fence section"));
-        let body = Rect::from_min_max(whole.min + MARGIN, whole.max - vec2(4.0, 4.0));
+        let body = body_of(whole);
         if !body.is_positive() {
             return None;
         }
+        self.paint(ui, session, whole, overlay)?;
+        let length = stations(&corners).last().copied().unwrap_or(1.0).max(1e-6);
+        let depth = geometry.size()[2].saturating_sub(1).max(1) as f64;
+        let pointer = response.hover_pos().filter(|pointer| body.contains(*pointer))?;
+        let share = (pointer - body.min) / body.size();
+        let at = place(&corners, f64::from(share.x) * length);
+        let voxel = at.extend(f64::from(share.y) * depth);
+        lasso::click(ui, &response, session, voxel, actions);
+        let loaded = rocks?.0.try_read().ok()?;
+        Some(pointed::at_voxel(&loaded, voxel.as_vec3(), None))
+    }
+
+    /// Paints the fence with its numbers into a rectangle; nothing where it is not cut yet.
+    pub fn paint(&self, ui: &Ui, session: &Session, whole: Rect, overlay: &mut Overlay) -> Option<()> {
+        let geometry = session.document.geometry.as_ref()?;
+        let corners: Vec<DVec2> = session.view.fence.iter().copied().map(DVec2::from_array).collect();
+        let body = body_of(whole);
         let painter = ui.painter_at(body);
         painter.rect_filled(body, 0.0, super::block::paper(ui));
         let shown = self.shown.as_ref().filter(|shown| shown.corners == corners)?;
@@ -86,7 +103,7 @@ impl FenceView {
         if let Some(texture) = &self.texture {
             painter.image(texture.id(), body, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
         }
-        if is_interpreting {
+        if session.view.panel == Panel::Interpret {
             overlay.on_fence(&painter, session, &corners, &to_screen);
         } else {
             for line in &shown.lines {
@@ -109,14 +126,13 @@ impl FenceView {
         };
         let ends = [geometry.vertical.value_at(0.0), geometry.vertical.value_at(depth)];
         ticks(ui, whole, body, [[0.0, metres(&corners)], ends]);
-        let pointer = response.hover_pos().filter(|pointer| body.contains(*pointer))?;
-        let share = (pointer - body.min) / body.size();
-        let at = place(&corners, f64::from(share.x) * length);
-        let voxel = at.extend(f64::from(share.y) * depth);
-        lasso::click(ui, &response, session, voxel, actions);
-        let loaded = rocks?.0.try_read().ok()?;
-        Some(pointed::at_voxel(&loaded, voxel.as_vec3(), None))
+        Some(())
     }
+}
+
+/// The section itself, without the numbers along its edges.
+fn body_of(whole: Rect) -> Rect {
+    Rect::from_min_max(whole.min + MARGIN, whole.max - vec2(4.0, 4.0))
 }
 
 fn header(ui: &mut Ui, corners: &[DVec2], actions: &mut Vec<Action>) {

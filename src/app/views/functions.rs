@@ -8,7 +8,10 @@ use crate::app::work::{Rocks, Swatches};
 use crate::command::{Command, RemoveScalar, SetRaw, SetScalar};
 use crate::project::Document;
 use crate::style;
-use eframe::egui::{Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use eframe::egui::{
+    Color32, ComboBox, DragValue, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
+};
+use std::collections::HashMap;
 use ttf::{ColourMap, RawColour, ScalarInterval, ScalarTtf};
 
 /// Columns of the histogram.
@@ -20,7 +23,6 @@ const REACH: f32 = 10.0;
 
 /// How often values occur.
 struct Histogram {
-    volume: String,
     version: u64,
     counts: Vec<f32>,
     range: [f32; 2],
@@ -29,7 +31,7 @@ struct Histogram {
 /// The panel, and what is being changed in it.
 #[derive(Default)]
 pub struct Functions {
-    histogram: Option<Histogram>,
+    histograms: HashMap<String, Histogram>,
     draft: Option<RawColour>,
     sent: bool,
     held: Option<usize>,
@@ -74,14 +76,14 @@ impl Functions {
         if !document.horizons.is_empty() {
             ui.add_space(10.0);
             ui.heading("Textures by value");
-            self.scalars(ui, document, swatches, actions);
+            self.scalars(ui, document, rocks, swatches, actions);
         }
     }
 
     /// Counts the values of a volume, once for each state of the data.
     fn count(&mut self, volume: &str, rocks: Option<(&Rocks, u64)>) {
         let Some((rocks, version)) = rocks else { return };
-        if self.histogram.as_ref().is_some_and(|known| known.volume == volume && known.version == version) {
+        if self.histograms.get(volume).is_some_and(|known| known.version == version) {
             return;
         }
         let Ok(loaded) = rocks.try_read() else { return };
@@ -97,28 +99,23 @@ impl Functions {
         }
         // Amplitudes crowd around zero; the root lets the tails be seen.
         counts.iter_mut().for_each(|count| *count = count.sqrt());
-        self.histogram = Some(Histogram { volume: volume.to_owned(), version, counts, range });
+        self.histograms.insert(volume.to_owned(), Histogram { version, counts, range });
     }
 
     /// The histogram over the colours, with the ends of the range to be pulled, and both as numbers.
     fn range(&mut self, ui: &mut Ui, raw: &mut RawColour) {
         let [low, high] = raw.function.domain;
-        if let Some(histogram) = &self.histogram {
+        if let Some(histogram) = self.histograms.get(&raw.volume) {
             let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 84.0), Sense::click_and_drag());
             response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Histogram"));
             let [first, last] = histogram.range;
             let span = (last - first).max(f32::MIN_POSITIVE);
             let x_of = |value: f32| rect.left() + (value - first) / span * rect.width();
-            let tallest = histogram.counts.iter().copied().fold(1e-6, f32::max);
             let painter = ui.painter_at(rect);
-            let column = rect.width() / COLUMNS as f32;
-            for (index, count) in histogram.counts.iter().enumerate() {
-                let value = first + (index as f32 + 0.5) / COLUMNS as f32 * span;
+            histogram.paint(&painter, rect, |value| {
                 let [r, g, b, _] = raw.function.evaluate(value).map(|channel| (channel * 255.0 + 0.5) as u8);
-                let corner = pos2(rect.left() + index as f32 * column, rect.bottom() - count / tallest * rect.height());
-                let bar = Rect::from_min_max(corner, pos2(corner.x + column + 0.4, rect.bottom()));
-                painter.rect_filled(bar, 0.0, Color32::from_rgb(r, g, b));
-            }
+                Color32::from_rgb(r, g, b)
+            });
             let accent = theme::accent(ui.visuals());
             let ends = [low, high].map(x_of);
             for x in ends {
@@ -151,7 +148,14 @@ impl Functions {
         });
     }
 
-    fn scalars(&mut self, ui: &mut Ui, document: &Document, swatches: &Swatches, actions: &mut Vec<Action>) {
+    fn scalars(
+        &mut self,
+        ui: &mut Ui,
+        document: &Document,
+        rocks: Option<(&Rocks, u64)>,
+        swatches: &Swatches,
+        actions: &mut Vec<Action>,
+    ) {
         for present in &document.style.scalars {
             let mut function = match &self.scalar {
                 Some(draft) if draft.volume == present.volume => draft.clone(),
@@ -164,9 +168,11 @@ impl Functions {
                     actions.push(Action::Apply(Box::new(Command::RemoveScalar(command))));
                 }
             });
-            for (index, interval) in function.intervals.iter_mut().enumerate() {
-                interval_row(ui, &present.volume, index, interval, swatches);
+            self.count(&present.volume, rocks);
+            if let Some(histogram) = self.histograms.get(&present.volume) {
+                ranges(ui, histogram, &function);
             }
+            intervals(ui, &mut function, swatches);
             if function != *present {
                 self.scalar = Some(function);
             }
@@ -188,6 +194,81 @@ impl Functions {
             }
         }
     }
+}
+
+impl Histogram {
+    /// Draws its columns, each in the colour of its value.
+    fn paint(&self, painter: &Painter, rect: Rect, colour: impl Fn(f32) -> Color32) {
+        let [first, last] = self.range;
+        let tallest = self.counts.iter().copied().fold(1e-6, f32::max);
+        let column = rect.width() / COLUMNS as f32;
+        for (index, count) in self.counts.iter().enumerate() {
+            let value = first + (index as f32 + 0.5) / COLUMNS as f32 * (last - first);
+            let corner = pos2(rect.left() + index as f32 * column, rect.bottom() - count / tallest * rect.height());
+            let bar = Rect::from_min_max(corner, pos2(corner.x + column + 0.4, rect.bottom()));
+            painter.rect_filled(bar, 0.0, colour(value));
+        }
+    }
+}
+
+/// The histogram of a volume with the values that have a texture marked.
+fn ranges(ui: &mut Ui, histogram: &Histogram, function: &ScalarTtf) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 44.0), Sense::hover());
+    let name = format!("Histogram of {}", function.volume);
+    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
+    let (marked, rest) = (theme::accent(ui.visuals()), ui.visuals().weak_text_color().to_opaque());
+    histogram.paint(&ui.painter_at(rect), rect, |value| {
+        let is_in = function.intervals.iter().any(|interval| (interval.range[0]..interval.range[1]).contains(&value));
+        if is_in { marked } else { rest }
+    });
+}
+
+/// Ranges of values with their textures; a range can be divided, and taken away as long as there is another.
+fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatches) {
+    let (mut split, mut gone) = (None, None);
+    let count = function.intervals.len();
+    for (index, interval) in function.intervals.iter_mut().enumerate() {
+        interval_row(ui, &function.volume, index, interval, swatches);
+        ui.horizontal(|ui| {
+            let ordinal = index + 1;
+            for (axis, name) in ["Repeats along", "Repeats through"].into_iter().enumerate() {
+                if axis == 1 {
+                    ui.label("×");
+                }
+                let drag = DragValue::new(&mut interval.factor[axis]).speed(0.02).range(0.05..=50.0).max_decimals(2);
+                ui.name_inputs(format!("{name} of {} {ordinal}", function.volume), |ui| ui.add(drag))
+                    .on_hover_text(format!("{name}, times the layer's own"));
+            }
+            let drag = DragValue::new(&mut interval.opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
+            ui.name_inputs(format!("Opacity of {} {ordinal}", function.volume), |ui| ui.add(drag))
+                .on_hover_text("Opacity over the layer's pattern");
+            if ui.small_button("Split").on_hover_text("Divide this range in two").clicked() {
+                split = Some(index);
+            }
+            if count > 1 && ui.small_button("−").on_hover_text("No texture for this range").clicked() {
+                gone = Some(index);
+            }
+        });
+    }
+    if let Some(index) = split {
+        let (lower, upper) = halves(function.intervals[index].clone());
+        function.intervals.splice(index..=index, [lower, upper]);
+    }
+    if let Some(index) = gone {
+        function.intervals.remove(index);
+    }
+}
+
+/// A range of values in two: at its middle, or where it has no end as far from the end it has as that is from zero.
+fn halves(interval: ScalarInterval) -> (ScalarInterval, ScalarInterval) {
+    let [low, high] = interval.range;
+    let at = match (low.is_finite(), high.is_finite()) {
+        (true, true) => 0.5 * (low + high),
+        (true, false) => low + low.abs().max(1.0),
+        (false, true) => high - high.abs().max(1.0),
+        (false, false) => 0.0,
+    };
+    (ScalarInterval { range: [low, at], ..interval.clone() }, ScalarInterval { range: [at, high], ..interval })
 }
 
 /// A range of values and its texture.
@@ -268,6 +349,18 @@ fn pull(domain: &mut [f32; 2], end: usize, value: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn halves_of_a_range_meet_and_cover_it() {
+        let inf = f32::INFINITY;
+        for range in [[2.0, 6.0], [3.0, inf], [-inf, -4.0], [-inf, inf], [0.0, inf]] {
+            let whole =
+                ScalarInterval { range, texture: "a".into(), factor: [1.0; 2], opacity: 1.0, colour: None, ink: None };
+            let (lower, upper) = halves(whole);
+            assert_eq!([lower.range[0], upper.range[1]], range);
+            assert!(lower.range[1] == upper.range[0] && lower.range[0] < lower.range[1] && upper.range[0] < range[1]);
+        }
+    }
 
     #[test]
     fn a_centred_range_stays_centred_and_others_keep_their_order() {

@@ -41,11 +41,14 @@ impl LassoLine {
     }
 }
 
-/// Whether a drag draws a lasso: it is the tool, or L is held.
+/// Held while dragging, it draws a lasso.
+pub const HELD: Key = Key::A;
+
+/// Whether a drag draws a lasso: it is the tool, or its key is held.
 pub fn is_held(ui: &Ui, session: &Session) -> bool {
     session.view.panel == Panel::Interpret
         && (session.view.picking.tool == Tool::Lasso
-            || ui.input(|input| input.key_down(Key::L)) && !ui.ctx().egui_wants_keyboard_input())
+            || ui.input(|input| input.key_down(HELD)) && !ui.ctx().egui_wants_keyboard_input())
 }
 
 /// How a click picks and where, in the window, if it picks.

@@ -31,6 +31,8 @@ pub struct Layers {
     sent: Option<LayerStyle>,
     name: Option<(String, String)>,
     library: Option<TextureLibrary>,
+    /// The layer whose style was shown last.
+    editing: Option<String>,
 }
 
 impl Layers {
@@ -78,8 +80,13 @@ impl Layers {
             if let Some(index) = chosen {
                 ui.add_space(8.0);
                 ui.separator();
-                self.editor(ui, session, index, &layers[index], actions);
+                let editor = ui.scope(|ui| self.editor(ui, session, index, &layers[index], actions)).response;
+                // A layer just chosen can be changed without looking for where.
+                if self.editing != session.view.layer {
+                    ui.scroll_to_rect(editor.rect, None);
+                }
             }
+            self.editing.clone_from(&session.view.layer);
         });
     }
 

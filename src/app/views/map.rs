@@ -2,15 +2,16 @@
 
 use crate::app::state::{Action, Session};
 use crate::app::theme;
-use crate::app::work::Rocks;
-use crate::app::work::map::{MapPicture, MapWish, Mapped, Maps};
+use crate::app::work::map::{MapPicture, MapSource, MapWish, Mapped, Maps};
 use eframe::egui::{
-    Align2, Color32, ColorImage, ComboBox, Context, FontId, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke,
+    Align2, Color32, ColorImage, ComboBox, Context, FontId, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, TextWrapMode,
     TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use survey::SurveyGeometry;
 
+/// Greatest height of the colour bar, points.
+const BAR: f32 = 320.0;
 /// Zoom stays between these.
 const ZOOM: [f32; 2] = [0.8, 40.0];
 
@@ -19,7 +20,7 @@ const ZOOM: [f32; 2] = [0.8, 40.0];
 pub struct MapView {
     texture: Option<TextureHandle>,
     shown: Option<MapPicture>,
-    wished: Option<(Mapped, u64)>,
+    wished: Option<(Mapped, u64, bool)>,
     thickness: bool,
     zoom: Option<f32>,
     shift: Vec2,
@@ -75,12 +76,12 @@ impl MapView {
         self.shown = Some(picture);
     }
 
-    /// Shows the map in all the room there is.
+    /// Shows the map in all the room there is, made from `source` in its present state.
     pub fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        rocks: Option<(&Rocks, u64)>,
+        source: Option<(MapSource, u64)>,
         maps: &Maps,
         actions: &mut Vec<Action>,
     ) {
@@ -90,24 +91,19 @@ impl MapView {
             ui.label("A map shows a horizon. Add or pick one first.");
             return;
         }
-        let chosen =
-            session.view.horizon.as_ref().and_then(|name| horizons.iter().position(|entry| entry.name == *name));
-        let upper = chosen.unwrap_or(0);
-        let lower = (upper + 1 < horizons.len()).then_some(upper + 1);
+        let (upper, lower) = chosen(session);
         self.header(ui, session, upper, lower, actions);
-        let mapped = match lower.filter(|_| self.thickness) {
-            Some(lower) => Mapped::Thickness(upper, lower),
-            None => Mapped::Structure(upper),
-        };
-        if let Some((rocks, version)) = rocks
-            && self.wished != Some((mapped, version))
-        {
-            self.wished = Some((mapped, version));
-            maps.map(MapWish { mapped, rocks: rocks.clone() });
+        let mapped = self.mapped(session);
+        if let Some((source, version)) = source {
+            let wished = Some((mapped, version, matches!(source, MapSource::Rocks(_))));
+            if self.wished != wished {
+                self.wished = wished;
+                maps.map(MapWish { mapped, source });
+            }
         }
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Map"));
-        let body = Rect::from_min_max(rect.min + vec2(16.0, 16.0), rect.max - vec2(96.0, 16.0));
+        let body = body_of(rect);
         let zoom = self.touch(ui, &response, body);
         let sheet = Sheet::new(geometry, body, zoom, self.shift);
         ui.painter_at(rect).rect_filled(rect, 0.0, super::block::paper(ui));
@@ -120,6 +116,28 @@ impl MapView {
         }
     }
 
+    /// What it shows of a project that has horizons.
+    pub fn mapped(&self, session: &Session) -> Mapped {
+        let (upper, lower) = chosen(session);
+        match lower.filter(|_| self.thickness) {
+            Some(lower) => Mapped::Thickness(upper, lower),
+            None => Mapped::Structure(upper),
+        }
+    }
+
+    /// Paints the whole map under its name, for a printed page.
+    pub fn print(&self, ui: &Ui, session: &Session, rect: Rect) {
+        let (Some(geometry), Some(shown)) = (&session.document.geometry, &self.shown) else { return };
+        let name = |index: usize| session.document.horizons.get(index).map_or("", |entry| entry.name.as_str());
+        let text = match shown.mapped {
+            Mapped::Structure(horizon) => name(horizon).to_owned(),
+            Mapped::Thickness(upper, lower) => format!("Thickness from {} down to {}", name(upper), name(lower)),
+        };
+        let at = rect.center_top() + vec2(0.0, 2.0);
+        ui.painter().text(at, Align2::CENTER_TOP, text, FontId::proportional(14.0), ui.visuals().text_color());
+        self.paint(ui, session, rect, &Sheet::new(geometry, body_of(rect), 1.0, Vec2::ZERO));
+    }
+
     fn header(
         &mut self,
         ui: &mut Ui,
@@ -130,6 +148,7 @@ impl MapView {
     ) {
         let horizons = &session.document.horizons;
         ui.horizontal_wrapped(|ui| {
+            ui.style_mut().wrap_mode = Some(TextWrapMode::Extend);
             let label = ui.strong("Map of");
             let mut chosen = upper;
             ui.label_inputs_by(label.id, |ui| {
@@ -197,6 +216,9 @@ impl MapView {
             );
             painter.line_segment(piece.ends.map(|end| sheet.screen(end)), stroke);
         }
+        for ends in &shown.hatching {
+            painter.line_segment(ends.map(|end| sheet.screen(end)), Stroke::new(0.9, Color32::from_black_alpha(170)));
+        }
         let line = Stroke::new(1.5, theme::accent(ui.visuals()));
         let [x, y, _] = session.view.slices;
         painter.line_segment([DVec2::new(x, 0.0), DVec2::new(x, ny)].map(|end| sheet.screen(end)), line);
@@ -210,7 +232,7 @@ impl MapView {
         let painter = ui.painter_at(rect);
         let bar = Rect::from_min_size(
             pos2(rect.right() - 84.0, rect.top() + 60.0),
-            vec2(16.0, (rect.height() - 130.0).max(40.0)),
+            vec2(16.0, (rect.height() - 130.0).clamp(40.0, BAR)),
         );
         let colours = ttf::RgbaFunction::over(ttf::ColourMap::Strata, [0.0, 1.0]);
         let steps = 64;
@@ -233,9 +255,26 @@ impl MapView {
             painter.text(pos2(bar.right() + 5.0, y), Align2::LEFT_CENTER, format!("{value:.0}"), font.clone(), ink);
         }
         painter.text(pos2(bar.left(), bar.top() - 10.0), Align2::LEFT_BOTTOM, unit, font.clone(), ink);
+        let below = pos2(rect.right() - 10.0, bar.bottom() + 14.0);
         let text = format!("every {} {unit}", shown.interval);
-        painter.text(pos2(rect.right() - 10.0, bar.bottom() + 14.0), Align2::RIGHT_TOP, text, font, ink);
+        painter.text(below, Align2::RIGHT_TOP, text, font.clone(), ink);
+        if !shown.hatching.is_empty() {
+            painter.text(below + vec2(0.0, 16.0), Align2::RIGHT_TOP, "hatched: not picked", font, ink);
+        }
     }
+}
+
+/// The horizon chosen, and the next one down.
+fn chosen(session: &Session) -> (usize, Option<usize>) {
+    let horizons = &session.document.horizons;
+    let chosen = session.view.horizon.as_ref().and_then(|name| horizons.iter().position(|entry| entry.name == *name));
+    let upper = chosen.unwrap_or(0);
+    (upper, (upper + 1 < horizons.len()).then_some(upper + 1))
+}
+
+/// The map itself, without north arrow and colour bar.
+fn body_of(rect: Rect) -> Rect {
+    Rect::from_min_max(rect.min + vec2(16.0, 24.0), rect.max - vec2(96.0, 16.0))
 }
 
 fn north(ui: &Ui, rect: Rect) {

@@ -1,6 +1,7 @@
 //! The interpretation over the pictures: horizons, the selected node, faults, sticks and proposals on sections and on the block.
 //!
-//! Horizons have their own colours, the selection is broader and the brighter part of a line is what is selected. Proposed faults are dark red.
+//! Horizons have their own colours, dotted across their holes; the selection is broader and the brighter part of a line is what is selected. Proposed
+//! faults are dark red.
 //! Spaces: (s, t) of a section; voxels; points of the window.
 
 use super::sections::horizon_colour;
@@ -8,46 +9,89 @@ use super::surfaces::{self, Cells};
 use super::traces::{self, Line};
 use crate::app::state::picking::voxel_of;
 use crate::app::state::{Panel, Session, SliceKind, camera};
-use crate::app::work::{Interpreted, ShownPick};
+use crate::app::work::{Interpreted, ShownHorizon, ShownPick};
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::{DVec2, DVec3};
+use interp::holes::Hole;
+use interp::reassembly::VoxelSheet;
 use std::collections::HashMap;
 use std::sync::Arc;
 use ttf::Colour;
 
 /// How far from a section sticks are drawn on it, traces or samples.
 const NEAR: f64 = 2.5;
-/// Opacity of horizons before the block, and of the selection.
-const OPACITY: [f32; 2] = [0.55, 0.85];
+/// Opacity before the block: of horizons, of the one that is picked, and of the selection.
+const OPACITY: [f32; 3] = [0.22, 0.6, 0.85];
 
-/// What lines on a section were made of.
-type Made = (u64, usize, u64);
+/// What lines on a section were made of: the interpretation, the selection, how many proposals are dismissed, and where.
+type Made<P> = (u64, usize, usize, P);
 
-/// What is drawn over the pictures while interpreting.
-#[derive(Default)]
+/// What is drawn over the pictures while interpreting. Cheap to clone.
+#[derive(Clone, Default)]
 pub struct Overlay {
     interpreted: Option<Arc<Interpreted>>,
     selected: Option<Arc<ShownPick>>,
     /// Grows with each selection.
     selection: usize,
-    cells: Vec<(Color32, Vec<Cells>)>,
-    selected_cells: Vec<Cells>,
-    lines: HashMap<SliceKind, (Made, Lines)>,
+    cells: Arc<Vec<(Color32, Vec<Cells>)>>,
+    selected_cells: Arc<Vec<Cells>>,
+    lines: HashMap<SliceKind, (Made<u64>, Lines)>,
+    fence: Option<(Made<Vec<DVec2>>, Lines)>,
 }
 
 /// Lines on one section.
-#[derive(Default)]
+#[derive(Clone, Default)]
 struct Lines {
     horizons: Vec<(Color32, Vec<Line>)>,
+    /// Across the holes of horizons.
+    bridges: Vec<(Color32, Vec<Line>)>,
     faults: Vec<Line>,
     proposals: Vec<Line>,
     selected: Vec<Line>,
 }
 
+/// How sheets, their holes and meshes meet a section.
+struct Cut<'a> {
+    sheet: &'a dyn Fn(&VoxelSheet) -> Vec<Line>,
+    bridge: &'a dyn Fn(&VoxelSheet, &[Hole]) -> Vec<Line>,
+    mesh: &'a dyn Fn(&[[DVec3; 3]]) -> Vec<Line>,
+}
+
+impl Lines {
+    fn paint(&self, painter: &Painter, session: &Session, to_screen: &impl Fn(DVec2) -> Pos2) {
+        let screen = |line: &Line| -> Vec<Pos2> { line.iter().map(|st| to_screen(*st)).collect() };
+        let halo = Stroke::new(4.0, Color32::from_white_alpha(150));
+        for (colour, lines) in &self.horizons {
+            for points in lines.iter().map(screen) {
+                painter.add(Shape::line(points.clone(), halo));
+                painter.add(Shape::line(points, Stroke::new(2.0, *colour)));
+            }
+        }
+        for (colour, lines) in &self.bridges {
+            for points in lines.iter().map(screen) {
+                painter.extend(Shape::dotted_line(&points, Color32::from_white_alpha(200), 6.0, 2.6));
+                painter.extend(Shape::dotted_line(&points, *colour, 6.0, 1.7));
+            }
+        }
+        for points in self.faults.iter().map(screen) {
+            painter.add(Shape::line(points.clone(), halo));
+            painter.add(Shape::line(points, Stroke::new(2.2, Color32::BLACK)));
+        }
+        for points in self.proposals.iter().map(screen) {
+            painter.add(Shape::line(points, Stroke::new(1.6, Color32::from_rgb(0xb0, 0x1e, 0x1e))));
+        }
+        let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
+        for points in self.selected.iter().map(screen) {
+            painter.add(Shape::line(points.clone(), Stroke::new(7.0, Color32::from_white_alpha(210))));
+            painter.add(Shape::line(points, Stroke::new(4.0, Color32::from_rgb(r, g, b))));
+        }
+    }
+}
+
 impl Overlay {
     /// The interpretation as last read.
-    pub fn interpreted(&self) -> Option<&Interpreted> {
-        self.interpreted.as_deref()
+    pub fn interpreted(&self) -> Option<&Arc<Interpreted>> {
+        self.interpreted.as_ref()
     }
 
     /// The selection as last drawn.
@@ -68,12 +112,11 @@ impl Overlay {
         let Some(geometry) = &session.document.geometry else { return };
         let [nx, ny, _] = geometry.size();
         let horizons = interpreted.horizons.iter().enumerate();
-        self.cells = horizons
-            .map(|(index, horizon)| {
-                let cells = horizon.sheets.iter().map(|sheet| Cells::of(sheet, [nx, ny])).collect();
-                (horizon_colour(horizon.colour, index), cells)
-            })
-            .collect();
+        let cells = horizons.map(|(index, horizon)| {
+            let cells = horizon.sheets.iter().map(|sheet| Cells::of(sheet, [nx, ny])).collect();
+            (horizon_colour(horizon.colour, index), cells)
+        });
+        self.cells = Arc::new(cells.collect());
         self.interpreted = Some(interpreted);
         if session.view.picking.pick.is_none() {
             self.select(session, None);
@@ -84,8 +127,8 @@ impl Overlay {
     pub fn select(&mut self, session: &Session, selected: Option<Arc<ShownPick>>) {
         let Some(geometry) = &session.document.geometry else { return };
         let [nx, ny, _] = geometry.size();
-        self.selected_cells =
-            selected.iter().flat_map(|shown| &shown.sheets).map(|sheet| Cells::of(sheet, [nx, ny])).collect();
+        let sheets = selected.iter().flat_map(|shown| &shown.sheets);
+        self.selected_cells = Arc::new(sheets.map(|sheet| Cells::of(sheet, [nx, ny])).collect());
         self.selected = selected;
         self.selection += 1;
     }
@@ -103,32 +146,21 @@ impl Overlay {
         }
         let Some(geometry) = &session.document.geometry else { return };
         let at = session.view.slices[kind.axis()];
-        let made = (self.interpreted.as_ref().map_or(0, |shown| shown.number), self.selection, at.to_bits());
+        let made = self.made(session, at.to_bits());
         if self.lines.get(&kind).is_none_or(|(known, _)| *known != made) {
-            let lines = self.lines_on(session, kind, at);
+            let size = [geometry.size()[0], geometry.size()[1]];
+            let lines = self.lines_on(
+                session,
+                &Cut {
+                    sheet: &|sheet| traces::of_sheet(sheet, size, kind, at),
+                    bridge: &|sheet, holes| traces::bridges(sheet, holes, size, kind, at),
+                    mesh: &|triangles| traces::of_mesh(triangles, kind, at),
+                },
+            );
             self.lines.insert(kind, (made, lines));
         }
         let Some((_, lines)) = self.lines.get(&kind) else { return };
-        let screen = |line: &Line| -> Vec<Pos2> { line.iter().map(|st| to_screen(*st)).collect() };
-        let halo = Stroke::new(4.0, Color32::from_white_alpha(150));
-        for (colour, lines) in &lines.horizons {
-            for points in lines.iter().map(screen) {
-                painter.add(Shape::line(points.clone(), halo));
-                painter.add(Shape::line(points, Stroke::new(2.0, *colour)));
-            }
-        }
-        for points in lines.faults.iter().map(screen) {
-            painter.add(Shape::line(points.clone(), halo));
-            painter.add(Shape::line(points, Stroke::new(2.2, Color32::BLACK)));
-        }
-        for points in lines.proposals.iter().map(screen) {
-            painter.add(Shape::line(points, Stroke::new(1.6, Color32::from_rgb(0xb0, 0x1e, 0x1e))));
-        }
-        let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
-        for points in lines.selected.iter().map(screen) {
-            painter.add(Shape::line(points.clone(), Stroke::new(7.0, Color32::from_white_alpha(210))));
-            painter.add(Shape::line(points, Stroke::new(4.0, Color32::from_rgb(r, g, b))));
-        }
+        lines.paint(painter, session, to_screen);
         let flat = |p: DVec3| match kind {
             SliceKind::Inline => DVec2::new(p.y, p.z),
             SliceKind::Crossline => DVec2::new(p.x, p.z),
@@ -144,57 +176,65 @@ impl Overlay {
 
     /// Draws on a fence: its corners in voxels.
     pub fn on_fence(
-        &self,
+        &mut self,
         painter: &Painter,
         session: &Session,
         corners: &[DVec2],
         to_screen: &impl Fn(DVec2) -> Pos2,
     ) {
-        let (Some(shown), Some(geometry)) = (&self.interpreted, &session.document.geometry) else { return };
-        let [nx, ny, _] = geometry.size();
-        let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
-        let horizons = shown.horizons.iter().enumerate().flat_map(|(index, horizon)| {
-            let colour = horizon_colour(horizon.colour, index);
-            horizon.sheets.iter().map(move |sheet| (sheet, colour, 2.0))
-        });
-        let selected = self.selected.iter().flat_map(|shown| &shown.sheets);
-        let selected = selected.map(|sheet| (sheet, Color32::from_rgb(r, g, b), 4.0));
-        for (sheet, colour, width) in horizons.chain(selected) {
-            for line in traces::along(sheet, [nx, ny], corners) {
-                let points: Vec<Pos2> = line.iter().map(|st| to_screen(*st)).collect();
-                painter.add(Shape::line(points.clone(), Stroke::new(width + 2.0, Color32::from_white_alpha(150))));
-                painter.add(Shape::line(points, Stroke::new(width, colour)));
+        let Some(geometry) = &session.document.geometry else { return };
+        let made = self.made(session, corners.to_vec());
+        if self.fence.as_ref().is_none_or(|(known, _)| *known != made) {
+            let size = [geometry.size()[0], geometry.size()[1]];
+            let lines = self.lines_on(
+                session,
+                &Cut {
+                    sheet: &|sheet| traces::along(sheet, size, corners),
+                    bridge: &|sheet, holes| traces::bridges_along(sheet, holes, size, corners),
+                    mesh: &|triangles| traces::mesh_along(triangles, corners),
+                },
+            );
+            self.fence = Some((made, lines));
+        }
+        let Some((_, lines)) = &self.fence else { return };
+        lines.paint(painter, session, to_screen);
+        for (stick, colour) in sticks(session) {
+            let places: Option<Vec<DVec2>> = stick
+                .iter()
+                .map(|place| {
+                    let voxel = voxel_of(geometry, *place);
+                    let (s, off) = traces::station_of(corners, voxel.truncate())?;
+                    (off <= NEAR).then_some(DVec2::new(s, voxel.z))
+                })
+                .collect();
+            if let Some(places) = places {
+                draw_stick(painter, places.into_iter().map(to_screen).collect(), colour);
             }
         }
     }
 
-    fn lines_on(&self, session: &Session, kind: SliceKind, at: f64) -> Lines {
-        let (Some(shown), Some(geometry)) = (&self.interpreted, &session.document.geometry) else {
-            return Lines::default();
-        };
-        let [nx, ny, _] = geometry.size();
+    fn made<P>(&self, session: &Session, place: P) -> Made<P> {
+        let number = self.interpreted.as_ref().map_or(0, |shown| shown.number);
+        (number, self.selection, session.view.picking.dismissed.len(), place)
+    }
+
+    fn lines_on(&self, session: &Session, cut: &Cut) -> Lines {
+        let Some(shown) = &self.interpreted else { return Lines::default() };
         let dismissed = &session.view.picking.dismissed;
-        let horizons = shown.horizons.iter().enumerate();
+        let coloured = |made: &dyn Fn(&ShownHorizon) -> Vec<Line>| {
+            let horizons = shown.horizons.iter().enumerate();
+            horizons.map(|(index, horizon)| (horizon_colour(horizon.colour, index), made(horizon))).collect()
+        };
+        let open = shown.proposals.iter().filter(|(proposal, _)| !dismissed.contains(&proposal.id));
+        let selected = self.selected.iter().flat_map(|shown| &shown.sheets);
         Lines {
-            horizons: horizons
-                .map(|(index, horizon)| {
-                    let lines = horizon.sheets.iter().flat_map(|sheet| traces::of_sheet(sheet, [nx, ny], kind, at));
-                    (horizon_colour(horizon.colour, index), lines.collect())
-                })
-                .collect(),
-            faults: shown.faults.iter().flat_map(|fault| traces::of_mesh(&fault.triangles, kind, at)).collect(),
-            proposals: shown
-                .proposals
-                .iter()
-                .filter(|(proposal, _)| !dismissed.contains(&proposal.id))
-                .flat_map(|(_, fault)| traces::of_mesh(&fault.triangles, kind, at))
-                .collect(),
-            selected: self
-                .selected
-                .iter()
-                .flat_map(|shown| &shown.sheets)
-                .flat_map(|sheet| traces::of_sheet(sheet, [nx, ny], kind, at))
-                .collect(),
+            horizons: coloured(&|horizon| horizon.sheets.iter().flat_map(cut.sheet).collect()),
+            bridges: coloured(&|horizon| {
+                horizon.sheets.iter().flat_map(|sheet| (cut.bridge)(sheet, &horizon.holes)).collect()
+            }),
+            faults: shown.faults.iter().flat_map(|fault| (cut.mesh)(&fault.triangles)).collect(),
+            proposals: open.flat_map(|(_, fault)| (cut.mesh)(&fault.triangles)).collect(),
+            selected: selected.flat_map(cut.sheet).collect(),
         }
     }
 
@@ -206,9 +246,13 @@ impl Overlay {
         let Some(geometry) = &session.document.geometry else { return };
         let scene = &session.view.scene;
         let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
-        let selected = Color32::from_rgb(r, g, b).gamma_multiply(OPACITY[1]);
-        let horizons =
-            self.cells.iter().flat_map(|(colour, cells)| cells.iter().map(|c| (c, colour.gamma_multiply(OPACITY[0]))));
+        let selected = Color32::from_rgb(r, g, b).gamma_multiply(OPACITY[2]);
+        let names = self.interpreted.iter().flat_map(|shown| &shown.horizons).map(|horizon| &horizon.name);
+        let horizons = self.cells.iter().zip(names).flat_map(|((colour, cells), name)| {
+            let is_picked = session.view.picking.horizon.as_ref() == Some(name);
+            let colour = colour.gamma_multiply(OPACITY[usize::from(is_picked)]);
+            cells.iter().map(move |cells| (cells, colour))
+        });
         let picked = self.selected_cells.iter().map(|cells| (cells, selected));
         surfaces::paint(ui, pane, scene, geometry, horizons.chain(picked));
     }

@@ -16,6 +16,7 @@ use eframe::egui::{Button, Color32, DragValue, Grid, RichText, ScrollArea, Sense
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
 use render::FaceData;
+use std::sync::Arc;
 use survey::SurveyGeometry;
 use ttf::Colour;
 
@@ -33,6 +34,8 @@ pub struct PickingPanel {
     /// A horizon and its new name.
     renaming: Option<(String, String)>,
     max_traces: usize,
+    /// Whether sticks were being drawn, and how many faults were proposed, in the frame before.
+    open: (bool, usize),
 }
 
 impl PickingPanel {
@@ -52,7 +55,7 @@ impl PickingPanel {
             return;
         };
         ScrollArea::vertical().show(ui, |ui| {
-            let shown = overlay.interpreted();
+            let shown = overlay.interpreted().map(Arc::as_ref);
             ui.heading("Candidates");
             self.candidates.show(ui, session, shown, running, actions);
             ui.add_space(8.0);
@@ -67,7 +70,13 @@ impl PickingPanel {
             self.horizons(ui, session, shown, geometry, actions);
             ui.add_space(8.0);
             ui.heading("Faults");
-            self.faults.show(ui, session, shown, running, geometry, actions);
+            let faults = ui.scope(|ui| self.faults.show(ui, session, shown, running, geometry, actions)).response;
+            // Who begins to draw, or is proposed something, need not look for where.
+            let open = (session.view.picking.tool == Tool::Sticks, shown.map_or(0, |shown| shown.proposals.len()));
+            if open != self.open && (open.0 || open.1 > 0) {
+                ui.scroll_to_rect(faults.rect, None);
+            }
+            self.open = open;
         });
     }
 
@@ -249,7 +258,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.label("Pointer");
         for (tool, name, hint) in [
             (Tool::Pick, "Pick", "Click a reflection: its leaf is selected"),
-            (Tool::Lasso, "Lasso", "Draw around what is to be erased (or hold L)"),
+            (Tool::Lasso, "Lasso", "Draw around what is to be erased (or hold A)"),
         ] {
             if ui.selectable_label(picking.tool == tool, name).on_hover_text(hint).clicked() {
                 actions.push(Action::Picking(PickingStep::Use(tool)));

@@ -1,5 +1,6 @@
 //! Every action by keyboard: one table that is both obeyed and shown.
 
+use super::lasso;
 use crate::app::state::faces::{self, Face, Owner};
 use crate::app::state::{
     Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State,
@@ -127,9 +128,9 @@ pub const INTERPRETING: &[Shortcut] = &[
     plain(Key::ArrowUp, "Up", "Climb", |_| picking(PickingStep::Climb(1))),
     plain(Key::ArrowDown, "Down", "Descend", |_| picking(PickingStep::Climb(-1))),
     plain(Key::H, "H", "Highest valid", |_| picking(PickingStep::HighestValid)),
-    plain(Key::Enter, "Enter", "Add the selection to the horizon; end a stick", |_| picking(PickingStep::Accept)),
+    plain(Key::Enter, "Enter", "Add to the horizon; end a stick", |_| picking(PickingStep::Accept)),
     plain(Key::Escape, "Escape", "Let go of the selection or the stick", |_| picking(PickingStep::GiveUp)),
-    plain(Key::Backspace, "Backspace", "Take the last place of a stick back", |session| {
+    plain(Key::Backspace, "Backspace", "Take a stick's last place back", |session| {
         (session.view.picking.tool == Tool::Sticks).then_some(Action::Picking(PickingStep::Backspace))
     }),
     plain(Key::N, "N", "New horizon", |_| picking(PickingStep::Begin)),
@@ -161,7 +162,7 @@ pub const INTERPRETING: &[Shortcut] = &[
     plain(Key::Q, "Q", "Look for faults", |_| Some(Action::ProposeFaults)),
     plain(Key::P, "P", "Back to the layers", |_| Some(Action::Panel(Panel::Layers))),
     // Held while dragging, so a press does nothing.
-    plain(Key::L, "L and drag", "Erase what is drawn around", |_| None),
+    plain(lasso::HELD, "A and drag", "Erase what is drawn around", |_| None),
 ];
 
 fn picking(step: PickingStep) -> Option<Action> {
@@ -226,16 +227,22 @@ pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
     }
 }
 
-/// Shows the table.
+/// Shows the table: two columns for everywhere, one for interpreting.
 pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
+    let room = ctx.content_rect().size();
     let modal = Modal::new(Id::unique("shortcuts")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
-        ui.set_width(620.0);
+        ui.set_width((room.x - 100.0).min(1060.0));
         ui.heading("Shortcuts");
-        ScrollArea::vertical().max_height(ctx.content_rect().height() - 400.0).show(ui, |ui| {
-            ui.columns_const(|columns: &mut [eframe::egui::Ui; 2]| {
-                let half = SHORTCUTS.len().div_ceil(2);
-                for (column, part) in columns.iter_mut().zip(SHORTCUTS.chunks(half)) {
-                    Grid::new(("shortcuts", part[0].shown)).num_columns(2).spacing([18.0, 6.0]).show(column, |ui| {
+        ui.add_space(4.0);
+        // Nothing here is to be hit with a finger: rows as high as their words.
+        ui.spacing_mut().interact_size.y = 0.0;
+        ScrollArea::vertical().max_height(room.y - 190.0).show(ui, |ui| {
+            ui.columns_const(|columns: &mut [eframe::egui::Ui; 3]| {
+                let (first, second) = SHORTCUTS.split_at(SHORTCUTS.len().div_ceil(2));
+                let parts = [("Everywhere", first), ("", second), ("While interpreting (P)", INTERPRETING)];
+                for (column, (title, part)) in columns.iter_mut().zip(parts) {
+                    column.strong(title);
+                    Grid::new(("shortcuts", part[0].shown)).num_columns(2).spacing([16.0, 5.0]).show(column, |ui| {
                         for shortcut in part {
                             ui.strong(shortcut.shown);
                             ui.label(shortcut.name);
@@ -244,17 +251,6 @@ pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
                     });
                 }
             });
-        });
-        ui.add_space(6.0);
-        ui.label("While interpreting (P):");
-        Grid::new("interpreting").num_columns(4).spacing([14.0, 5.0]).show(ui, |ui| {
-            for (n, shortcut) in INTERPRETING.iter().enumerate() {
-                ui.strong(shortcut.shown);
-                ui.label(shortcut.name);
-                if n % 2 == 1 {
-                    ui.end_row();
-                }
-            }
         });
         ui.add_space(6.0);
         ui.weak("In the block: drag turns it, Shift drag moves it, the wheel zooms, a click moves the sections there.");
@@ -273,15 +269,21 @@ mod tests {
 
     #[test]
     fn no_key_means_two_things() {
-        for (index, shortcut) in SHORTCUTS.iter().enumerate() {
-            for other in &SHORTCUTS[..index] {
-                assert!(
-                    shortcut.key != other.key || shortcut.modifiers != other.modifiers,
-                    "{} and {}",
-                    shortcut.name,
-                    other.name
-                );
+        for table in [SHORTCUTS, INTERPRETING] {
+            for (index, shortcut) in table.iter().enumerate() {
+                for other in &table[..index] {
+                    let is_other = shortcut.key != other.key || shortcut.modifiers != other.modifiers;
+                    assert!(is_other, "{} and {}", shortcut.name, other.name);
+                }
             }
+        }
+    }
+
+    #[test]
+    fn panels_are_reached_by_the_same_keys_everywhere() {
+        let names = ["Layers", "Data", "Values", "Block alone", "Block and sections", "Map", "Fence"];
+        for shortcut in SHORTCUTS.iter().filter(|shortcut| names.contains(&shortcut.name)) {
+            assert!(INTERPRETING.iter().all(|other| other.key != shortcut.key), "{}", shortcut.name);
         }
     }
 }

@@ -7,7 +7,7 @@ use eframe::egui::{Align, Button, Layout, RichText, ScrollArea, Ui, Vec2};
 use std::path::Path;
 
 /// Width of the column in the middle.
-const WIDTH: f32 = 560.0;
+const WIDTH: f32 = 660.0;
 /// Height of a button that begins something.
 const TALL: f32 = 42.0;
 
@@ -31,7 +31,7 @@ fn page(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
         recovery(ui, &left.root, is_busy, actions);
     }
     ui.add_enabled_ui(!is_busy, |ui| {
-        let width = (ui.available_width() - ui.spacing().item_spacing.x) / 2.0;
+        let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
         let begin = |ui: &mut Ui, name: &str, hint: &str, choice: Choice, actions: &mut Vec<Action>| {
             let button = Button::new(RichText::new(name).size(16.0)).min_size(Vec2::new(width, TALL));
             if ui.add(button).on_hover_text(hint).clicked() {
@@ -41,8 +41,6 @@ fn page(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             begin(ui, "New from SEG-Y…", "Read a seismic volume into a new project", Choice::NewSurvey, actions);
             begin(ui, "Open project…", "Open a folder NAME.petro", Choice::Project, actions);
-        });
-        ui.horizontal(|ui| {
             let hint = "Makes a synthetic survey with its interpretation, to try everything on";
             begin(ui, "Try the demonstration…", hint, Choice::Demo, actions);
         });

@@ -11,6 +11,11 @@ use std::path::{Path, PathBuf};
 use survey::formats::ZUnit;
 use survey::well::{WellFiles, WellOptions, read_well};
 
+/// Endings of tables.
+const TABLES: [&str; 3] = ["csv", "txt", "dat"];
+/// Files offered at most.
+const OFFERED: usize = 40;
+
 /// The dialogue: paths and numbers as they are typed.
 #[derive(Default)]
 pub struct WellDialogue {
@@ -74,15 +79,21 @@ impl WellDialogue {
 
     fn form(&mut self, ui: &mut Ui) {
         Grid::new("well").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
-            for (name, hint, text) in [
-                ("Name", "", &mut self.name),
-                ("Tops", "CSV of measured depth and name; may stay empty", &mut self.tops),
-                ("Logs", "LAS files, parted by semicolons; may stay empty", &mut self.las),
-                ("Checkshots", "time and depth; needed where the survey is in time and has none", &mut self.checkshot),
-                ("Datum above sea level, m", "as the file says", &mut self.kb),
+            let folder = self.deviation.parent().unwrap_or(Path::new("."));
+            for (name, hint, endings, text) in [
+                ("Name", "", &[][..], &mut self.name),
+                ("Tops", "CSV of measured depth and name; may stay empty", &TABLES[..], &mut self.tops),
+                ("Logs", "LAS files, parted by semicolons; may stay empty", &["las"][..], &mut self.las),
+                ("Checkshots", "CSV of time and depth, where the survey is in time", &TABLES[..], &mut self.checkshot),
+                ("Datum above sea level, m", "as the file says", &[][..], &mut self.kb),
             ] {
                 let label = ui.label(name);
-                ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(400.0)).labelled_by(label.id);
+                ui.horizontal(|ui| {
+                    ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(370.0)).labelled_by(label.id);
+                    if !endings.is_empty() {
+                        nearby(ui, folder, endings, text);
+                    }
+                });
                 ui.end_row();
             }
             let label = ui.label("Lengths along the well");
@@ -125,4 +136,30 @@ impl WellDialogue {
             ..WellOptions::default()
         }
     }
+}
+
+/// Offers the files beside the deviation; where several may be named, another is added to those that are.
+fn nearby(ui: &mut Ui, folder: &Path, endings: &[&str], text: &mut String) {
+    ui.menu_button("…", |ui| {
+        let mut names: Vec<String> = std::fs::read_dir(folder)
+            .into_iter()
+            .flatten()
+            .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+            .filter(|name| endings.iter().any(|ending| name.to_lowercase().ends_with(&format!(".{ending}"))))
+            .collect();
+        names.sort();
+        if names.is_empty() {
+            ui.weak(format!("{} has no such files", folder.display()));
+        }
+        for name in names.iter().take(OFFERED) {
+            if ui.button(name).clicked() {
+                let path = folder.join(name).display().to_string();
+                let has_more = endings == ["las"] && !text.trim().is_empty();
+                *text = if has_more { format!("{}; {path}", text.trim()) } else { path };
+                ui.close();
+            }
+        }
+    })
+    .response
+    .on_hover_text("Files beside the deviation");
 }

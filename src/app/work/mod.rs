@@ -7,7 +7,6 @@
 //! Invariant: no call from the window's thread waits.
 
 pub mod data;
-mod export;
 pub mod fence;
 mod lasso;
 pub mod map;
@@ -39,7 +38,12 @@ pub enum Event {
     /// A project was read.
     Opened(Box<Snapshot>),
     /// The open project changed.
-    Changed(Box<Snapshot>),
+    Changed {
+        /// What it is now.
+        snapshot: Box<Snapshot>,
+        /// Where the change was asked for.
+        place: Place,
+    },
     /// Data of this project state are ready to be drawn.
     Ready {
         /// The project.
@@ -166,13 +170,6 @@ impl Work {
                 }
                 return;
             }
-            Task::Export(plan) => {
-                if let Some(root) = root() {
-                    let (outbox, running) = (self.outbox.clone(), self.running.clone());
-                    spawn("export", move || export::export(&root, &plan, &outbox, &running));
-                }
-                return;
-            }
             Task::Release => {
                 self.root = None;
                 self.data.forget();
@@ -180,7 +177,7 @@ impl Work {
                 return;
             }
             // These are the window's own.
-            Task::Remember | Task::Copy => return,
+            Task::Remember | Task::Copy | Task::Export(_) => return,
         };
         // The thread lives as long as this value.
         let _ = self.orders.send(order);
@@ -191,7 +188,7 @@ impl Work {
         self.data.load(wanted);
     }
 
-    /// Does something of its own on a thread.
+    /// Does something of its own on a thread; what was stopped by the user has not failed.
     pub fn background(
         &self,
         title: &str,
@@ -202,8 +199,9 @@ impl Work {
         let title = title.to_owned();
         spawn("background", move || {
             let (line, progress) = running.begin(&title, place, outbox.wake.clone());
-            if let Err(notice) = job(&progress, &outbox) {
-                outbox.send(Event::Told(notice));
+            match job(&progress, &outbox) {
+                Err(notice) if progress.check().is_ok() => outbox.send(Event::Told(notice)),
+                _ => {}
             }
             drop(line);
             outbox.wake();
@@ -215,7 +213,7 @@ impl Work {
 ///
 /// A job must take no lock on what is loaded: the thread that holds it may be waiting for these processors. Locks are
 /// taken before, by the caller.
-fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
+pub(super) fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
     on(&POOL, job)
 }

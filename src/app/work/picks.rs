@@ -185,8 +185,8 @@ struct Followed {
     root: PathBuf,
     document: Document,
     geometry: SurveyGeometry,
-    candidates: Option<Candidates>,
-    blocks: FaultNetwork,
+    candidates: Option<Arc<Candidates>>,
+    blocks: Arc<FaultNetwork>,
 }
 
 struct Keeper {
@@ -308,6 +308,7 @@ impl Keeper {
         progress: &Progress,
     ) -> Result<Interpreted, ProjectError> {
         let Followed { root, document, geometry, candidates, blocks } = followed;
+        let candidates = candidates.as_deref();
         let faults_key = hashes(document).join(" ");
         let mut kept = HashMap::new();
         for entry in &document.horizons {
@@ -322,13 +323,12 @@ impl Keeper {
         let sheets_of = |entry: &HorizonEntry| self.sheets[&format!("{} {faults_key}", entry.hash)].clone();
         let all: Vec<Arc<Vec<VoxelSheet>>> = document.horizons.iter().map(sheets_of).collect();
         let slices: Vec<&[VoxelSheet]> = all.iter().map(|sheets| sheets.as_slice()).collect();
-        let conflicts = conflicts_of(document, candidates.as_ref(), &slices)?;
+        let conflicts = conflicts_of(document, candidates, &slices)?;
         let [nx, ny, _] = geometry.size();
         let horizons = document.horizons.iter().zip(&all).map(|(entry, sheets)| {
             let log = entry.assembly.as_ref();
-            let chosen =
-                log.zip(candidates.as_ref()).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
-            let overlap = chosen.as_ref().zip(candidates.as_ref()).and_then(|(chosen, candidates)| {
+            let chosen = log.zip(candidates).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
+            let overlap = chosen.as_ref().zip(candidates).and_then(|(chosen, candidates)| {
                 let found = reassemble(&candidates.forest, chosen, &seeds(log, candidates), blocks).overlap;
                 overlap_in_lines(found, geometry)
             });
@@ -339,7 +339,7 @@ impl Keeper {
                 sheets: sheets.clone(),
                 leaves: chosen
                     .as_ref()
-                    .zip(candidates.as_ref())
+                    .zip(candidates)
                     .map_or_else(Vec::new, |(chosen, candidates)| selected_leaves(&candidates.forest, chosen)),
                 report: AssemblyReport { overlap, ..report_on(sheets, geometry) },
                 holes: find_holes(sheets, [nx, ny]),
@@ -353,7 +353,7 @@ impl Keeper {
         let (proposals, unit) = proposed(root, document, geometry);
         self.number += 1;
         let (root, step) = (root.clone(), document.step);
-        let key = candidates.as_ref().map(|candidates| candidates.key.clone());
+        let key = candidates.map(|candidates| candidates.key.clone());
         Ok(Interpreted { root, step, number: self.number, horizons, faults, extraction, key, proposals, unit })
     }
 
@@ -408,14 +408,14 @@ fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec
 
 impl Followed {
     fn candidates(&self) -> Result<&Candidates, ProjectError> {
-        self.candidates.as_ref().ok_or(ProjectError::NotExtracted)
+        self.candidates.as_deref().ok_or(ProjectError::NotExtracted)
     }
 
     /// What the picks of a horizon have selected.
     fn chosen(&self, horizon: Option<&str>) -> Selection {
         let entry = self.document.horizons.iter().find(|entry| Some(entry.name.as_str()) == horizon);
         let log = entry.and_then(|entry| Some((entry, entry.assembly.as_ref()?)));
-        log.zip(self.candidates.as_ref())
+        log.zip(self.candidates.as_deref())
             .and_then(|((entry, log), candidates)| assembly::selection(&entry.name, log, candidates).ok())
             .unwrap_or_default()
     }

@@ -93,20 +93,20 @@ impl Order {
                 new.project().apply(&Command::Import(*command), progress)?;
                 Event::Opened(Box::new(snapshot(&new.publish()?)?))
             }
-            Self::Apply { root, command, .. } => {
+            Self::Apply { root, command, place } => {
                 let mut project = Project::open(&root)?;
                 project.apply(&command, progress)?;
-                Event::Changed(Box::new(snapshot(&project)?))
+                Event::Changed { snapshot: Box::new(snapshot(&project)?), place }
             }
             Self::Undo(root) => {
                 let mut project = Project::open(&root)?;
                 project.undo()?;
-                Event::Changed(Box::new(snapshot(&project)?))
+                Event::Changed { snapshot: Box::new(snapshot(&project)?), place: Place::Block }
             }
             Self::Redo(root) => {
                 let mut project = Project::open(&root)?;
                 project.redo()?;
-                Event::Changed(Box::new(snapshot(&project)?))
+                Event::Changed { snapshot: Box::new(snapshot(&project)?), place: Place::Block }
             }
         })
     }

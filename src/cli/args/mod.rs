@@ -149,6 +149,9 @@ pub(super) enum Action {
     View {
         /// Project folder; without one the start page opens
         project: Option<PathBuf>,
+        /// Write down how long each frame takes, as CSV; frames then follow one another without pause
+        #[arg(long, value_name = "FILE", hide = true)]
+        frame_times: Option<PathBuf>,
     },
     /// Draw a sheet of every pattern with its name
     #[command(after_help = "Example:\n  petroglyph patterns patterns.png")]

@@ -38,6 +38,9 @@ fn holes_are_what_is_enclosed() {
     );
     let holes = find_holes(&[broken], SIZE);
     assert_eq!(holes.iter().map(|hole| (hole.traces, hole.at)).collect::<Vec<_>>(), [(29, [20, 20]), (5, [40, 30])]);
+    let small: Vec<u32> =
+        [(39, 30), (40, 29), (40, 30), (40, 31), (41, 30)].map(|(x, y)| x * SIZE[1] as u32 + y).into();
+    assert_eq!(holes[1].nodes(), small);
 }
 
 #[test]

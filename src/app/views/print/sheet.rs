@@ -1,87 +1,35 @@
-//! A picture for print: the block as it is on the screen, supersampled, with legend, scale bars and what a reader must know.
+//! What stands beside and below a printed picture: legend, scale bar, and what a reader must know.
 //!
 //! Lengths are millimetres on paper. Bars hold where the projection is parallel; with a perspective they hold in the middle of the block, and the
 //! caption says so.
 
-use super::{Event, Outbox, Running};
-use crate::app::state::Shown;
-use crate::app::state::{ExportPlan, Notice, Place, camera};
+use crate::app::state::camera;
 use crate::error::ProjectError;
-use crate::picture::{self, Device, Painter};
-use crate::project::Project;
-use crate::{library, pipeline};
 use glam::DVec2;
 use image::{Rgba, RgbaImage, imageops};
-use render::{Background, Projection, Scene};
-use std::path::Path;
-use survey::{Progress, SurveyGeometry, VerticalUnit};
+use render::{Projection, Scene};
+use survey::{SurveyGeometry, VerticalUnit};
 use ttf::text::{draw_text, measure_text};
-use ttf::{Colour, LayerTtf, TextureLibrary};
+use ttf::{Colour, TextureLibrary};
 
-/// Samples a pixel along each axis.
-const SAMPLES: u32 = 3;
 /// Width of the legend.
-const LEGEND_MM: f64 = 44.0;
+pub(super) const LEGEND_MM: f64 = 44.0;
 /// Width and height of a swatch in it, and the distance from one to the next.
 const SWATCH_MM: [f64; 2] = [11.0, 6.5];
 const PITCH_MM: f64 = 9.0;
+/// The same for a line of the horizons' legend.
+const LINE_MM: f64 = 6.0;
 /// Height of the strip below the block.
-const STRIP_MM: f64 = 13.0;
+pub(super) const STRIP_MM: f64 = 13.0;
 /// Height of lettering: 8 points.
 const LETTER_MM: f64 = 2.9;
-const MARGIN_MM: f64 = 3.0;
+pub(super) const MARGIN_MM: f64 = 3.0;
 /// Part of the picture's width that a scale bar may take.
 const BAR_SHARE: f64 = 0.3;
 const INK: Colour = Colour::new(0x23, 0x1f, 0x1b);
 
-/// Draws the picture and writes it.
-pub(super) fn export(root: &Path, plan: &ExportPlan, outbox: &Outbox, running: &Running) {
-    let (guard, progress) = running.begin("Drawing the picture", Place::Dialogue, outbox.wake.clone());
-    let done = super::compute(|| draw(root, plan, &progress));
-    drop(guard);
-    outbox.send(match done {
-        Ok(()) => Event::Exported(plan.form.path.clone().into()),
-        Err(error) => Event::Told(Notice::failure(Place::Dialogue, &error)),
-    });
-}
-
-fn draw(root: &Path, plan: &ExportPlan, progress: &Progress) -> Result<(), ProjectError> {
-    let project = Project::open(root)?;
-    let document = project.document();
-    let loaded = pipeline::load(&project, &plan.scene, progress)?;
-    let px = |mm: f64| mm * plan.form.px_per_mm();
-    let [width, height] = plan.form.size_px();
-    let names = document.layers();
-    let has_legend = plan.form.legend == Shown::Yes && !document.horizons.is_empty();
-    let legend_px = if has_legend { px(LEGEND_MM) as u32 } else { 0 };
-    let strip_px = if plan.form.scale_bar == Shown::Yes { px(STRIP_MM) as u32 } else { 0 };
-    let size_px = [width.saturating_sub(legend_px).max(1), height.saturating_sub(strip_px).max(1)];
-    let scene = Scene { size_px, samples: SAMPLES, ..plan.scene.clone() };
-    let (block, _) = Painter::new(Device::Auto, progress)?.draw(&scene, &loaded, progress)?;
-    let mut sheet = RgbaImage::from_pixel(width, height, paper(scene.background));
-    imageops::overlay(&mut sheet, &block, 0, 0);
-    if has_legend {
-        let library = library::of_project(project.root(), document)?;
-        let mut styles = Vec::new();
-        for (index, name) in names.iter().enumerate() {
-            let style = document.style.layers.style(name).cloned();
-            styles.push(style.unwrap_or_else(|| LayerTtf::default_style(name, names.len() - 1 - index, &library)));
-        }
-        let corner = [f64::from(size_px[0]) + px(1.0), px(MARGIN_MM)];
-        legend(&mut sheet, corner, &px, &styles, &library)?;
-    }
-    if strip_px > 0 {
-        scale_bars(&mut sheet, f64::from(size_px[1]), &px, &scene, &loaded.geometry);
-    }
-    picture::write_png(Path::new(&plan.form.path), &sheet, plan.form.dpi)
-}
-
-fn paper(background: Background) -> Rgba<u8> {
-    Rgba(background.rgba().map(|channel| (channel * 255.0 + 0.5) as u8))
-}
-
 /// Pattern and name of each layer, youngest on top.
-fn legend(
+pub(super) fn layers(
     sheet: &mut RgbaImage,
     [left, top]: [f64; 2],
     px: &impl Fn(f64) -> f64,
@@ -103,6 +51,22 @@ fn legend(
         letter(sheet, [x, y + px(SWATCH_MM[1] * 0.5 + LETTER_MM * 0.35)], right - x, px(LETTER_MM), &style.layer);
     }
     Ok(())
+}
+
+/// Colour and name of each horizon, youngest on top.
+pub(super) fn horizons(
+    sheet: &mut RgbaImage,
+    [left, top]: [f64; 2],
+    px: &impl Fn(f64) -> f64,
+    horizons: &[(Colour, String)],
+) {
+    let right = f64::from(sheet.width()) - px(MARGIN_MM);
+    for (row, (colour, name)) in horizons.iter().enumerate() {
+        let y = top + px(LINE_MM) * (row as f64 + 0.5);
+        fill(sheet, [left, y - px(0.5)], [px(SWATCH_MM[0]), px(1.0)], *colour);
+        let x = left + px(SWATCH_MM[0] + 2.0);
+        letter(sheet, [x, y + px(LETTER_MM * 0.35)], right - x, px(LETTER_MM), name);
+    }
 }
 
 /// A line of lettering, smaller where there is not enough room.
@@ -132,7 +96,14 @@ fn round_length(longest: f64) -> f64 {
     [5.0, 2.0, 1.0].into_iter().map(|factor| factor * decade).find(|length| *length <= longest).unwrap_or(decade)
 }
 
-fn scale_bars(sheet: &mut RgbaImage, top: f64, px: &impl Fn(f64) -> f64, scene: &Scene, geometry: &SurveyGeometry) {
+/// The scale of a block drawn in so many pixels, in the strip that begins at `top`.
+pub(super) fn scale_bars(
+    sheet: &mut RgbaImage,
+    top: f64,
+    px: &impl Fn(f64) -> f64,
+    scene: &Scene,
+    geometry: &SurveyGeometry,
+) {
     let size = DVec2::new(f64::from(scene.size_px[0]), f64::from(scene.size_px[1]));
     let middle = scene.box_in(geometry).centre();
     let px_per_m = camera::scale_at(&camera::view(scene, geometry, size), middle);

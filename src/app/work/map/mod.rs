@@ -1,0 +1,168 @@
+//! A horizon, or the thickness between two, as a map: values at the survey's traces and contours of round values.
+//!
+//! What was not picked, but filled or extrapolated, is hatched; while interpreting, when there is no model, holes are.
+
+mod contours;
+mod grid;
+mod hatch;
+
+use super::{Event, Interpreted, Outbox, Rocks, spawn};
+use glam::DVec2;
+use grid::Grid;
+use image::{Rgba, RgbaImage};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use survey::SurveyGeometry;
+use ttf::{ColourMap, RgbaFunction};
+
+/// What is to be mapped, by indices of horizons, youngest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mapped {
+    /// Its depth or time.
+    Structure(usize),
+    /// Vertical thickness from one down to the next.
+    Thickness(usize, usize),
+}
+
+impl Mapped {
+    /// Whether there is such a thing among so many horizons.
+    fn is_among(self, count: usize) -> bool {
+        match self {
+            Self::Structure(horizon) => horizon < count,
+            Self::Thickness(upper, lower) => upper < lower && lower < count,
+        }
+    }
+}
+
+/// What a map is made from.
+#[derive(Clone)]
+pub enum MapSource {
+    /// The model.
+    Rocks(Rocks),
+    /// The horizons as they were picked, without a model.
+    Interpreted(Arc<Interpreted>, Box<SurveyGeometry>),
+}
+
+/// A map to be seen.
+#[derive(Clone)]
+pub struct MapWish {
+    /// Of what.
+    pub mapped: Mapped,
+    /// What it is made from.
+    pub source: MapSource,
+}
+
+/// A contour's piece.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContourPiece {
+    /// Ends, voxel x and y.
+    pub ends: [DVec2; 2],
+    /// Its value, in the survey's unit.
+    pub value: f64,
+    /// Whether it is an index contour.
+    pub is_index: bool,
+}
+
+/// A map.
+pub struct MapPicture {
+    /// Of what.
+    pub mapped: Mapped,
+    /// A pixel a trace, inlines to the right, crosslines down; transparent where there is no value.
+    pub image: RgbaImage,
+    /// Contours in pieces.
+    pub contours: Vec<ContourPiece>,
+    /// Outline and hatching of what was not picked, voxel x and y.
+    pub hatching: Vec<[DVec2; 2]>,
+    /// Smallest and largest value, in the survey's unit.
+    pub range: [f64; 2],
+    /// Distance between contours.
+    pub interval: f64,
+}
+
+#[derive(Default)]
+struct Slot {
+    wish: Option<MapWish>,
+    ended: bool,
+}
+
+/// The thread that maps, and the wish it works on next.
+pub struct Maps {
+    shared: Arc<(Mutex<Slot>, Condvar)>,
+}
+
+impl Maps {
+    /// Starts the thread.
+    pub fn start(outbox: Outbox) -> Self {
+        let shared = Arc::new((Mutex::new(Slot::default()), Condvar::new()));
+        let mine = shared.clone();
+        spawn("map", move || work(&mine, &outbox));
+        Self { shared }
+    }
+
+    /// Maps this next.
+    pub fn map(&self, wish: MapWish) {
+        self.change(|slot| slot.wish = Some(wish));
+    }
+
+    fn change(&self, change: impl FnOnce(&mut Slot)) {
+        change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
+        self.shared.1.notify_one();
+    }
+}
+
+impl Drop for Maps {
+    fn drop(&mut self) {
+        self.change(|slot| slot.ended = true);
+    }
+}
+
+fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox) {
+    loop {
+        let wish = {
+            let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
+            loop {
+                if slot.ended {
+                    return;
+                }
+                if let Some(wish) = slot.wish.take() {
+                    break wish;
+                }
+                slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
+            }
+        };
+        if let Some(picture) = draw(&wish) {
+            outbox.send(Event::Mapped(picture));
+        }
+    }
+}
+
+/// Maps what is wished; `None` when there is nothing of it.
+pub fn draw(wish: &MapWish) -> Option<MapPicture> {
+    let mapped = wish.mapped;
+    let grid = match &wish.source {
+        MapSource::Rocks(rocks) => Grid::of_model(&rocks.read().unwrap_or_else(PoisonError::into_inner), mapped)?,
+        MapSource::Interpreted(shown, geometry) => Grid::of_sheets(shown, geometry, mapped)?,
+    };
+    let finite = || grid.nodes().iter().map(|node| node.value).filter(|value| value.is_finite());
+    let range = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
+    if range[0] > range[1] {
+        return None;
+    }
+    // High is light, as on relief maps: colours run from the deepest to the shallowest.
+    let colours = RgbaFunction::over(ColourMap::Strata, [0.0, 1.0]);
+    let spread = (range[1] - range[0]).max(1e-9);
+    let shade = |value: f64| match mapped {
+        Mapped::Structure(_) => 1.0 - (value - range[0]) / spread,
+        Mapped::Thickness(..) => (value - range[0]) / spread,
+    };
+    let image = RgbaImage::from_fn(grid.size[0] as u32, grid.size[1] as u32, |x, y| {
+        let value = grid.at(x as usize, y as usize).value;
+        if value.is_nan() {
+            return Rgba([0; 4]);
+        }
+        let [r, g, b, _] = colours.evaluate(shade(value) as f32).map(|channel| (channel * 255.0 + 0.5) as u8);
+        Rgba([r, g, b, 255])
+    });
+    let interval = contours::interval(spread);
+    let contours = contours::contours(&grid, range, interval);
+    Some(MapPicture { mapped, image, contours, hatching: hatch::hatching(&grid), range, interval })
+}
