@@ -68,10 +68,26 @@ for blend in 0 0.5 1; do
         --box 300,427,756,920,1186.8,1826.4 --cut nearest,0.25,0.6 --size 1400x930
 done
 
-# Penobscot: Horizon B by picks.
+# Penobscot: Horizon B by picks, between four faults that were drawn where sections show them.
 project=$out/picks.petro
 rm -rf "$project"
 "$petroglyph" import "$data/volumes/penobscot_il1207-1456_xl1253-1402_t876-1032_int16.sgy" "$project"
-"$petroglyph" extract "$project" --fault-evidence 200
-"$petroglyph" pick "$project" --at 1207,1298,961.5 --horizon B --highest-valid
-"$petroglyph" pick "$project" --at 1274,1356,963.2 --horizon B --highest-valid
+"$petroglyph" raw "$project" --volume seismic --map grey
+"$petroglyph" extract "$project" --fault-evidence 100
+"$petroglyph" fault pick "$project" --name "South-west fault" --stick 1307,1258,912 1300,1258,1000 --stick 1297,1268,920 1288,1268,1000 \
+    --stick 1284,1280,928 1277,1280,1000 --stick 1277,1291,956 1271,1291,1008
+"$petroglyph" fault pick "$project" --name "West fault" --stick 1292,1305,932 1286,1305,980 \
+    --stick 1267,1323,951 1262,1323,984 --stick 1258,1335,960 1253,1335,996
+"$petroglyph" fault pick "$project" --name "North-west fault" --stick 1268,1375,984 1264,1375,1020 --stick 1272,1393,988 1268,1393,1020
+"$petroglyph" fault pick "$project" --name "North-east fault" --stick 1435,1343,972 1429,1343,1020 --stick 1433,1360,960 1430,1360,1000 \
+    --stick 1435,1374,956 1431,1374,1008 --stick 1435,1388,944 1429,1388,1024 --stick 1433,1400,956 1429,1400,1012
+for place in 1349,1330,954.7 1229,1336,962.8 1249,1265,977.7; do
+    "$petroglyph" pick "$project" --at $place --horizon B --highest-valid
+done
+for place in 1443,1312,946.7 1438,1286,937.8 1449,1378,955.3; do
+    "$petroglyph" pick "$project" --at $place --horizon B
+done
+"$petroglyph" horizon fill "$project" B
+"$petroglyph" layer set "$project" "above B" --pattern shale
+"$petroglyph" layer set "$project" "below B" --pattern sandstone-bedded
+"$petroglyph" render "$project" "$pictures/penobscot-picks.png" --blend 0.4 --exaggeration 5 --azimuth 225 --ground off --cut nearest,0.4,0.5 --size 1400x900
