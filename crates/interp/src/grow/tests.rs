@@ -94,6 +94,34 @@ fn a_step_of_half_a_period_parts_surfaces() {
 }
 
 #[test]
+fn a_reflector_does_not_go_on_along_the_side_lobe_that_a_fault_lays_against_it() {
+    // Ricker wavelets of alternating polarity every 11 samples, thrown by 7.9: each reflector faces a lobe of the next one, 3.1 above it.
+    let mut volume = Volume::filled([32, 32, 96], 0.0f32);
+    for x in 0..32 {
+        for y in 0..32 {
+            let first = 4.0 + 0.1 * y as f32 - if x < 16 { 0.0 } else { 7.9 };
+            for (z, value) in volume.trace_mut(x, y).iter_mut().enumerate() {
+                let wavelet = |n: i16| {
+                    let square = (std::f32::consts::PI * (z as f32 - first - 11.0 * f32::from(n)) / 8.0).powi(2);
+                    let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
+                    sign * (1.0 - 2.0 * square) * (-square).exp()
+                };
+                *value = 1000.0 * (-1..10).map(wavelet).sum::<f32>();
+            }
+        }
+    }
+    // No fault is looked for, so only the lobes can tell.
+    let settings = GrowSettings { fault_evidence: f32::INFINITY, ..GrowSettings::default() };
+    let surfaces = grown(&volume, &settings);
+    check(&surfaces);
+    assert!(surfaces.surfaces.iter().filter(|s| s.vertices.len() == 16 * 32).count() >= 8);
+    for surface in &surfaces.surfaces {
+        let vertices = &surfaces.vertices[surface.vertices.start as usize..surface.vertices.end as usize];
+        assert!(vertices.iter().all(|v| (v.x < 16) == (vertices[0].x < 16)), "at {:?}", vertices[0]);
+    }
+}
+
+#[test]
 fn a_neck_narrower_than_the_front_does_not_connect() {
     // Dead traces leave two halves and a bridge three traces wide.
     let mut volume = layered([24, 24, 40], 10.0, |_, _| 15.0);
