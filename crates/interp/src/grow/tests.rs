@@ -117,7 +117,10 @@ fn a_reflector_does_not_go_on_along_the_side_lobe_that_a_fault_lays_against_it()
     assert!(surfaces.surfaces.iter().filter(|s| s.vertices.len() == 16 * 32).count() >= 8);
     for surface in &surfaces.surfaces {
         let vertices = &surfaces.vertices[surface.vertices.start as usize..surface.vertices.end as usize];
-        assert!(vertices.iter().all(|v| (v.x < 16) == (vertices[0].x < 16)), "at {:?}", vertices[0]);
+        // At the walls a lobe may be without its reflector.
+        let inside = vertices.iter().all(|v| (16.0..80.0).contains(&v.z));
+        let whole = vertices.iter().all(|v| (v.x < 16) == (vertices[0].x < 16));
+        assert!(whole || !inside, "at {:?}", vertices[0]);
     }
 }
 
