@@ -114,13 +114,13 @@ fn a_reflector_does_not_go_on_along_the_side_lobe_that_a_fault_lays_against_it()
     let settings = GrowSettings { fault_evidence: f32::INFINITY, ..GrowSettings::default() };
     let surfaces = grown(&volume, &settings);
     check(&surfaces);
-    assert!(surfaces.surfaces.iter().filter(|s| s.vertices.len() == 16 * 32).count() >= 8);
+    assert!(surfaces.surfaces.iter().filter(|s| s.vertices.len() >= 15 * 32).count() >= 20);
     for surface in &surfaces.surfaces {
         let vertices = &surfaces.vertices[surface.vertices.start as usize..surface.vertices.end as usize];
-        // At the walls a lobe may be without its reflector.
+        // At the walls a lobe may be without its reflector; what a lobe has of its own is taken over three traces.
         let inside = vertices.iter().all(|v| (16.0..80.0).contains(&v.z));
-        let whole = vertices.iter().all(|v| (v.x < 16) == (vertices[0].x < 16));
-        assert!(whole || !inside, "at {:?}", vertices[0]);
+        let across = vertices.iter().any(|v| v.x < 15) && vertices.iter().any(|v| v.x > 16);
+        assert!(!inside || !across, "at {:?}", vertices[0]);
     }
 }
 
