@@ -28,7 +28,7 @@ const SHORTFALLS: &str = "\n\
 \x20 extremum that is not the unconformity's. On seeds 2 and 3 the oracle stops there; the replay goes on, picks the unconformity, and its precision falls. On seed 1 it takes 8.\n\
 - Seeds 4 and 5 were not tuned on; the leak of seed 5 was looked at for its cause.\n\
 - Proposed faults: a trace needs the rims of assembled horizons on both sides. One pick on each part covers too little of each horizon in noise; the\n\
-\x20 more of a horizon is assembled, the better the proposals. The fault that dies out was found on one seed of five; why not on the others is not settled.\n\
+\x20 more of a horizon is assembled, the better the proposals. The fault that dies out was found on seeds 2 and 5 alone; why not on the others is not settled.\n\
 ";
 /// Parts of fewer traces are not picked for the fault search.
 const FEWEST_TRACES: usize = 200;
