@@ -186,7 +186,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("links guided by dip", GrowSettings { core_width: 4, fault_evidence: f32::INFINITY, ..plain.clone() }),
         ("and cores of 10 traces", GrowSettings { fault_evidence: f32::INFINITY, ..plain.clone() }),
         ("or fault planes", GrowSettings { core_width: 4, ..plain.clone() }),
-        ("both", plain.clone()),
+        ("both", plain),
         ("and side lobes told", GrowSettings { join_share: 2.0, ..ours.clone() }),
         ("and pieces joined: ours", ours),
     ];
