@@ -106,6 +106,11 @@ impl Noise {
         [self.places[dip], self.changes[height_class(&self.steps, amplitude)][dip]]
     }
 
+    /// s of the weaker half of the extrema where reflectors are flat: what noise does to a height.
+    pub(super) fn least_change(&self) -> f32 {
+        self.changes[0][0]
+    }
+
     /// s where reflectors are flat.
     fn change(&self, amplitude: f32) -> f32 {
         self.changes[height_class(&self.steps, amplitude)][0]

@@ -9,6 +9,7 @@
 //! | extrema, refined below the sample | [`crate::extrema`] |
 //! | mutual best links between neighbouring traces, guided by the dip | `links`, `dip` |
 //! | how much each link speaks for a break, beside the volume's own noise and what is usual around it | `evidence`, `surroundings` |
+//! | side lobes told from reflectors by what lies above and below them; links between the two speak for a break | `lobes` |
 //! | faults: planes along which many links do; they cut links | `planes` |
 //! | closed cells, the opening of the least width, connected windows | `cells` |
 //! | what is left over goes to the surface that it fits best | `flood` |
@@ -25,6 +26,7 @@ mod dip;
 mod evidence;
 mod flood;
 mod links;
+mod lobes;
 mod merge;
 mod ours;
 mod paper;
@@ -70,6 +72,9 @@ pub struct GrowSettings {
     /// Least evidence along a plane for it to be a fault that cuts surfaces (see `planes`). Default 25; the less, the more cuts.
     /// Infinite turns the search for faults off.
     pub fault_evidence: f32,
+    /// Share of its height that an extremum must have of its own, and not as another's side lobe, to be a reflector's (see `lobes`).
+    /// Default 0.4; 0 tells no lobes. Needs peaks and troughs both.
+    pub lobe_share: f32,
     /// Share of the boundary of two pieces of a surface that must speak for joining them (see `merge`). Default 0.4; the less, the fewer and
     /// larger surfaces. More than 1 joins none.
     pub join_share: f32,
@@ -85,6 +90,7 @@ impl Default for GrowSettings {
             min_front_width: 4,
             core_width: 10,
             fault_evidence: 25.0,
+            lobe_share: 0.4,
             join_share: 0.4,
             slab_inlines: 16,
         }

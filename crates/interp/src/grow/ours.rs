@@ -1,13 +1,13 @@
-//! Our growing, step by step: links, dips, evidence, cuts, windows, flood (see [`super`]).
+//! Our growing, step by step: links, dips, evidence, side lobes, cuts, windows, flood (see [`super`]).
 //!
 //! All kinds of extrema share the coarse dip and the faults; they never link to one another. Memory beside the 8 bytes of an extremum:
-//! 16 of links, 8 of dips, 4 of evidence and cuts, and, for one kind at a time, 34 while it is smoothed; half a byte a voxel for the
+//! 16 of links, 8 of dips, 4 of evidence and cuts, 4 of own heights, and, for one kind at a time, 34 while it is smoothed; half a byte a voxel for the
 //! fault planes. With peaks and troughs together every three to four samples that is some 15 bytes a voxel.
 
 use super::evidence::{self, Noise};
 use super::links::{self, Links, NEXT_X, NEXT_Y, NONE};
 use super::smoothing::Room;
-use super::{GrowSettings, assemble, cells, dip, flood, merge, planes};
+use super::{GrowSettings, assemble, cells, dip, flood, lobes, merge, planes};
 use crate::extrema::Extrema;
 use crate::surfaces::Surfaces;
 use rayon::prelude::*;
@@ -52,12 +52,15 @@ pub(super) fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Prog
     let pairs: Vec<(&Extrema, &Links)> = extrema.iter().zip(&unguided).collect();
     let field = dip::DipField::new(size, &pairs);
     progress.check()?;
+    let own = if settings.lobe_share > 0.0 { lobes::own_heights(extrema) } else { vec![Vec::new(); extrema.len()] };
+    progress.check()?;
     let mut room = Room::default();
     // One kind after the other: each is parallel inside, and needs most memory while its dips are smoothed.
     let linked: Vec<Linked> = extrema
         .iter()
         .zip(unguided)
-        .map(|(extrema, unguided)| linked(extrema, unguided, &field, &mut room, progress))
+        .zip(own)
+        .map(|((extrema, unguided), own)| linked(extrema, unguided, &own, &field, settings, &mut room, progress))
         .collect::<Result<_, Cancelled>>()?;
     drop(room);
     let mut broken = if settings.fault_evidence.is_finite() {
@@ -88,7 +91,9 @@ const STEPS_OF_A_KIND: usize = 10;
 fn linked<'e>(
     extrema: &'e Extrema,
     unguided: Links,
+    own: &[f32],
     field: &dip::DipField,
+    settings: &GrowSettings,
     room: &mut Room,
     progress: &Progress,
 ) -> Result<Linked<'e>, Cancelled> {
@@ -98,17 +103,20 @@ fn linked<'e>(
         dip::along_surfaces(extrema, &links, &mut dips, scale, room, progress)?;
     }
     let noise = Noise::measure(extrema, &links, &dips);
-    let evidence = evidence::evidence(extrema, &links, &dips, &noise, room, progress)?;
+    let mut evidence = evidence::evidence(extrema, &links, &dips, &noise, room, progress)?;
+    let least = lobes::Least { share: settings.lobe_share, noise: noise.least_change() };
+    lobes::part(extrema, &links, own, least, &mut evidence, room, progress)?;
     Ok(Linked { extrema, links, dips, noise, evidence })
 }
 
-/// Breaks the links that do not fit the dip.
+/// Breaks the links that do not fit the dip, and those that speak for a break as loudly as any can.
 fn break_misfits(kind: &Linked, broken: &mut [[bool; 2]]) {
     broken.par_iter_mut().with_min_len(1 << 14).enumerate().for_each(|(v, broken)| {
         for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
             let next = kind.links.to[direction][v];
-            broken[axis] |=
-                next != NONE && evidence::misfit(kind.extrema, &kind.dips, v, next as usize, axis).abs() > BROKEN;
+            broken[axis] |= next != NONE
+                && (kind.evidence[v][axis] == evidence::MOST
+                    || evidence::misfit(kind.extrema, &kind.dips, v, next as usize, axis).abs() > BROKEN);
         }
     });
 }
