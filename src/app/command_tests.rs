@@ -151,7 +151,7 @@ fn a_fault_comes_in_through_its_dialogue() {
     });
     click(&mut harness, "Add");
     wait(&mut harness, "the fault is there", |harness| document(harness).faults.len() == 1);
-    assert!(state(&harness).dialogue.is_none());
+    wait(&mut harness, "the dialogue has gone", |harness| state(harness).dialogue.is_none());
 }
 
 #[test]
