@@ -147,6 +147,7 @@ impl Tour {
     /// What is on the screen as it is exported.
     fn print(&mut self, name: &str) {
         if self.is_wanted(name) {
+            self.settle();
             let path = self.out.join(format!("{name}-{}.png", self.suffix));
             let form = ExportForm { dpi: 150.0, ..ExportForm::new(path.display().to_string()) };
             self.act(Action::Export(Box::new(form)));

@@ -151,7 +151,7 @@ fn a_fault_comes_in_through_its_dialogue() {
     });
     click(&mut harness, "Add");
     wait(&mut harness, "the fault is there", |harness| document(harness).faults.len() == 1);
-    assert!(state(&harness).dialogue.is_none());
+    wait(&mut harness, "the dialogue has gone", |harness| state(harness).dialogue.is_none());
 }
 
 #[test]
@@ -256,8 +256,11 @@ fn what_is_on_the_screen_is_exported_while_interpreting() {
     let sections = export(&mut harness, "sections.png");
     act(&mut harness, Action::Arrange(super::state::Layout::Map));
     let map = export(&mut harness, "map.png");
-    let all = [&illustrated, &faces, &sections, &map];
+    act(&mut harness, Action::Picking(PickingStep::Look(super::state::Look::SeeThrough)));
+    let through = export(&mut harness, "through.png");
+    let all = [&illustrated, &faces, &sections, &map, &through];
     for (n, picture) in all.iter().enumerate() {
         assert!(all[..n].iter().all(|other| other != picture), "picture {n} is as one before");
+        assert_eq!(picture.get_pixel(230, 160).0, [255; 3], "paper in the corner of picture {n}");
     }
 }

@@ -68,7 +68,7 @@ impl Page {
             if self.form.scale_bar == Shown::Yes && self.has_block() { px(sheet::STRIP_MM) as u32 } else { 0 };
         let size_px = [width.saturating_sub(legend_px).max(1), height.saturating_sub(strip_px).max(1)];
         let scene = self.scene();
-        let mut page = RgbaImage::from_pixel(width, height, paper(scene.background));
+        let mut page = RgbaImage::from_pixel(width, height, paper(self.session.view.scene.background));
         let project = Project::open(&self.session.root)?;
         let rocks = self.load(&project, &scene, progress)?;
         let per_point = px(POINT_MM) as f32;

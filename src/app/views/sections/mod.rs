@@ -175,7 +175,7 @@ impl Sections {
 
 /// The section itself, without the numbers along its edges.
 fn body_of(whole: Rect) -> Rect {
-    Rect::from_min_max(whole.min + MARGIN, whole.max - vec2(4.0, 4.0))
+    Rect::from_min_max(whole.min + MARGIN, whole.max - vec2(13.0, 4.0))
 }
 
 impl Pane {
