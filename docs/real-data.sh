@@ -90,4 +90,4 @@ done
 "$petroglyph" horizon fill "$project" B
 "$petroglyph" layer set "$project" "above B" --pattern shale
 "$petroglyph" layer set "$project" "below B" --pattern sandstone-bedded
-"$petroglyph" render "$project" "$pictures/penobscot-picks.png" --blend 0.4 --exaggeration 5 --azimuth 225 --ground off --cut nearest,0.4,0.5 --size 1400x900
+"$petroglyph" render "$project" "$pictures/penobscot-picks.png" --blend 0.4 --exaggeration 5 --azimuth 225 --ground off --size 1400x900
