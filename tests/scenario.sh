@@ -24,7 +24,7 @@ for project in window command; do "$program" import s/survey.sgy $project.petro 
 exec 3>display
 Xvfb -displayfd 3 -screen 0 "${size}x24" >xvfb.log 2>&1 &
 server=$!
-trap 'kill -9 "${window_process:-$server}" 2>/dev/null; kill "$server" 2>/dev/null' EXIT
+trap 'kill -9 "${window_process:-$server}" 2>/dev/null || true; kill "$server" 2>/dev/null || true' EXIT
 until [ -s display ]; do sleep 0.1; done
 DISPLAY=:$(cat display)
 export DISPLAY XDG_CONFIG_HOME="$PWD/settings" XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
