@@ -220,18 +220,23 @@ fn a_fault_turns_an_overlap_into_two_sheets_of_their_own_blocks() {
     }
 }
 
-/// Both sides were tracked six traces past a vertical fault: once it is drawn, each block keeps its own sheet.
-#[test]
-fn what_was_tracked_past_a_fault_is_left_out() {
-    let left: Height = &|x, _| (x <= 22).then_some(12.0);
-    let right: Height = &|x, _| (x >= 10).then_some(20.0);
-    let forest = forest_of(SIZE, &[&[left], &[right]], 64);
+/// A plane up to inline `left` and a deeper one from inline `right`, all of both, and a vertical fault at inline 16.
+fn beside_a_fault(left: usize, right: usize) -> (Forest, Selection, FaultNetwork) {
+    let upper: Height = &|x, _| (x <= left).then_some(12.0);
+    let lower: Height = &|x, _| (x >= right).then_some(20.0);
+    let forest = forest_of(SIZE, &[&[upper], &[lower]], 64);
     let mut all = Selection::default();
     all.insert(0..forest.surfaces.triangles.len() as u32);
     let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
     let closed = ClosedForm::flat(&geometry, &[16.0]).with_fault(89.9, 2.0);
-    let faulted =
-        FaultNetwork::build(&geometry, &closed.faults, &ModelSettings::default(), &Progress::silent()).unwrap();
+    let faulted = FaultNetwork::build(&geometry, &closed.faults, &ModelSettings::default(), &Progress::silent());
+    (forest, all, faulted.unwrap())
+}
+
+/// Both sides were tracked six traces past a vertical fault: once it is drawn, each block keeps its own sheet.
+#[test]
+fn what_was_tracked_past_a_fault_is_left_out() {
+    let (forest, all, faulted) = beside_a_fault(22, 10);
     let open = reassemble(&forest, &all, &[], &FaultNetwork::none());
     assert!(open.overlap.traces > 0 && open.left_out == 0);
     let found = reassemble(&forest, &all, &[], &faulted);
@@ -247,15 +252,7 @@ fn what_was_tracked_past_a_fault_is_left_out() {
 /// The left side's own reflection ends ten traces before the fault; what the right side's tracking left along the fault is no sheet of the left.
 #[test]
 fn a_fringe_along_a_fault_is_left_out() {
-    let left: Height = &|x, _| (x <= 6).then_some(12.0);
-    let right: Height = &|x, _| (x >= 12).then_some(20.0);
-    let forest = forest_of(SIZE, &[&[left], &[right]], 64);
-    let mut all = Selection::default();
-    all.insert(0..forest.surfaces.triangles.len() as u32);
-    let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
-    let closed = ClosedForm::flat(&geometry, &[16.0]).with_fault(89.9, 2.0);
-    let faulted =
-        FaultNetwork::build(&geometry, &closed.faults, &ModelSettings::default(), &Progress::silent()).unwrap();
+    let (forest, all, faulted) = beside_a_fault(6, 12);
     let found = reassemble(&forest, &all, &[], &faulted);
     assert!(found.left_out > 0 && found.sheets.len() == 2, "{} left out", found.left_out);
     let before = |sheet: &VoxelSheet| sheet.z[..12 * SIZE[1]].iter().all(|z| z.is_nan() || *z < 20.0);
