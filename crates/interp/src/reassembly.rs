@@ -10,7 +10,7 @@ use crate::assembly::{Overlap, Selection};
 use crate::forest::Forest;
 use crate::surfaces::Vertex;
 use glam::Vec3;
-use std::collections::VecDeque;
+use std::collections::{HashSet, VecDeque};
 use survey::model::FaultNetwork;
 use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry};
 
@@ -149,16 +149,16 @@ fn overshoots(patches: &[Patch], mesh: &Mesh, trace_of: impl Fn(u32) -> usize, t
     for (p, patch) in patches.iter().enumerate() {
         patch.vertices.iter().for_each(|&v| patch_of[v as usize] = p as u32);
     }
-    // The largest patch of each block at each trace; blocks one after the other.
-    let mut largest = vec![NONE; traces];
+    // Traces that a larger patch of the block has; blocks one after the other.
+    let mut covered = vec![false; traces];
     let mut order: Vec<usize> = (0..patches.len()).collect();
     order.sort_by_key(|&p| (patches[p].block, std::cmp::Reverse(patches[p].vertices.len()), p));
     let mut found = vec![false; patches.len()];
     for of_block in order.chunk_by(|&a, &b| patches[a].block == patches[b].block) {
-        largest.fill(NONE);
+        covered.fill(false);
         for &p in of_block {
             let patch = &patches[p];
-            let under = patch.vertices.iter().filter(|&&v| largest[trace_of(v)] != NONE).count();
+            let under = patch.vertices.iter().filter(|&&v| covered[trace_of(v)]).count();
             // What lies at the fault: next to a larger patch of another block.
             let at_fault = |v: &u32| {
                 mesh.neighbours(*v).iter().any(|&m| {
@@ -167,36 +167,29 @@ fn overshoots(patches: &[Patch], mesh: &Mesh, trace_of: impl Fn(u32) -> usize, t
                 })
             };
             let fault: Vec<u32> = patch.vertices.iter().copied().filter(at_fault).collect();
-            let over = under > 0 && under as f64 >= OVERSHOT * patch.vertices.len() as f64;
+            let over = under as f64 >= OVERSHOT * patch.vertices.len() as f64;
             let second = p != of_block[0];
-            found[p] = !fault.is_empty() && second && (over || reach(mesh, &patch_of, p as u32, fault) <= FRINGE);
-            for &v in &patch.vertices {
-                let at = &mut largest[trace_of(v)];
-                if *at == NONE && !found[p] {
-                    *at = p as u32;
-                }
+            found[p] = !fault.is_empty() && second && (over || is_fringe(mesh, &patch_of, p as u32, fault));
+            if !found[p] {
+                patch.vertices.iter().for_each(|&v| covered[trace_of(v)] = true);
             }
         }
     }
     found
 }
 
-/// How far a patch reaches from some of its vertices, steps along its edges.
-fn reach(mesh: &Mesh, patch_of: &[u32], patch: u32, from: Vec<u32>) -> u32 {
-    let mut seen: std::collections::HashSet<u32> = from.iter().copied().collect();
-    let (mut rim, mut steps) = (from, 0);
-    loop {
-        let next: Vec<u32> = rim
-            .iter()
-            .flat_map(|&v| mesh.neighbours(v))
-            .copied()
-            .filter(|&m| patch_of[m as usize] == patch && seen.insert(m))
-            .collect();
-        if next.is_empty() {
-            return steps;
+/// Whether a patch reaches no farther than [`FRINGE`] steps along its edges from its vertices at a fault.
+fn is_fringe(mesh: &Mesh, patch_of: &[u32], patch: u32, fault: Vec<u32>) -> bool {
+    let mut seen: HashSet<u32> = fault.iter().copied().collect();
+    let mut rim = fault;
+    for _ in 0..=FRINGE {
+        let beside = rim.iter().flat_map(|&v| mesh.neighbours(v)).copied();
+        rim = beside.filter(|&m| patch_of[m as usize] == patch && seen.insert(m)).collect();
+        if rim.is_empty() {
+            return true;
         }
-        (rim, steps) = (next, steps + 1);
     }
+    false
 }
 
 /// Where further sheets of a block lie over its first.
