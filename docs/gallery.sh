@@ -90,3 +90,12 @@ if [ -n "${PETROGLYPH_DATA:-}" ]; then
     draw "$f3" f3-occlusion $volume $place --clear-below 0.15
     draw "$f3" f3-leaves $place --cut nearest,0.5,0.4 --blend 1 --level 3
 fi
+
+# The start page's block, illustrated and raw: pixels for displays of twice the usual density, nothing behind it.
+start=${START:-}
+if [ -n "$start" ]; then
+    for side in illustrated,0 raw,1; do
+        "$petroglyph" render "$illus" "$start/${side%,*}.png" --cut nearest,0.5,0.55 --ground on --outlines on --size 1100x500 \
+            --background transparent --samples 4 --azimuth 22 --elevation 27 --exaggeration 1.5 --zoom 1.14 --blend "${side#*,}" > /dev/null
+    done
+fi

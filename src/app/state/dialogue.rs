@@ -60,6 +60,11 @@ pub enum Dialogue {
         /// What it holds.
         kind: Interpreted,
     },
+    /// What a file that was dropped on the window holds.
+    Dropped {
+        /// The file.
+        path: PathBuf,
+    },
     /// How to read a well.
     Well {
         /// Where it runs.

@@ -3,14 +3,36 @@
 use crate::app::state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, State,
 };
-use eframe::egui::{Align, Button, Layout, RichText, Slider, Ui};
+use eframe::egui::{Align, Button, Label, Layout, RichText, Slider, Ui};
 use render::Scene;
+
+/// Room for everything but the project's name and the comparison, points.
+const OTHERS: f32 = 680.0;
+/// Room for the comparison, points.
+const COMPARISON: f32 = 440.0;
+/// Room for the menu that it folds into, points.
+const MENU: f32 = 110.0;
+/// The shortest and the longest that a project's name is shown, points.
+const NAME: [f32; 2] = [60.0, 280.0];
 
 /// Shows the line.
 pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
+    // Interpreting is done on the raw volume: there is nothing to compare it with.
+    let compares = session.view.panel != Panel::Interpret;
+    let folds = ui.available_width() < OTHERS + NAME[0] + COMPARISON;
+    let comparison_room = match (compares, folds) {
+        (false, _) => 0.0,
+        (true, false) => COMPARISON,
+        (true, true) => MENU,
+    };
+    let name_room = (ui.available_width() - OTHERS - comparison_room).clamp(NAME[0], NAME[1]);
     ui.horizontal(|ui| {
         menu(ui, state, session, actions);
-        ui.label(RichText::new(session.name()).strong().size(16.0)).on_hover_text(session.root.display().to_string());
+        ui.scope(|ui| {
+            ui.set_max_width(name_room);
+            let name = Label::new(RichText::new(session.name()).strong().size(16.0)).truncate();
+            ui.add(name).on_hover_text(session.root.display().to_string());
+        });
         ui.separator();
         history(ui, session, actions);
         ui.separator();
@@ -24,10 +46,13 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
                 actions.push(Action::Arrange(layout));
             }
         }
-        // Interpreting is done on the raw volume: there is nothing to compare it with.
-        if session.view.panel != Panel::Interpret {
+        if compares {
             ui.separator();
-            comparison(ui, session, actions);
+            if folds {
+                ui.menu_button("Compare", |ui| comparison(ui, session, actions));
+            } else {
+                comparison(ui, session, actions);
+            }
         }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if ui.button("?").on_hover_text("Shortcuts (?)").clicked() {
@@ -125,4 +150,36 @@ fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     })
     .response
     .on_disabled_hover_text("Needs a volume and horizons");
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::app::tests::{driven, project, state, wait};
+    use eframe::egui::vec2;
+    use egui_kittest::kittest::{NodeT, Queryable};
+
+    #[test]
+    fn nothing_lies_over_anything_else_in_any_window() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("a_survey_with_a_name_that_is_longer_than_most_2026_int16.petro");
+        std::fs::rename(project(folder.path()), &root).unwrap();
+        let mut harness = driven(folder.path(), Some(root));
+        wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+        for (width, is_folded) in [(860.0, true), (1024.0, true), (1280.0, false), (1920.0, false)] {
+            harness.set_size(vec2(width, 600.0));
+            harness.run_steps(3);
+            assert_eq!(harness.query_by_label("Compare").is_some(), is_folded, "{width}");
+            let last = if is_folded { "Compare" } else { "Wipe" };
+            let order = ["Project", "Undo", "Redo", "Sections", "Map", "Fence", last, "Export…", "Copy", "?"];
+            let rects = order.map(|label| harness.get_by_label(label).rect());
+            for (pair, names) in rects.windows(2).zip(order.windows(2)) {
+                assert!(pair[0].right() <= pair[1].left(), "{} and {} at {width}: {pair:?}", names[0], names[1]);
+            }
+            assert!(rects.iter().all(|rect| rect.right() <= width), "{width}: {rects:?}");
+            if !is_folded {
+                let number = harness.get_all_by_label("to raw").map(|node| node.rect().right()).fold(0.0, f32::max);
+                assert!(number <= rects[7].left(), "the slider lies under Export at {width}");
+            }
+        }
+    }
 }

@@ -46,6 +46,8 @@ pub struct BlockView {
     /// The pictures' pixels, left to right.
     pixels: Vec<Option<ColorImage>>,
     wished: Option<(Vec<Scene>, u64, bool)>,
+    /// The scenes on the screen, if they are drawn in all their pixels.
+    fine: Option<Vec<Scene>>,
     number: u64,
     shown: u64,
     is_final: bool,
@@ -87,6 +89,13 @@ impl BlockView {
         self.is_final = drawn.is_final;
         self.device = drawn.device;
         let size = [drawn.image.width() as usize, drawn.image.height() as usize];
+        if let Some((scenes, ..)) = self.wished.as_ref().filter(|_| drawn.number == self.number) {
+            if scenes.get(drawn.pane).is_none_or(|scene| scene.size_px != [drawn.image.width(), drawn.image.height()]) {
+                self.fine = None;
+            } else if drawn.pane + 1 == scenes.len() {
+                self.fine = Some(scenes.clone());
+            }
+        }
         let image = ColorImage::from_rgba_unmultiplied(size, &drawn.image);
         self.pixels.resize(self.panes.len(), None);
         self.pixels[drawn.pane] = Some(image.clone());
@@ -252,7 +261,19 @@ impl BlockView {
         }
         self.panes.resize_with(wished.0.len(), || None);
         self.number += 1;
-        drawing.draw(PictureWish { number: self.number, scenes: wished.0.clone(), rocks: rocks.clone(), is_moving });
+        // Surfaces are laid over the picture at once: it can stay until one with them in it is there.
+        let is_alike = |fine: &Vec<Scene>| {
+            fine.len() == wished.0.len()
+                && fine.iter().zip(&wished.0).all(|(fine, scene)| is_but_for_horizons(fine, scene))
+        };
+        let begins_fine = !is_moving && self.fine.as_ref().is_some_and(is_alike);
+        drawing.draw(PictureWish {
+            number: self.number,
+            scenes: wished.0.clone(),
+            rocks: rocks.clone(),
+            is_moving,
+            begins_fine,
+        });
         self.wished = Some(wished);
     }
 
@@ -288,6 +309,16 @@ impl BlockView {
             painter.circle(at, if is_hot { 7.0 } else { 5.0 }, Color32::WHITE, Stroke::new(2.0, accent));
         }
     }
+}
+
+/// Whether two pictures differ in nothing but the horizons that are seen in them.
+fn is_but_for_horizons(one: &Scene, other: &Scene) -> bool {
+    let without = |scene: &Scene| {
+        let mut scene = scene.clone();
+        scene.media.horizons.clear();
+        scene
+    };
+    without(one) == without(other)
 }
 
 /// How pictures are compared: while interpreting there is only one.

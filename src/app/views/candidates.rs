@@ -2,7 +2,7 @@
 
 use crate::app::state::{Action, Session};
 use crate::app::work::{Interpreted, RunningLine};
-use eframe::egui::{Button, ComboBox, DragValue, Grid, ProgressBar, Ui};
+use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
 
 /// What is to be extracted.
@@ -25,10 +25,12 @@ impl CandidatesPanel {
         if let Some(line) = running.iter().find(|line| line.title == "Extracting") {
             ui.label(if line.stage.is_empty() { "extracting" } else { &line.stage });
             ui.horizontal(|ui| {
-                ui.add(ProgressBar::new(line.share().unwrap_or(0.0)).show_percentage().desired_width(180.0));
-                if ui.button("Stop extracting").clicked() {
-                    line.progress.cancel();
-                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.button("Stop extracting").clicked() {
+                        line.progress.cancel();
+                    }
+                    ui.add(ProgressBar::new(line.share().unwrap_or(0.0)).show_percentage());
+                });
             });
             ui.weak("Work goes on meanwhile.");
             return;

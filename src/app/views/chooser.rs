@@ -56,10 +56,10 @@ impl Chooser {
                 edit.request_focus();
             }
             let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-            self.list(ui, choice);
+            let is_taken = self.list(ui, choice);
             ui.horizontal(|ui| {
                 let path = PathBuf::from(self.text.trim());
-                if ui.button(verb(choice)).clicked() || entered {
+                if ui.button(verb(choice)).clicked() || entered || is_taken {
                     self.choose(choice, path, actions);
                 }
                 if ui.button("Cancel").clicked() {
@@ -85,7 +85,9 @@ impl Chooser {
         }
     }
 
-    fn list(&mut self, ui: &mut Ui, choice: Choice) {
+    /// What the folder holds; whether something in it was taken by a double click.
+    fn list(&mut self, ui: &mut Ui, choice: Choice) -> bool {
+        let mut is_taken = false;
         let folder = self.folder();
         if self.listed.as_deref() != Some(&folder) {
             self.listed = Some(folder.clone());
@@ -108,9 +110,11 @@ impl Chooser {
                 self.text = parent.join("").display().to_string();
             }
             for name in &listing.projects {
-                if ui.selectable_label(false, RichText::new(name).strong()).clicked() {
+                let label = ui.selectable_label(false, RichText::new(name).strong());
+                if label.clicked() {
                     self.text = listing.folder.join(name).display().to_string();
                 }
+                is_taken |= label.double_clicked();
             }
             for name in &listing.folders {
                 if ui.selectable_label(false, format!("{name}/")).clicked() {
@@ -121,12 +125,15 @@ impl Chooser {
                 for name in listing.files.iter().filter(|name| fits(choice, name)) {
                     let path = listing.folder.join(name);
                     let is_chosen = Path::new(&self.text) == path;
-                    if ui.selectable_label(is_chosen, name).clicked() {
+                    let label = ui.selectable_label(is_chosen, name);
+                    if label.clicked() {
                         self.text = path.display().to_string();
                     }
+                    is_taken |= label.double_clicked();
                 }
             }
         });
+        is_taken
     }
 
     fn choose(&mut self, choice: Choice, path: PathBuf, actions: &mut Vec<Action>) {
@@ -185,7 +192,7 @@ fn read(folder: &Path) -> Listing {
 }
 
 /// Whether a file's ending fits what is looked for. Interpretations have any ending.
-fn fits(choice: Choice, name: &str) -> bool {
+pub(super) fn fits(choice: Choice, name: &str) -> bool {
     let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_lowercase()).unwrap_or_default();
     match choice {
         Choice::NewSurvey | Choice::MoreSurvey => matches!(ending.as_str(), "sgy" | "segy" | "seg" | "sgy3"),

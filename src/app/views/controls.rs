@@ -1,7 +1,7 @@
 //! The panel on the right: the camera, the box, the display, and named scenes.
 
 use super::notices;
-use crate::app::state::{Action, Place, Session, StandardView, State};
+use crate::app::state::{Action, Panel, Place, Session, StandardView, State};
 use crate::command::{AddScene, Command, RemoveScene};
 use eframe::egui::{Button, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
@@ -10,6 +10,8 @@ use survey::VerticalUnit;
 
 /// Angle a perspective begins with.
 const FOV_DEG: f64 = 35.0;
+/// Room beside a slider for its label and its number, points.
+const BESIDE_SLIDER: f32 = 184.0;
 /// Shares of the block a new corner cut takes.
 const CUT_SHARE: [f64; 2] = [0.45, 0.45];
 
@@ -23,6 +25,8 @@ impl Controls {
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
         ScrollArea::vertical().show(ui, |ui| {
+            // Whatever rows there are, the panel keeps its width and the middle its place.
+            ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(60.0);
             let scene = &session.view.scene;
             let mut next = scene.clone();
             ui.add_space(8.0);
@@ -96,7 +100,7 @@ fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> eframe::egui::Respo
 }
 
 fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
-    let has_layers = !session.document.horizons.is_empty();
+    let has_layers = !session.document.horizons.is_empty() && session.view.panel != Panel::Interpret;
     Grid::new("display").num_columns(2).show(ui, |ui| {
         row(ui, "Exaggeration", |ui| {
             ui.add(Slider::new(&mut scene.exaggeration, 0.25..=20.0).logarithmic(true).max_decimals(2).suffix("×"))

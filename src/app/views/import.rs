@@ -25,6 +25,8 @@ fn from_left() -> Layout {
 
 /// After a change, so long nothing more must change before the file is read anew.
 const PATIENCE: Duration = Duration::from_millis(250);
+/// Room for the buttons beside the path of a new project, points.
+const BUTTONS: f32 = 190.0;
 
 /// The dialogue.
 #[derive(Default)]
@@ -213,7 +215,8 @@ impl Import {
         ui.horizontal(|ui| {
             if target == Target::NewProject {
                 let label = ui.label("Project");
-                ui.add(TextEdit::singleline(&mut self.root).desired_width(420.0)).labelled_by(label.id);
+                let room = (ui.available_width() - BUTTONS).max(200.0);
+                ui.add(TextEdit::singleline(&mut self.root).desired_width(room)).labelled_by(label.id);
             } else if let Some(session) = &state.session {
                 ui.label(format!("Into {}", session.name()));
             }

@@ -6,7 +6,7 @@
 use super::notices;
 use super::sections::entry_colour;
 use super::tiles::Tiles;
-use crate::app::state::{Action, Choice, Dialogue, Place, Session, State};
+use crate::app::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
 use crate::app::work::Swatches;
 use crate::command::{Command, ResetLayer, SetContact, SetLayer};
 use crate::project::Document;
@@ -61,10 +61,15 @@ impl Layers {
         }
         let document = &session.document;
         if document.horizons.is_empty() {
-            ui.label("Layers lie between horizons. Add some, or pick them.");
-            if ui.add_enabled(document.geometry.is_some(), Button::new("Add a horizon…")).clicked() {
-                actions.push(Action::Ask(Box::new(Dialogue::Choose(Choice::Horizon))));
-            }
+            ui.label("Layers lie between horizons. Pick some in the volume, or add them from files.");
+            ui.horizontal_wrapped(|ui| {
+                if ui.add_enabled(!document.volumes.is_empty(), Button::new("Pick horizons")).clicked() {
+                    actions.push(Action::Panel(Panel::Interpret));
+                }
+                if ui.add_enabled(document.geometry.is_some(), Button::new("Add a horizon…")).clicked() {
+                    actions.push(Action::Ask(Box::new(Dialogue::Choose(Choice::Horizon))));
+                }
+            });
             return;
         }
         ScrollArea::vertical().show(ui, |ui| {

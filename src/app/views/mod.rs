@@ -6,6 +6,7 @@ pub mod candidates;
 pub mod chooser;
 pub mod controls;
 pub mod data;
+pub mod dropped;
 pub mod export;
 pub mod faults;
 pub mod fence;

@@ -69,7 +69,7 @@ pub fn sentence(pointed: &Pointed, document: &crate::project::Document) -> Strin
     let mut text =
         format!("inline {:.0}   crossline {:.0}   {:.1} {}", lines.x, lines.y, z, geometry.vertical.unit.symbol());
     if let Some(value) = pointed.value {
-        text += &format!("   value {value:.4}");
+        text += &format!("   value {}", five_digits(value));
     }
     let names = document.stratigraphy().layer_names_bottom_up();
     if let Some(name) =
@@ -78,4 +78,25 @@ pub fn sentence(pointed: &Pointed, document: &crate::project::Document) -> Strin
         text += &format!("   {name}");
     }
     text
+}
+
+/// A number to five digits that tell something.
+fn five_digits(value: f32) -> String {
+    let power = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+    match usize::try_from(4 - power) {
+        Err(_) => format!("{value:.0}"),
+        Ok(decimals) if decimals <= 8 => format!("{value:.decimals$}"),
+        Ok(_) => format!("{value:.4e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_have_the_digits_that_tell() {
+        let shown = [20762.605, -1855.0, 0.0, 0.031_25, -3.25e-9, 1.5e7].map(five_digits);
+        assert_eq!(shown, ["20763", "-1855.0", "0.0000", "0.031250", "-3.2500e-9", "15000000"]);
+    }
 }

@@ -3,29 +3,127 @@
 use super::notices;
 use crate::app::state::{Action, Choice, Dialogue, Place, State};
 use crate::app::theme;
-use eframe::egui::{Align, Button, Layout, RichText, ScrollArea, Ui, Vec2};
-use std::path::Path;
+use eframe::egui::{
+    Align, Button, Color32, ColorImage, Context, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke,
+    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+};
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Width of the column in the middle.
 const WIDTH: f32 = 660.0;
 /// Height of a button that begins something.
 const TALL: f32 = 42.0;
+/// Where the picture is parted until the pointer says otherwise, share of its width.
+const PARTED: f32 = 0.42;
 
-/// Shows the page.
-pub fn show(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
-    ScrollArea::vertical().show(ui, |ui| {
-        ui.vertical_centered(|ui| {
-            ui.set_max_width(WIDTH.min(ui.available_width()));
-            ui.with_layout(Layout::top_down(Align::Min), |ui| page(ui, state, is_busy, actions));
-        });
-    });
+/// What the page is for, drawn by the program: the demonstration's block raw, and illustrated.
+const BLOCK: [&[u8]; 2] = [include_bytes!("start/raw.png"), include_bytes!("start/illustrated.png")];
+/// Points a pixel of these takes: they are drawn for dense displays.
+const PICTURE_SCALE: f32 = 0.6;
+
+/// The page, and what it keeps.
+#[derive(Default)]
+pub struct StartPage {
+    block: Option<[TextureHandle; 2]>,
+    /// Recent projects that were looked for, and which of them are there no more.
+    known: Vec<PathBuf>,
+    gone: Arc<Mutex<Vec<PathBuf>>>,
 }
 
-fn page(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
-    ui.add_space((ui.ctx().content_rect().height() * 0.09).min(90.0));
-    ui.label(RichText::new("Petroglyph").size(40.0).color(theme::accent(ui.visuals())));
-    ui.label("From a seismic volume to a geological illustration");
-    ui.add_space(22.0);
+impl StartPage {
+    /// Shows the page.
+    pub fn show(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+        ScrollArea::vertical().show(ui, |ui| {
+            ui.vertical_centered(|ui| {
+                ui.set_max_width(WIDTH.min(ui.available_width()));
+                ui.with_layout(Layout::top_down(Align::Min), |ui| self.page(ui, state, is_busy, actions));
+            });
+        });
+    }
+
+    fn page(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+        ui.add_space((ui.ctx().content_rect().height() * 0.03).min(40.0));
+        ui.label(RichText::new("Petroglyph").size(40.0).color(theme::accent(ui.visuals())));
+        ui.label("From a seismic volume to a geological illustration");
+        ui.add_space(8.0);
+        self.picture(ui);
+        ui.add_space(8.0);
+        begin(ui, state, is_busy, actions);
+        ui.add_space(20.0);
+        self.recent(ui, state, is_busy, actions);
+    }
+
+    /// The block, raw on one side of a line and illustrated on the other; the line follows the pointer.
+    fn picture(&mut self, ui: &mut Ui) {
+        let block = self.block.get_or_insert_with(|| BLOCK.map(|png| texture(ui.ctx(), png)));
+        let shape = block[0].size_vec2() * PICTURE_SCALE;
+        let size = shape * (ui.available_width() / shape.x).min(1.0);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "A block, raw and illustrated"));
+        let share = response.hover_pos().map_or(PARTED, |at| (at.x - rect.left()) / rect.width());
+        let share = ui.ctx().animate_value_with_time(response.id, share, 0.15);
+        let x = rect.left() + share * rect.width();
+        let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        let (left, right) = rect.split_left_right_at_x(x);
+        for (texture, part) in block.iter().zip([left, right]) {
+            ui.painter_at(part).image(texture.id(), rect, uv, Color32::WHITE);
+        }
+        ui.painter().vline(x, rect.y_range(), Stroke::new(1.5, theme::accent(ui.visuals())));
+    }
+
+    fn recent(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+        let projects = &state.remembered.recent;
+        if self.known != *projects {
+            self.known.clone_from(projects);
+            // On a thread: a folder on a network may take its time.
+            let (projects, gone, ctx) = (projects.clone(), self.gone.clone(), ui.ctx().clone());
+            std::thread::spawn(move || {
+                let lost = projects.into_iter().filter(|root| !root.join("project.toml").exists()).collect();
+                *gone.lock().unwrap_or_else(PoisonError::into_inner) = lost;
+                ctx.request_repaint();
+            });
+        }
+        let gone = self.gone.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        ui.heading("Recent projects");
+        if projects.is_empty() {
+            ui.weak("Projects you open will be listed here.");
+        }
+        for root in projects {
+            ui.horizontal(|ui| {
+                let title = RichText::new(name(root)).size(16.0);
+                let open = ui.add_enabled(!gone.contains(root) && !is_busy, Button::new(title).frame(false));
+                let open = open.on_hover_text("Open this project").on_disabled_hover_text("It is not there any more");
+                if open.clicked() {
+                    actions.push(Action::Open(root.clone()));
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let forget = ui.small_button("Forget").on_hover_text(format!("Take {} off this list", name(root)));
+                    if forget.clicked() {
+                        actions.push(Action::Forget(root.clone()));
+                    }
+                    let folder = root.parent().map_or_else(String::new, |parent| parent.display().to_string());
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        ui.add(Label::new(RichText::new(folder).weak()).truncate());
+                    });
+                });
+            });
+        }
+    }
+}
+
+/// A picture of ours, for the screen.
+fn texture(ctx: &Context, png: &[u8]) -> TextureHandle {
+    let image = image::load_from_memory_with_format(png, image::ImageFormat::Png).map_or_else(
+        |_| ColorImage::default(),
+        |image| {
+            ColorImage::from_rgba_unmultiplied([image.width() as usize, image.height() as usize], &image.to_rgba8())
+        },
+    );
+    ctx.load_texture("start", image, TextureOptions::LINEAR)
+}
+
+fn begin(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
     notices::show(ui, state, Place::Start, actions);
     if let Some(left) = &state.remembered.left {
         recovery(ui, &left.root, is_busy, actions);
@@ -45,8 +143,6 @@ fn page(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
             begin(ui, "Try the demonstration…", hint, Choice::Demo, actions);
         });
     });
-    ui.add_space(20.0);
-    recent(ui, state, is_busy, actions);
 }
 
 fn recovery(ui: &mut Ui, root: &Path, is_busy: bool, actions: &mut Vec<Action>) {
@@ -64,31 +160,6 @@ fn recovery(ui: &mut Ui, root: &Path, is_busy: bool, actions: &mut Vec<Action>) 
         });
     });
     ui.add_space(10.0);
-}
-
-fn recent(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
-    ui.heading("Recent projects");
-    if state.remembered.recent.is_empty() {
-        ui.weak("Projects you open will be listed here.");
-    }
-    for root in &state.remembered.recent {
-        ui.horizontal(|ui| {
-            let there = root.join("project.toml").exists();
-            let title = RichText::new(name(root)).size(16.0);
-            let open = ui.add_enabled(there && !is_busy, Button::new(title).frame(false));
-            let open = open.on_hover_text("Open this project").on_disabled_hover_text("It is not there any more");
-            if open.clicked() {
-                actions.push(Action::Open(root.clone()));
-            }
-            ui.weak(root.parent().map_or_else(String::new, |parent| parent.display().to_string()));
-            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                let forget = ui.small_button("Forget").on_hover_text(format!("Take {} off this list", name(root)));
-                if forget.clicked() {
-                    actions.push(Action::Forget(root.clone()));
-                }
-            });
-        });
-    }
 }
 
 /// What a project is called.

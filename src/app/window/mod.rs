@@ -10,10 +10,10 @@ use super::state::picking::Pick;
 use super::state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, Task};
 use super::theme;
 use super::views::{
-    block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
-    import::Import, interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
-    picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections, shortcuts, start, status, tiles::Tiles,
-    well::WellDialogue,
+    block::BlockView, chooser::Chooser, controls::Controls, data::Data, dropped, export, fence::FenceView,
+    functions::Functions, import::Import, interpretation::Interpretation, layers::Layers, map::MapView,
+    overlay::Overlay, patterns::Patterns, picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections,
+    shortcuts, start::StartPage, status, tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use crate::command::Command;
@@ -74,6 +74,7 @@ pub struct Window {
     settings: Option<PathBuf>,
     /// Keeps the open project from being offered for recovery by another window.
     hold: Option<Hold>,
+    start: StartPage,
     block: BlockView,
     sections: Sections,
     fence: FenceView,
@@ -120,6 +121,7 @@ impl Window {
             work: Work::start(wake.clone()),
             settings,
             hold: None,
+            start: StartPage::default(),
             block: BlockView::default(),
             sections: Sections::default(),
             fence: FenceView::default(),
@@ -259,13 +261,14 @@ impl Window {
         let mut actions = Vec::new();
         shortcuts::obey(&ctx, &self.state, &mut actions);
         let running = self.work.running.lines();
+        dropped::receive(&ctx, &self.state, !running.is_empty(), &mut actions);
         Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
             status::show(ui, self.state.session.as_ref(), self.pointed.as_ref(), &running, self.block.device());
         });
         if self.state.session.is_some() {
             self.work_page(ui, &running, &mut actions);
         } else {
-            CentralPanel::default().show(ui, |ui| start::show(ui, &self.state, !running.is_empty(), &mut actions));
+            CentralPanel::default().show(ui, |ui| self.start.show(ui, &self.state, !running.is_empty(), &mut actions));
         }
         self.dialogues(&ctx, &mut actions);
         for action in actions {
@@ -301,6 +304,7 @@ impl Window {
                     self.interpretation.show(ctx, &self.state, session, &self.work, path, *kind, actions);
                 }
             }
+            Some(Dialogue::Dropped { path }) => dropped::dialogue(ctx, path, actions),
             Some(Dialogue::Well { path }) => self.well.show(ctx, &self.state, &self.work, path, actions),
             Some(Dialogue::Patterns { layer, interval }) => {
                 if let Some(session) = &self.state.session {

@@ -15,40 +15,13 @@ impl Window {
             ui.add_space(7.0);
             bar::show(ui, &self.state, session, actions);
         });
-        Panel::left("side").default_size(316.0).min_size(240.0).show(ui, |ui| {
-            ui.add_space(6.0);
-            ui.horizontal(|ui| {
-                for (side, name, hint) in [
-                    (Side::Layers, "Layers", "The stratigraphic column (L)"),
-                    (Side::Data, "Data", "Volumes, horizons, faults and wells (D)"),
-                    (Side::Values, "Values", "Colours and textures by value (V)"),
-                    (Side::Interpret, "Interpret", "Candidates, picks and faults (P)"),
-                ] {
-                    if ui.selectable_label(session.view.panel == side, name).on_hover_text(hint).clicked() {
-                        actions.push(Action::Panel(side));
-                    }
-                }
-            });
-            ui.separator();
-            match session.view.panel {
-                Side::Layers => {
-                    self.layers.show(ui, &self.state, session, &self.swatches, &mut self.tiles, actions);
-                }
-                Side::Data => self.data.show(ui, &self.state, session, actions),
-                Side::Interpret => {
-                    self.picking.show(ui, &self.state, session, &self.overlay, running, actions);
-                }
-                Side::Values => {
-                    notices::show(ui, &self.state, Place::Data, actions);
-                    let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
-                    egui::ScrollArea::vertical().show(ui, |ui| {
-                        self.functions.show(ui, session, rocks, &self.swatches, actions);
-                    });
-                }
-            }
-        });
+        Panel::left("side")
+            .default_size(316.0)
+            .min_size(240.0)
+            .show(ui, |ui| within(ui, |ui| self.side(ui, running, actions)));
+        let Some(session) = &self.state.session else { return };
         Panel::right("controls").default_size(300.0).min_size(240.0).show(ui, |ui| {
-            self.controls.show(ui, &self.state, session, actions);
+            within(ui, |ui| self.controls.show(ui, &self.state, session, actions));
         });
         let frame = Frame::new().fill(ui.visuals().panel_fill);
         CentralPanel::no_frame().frame(frame).show(ui, |ui| {
@@ -82,6 +55,48 @@ impl Window {
             ui.advance_cursor_after_rect(whole);
         });
     }
+
+    /// What stands on the left: tabs, and the panel that is chosen.
+    fn side(&mut self, ui: &mut Ui, running: &[RunningLine], actions: &mut Vec<Action>) {
+        let Some(session) = &self.state.session else { return };
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            for (side, name, hint) in [
+                (Side::Layers, "Layers", "The stratigraphic column (L)"),
+                (Side::Data, "Data", "Volumes, horizons, faults and wells (D)"),
+                (Side::Values, "Values", "Colours and textures by value (V)"),
+                (Side::Interpret, "Interpret", "Candidates, picks and faults (P)"),
+            ] {
+                if ui.selectable_label(session.view.panel == side, name).on_hover_text(hint).clicked() {
+                    actions.push(Action::Panel(side));
+                }
+            }
+        });
+        ui.separator();
+        match session.view.panel {
+            Side::Layers => {
+                self.layers.show(ui, &self.state, session, &self.swatches, &mut self.tiles, actions);
+            }
+            Side::Data => self.data.show(ui, &self.state, session, actions),
+            Side::Interpret => {
+                self.picking.show(ui, &self.state, session, &self.overlay, running, actions);
+            }
+            Side::Values => {
+                notices::show(ui, &self.state, Place::Data, actions);
+                let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.functions.show(ui, session, rocks, &self.swatches, actions);
+                });
+            }
+        }
+    }
+}
+
+/// Shows something in the room there is. A panel whose content asked for more would widen, and the middle be drawn anew.
+fn within(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    let rect = ui.available_rect_before_wrap();
+    add(&mut ui.new_child(egui::UiBuilder::new().max_rect(rect)));
+    ui.advance_cursor_after_rect(rect);
 }
 
 /// What the map is made from: while interpreting there is no model.

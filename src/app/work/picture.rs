@@ -35,6 +35,8 @@ pub struct PictureWish {
     pub rocks: Rocks,
     /// While the hand moves, coarse is enough.
     pub is_moving: bool,
+    /// What is on the screen already tells more than a coarse picture would.
+    pub begins_fine: bool,
 }
 
 /// A click on a picture in which something may be seen behind its faces.
@@ -187,16 +189,19 @@ impl Artist {
     fn satisfy(&mut self, wish: &PictureWish, shared: &(Mutex<Slot>, Condvar)) -> Result<(), RenderError> {
         let rays: f64 = wish.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();
         let divisor = ((rays * self.ray_s / COARSE_S).sqrt().ceil() as u32).clamp(1, COARSEST);
-        let mut passes = vec![(divisor, 1)];
+        let mut passes = Vec::new();
+        if !wish.begins_fine {
+            passes.push((divisor, 1));
+        }
         if !wish.is_moving {
-            if divisor > 1 {
+            if divisor > 1 || wish.begins_fine {
                 passes.push((1, 1));
             }
             passes.push((1, SMOOTH_SAMPLES));
         }
         for (index, (divisor, samples)) in passes.iter().copied().enumerate() {
             let progress = Progress::silent();
-            if index > 0 {
+            if index > 0 || wish.begins_fine {
                 let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
                 if slot.wish.is_some() || slot.ended {
                     return Ok(());

@@ -3,16 +3,23 @@
 //! Both are zero lines over the map of one block's ground h(x, y): of the fault's side at (x, y, h), and of
 //! (∂h/∂x, ∂h/∂y, −1)·d, d the viewing direction. They are found on cells of a voxel by linear interpolation (marching squares).
 
+use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
 use crate::frame::{Frame, Rock};
 use crate::ground::is_air;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// How far from a fault its block's ground is asked for, voxels: far enough that the rock below an overhanging scarp is met.
 const INTO_BLOCK: f64 = 0.3;
 /// How far beside a line its blocks are told apart, voxels: beyond the sagitta that a bowed fault has over one cell.
 const ACROSS: f64 = 0.12;
+
+/// Shortest crest that is drawn, line widths.
+const SHORTEST_CREST: f64 = 24.0;
+/// Ends of lines nearer than about this meet, pixels: they are computed once from either cell.
+const MEETING_PX: f64 = 0.5;
 
 /// Seen parts of the ground's lines, pixels.
 #[derive(Debug, Default)]
@@ -91,7 +98,41 @@ pub(super) fn relief_lines(frame: &Frame) -> ReliefLines {
         let segments = map.zero_lines(facing);
         lines.crests.extend(seen(frame, rock, &segments, |p| (rock.model.block_at(p.as_vec3()) == block).then_some(p)));
     }
+    let scale = frame.scene.size_px.into_iter().min().map_or(0.0, f64::from) / f64::from(NOMINAL_SIDE_PX);
+    let shortest = SHORTEST_CREST * f64::from(frame.scene.outlines.horizons.width_px) * scale;
+    lines.crests = without_specks(lines.crests, shortest);
     lines
+}
+
+/// Leaves out lines that, with all that meet them, are shorter than `shortest` pixels: a relief that is rough by less than a line is wide
+/// has crests that only look like dirt.
+fn without_specks(lines: Vec<Vec<DVec2>>, shortest: f64) -> Vec<Vec<DVec2>> {
+    let length = |line: &Vec<DVec2>| line.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum::<f64>();
+    let mut group: Vec<usize> = (0..lines.len()).collect();
+    let mut ends: HashMap<[i64; 2], usize> = HashMap::new();
+    for (index, line) in lines.iter().enumerate() {
+        for end in [line.first(), line.last()].into_iter().flatten() {
+            let place = (*end / MEETING_PX).round().as_i64vec2().to_array();
+            let other = *ends.entry(place).or_insert(index);
+            let (one, other) = (first_of(&mut group, index), first_of(&mut group, other));
+            group[one.max(other)] = one.min(other);
+        }
+    }
+    let mut lengths = vec![0.0; lines.len()];
+    for (index, line) in lines.iter().enumerate() {
+        lengths[first_of(&mut group, index)] += length(line);
+    }
+    let whole: Vec<bool> = (0..lines.len()).map(|index| lengths[first_of(&mut group, index)] >= shortest).collect();
+    lines.into_iter().zip(whole).filter_map(|(line, whole)| whole.then_some(line)).collect()
+}
+
+/// The first line of a line's group; the way there is shortened.
+fn first_of(group: &mut [usize], mut index: usize) -> usize {
+    while group[index] != index {
+        group[index] = group[group[index]];
+        index = group[index];
+    }
+    index
 }
 
 /// A point of the block's own ground right beside a real fault; `None` where the fault does not end that ground.
@@ -133,4 +174,21 @@ fn seen(
 fn cut_away(frame: &Frame, p: DVec3) -> bool {
     let p = p.as_vec3();
     frame.solid.cut_outs.iter().any(|[low, high]| p.cmpge(*low).all() && p.cmple(*high).all())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn specks_go_and_lines_in_pieces_stay() {
+        let at = |x: f64| DVec2::new(x, 7.25);
+        // Ten pieces of four pixels that meet, one alone, and two that meet beside it.
+        let chain = (0..10).map(|n| vec![at(4.0 * f64::from(n)), at(4.0 * f64::from(n) + 4.0)]);
+        let alone = vec![at(100.0), at(109.0)];
+        let pair = [vec![at(200.0), at(205.0)], vec![at(209.0), at(205.0)]];
+        let lines: Vec<_> = chain.clone().chain([alone]).chain(pair).collect();
+        assert_eq!(without_specks(lines.clone(), 10.0), chain.collect::<Vec<_>>());
+        assert_eq!(without_specks(lines.clone(), 0.0), lines);
+    }
 }
