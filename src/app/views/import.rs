@@ -1,6 +1,7 @@
 //! How a survey would be read: geometry, evidence, a map of the traces, a section; bytes can be changed and show their effect at once.
 
-use super::notices;
+use super::{form, notices};
+use crate::app::fields;
 use crate::app::state::{Action, Place, State, Target};
 use crate::app::theme;
 use crate::app::work::Work;
@@ -8,15 +9,18 @@ use crate::app::work::scan::{self, Found, SurveyScan};
 use crate::command::ImportVolume;
 use crate::project::Polarity;
 use eframe::egui::{
-    Align, Button, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect, Role,
+    Align, Button, CollapsingHeader, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect, Role,
     ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::RgbaImage;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use survey::SurveyGeometry;
-use survey::segy::{FileUnit, SegyInfo, SegyOptions};
+use survey::segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
+use survey::{Setting, SurveyGeometry};
+
+/// What a field shows whose value is found in the file.
+const AS_FOUND: &str = "as found";
 
 /// Lines from the left: columns would stretch words over their width.
 fn from_left() -> Layout {
@@ -118,31 +122,23 @@ impl Import {
         let polarity = &mut self.polarity;
         self.found.with(|found| {
             let info = found.and_then(|found| found.as_ref().ok()).map(|scan| &scan.info);
+            // What an error asks for must be in sight.
+            let is_refused = matches!(found, Some(Err(_)));
             ui.strong("Header bytes");
             Grid::new("bytes").num_columns(3).spacing([12.0, 7.0]).show(ui, |ui| {
                 let bytes = info.map(|info| info.byte_positions);
-                byte(ui, "Inline", &mut options.inline_byte, bytes.and_then(|bytes| bytes.inline));
-                byte(ui, "Crossline", &mut options.crossline_byte, bytes.and_then(|bytes| bytes.crossline));
-                byte(ui, "X", &mut options.x_byte, bytes.and_then(|bytes| bytes.x));
-                byte(ui, "Y", &mut options.y_byte, bytes.and_then(|bytes| bytes.y));
+                byte(ui, Setting::InlineByte, &mut options.inline_byte, bytes.and_then(|bytes| bytes.inline));
+                byte(ui, Setting::CrosslineByte, &mut options.crossline_byte, bytes.and_then(|bytes| bytes.crossline));
+                byte(ui, Setting::XByte, &mut options.x_byte, bytes.and_then(|bytes| bytes.x));
+                byte(ui, Setting::YByte, &mut options.y_byte, bytes.and_then(|bytes| bytes.y));
             });
             ui.add_space(6.0);
             Grid::new("units").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
-                let unit = ui.label("Vertical unit");
-                let shown = match (options.vertical_unit, info) {
-                    (Some(unit), _) => unit.symbol().to_owned(),
-                    (None, Some(info)) => format!("{} (found)", info.vertical_unit.symbol()),
-                    (None, None) => "as found".to_owned(),
-                };
-                ui.label_inputs_by(unit.id, |ui| {
-                    ComboBox::from_id_salt("vertical unit").selected_text(shown).show_ui(ui, |ui| {
-                        ui.selectable_value(&mut options.vertical_unit, None, "as found");
-                        for unit in [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet] {
-                            ui.selectable_value(&mut options.vertical_unit, Some(unit), unit.symbol());
-                        }
-                    });
-                });
-                ui.end_row();
+                let found =
+                    info.map_or(AS_FOUND.to_owned(), |info| format!("{} (found)", info.vertical_unit.symbol()));
+                let units =
+                    [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet].map(|unit| (unit, unit.symbol()));
+                form::choice(ui, Setting::VerticalUnit, &mut options.vertical_unit, &found, &units);
                 let label = ui.label("Polarity");
                 ui.label_inputs_by(label.id, |ui| {
                     ComboBox::from_id_salt("polarity").selected_text(polarity.to_string()).show_ui(ui, |ui| {
@@ -156,6 +152,7 @@ impl Import {
                 ui.add(TextEdit::singleline(name).hint_text("seismic").desired_width(160.0)).labelled_by(label.id);
                 ui.end_row();
             });
+            CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| more(ui, options));
             if *options != SegyOptions::default()
                 && ui.button("Detect again").on_hover_text("Forget what was typed").clicked()
             {
@@ -196,13 +193,13 @@ impl Import {
                     picture(ui, inline, "Middle inline");
                 }
                 for warning in &scan.info.warnings {
-                    ui.colored_label(ui.visuals().warn_fg_color, warning);
+                    ui.colored_label(ui.visuals().warn_fg_color, fields::note(warning));
                 }
                 for assumption in &scan.info.assumptions {
-                    ui.label(format!("Assumed: {assumption}"));
+                    ui.label(format!("Assumed: {}", fields::note(assumption)));
                 }
                 for line in &scan.info.evidence {
-                    ui.weak(line);
+                    ui.weak(fields::note(line));
                 }
             }
         });
@@ -238,8 +235,8 @@ impl Import {
 }
 
 /// A byte position: what was found, until another is typed.
-fn byte(ui: &mut Ui, name: &str, option: &mut Option<u16>, found: Option<u16>) {
-    let label = ui.label(name);
+fn byte(ui: &mut Ui, setting: Setting, option: &mut Option<u16>, found: Option<u16>) {
+    let label = ui.label(form::name_of(setting));
     let mut value = option.or(found).unwrap_or(0);
     let drag = DragValue::new(&mut value).speed(0.3).range(0..=237);
     if ui.add(drag).labelled_by(label.id).on_hover_text("First byte in the trace header, 1 to 237").changed()
@@ -253,6 +250,31 @@ fn byte(ui: &mut Ui, name: &str, option: &mut Option<u16>, found: Option<u16>) {
         (false, None) => ui.weak("none"),
     };
     ui.end_row();
+}
+
+/// What is seldom to be stated.
+fn more(ui: &mut Ui, options: &mut SegyOptions) {
+    Grid::new("more").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
+        form::number(ui, Setting::Interval, &mut options.interval);
+        form::number(ui, Setting::Start, &mut options.start);
+        let units = [LengthUnit::Metres, LengthUnit::Feet].map(|unit| (unit, unit.symbol()));
+        form::choice(ui, Setting::CoordinateUnit, &mut options.coordinate_unit, AS_FOUND, &units);
+        form::number(ui, Setting::Bin, &mut options.bin_m);
+        let sources = [
+            (LineSource::Headers, "in the headers"),
+            (LineSource::Coordinates, "along X and Y"),
+            (LineSource::CoordinatesSwapped, "along X and Y, exchanged"),
+        ];
+        form::one_of(ui, Setting::LineNumbers, &mut options.line_source, &sources);
+        let kept = [(KeptDuplicate::First, "the first is kept"), (KeptDuplicate::Last, "the last is kept")];
+        form::choice(ui, Setting::Duplicates, &mut options.duplicates, "the first, if they are few", &kept);
+        let weights = [
+            (TraceWeight::Apply, "divides by 2^N"),
+            (TraceWeight::Inverse, "multiplies by 2^N"),
+            (TraceWeight::Ignore, "is ignored"),
+        ];
+        form::one_of(ui, Setting::TraceWeight, &mut options.trace_weight, &weights);
+    });
 }
 
 /// Readings of the line numbers that were looked at; each can be taken.

@@ -1,16 +1,16 @@
 //! How a horizon or fault file would be read: unit, sign, factor; what was found is shown before it is added.
 
 use super::layers::contact_name;
-use super::notices;
+use super::{form, notices};
 use crate::app::state::{Action, Interpreted, Place, Session, State};
 use crate::app::theme;
 use crate::app::work::Work;
 use crate::app::work::scan::{self, Found, InterpretationScan};
 use crate::command::{AddFault, AddHorizon, Age, Command};
-use eframe::egui::{Button, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use eframe::egui::{Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
 use std::path::{Path, PathBuf};
-use survey::Contact;
-use survey::formats::{ImportOptions, ZPositive, ZUnit};
+use survey::formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
+use survey::{Contact, Setting};
 
 /// The dialogue.
 #[derive(Default)]
@@ -18,6 +18,10 @@ pub struct Interpretation {
     path: PathBuf,
     name: String,
     options: ImportOptions,
+    /// The columns as they are typed.
+    columns: String,
+    /// Which of several surfaces of the file is added.
+    chosen: Option<String>,
     contact: Contact,
     truncated_by: Option<String>,
     scanned: Option<ImportOptions>,
@@ -100,10 +104,10 @@ impl Interpretation {
             ui.end_row();
             let units =
                 [ZUnit::Milliseconds, ZUnit::Seconds, ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
-            choice(ui, "Vertical unit", &mut self.options.z_unit, &units);
+            form::choice(ui, Setting::ZUnit, &mut self.options.z_unit, form::AS_FILE, &units);
             let signs = [(ZPositive::Down, "positive down"), (ZPositive::Up, "positive up")];
-            choice(ui, "Sign", &mut self.options.z_positive, &signs);
-            let label = ui.label("Factor");
+            form::choice(ui, Setting::ZPositive, &mut self.options.z_positive, form::AS_FILE, &signs);
+            let label = ui.label(form::name_of(Setting::ZFactor));
             ui.add(DragValue::new(&mut self.options.z_factor).speed(0.01)).labelled_by(label.id);
             ui.end_row();
             if kind == Interpreted::Fault {
@@ -129,10 +133,37 @@ impl Interpretation {
             }
             ui.end_row();
         });
+        // What an error asks for must be in sight.
+        let is_refused = self.found.with(|found| matches!(found, Some(Err(_))));
+        CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| self.more(ui));
+    }
+
+    /// What is seldom to be stated.
+    fn more(&mut self, ui: &mut Ui) {
+        let options = &mut self.options;
+        Grid::new("more").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
+            let formats: Vec<(Format, &str)> = Format::all().map(|format| (format, format.name())).collect();
+            form::choice(ui, Setting::Format, &mut options.format, form::AS_FILE, &formats);
+            form::text(ui, Setting::Columns, "inline, crossline, x, y, z, name, stick or -", &mut self.columns);
+            match Column::parse_list(self.columns.trim()) {
+                _ if self.columns.trim().is_empty() => options.columns = None,
+                Ok(columns) => options.columns = Some(columns),
+                Err(unknown) => {
+                    ui.label("");
+                    ui.colored_label(ui.visuals().error_fg_color, format!("“{unknown}” is no column"));
+                    ui.end_row();
+                }
+            }
+            form::number(ui, Setting::Null, &mut options.null);
+            let by = [(PlaceBy::Lines, "line numbers"), (PlaceBy::World, "X and Y")];
+            form::choice(ui, Setting::PlaceBy, &mut options.place_by, "line numbers, if X and Y agree", &by);
+            let orders = [(ValueOrder::Columns, "columns"), (ValueOrder::Rows, "rows")];
+            form::choice(ui, Setting::ValueOrder, &mut options.value_order, "the smoother", &orders);
+        });
     }
 
     fn report(&mut self, ui: &mut Ui) {
-        let name = &mut self.name;
+        let (name, chosen) = (&mut self.name, &mut self.chosen);
         self.found.with(|found| match found {
             None => {
                 ui.add(Spinner::new());
@@ -145,8 +176,10 @@ impl Interpretation {
             }
             Some(Ok(scan)) => {
                 for (surface, report) in &scan.surfaces {
-                    if scan.surfaces.len() > 1 && ui.selectable_label(surface == name, surface).clicked() {
+                    let is_chosen = chosen.as_ref() == Some(surface);
+                    if scan.surfaces.len() > 1 && ui.selectable_label(is_chosen, surface).clicked() {
                         name.clone_from(surface);
+                        *chosen = Some(surface.clone());
                     }
                     ui.label(report.trim_end());
                 }
@@ -155,26 +188,12 @@ impl Interpretation {
     }
 
     fn command(&self, kind: Interpreted) -> Command {
-        let (path, name, options) = (self.path.clone(), self.name.trim().to_owned(), self.options.clone());
+        let (path, name) = (self.path.clone(), self.name.trim().to_owned());
+        let options = ImportOptions { select: self.chosen.clone(), ..self.options.clone() };
         if kind == Interpreted::Fault {
             Command::AddFault(AddFault { path, name, truncated_by: self.truncated_by.clone(), options })
         } else {
             Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: Age::ByDepth, options })
         }
     }
-}
-
-/// A choice that may be left to the file.
-fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut Option<T>, choices: &[(T, &str)]) {
-    let label = ui.label(name);
-    let shown = choices.iter().find(|(choice, _)| Some(*choice) == *value).map_or("as the file says", |(_, name)| name);
-    ui.label_inputs_by(label.id, |ui| {
-        ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
-            ui.selectable_value(value, None, "as the file says");
-            for (choice, name) in choices {
-                ui.selectable_value(value, Some(*choice), *name);
-            }
-        });
-    });
-    ui.end_row();
 }

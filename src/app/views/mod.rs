@@ -9,6 +9,7 @@ pub mod data;
 pub mod export;
 pub mod faults;
 pub mod fence;
+pub mod form;
 pub mod functions;
 pub mod import;
 pub mod interpretation;

@@ -1,15 +1,17 @@
 //! How a well's files would be read; what was found is shown before the well is added.
 
-use super::notices;
+use super::{form, notices};
+use crate::app::fields;
 use crate::app::state::{Action, Notice, Place, State};
 use crate::app::theme;
 use crate::app::work::Work;
 use crate::app::work::scan::Found;
 use crate::command::{AddWell, Command};
-use eframe::egui::{Button, ComboBox, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use eframe::egui::{Button, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
 use std::path::{Path, PathBuf};
+use survey::Setting;
 use survey::formats::ZUnit;
-use survey::well::{WellFiles, WellOptions, read_well};
+use survey::well::{WellFiles, WellOptions, WellReport, read_well};
 
 /// Endings of tables.
 const TABLES: [&str; 3] = ["csv", "txt", "dat"];
@@ -25,6 +27,8 @@ pub struct WellDialogue {
     las: String,
     checkshot: String,
     kb: String,
+    head: String,
+    in_file: String,
     md_unit: Option<ZUnit>,
     scanned: Option<(WellFiles, WellOptions)>,
     found: Found<Vec<String>>,
@@ -45,7 +49,8 @@ impl WellDialogue {
             let number = found.begin();
             work.background("Reading the well", Place::Dialogue, move |_, _| {
                 let read = read_well(&files, &options).map_err(|error| Notice::failure(Place::Dialogue, &error));
-                found.put(number, read.map(|(_, report)| [report.notes, report.warnings].concat()));
+                let told = |report: WellReport| report.notes.iter().chain(&report.warnings).map(fields::note).collect();
+                found.put(number, read.map(|(_, report)| told(report)));
                 Ok(())
             });
         }
@@ -84,8 +89,10 @@ impl WellDialogue {
                 ("Name", "", &[][..], &mut self.name),
                 ("Tops", "CSV of measured depth and name; may stay empty", &TABLES[..], &mut self.tops),
                 ("Logs", "LAS files, parted by semicolons; may stay empty", &["las"][..], &mut self.las),
-                ("Checkshots", "CSV of time and depth, where the survey is in time", &TABLES[..], &mut self.checkshot),
-                ("Datum above sea level, m", "as the file says", &[][..], &mut self.kb),
+                (form::name_of(Setting::Checkshot), "CSV of time and depth, where the survey is in time", &TABLES[..], &mut self.checkshot),
+                (form::name_of(Setting::Datum), form::AS_FILE, &[][..], &mut self.kb),
+                (form::name_of(Setting::Head), "as the file says, or of the first row", &[][..], &mut self.head),
+                (form::name_of(Setting::WellInFile), "as above", &[][..], &mut self.in_file),
             ] {
                 let label = ui.label(name);
                 ui.horizontal(|ui| {
@@ -96,24 +103,18 @@ impl WellDialogue {
                 });
                 ui.end_row();
             }
-            let label = ui.label("Lengths along the well");
-            let shown = self.md_unit.map_or("as the file says, or metres", ZUnit::symbol);
-            ui.label_inputs_by(label.id, |ui| {
-                ComboBox::from_id_salt("md unit").selected_text(shown).show_ui(ui, |ui| {
-                    ui.selectable_value(&mut self.md_unit, None, "as the file says, or metres");
-                    for unit in [ZUnit::Metres, ZUnit::Feet] {
-                        ui.selectable_value(&mut self.md_unit, Some(unit), unit.symbol());
-                    }
-                });
-            });
-            ui.end_row();
+            let units = [ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
+            form::choice(ui, Setting::MdUnit, &mut self.md_unit, "as the file says, or metres", &units);
         });
     }
 
     fn report(&self, ui: &mut Ui) {
         self.found.with(|found| match found {
             None => drop(ui.add(Spinner::new())),
-            Some(Err(notice)) => drop(ui.colored_label(ui.visuals().error_fg_color, &notice.text)),
+            Some(Err(notice)) => {
+                ui.colored_label(ui.visuals().error_fg_color, &notice.text);
+                notice.hint.iter().for_each(|hint| drop(ui.label(hint)));
+            }
             Some(Ok(lines)) => lines.iter().for_each(|line| drop(ui.label(line))),
         });
     }
@@ -131,11 +132,20 @@ impl WellDialogue {
     fn options(&self) -> WellOptions {
         WellOptions {
             name: Some(self.name.trim().to_owned()),
-            datum_m: self.kb.trim().parse().ok().filter(|kb: &f64| kb.is_finite()),
+            well_in_file: (!self.in_file.trim().is_empty()).then(|| self.in_file.trim().to_owned()),
+            head: numbers(&self.head),
+            datum_m: numbers(&self.kb).map(|[kb]: [f64; 1]| kb),
             md_unit: self.md_unit,
             ..WellOptions::default()
         }
     }
+}
+
+/// So many finite numbers, parted by commas; none where something else is typed.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let parsed: Option<Vec<f64>> =
+        text.split(',').map(|part| part.trim().parse().ok().filter(|number: &f64| number.is_finite())).collect();
+    parsed?.try_into().ok()
 }
 
 /// Offers the files beside the deviation; where several may be named, another is added to those that are.

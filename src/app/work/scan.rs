@@ -1,10 +1,11 @@
 //! Looking into files before anything is imported: how they would be read, and why.
 
+use crate::app::fields;
 use crate::app::state::{Notice, Place};
 use image::{Rgba, RgbaImage};
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
-use survey::formats::{self, ImportOptions};
+use survey::formats::{self, ImportOptions, ImportReport};
 use survey::segy::{SegyFile, SegyInfo, SegyOptions};
 use survey::{Progress, SurveyGeometry};
 use ttf::{ColourMap, RgbaFunction};
@@ -120,7 +121,7 @@ pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) 
     let found =
         formats::read_horizons(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
     Ok(InterpretationScan {
-        surfaces: found.into_iter().map(|(horizon, report)| (horizon.name, report.to_string())).collect(),
+        surfaces: found.into_iter().map(|(horizon, report)| (horizon.name, told(report))).collect(),
     })
 }
 
@@ -132,6 +133,14 @@ pub fn fault(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) ->
     let found =
         formats::read_fault(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
     Ok(InterpretationScan {
-        surfaces: found.into_iter().map(|(fault, report)| (fault.name, report.to_string())).collect(),
+        surfaces: found.into_iter().map(|(fault, report)| (fault.name, told(report))).collect(),
     })
+}
+
+/// A report whose warnings name the dialogue's fields.
+fn told(mut report: ImportReport) -> String {
+    for warning in &mut report.warnings {
+        *warning = fields::note(warning).into();
+    }
+    report.to_string()
 }
