@@ -1,21 +1,20 @@
 //! How a survey would be read: geometry, evidence, a map of the traces, a section; bytes can be changed and show their effect at once.
 
-use super::{form, notices};
+use super::{form, notices, texture};
 use crate::app::fields;
 use crate::app::state::{Action, Place, State, Target};
 use crate::app::theme;
 use crate::app::work::Work;
-use crate::app::work::scan::{self, Found, SurveyScan};
+use crate::app::work::scan::{self, Reading, SurveyScan};
 use crate::command::ImportVolume;
 use crate::project::Polarity;
 use eframe::egui::{
-    Align, Button, CollapsingHeader, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect, Role,
+    Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect, Role,
     ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::RgbaImage;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 use survey::segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
 use survey::{Setting, SurveyGeometry};
 
@@ -27,9 +26,6 @@ fn from_left() -> Layout {
     Layout::top_down(Align::Min)
 }
 
-/// After a change, so long nothing more must change before the file is read anew.
-const PATIENCE: Duration = Duration::from_millis(250);
-
 /// The dialogue.
 #[derive(Default)]
 pub struct Import {
@@ -38,10 +34,9 @@ pub struct Import {
     name: String,
     polarity: Polarity,
     root: String,
-    scanned: Option<SegyOptions>,
-    changed: Option<Instant>,
-    found: Found<SurveyScan>,
-    textures: Option<(SegyOptions, TextureHandle, TextureHandle)>,
+    reading: Reading<SegyOptions, SurveyScan>,
+    /// Of which look.
+    textures: Option<(u64, TextureHandle, TextureHandle)>,
 }
 
 impl Import {
@@ -59,7 +54,10 @@ impl Import {
             let root = path.with_extension("petro").display().to_string();
             *self = Self { path: path.to_owned(), root, ..Self::default() };
         }
-        self.rescan(ctx, work);
+        let (path_read, options) = (self.path.clone(), self.options.clone());
+        self.reading.follow(ctx, work, "Reading the headers", &self.options, move |progress| {
+            scan::survey(&path_read, &options, progress)
+        });
         let room = ctx.content_rect().size();
         let modal = Modal::new(Id::unique("import")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width((room.x - 120.0).clamp(560.0, 1040.0));
@@ -72,7 +70,7 @@ impl Import {
                     .id_salt("reading")
                     .max_height(height)
                     .min_scrolled_height(height)
-                    .show(left, |ui| ui.with_layout(from_left(), |ui| self.reading(ui)));
+                    .show(left, |ui| ui.with_layout(from_left(), |ui| self.form(ui)));
                 ScrollArea::vertical()
                     .id_salt("evidence")
                     .max_height(height)
@@ -90,37 +88,13 @@ impl Import {
         }
     }
 
-    /// Reads the headers with the present options once they have stopped changing.
-    fn rescan(&mut self, ctx: &Context, work: &Work) {
-        if self.scanned.as_ref() == Some(&self.options) {
-            return;
-        }
-        let is_first = self.scanned.is_none();
-        match self.changed {
-            Some(changed) if changed.elapsed() >= PATIENCE => {}
-            _ if is_first => {}
-            None => {
-                self.changed = Some(Instant::now());
-                return ctx.request_repaint_after(PATIENCE);
-            }
-            Some(_) => return ctx.request_repaint_after(PATIENCE),
-        }
-        self.changed = None;
-        self.scanned = Some(self.options.clone());
-        let (found, path, options) = (self.found.clone(), self.path.clone(), self.options.clone());
-        let number = found.begin();
-        work.background("Reading the headers", Place::Dialogue, move |progress, _| {
-            found.put(number, scan::survey(&path, &options, progress));
-            Ok(())
-        });
-    }
-
     /// What can be stated about the file, beside what was found.
-    fn reading(&mut self, ui: &mut Ui) {
+    fn form(&mut self, ui: &mut Ui) {
         let options = &mut self.options;
         let name = &mut self.name;
         let polarity = &mut self.polarity;
-        self.found.with(|found| {
+        self.reading.with(|found| {
+            let found = found.map(|(_, found)| found);
             let info = found.and_then(|found| found.as_ref().ok()).map(|scan| &scan.info);
             // What an error asks for must be in sight.
             let is_refused = matches!(found, Some(Err(_)));
@@ -167,23 +141,22 @@ impl Import {
     }
 
     fn evidence(&mut self, ui: &mut Ui) {
-        let (textures, scanned) = (&mut self.textures, self.scanned.clone().unwrap_or_default());
-        self.found.with(|found| match found {
+        let textures = &mut self.textures;
+        self.reading.with(|found| match found {
             None => {
                 ui.add(Spinner::new());
                 ui.label("Reading the headers…");
             }
-            Some(Err(notice)) => {
+            Some((_, Err(notice))) => {
                 ui.colored_label(ui.visuals().error_fg_color, &notice.text);
                 if let Some(hint) = &notice.hint {
                     ui.label(hint);
                 }
             }
-            Some(Ok(scan)) => {
-                let is_new = textures.as_ref().is_none_or(|(of, ..)| *of != scanned);
+            Some((number, Ok(scan))) => {
+                let is_new = textures.as_ref().is_none_or(|(of, ..)| *of != number);
                 if is_new {
-                    *textures =
-                        Some((scanned, texture(ui, "traces", &scan.traces), texture(ui, "inline", &scan.inline)));
+                    *textures = Some((number, load(ui, "traces", &scan.traces), load(ui, "inline", &scan.inline)));
                 }
                 if let Some((_, traces, inline)) = textures {
                     ui.strong("Where the traces are, north up");
@@ -206,7 +179,7 @@ impl Import {
     }
 
     fn target(&mut self, ui: &mut Ui, state: &State, target: Target, actions: &mut Vec<Action>) {
-        let can = self.found.with(|found| matches!(found, Some(Ok(_)))) && self.scanned.as_ref() == Some(&self.options);
+        let can = self.reading.is_good(&self.options);
         ui.horizontal(|ui| {
             if target == Target::NewProject {
                 let label = ui.label("Project");
@@ -316,9 +289,8 @@ fn summary(ui: &mut Ui, info: &SegyInfo) {
     }
 }
 
-fn texture(ui: &Ui, name: &str, image: &RgbaImage) -> TextureHandle {
-    let size = [image.width() as usize, image.height() as usize];
-    ui.ctx().load_texture(name, ColorImage::from_rgba_unmultiplied(size, image), TextureOptions::LINEAR)
+fn load(ui: &Ui, name: &str, image: &RgbaImage) -> TextureHandle {
+    ui.ctx().load_texture(name, texture::pixels(image), TextureOptions::LINEAR)
 }
 
 fn picture(ui: &mut Ui, texture: &TextureHandle, name: &str) {

@@ -5,7 +5,7 @@ use super::{form, notices};
 use crate::app::state::{Action, Interpreted, Place, Session, State};
 use crate::app::theme;
 use crate::app::work::Work;
-use crate::app::work::scan::{self, Found, InterpretationScan};
+use crate::app::work::scan::{self, InterpretationScan, Reading};
 use crate::command::{AddFault, AddHorizon, Age, Command};
 use eframe::egui::{Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
 use std::path::{Path, PathBuf};
@@ -24,8 +24,7 @@ pub struct Interpretation {
     chosen: Option<String>,
     contact: Contact,
     truncated_by: Option<String>,
-    scanned: Option<ImportOptions>,
-    found: Found<InterpretationScan>,
+    reading: Reading<ImportOptions, InterpretationScan>,
 }
 
 impl Interpretation {
@@ -45,7 +44,13 @@ impl Interpretation {
             let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
             *self = Self { path: path.to_owned(), name, ..Self::default() };
         }
-        self.rescan(session, work, kind);
+        if let Some(geometry) = session.document.geometry.clone() {
+            let (file, options) = (self.path.clone(), self.options.clone());
+            self.reading.follow(ctx, work, "Reading the file", &self.options, move |_| match kind {
+                Interpreted::Fault => scan::fault(&file, &geometry, &options),
+                Interpreted::Horizon => scan::horizon(&file, &geometry, &options),
+            });
+        }
         let modal = Modal::new(Id::unique("interpretation")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width(620.0);
             ui.heading(if kind == Interpreted::Fault { "Add a fault" } else { "Add a horizon" });
@@ -61,7 +66,7 @@ impl Interpretation {
                 .show(ui, |ui| self.report(ui));
             ui.separator();
             ui.horizontal(|ui| {
-                let can = !self.name.trim().is_empty() && self.found.with(|found| matches!(found, Some(Ok(_))));
+                let can = !self.name.trim().is_empty() && self.reading.is_good(&self.options);
                 if ui.add_enabled(can, Button::new("Add")).clicked() {
                     actions.push(Action::Apply(Box::new(self.command(kind))));
                 }
@@ -76,25 +81,6 @@ impl Interpretation {
         if actions.iter().any(|action| matches!(action, Action::Answered)) {
             self.path = PathBuf::new();
         }
-    }
-
-    fn rescan(&mut self, session: &Session, work: &Work, kind: Interpreted) {
-        let Some(geometry) = session.document.geometry.clone() else { return };
-        if self.scanned.as_ref() == Some(&self.options) {
-            return;
-        }
-        self.scanned = Some(self.options.clone());
-        let (found, path, options) = (self.found.clone(), self.path.clone(), self.options.clone());
-        let number = found.begin();
-        work.background("Reading the file", Place::Dialogue, move |_, _| {
-            let read = if kind == Interpreted::Fault {
-                scan::fault(&path, &geometry, &options)
-            } else {
-                scan::horizon(&path, &geometry, &options)
-            };
-            found.put(number, read);
-            Ok(())
-        });
     }
 
     fn form(&mut self, ui: &mut Ui, session: &Session, kind: Interpreted) {
@@ -134,7 +120,7 @@ impl Interpretation {
             ui.end_row();
         });
         // What an error asks for must be in sight.
-        let is_refused = self.found.with(|found| matches!(found, Some(Err(_))));
+        let is_refused = self.reading.with(|found| matches!(found, Some((_, Err(_)))));
         CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| self.more(ui));
     }
 
@@ -164,17 +150,17 @@ impl Interpretation {
 
     fn report(&mut self, ui: &mut Ui) {
         let (name, chosen) = (&mut self.name, &mut self.chosen);
-        self.found.with(|found| match found {
+        self.reading.with(|found| match found {
             None => {
                 ui.add(Spinner::new());
             }
-            Some(Err(notice)) => {
+            Some((_, Err(notice))) => {
                 ui.colored_label(ui.visuals().error_fg_color, &notice.text);
                 if let Some(hint) = &notice.hint {
                     ui.label(hint);
                 }
             }
-            Some(Ok(scan)) => {
+            Some((_, Ok(scan))) => {
                 for (surface, report) in &scan.surfaces {
                     let is_chosen = chosen.as_ref() == Some(surface);
                     if scan.surfaces.len() > 1 && ui.selectable_label(is_chosen, surface).clicked() {

@@ -29,6 +29,7 @@ pub mod start;
 pub mod status;
 pub mod surfaces;
 pub mod swatch;
+pub mod texture;
 pub mod tiles;
 pub mod traces;
 pub mod well;

@@ -3,6 +3,7 @@
 use super::notices;
 use crate::app::state::{Action, Choice, Dialogue, Place, State};
 use crate::app::theme;
+use crate::app::work::folder::Presence;
 use eframe::egui::{Align, Button, Layout, RichText, ScrollArea, Ui, Vec2};
 use std::path::Path;
 
@@ -12,16 +13,16 @@ const WIDTH: f32 = 660.0;
 const TALL: f32 = 42.0;
 
 /// Shows the page.
-pub fn show(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+pub fn show(ui: &mut Ui, state: &State, present: &mut Presence, is_busy: bool, actions: &mut Vec<Action>) {
     ScrollArea::vertical().show(ui, |ui| {
         ui.vertical_centered(|ui| {
             ui.set_max_width(WIDTH.min(ui.available_width()));
-            ui.with_layout(Layout::top_down(Align::Min), |ui| page(ui, state, is_busy, actions));
+            ui.with_layout(Layout::top_down(Align::Min), |ui| page(ui, state, present, is_busy, actions));
         });
     });
 }
 
-fn page(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+fn page(ui: &mut Ui, state: &State, present: &mut Presence, is_busy: bool, actions: &mut Vec<Action>) {
     ui.add_space((ui.ctx().content_rect().height() * 0.09).min(90.0));
     ui.label(RichText::new("Petroglyph").size(40.0).color(theme::accent(ui.visuals())));
     ui.label("From a seismic volume to a geological illustration");
@@ -46,7 +47,7 @@ fn page(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
         });
     });
     ui.add_space(20.0);
-    recent(ui, state, is_busy, actions);
+    recent(ui, state, present, is_busy, actions);
 }
 
 fn recovery(ui: &mut Ui, root: &Path, is_busy: bool, actions: &mut Vec<Action>) {
@@ -66,14 +67,14 @@ fn recovery(ui: &mut Ui, root: &Path, is_busy: bool, actions: &mut Vec<Action>) 
     ui.add_space(10.0);
 }
 
-fn recent(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+fn recent(ui: &mut Ui, state: &State, present: &mut Presence, is_busy: bool, actions: &mut Vec<Action>) {
     ui.heading("Recent projects");
     if state.remembered.recent.is_empty() {
         ui.weak("Projects you open will be listed here.");
     }
-    for root in &state.remembered.recent {
+    let present = present.of(ui.ctx(), &state.remembered.recent);
+    for (root, there) in state.remembered.recent.iter().zip(present) {
         ui.horizontal(|ui| {
-            let there = root.join("project.toml").exists();
             let title = RichText::new(name(root)).size(16.0);
             let open = ui.add_enabled(there && !is_busy, Button::new(title).frame(false));
             let open = open.on_hover_text("Open this project").on_disabled_hover_text("It is not there any more");

@@ -5,13 +5,14 @@ use crate::app::fields;
 use crate::app::state::{Action, Notice, Place, State};
 use crate::app::theme;
 use crate::app::work::Work;
-use crate::app::work::scan::Found;
+use crate::app::work::folder::{Folder, Listing};
+use crate::app::work::scan::Reading;
 use crate::command::{AddWell, Command};
 use eframe::egui::{Button, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 use survey::Setting;
 use survey::formats::ZUnit;
-use survey::well::{WellFiles, WellOptions, WellReport, read_well};
+use survey::well::{WellFiles, WellOptions, read_well};
 
 /// Endings of tables.
 const TABLES: [&str; 3] = ["csv", "txt", "dat"];
@@ -30,8 +31,8 @@ pub struct WellDialogue {
     head: String,
     in_file: String,
     md_unit: Option<ZUnit>,
-    scanned: Option<(WellFiles, WellOptions)>,
-    found: Found<Vec<String>>,
+    beside: Folder,
+    reading: Reading<(WellFiles, WellOptions), Vec<String>>,
 }
 
 impl WellDialogue {
@@ -43,17 +44,12 @@ impl WellDialogue {
         }
         let (files, options) = (self.files(), self.options());
         let asked = (files.clone(), options.clone());
-        if self.scanned.as_ref() != Some(&asked) {
-            self.scanned = Some(asked);
-            let (found, files, options) = (self.found.clone(), files.clone(), options.clone());
-            let number = found.begin();
-            work.background("Reading the well", Place::Dialogue, move |_, _| {
-                let read = read_well(&files, &options).map_err(|error| Notice::failure(Place::Dialogue, &error));
-                let told = |report: WellReport| report.notes.iter().chain(&report.warnings).map(fields::note).collect();
-                found.put(number, read.map(|(_, report)| told(report)));
-                Ok(())
-            });
-        }
+        let (files_read, options_read) = asked.clone();
+        self.reading.follow(ctx, work, "Reading the well", &asked, move |_| {
+            let (_, report) = read_well(&files_read, &options_read)
+                .map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+            Ok(report.notes.iter().chain(&report.warnings).map(fields::note).collect())
+        });
         let modal = Modal::new(Id::unique("well")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width(620.0_f32.min(ctx.content_rect().width() - 60.0));
             ui.heading("Add a well");
@@ -64,7 +60,7 @@ impl WellDialogue {
             ScrollArea::vertical().max_height(150.0).auto_shrink(false).show(ui, |ui| self.report(ui));
             ui.separator();
             ui.horizontal(|ui| {
-                let can = !self.name.trim().is_empty() && self.found.with(|found| matches!(found, Some(Ok(_))));
+                let can = !self.name.trim().is_empty() && self.reading.is_good(&asked);
                 if ui.add_enabled(can, Button::new("Add")).clicked() {
                     let command = AddWell { name: self.name.trim().to_owned(), files, options };
                     actions.push(Action::Apply(Box::new(Command::AddWell(command))));
@@ -85,6 +81,7 @@ impl WellDialogue {
     fn form(&mut self, ui: &mut Ui) {
         Grid::new("well").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
             let folder = self.deviation.parent().unwrap_or(Path::new("."));
+            let beside = self.beside.listing(ui.ctx(), folder);
             for (name, hint, endings, text) in [
                 ("Name", "", &[][..], &mut self.name),
                 ("Tops", "CSV of measured depth and name; may stay empty", &TABLES[..], &mut self.tops),
@@ -98,7 +95,7 @@ impl WellDialogue {
                 ui.horizontal(|ui| {
                     ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(370.0)).labelled_by(label.id);
                     if !endings.is_empty() {
-                        nearby(ui, folder, endings, text);
+                        nearby(ui, &beside, endings, text);
                     }
                 });
                 ui.end_row();
@@ -109,13 +106,13 @@ impl WellDialogue {
     }
 
     fn report(&self, ui: &mut Ui) {
-        self.found.with(|found| match found {
+        self.reading.with(|found| match found {
             None => drop(ui.add(Spinner::new())),
-            Some(Err(notice)) => {
+            Some((_, Err(notice))) => {
                 ui.colored_label(ui.visuals().error_fg_color, &notice.text);
                 notice.hint.iter().for_each(|hint| drop(ui.label(hint)));
             }
-            Some(Ok(lines)) => lines.iter().for_each(|line| drop(ui.label(line))),
+            Some((_, Ok(lines))) => lines.iter().for_each(|line| drop(ui.label(line))),
         });
     }
 
@@ -149,21 +146,16 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
 }
 
 /// Offers the files beside the deviation; where several may be named, another is added to those that are.
-fn nearby(ui: &mut Ui, folder: &Path, endings: &[&str], text: &mut String) {
+fn nearby(ui: &mut Ui, listing: &Listing, endings: &[&str], text: &mut String) {
     ui.menu_button("…", |ui| {
-        let mut names: Vec<String> = std::fs::read_dir(folder)
-            .into_iter()
-            .flatten()
-            .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
-            .filter(|name| endings.iter().any(|ending| name.to_lowercase().ends_with(&format!(".{ending}"))))
-            .collect();
-        names.sort();
+        let is_one = |name: &&String| endings.iter().any(|ending| name.to_lowercase().ends_with(&format!(".{ending}")));
+        let names: Vec<&String> = listing.files.iter().filter(is_one).collect();
         if names.is_empty() {
-            ui.weak(format!("{} has no such files", folder.display()));
+            ui.weak(format!("{} has no such files", listing.folder.display()));
         }
-        for name in names.iter().take(OFFERED) {
+        for name in names.into_iter().take(OFFERED) {
             if ui.button(name).clicked() {
-                let path = folder.join(name).display().to_string();
+                let path = listing.folder.join(name).display().to_string();
                 let has_more = endings == ["las"] && !text.trim().is_empty();
                 *text = if has_more { format!("{}; {path}", text.trim()) } else { path };
                 ui.close();

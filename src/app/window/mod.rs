@@ -15,9 +15,11 @@ use super::views::{
     picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections, shortcuts, start, status, tiles::Tiles,
     well::WellDialogue,
 };
+use super::work::folder::Presence;
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use crate::command::Command;
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
+use follow::Needs;
 use frames::FrameTimes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -88,15 +90,18 @@ pub struct Window {
     picking: PickingPanel,
     overlay: Overlay,
     /// State of the project that its interpretation was last asked for.
-    followed: Option<(PathBuf, u32)>,
+    /// The revision whose interpretation was asked for.
+    followed: Option<u64>,
     /// Selection that was last asked for, and the interpretation it was asked of.
     selected: Option<Wished>,
     tiles: Tiles,
     swatches: Swatches,
     chooser: Chooser,
+    present: Presence,
     controls: Controls,
     pointed: Option<Pointed>,
     rocks: Option<(Rocks, u64)>,
+    needs: Option<Needs>,
     wanted: Option<Wanted>,
     marked: Instant,
     /// What was selected or drawn when the view was last written down.
@@ -138,9 +143,11 @@ impl Window {
             tiles: Tiles::default(),
             swatches: Swatches::start(wake),
             chooser: Chooser::default(),
+            present: Presence::default(),
             controls: Controls::default(),
             pointed: None,
             rocks: None,
+            needs: None,
             wanted: None,
             marked: Instant::now(),
             unsaved: None,
@@ -199,7 +206,7 @@ impl Window {
 
     /// Lets go of what was made of a project.
     fn forget(&mut self) {
-        (self.rocks, self.wanted, self.pointed) = (None, None, None);
+        (self.rocks, self.needs, self.wanted, self.pointed) = (None, None, None, None);
         (self.followed, self.selected, self.hold) = (None, None, None);
         self.block = BlockView::default();
         self.overlay = Overlay::default();
@@ -265,7 +272,7 @@ impl Window {
         if self.state.session.is_some() {
             self.work_page(ui, &running, &mut actions);
         } else {
-            CentralPanel::default().show(ui, |ui| start::show(ui, &self.state, !running.is_empty(), &mut actions));
+            CentralPanel::default().show(ui, |ui| start::show(ui, &self.state, &mut self.present, !running.is_empty(), &mut actions));
         }
         self.dialogues(&ctx, &mut actions);
         for action in actions {
