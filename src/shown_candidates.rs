@@ -100,7 +100,7 @@ impl ShownCandidates {
             None => {
                 if asks_leaves {
                     progress.warn(
-                        "no horizon candidates have been extracted; the horizons of the interpretation are shown in their place (`petroglyph extract` finds candidates)",
+                        "no horizon candidates have been extracted; the horizons of the interpretation are shown in their place",
                     );
                     unpicked = (0..document.horizons.len()).collect();
                 }

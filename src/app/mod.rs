@@ -16,6 +16,7 @@
 #[cfg(test)]
 mod command_tests;
 pub mod error;
+pub mod fields;
 mod hold;
 #[cfg(test)]
 mod picking_tests;

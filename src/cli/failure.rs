@@ -1,7 +1,7 @@
 //! Failures on the terminal: one sentence, a hint, an exit code.
 
 use super::run::Failure;
-use crate::error::ProjectError;
+use crate::error::Hint;
 use std::process::ExitCode;
 
 /// Prints a failure: the error's chain in one sentence and what to do next.
@@ -11,7 +11,7 @@ pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
         Failure::Failed(error) => {
             let sentence = sentence(error);
             match hint(error) {
-                Some(hint) => (1, sentence, hint.to_owned()),
+                Some(hint) => (1, sentence, hint),
                 None => advice(sentence),
             }
         }
@@ -51,8 +51,11 @@ fn sentence(error: &anyhow::Error) -> String {
     sentence
 }
 
-fn hint(error: &anyhow::Error) -> Option<&'static str> {
-    error.chain().find_map(|cause| cause.downcast_ref::<ProjectError>()?.hint())
+fn hint(error: &anyhow::Error) -> Option<String> {
+    Some(match Hint::of(error.as_ref())? {
+        Hint::Words { command_line, .. } => command_line.to_owned(),
+        Hint::State(remedy) => format!("state {remedy}"),
+    })
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::{Arc, Mutex, PoisonError};
-use survey::Progress;
 use survey::progress::ProgressSink;
+use survey::{Note, Progress};
 
 /// A progress bar; silent where stderr is not a terminal. Warnings are printed at once and kept for the report.
 pub(super) struct Terminal {
@@ -52,8 +52,8 @@ impl ProgressSink for Terminal {
         self.bar.set_position(done);
     }
 
-    fn warn(&self, message: &str) {
-        self.bar.suspend(|| eprintln!("warning: {message}"));
-        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(message.to_owned());
+    fn warn(&self, note: &Note) {
+        self.bar.suspend(|| eprintln!("warning: {note}"));
+        self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(note.to_string());
     }
 }

@@ -355,7 +355,7 @@ pub(super) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
         match rebuild(draft, &candidates, &blocks, &name, log, progress) {
             Ok(_) => {}
             Err(ProjectError::OutdatedPicks { .. }) => progress.warn(&format!(
-                "horizon \"{name}\" is as it was: its picks are of another extraction; `petroglyph horizon replay` makes them again"
+                "horizon \"{name}\" is as it was: its picks are of another extraction and have to be made again"
             )),
             Err(error) => return Err(error),
         }

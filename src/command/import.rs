@@ -10,7 +10,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use survey::segy::{ExactType, SegyFile, SegyOptions};
 use survey::store::{Ingested, StoreError, StoredSample, VolumeInfo};
-use survey::{Progress, SurveyGeometry};
+use survey::{Note, Progress, SurveyGeometry};
 
 /// Reads a SEG-Y volume into the project. The first one gives the survey frame; others must lie in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -51,9 +51,9 @@ pub struct VolumeImported {
     /// Value at which colours are clipped.
     pub clip: f32,
     /// How geometry and units were found.
-    pub evidence: Vec<String>,
+    pub evidence: Vec<Note>,
     /// What had to be assumed.
-    pub assumptions: Vec<String>,
+    pub assumptions: Vec<Note>,
 }
 
 /// Takes a volume away.
@@ -77,7 +77,7 @@ impl ImportVolume {
                 .map_err(|source| ProjectError::Placement { name: name.clone(), source })?;
         }
         file.release();
-        file.info().warnings.iter().for_each(|warning| progress.warn(warning));
+        file.info().warnings.iter().for_each(|warning| progress.warn(warning.clone()));
         let (stored_as, new) = draft.generation("volumes", &name, "zarr");
         let folder = draft.root().join(IMPORTING);
         let ingested = self.ingest(&file, &geometry, &folder, &new, progress);

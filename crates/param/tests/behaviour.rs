@@ -80,7 +80,7 @@ impl ProgressSink for CancelAt {
         }
     }
     fn advance(&self, _done: u64) {}
-    fn warn(&self, _message: &str) {}
+    fn warn(&self, _note: &survey::Note) {}
 }
 
 #[test]

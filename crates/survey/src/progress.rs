@@ -1,5 +1,6 @@
 //! Progress of long work, with cancellation: every long call takes a [`Progress`] and asks it now and then.
 
+use crate::remedy::Note;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
@@ -15,7 +16,7 @@ pub trait ProgressSink: Send + Sync {
     /// `done` steps of the current stage are finished.
     fn advance(&self, done: u64);
     /// Something the user should know, which does not stop the work.
-    fn warn(&self, message: &str);
+    fn warn(&self, note: &Note);
 }
 
 /// A sink that ignores everything.
@@ -24,7 +25,7 @@ struct Silent;
 impl ProgressSink for Silent {
     fn begin(&self, _stage: &str, _total: u64) {}
     fn advance(&self, _done: u64) {}
-    fn warn(&self, _message: &str) {}
+    fn warn(&self, _note: &Note) {}
 }
 
 /// A handle shared by the one who works and the one who watches. Cheap to clone.
@@ -76,8 +77,8 @@ impl Progress {
     }
 
     /// Tells the user something that does not stop the work.
-    pub fn warn(&self, message: &str) {
-        self.sink.warn(message);
+    pub fn warn(&self, note: impl Into<Note>) {
+        self.sink.warn(&note.into());
     }
 
     /// Asks the work to stop at its next check.

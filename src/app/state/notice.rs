@@ -1,6 +1,7 @@
 //! What went wrong, kept where it happened until the user has seen it.
 
-use crate::error::ProjectError;
+use crate::app::fields;
+use crate::error::Hint;
 
 /// Where in the window something belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -38,7 +39,10 @@ impl Notice {
     /// Something failed; causes are told once each.
     pub fn failure(place: Place, error: &(dyn std::error::Error + 'static)) -> Self {
         let mut text = error.to_string();
-        let hint = error.downcast_ref::<ProjectError>().and_then(ProjectError::hint).map(str::to_owned);
+        let hint = Hint::of(error).map(|hint| match hint {
+            Hint::Words { window, .. } => window.to_owned(),
+            Hint::State(remedy) => fields::advice(&remedy),
+        });
         let mut cause = error.source();
         while let Some(inner) = cause {
             let said = inner.to_string();

@@ -22,6 +22,8 @@ pub struct Session {
     pub root: PathBuf,
     /// Its state as last read.
     pub document: Document,
+    /// Grows with each state read: steps of the history come again after undo.
+    pub revision: u64,
     /// Its history, oldest first.
     pub history: Vec<HistoryLine>,
     /// How it is looked at.
@@ -34,7 +36,7 @@ impl Session {
         let Snapshot { root, document, history } = snapshot;
         let mut view = view.unwrap_or_else(|| View::of(&document));
         view.fit(&document);
-        Self { root, document, history, view }
+        Self { root, document, revision: 0, history, view }
     }
 
     /// Takes a new state of the same project over; the view stays as far as it still fits.
@@ -44,6 +46,7 @@ impl Session {
         self.view.picking.fit(&self.document, &snapshot.document);
         self.view.picking.accepted = None;
         self.document = snapshot.document;
+        self.revision += 1;
         self.history = snapshot.history;
         let illustrates_now = was_bare && !self.document.horizons.is_empty();
         if !had_frame || illustrates_now {

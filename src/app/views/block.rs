@@ -6,6 +6,7 @@
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
+use super::texture;
 use crate::app::state::faces::{self, Handle};
 use crate::app::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, camera, showing};
 use crate::app::theme;
@@ -13,7 +14,7 @@ use crate::app::work::{Drawing, Drawn, PictureWish, Rocks, Touch};
 use crate::pipeline::Loaded;
 use eframe::egui::{
     Align2, Color32, ColorImage, CursorIcon, FontId, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense,
-    Stroke, TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use render::{Background, Scene};
@@ -88,7 +89,6 @@ impl BlockView {
         self.shown = drawn.number;
         self.is_final = drawn.is_final;
         self.device = drawn.device;
-        let size = [drawn.image.width() as usize, drawn.image.height() as usize];
         if let Some((scenes, ..)) = self.wished.as_ref().filter(|_| drawn.number == self.number) {
             if scenes.get(drawn.pane).is_none_or(|scene| scene.size_px != [drawn.image.width(), drawn.image.height()]) {
                 self.fine = None;
@@ -96,13 +96,10 @@ impl BlockView {
                 self.fine = Some(scenes.clone());
             }
         }
-        let image = ColorImage::from_rgba_unmultiplied(size, &drawn.image);
+        let pixels = texture::pixels(&drawn.image);
         self.pixels.resize(self.panes.len(), None);
-        self.pixels[drawn.pane] = Some(image.clone());
-        match &mut self.panes[drawn.pane] {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            none => *none = Some(ctx.load_texture(format!("block {}", drawn.pane), image, TextureOptions::LINEAR)),
-        }
+        self.pixels[drawn.pane] = Some(pixels.clone());
+        texture::keep(&mut self.panes[drawn.pane], ctx, &format!("block {}", drawn.pane), pixels);
     }
 
     /// Shows the block in all the room there is; answers what is under the cursor.
@@ -174,7 +171,8 @@ impl BlockView {
         {
             // What is seen there may lie anywhere behind the face.
             let scene = Scene { size_px: pane_px(pane), ..shown };
-            drawing.touch(Touch { scene, at: dvec(at - pane.min), how, rocks: rocks.clone() });
+            let (root, rocks) = (session.root.clone(), rocks.clone());
+            drawing.touch(Touch { root, scene, at: dvec(at - pane.min), how, rocks });
         } else if let Some(pointed) = &pointed {
             lasso::click(ui, &response, session, pointed.voxel, actions);
         }

@@ -1,31 +1,19 @@
 //! Choosing a file or folder: a list to walk through and a line to type into.
 //!
-//! Ours, not the desktop's, so that it is the same everywhere, needs no desktop service, and can be driven by keys and tests. Folders
-//! are listed on a thread: one on a network may take its time.
+//! Ours, not the desktop's, so that it is the same everywhere, needs no desktop service, and can be driven by keys and tests.
 
 use super::notices;
 use crate::app::state::{Action, Choice, Dialogue, Interpreted, Place, State, Target};
 use crate::app::theme;
+use crate::app::work::folder::Folder;
 use eframe::egui::{Context, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
-
-/// What a folder holds.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-struct Listing {
-    folder: PathBuf,
-    folders: Vec<String>,
-    files: Vec<String>,
-    projects: Vec<String>,
-    error: Option<String>,
-}
 
 /// The chooser.
 pub struct Chooser {
     choice: Option<Choice>,
     text: String,
-    listing: Arc<Mutex<Listing>>,
-    listed: Option<PathBuf>,
+    listing: Folder,
     /// Folder last chosen from.
     home: PathBuf,
 }
@@ -33,7 +21,7 @@ pub struct Chooser {
 impl Default for Chooser {
     fn default() -> Self {
         let home = std::env::current_dir().unwrap_or_default();
-        Self { choice: None, text: String::new(), listing: Arc::default(), listed: None, home }
+        Self { choice: None, text: String::new(), listing: Folder::default(), home }
     }
 }
 
@@ -43,7 +31,7 @@ impl Chooser {
         if self.choice != Some(choice) {
             self.choice = Some(choice);
             self.text = self.home.join("").display().to_string();
-            self.listed = None;
+            self.listing.forget();
         }
         let modal = Modal::new(Id::unique("chooser")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width(640.0_f32.min(ctx.content_rect().width() - 60.0));
@@ -88,17 +76,7 @@ impl Chooser {
     /// What the folder holds; whether something in it was taken by a double click.
     fn list(&mut self, ui: &mut Ui, choice: Choice) -> bool {
         let mut is_taken = false;
-        let folder = self.folder();
-        if self.listed.as_deref() != Some(&folder) {
-            self.listed = Some(folder.clone());
-            let (listing, ctx) = (self.listing.clone(), ui.ctx().clone());
-            std::thread::spawn(move || {
-                let read = read(&folder);
-                *listing.lock().unwrap_or_else(PoisonError::into_inner) = read;
-                ctx.request_repaint();
-            });
-        }
-        let listing = self.listing.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let listing = self.listing.listing(ui.ctx(), &self.folder());
         let height = (ui.ctx().content_rect().height() - 320.0).clamp(120.0, 380.0);
         ScrollArea::vertical().max_height(height).min_scrolled_height(height).auto_shrink(false).show(ui, |ui| {
             if let Some(error) = &listing.error {
@@ -165,32 +143,6 @@ impl Chooser {
     }
 }
 
-/// Reads a folder; what cannot be read is said to be so.
-fn read(folder: &Path) -> Listing {
-    let mut listing = Listing { folder: folder.to_owned(), ..Listing::default() };
-    let entries = match std::fs::read_dir(if folder.as_os_str().is_empty() { Path::new(".") } else { folder }) {
-        Ok(entries) => entries,
-        Err(error) => {
-            listing.error = Some(format!("{} cannot be listed: {error}", folder.display()));
-            return listing;
-        }
-    };
-    for entry in entries.flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if name.starts_with('.') {
-            continue;
-        }
-        let path = entry.path();
-        match path.is_dir() {
-            true if path.join("project.toml").exists() => listing.projects.push(name),
-            true => listing.folders.push(name),
-            false => listing.files.push(name),
-        }
-    }
-    [&mut listing.folders, &mut listing.files, &mut listing.projects].into_iter().for_each(|names| names.sort());
-    listing
-}
-
 /// Whether a file's ending fits what is looked for. Interpretations have any ending.
 pub(super) fn fits(choice: Choice, name: &str) -> bool {
     let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_lowercase()).unwrap_or_default();
@@ -244,18 +196,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn folders_projects_and_files_are_told_apart() {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::create_dir_all(folder.path().join("a.petro")).unwrap();
-        std::fs::write(folder.path().join("a.petro/project.toml"), "").unwrap();
-        std::fs::create_dir(folder.path().join("deeper")).unwrap();
-        for name in ["s.SGY", "h.dat", ".hidden"] {
-            std::fs::write(folder.path().join(name), "").unwrap();
-        }
-        let listing = read(folder.path());
-        assert_eq!((listing.projects, listing.folders), (vec!["a.petro".to_owned()], vec!["deeper".to_owned()]));
-        assert_eq!(listing.files, ["h.dat", "s.SGY"]);
+    fn surveys_and_tiles_are_told_by_their_endings() {
         assert!(fits(Choice::NewSurvey, "s.SGY") && !fits(Choice::NewSurvey, "h.dat"));
-        assert!(read(Path::new("/no/such/folder")).error.is_some());
+        assert!(fits(Choice::Texture, "dots.png") && !fits(Choice::Texture, "s.sgy"));
+        assert!(fits(Choice::Horizon, "h.anything"));
     }
 }

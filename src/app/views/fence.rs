@@ -6,13 +6,14 @@ use super::lasso;
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use super::sections::{draw_line, round_step};
+use super::texture;
 use crate::app::state::{Action, Panel, Session};
 use crate::app::theme;
 use crate::app::work::fence::{FencePicture, FenceWish, place, stations};
 use crate::app::work::{Rocks, Slices};
 use eframe::egui::{
-    Align2, Button, Color32, ColorImage, Context, FontId, Pos2, Rect, Role, Sense, Stroke, TextureHandle,
-    TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Button, Color32, Context, FontId, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo,
+    pos2, vec2,
 };
 use glam::DVec2;
 use render::FaceData;
@@ -33,12 +34,7 @@ pub struct FenceView {
 impl FenceView {
     /// Takes a fence in.
     pub fn receive(&mut self, ctx: &Context, picture: FencePicture) {
-        let size = [picture.image.width() as usize, picture.image.height() as usize];
-        let image = ColorImage::from_rgba_unmultiplied(size, &picture.image);
-        match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            none => *none = Some(ctx.load_texture("fence", image, TextureOptions::LINEAR)),
-        }
+        texture::keep(&mut self.texture, ctx, "fence", texture::pixels(&picture.image));
         self.shown = Some(picture);
     }
 

@@ -39,6 +39,11 @@ pub struct Functions {
 }
 
 impl Functions {
+    /// The colours under the hand.
+    pub fn draft(&self) -> Option<&RawColour> {
+        self.draft.as_ref()
+    }
+
     /// The project's state with what is being changed under the hand.
     pub fn draft_of(&self, document: &mut Document) {
         if let Some(raw) = &self.draft {

@@ -1,30 +1,31 @@
 //! How a survey would be read: geometry, evidence, a map of the traces, a section; bytes can be changed and show their effect at once.
 
-use super::notices;
+use super::{form, notices, texture};
+use crate::app::fields;
 use crate::app::state::{Action, Place, State, Target};
 use crate::app::theme;
 use crate::app::work::Work;
-use crate::app::work::scan::{self, Found, SurveyScan};
+use crate::app::work::scan::{self, Reading, SurveyScan};
 use crate::command::ImportVolume;
 use crate::project::Polarity;
 use eframe::egui::{
-    Align, Button, Color32, ColorImage, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect, Role,
-    ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect,
+    Role, ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::RgbaImage;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
-use survey::SurveyGeometry;
-use survey::segy::{FileUnit, SegyInfo, SegyOptions};
+use survey::segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
+use survey::{Setting, SurveyGeometry};
+
+/// What a field shows whose value is found in the file.
+const AS_FOUND: &str = "as found";
 
 /// Lines from the left: columns would stretch words over their width.
 fn from_left() -> Layout {
     Layout::top_down(Align::Min)
 }
 
-/// After a change, so long nothing more must change before the file is read anew.
-const PATIENCE: Duration = Duration::from_millis(250);
 /// Room for the buttons beside the path of a new project, points.
 const BUTTONS: f32 = 190.0;
 
@@ -36,10 +37,9 @@ pub struct Import {
     name: String,
     polarity: Polarity,
     root: String,
-    scanned: Option<SegyOptions>,
-    changed: Option<Instant>,
-    found: Found<SurveyScan>,
-    textures: Option<(SegyOptions, TextureHandle, TextureHandle)>,
+    reading: Reading<SegyOptions, SurveyScan>,
+    /// Of which look.
+    textures: Option<(u64, TextureHandle, TextureHandle)>,
 }
 
 impl Import {
@@ -57,7 +57,10 @@ impl Import {
             let root = path.with_extension("petro").display().to_string();
             *self = Self { path: path.to_owned(), root, ..Self::default() };
         }
-        self.rescan(ctx, work);
+        let (path_read, options) = (self.path.clone(), self.options.clone());
+        self.reading.follow(ctx, work, "Reading the headers", &self.options, move |progress| {
+            scan::survey(&path_read, &options, progress)
+        });
         let room = ctx.content_rect().size();
         let modal = Modal::new(Id::unique("import")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width((room.x - 120.0).clamp(560.0, 1040.0));
@@ -70,7 +73,7 @@ impl Import {
                     .id_salt("reading")
                     .max_height(height)
                     .min_scrolled_height(height)
-                    .show(left, |ui| ui.with_layout(from_left(), |ui| self.reading(ui)));
+                    .show(left, |ui| ui.with_layout(from_left(), |ui| self.form(ui)));
                 ScrollArea::vertical()
                     .id_salt("evidence")
                     .max_height(height)
@@ -88,63 +91,30 @@ impl Import {
         }
     }
 
-    /// Reads the headers with the present options once they have stopped changing.
-    fn rescan(&mut self, ctx: &Context, work: &Work) {
-        if self.scanned.as_ref() == Some(&self.options) {
-            return;
-        }
-        let is_first = self.scanned.is_none();
-        match self.changed {
-            Some(changed) if changed.elapsed() >= PATIENCE => {}
-            _ if is_first => {}
-            None => {
-                self.changed = Some(Instant::now());
-                return ctx.request_repaint_after(PATIENCE);
-            }
-            Some(_) => return ctx.request_repaint_after(PATIENCE),
-        }
-        self.changed = None;
-        self.scanned = Some(self.options.clone());
-        let (found, path, options) = (self.found.clone(), self.path.clone(), self.options.clone());
-        let number = found.begin();
-        work.background("Reading the headers", Place::Dialogue, move |progress, _| {
-            found.put(number, scan::survey(&path, &options, progress));
-            Ok(())
-        });
-    }
-
     /// What can be stated about the file, beside what was found.
-    fn reading(&mut self, ui: &mut Ui) {
+    fn form(&mut self, ui: &mut Ui) {
         let options = &mut self.options;
         let name = &mut self.name;
         let polarity = &mut self.polarity;
-        self.found.with(|found| {
+        self.reading.with(|found| {
+            let found = found.map(|(_, found)| found);
             let info = found.and_then(|found| found.as_ref().ok()).map(|scan| &scan.info);
+            // What an error asks for must be in sight.
+            let is_refused = matches!(found, Some(Err(_)));
             ui.strong("Header bytes");
             Grid::new("bytes").num_columns(3).spacing([12.0, 7.0]).show(ui, |ui| {
                 let bytes = info.map(|info| info.byte_positions);
-                byte(ui, "Inline", &mut options.inline_byte, bytes.and_then(|bytes| bytes.inline));
-                byte(ui, "Crossline", &mut options.crossline_byte, bytes.and_then(|bytes| bytes.crossline));
-                byte(ui, "X", &mut options.x_byte, bytes.and_then(|bytes| bytes.x));
-                byte(ui, "Y", &mut options.y_byte, bytes.and_then(|bytes| bytes.y));
+                byte(ui, Setting::InlineByte, &mut options.inline_byte, bytes.and_then(|bytes| bytes.inline));
+                byte(ui, Setting::CrosslineByte, &mut options.crossline_byte, bytes.and_then(|bytes| bytes.crossline));
+                byte(ui, Setting::XByte, &mut options.x_byte, bytes.and_then(|bytes| bytes.x));
+                byte(ui, Setting::YByte, &mut options.y_byte, bytes.and_then(|bytes| bytes.y));
             });
             ui.add_space(6.0);
             Grid::new("units").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
-                let unit = ui.label("Vertical unit");
-                let shown = match (options.vertical_unit, info) {
-                    (Some(unit), _) => unit.symbol().to_owned(),
-                    (None, Some(info)) => format!("{} (found)", info.vertical_unit.symbol()),
-                    (None, None) => "as found".to_owned(),
-                };
-                ui.label_inputs_by(unit.id, |ui| {
-                    ComboBox::from_id_salt("vertical unit").selected_text(shown).show_ui(ui, |ui| {
-                        ui.selectable_value(&mut options.vertical_unit, None, "as found");
-                        for unit in [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet] {
-                            ui.selectable_value(&mut options.vertical_unit, Some(unit), unit.symbol());
-                        }
-                    });
-                });
-                ui.end_row();
+                let found = info.map_or(AS_FOUND.to_owned(), |info| format!("{} (found)", info.vertical_unit.symbol()));
+                let units =
+                    [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet].map(|unit| (unit, unit.symbol()));
+                form::choice(ui, Setting::VerticalUnit, &mut options.vertical_unit, &found, &units);
                 let label = ui.label("Polarity");
                 ui.label_inputs_by(label.id, |ui| {
                     ComboBox::from_id_salt("polarity").selected_text(polarity.to_string()).show_ui(ui, |ui| {
@@ -158,6 +128,7 @@ impl Import {
                 ui.add(TextEdit::singleline(name).hint_text("seismic").desired_width(160.0)).labelled_by(label.id);
                 ui.end_row();
             });
+            CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| more(ui, options));
             if *options != SegyOptions::default()
                 && ui.button("Detect again").on_hover_text("Forget what was typed").clicked()
             {
@@ -172,23 +143,22 @@ impl Import {
     }
 
     fn evidence(&mut self, ui: &mut Ui) {
-        let (textures, scanned) = (&mut self.textures, self.scanned.clone().unwrap_or_default());
-        self.found.with(|found| match found {
+        let textures = &mut self.textures;
+        self.reading.with(|found| match found {
             None => {
                 ui.add(Spinner::new());
                 ui.label("Reading the headers…");
             }
-            Some(Err(notice)) => {
+            Some((_, Err(notice))) => {
                 ui.colored_label(ui.visuals().error_fg_color, &notice.text);
                 if let Some(hint) = &notice.hint {
                     ui.label(hint);
                 }
             }
-            Some(Ok(scan)) => {
-                let is_new = textures.as_ref().is_none_or(|(of, ..)| *of != scanned);
+            Some((number, Ok(scan))) => {
+                let is_new = textures.as_ref().is_none_or(|(of, ..)| *of != number);
                 if is_new {
-                    *textures =
-                        Some((scanned, texture(ui, "traces", &scan.traces), texture(ui, "inline", &scan.inline)));
+                    *textures = Some((number, load(ui, "traces", &scan.traces), load(ui, "inline", &scan.inline)));
                 }
                 if let Some((_, traces, inline)) = textures {
                     ui.strong("Where the traces are, north up");
@@ -198,20 +168,20 @@ impl Import {
                     picture(ui, inline, "Middle inline");
                 }
                 for warning in &scan.info.warnings {
-                    ui.colored_label(ui.visuals().warn_fg_color, warning);
+                    ui.colored_label(ui.visuals().warn_fg_color, fields::note(warning));
                 }
                 for assumption in &scan.info.assumptions {
-                    ui.label(format!("Assumed: {assumption}"));
+                    ui.label(format!("Assumed: {}", fields::note(assumption)));
                 }
                 for line in &scan.info.evidence {
-                    ui.weak(line);
+                    ui.weak(fields::note(line));
                 }
             }
         });
     }
 
     fn target(&mut self, ui: &mut Ui, state: &State, target: Target, actions: &mut Vec<Action>) {
-        let can = self.found.with(|found| matches!(found, Some(Ok(_)))) && self.scanned.as_ref() == Some(&self.options);
+        let can = self.reading.is_good(&self.options);
         ui.horizontal(|ui| {
             if target == Target::NewProject {
                 let label = ui.label("Project");
@@ -241,8 +211,8 @@ impl Import {
 }
 
 /// A byte position: what was found, until another is typed.
-fn byte(ui: &mut Ui, name: &str, option: &mut Option<u16>, found: Option<u16>) {
-    let label = ui.label(name);
+fn byte(ui: &mut Ui, setting: Setting, option: &mut Option<u16>, found: Option<u16>) {
+    let label = ui.label(form::name_of(setting));
     let mut value = option.or(found).unwrap_or(0);
     let drag = DragValue::new(&mut value).speed(0.3).range(0..=237);
     if ui.add(drag).labelled_by(label.id).on_hover_text("First byte in the trace header, 1 to 237").changed()
@@ -256,6 +226,31 @@ fn byte(ui: &mut Ui, name: &str, option: &mut Option<u16>, found: Option<u16>) {
         (false, None) => ui.weak("none"),
     };
     ui.end_row();
+}
+
+/// What is seldom to be stated.
+fn more(ui: &mut Ui, options: &mut SegyOptions) {
+    Grid::new("more").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
+        form::number(ui, Setting::Interval, &mut options.interval);
+        form::number(ui, Setting::Start, &mut options.start);
+        let units = [LengthUnit::Metres, LengthUnit::Feet].map(|unit| (unit, unit.symbol()));
+        form::choice(ui, Setting::CoordinateUnit, &mut options.coordinate_unit, AS_FOUND, &units);
+        form::number(ui, Setting::Bin, &mut options.bin_m);
+        let sources = [
+            (LineSource::Headers, "in the headers"),
+            (LineSource::Coordinates, "along X and Y"),
+            (LineSource::CoordinatesSwapped, "along X and Y, exchanged"),
+        ];
+        form::one_of(ui, Setting::LineNumbers, &mut options.line_source, &sources);
+        let kept = [(KeptDuplicate::First, "the first is kept"), (KeptDuplicate::Last, "the last is kept")];
+        form::choice(ui, Setting::Duplicates, &mut options.duplicates, "the first, if they are few", &kept);
+        let weights = [
+            (TraceWeight::Apply, "divides by 2^N"),
+            (TraceWeight::Inverse, "multiplies by 2^N"),
+            (TraceWeight::Ignore, "is ignored"),
+        ];
+        form::one_of(ui, Setting::TraceWeight, &mut options.trace_weight, &weights);
+    });
 }
 
 /// Readings of the line numbers that were looked at; each can be taken.
@@ -297,9 +292,8 @@ fn summary(ui: &mut Ui, info: &SegyInfo) {
     }
 }
 
-fn texture(ui: &Ui, name: &str, image: &RgbaImage) -> TextureHandle {
-    let size = [image.width() as usize, image.height() as usize];
-    ui.ctx().load_texture(name, ColorImage::from_rgba_unmultiplied(size, image), TextureOptions::LINEAR)
+fn load(ui: &Ui, name: &str, image: &RgbaImage) -> TextureHandle {
+    ui.ctx().load_texture(name, texture::pixels(image), TextureOptions::LINEAR)
 }
 
 fn picture(ui: &mut Ui, texture: &TextureHandle, name: &str) {

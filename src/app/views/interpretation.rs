@@ -1,16 +1,18 @@
 //! How a horizon or fault file would be read: unit, sign, factor; what was found is shown before it is added.
 
 use super::layers::contact_name;
-use super::notices;
+use super::{form, notices};
 use crate::app::state::{Action, Interpreted, Place, Session, State};
 use crate::app::theme;
 use crate::app::work::Work;
-use crate::app::work::scan::{self, Found, InterpretationScan};
+use crate::app::work::scan::{self, InterpretationScan, Reading};
 use crate::command::{AddFault, AddHorizon, Age, Command};
-use eframe::egui::{Button, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use eframe::egui::{
+    Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui,
+};
 use std::path::{Path, PathBuf};
-use survey::Contact;
-use survey::formats::{ImportOptions, ZPositive, ZUnit};
+use survey::formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
+use survey::{Contact, Setting};
 
 /// The dialogue.
 #[derive(Default)]
@@ -18,10 +20,13 @@ pub struct Interpretation {
     path: PathBuf,
     name: String,
     options: ImportOptions,
+    /// The columns as they are typed.
+    columns: String,
+    /// Which of several surfaces of the file is added.
+    chosen: Option<String>,
     contact: Contact,
     truncated_by: Option<String>,
-    scanned: Option<ImportOptions>,
-    found: Found<InterpretationScan>,
+    reading: Reading<ImportOptions, InterpretationScan>,
 }
 
 impl Interpretation {
@@ -41,7 +46,13 @@ impl Interpretation {
             let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
             *self = Self { path: path.to_owned(), name, ..Self::default() };
         }
-        self.rescan(session, work, kind);
+        if let Some(geometry) = session.document.geometry.clone() {
+            let (file, options) = (self.path.clone(), self.options.clone());
+            self.reading.follow(ctx, work, "Reading the file", &self.options, move |_| match kind {
+                Interpreted::Fault => scan::fault(&file, &geometry, &options),
+                Interpreted::Horizon => scan::horizon(&file, &geometry, &options),
+            });
+        }
         let modal = Modal::new(Id::unique("interpretation")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width(620.0);
             ui.heading(if kind == Interpreted::Fault { "Add a fault" } else { "Add a horizon" });
@@ -57,7 +68,7 @@ impl Interpretation {
                 .show(ui, |ui| self.report(ui));
             ui.separator();
             ui.horizontal(|ui| {
-                let can = !self.name.trim().is_empty() && self.found.with(|found| matches!(found, Some(Ok(_))));
+                let can = !self.name.trim().is_empty() && self.reading.is_good(&self.options);
                 if ui.add_enabled(can, Button::new("Add")).clicked() {
                     actions.push(Action::Apply(Box::new(self.command(kind))));
                 }
@@ -74,25 +85,6 @@ impl Interpretation {
         }
     }
 
-    fn rescan(&mut self, session: &Session, work: &Work, kind: Interpreted) {
-        let Some(geometry) = session.document.geometry.clone() else { return };
-        if self.scanned.as_ref() == Some(&self.options) {
-            return;
-        }
-        self.scanned = Some(self.options.clone());
-        let (found, path, options) = (self.found.clone(), self.path.clone(), self.options.clone());
-        let number = found.begin();
-        work.background("Reading the file", Place::Dialogue, move |_, _| {
-            let read = if kind == Interpreted::Fault {
-                scan::fault(&path, &geometry, &options)
-            } else {
-                scan::horizon(&path, &geometry, &options)
-            };
-            found.put(number, read);
-            Ok(())
-        });
-    }
-
     fn form(&mut self, ui: &mut Ui, session: &Session, kind: Interpreted) {
         Grid::new("interpretation").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
             let label = ui.label("Name");
@@ -100,10 +92,10 @@ impl Interpretation {
             ui.end_row();
             let units =
                 [ZUnit::Milliseconds, ZUnit::Seconds, ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
-            choice(ui, "Vertical unit", &mut self.options.z_unit, &units);
+            form::choice(ui, Setting::ZUnit, &mut self.options.z_unit, form::AS_FILE, &units);
             let signs = [(ZPositive::Down, "positive down"), (ZPositive::Up, "positive up")];
-            choice(ui, "Sign", &mut self.options.z_positive, &signs);
-            let label = ui.label("Factor");
+            form::choice(ui, Setting::ZPositive, &mut self.options.z_positive, form::AS_FILE, &signs);
+            let label = ui.label(form::name_of(Setting::ZFactor));
             ui.add(DragValue::new(&mut self.options.z_factor).speed(0.01)).labelled_by(label.id);
             ui.end_row();
             if kind == Interpreted::Fault {
@@ -129,24 +121,53 @@ impl Interpretation {
             }
             ui.end_row();
         });
+        // What an error asks for must be in sight.
+        let is_refused = self.reading.with(|found| matches!(found, Some((_, Err(_)))));
+        CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| self.more(ui));
+    }
+
+    /// What is seldom to be stated.
+    fn more(&mut self, ui: &mut Ui) {
+        let options = &mut self.options;
+        Grid::new("more").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
+            let formats: Vec<(Format, &str)> = Format::all().map(|format| (format, format.name())).collect();
+            form::choice(ui, Setting::Format, &mut options.format, form::AS_FILE, &formats);
+            form::text(ui, Setting::Columns, "inline, crossline, x, y, z, name, stick or -", &mut self.columns);
+            match Column::parse_list(self.columns.trim()) {
+                _ if self.columns.trim().is_empty() => options.columns = None,
+                Ok(columns) => options.columns = Some(columns),
+                Err(unknown) => {
+                    ui.label("");
+                    ui.colored_label(ui.visuals().error_fg_color, format!("“{unknown}” is no column"));
+                    ui.end_row();
+                }
+            }
+            form::number(ui, Setting::Null, &mut options.null);
+            let by = [(PlaceBy::Lines, "line numbers"), (PlaceBy::World, "X and Y")];
+            form::choice(ui, Setting::PlaceBy, &mut options.place_by, "line numbers, if X and Y agree", &by);
+            let orders = [(ValueOrder::Columns, "columns"), (ValueOrder::Rows, "rows")];
+            form::choice(ui, Setting::ValueOrder, &mut options.value_order, "the smoother", &orders);
+        });
     }
 
     fn report(&mut self, ui: &mut Ui) {
-        let name = &mut self.name;
-        self.found.with(|found| match found {
+        let (name, chosen) = (&mut self.name, &mut self.chosen);
+        self.reading.with(|found| match found {
             None => {
                 ui.add(Spinner::new());
             }
-            Some(Err(notice)) => {
+            Some((_, Err(notice))) => {
                 ui.colored_label(ui.visuals().error_fg_color, &notice.text);
                 if let Some(hint) = &notice.hint {
                     ui.label(hint);
                 }
             }
-            Some(Ok(scan)) => {
+            Some((_, Ok(scan))) => {
                 for (surface, report) in &scan.surfaces {
-                    if scan.surfaces.len() > 1 && ui.selectable_label(surface == name, surface).clicked() {
+                    let is_chosen = chosen.as_ref() == Some(surface);
+                    if scan.surfaces.len() > 1 && ui.selectable_label(is_chosen, surface).clicked() {
                         name.clone_from(surface);
+                        *chosen = Some(surface.clone());
                     }
                     ui.label(report.trim_end());
                 }
@@ -155,26 +176,12 @@ impl Interpretation {
     }
 
     fn command(&self, kind: Interpreted) -> Command {
-        let (path, name, options) = (self.path.clone(), self.name.trim().to_owned(), self.options.clone());
+        let (path, name) = (self.path.clone(), self.name.trim().to_owned());
+        let options = ImportOptions { select: self.chosen.clone(), ..self.options.clone() };
         if kind == Interpreted::Fault {
             Command::AddFault(AddFault { path, name, truncated_by: self.truncated_by.clone(), options })
         } else {
             Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: Age::ByDepth, options })
         }
     }
-}
-
-/// A choice that may be left to the file.
-fn choice<T: Copy + PartialEq>(ui: &mut Ui, name: &str, value: &mut Option<T>, choices: &[(T, &str)]) {
-    let label = ui.label(name);
-    let shown = choices.iter().find(|(choice, _)| Some(*choice) == *value).map_or("as the file says", |(_, name)| name);
-    ui.label_inputs_by(label.id, |ui| {
-        ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
-            ui.selectable_value(value, None, "as the file says");
-            for (choice, name) in choices {
-                ui.selectable_value(value, Some(*choice), *name);
-            }
-        });
-    });
-    ui.end_row();
 }

@@ -36,6 +36,11 @@ pub struct Layers {
 }
 
 impl Layers {
+    /// The style under the hand.
+    pub fn draft(&self) -> Option<&LayerStyle> {
+        self.draft.as_ref().map(|(_, style)| style)
+    }
+
     /// The project's state with what is being changed under the hand.
     pub fn draft_of(&self, document: &mut Document) {
         if let Some((layer, style)) = &self.draft

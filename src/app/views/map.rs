@@ -1,11 +1,12 @@
 //! The map: a horizon's structure, or the thickness below it, north up, with contours, the sections' lines and a colour bar.
 
+use super::texture;
 use crate::app::state::{Action, Session};
 use crate::app::theme;
 use crate::app::work::map::{MapPicture, MapSource, MapWish, Mapped, Maps};
 use eframe::egui::{
-    Align2, Color32, ColorImage, ComboBox, Context, FontId, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, TextWrapMode,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, ComboBox, Context, FontId, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, TextWrapMode,
+    TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use survey::SurveyGeometry;
@@ -67,12 +68,7 @@ impl Sheet {
 impl MapView {
     /// Takes a map in.
     pub fn receive(&mut self, ctx: &Context, picture: MapPicture) {
-        let size = [picture.image.width() as usize, picture.image.height() as usize];
-        let image = ColorImage::from_rgba_unmultiplied(size, &picture.image);
-        match &mut self.texture {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            none => *none = Some(ctx.load_texture("map", image, TextureOptions::LINEAR)),
-        }
+        texture::keep(&mut self.texture, ctx, "map", texture::pixels(&picture.image));
         self.shown = Some(picture);
     }
 

@@ -1,14 +1,14 @@
 //! The start page: go on, open, begin.
 
-use super::notices;
+use super::{notices, texture};
 use crate::app::state::{Action, Choice, Dialogue, Place, State};
 use crate::app::theme;
+use crate::app::work::folder::Presence;
 use eframe::egui::{
-    Align, Button, Color32, ColorImage, Context, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke,
-    TextureHandle, TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+    Align, Button, Color32, Context, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, WidgetInfo, pos2,
 };
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::path::Path;
 
 /// Width of the column in the middle.
 const WIDTH: f32 = 660.0;
@@ -26,9 +26,7 @@ const PICTURE_SCALE: f32 = 0.6;
 #[derive(Default)]
 pub struct StartPage {
     block: Option<[TextureHandle; 2]>,
-    /// Recent projects that were looked for, and which of them are there no more.
-    known: Vec<PathBuf>,
-    gone: Arc<Mutex<Vec<PathBuf>>>,
+    present: Presence,
 }
 
 impl StartPage {
@@ -56,7 +54,7 @@ impl StartPage {
 
     /// The block, raw on one side of a line and illustrated on the other; the line follows the pointer.
     fn picture(&mut self, ui: &mut Ui) {
-        let block = self.block.get_or_insert_with(|| BLOCK.map(|png| texture(ui.ctx(), png)));
+        let block = self.block.get_or_insert_with(|| BLOCK.map(|png| decoded(ui.ctx(), png)));
         let shape = block[0].size_vec2() * PICTURE_SCALE;
         let size = shape * (ui.available_width() / shape.x).min(1.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
@@ -74,25 +72,15 @@ impl StartPage {
 
     fn recent(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
         let projects = &state.remembered.recent;
-        if self.known != *projects {
-            self.known.clone_from(projects);
-            // On a thread: a folder on a network may take its time.
-            let (projects, gone, ctx) = (projects.clone(), self.gone.clone(), ui.ctx().clone());
-            std::thread::spawn(move || {
-                let lost = projects.into_iter().filter(|root| !root.join("project.toml").exists()).collect();
-                *gone.lock().unwrap_or_else(PoisonError::into_inner) = lost;
-                ctx.request_repaint();
-            });
-        }
-        let gone = self.gone.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let present = self.present.of(ui.ctx(), projects);
         ui.heading("Recent projects");
         if projects.is_empty() {
             ui.weak("Projects you open will be listed here.");
         }
-        for root in projects {
+        for (root, there) in projects.iter().zip(present) {
             ui.horizontal(|ui| {
                 let title = RichText::new(name(root)).size(16.0);
-                let open = ui.add_enabled(!gone.contains(root) && !is_busy, Button::new(title).frame(false));
+                let open = ui.add_enabled(there && !is_busy, Button::new(title).frame(false));
                 let open = open.on_hover_text("Open this project").on_disabled_hover_text("It is not there any more");
                 if open.clicked() {
                     actions.push(Action::Open(root.clone()));
@@ -113,14 +101,9 @@ impl StartPage {
 }
 
 /// A picture of ours, for the screen.
-fn texture(ctx: &Context, png: &[u8]) -> TextureHandle {
-    let image = image::load_from_memory_with_format(png, image::ImageFormat::Png).map_or_else(
-        |_| ColorImage::default(),
-        |image| {
-            ColorImage::from_rgba_unmultiplied([image.width() as usize, image.height() as usize], &image.to_rgba8())
-        },
-    );
-    ctx.load_texture("start", image, TextureOptions::LINEAR)
+fn decoded(ctx: &Context, png: &[u8]) -> TextureHandle {
+    let image = image::load_from_memory_with_format(png, image::ImageFormat::Png).unwrap_or_default().to_rgba8();
+    ctx.load_texture("start", texture::pixels(&image), TextureOptions::LINEAR)
 }
 
 fn begin(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {

@@ -1,13 +1,16 @@
 //! How a well's files would be read; what was found is shown before the well is added.
 
-use super::notices;
+use super::{form, notices};
+use crate::app::fields;
 use crate::app::state::{Action, Notice, Place, State};
 use crate::app::theme;
 use crate::app::work::Work;
-use crate::app::work::scan::Found;
+use crate::app::work::folder::{Folder, Listing};
+use crate::app::work::scan::Reading;
 use crate::command::{AddWell, Command};
-use eframe::egui::{Button, ComboBox, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use eframe::egui::{Button, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
 use std::path::{Path, PathBuf};
+use survey::Setting;
 use survey::formats::ZUnit;
 use survey::well::{WellFiles, WellOptions, read_well};
 
@@ -25,9 +28,11 @@ pub struct WellDialogue {
     las: String,
     checkshot: String,
     kb: String,
+    head: String,
+    in_file: String,
     md_unit: Option<ZUnit>,
-    scanned: Option<(WellFiles, WellOptions)>,
-    found: Found<Vec<String>>,
+    beside: Folder,
+    reading: Reading<(WellFiles, WellOptions), Vec<String>>,
 }
 
 impl WellDialogue {
@@ -39,16 +44,12 @@ impl WellDialogue {
         }
         let (files, options) = (self.files(), self.options());
         let asked = (files.clone(), options.clone());
-        if self.scanned.as_ref() != Some(&asked) {
-            self.scanned = Some(asked);
-            let (found, files, options) = (self.found.clone(), files.clone(), options.clone());
-            let number = found.begin();
-            work.background("Reading the well", Place::Dialogue, move |_, _| {
-                let read = read_well(&files, &options).map_err(|error| Notice::failure(Place::Dialogue, &error));
-                found.put(number, read.map(|(_, report)| [report.notes, report.warnings].concat()));
-                Ok(())
-            });
-        }
+        let (files_read, options_read) = asked.clone();
+        self.reading.follow(ctx, work, "Reading the well", &asked, move |_| {
+            let (_, report) =
+                read_well(&files_read, &options_read).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+            Ok(report.notes.iter().chain(&report.warnings).map(fields::note).collect())
+        });
         let modal = Modal::new(Id::unique("well")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width(620.0_f32.min(ctx.content_rect().width() - 60.0));
             ui.heading("Add a well");
@@ -59,7 +60,7 @@ impl WellDialogue {
             ScrollArea::vertical().max_height(150.0).auto_shrink(false).show(ui, |ui| self.report(ui));
             ui.separator();
             ui.horizontal(|ui| {
-                let can = !self.name.trim().is_empty() && self.found.with(|found| matches!(found, Some(Ok(_))));
+                let can = !self.name.trim().is_empty() && self.reading.is_good(&asked);
                 if ui.add_enabled(can, Button::new("Add")).clicked() {
                     let command = AddWell { name: self.name.trim().to_owned(), files, options };
                     actions.push(Action::Apply(Box::new(Command::AddWell(command))));
@@ -80,41 +81,43 @@ impl WellDialogue {
     fn form(&mut self, ui: &mut Ui) {
         Grid::new("well").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
             let folder = self.deviation.parent().unwrap_or(Path::new("."));
+            let beside = self.beside.listing(ui.ctx(), folder);
             for (name, hint, endings, text) in [
                 ("Name", "", &[][..], &mut self.name),
                 ("Tops", "CSV of measured depth and name; may stay empty", &TABLES[..], &mut self.tops),
                 ("Logs", "LAS files, parted by semicolons; may stay empty", &["las"][..], &mut self.las),
-                ("Checkshots", "CSV of time and depth, where the survey is in time", &TABLES[..], &mut self.checkshot),
-                ("Datum above sea level, m", "as the file says", &[][..], &mut self.kb),
+                (
+                    form::name_of(Setting::Checkshot),
+                    "CSV of time and depth, where the survey is in time",
+                    &TABLES[..],
+                    &mut self.checkshot,
+                ),
+                (form::name_of(Setting::Datum), form::AS_FILE, &[][..], &mut self.kb),
+                (form::name_of(Setting::Head), "as the file says, or of the first row", &[][..], &mut self.head),
+                (form::name_of(Setting::WellInFile), "as above", &[][..], &mut self.in_file),
             ] {
                 let label = ui.label(name);
                 ui.horizontal(|ui| {
                     ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(370.0)).labelled_by(label.id);
                     if !endings.is_empty() {
-                        nearby(ui, folder, endings, text);
+                        nearby(ui, &beside, endings, text);
                     }
                 });
                 ui.end_row();
             }
-            let label = ui.label("Lengths along the well");
-            let shown = self.md_unit.map_or("as the file says, or metres", ZUnit::symbol);
-            ui.label_inputs_by(label.id, |ui| {
-                ComboBox::from_id_salt("md unit").selected_text(shown).show_ui(ui, |ui| {
-                    ui.selectable_value(&mut self.md_unit, None, "as the file says, or metres");
-                    for unit in [ZUnit::Metres, ZUnit::Feet] {
-                        ui.selectable_value(&mut self.md_unit, Some(unit), unit.symbol());
-                    }
-                });
-            });
-            ui.end_row();
+            let units = [ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
+            form::choice(ui, Setting::MdUnit, &mut self.md_unit, "as the file says, or metres", &units);
         });
     }
 
     fn report(&self, ui: &mut Ui) {
-        self.found.with(|found| match found {
+        self.reading.with(|found| match found {
             None => drop(ui.add(Spinner::new())),
-            Some(Err(notice)) => drop(ui.colored_label(ui.visuals().error_fg_color, &notice.text)),
-            Some(Ok(lines)) => lines.iter().for_each(|line| drop(ui.label(line))),
+            Some((_, Err(notice))) => {
+                ui.colored_label(ui.visuals().error_fg_color, &notice.text);
+                notice.hint.iter().for_each(|hint| drop(ui.label(hint)));
+            }
+            Some((_, Ok(lines))) => lines.iter().for_each(|line| drop(ui.label(line))),
         });
     }
 
@@ -131,29 +134,33 @@ impl WellDialogue {
     fn options(&self) -> WellOptions {
         WellOptions {
             name: Some(self.name.trim().to_owned()),
-            datum_m: self.kb.trim().parse().ok().filter(|kb: &f64| kb.is_finite()),
+            well_in_file: (!self.in_file.trim().is_empty()).then(|| self.in_file.trim().to_owned()),
+            head: numbers(&self.head),
+            datum_m: numbers(&self.kb).map(|[kb]: [f64; 1]| kb),
             md_unit: self.md_unit,
             ..WellOptions::default()
         }
     }
 }
 
+/// So many finite numbers, parted by commas; none where something else is typed.
+fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let parsed: Option<Vec<f64>> =
+        text.split(',').map(|part| part.trim().parse().ok().filter(|number: &f64| number.is_finite())).collect();
+    parsed?.try_into().ok()
+}
+
 /// Offers the files beside the deviation; where several may be named, another is added to those that are.
-fn nearby(ui: &mut Ui, folder: &Path, endings: &[&str], text: &mut String) {
+fn nearby(ui: &mut Ui, listing: &Listing, endings: &[&str], text: &mut String) {
     ui.menu_button("…", |ui| {
-        let mut names: Vec<String> = std::fs::read_dir(folder)
-            .into_iter()
-            .flatten()
-            .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
-            .filter(|name| endings.iter().any(|ending| name.to_lowercase().ends_with(&format!(".{ending}"))))
-            .collect();
-        names.sort();
+        let is_one = |name: &&String| endings.iter().any(|ending| name.to_lowercase().ends_with(&format!(".{ending}")));
+        let names: Vec<&String> = listing.files.iter().filter(is_one).collect();
         if names.is_empty() {
-            ui.weak(format!("{} has no such files", folder.display()));
+            ui.weak(format!("{} has no such files", listing.folder.display()));
         }
-        for name in names.iter().take(OFFERED) {
+        for name in names.into_iter().take(OFFERED) {
             if ui.button(name).clicked() {
-                let path = folder.join(name).display().to_string();
+                let path = listing.folder.join(name).display().to_string();
                 let has_more = endings == ["las"] && !text.trim().is_empty();
                 *text = if has_more { format!("{}; {path}", text.trim()) } else { path };
                 ui.close();

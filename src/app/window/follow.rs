@@ -2,10 +2,26 @@
 
 use super::Window;
 use crate::app::hold::{Hold, Taken};
-use crate::app::state::{Action, Dialogue, Look, Notice, Panel, Picking, Place};
+use crate::app::state::{Action, Dialogue, Look, Notice, Panel, Picking, Place, Session};
 use crate::app::work::{Event, Purpose, Wanted};
 use crate::command::Command;
 use eframe::egui::Context;
+use std::path::Path;
+use ttf::{LayerStyle, RawColour};
+
+/// What decides over what is loaded.
+#[derive(PartialEq)]
+pub(super) struct Needs {
+    /// Of the open project's state.
+    revision: u64,
+    /// The style under the hand.
+    layer: Option<LayerStyle>,
+    /// The colours under the hand.
+    raw: Option<RawColour>,
+    exaggeration: f64,
+    /// While interpreting, the extraction whose candidates are shown, if any are.
+    interpreting: Option<Option<String>>,
+}
 
 impl Window {
     /// Takes the workers' answers in.
@@ -44,7 +60,7 @@ impl Window {
                     }
                 }
                 Event::Ready { root, rocks } => {
-                    if self.state.session.as_ref().is_some_and(|session| session.root == root) {
+                    if self.has_open(&root) {
                         let number = self.rocks.as_ref().map_or(1, |(_, number)| number + 1);
                         self.rocks = Some((rocks, number));
                     }
@@ -63,10 +79,12 @@ impl Window {
                         self.overlay.select(session, shown);
                     }
                 }
-                Event::Picking(step) => self.act(Action::Picking(step)),
-                Event::Erased(picks) => {
+                Event::Picking { root, step } if self.has_open(&root) => self.act(Action::Picking(step)),
+                Event::Erased { root, picks } if self.has_open(&root) => {
                     self.act(Action::Apply(Box::new(Command::PickSeveral(crate::command::PickNodes { picks }))));
                 }
+                // Of a project that was closed meanwhile.
+                Event::Picking { .. } | Event::Erased { .. } => {}
                 Event::Exported(path) => {
                     self.act(Action::Answered);
                     self.act(Action::Tell(Notice::note(Place::Scenes, format!("written: {}", path.display()))));
@@ -76,32 +94,51 @@ impl Window {
         }
     }
 
+    fn has_open(&self, root: &Path) -> bool {
+        self.state.session.as_ref().is_some_and(|session| session.root == root)
+    }
+
     /// Loads what the open project needs when it has changed.
     pub(super) fn keep_loaded(&mut self) {
         let Some(session) = self.state.session.as_ref().filter(|session| session.is_drawable()) else { return };
+        let needs = self.needs_of(session);
+        if self.needs.as_ref() == Some(&needs) {
+            return;
+        }
         self.swatches.follow(&session.root, &session.document);
         // Neither named views nor the history change what is drawn from.
         let mut document = crate::project::Document { scenes: Vec::new(), step: 0, ..session.document.clone() };
         self.layers.draft_of(&mut document);
         self.functions.draft_of(&mut document);
-        let exaggeration = session.view.scene.exaggeration;
         let root = session.root.clone();
-        let wanted = if session.view.panel == Panel::Interpret {
+        let wanted = if let Some(extraction) = needs.interpreting.clone() {
             // Picks change horizons and faults; what they are made on stays.
             document.horizons.clear();
             document.faults.clear();
             document.sticks.clear();
             document.layer_names.clear();
-            let picking = &session.view.picking;
-            let shows = picking.look == Look::SeeThrough || picking.show != render::FaceData::Rock;
-            let extraction = self.overlay.interpreted().and_then(|shown| shown.key.clone()).filter(|_| shows);
             Wanted { root, document, exaggeration: 1.0, purpose: Purpose::Interpret { extraction } }
         } else {
-            Wanted { root, document, exaggeration, purpose: Purpose::Illustrate }
+            Wanted { root, document, exaggeration: needs.exaggeration, purpose: Purpose::Illustrate }
         };
+        self.needs = Some(needs);
         if self.wanted.as_ref() != Some(&wanted) {
             self.work.load(wanted.clone());
             self.wanted = Some(wanted);
+        }
+    }
+
+    /// What decides over what is to be loaded: asked in every frame, so it copies no document.
+    fn needs_of(&self, session: &Session) -> Needs {
+        let picking = &session.view.picking;
+        let shows = picking.look == Look::SeeThrough || picking.show != render::FaceData::Rock;
+        let extraction = || self.overlay.interpreted().and_then(|shown| shown.key.clone()).filter(|_| shows);
+        Needs {
+            revision: session.revision,
+            layer: self.layers.draft().cloned(),
+            raw: self.functions.draft().cloned(),
+            exaggeration: session.view.scene.exaggeration,
+            interpreting: (session.view.panel == Panel::Interpret).then(extraction),
         }
     }
 
@@ -117,10 +154,9 @@ impl Window {
         if session.document.geometry.is_none() {
             return;
         }
-        let now = (session.root.clone(), session.document.step);
-        if self.followed.as_ref() != Some(&now) {
+        if self.followed != Some(session.revision) {
             self.work.picks.follow(session.root.clone(), session.document.clone());
-            self.followed = Some(now);
+            self.followed = Some(session.revision);
         }
         let Picking { pick, horizon, accepted, .. } = &session.view.picking;
         // What was just accepted is shown until the project has it.

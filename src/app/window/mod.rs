@@ -18,6 +18,7 @@ use super::views::{
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use crate::command::Command;
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
+use follow::Needs;
 use frames::FrameTimes;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -89,7 +90,8 @@ pub struct Window {
     picking: PickingPanel,
     overlay: Overlay,
     /// State of the project that its interpretation was last asked for.
-    followed: Option<(PathBuf, u32)>,
+    /// The revision whose interpretation was asked for.
+    followed: Option<u64>,
     /// Selection that was last asked for, and the interpretation it was asked of.
     selected: Option<Wished>,
     tiles: Tiles,
@@ -98,6 +100,7 @@ pub struct Window {
     controls: Controls,
     pointed: Option<Pointed>,
     rocks: Option<(Rocks, u64)>,
+    needs: Option<Needs>,
     wanted: Option<Wanted>,
     marked: Instant,
     /// What was selected or drawn when the view was last written down.
@@ -143,6 +146,7 @@ impl Window {
             controls: Controls::default(),
             pointed: None,
             rocks: None,
+            needs: None,
             wanted: None,
             marked: Instant::now(),
             unsaved: None,
@@ -201,7 +205,7 @@ impl Window {
 
     /// Lets go of what was made of a project.
     fn forget(&mut self) {
-        (self.rocks, self.wanted, self.pointed) = (None, None, None);
+        (self.rocks, self.needs, self.wanted, self.pointed) = (None, None, None, None);
         (self.followed, self.selected, self.hold) = (None, None, None);
         self.block = BlockView::default();
         self.overlay = Overlay::default();

@@ -3,7 +3,8 @@
 //! A change of style alone compiles the tables anew and leaves model, parameterization and volumes as they are.
 
 use super::running::Running;
-use super::{Event, Outbox, spawn};
+use super::wishes::{Wished, Wishes};
+use super::{Event, Outbox};
 use crate::app::state::{Notice, Place};
 use crate::error::ProjectError;
 use crate::pipeline::{self, Loaded};
@@ -11,7 +12,7 @@ use crate::project::{Document, Project};
 use crate::{derived, library, style};
 use render::{FaceData, Scene};
 use std::path::PathBuf;
-use std::sync::{Arc, Condvar, Mutex, PoisonError, RwLock};
+use std::sync::{Arc, PoisonError, RwLock};
 use survey::Progress;
 use survey::model::ModelSettings;
 use ttf::TtfTables;
@@ -45,55 +46,43 @@ pub enum Purpose {
 }
 
 #[derive(Default)]
-struct Slot {
+struct Next {
     wanted: Option<Wanted>,
     progress: Option<Progress>,
-    ended: bool,
     forget: bool,
 }
 
 /// The thread that loads, and the wish it works on next.
 pub(super) struct Loader {
-    shared: Arc<(Mutex<Slot>, Condvar)>,
+    wishes: Wishes<Next>,
 }
 
 impl Loader {
     pub(super) fn start(outbox: Outbox, running: Running) -> Self {
-        let shared = Arc::new((Mutex::new(Slot::default()), Condvar::new()));
-        let mine = shared.clone();
-        spawn("data", move || work(&mine, &outbox, &running));
-        Self { shared }
+        Self { wishes: Wishes::start("data", move |wished| work(wished, &outbox, &running)) }
     }
 
     /// Loads this next; what is being loaded for another state is given up.
     pub(super) fn load(&self, wanted: Wanted) {
-        self.change(|slot| {
-            slot.wanted = Some(wanted);
-            slot.progress.iter().for_each(Progress::cancel);
+        self.wishes.change(|next| {
+            next.wanted = Some(wanted);
+            next.progress.iter().for_each(Progress::cancel);
         });
     }
 
     /// Lets go of everything.
     pub(super) fn forget(&self) {
-        self.change(|slot| {
-            slot.wanted = None;
-            slot.forget = true;
-            slot.progress.iter().for_each(Progress::cancel);
+        self.wishes.change(|next| {
+            next.wanted = None;
+            next.forget = true;
+            next.progress.iter().for_each(Progress::cancel);
         });
-    }
-
-    fn change(&self, change: impl FnOnce(&mut Slot)) {
-        change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
-        self.shared.1.notify_one();
     }
 }
 
 impl Drop for Loader {
     fn drop(&mut self) {
-        self.change(|slot| {
-            slot.ended = true;
-            slot.progress.iter().for_each(Progress::cancel);
-        });
+        self.wishes.change(|next| next.progress.iter().for_each(Progress::cancel));
     }
 }
 
@@ -105,26 +94,26 @@ struct Kept {
     rocks: Rocks,
 }
 
-fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox, running: &Running) {
+fn work(wished: &Wished<Next>, outbox: &Outbox, running: &Running) {
     let mut kept: Option<Kept> = None;
     loop {
-        let wanted = {
-            let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
-            loop {
-                if slot.ended {
-                    return;
-                }
-                if std::mem::take(&mut slot.forget) {
-                    kept = None;
-                }
-                if let Some(wanted) = slot.wanted.take() {
-                    break wanted;
-                }
-                slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
+        let next = wished.next(|next| {
+            if std::mem::take(&mut next.forget) {
+                return Some(None);
             }
+            let wanted = next.wanted.take()?;
+            let (guard, progress) = running.begin("Preparing the picture", Place::Block, outbox.wake.clone());
+            next.progress = Some(progress.clone());
+            Some(Some((wanted, guard, progress)))
+        });
+        let (wanted, guard, progress) = match next {
+            Some(Some(next)) => next,
+            Some(None) => {
+                kept = None;
+                continue;
+            }
+            None => return,
         };
-        let (guard, progress) = running.begin("Preparing the picture", Place::Block, outbox.wake.clone());
-        shared.0.lock().unwrap_or_else(PoisonError::into_inner).progress = Some(progress.clone());
         let loaded = load(&wanted, &mut kept, &progress);
         drop(guard);
         match loaded {

@@ -3,10 +3,10 @@
 //! Space: s, voxels along the line from its beginning; t, samples down. A leg is a plane of its own; the lines of all are put one after the other.
 
 use super::Rocks;
-use super::slice::{SliceLine, lay_candidates, lines_of, raw_colour};
+use super::slice::{SliceLine, lines_of, raster};
 use crate::pipeline::Loaded;
 use glam::{DVec2, DVec3};
-use image::{Rgba, RgbaImage};
+use image::RgbaImage;
 use render::FaceData;
 use survey::section::SectionPlane;
 
@@ -59,24 +59,10 @@ pub fn cut(loaded: &Loaded, corners: &[DVec2], show: FaceData) -> FencePicture {
     let stations = stations(corners);
     let length = stations.last().copied().unwrap_or(0.0);
     let width = length.ceil().max(1.0) as u32 + 1;
-    let mut image = RgbaImage::from_pixel(width, depth as u32 + 1, Rgba([0xdc, 0xdc, 0xda, 0xff]));
-    let colour = raw_colour(loaded);
-    let at = |column: u32| place(corners, f64::from(column) * length / f64::from(width - 1));
-    let shown = loaded.candidates.as_ref().filter(|_| show != FaceData::Rock);
-    let candidates = shown.map(|shown| shown.candidates());
-    for column in 0..width {
-        let foot = at(column);
-        for row in 0..image.height() {
-            let point = foot.extend(f64::from(row)).as_vec3();
-            let pixel = image.get_pixel_mut(column, row);
-            if let Some(found) = colour(point) {
-                *pixel = found;
-            }
-            if let Some(candidates) = &candidates {
-                lay_candidates(pixel, candidates, point, show);
-            }
-        }
-    }
+    let step = length / f64::from(width - 1);
+    let image = raster(loaded, [width, depth as u32 + 1], show, |column, row| {
+        place(corners, f64::from(column) * step).extend(f64::from(row)).as_vec3()
+    });
     let mut lines = Vec::new();
     for (leg, pair) in corners.windows(2).enumerate() {
         let length = pair[0].distance(pair[1]);

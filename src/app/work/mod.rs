@@ -8,7 +8,9 @@
 
 pub mod data;
 pub mod fence;
+pub mod folder;
 mod lasso;
+pub mod latest;
 pub mod map;
 pub mod picks;
 pub mod picture;
@@ -17,6 +19,7 @@ pub mod running;
 pub mod scan;
 pub mod slice;
 pub mod swatches;
+mod wishes;
 
 pub use data::{Purpose, Rocks, Wanted};
 pub use map::{MapPicture, Maps};
@@ -64,9 +67,19 @@ pub enum Event {
     /// The selected node, ready to be drawn; none where nothing is selected.
     Selected(Option<Arc<ShownPick>>),
     /// An answer while interpreting.
-    Picking(PickingStep),
+    Picking {
+        /// The project it is for.
+        root: PathBuf,
+        /// The answer.
+        step: PickingStep,
+    },
     /// What a lasso holds, to be taken out.
-    Erased(Vec<PickNode>),
+    Erased {
+        /// Of which project.
+        root: PathBuf,
+        /// The picks that take it out.
+        picks: Vec<PickNode>,
+    },
     /// A picture was written.
     Exported(PathBuf),
     /// Something is worth knowing.

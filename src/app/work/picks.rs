@@ -7,7 +7,7 @@
 use super::running::Running;
 use super::{Event, Outbox, compute_apart, spawn};
 use crate::app::state::picking::{Pick, voxel_of};
-use crate::app::state::{Lasso, Notice, PickingStep, PickingTask, Place};
+use crate::app::state::{Notice, PickingStep, PickingTask, Place};
 use crate::candidates::Candidates;
 use crate::command::assembly::{self, AssemblyReport, conflicts_of, overlap_in_lines, report_on, sentence};
 use crate::command::pick::{leaf_near, levels};
@@ -100,7 +100,7 @@ enum Order {
     Follow(PathBuf, Box<Document>),
     Renew,
     Draw(Option<(Pick, Option<String>)>),
-    Do(PickingTask),
+    Do(PickingTask, PathBuf),
     Forget,
 }
 
@@ -166,7 +166,7 @@ impl Picks {
                 tell(done.map(drop), Some(&progress), &outbox);
                 let _ = orders.send(Order::Renew);
             }),
-            task => drop(orders.send(Order::Do(task))),
+            task => drop(orders.send(Order::Do(task, root))),
         }
     }
 }
@@ -233,39 +233,57 @@ impl Keeper {
             Order::Forget => (self.followed, self.sheets) = (None, HashMap::new()),
             Order::Follow(root, document) => self.follow(root, *document)?,
             Order::Renew => {
-                if let Some(Followed { root, document, .. }) = self.followed.take() {
+                let known = self.followed.as_ref().map(|known| (known.root.clone(), known.document.clone()));
+                if let Some((root, document)) = known {
                     self.follow(root, document)?;
                 }
             }
             Order::Draw(None) => self.outbox.send(Event::Selected(None)),
             Order::Draw(Some((pick, horizon))) => {
-                if let Some(shown) = self.followed()?.show(pick, horizon.as_deref())? {
+                let followed = self.followed.as_ref().ok_or(ProjectError::NotExtracted)?;
+                if let Some(shown) = followed.show(pick, horizon.as_deref())? {
                     self.outbox.send(Event::Selected(Some(Arc::new(shown))));
                 }
             }
-            Order::Do(PickingTask::Find(at)) => {
-                let followed = self.followed()?;
-                let candidates = followed.candidates()?;
-                let hit = leaf_near(candidates, &followed.geometry, at)?;
-                let pick = Pick { at, leaf: hit.leaf, up: 0, levels: levels(candidates, hit.leaf) };
-                self.outbox.send(Event::Picking(PickingStep::Found(pick)));
-            }
-            Order::Do(PickingTask::HighestValid(pick, horizon)) => {
-                let followed = self.followed()?;
-                let candidates = followed.candidates()?;
-                let chosen = followed.chosen(horizon.as_deref());
-                let (forest, blocks) = (&candidates.forest, &followed.blocks);
-                let up = highest_valid(forest, pick.leaf, &chosen, blocks, &ClimbSettings::default()).up;
-                self.outbox.send(Event::Picking(PickingStep::Found(Pick { up, ..pick })));
-            }
-            Order::Do(PickingTask::Erase(lasso, horizon)) => self.erase(&lasso, &horizon)?,
-            Order::Do(PickingTask::Extract(..) | PickingTask::ProposeFaults) => {}
+            Order::Do(task, root) => self.answer(task, root)?,
         }
         Ok(())
     }
 
-    fn followed(&self) -> Result<&Followed, ProjectError> {
-        self.followed.as_ref().ok_or(ProjectError::NotExtracted)
+    /// Does a task on the project it was given for.
+    fn answer(&self, task: PickingTask, root: PathBuf) -> Result<(), ProjectError> {
+        let followed = self.followed.as_ref().filter(|followed| followed.root == root);
+        let followed = followed.ok_or(ProjectError::NotExtracted)?;
+        let candidates = followed.candidates()?;
+        let found = match task {
+            PickingTask::Find(at) => {
+                let hit = leaf_near(candidates, &followed.geometry, at)?;
+                Pick { at, leaf: hit.leaf, up: 0, levels: levels(candidates, hit.leaf) }
+            }
+            PickingTask::HighestValid(pick, horizon) => {
+                let chosen = followed.chosen(horizon.as_deref());
+                let (forest, blocks) = (&candidates.forest, &followed.blocks);
+                let up = highest_valid(forest, pick.leaf, &chosen, blocks, &ClimbSettings::default()).up;
+                Pick { up, ..pick }
+            }
+            PickingTask::Erase(lasso, horizon) => {
+                let chosen = followed.chosen(Some(&horizon));
+                let geometry = &followed.geometry;
+                let picks = super::lasso::nodes_inside(&lasso, &candidates.forest, &chosen, geometry, &horizon);
+                self.outbox.send(if picks.is_empty() {
+                    let text =
+                        format!("nothing of {horizon} lies mostly inside the lasso; draw it around whole leaves");
+                    Event::Told(Notice::note(Place::Interpret, text))
+                } else {
+                    Event::Erased { root, picks }
+                });
+                return Ok(());
+            }
+            // These have threads of their own.
+            PickingTask::Extract(..) | PickingTask::ProposeFaults => return Ok(()),
+        };
+        self.outbox.send(Event::Picking { root, step: PickingStep::Found(found) });
+        Ok(())
     }
 
     fn follow(&mut self, root: PathBuf, document: Document) -> Result<(), ProjectError> {
@@ -355,20 +373,6 @@ impl Keeper {
         let (root, step) = (root.clone(), document.step);
         let key = candidates.map(|candidates| candidates.key.clone());
         Ok(Interpreted { root, step, number: self.number, horizons, faults, extraction, key, proposals, unit })
-    }
-
-    fn erase(&self, lasso: &Lasso, horizon: &str) -> Result<(), ProjectError> {
-        let followed = self.followed()?;
-        let candidates = followed.candidates()?;
-        let chosen = followed.chosen(Some(horizon));
-        let picks = super::lasso::nodes_inside(lasso, &candidates.forest, &chosen, &followed.geometry, horizon);
-        if picks.is_empty() {
-            let text = format!("nothing of {horizon} lies mostly inside the lasso; draw it around whole leaves");
-            self.outbox.send(Event::Told(Notice::note(Place::Interpret, text)));
-        } else {
-            self.outbox.send(Event::Erased(picks));
-        }
-        Ok(())
     }
 }
 

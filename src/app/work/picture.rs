@@ -3,13 +3,15 @@
 //! The time that one ray took last time decides how coarse the first picture is, so that it comes within `COARSE_S` on any machine. A
 //! coarse picture is always finished, or nothing would be seen while the camera moves; finer ones are given up for a newer wish.
 
-use super::{Event, Outbox, Rocks, spawn};
+use super::wishes::{Wished, Wishes};
+use super::{Event, Outbox, Rocks};
 use crate::app::state::{How, Notice, PickingStep, Place};
 use crate::picture::{Device, Painter};
 use glam::DVec2;
 use image::RgbaImage;
 use render::{Media, RenderError, Scene, Shading};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::path::PathBuf;
+use std::sync::PoisonError;
 use std::time::Instant;
 use survey::Progress;
 
@@ -42,6 +44,8 @@ pub struct PictureWish {
 /// A click on a picture in which something may be seen behind its faces.
 #[derive(Clone)]
 pub struct Touch {
+    /// The project.
+    pub root: PathBuf,
     /// The picture, with a size in points.
     pub scene: Scene,
     /// Where, points from its upper left corner.
@@ -67,53 +71,54 @@ pub struct Drawn {
 }
 
 #[derive(Default)]
-struct Slot {
+struct Wanted {
     wish: Option<PictureWish>,
     touch: Option<Touch>,
     /// Of the picture being drawn, if it may be given up.
     progress: Option<Progress>,
-    ended: bool,
+}
+
+/// What is done next: a click waits for no picture.
+enum Next {
+    Touch(Touch),
+    Draw(PictureWish),
+}
+
+impl Wanted {
+    fn take(&mut self) -> Option<Next> {
+        self.progress = None;
+        self.touch.take().map(Next::Touch).or_else(|| self.wish.take().map(Next::Draw))
+    }
 }
 
 /// The thread that draws, and the wish it works on next.
 pub struct Drawing {
-    shared: Arc<(Mutex<Slot>, Condvar)>,
+    wishes: Wishes<Wanted>,
 }
 
 impl Drawing {
     /// Starts the thread.
     pub fn start(outbox: Outbox) -> Self {
-        let shared = Arc::new((Mutex::new(Slot::default()), Condvar::new()));
-        let mine = shared.clone();
-        spawn("picture", move || Artist::new(outbox).work(&mine));
-        Self { shared }
+        Self { wishes: Wishes::start("picture", move |wished| Artist::new(outbox).work(wished)) }
     }
 
     /// Draws this next, instead of what was wished before.
     pub fn draw(&self, wish: PictureWish) {
-        self.change(|slot| {
-            slot.wish = Some(wish);
-            slot.progress.iter().for_each(Progress::cancel);
+        self.wishes.change(|wanted| {
+            wanted.wish = Some(wish);
+            wanted.progress.iter().for_each(Progress::cancel);
         });
     }
 
     /// Finds what is seen at a place of a picture, and picks it.
     pub fn touch(&self, touch: Touch) {
-        self.change(|slot| slot.touch = Some(touch));
-    }
-
-    fn change(&self, change: impl FnOnce(&mut Slot)) {
-        change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
-        self.shared.1.notify_one();
+        self.wishes.change(|wanted| wanted.touch = Some(touch));
     }
 }
 
 impl Drop for Drawing {
     fn drop(&mut self) {
-        self.change(|slot| {
-            slot.ended = true;
-            slot.progress.iter().for_each(Progress::cancel);
-        });
+        self.wishes.change(|wanted| wanted.progress.iter().for_each(Progress::cancel));
     }
 }
 
@@ -143,29 +148,15 @@ impl Artist {
         Self { outbox, painter: None, ray_s: 1.5e-6 }
     }
 
-    fn work(mut self, shared: &(Mutex<Slot>, Condvar)) {
-        loop {
-            let wish = {
-                let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
-                loop {
-                    if slot.ended {
-                        return;
+    fn work(mut self, wished: &Wished<Wanted>) {
+        while let Some(next) = wished.next(Wanted::take) {
+            match next {
+                Next::Touch(touch) => self.find(&touch),
+                Next::Draw(wish) => {
+                    if let Err(error) = self.satisfy(&wish, wished) {
+                        self.outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
                     }
-                    slot.progress = None;
-                    if let Some(touch) = slot.touch.take() {
-                        drop(slot);
-                        self.find(&touch);
-                        slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
-                        continue;
-                    }
-                    if let Some(wish) = slot.wish.take() {
-                        break wish;
-                    }
-                    slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
                 }
-            };
-            if let Err(error) = self.satisfy(&wish, shared) {
-                self.outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
             }
         }
     }
@@ -178,7 +169,7 @@ impl Artist {
         match render::pick::pick(&scene, &loaded.inputs(&volumes, &wells), touch.at) {
             Ok(Some(seen)) => {
                 let step = PickingStep::At(seen.voxel.as_dvec3(), touch.how);
-                self.outbox.send(Event::Picking(step));
+                self.outbox.send(Event::Picking { root: touch.root.clone(), step });
             }
             Ok(None) => {}
             Err(error) => self.outbox.send(Event::Told(Notice::failure(Place::Interpret, &error))),
@@ -186,7 +177,7 @@ impl Artist {
     }
 
     /// Draws the wish ever finer until it is smooth or a newer one is there.
-    fn satisfy(&mut self, wish: &PictureWish, shared: &(Mutex<Slot>, Condvar)) -> Result<(), RenderError> {
+    fn satisfy(&mut self, wish: &PictureWish, wished: &Wished<Wanted>) -> Result<(), RenderError> {
         let rays: f64 = wish.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();
         let divisor = ((rays * self.ray_s / COARSE_S).sqrt().ceil() as u32).clamp(1, COARSEST);
         let mut passes = Vec::new();
@@ -202,11 +193,13 @@ impl Artist {
         for (index, (divisor, samples)) in passes.iter().copied().enumerate() {
             let progress = Progress::silent();
             if index > 0 || wish.begins_fine {
-                let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
-                if slot.wish.is_some() || slot.ended {
+                let may_go_on = wished.look(|wanted| {
+                    wanted.progress = Some(progress.clone());
+                    wanted.wish.is_none()
+                });
+                if may_go_on != Some(true) {
                     return Ok(());
                 }
-                slot.progress = Some(progress.clone());
             }
             for pane in 0..wish.scenes.len() {
                 match self.draw(wish, pane, divisor, samples, index + 1 == passes.len(), &progress) {

@@ -33,7 +33,7 @@ pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
                     tell_warnings(&guard, place, &outbox);
                     outbox.send(event);
                 }
-                Err(error) => outbox.send(Event::Told(failure(place, &error))),
+                Err(error) => outbox.send(Event::Told(Notice::failure(place, error.as_ref()))),
             }
             drop(guard);
             outbox.wake();
@@ -46,13 +46,6 @@ fn tell_warnings(guard: &RunningGuard, place: Place, outbox: &Outbox) {
     for warning in guard.warnings() {
         outbox.send(Event::Told(Notice::note(place, warning)));
     }
-}
-
-/// A failure with its causes; the hint of a project's error wherever it is in the chain.
-fn failure(place: Place, error: &anyhow::Error) -> Notice {
-    let hint = error.chain().find_map(|cause| cause.downcast_ref::<ProjectError>()?.hint()).map(str::to_owned);
-    let notice = Notice::failure(place, error.as_ref());
-    Notice { hint: hint.or(notice.hint.clone()), ..notice }
 }
 
 impl Order {

@@ -1,12 +1,13 @@
 //! What is under way: titles, progress, a way to stop.
 
 use super::Wake;
+use crate::app::fields;
 use crate::app::state::Place;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use survey::Progress;
 use survey::progress::ProgressSink;
+use survey::{Note, Progress};
 
 /// How often progress wakes the window at most.
 const WAKE_EVERY: Duration = Duration::from_millis(100);
@@ -131,8 +132,8 @@ impl ProgressSink for Sink {
         (self.wake)();
     }
 
-    fn warn(&self, message: &str) {
-        self.running.of(self.id, |line| line.warnings.push(message.to_owned()));
+    fn warn(&self, note: &Note) {
+        self.running.of(self.id, |line| line.warnings.push(fields::note(note)));
     }
 }
 

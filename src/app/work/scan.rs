@@ -1,10 +1,14 @@
 //! Looking into files before anything is imported: how they would be read, and why.
 
+use super::Work;
+use super::latest::Latest;
+use crate::app::fields;
 use crate::app::state::{Notice, Place};
+use eframe::egui::Context;
 use image::{Rgba, RgbaImage};
 use std::path::Path;
-use std::sync::{Arc, Mutex, PoisonError};
-use survey::formats::{self, ImportOptions};
+use std::time::{Duration, Instant};
+use survey::formats::{self, ImportOptions, ImportReport};
 use survey::segy::{SegyFile, SegyInfo, SegyOptions};
 use survey::{Progress, SurveyGeometry};
 use ttf::{ColourMap, RgbaFunction};
@@ -32,45 +36,68 @@ pub struct InterpretationScan {
     pub surfaces: Vec<(String, String)>,
 }
 
-/// What the last look into a file found; a newer look replaces it.
-pub struct Found<T> {
-    slot: Arc<Mutex<Look<T>>>,
+/// After a change, so long nothing more must change before a file is read anew.
+const PATIENCE: Duration = Duration::from_millis(250);
+
+/// What was found in a file, as it is read with what is stated about it.
+pub struct Reading<O, T> {
+    /// What was stated when it was read last.
+    read: Option<O>,
+    /// What is stated since when.
+    stated: Option<(O, Instant)>,
+    found: Latest<Result<T, Notice>>,
 }
 
-/// The number of the latest look, and what was found last.
-type Look<T> = (u64, Option<Result<T, Notice>>);
-
-impl<T> Clone for Found<T> {
-    fn clone(&self) -> Self {
-        Self { slot: self.slot.clone() }
-    }
-}
-
-impl<T> Default for Found<T> {
+impl<O, T> Default for Reading<O, T> {
     fn default() -> Self {
-        Self { slot: Arc::new(Mutex::new((0, None))) }
+        Self { read: None, stated: None, found: Latest::default() }
     }
 }
 
-impl<T> Found<T> {
-    /// Begins another look; what is found is put in under its number.
-    pub fn begin(&self) -> u64 {
-        let mut slot = self.slot.lock().unwrap_or_else(PoisonError::into_inner);
-        slot.0 += 1;
-        slot.0
-    }
-
-    /// Puts in what was found, unless another look has begun.
-    pub fn put(&self, number: u64, found: Result<T, Notice>) {
-        let mut slot = self.slot.lock().unwrap_or_else(PoisonError::into_inner);
-        if slot.0 == number {
-            slot.1 = Some(found);
+impl<O: Clone + PartialEq, T: Send + 'static> Reading<O, T> {
+    /// Reads the file on a thread: at once the first time, and anew when what is stated has stopped changing.
+    pub fn follow(
+        &mut self,
+        ctx: &Context,
+        work: &Work,
+        title: &str,
+        stated: &O,
+        read: impl FnOnce(&Progress) -> Result<T, Notice> + Send + 'static,
+    ) {
+        if self.read.as_ref() == Some(stated) {
+            self.stated = None;
+            return;
         }
+        let since = match &self.stated {
+            Some((known, since)) if known == stated => *since,
+            _ => {
+                let now = Instant::now();
+                self.stated = Some((stated.clone(), now));
+                now
+            }
+        };
+        if self.read.is_some() && since.elapsed() < PATIENCE {
+            ctx.request_repaint_after(PATIENCE);
+            return;
+        }
+        self.read = Some(stated.clone());
+        let (found, number) = (self.found.clone(), self.found.begin());
+        work.background(title, Place::Dialogue, move |progress, _| {
+            found.stop_by(number, progress);
+            found.put(number, read(progress));
+            Ok(())
+        });
     }
 
-    /// Looks at what was found last.
-    pub fn with<R>(&self, look: impl FnOnce(Option<&Result<T, Notice>>) -> R) -> R {
-        look(self.slot.lock().unwrap_or_else(PoisonError::into_inner).1.as_ref())
+    /// Whether the file can be read with what is stated now.
+    pub fn is_good(&self, stated: &O) -> bool {
+        let is_read = self.read.as_ref() == Some(stated) && self.found.is_current();
+        is_read && self.with(|found| matches!(found, Some((_, Ok(_)))))
+    }
+
+    /// Looks at what was found last, and by which look.
+    pub fn with<R>(&self, look: impl FnOnce(Option<(u64, &Result<T, Notice>)>) -> R) -> R {
+        self.found.with(look)
     }
 }
 
@@ -120,7 +147,7 @@ pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) 
     let found =
         formats::read_horizons(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
     Ok(InterpretationScan {
-        surfaces: found.into_iter().map(|(horizon, report)| (horizon.name, report.to_string())).collect(),
+        surfaces: found.into_iter().map(|(horizon, report)| (horizon.name, told(report))).collect(),
     })
 }
 
@@ -131,7 +158,13 @@ pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) 
 pub fn fault(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) -> Result<InterpretationScan, Notice> {
     let found =
         formats::read_fault(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
-    Ok(InterpretationScan {
-        surfaces: found.into_iter().map(|(fault, report)| (fault.name, report.to_string())).collect(),
-    })
+    Ok(InterpretationScan { surfaces: found.into_iter().map(|(fault, report)| (fault.name, told(report))).collect() })
+}
+
+/// A report whose warnings name the dialogue's fields.
+fn told(mut report: ImportReport) -> String {
+    for warning in &mut report.warnings {
+        *warning = fields::note(warning).into();
+    }
+    report.to_string()
 }

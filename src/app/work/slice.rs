@@ -4,7 +4,8 @@
 //! inline runs along crosslines, a crossline along inlines, a slice has inlines to the right and crosslines down.
 
 use super::fence::{self, FenceWish};
-use super::{Event, Outbox, Rocks, spawn};
+use super::wishes::{Wished, Wishes};
+use super::{Event, Outbox, Rocks};
 use crate::app::state::SliceKind;
 use crate::pipeline::Loaded;
 use glam::{DVec2, DVec3, Vec3};
@@ -12,9 +13,11 @@ use image::{Rgba, RgbaImage};
 use render::leaves;
 use render::{Candidates, FaceData, NamedVolume, VoxelBox};
 use std::collections::HashMap;
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::PoisonError;
 use survey::section::{LineKind, LineQuality, Section, SectionPlane};
 
+/// Where there are no data.
+const NO_DATA: Rgba<u8> = Rgba([0xdc, 0xdc, 0xda, 0xff]);
 /// Colours that a value's range is divided into.
 const COLOURS: usize = 1024;
 
@@ -54,47 +57,11 @@ pub struct SlicePicture {
     pub lines: Vec<SliceLine>,
 }
 
+/// What is to be cut: the latest of each kind.
 #[derive(Default)]
-struct Slot {
-    wishes: HashMap<SliceKind, SliceWish>,
+struct Wanted {
+    slices: HashMap<SliceKind, SliceWish>,
     fence: Option<FenceWish>,
-    ended: bool,
-}
-
-/// The thread that cuts, and the wishes it works on next: the latest of each kind.
-pub struct Slices {
-    shared: Arc<(Mutex<Slot>, Condvar)>,
-}
-
-impl Slices {
-    /// Starts the thread.
-    pub fn start(outbox: Outbox) -> Self {
-        let shared = Arc::new((Mutex::new(Slot::default()), Condvar::new()));
-        let mine = shared.clone();
-        spawn("sections", move || work(&mine, &outbox));
-        Self { shared }
-    }
-
-    /// Cuts this next, instead of what was wished of its kind before.
-    pub fn cut(&self, wish: SliceWish) {
-        self.change(|slot| drop(slot.wishes.insert(wish.kind, wish)));
-    }
-
-    /// Cuts this fence next, instead of another.
-    pub fn cut_fence(&self, wish: FenceWish) {
-        self.change(|slot| slot.fence = Some(wish));
-    }
-
-    fn change(&self, change: impl FnOnce(&mut Slot)) {
-        change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
-        self.shared.1.notify_one();
-    }
-}
-
-impl Drop for Slices {
-    fn drop(&mut self) {
-        self.change(|slot| slot.ended = true);
-    }
 }
 
 /// What is cut next.
@@ -103,34 +70,47 @@ enum Next {
     Fence(FenceWish),
 }
 
-fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox) {
-    loop {
-        let wish = {
-            let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
-            loop {
-                if slot.ended {
-                    return;
+impl Wanted {
+    fn take(&mut self) -> Option<Next> {
+        let slice = SliceKind::ALL.into_iter().find_map(|kind| self.slices.remove(&kind));
+        slice.map(Next::Slice).or_else(|| self.fence.take().map(Next::Fence))
+    }
+}
+
+/// The thread that cuts, and the wishes it works on next.
+pub struct Slices {
+    wishes: Wishes<Wanted>,
+}
+
+impl Slices {
+    /// Starts the thread.
+    pub fn start(outbox: Outbox) -> Self {
+        Self {
+            wishes: Wishes::start("sections", move |wished: &Wished<Wanted>| {
+                while let Some(next) = wished.next(Wanted::take) {
+                    outbox.send(match next {
+                        Next::Slice(wish) => {
+                            let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
+                            Event::Sliced(cut(&loaded, wish.kind, wish.at, wish.show))
+                        }
+                        Next::Fence(wish) => {
+                            let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
+                            Event::Fenced(fence::cut(&loaded, &wish.corners, wish.show))
+                        }
+                    });
                 }
-                let next = SliceKind::ALL.into_iter().find_map(|kind| slot.wishes.remove(&kind));
-                if let Some(wish) = next {
-                    break Next::Slice(wish);
-                }
-                if let Some(wish) = slot.fence.take() {
-                    break Next::Fence(wish);
-                }
-                slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
-            }
-        };
-        outbox.send(match wish {
-            Next::Slice(wish) => {
-                let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                Event::Sliced(cut(&loaded, wish.kind, wish.at, wish.show))
-            }
-            Next::Fence(wish) => {
-                let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                Event::Fenced(fence::cut(&loaded, &wish.corners, wish.show))
-            }
-        });
+            }),
+        }
+    }
+
+    /// Cuts this next, instead of what was wished of its kind before.
+    pub fn cut(&self, wish: SliceWish) {
+        self.wishes.change(|wanted| drop(wanted.slices.insert(wish.kind, wish)));
+    }
+
+    /// Cuts this fence next, instead of another.
+    pub fn cut_fence(&self, wish: FenceWish) {
+        self.wishes.change(|wanted| wanted.fence = Some(wish));
     }
 }
 
@@ -148,20 +128,8 @@ pub fn plane(kind: SliceKind, at: f64, size: [usize; 3]) -> SectionPlane {
 pub fn cut(loaded: &Loaded, kind: SliceKind, at: f64, show: FaceData) -> SlicePicture {
     let plane = plane(kind, at, loaded.geometry.size());
     let [width, height] = plane.extent.map(|extent| extent.round() as u32 + 1);
-    let mut image = RgbaImage::from_pixel(width, height, Rgba([0xdc, 0xdc, 0xda, 0xff]));
     let (origin, s_axis, t_axis) = (plane.origin.as_vec3(), plane.s_axis.as_vec3(), plane.t_axis.as_vec3());
-    let colour = raw_colour(loaded);
-    let shown = loaded.candidates.as_ref().filter(|_| show != FaceData::Rock);
-    let candidates = shown.map(|shown| shown.candidates());
-    for (s, t, pixel) in image.enumerate_pixels_mut() {
-        let point: Vec3 = origin + s_axis * s as f32 + t_axis * t as f32;
-        if let Some(found) = colour(point) {
-            *pixel = found;
-        }
-        if let Some(candidates) = &candidates {
-            lay_candidates(pixel, candidates, point, show);
-        }
-    }
+    let image = raster(loaded, [width, height], show, |s, t| origin + s_axis * s + t_axis * t);
     SlicePicture { kind, at, image, lines: lines_of(loaded, &plane) }
 }
 
@@ -174,8 +142,26 @@ pub(super) fn lines_of(loaded: &Loaded, plane: &SectionPlane) -> Vec<SliceLine> 
     lines.map(|line| SliceLine { kind: line.kind, quality: line.quality, points: line.points }).collect()
 }
 
+/// Amplitudes, or candidates over them, at the places of a raster's pixels; grey where there are no data.
+pub(super) fn raster(loaded: &Loaded, size: [u32; 2], show: FaceData, place: impl Fn(f32, f32) -> Vec3) -> RgbaImage {
+    let mut image = RgbaImage::from_pixel(size[0], size[1], NO_DATA);
+    let colour = raw_colour(loaded);
+    let shown = loaded.candidates.as_ref().filter(|_| show != FaceData::Rock);
+    let candidates = shown.map(|shown| shown.candidates());
+    for (s, t, pixel) in image.enumerate_pixels_mut() {
+        let point = place(s as f32, t as f32);
+        if let Some(found) = colour(point) {
+            *pixel = found;
+        }
+        if let Some(candidates) = &candidates {
+            lay_candidates(pixel, candidates, point, show);
+        }
+    }
+    image
+}
+
 /// The colour of the raw data at a place; none where there are no data.
-pub(super) fn raw_colour(loaded: &Loaded) -> impl Fn(Vec3) -> Option<Rgba<u8>> + '_ {
+fn raw_colour(loaded: &Loaded) -> impl Fn(Vec3) -> Option<Rgba<u8>> + '_ {
     let raw = loaded.raw.as_ref();
     let found = raw.and_then(|raw| Some((raw, loaded.volumes.iter().find(|volume| volume.name == raw.volume)?)));
     let baked = found.map(|(raw, volume)| {
@@ -193,7 +179,7 @@ pub(super) fn raw_colour(loaded: &Loaded) -> impl Fn(Vec3) -> Option<Rgba<u8>> +
 }
 
 /// A leaf in its colour over the raw data, or the distance in its place.
-pub(super) fn lay_candidates(pixel: &mut Rgba<u8>, candidates: &Candidates, point: Vec3, show: FaceData) {
+fn lay_candidates(pixel: &mut Rgba<u8>, candidates: &Candidates, point: Vec3, show: FaceData) {
     let distance = candidates.distance_at(point);
     let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
     if show == FaceData::Distance {

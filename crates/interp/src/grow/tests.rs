@@ -309,7 +309,7 @@ impl survey::progress::ProgressSink for Watcher {
         }
     }
 
-    fn warn(&self, _: &str) {}
+    fn warn(&self, _note: &survey::Note) {}
 }
 
 #[test]

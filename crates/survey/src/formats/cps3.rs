@@ -15,6 +15,7 @@ use super::zmap::{from_columns, in_columns, unrotated};
 use super::{Codec, Format, FormatError, irap};
 use crate::geometry::SurveyGeometry;
 use crate::horizon::{Horizon, NodeGrid};
+use crate::remedy::{Note, Setting};
 use std::io::Write;
 
 pub(super) const CODEC: Codec = Codec {
@@ -96,8 +97,11 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     match told {
         Some(_) => notes.push(format!("values taken as {word}, as told: {evidence}")),
         None if clear => notes.push(format!("values taken as {word}, the smoother order: {evidence}")),
-        None => warnings.push(format!(
-            "the file does not say the order of its values and both are about as smooth: {evidence}{square}. Taken as {word}; look at the map, and say --value-order rows or columns"
+        None => warnings.push(Note::unless(
+            format!(
+                "the file does not say the order of its values and both are about as smooth: {evidence}{square}. Taken as {word}; look at the map"
+            ),
+            Setting::ValueOrder.stated_as("rows or columns"),
         )),
     }
     let shape = RawShape::Grid { grid, z };

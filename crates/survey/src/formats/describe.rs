@@ -5,6 +5,7 @@ use super::raw::{RawShape, RawSurface};
 use super::report::Settled;
 use super::text::SourceFile;
 use super::{Format, FormatError, SurfaceKind, read_source};
+use crate::remedy::Note;
 use glam::DVec2;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -63,7 +64,7 @@ pub struct SurfaceDescription {
     /// Whatever else was found.
     pub notes: Vec<String>,
     /// What should be checked.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Note>,
 }
 
 /// Describes a file as a horizon, or as a fault when it holds no horizon.

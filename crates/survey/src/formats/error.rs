@@ -1,6 +1,7 @@
 //! What can go wrong with a horizon or fault file, with the facts a user needs to put it right.
 
 use super::{Format, SurfaceKind};
+use crate::remedy::{Remedy, Setting};
 use std::path::PathBuf;
 
 /// X or inline range, then Y or crossline range.
@@ -37,7 +38,7 @@ pub enum FormatError {
         source: std::io::Error,
     },
     /// No format's signature was found.
-    #[error("{file}: the format is not recognised ({found}); name it with --format ({known})")]
+    #[error("{file}: the format is not recognised ({found})")]
     UnknownFormat {
         /// The file.
         file: PathBuf,
@@ -93,7 +94,7 @@ pub enum FormatError {
         why: String,
     },
     /// The columns cannot be told apart.
-    #[error("{file}: {why}; say which columns these are, for example --columns {example}")]
+    #[error("{file}: {why}")]
     Columns {
         /// The file.
         file: PathBuf,
@@ -116,7 +117,7 @@ pub enum FormatError {
     },
     /// The file's vertical unit cannot become the survey's.
     #[error(
-        "{file}: the vertical unit is {found} ({evidence}) but the survey is in {survey}; time and depth are not converted into each other. If the file is wrong about its unit, say --z-unit"
+        "{file}: the vertical unit is {found} ({evidence}) but the survey is in {survey}; time and depth are not converted into each other"
     )]
     UnitMismatch {
         /// The file.
@@ -147,6 +148,8 @@ pub enum FormatError {
         survey: Box<Extent>,
         /// What may be wrong.
         hint: String,
+        /// Whether it would lie over the survey with its first two columns exchanged.
+        exchanged: bool,
     },
     /// Most of the surface lies above or below the survey.
     #[error(
@@ -168,12 +171,14 @@ pub enum FormatError {
         outside: usize,
         /// Values in all.
         total: usize,
-        /// The option that would make it fit, when there is one.
+        /// What would make it fit, in words.
         hint: String,
+        /// What states that.
+        remedy: Remedy,
     },
     /// One value outside the survey occurs again and again.
     #[error(
-        "{file}: '{name}' has the value {value} {count} times, outside the survey's vertical range; if it marks nodes without data, say --null {value}"
+        "{file}: '{name}' has the value {value} {count} times, outside the survey's vertical range; it may mark nodes without data"
     )]
     LooksLikeNull {
         /// The file.
@@ -186,9 +191,7 @@ pub enum FormatError {
         count: usize,
     },
     /// Line numbers and coordinates point to different places of the survey.
-    #[error(
-        "{file}: '{name}' is {metres:.0} m away when placed by X, Y instead of by inline, crossline (median); say which is right with --place-by lines or --place-by xy"
-    )]
+    #[error("{file}: '{name}' is {metres:.0} m away when placed by X, Y instead of by inline, crossline (median)")]
     LinesDisagree {
         /// The file.
         file: PathBuf,
@@ -227,4 +230,20 @@ pub enum FormatError {
         /// What to do.
         instead: &'static str,
     },
+}
+
+impl FormatError {
+    /// What to state so that the file is read, where that may help.
+    pub fn remedy(&self) -> Option<Remedy> {
+        Some(match self {
+            Self::UnknownFormat { known, .. } => Setting::Format.stated_as(format_args!("({known})")),
+            Self::Columns { example, .. } => Setting::Columns.stated_as(example),
+            Self::UnitMismatch { .. } => Setting::ZUnit.stated(),
+            Self::OutsideSurvey { exchanged: true, .. } => Setting::Columns.stated(),
+            Self::OutsideRange { remedy, .. } => remedy.clone(),
+            Self::LooksLikeNull { value, .. } => Setting::Null.stated_as(value),
+            Self::LinesDisagree { .. } => Setting::PlaceBy.stated_as("lines or xy"),
+            _ => return None,
+        })
+    }
 }

@@ -14,6 +14,7 @@ use super::{Format, FormatError, SurfaceKind};
 use crate::geometry::SurveyGeometry;
 use crate::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use crate::mesh::TriangleMesh;
+use crate::remedy::Note;
 use glam::DVec2;
 use std::path::Path;
 
@@ -27,7 +28,7 @@ struct Nodes {
     outside: usize,
     multivalued: usize,
     notes: Vec<String>,
-    warnings: Vec<String>,
+    warnings: Vec<Note>,
 }
 
 /// Makes the horizon.
@@ -135,7 +136,7 @@ fn from_points(
                     gridded.repeated
                 ));
             }
-            let warnings = gridded.outliers.iter().map(|o| o.sentence(geometry.vertical.unit)).collect();
+            let warnings = gridded.outliers.iter().map(|o| Note::from(o.sentence(geometry.vertical.unit))).collect();
             let count = |q| gridded.sheets.iter().flat_map(|s| &s.quality).filter(|k| **k == q).count();
             let (picked, filled) = (count(Quality::Picked), count(Quality::Filled));
             return Ok(Nodes {

@@ -120,8 +120,9 @@ pub(super) fn outside_by_world(
     let fits = |f: &dyn Fn(DVec2) -> DVec2| {
         points.iter().filter(|p| is_inside(voxel_xy(geometry, f(**p)), geometry)).count() * 2 > points.len()
     };
-    let hint = if fits(&|p| DVec2::new(p.y, p.x)) {
-        "X and Y seem to be exchanged: say so with --columns".to_string()
+    let exchanged = fits(&|p| DVec2::new(p.y, p.x));
+    let hint = if exchanged {
+        "X and Y seem to be exchanged".to_string()
     } else if let Some((_, unit)) =
         [(0.3048, "feet"), (1000.0, "kilometres"), (0.001, "millimetres"), (0.01, "centimetres"), (0.1, "decimetres")]
             .into_iter()
@@ -139,6 +140,7 @@ pub(super) fn outside_by_world(
         found: Box::new(Extent::of(points)),
         survey: Box::new(survey),
         hint,
+        exchanged,
     }
 }
 
@@ -148,8 +150,9 @@ fn outside_by_lines(file: &Path, name: &str, voxels: &[DVec2], geometry: &Survey
         let lines = geometry.lines_from_voxel(**v);
         is_inside(geometry.voxel_from_lines(lines.y, lines.x), geometry)
     });
-    let hint = if swapped.count() * 2 > voxels.len() {
-        "Inline and crossline seem to be exchanged: say so with --columns"
+    let exchanged = swapped.count() * 2 > voxels.len();
+    let hint = if exchanged {
+        "Inline and crossline seem to be exchanged"
     } else {
         "Check the line numbering and whether the file belongs to this survey"
     };
@@ -162,5 +165,6 @@ fn outside_by_lines(file: &Path, name: &str, voxels: &[DVec2], geometry: &Survey
         found: Box::new(found),
         survey: Box::new(Extent::of([first, last])),
         hint: hint.into(),
+        exchanged,
     }
 }

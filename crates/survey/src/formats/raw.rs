@@ -6,6 +6,7 @@ use super::options::{ImportOptions, ZPositive, ZUnit};
 use crate::geometry::SurveyGeometry;
 use crate::horizon::{NodeGrid, Quality};
 use crate::mesh::TriangleMesh;
+use crate::remedy::Note;
 use glam::DVec2;
 
 /// What a reader may look at beside its file.
@@ -92,5 +93,5 @@ pub(super) struct RawSurface {
     pub vertical: VerticalFacts,
     pub notes: Vec<String>,
     /// What the user should check.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Note>,
 }

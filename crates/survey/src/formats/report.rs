@@ -3,6 +3,7 @@
 use super::options::{ZPositive, ZUnit};
 use super::{Format, SurfaceKind};
 use crate::geometry::VerticalUnit;
+use crate::remedy::Note;
 use serde::Serialize;
 use std::fmt;
 use std::path::PathBuf;
@@ -140,7 +141,7 @@ pub struct ImportReport {
     /// Whatever else the user should know, one sentence each.
     pub notes: Vec<String>,
     /// What the user should check, one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Note>,
 }
 
 impl fmt::Display for ImportReport {

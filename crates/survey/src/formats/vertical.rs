@@ -10,6 +10,7 @@ use super::raw::{RawShape, VerticalFacts};
 use super::report::{Provenance, Settled};
 use super::{FormatError, SurfaceKind};
 use crate::geometry::{VerticalAxis, VerticalUnit};
+use crate::remedy::{Remedy, Setting};
 use std::path::Path;
 
 /// Metres in an international foot.
@@ -164,9 +165,13 @@ impl VerticalRule {
             .copied()
             .filter(|&f| fit(f) * 10 > values.len() * 9 && (!flat || f.abs() > 1.0))
             .min_by(|a, b| rank(*a).total_cmp(&rank(*b)));
-        let hint = match best {
-            Some(factor) => format!("It would fit when multiplied by {factor:.5}: say {}", self.advice(factor)),
-            None => "No change of sign or of a common unit makes it fit: check --z-unit, --z-positive and --z-factor, and whether the file belongs to this survey".into(),
+        let (hint, remedy) = match best {
+            Some(factor) => (format!("It would fit when multiplied by {factor:.5}"), self.remedy(factor)),
+            None => (
+                "No change of sign or of a common unit makes it fit: check these, and whether the file belongs to this survey"
+                    .to_owned(),
+                Remedy::any([Setting::ZUnit, Setting::ZPositive, Setting::ZFactor].map(Setting::stated)),
+            ),
         };
         Err(FormatError::OutsideRange {
             file: file.to_path_buf(),
@@ -177,12 +182,13 @@ impl VerticalRule {
             outside,
             total: values.len(),
             hint,
+            remedy,
         })
     }
 
-    /// The options that multiply the result by `factor` more.
-    fn advice(&self, factor: f64) -> String {
-        let mut options = Vec::new();
+    /// What multiplies the result by `factor` more.
+    fn remedy(&self, factor: f64) -> Remedy {
+        let mut parts = Vec::new();
         let size = factor.abs();
         let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
         let unit = match self.unit.value {
@@ -193,15 +199,15 @@ impl VerticalRule {
             _ => None,
         };
         match unit {
-            Some(unit) => options.push(format!("--z-unit {}", unit.symbol())),
-            None if !near(size, 1.0) => options.push(format!("--z-factor {}", self.factor * size)),
+            Some(unit) => parts.push(Setting::ZUnit.stated_as(unit.symbol())),
+            None if !near(size, 1.0) => parts.push(Setting::ZFactor.stated_as(self.factor * size)),
             None => {}
         }
         if factor < 0.0 {
             let turned = if self.positive.value == ZPositive::Down { ZPositive::Up } else { ZPositive::Down };
-            options.push(format!("--z-positive {}", turned.word()));
+            parts.push(Setting::ZPositive.stated_as(turned.word()));
         }
-        options.join(" ")
+        Remedy::all(parts)
     }
 }
 
@@ -245,7 +251,7 @@ mod tests {
 
     fn hint(values: &[f64], options: &ImportOptions, axis: &VerticalAxis) -> String {
         match read(values, options, axis) {
-            Err(FormatError::OutsideRange { hint, .. }) => hint,
+            Err(FormatError::OutsideRange { hint, remedy, .. }) => format!("{hint}: {remedy}"),
             other => panic!("expected OutsideRange, found {other:?}"),
         }
     }

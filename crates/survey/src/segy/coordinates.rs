@@ -11,6 +11,7 @@ use super::lines::Lattice;
 use super::place::{MAX_RESIDUAL_BINS, Placement};
 use super::sample::f32_from_ibm;
 use super::vertical::scaled;
+use crate::remedy::{Note, Remedy, Setting};
 
 /// Known homes of X and Y: CDP (the standard's), source, receiver.
 const HOMES: [[u16; 2]; 3] = [[at::CDP_X, at::CDP_Y], [73, 77], [81, 85]];
@@ -269,9 +270,13 @@ impl Place {
             place.bytes = Some(bytes);
             place.summary.origin = world.to_array();
         } else {
-            findings.assumption(format!(
-                "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y that span an area were found at bytes {} (--x-byte and --y-byte, or --bin, state otherwise)",
-                homes.iter().map(|([x, y], _)| format!("{x} and {y}")).collect::<Vec<_>>().join(", ")
+            let places = homes.iter().map(|([x, y], _)| format!("{x} and {y}")).collect::<Vec<_>>().join(", ");
+            let bytes = Remedy::all([Setting::XByte.stated(), Setting::YByte.stated()]);
+            findings.assumption(Note::unless(
+                format!(
+                    "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y that span an area were found at bytes {places}"
+                ),
+                Remedy::any([bytes, Setting::Bin.stated()]),
             ));
         }
         place
@@ -319,12 +324,13 @@ fn note_fit(
     ));
     let is_float = matches!(coordinates.number_type, NumberType::F32 | NumberType::F64 | NumberType::Ibm32);
     if is_float && is_found {
-        findings.assumption(format!(
-            "X and Y are IEEE floats without a scalar{} (--coordinate-type i32, f32, f64 or ibm32 states another type)",
-            match coordinates.number_type {
-                NumberType::F32 => ": as the integers that the standard has, they are no places on Earth",
-                _ => ", in the trace header extension of revision 2",
-            }
+        let why = match coordinates.number_type {
+            NumberType::F32 => ": as the integers that the standard has, they are no places on Earth",
+            _ => ", in the trace header extension of revision 2",
+        };
+        findings.assumption(Note::unless(
+            format!("X and Y are IEEE floats without a scalar{why}"),
+            Setting::CoordinateType.stated_as("i32, f32, f64 or ibm32"),
         ));
     } else if !is_float && low != high {
         findings.warning(format!(

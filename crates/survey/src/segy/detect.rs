@@ -21,6 +21,7 @@ use super::info::{Findings, LineSummary};
 use super::lines::{Flaw, Lattice};
 use super::options::LineSource;
 use super::refuse;
+use crate::remedy::{Note, Remedy, Setting};
 
 /// Known homes of inline and crossline numbers.
 const CONVENTIONS: [(u16, u16, &str); 5] = [
@@ -136,17 +137,26 @@ impl Candidate {
         if self.number_type == NumberType::I32 { String::new() } else { format!("{words}{}", self.number_type.name()) }
     }
 
-    /// The options that choose it, and what it gives.
+    /// What it gives, in a few words.
     pub fn as_choice(&self) -> String {
         let size = |lines: &Option<LineSummary>| lines.map_or_else(String::new, |l| format!("{} ({l})", l.count));
         format!(
-            "--inline-byte {} --crossline-byte {}{} for {} inlines and {} crosslines",
+            "bytes {} and {}{} for {} inlines and {} crosslines",
             self.inline_byte,
             self.crossline_byte,
-            self.in_type(" --line-type "),
+            self.in_type(" as "),
             size(&self.inlines),
             size(&self.crosslines)
         )
+    }
+
+    /// What chooses it.
+    pub fn remedy(&self) -> Remedy {
+        let bytes =
+            [Setting::InlineByte.stated_as(self.inline_byte), Setting::CrosslineByte.stated_as(self.crossline_byte)];
+        let own_type =
+            (self.number_type != NumberType::I32).then(|| Setting::LineType.stated_as(self.number_type.name()));
+        Remedy::all(bytes.into_iter().chain(own_type))
     }
 
     fn fits(&self) -> bool {
@@ -365,16 +375,20 @@ impl Search<'_> {
         let lattice = Lattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default())
             .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
         findings.evidence(format!("line numbers: {} ({})", chosen.as_sentence(), chosen.convention));
-        findings.evidence(format!(
-            "the file counts {} first; no file says which axis is called inline: the swapped reading is {}",
-            if lattice.inline_sorted { "crosslines" } else { "inlines" },
-            chosen.swapped().as_choice()
+        let swapped = chosen.swapped();
+        findings.evidence(Note::unless(
+            format!(
+                "the file counts {} first; no file says which axis is called inline: the swapped reading is {}",
+                if lattice.inline_sorted { "crosslines" } else { "inlines" },
+                swapped.as_choice()
+            ),
+            swapped.remedy(),
         ));
         for other in candidates.iter().filter(|c| c.fits() && *c != chosen) {
             findings.evidence(if self.are_same(other, chosen) {
-                format!("bytes {} and {} hold the same numbers", other.inline_byte, other.crossline_byte)
+                Note::from(format!("bytes {} and {} hold the same numbers", other.inline_byte, other.crossline_byte))
             } else {
-                format!("another reading fits too: {}", other.as_choice())
+                Note::unless(format!("another reading fits too: {}", other.as_choice()), other.remedy())
             });
         }
         candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -397,14 +411,14 @@ impl Search<'_> {
             .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
         let repeated = lattice.duplicates as f64 / (lattice.duplicates + lattice.filled()) as f64;
         if repeated > MAX_DUPLICATES && self.options.duplicates.is_none() {
-            return Err(SegyProblem::PreStack { evidence: refuse::repeated_places(self.columns, &lattice) });
+            return Err(refuse::repeated_places(self.columns, &lattice));
         }
         let why = match self.options.line_source {
             LineSource::Headers => "no trace header bytes hold line numbers: ",
             _ => "as stated, ",
         };
-        let note = format!(
-            "{why}lines are numbered from 1 along the lattice of X and Y (bytes {} and {}), which {}; {} (--line-numbers coordinates-swapped exchanges them, --inline-byte and --crossline-byte state others)",
+        let fact = format!(
+            "{why}lines are numbered from 1 along the lattice of X and Y (bytes {} and {}), which {}; {}",
             bins.bytes[0],
             bins.bytes[1],
             bins.fit,
@@ -414,6 +428,8 @@ impl Search<'_> {
                 "the order of the traces does not tell which axis is the inline"
             },
         );
+        let bytes = Remedy::all([Setting::InlineByte.stated(), Setting::CrosslineByte.stated()]);
+        let note = Note::unless(fact, Remedy::any([Setting::LineNumbers.stated_as("coordinates-swapped"), bytes]));
         if self.options.line_source == LineSource::Headers {
             findings.assumption(note);
         } else {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::detect::Candidate;
 use crate::geometry::GeometryError;
 use crate::progress::Cancelled;
+use crate::remedy::{Remedy, Setting};
 
 /// A SEG-Y file could not be read or written.
 #[derive(Debug, thiserror::Error)]
@@ -55,7 +56,7 @@ pub enum SegyProblem {
     },
     /// No valid format code in either byte order.
     #[error(
-        "bytes 3225-3226 hold {big} (or {little} in little-endian order), which is no SEG-Y sample format; this is not SEG-Y, or its header is damaged: if you know the format, state it (--sample-format)"
+        "bytes 3225-3226 hold {big} (or {little} in little-endian order), which is no SEG-Y sample format; this is not SEG-Y, or its header is damaged"
     )]
     NotSegy {
         /// The code read big-endian.
@@ -122,13 +123,13 @@ pub enum SegyProblem {
         other: usize,
     },
     /// No sample interval.
-    #[error("neither byte 3217 nor byte 117 gives a sample interval; state it (--interval)")]
+    #[error("neither byte 3217 nor byte 117 gives a sample interval")]
     NoInterval,
     /// A stated value that cannot be used.
-    #[error("{option} is {found}; it must be {expected}")]
-    BadOption {
-        /// The option.
-        option: &'static str,
+    #[error("the value stated is {found}; it must be {expected}")]
+    BadSetting {
+        /// What was stated.
+        setting: Setting,
         /// What was given.
         found: String,
         /// What would do.
@@ -136,7 +137,7 @@ pub enum SegyProblem {
     },
     /// Coordinates are angles.
     #[error(
-        "X and Y are in {unit} (byte 89 is {code}), not in a length; project them to metres or feet first, or state a bin size to place the survey without them (--bin)"
+        "X and Y are in {unit} (byte 89 is {code}), not in a length; project them to metres or feet first, or state a bin size to place the survey without them"
     )]
     AngularCoordinates {
         /// Byte 89.
@@ -149,7 +150,7 @@ pub enum SegyProblem {
     SingleTrace,
     /// Traces along one line.
     #[error(
-        "this is a 2D line, not a 3D volume: {evidence}; give a 3D volume, or state other header bytes if the lines are numbered elsewhere (--inline-byte, --crossline-byte)"
+        "this is a 2D line, not a 3D volume: {evidence}; give a 3D volume, or state other header bytes if the lines are numbered elsewhere"
     )]
     TwoDimensional {
         /// Why it was taken for a line.
@@ -160,19 +161,18 @@ pub enum SegyProblem {
     PreStack {
         /// Why it was taken for pre-stack.
         evidence: String,
+        /// Whether its traces may be mere repetitions, of which one is to be kept.
+        may_repeat: bool,
     },
     /// No header bytes hold line numbers.
-    #[error(
-        "no trace header bytes hold usable inline and crossline numbers; {}; state where they are (--inline-byte, --crossline-byte)",
-        list(tried)
-    )]
+    #[error("no trace header bytes hold usable inline and crossline numbers: {}", list(tried))]
     NoLineNumbers {
         /// The pairs that were looked at.
         tried: Vec<Candidate>,
     },
     /// No header bytes hold line numbers, and X and Y make no lattice either.
     #[error(
-        "no trace header bytes hold usable inline and crossline numbers{}, and X and Y make no lattice that could be numbered: {reason}; state where the numbers are (--inline-byte, --crossline-byte, --line-type)",
+        "no trace header bytes hold usable inline and crossline numbers{}, and X and Y make no lattice that could be numbered: {reason}",
         if tried.is_empty() { String::new() } else { format!(" ({})", list(tried)) }
     )]
     NoLattice {
@@ -183,7 +183,7 @@ pub enum SegyProblem {
     },
     /// More than one reading, and nothing to decide by.
     #[error(
-        "inline and crossline numbers can be read in {} ways: {}; choose one by stating its options",
+        "inline and crossline numbers can be read in {} ways: {}",
         readings.len(),
         readings.iter().map(Candidate::as_choice).collect::<Vec<_>>().join("; or ")
     )]
@@ -242,7 +242,30 @@ pub enum SegyProblem {
     Cancelled(#[from] Cancelled),
 }
 
+impl SegyError {
+    /// What to state so that the file is read.
+    pub fn remedy(&self) -> Option<Remedy> {
+        self.problem.remedy()
+    }
+}
+
 impl SegyProblem {
+    /// What to state so that the file is read, where that may help.
+    pub fn remedy(&self) -> Option<Remedy> {
+        let bytes = || Remedy::all([Setting::InlineByte.stated(), Setting::CrosslineByte.stated()]);
+        Some(match self {
+            Self::NotSegy { .. } => Setting::SampleFormat.stated(),
+            Self::NoInterval => Setting::Interval.stated(),
+            Self::BadSetting { setting, .. } => setting.stated(),
+            Self::AngularCoordinates { .. } => Setting::Bin.stated(),
+            Self::TwoDimensional { .. } | Self::NoLineNumbers { .. } | Self::StatedBytes { .. } => bytes(),
+            Self::PreStack { may_repeat: true, .. } => Setting::Duplicates.stated_as("first or last"),
+            Self::NoLattice { .. } => Remedy::any([bytes(), Setting::LineType.stated()]),
+            Self::AmbiguousLines { readings } => Remedy::any(readings.iter().map(Candidate::remedy)),
+            _ => return None,
+        })
+    }
+
     /// Names the file.
     pub(super) fn in_file(self, path: &Path) -> SegyError {
         SegyError { path: path.to_owned(), problem: self }

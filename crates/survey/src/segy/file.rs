@@ -18,6 +18,7 @@ use super::options::{KeptDuplicate, SegyOptions, TraceWeight};
 use super::vertical::{Vertical, coordinate_unit, note_coordinate_unit};
 use crate::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
 use crate::progress::Progress;
+use crate::remedy::{Note, Setting};
 
 /// Trace weights beyond this are no weights.
 const MAX_WEIGHT: i32 = 50;
@@ -273,28 +274,28 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
 fn check_bytes(options: &SegyOptions, header_bytes: usize) -> Result<(), SegyProblem> {
     let line = options.line_type.unwrap_or_default().bytes();
     let coordinate = options.coordinate_type.unwrap_or_default().bytes();
-    for (option, byte, length) in [
-        ("--inline-byte", options.inline_byte, line),
-        ("--crossline-byte", options.crossline_byte, line),
-        ("--x-byte", options.x_byte, coordinate),
-        ("--y-byte", options.y_byte, coordinate),
-        ("--scalar-byte", options.scalar_byte, 2),
+    for (setting, byte, length) in [
+        (Setting::InlineByte, options.inline_byte, line),
+        (Setting::CrosslineByte, options.crossline_byte, line),
+        (Setting::XByte, options.x_byte, coordinate),
+        (Setting::YByte, options.y_byte, coordinate),
+        (Setting::ScalarByte, options.scalar_byte, 2),
     ] {
         let last = header_bytes + 1 - length;
         if let Some(byte) = byte
             && !(1..=last).contains(&usize::from(byte))
         {
             let expected = format!("1 to {last}, the first of {length} bytes in the {header_bytes}-byte trace header");
-            return Err(SegyProblem::BadOption { option, found: byte.to_string(), expected });
+            return Err(SegyProblem::BadSetting { setting, found: byte.to_string(), expected });
         }
     }
     // X and Y of 2 bytes are read from the 4 bytes that begin there.
-    for (option, byte) in [("--x-byte", options.x_byte), ("--y-byte", options.y_byte)] {
+    for (setting, byte) in [(Setting::XByte, options.x_byte), (Setting::YByte, options.y_byte)] {
         if let Some(byte) = byte
             && usize::from(byte) + 3 > header_bytes
         {
             let expected = format!("at most {}", header_bytes - 3);
-            return Err(SegyProblem::BadOption { option, found: byte.to_string(), expected });
+            return Err(SegyProblem::BadSetting { setting, found: byte.to_string(), expected });
         }
     }
     Ok(())
@@ -302,8 +303,8 @@ fn check_bytes(options: &SegyOptions, header_bytes: usize) -> Result<(), SegyPro
 
 fn check_options(options: &SegyOptions) -> Result<(), SegyProblem> {
     match options.bin_m {
-        Some(bin) if !(bin > 0.0 && bin.is_finite()) => Err(SegyProblem::BadOption {
-            option: "--bin",
+        Some(bin) if !(bin > 0.0 && bin.is_finite()) => Err(SegyProblem::BadSetting {
+            setting: Setting::Bin,
             found: bin.to_string(),
             expected: "a positive number of metres".to_owned(),
         }),
@@ -362,16 +363,15 @@ fn note_lattice(detected: &Detected, options: &SegyOptions, findings: &mut Findi
     let lattice = &detected.lattice;
     let by = if detected.bytes.is_some() { "line numbers" } else { "place" };
     if let Some(example) = lattice.first_duplicate {
-        let (kept, hint) = match options.duplicates {
-            None => ("first", " (--duplicates last keeps the last)"),
-            Some(KeptDuplicate::First) => ("first", ""),
-            Some(KeptDuplicate::Last) => ("last", ""),
-        };
-        findings.warning(format!(
-            "{} traces repeat the {by} of an earlier one (the first is trace {}); the {kept} of each is kept{hint}",
-            lattice.duplicates,
-            example + 1
-        ));
+        let kept = if options.duplicates == Some(KeptDuplicate::Last) { "last" } else { "first" };
+        findings.warning(Note {
+            fact: format!(
+                "{} traces repeat the {by} of an earlier one (the first is trace {}); the {kept} of each is kept",
+                lattice.duplicates,
+                example + 1
+            ),
+            otherwise: options.duplicates.is_none().then(|| Setting::Duplicates.stated_as("last")),
+        });
     }
     if lattice.unnumbered > 0 {
         findings.warning(match detected.bytes {
@@ -395,12 +395,15 @@ fn weights(columns: &Columns, options: &SegyOptions, findings: &mut Findings) ->
         return None;
     }
     let (sign, others) = match options.trace_weight {
-        TraceWeight::Inverse => ("", "apply divides by 2^N as the standard says, ignore leaves them as stored"),
-        _ => ("-", "inverse multiplies by 2^N, ignore leaves them as stored"),
+        TraceWeight::Inverse => ("", "apply to divide by 2^N as the standard says, ignore to leave them as stored"),
+        _ => ("-", "inverse to multiply by 2^N, ignore to leave them as stored"),
     };
-    findings.assumption(format!(
-        "samples are multiplied by 2^({sign}N), N the trace weight at byte 169, {} to {} (--trace-weight {others})",
-        weights.range[0], weights.range[1]
+    findings.assumption(Note::unless(
+        format!(
+            "samples are multiplied by 2^({sign}N), N the trace weight at byte 169, {} to {}",
+            weights.range[0], weights.range[1]
+        ),
+        Setting::TraceWeight.stated_as(others),
     ));
     Some(weights.clone())
 }

@@ -9,6 +9,7 @@ use super::detect::Candidate;
 use super::sample::{ByteOrder, SampleFormat};
 use super::text::TextEncoding;
 use crate::geometry::LineAxis;
+use crate::remedy::Note;
 
 /// Unit of the vertical axis in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -216,31 +217,31 @@ pub struct SegyInfo {
     /// Readings of the line numbers that were looked at, the best first.
     pub candidates: Vec<Candidate>,
     /// How things were found.
-    pub evidence: Vec<String>,
-    /// What the file does not say and was taken as usual; each with the option that states otherwise.
-    pub assumptions: Vec<String>,
+    pub evidence: Vec<Note>,
+    /// What the file does not say and was taken as usual; each with what states otherwise.
+    pub assumptions: Vec<Note>,
     /// What does not fit together.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Note>,
 }
 
 /// Notes taken while a file is read.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Findings {
-    pub evidence: Vec<String>,
-    pub assumptions: Vec<String>,
-    pub warnings: Vec<String>,
+    pub evidence: Vec<Note>,
+    pub assumptions: Vec<Note>,
+    pub warnings: Vec<Note>,
 }
 
 impl Findings {
-    pub fn evidence(&mut self, note: String) {
-        self.evidence.push(note);
+    pub fn evidence(&mut self, note: impl Into<Note>) {
+        self.evidence.push(note.into());
     }
 
-    pub fn assumption(&mut self, note: String) {
-        self.assumptions.push(note);
+    pub fn assumption(&mut self, note: impl Into<Note>) {
+        self.assumptions.push(note.into());
     }
 
-    pub fn warning(&mut self, note: String) {
-        self.warnings.push(note);
+    pub fn warning(&mut self, note: impl Into<Note>) {
+        self.warnings.push(note.into());
     }
 }

@@ -180,7 +180,7 @@ impl SegyFile {
             let warning =
                 format!("{} samples are no numbers (NaN or infinite) and are read as 0", amplitudes.non_finite);
             progress.warn(&warning);
-            info.warnings.push(warning);
+            info.warnings.push(warning.into());
         }
         let live = self.live();
         volume.set_live(live).map_err(|mismatch| {

@@ -16,7 +16,7 @@ pub(super) fn pre_stack(columns: &Columns, options: &SegyOptions, candidates: &[
     let kept = options.duplicates.unwrap_or_default();
     let Ok(lattice) = Lattice::build(&inline, &crossline, kept) else { return Ok(()) };
     let Some(example) = lattice.first_duplicate else { return Ok(()) };
-    let offsets = offsets(columns);
+    let (offsets, may_repeat) = offsets(columns);
     Err(SegyProblem::PreStack {
         evidence: format!(
             "{} traces stand in {} bins (trace {} repeats inline {}, crossline {}, read at bytes {} and {}) and {offsets}",
@@ -28,29 +28,29 @@ pub(super) fn pre_stack(columns: &Columns, options: &SegyOptions, candidates: &[
             candidate.inline_byte,
             candidate.crossline_byte
         ),
+        may_repeat,
     })
 }
 
-fn offsets(columns: &Columns) -> String {
+/// What the offsets are, and whether the traces may be mere repetitions.
+fn offsets(columns: &Columns) -> (String, bool) {
     let offset = columns.get(Field::I32(at::OFFSET));
     match offset.constant() {
-        None => format!("offsets at byte 37 run from {} to {}", offset.range[0], offset.range[1]),
-        Some(_) => {
-            "their offsets at byte 37 do not differ (if they are mere repetitions, state which to keep: --duplicates first or last)"
-                .to_owned()
-        }
+        None => (format!("offsets at byte 37 run from {} to {}", offset.range[0], offset.range[1]), false),
+        Some(_) => ("their offsets at byte 37 do not differ, as those of mere repetitions".to_owned(), true),
     }
 }
 
 /// What makes traces at the same X and Y pre-stack.
-pub(super) fn repeated_places(columns: &Columns, lattice: &Lattice) -> String {
-    format!(
-        "{} traces stand at {} places (trace {} repeats the X and Y of an earlier one) and {}",
+pub(super) fn repeated_places(columns: &Columns, lattice: &Lattice) -> SegyProblem {
+    let (offsets, may_repeat) = offsets(columns);
+    let evidence = format!(
+        "{} traces stand at {} places (trace {} repeats the X and Y of an earlier one) and {offsets}",
         lattice.filled() + lattice.duplicates,
         lattice.filled(),
-        lattice.first_duplicate.unwrap_or(0) + 1,
-        offsets(columns)
-    )
+        lattice.first_duplicate.unwrap_or(0) + 1
+    );
+    SegyProblem::PreStack { evidence, may_repeat }
 }
 
 /// Gathers without line numbers: by shot, or by CDP.
@@ -65,6 +65,7 @@ pub(super) fn shot_gathers(columns: &Columns) -> Result<(), SegyProblem> {
                 "field records {} to {} (byte 9) hold traces {} to {} (byte 13), and there are no line or CDP numbers: these are shot gathers",
                 record.range[0], record.range[1], in_record.range[0], in_record.range[1]
             ),
+            may_repeat: false,
         });
     }
     let pairs = || cdp.iter().zip(offset.iter()).zip(cdp.iter().zip(offset.iter()).skip(1));
@@ -75,6 +76,7 @@ pub(super) fn shot_gathers(columns: &Columns) -> Result<(), SegyProblem> {
                 "neighbouring traces share a CDP number (byte 21) and differ in offset ({} to {} at byte 37): these are CDP gathers",
                 offset.range[0], offset.range[1]
             ),
+            may_repeat: false,
         });
     }
     Ok(())

@@ -10,6 +10,7 @@ use super::frame::Frame;
 use super::header::{Field, at};
 use super::info::{FileUnit, Findings, LengthUnit};
 use crate::geometry::{VerticalAxis, VerticalUnit};
+use crate::remedy::{Note, Setting};
 
 /// Traces that start later than the earliest one may lengthen the volume to this many times their own length.
 const MAX_LENGTHENING: usize = 4;
@@ -40,8 +41,8 @@ impl Vertical {
         let micro = match options.interval {
             Some(interval) if interval.is_finite() && interval > 0.0 => interval * 1000.0,
             Some(interval) => {
-                return Err(SegyProblem::BadOption {
-                    option: "--interval",
+                return Err(SegyProblem::BadSetting {
+                    setting: Setting::Interval,
                     found: interval.to_string(),
                     expected: "a positive number".to_owned(),
                 });
@@ -52,9 +53,12 @@ impl Vertical {
         let mut interval = micro / 1000.0;
         if options.interval.is_none() && unit != FileUnit::Milliseconds && micro < 100.0 {
             interval = micro;
-            findings.assumption(format!(
-                "the interval field holds {micro}, too little for thousandths of a {0}: taken as {micro} {0} (--interval states another)",
-                unit.symbol()
+            findings.assumption(Note::unless(
+                format!(
+                    "the interval field holds {micro}, too little for thousandths of a {0}: taken as {micro} {0}",
+                    unit.symbol()
+                ),
+                Setting::Interval.stated(),
             ));
         }
         let (first, shifts) = starts(columns, dead, interval, unit, options, findings)?;
@@ -109,13 +113,19 @@ fn interval_field(frame: &Frame, columns: &Columns, findings: &mut Findings) -> 
     };
     findings.evidence(format!("sample interval: {chosen} at {source}"));
     if in_file != in_trace && in_trace != 0 && in_file != 0 {
-        findings.warning(format!(
-            "the binary header gives a sample interval of {in_file} (byte 3217), the first trace {in_trace} (byte 117); {chosen} is used (--interval states another)"
+        findings.warning(Note::unless(
+            format!(
+                "the binary header gives a sample interval of {in_file} (byte 3217), the first trace {in_trace} (byte 117); {chosen} is used"
+            ),
+            Setting::Interval.stated(),
         ));
     } else if is_doubtful(chosen) {
-        findings.warning(format!(
-            "the sample interval field holds {chosen}, or {} if it is meant to be signed; {chosen} is used (--interval states another)",
-            chosen.cast_signed()
+        findings.warning(Note::unless(
+            format!(
+                "the sample interval field holds {chosen}, or {} if it is meant to be signed; {chosen} is used",
+                chosen.cast_signed()
+            ),
+            Setting::Interval.stated(),
         ));
     }
     Ok(f64::from(chosen))
@@ -147,24 +157,30 @@ fn unit(frame: &Frame, interval: f64, options: &SegyOptions, findings: &mut Find
             in_depth
         }
         (None, Some(time), Some(depth)) => {
-            findings.warning(format!(
-                "the text header speaks of time (\"{time}\") and of depth (\"{depth}\"); the axis is taken as two-way time (--vertical-unit m or ft states depth)"
+            findings.warning(Note::unless(
+                format!(
+                    "the text header speaks of time (\"{time}\") and of depth (\"{depth}\"); the axis is taken as two-way time"
+                ),
+                Setting::VerticalUnit.stated_as("m or ft"),
             ));
             FileUnit::Milliseconds
         }
         (None, None, None) => {
-            findings.assumption(
-                "the vertical axis is two-way time in ms: the file does not say (--vertical-unit m or ft states depth)"
-                    .to_owned(),
-            );
+            findings.assumption(Note::unless(
+                "the vertical axis is two-way time in ms: the file does not say",
+                Setting::VerticalUnit.stated_as("m or ft"),
+            ));
             FileUnit::Milliseconds
         }
     };
     if unit != FileUnit::Milliseconds && unit != in_depth && frame.binary.measurement != 0 {
-        findings.warning(format!(
-            "the text header gives the interval in {} and byte 3255 says {}; the text is followed (--vertical-unit states another)",
-            unit.symbol(),
-            in_depth.symbol()
+        findings.warning(Note::unless(
+            format!(
+                "the text header gives the interval in {} and byte 3255 says {}; the text is followed",
+                unit.symbol(),
+                in_depth.symbol()
+            ),
+            Setting::VerticalUnit.stated(),
         ));
     }
     unit
@@ -244,9 +260,12 @@ fn starts(
     let lag = columns.get(Field::I16(at::LAG_A));
     let from_lag = delay.constant() == Some(0) && lag.constant().is_some_and(|lag| lag != 0);
     if from_lag && options.start.is_none() {
-        findings.assumption(format!(
-            "the start comes from lag time A (byte 105 holds {}, negated), as the delay at byte 109 is 0 (--start states another)",
-            lag.at(0)
+        findings.assumption(Note::unless(
+            format!(
+                "the start comes from lag time A (byte 105 holds {}, negated), as the delay at byte 109 is 0",
+                lag.at(0)
+            ),
+            Setting::Start.stated(),
         ));
     }
     let start_of = |trace: usize| {
@@ -312,11 +331,13 @@ pub(super) fn note_coordinate_unit(frame: &Frame, options: &SegyOptions, finding
     match (options.coordinate_unit, frame.binary.measurement) {
         (Some(unit), _) => findings.evidence(format!("X and Y in {}, as stated", unit.symbol())),
         (None, 1) => {}
-        (None, 2) => findings.assumption(
-            "X and Y are in feet, as byte 3255 is 2; the project converts them to metres (--coordinate-unit m if they are metres)".to_owned(),
-        ),
-        (None, other) => findings.assumption(format!(
-            "X and Y are in metres: byte 3255 holds {other}, neither 1 (metres) nor 2 (feet) (--coordinate-unit states another)"
+        (None, 2) => findings.assumption(Note::unless(
+            "X and Y are in feet, as byte 3255 is 2; the project converts them to metres",
+            Setting::CoordinateUnit.stated_as("m"),
+        )),
+        (None, other) => findings.assumption(Note::unless(
+            format!("X and Y are in metres: byte 3255 holds {other}, neither 1 (metres) nor 2 (feet)"),
+            Setting::CoordinateUnit.stated(),
         )),
     }
 }

@@ -10,6 +10,7 @@ use super::path::WellPath;
 use super::read::WellOptions;
 use super::table::Table;
 use crate::formats::ZUnit;
+use crate::remedy::Note;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -118,7 +119,7 @@ pub fn parse_checkshot(
     text: &str,
     path: &WellPath,
     options: &WellOptions,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<Checkshot, WellError> {
     let mut table = Table::parse(file, text);
     if table.rows.is_empty() {
@@ -150,7 +151,7 @@ pub fn parse_checkshot(
     for (axis, what) in [(0, "depths"), (1, "times")] {
         if rows.first().zip(rows.last()).is_some_and(|(a, b)| b[axis] < a[axis] && b[axis] < 0.0) {
             rows.iter_mut().for_each(|r| r[axis] = -r[axis]);
-            notes.push(format!("checkshots: the {what} are negative and were turned positive down"));
+            notes.push(format!("checkshots: the {what} are negative and were turned positive down").into());
         }
     }
     match depth_column {
@@ -163,7 +164,8 @@ pub fn parse_checkshot(
             let before = rows.len();
             rows.retain(|r| r[0].is_finite());
             if rows.len() < before {
-                notes.push(format!("checkshots: {} of {before} lie beyond the well's path", before - rows.len()));
+                notes
+                    .push(format!("checkshots: {} of {before} lie beyond the well's path", before - rows.len()).into());
             }
         }
         _ => {}
@@ -186,14 +188,17 @@ pub fn parse_checkshot(
                         file: file.to_owned(),
                         what: format!("the times (mean slope 2·Δz/Δt = {slope:.3})"),
                         candidates: "ms or s",
-                        option: "a header such as tvdss_m,twt_ms",
+                        header: "tvdss_m,twt_ms",
                     });
                 }
             };
-            notes.push(format!(
-                "checkshots: times are in {word}: only so the mean velocity, {:.0} m/s, is that of rock",
-                if unit == 1.0 { 1000.0 * slope } else { slope }
-            ));
+            notes.push(
+                format!(
+                    "checkshots: times are in {word}: only so the mean velocity, {:.0} m/s, is that of rock",
+                    if unit == 1.0 { 1000.0 * slope } else { slope }
+                )
+                .into(),
+            );
             unit
         }
     };

@@ -15,6 +15,7 @@ use super::columns::WellColumn;
 use super::path::{Survey, WellPath};
 use super::read::WellOptions;
 use super::table::Table;
+use crate::remedy::{Note, Remedy, Setting};
 use glam::{DVec2, DVec3};
 use std::path::Path;
 
@@ -26,9 +27,9 @@ pub struct Deviation {
     /// Name of the well in the file.
     pub name: Option<String>,
     /// What was read and assumed, one sentence each.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// What the user should check, one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Note>,
 }
 
 /// A header that would do.
@@ -73,8 +74,8 @@ struct Reading<'a> {
     file: &'a Path,
     table: &'a Table<'a>,
     options: &'a WellOptions,
-    notes: Vec<String>,
-    warnings: Vec<String>,
+    notes: Vec<Note>,
+    warnings: Vec<Note>,
 }
 
 impl Reading<'_> {
@@ -101,9 +102,9 @@ impl Reading<'_> {
                 .map(|n| Survey { md_m: md[n], inclination_deg: inclination[n], azimuth_deg: azimuth[n] })
                 .collect();
             let path = WellPath::minimum_curvature(head, datum_m, &surveys)?;
-            self.notes.push(format!("path by minimum curvature through {} surveys", surveys.len()));
+            self.notes.push(format!("path by minimum curvature through {} surveys", surveys.len()).into());
             if surveys[0].md_m > 0.0 {
-                self.notes.push(format!("vertical from the head to the first survey at {} m", surveys[0].md_m));
+                self.notes.push(format!("vertical from the head to the first survey at {} m", surveys[0].md_m).into());
             }
             self.compare(&path, md, places.as_deref());
             return Ok(path);
@@ -120,7 +121,7 @@ impl Reading<'_> {
         if md.is_none() {
             self.notes.push("no measured depths: added up along straight lines between the places".into());
         }
-        self.notes.push(format!("path straight between {} places", stations.len()));
+        self.notes.push(format!("path straight between {} places", stations.len()).into());
         WellPath::through(datum_m, &stations)
     }
 
@@ -132,10 +133,12 @@ impl Reading<'_> {
         let [first, last] = path.md_range_m();
         let line = format!("the file's own places are up to {worst:.2} m from this path");
         if worst > 0.002 * (last - first) + 1.0 {
-            self.warnings
-                .push(format!("{line}; check the head, the datum (--kb) and which north the azimuths are from"));
+            self.warnings.push(Note::unless(
+                format!("{line}; check the head, the datum and which north the azimuths are from"),
+                Remedy::any([Setting::Head, Setting::Datum].map(Setting::stated)),
+            ));
         } else {
-            self.notes.push(line);
+            self.notes.push(line.into());
         }
     }
 
@@ -147,11 +150,14 @@ impl Reading<'_> {
             [&["datum"], &["kelly"], &["kb"], &["rkb"], &["rotary"], &["derrick"], &["drill floor"]];
         for words in keys {
             if let Some(found) = self.table.length_fact(words) {
-                self.notes.push(format!("datum {found} m above sea level, as the file says"));
+                self.notes.push(format!("datum {found} m above sea level, as the file says").into());
                 return found;
             }
         }
-        self.warnings.push("no height of the datum (KB) is given: taken as 0 m above sea level; say --kb M".into());
+        self.warnings.push(Note::unless(
+            "no height of the datum (KB) is given: taken as 0 m above sea level",
+            Setting::Datum.stated(),
+        ));
         0.0
     }
 
@@ -172,12 +178,12 @@ impl Reading<'_> {
                 })
         };
         if let (Some(x), Some(y)) = (fact("x"), fact("y")) {
-            self.notes.push(format!("head at {x}, {y}, as the file says"));
+            self.notes.push(format!("head at {x}, {y}, as the file says").into());
             return Ok(DVec2::new(x, y));
         }
         let has_xy = self.table.position(WellColumn::X).is_some() && self.table.position(WellColumn::Y).is_some();
         if let Some(first) = places.filter(|_| has_xy).and_then(|p| p.first()) {
-            self.notes.push(format!("head at {}, {}, the first row's X, Y", first.x, first.y));
+            self.notes.push(format!("head at {}, {}, the first row's X, Y", first.x, first.y).into());
             return Ok(first.truncate());
         }
         Err(WellError::NoHead { file: self.file.to_owned() })
@@ -228,9 +234,10 @@ impl Reading<'_> {
             if last < first && column != WellColumn::Tvd {
                 depths.iter_mut().for_each(|d| *d = -*d);
                 let name = if column == WellColumn::Z { "Z" } else { "TVDSS" };
-                self.notes.push(format!(
-                    "{name} falls from {first} to {last} along the hole: elevations, turned positive down"
-                ));
+                self.notes.push(
+                    format!("{name} falls from {first} to {last} along the hole: elevations, turned positive down")
+                        .into(),
+                );
             }
             if column == WellColumn::Tvd {
                 depths.iter_mut().for_each(|d| *d -= datum_m);

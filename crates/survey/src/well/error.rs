@@ -1,5 +1,6 @@
 //! What can go wrong with a well's files, with the facts a user needs to put it right.
 
+use crate::remedy::{Remedy, Setting};
 use std::path::PathBuf;
 
 /// Why a well was not read.
@@ -44,13 +45,13 @@ pub enum WellError {
         what: &'static str,
     },
     /// The well head is not known.
-    #[error("{file} gives no X, Y of the well head; say --head X,Y in metres")]
+    #[error("{file} gives no X, Y of the well head, in metres")]
     NoHead {
         /// The file.
         file: PathBuf,
     },
     /// A file of several wells has none of the name.
-    #[error("{file} has no well named '{wanted}'; it has: {available}. Choose one with --well-in-file")]
+    #[error("{file} has no well named '{wanted}'; it has: {available}")]
     NoSuchWell {
         /// The file.
         file: PathBuf,
@@ -93,7 +94,7 @@ pub enum WellError {
     },
     /// Two stations are further apart than the hole between them is long.
     #[error(
-        "before {md_m} m the hole is {along_m:.2} m long but its ends are {straight_m:.2} m apart; check the units of measured depth and of X, Y (--md-unit m or ft)"
+        "before {md_m} m the hole is {along_m:.2} m long but its ends are {straight_m:.2} m apart; check the units of measured depth and of X, Y"
     )]
     ShorterThanStraight {
         /// Measured depth.
@@ -113,7 +114,7 @@ pub enum WellError {
     #[error("a coordinate is no number or beyond 1e12; check the units")]
     NotANumber,
     /// The unit is not known.
-    #[error("{file}: {what} could be in {candidates}; say which with {option}")]
+    #[error("{file}: {what} could be in {candidates}; say which in its header, for example {header}")]
     UnclearUnit {
         /// The file.
         file: PathBuf,
@@ -121,8 +122,8 @@ pub enum WellError {
         what: String,
         /// Units that would fit.
         candidates: &'static str,
-        /// The option that settles it.
-        option: &'static str,
+        /// A header that settles it.
+        header: &'static str,
     },
     /// A LAS file of a version that is not read.
     #[error("{file} is LAS {version}; LAS 1.2 and 2.0 are read: export it as LAS 2.0")]
@@ -151,5 +152,20 @@ pub enum WellError {
         unit: String,
         /// What to do.
         instead: &'static str,
+        /// Whether the well's checkshots would do.
+        needs_checkshot: bool,
     },
+}
+
+impl WellError {
+    /// What to state so that the well is read, where that may help.
+    pub fn remedy(&self) -> Option<Remedy> {
+        Some(match self {
+            Self::NoHead { .. } => Setting::Head.stated(),
+            Self::NoSuchWell { .. } => Setting::WellInFile.stated(),
+            Self::ShorterThanStraight { .. } => Setting::MdUnit.stated_as("m or ft"),
+            Self::LasIndex { needs_checkshot: true, .. } => Setting::Checkshot.stated(),
+            _ => return None,
+        })
+    }
 }

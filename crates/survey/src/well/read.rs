@@ -9,6 +9,7 @@ use super::table::FOOT_M;
 use super::tops::{on_path, parse_tops};
 use super::{Well, WellError};
 use crate::formats::ZUnit;
+use crate::remedy::Note;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
@@ -49,9 +50,9 @@ pub struct WellOptions {
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct WellReport {
     /// Facts, one sentence each.
-    pub notes: Vec<String>,
+    pub notes: Vec<Note>,
     /// What the user should check, one sentence each.
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Note>,
 }
 
 fn text_of(file: &Path) -> Result<String, WellError> {
@@ -76,35 +77,38 @@ pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, Well
         let [low, high] = checkshot.velocity_range_m_s();
         let line = format!("{} checkshots, interval velocities {low:.0} to {high:.0} m/s", checkshot.points().len());
         if low < 300.0 || high > 10_000.0 {
-            report.warnings.push(format!("{line}, which no rock has; check units and datum of the table"));
+            report.warnings.push(format!("{line}, which no rock has; check units and datum of the table").into());
         } else {
-            report.notes.push(line);
+            report.notes.push(line.into());
         }
         well.checkshot = Some(checkshot);
     }
     if let Some(file) = &files.tops {
         let rows = parse_tops(file, &text_of(file)?, &well.path, &options, &mut report.notes)?;
         well.tops = on_path(rows, &well.path, &mut report.warnings);
-        report.notes.push(format!("{} tops", well.tops.len()));
+        report.notes.push(format!("{} tops", well.tops.len()).into());
     }
     for file in &files.las {
         let las = parse_las(file, &text_of(file)?)?;
         if let Some(inside) = las.well_name()
             && !same_name(inside, &well.name)
         {
-            report.warnings.push(format!("{} says that it is of well '{inside}'", file.display()));
+            report.warnings.push(format!("{} says that it is of well '{inside}'", file.display()).into());
         }
         let set = log_set(file, &las, &well.path, well.checkshot.as_ref(), &mut report)?;
         let names: Vec<&str> = set.curves.iter().map(|c| c.name.as_str()).collect();
-        report.notes.push(format!(
-            "{}: {} curves ({}), {} samples from MD {:.1} to {:.1} m",
-            set.source,
-            set.curves.len(),
-            names.join(", "),
-            set.md_m.len(),
-            set.md_m.first().unwrap_or(&f64::NAN),
-            set.md_m.last().unwrap_or(&f64::NAN)
-        ));
+        report.notes.push(
+            format!(
+                "{}: {} curves ({}), {} samples from MD {:.1} to {:.1} m",
+                set.source,
+                set.curves.len(),
+                names.join(", "),
+                set.md_m.len(),
+                set.md_m.first().unwrap_or(&f64::NAN),
+                set.md_m.last().unwrap_or(&f64::NAN)
+            )
+            .into(),
+        );
         well.logs.push(set);
     }
     Ok((well, report))
@@ -124,11 +128,12 @@ fn log_set(
     report: &mut WellReport,
 ) -> Result<LogSet, WellError> {
     let index = &las.curves[0];
-    let unusable = |instead| WellError::LasIndex {
+    let unusable = |instead, needs_checkshot| WellError::LasIndex {
         file: file.to_owned(),
         mnemonic: index.mnemonic.clone(),
         unit: index.unit.clone(),
         instead,
+        needs_checkshot,
     };
     let word = index.mnemonic.to_ascii_uppercase();
     let vertical = ["TVD", "TVDSS"].iter().any(|w| word == *w);
@@ -149,7 +154,7 @@ fn log_set(
     let mut md_m: Vec<f64> = if let Some(to_m) = to_m {
         let lengths = axis.iter().map(|v| v * to_m);
         if vertical {
-            report.notes.push(format!("{word} of the log was laid onto the path"));
+            report.notes.push(format!("{word} of the log was laid onto the path").into());
             let datum = if word == "TVD" { path.datum_m() } else { 0.0 };
             lengths.map(|v| path.mds_at_tvdss(v - datum).first().copied().unwrap_or(f64::NAN)).collect()
         } else {
@@ -157,16 +162,16 @@ fn log_set(
         }
     } else if let Some(to_ms) = to_ms {
         if !word.contains("TWT") && word != "TIME" {
-            return Err(unusable("only depths and two-way times can be laid along a well"));
+            return Err(unusable("only depths and two-way times can be laid along a well", false));
         }
         let Some(checkshot) = checkshot else {
-            return Err(unusable("a log in two-way time needs the well's checkshots: add --checkshot FILE"));
+            return Err(unusable("a log in two-way time needs the well's checkshots", true));
         };
         report.notes.push("the log's two-way times were laid onto the path through the checkshots".into());
         let md = |t: f64| path.mds_at_tvdss(checkshot.tvdss_at_twt(t * to_ms)).first().copied().unwrap_or(f64::NAN);
         axis.iter().map(|t| md(*t)).collect()
     } else {
-        return Err(unusable("an index in M, FT, MS or S is expected: export the log again"));
+        return Err(unusable("an index in M, FT, MS or S is expected: export the log again", false));
     };
     let falling = md_m.iter().rev().find(|v| v.is_finite()) < md_m.iter().find(|v| v.is_finite());
     let mut order: Vec<usize> = (0..md_m.len()).filter(|&n| md_m[n].is_finite()).collect();
@@ -184,11 +189,10 @@ fn log_set(
         on
     });
     if order.len() < all {
-        report.warnings.push(format!(
-            "{}: {} samples whose depth does not increase were left out",
-            file.display(),
-            all - order.len()
-        ));
+        report.warnings.push(
+            format!("{}: {} samples whose depth does not increase were left out", file.display(), all - order.len())
+                .into(),
+        );
     }
     if order.is_empty() {
         return Err(WellError::Empty { file: file.to_owned(), what: "samples along the well" });
@@ -196,11 +200,14 @@ fn log_set(
     let [first, end] = path.md_range_m();
     let beyond = order.iter().filter(|&&n| !(first..=end).contains(&md_m[n])).count();
     if beyond > 0 {
-        report.warnings.push(format!(
-            "{}: {beyond} of {} samples lie beyond the path, MD {first:.1} to {end:.1} m",
-            file.display(),
-            order.len()
-        ));
+        report.warnings.push(
+            format!(
+                "{}: {beyond} of {} samples lie beyond the path, MD {first:.1} to {end:.1} m",
+                file.display(),
+                order.len()
+            )
+            .into(),
+        );
     }
     check_limits(file, las, report);
     let curves = las.curves.iter().zip(&las.data).skip(1).map(|(item, values)| Curve {
@@ -222,7 +229,7 @@ fn check_limits(file: &Path, las: &Las, report: &mut WellReport) {
         if let (Some((said, _)), Some(found)) = (las.number(mnemonic), found)
             && (said - found).abs() > 1e-3 * (1.0 + said.abs())
         {
-            report.warnings.push(format!("{}: {mnemonic} says {said} but the data has {found}", file.display()));
+            report.warnings.push(format!("{}: {mnemonic} says {said} but the data has {found}", file.display()).into());
         }
     }
 }

@@ -8,6 +8,7 @@ use super::columns::{self, WellColumn};
 use crate::formats::ZUnit;
 use crate::formats::table::{Cut, is_comment};
 use crate::formats::text::{self, Field, Line, excerpt};
+use crate::remedy::{Note, Setting};
 use std::path::{Path, PathBuf};
 
 /// Metres in an international foot.
@@ -185,10 +186,11 @@ impl<'a> Table<'a> {
     }
 
     /// Metres in one unit of a length column: as its name says, else as told, else metres, said so in `notes`.
-    pub fn length_to_m(&self, at: usize, told: Option<ZUnit>, notes: &mut Vec<String>) -> Result<f64, WellError> {
+    pub fn length_to_m(&self, at: usize, told: Option<ZUnit>, notes: &mut Vec<Note>) -> Result<f64, WellError> {
         let unit = self.units[at].or(told);
         if unit.is_none() {
-            let note = format!("{}: lengths are taken as metres (say --md-unit ft if they are feet)", self.stem());
+            let fact = format!("{}: lengths are taken as metres", self.stem());
+            let note = Note::unless(fact, Setting::MdUnit.stated_as("ft"));
             if !notes.contains(&note) {
                 notes.push(note);
             }
@@ -200,7 +202,7 @@ impl<'a> Table<'a> {
                 file: self.file.clone(),
                 what: "a depth column named as a time".into(),
                 candidates: "m or ft",
-                option: "a header such as md_m",
+                header: "md_m",
             }),
         }
     }

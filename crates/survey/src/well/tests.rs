@@ -140,13 +140,14 @@ fn a_petrel_trace_says_head_and_datum_itself() {
     let td = read.path.position_at_md(1100.0).unwrap();
     assert!((td.y - 5_930_000.25 - radius * (1.0 - 20f64.to_radians().cos())).abs() < 1e-6);
     assert!(read.warnings.is_empty(), "{:?}", read.warnings);
-    assert!(read.notes.iter().any(|n| n.contains("own places")), "{:?}", read.notes);
+    assert!(read.notes.iter().any(|n| n.fact.contains("own places")), "{:?}", read.notes);
 }
 
 #[test]
 fn what_is_missing_is_said() {
     let refused = |text: &str, options: &WellOptions| {
-        parse_deviation(Path::new("well.csv"), text, options).unwrap_err().to_string()
+        let error = parse_deviation(Path::new("well.csv"), text, options).unwrap_err();
+        format!("{error}; {}", error.remedy().unwrap_or_default())
     };
     let plain = WellOptions::default();
     assert!(refused("md,inc,azi\n0,0,0\n10,0,0\n", &plain).contains("--head"));
@@ -158,8 +159,8 @@ fn what_is_missing_is_said() {
     assert!(refused("md,x,y,tvdss\n0,0,0,0\n100,0,0,328\n", &options()).contains("--md-unit"));
     assert!(refused("", &options()).contains("no rows"));
     let assumed = read("md,inc,azi\n0,0,0\n100,0,0\n", &WellOptions { datum_m: None, ..options() });
-    assert!(assumed.warnings[0].contains("--kb"), "{:?}", assumed.warnings);
-    assert!(assumed.notes.iter().any(|n| n.contains("--md-unit")));
+    assert!(assumed.warnings[0].to_string().contains("--kb"), "{:?}", assumed.warnings);
+    assert!(assumed.notes.iter().any(|n| n.to_string().contains("--md-unit")));
 }
 
 #[test]
@@ -319,7 +320,7 @@ fn las_that_cannot_be_read_says_why() {
     assert!(why(&LAS.replace(" DEPT.FT", " DEPT.XX")).contains("M, FT, MS or S"));
     assert!(why(LAS.split("~ASCII").next().unwrap()).contains("~A"));
     let other = LAS.replace("WELL.  A-1", "WELL.  B-2");
-    assert!(read_las(&other).unwrap().1.warnings[0].contains("B-2"));
+    assert!(read_las(&other).unwrap().1.warnings[0].fact.contains("B-2"));
 }
 
 #[test]

@@ -10,6 +10,7 @@ use super::path::WellPath;
 use super::read::WellOptions;
 use super::table::Table;
 use crate::formats::text;
+use crate::remedy::Note;
 use std::path::Path;
 
 /// A top as it stands in a file.
@@ -32,7 +33,7 @@ pub fn parse_tops(
     text: &str,
     path: &WellPath,
     options: &WellOptions,
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Note>,
 ) -> Result<Vec<TopRow>, WellError> {
     let mut table = Table::parse(file, text);
     if table.rows.is_empty() {
@@ -87,19 +88,19 @@ pub fn parse_tops(
         tops.push(TopRow { name, md_m, line: row.line.number });
     }
     if negative > 0 {
-        notes.push(format!("tops: {negative} negative depths were turned positive down (elevations)"));
+        notes.push(format!("tops: {negative} negative depths were turned positive down (elevations)").into());
     }
     if !twice.is_empty() {
-        notes.push(format!(
-            "tops: the hole crosses the depth of {} more than once; the first is taken",
-            twice.join(", ")
-        ));
+        notes.push(
+            format!("tops: the hole crosses the depth of {} more than once; the first is taken", twice.join(", "))
+                .into(),
+        );
     }
     Ok(tops)
 }
 
 /// The tops on the path, in order; notes name those that are not on it.
-pub(super) fn on_path(rows: Vec<TopRow>, path: &WellPath, warnings: &mut Vec<String>) -> Vec<Top> {
+pub(super) fn on_path(rows: Vec<TopRow>, path: &WellPath, warnings: &mut Vec<Note>) -> Vec<Top> {
     let [first, last] = path.md_range_m();
     let mut tops = Vec::with_capacity(rows.len());
     let mut off = Vec::new();
@@ -113,11 +114,14 @@ pub(super) fn on_path(rows: Vec<TopRow>, path: &WellPath, warnings: &mut Vec<Str
         }
     }
     if !off.is_empty() {
-        warnings.push(format!(
-            "{} tops lie beyond the path, which runs from MD {first:.1} to {last:.1} m, and were left out: {}",
-            off.len(),
-            off.join(", ")
-        ));
+        warnings.push(
+            format!(
+                "{} tops lie beyond the path, which runs from MD {first:.1} to {last:.1} m, and were left out: {}",
+                off.len(),
+                off.join(", ")
+            )
+            .into(),
+        );
     }
     tops.sort_by(|a, b| a.md_m.total_cmp(&b.md_m));
     tops

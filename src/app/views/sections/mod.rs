@@ -13,12 +13,13 @@ pub use lines::{entry_colour, horizon_colour};
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
+use super::texture;
 use crate::app::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, Session, SliceKind};
 use crate::app::work::{Rocks, SlicePicture, SliceWish, Slices};
 use axes::{extent, name, ticks, value_at, voxel};
 use eframe::egui::{
-    Align2, Color32, ColorImage, Context, DragValue, FontId, Pos2, Rect, Role, Sense, TextureHandle, TextureOptions,
-    Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, Context, DragValue, FontId, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
 };
 use glam::DVec2;
 use lines::{cross, fence_line};
@@ -72,12 +73,7 @@ impl Sections {
     /// Takes a section in.
     pub fn receive(&mut self, ctx: &Context, picture: SlicePicture) {
         let pane = self.panes.entry(picture.kind).or_default();
-        let size = [picture.image.width() as usize, picture.image.height() as usize];
-        let image = ColorImage::from_rgba_unmultiplied(size, &picture.image);
-        match &mut pane.texture {
-            Some(texture) => texture.set(image, TextureOptions::LINEAR),
-            none => *none = Some(ctx.load_texture(format!("{:?}", picture.kind), image, TextureOptions::LINEAR)),
-        }
+        texture::keep(&mut pane.texture, ctx, name(picture.kind), texture::pixels(&picture.image));
         pane.shown = Some(picture);
     }
 

@@ -6,11 +6,12 @@ mod contours;
 mod grid;
 mod hatch;
 
-use super::{Event, Interpreted, Outbox, Rocks, spawn};
+use super::wishes::{Wished, Wishes};
+use super::{Event, Interpreted, Outbox, Rocks};
 use glam::DVec2;
 use grid::Grid;
 use image::{Rgba, RgbaImage};
-use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::sync::{Arc, PoisonError};
 use survey::SurveyGeometry;
 use ttf::{ColourMap, RgbaFunction};
 
@@ -78,60 +79,28 @@ pub struct MapPicture {
     pub interval: f64,
 }
 
-#[derive(Default)]
-struct Slot {
-    wish: Option<MapWish>,
-    ended: bool,
-}
-
 /// The thread that maps, and the wish it works on next.
 pub struct Maps {
-    shared: Arc<(Mutex<Slot>, Condvar)>,
+    wishes: Wishes<Option<MapWish>>,
 }
 
 impl Maps {
     /// Starts the thread.
     pub fn start(outbox: Outbox) -> Self {
-        let shared = Arc::new((Mutex::new(Slot::default()), Condvar::new()));
-        let mine = shared.clone();
-        spawn("map", move || work(&mine, &outbox));
-        Self { shared }
+        Self {
+            wishes: Wishes::start("map", move |wished: &Wished<Option<MapWish>>| {
+                while let Some(wish) = wished.next(Option::take) {
+                    if let Some(picture) = draw(&wish) {
+                        outbox.send(Event::Mapped(picture));
+                    }
+                }
+            }),
+        }
     }
 
     /// Maps this next.
     pub fn map(&self, wish: MapWish) {
-        self.change(|slot| slot.wish = Some(wish));
-    }
-
-    fn change(&self, change: impl FnOnce(&mut Slot)) {
-        change(&mut self.shared.0.lock().unwrap_or_else(PoisonError::into_inner));
-        self.shared.1.notify_one();
-    }
-}
-
-impl Drop for Maps {
-    fn drop(&mut self) {
-        self.change(|slot| slot.ended = true);
-    }
-}
-
-fn work(shared: &(Mutex<Slot>, Condvar), outbox: &Outbox) {
-    loop {
-        let wish = {
-            let mut slot = shared.0.lock().unwrap_or_else(PoisonError::into_inner);
-            loop {
-                if slot.ended {
-                    return;
-                }
-                if let Some(wish) = slot.wish.take() {
-                    break wish;
-                }
-                slot = shared.1.wait(slot).unwrap_or_else(PoisonError::into_inner);
-            }
-        };
-        if let Some(picture) = draw(&wish) {
-            outbox.send(Event::Mapped(picture));
-        }
+        self.wishes.change(|next| *next = Some(wish));
     }
 }
 

@@ -3,6 +3,7 @@
 use super::*;
 use crate::geometry::VerticalUnit;
 use crate::mesh::TriangleMesh;
+use crate::remedy::Setting;
 use glam::DVec3;
 
 /// 50 × 50 bins of 25 m from (X0, 0), 0–800 m; no X is a line number.
@@ -137,7 +138,7 @@ fn bad_faults_are_refused_with_a_reason() {
         text(|p, s, n| format!("{}\t{}\t{}\t{s}\t{n}", p.x, p.y, p.z)).lines().take(4).collect::<Vec<_>>().join("\n");
     assert!(matches!(read(&one), FormatError::NoSurface { .. }));
     let up = text(|p, s, n| format!("{}\t{}\t{}\t{s}\t{n}", p.x, p.y, -p.z));
-    assert!(read(&up).to_string().contains("--z-positive up"));
+    assert_eq!(read(&up).remedy(), Some(Setting::ZPositive.stated_as("up")));
     let away = text(|p, s, n| format!("{}\t{}\t{}\t{s}\t{n}", p.x + 9e5, p.y + 6e6, p.z));
     assert!(matches!(read(&away), FormatError::OutsideSurvey { .. }));
     let feet = text(|p, s, n| format!("{}\t{}\t{}\t{s}\t{n}", p.x / 0.3048, p.y / 0.3048 + 5000.0, p.z));

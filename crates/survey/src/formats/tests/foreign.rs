@@ -138,7 +138,7 @@ fn unit_sign_factor_and_null_are_settled_by_options_in_every_format() {
             assert_is_the_plane(&horizon, &format!("{format} × {factor}"));
             if factor != 1.0 {
                 // Without the option the same file is refused, with the option in the answer.
-                let error = read_horizons(&path, &survey(unit), &plain).unwrap_err().to_string();
+                let error = read_horizons(&path, &survey(unit), &plain).unwrap_err().remedy().unwrap().to_string();
                 assert!(error.contains("--z-"), "{format} × {factor}: {error}");
             }
         }
@@ -246,7 +246,7 @@ fn the_order_of_cps3_values_is_shown_and_can_be_told() {
         })
         .collect();
     let (_, report) = read(&format!("{header}{noise}"), None);
-    assert!(report.warnings[0].contains("--value-order"), "{report}");
+    assert!(report.warnings[0].to_string().contains("--value-order"), "{report}");
     read(&format!("{header}{level}"), None);
 }
 
@@ -270,8 +270,11 @@ fn repeated_points_and_spikes_are_reported() {
     let (_, report) = horizon(&text, &geometry, &ImportOptions::default());
     assert!(report.notes.iter().any(|n| n.starts_with("6 points share")), "{report}");
     // The spike, and a point of the rim whose neighbours all lie on one side.
-    assert!(report.warnings.len() == 1 && report.warnings[0].starts_with("2 points lie more"), "{report}");
-    assert!(report.warnings[0].contains("+88") || report.warnings[0].contains("+89"), "{report}");
+    assert!(report.warnings.len() == 1 && report.warnings[0].fact.starts_with("2 points lie more"), "{report}");
+    assert!(
+        report.warnings[0].to_string().contains("+88") || report.warnings[0].to_string().contains("+89"),
+        "{report}"
+    );
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::geometry::{LineAxis, VerticalAxis, VerticalUnit};
+use crate::remedy::Setting;
 use glam::{DVec2, DVec3};
 
 /// The folder of interpretations; None, said so, without `PETROGLYPH_DATA`.
@@ -326,8 +327,8 @@ fn claudius_as_it_is_in_the_file_is_refused() {
     let error = read_fault(&folder.join("Fault.ts"), &geometry, &ImportOptions::default()).unwrap_err();
     assert!(matches!(error, FormatError::UnitMismatch { .. }), "{error}");
     let factor = ImportOptions { z_unit: Some(ZUnit::Milliseconds), z_factor: -1.0 / 3.0, ..ImportOptions::default() };
-    let error = read_fault(&folder.join("Fault.ts"), &geometry, &factor).unwrap_err().to_string();
-    assert!(error.contains("--z-positive down"), "{error}");
+    let error = read_fault(&folder.join("Fault.ts"), &geometry, &factor).unwrap_err();
+    assert_eq!(error.remedy(), Some(Setting::ZPositive.stated_as("down")), "{error}");
 }
 
 /// Distance of points from a mesh in metres (TWT at 2000 m/s is 1 m a ms), sorted.
@@ -404,7 +405,7 @@ fn penobscot_petrel_points_need_their_sign() {
     let name = "petrel_points_attributes.txt";
     let error =
         read_horizons(&penobscot.folder.join(name), &penobscot.geometry, &ImportOptions::default()).unwrap_err();
-    assert!(error.to_string().contains("--z-positive up"), "{error}");
+    assert_eq!(error.remedy(), Some(Setting::ZPositive.stated_as("up")), "{error}");
     let up = ImportOptions { z_positive: Some(ZPositive::Up), ..ImportOptions::default() };
     let (horizon, report) = penobscot.read(name, &up);
     assert!(matches!(report.z_unit, Settled { value: ZUnit::Milliseconds, source: Provenance::File(_) }));

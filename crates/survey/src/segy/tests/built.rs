@@ -125,7 +125,7 @@ impl Built {
     /// Why it is refused without options.
     pub fn refusal(&self) -> (SegyProblem, String) {
         let error = self.scan(&SegyOptions::default()).expect_err("it should have been refused");
-        let sentence = error.to_string();
+        let sentence = format!("{error}; {}", error.remedy().unwrap_or_default());
         (error.problem, sentence)
     }
 }

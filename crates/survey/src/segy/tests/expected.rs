@@ -182,11 +182,11 @@ fn domains_units_and_places_of_real_files() {
     assert!((rotated.crossline_vector - glam::DVec2::new(0.1, 0.1)).length() < 1e-9);
 
     let lsb = open("segy/segyio/Format1lsb.sgy");
-    assert!(lsb.info().warnings.iter().any(|w| w.contains("462 samples")), "{:?}", lsb.info().warnings);
+    assert!(lsb.info().warnings.iter().any(|w| w.fact.contains("462 samples")), "{:?}", lsb.info().warnings);
 
     assert_eq!(open("segy/segyio/multi-text.sgy").info().extended_text.len(), 160);
     let bare = open("segy/segyio/small.sgy");
-    assert!(bare.info().assumptions.iter().any(|a| a.contains("25 m")), "{:?}", bare.info().assumptions);
+    assert!(bare.info().assumptions.iter().any(|a| a.fact.contains("25 m")), "{:?}", bare.info().assumptions);
 }
 
 #[test]

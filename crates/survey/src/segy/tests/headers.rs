@@ -5,6 +5,7 @@ use super::super::{
     TraceWeight,
 };
 use super::built::{Built, SAMPLES};
+use crate::remedy::{Note, Setting};
 
 const LINES: [i32; 3] = [1, 2, 3];
 
@@ -12,15 +13,15 @@ fn built() -> Built {
     Built::grid(&LINES, &[10, 11, 12, 13])
 }
 
-fn has(notes: &[String], words: &str) -> bool {
-    notes.iter().any(|note| note.contains(words))
+fn has(notes: &[Note], words: &str) -> bool {
+    notes.iter().any(|note| note.to_string().contains(words))
 }
 
 #[test]
 fn the_plain_file_needs_no_assumption() {
     let info = built().info();
-    assert_eq!(info.assumptions, Vec::<String>::new());
-    assert_eq!(info.warnings, Vec::<String>::new());
+    assert_eq!(info.assumptions, Vec::<Note>::new());
+    assert_eq!(info.warnings, Vec::<Note>::new());
     assert_eq!(info.text_encoding, TextEncoding::Ascii);
     assert_eq!((info.start, info.interval, info.samples), (0.0, 4.0, SAMPLES));
 }
@@ -140,7 +141,10 @@ fn revision_2_coordinates_in_the_trace_header_extension_are_found() {
         };
         assert_eq!(file.scan(&stated).unwrap().geometry.inline_vector, [12.5, 0.0]);
         let beyond = SegyOptions { x_byte: Some(474), ..stated };
-        assert!(matches!(file.scan(&beyond).unwrap_err().problem, SegyProblem::BadOption { option: "--x-byte", .. }));
+        assert!(matches!(
+            file.scan(&beyond).unwrap_err().problem,
+            SegyProblem::BadSetting { setting: Setting::XByte, .. }
+        ));
     }
 }
 
@@ -182,7 +186,7 @@ fn intervals_of_two_headers_are_weighed() {
     assert_eq!(none.scan(&stated).unwrap().interval, 3.0);
     for wrong in [0.0, -1.0, f64::NAN] {
         let options = SegyOptions { interval: Some(wrong), ..SegyOptions::default() };
-        assert!(matches!(none.scan(&options).unwrap_err().problem, SegyProblem::BadOption { .. }));
+        assert!(matches!(none.scan(&options).unwrap_err().problem, SegyProblem::BadSetting { .. }));
     }
 }
 

@@ -81,7 +81,11 @@ fn coordinates_rounded_to_metres_holes_and_outlines_do_not_matter() {
         }
         assert_eq!(found.info.duplicate_traces, 0);
         assert!(found.info.geometry.residual_max_bins.unwrap() < 0.08);
-        assert!(found.info.assumptions.iter().any(|a| a.contains("numbered from 1")), "{:?}", found.info.assumptions);
+        assert!(
+            found.info.assumptions.iter().any(|a| a.fact.contains("numbered from 1")),
+            "{:?}",
+            found.info.assumptions
+        );
     }
 }
 
@@ -94,7 +98,7 @@ fn a_skewed_survey_keeps_the_axes_it_was_stored_by() {
     assert!((crossline - b).length() < 1e-2, "{crossline}");
     // a − b is shorter than a and leads to the same inlines; either is right, with crosslines counted along.
     assert!((inline - (a - b)).length() < 1e-2, "{inline}");
-    assert!(found.info.warnings.iter().any(|w| w.contains("not perpendicular")));
+    assert!(found.info.warnings.iter().any(|w| w.fact.contains("not perpendicular")));
 }
 
 #[test]
@@ -131,7 +135,7 @@ fn shuffled_traces_make_the_same_lattice_and_say_that_axes_are_unknown() {
     let mut sides = counts(&info);
     sides.sort_unstable();
     assert_eq!((sides, info.missing_traces), ([12, 15], 0));
-    assert!(info.assumptions.iter().any(|a| a.contains("does not tell which axis")), "{:?}", info.assumptions);
+    assert!(info.assumptions.iter().any(|a| a.fact.contains("does not tell which axis")), "{:?}", info.assumptions);
 }
 
 #[test]
@@ -145,7 +149,11 @@ fn a_few_traces_without_a_place_are_left_out() {
     });
     let found = file.read(&SegyOptions::default()).unwrap();
     assert_eq!((counts(&found.info), found.info.missing_traces), ([12, 15], 5));
-    assert!(found.info.warnings.iter().any(|w| w.contains("5 traces have no X and Y")), "{:?}", found.info.warnings);
+    assert!(
+        found.info.warnings.iter().any(|w| w.fact.contains("5 traces have no X and Y")),
+        "{:?}",
+        found.info.warnings
+    );
 }
 
 #[test]

@@ -5,6 +5,7 @@ use glam::DVec2;
 use super::super::{ByteOrder, SegyOptions, WriteFormat, WriteOptions, read, write};
 use crate::geometry::{LineAxis, SurveyGeometry, VerticalAxis, VerticalUnit};
 use crate::progress::Progress;
+use crate::remedy::Note;
 use crate::volume::Volume;
 
 struct Random(u64);
@@ -102,8 +103,8 @@ fn every_format_and_order_on_random_surveys() {
         let found =
             read(&path, &SegyOptions::default(), &Progress::silent()).unwrap_or_else(|e| panic!("{round}: {e}"));
         assert_eq!(found.info.traces, report.traces);
-        assert_eq!(found.info.warnings, Vec::<String>::new(), "{round}");
-        assert_eq!(found.info.assumptions, Vec::<String>::new(), "{round}");
+        assert_eq!(found.info.warnings, Vec::<Note>::new(), "{round}");
+        assert_eq!(found.info.assumptions, Vec::<Note>::new(), "{round}");
         assert_eq!(found.info.byte_order, byte_order);
         assert_eq!(found.geometry.inlines, geometry.inlines, "{round}");
         assert_eq!(found.geometry.crosslines, geometry.crosslines, "{round}");

@@ -1,0 +1,81 @@
+//! What can be stated about a file, by the names of the dialogues' fields: an error or a note that asks for something names the field to put it in.
+
+use survey::remedy::Statement;
+use survey::{Note, Remedy, Setting};
+
+/// The field that states it; none where no dialogue has one.
+pub fn field(setting: Setting) -> Option<&'static str> {
+    Some(match setting {
+        Setting::InlineByte => "Inline",
+        Setting::CrosslineByte => "Crossline",
+        Setting::XByte => "X",
+        Setting::YByte => "Y",
+        Setting::VerticalUnit | Setting::ZUnit => "Vertical unit",
+        Setting::Interval => "Sample interval",
+        Setting::Start => "First sample",
+        Setting::CoordinateUnit => "Unit of X and Y",
+        Setting::Bin => "Square bins, m",
+        Setting::LineNumbers => "Line numbers",
+        Setting::Duplicates => "Repeated traces",
+        Setting::TraceWeight => "Trace weight",
+        Setting::ZPositive => "Sign",
+        Setting::ZFactor => "Factor",
+        Setting::Format => "Format",
+        Setting::Columns => "Columns",
+        Setting::Null => "Value of holes",
+        Setting::PlaceBy => "Placed by",
+        Setting::ValueOrder => "Order of values",
+        Setting::MdUnit => "Lengths along the well",
+        Setting::Datum => "Datum above sea level, m",
+        Setting::Head => "Head X, Y, m",
+        Setting::WellInFile => "Name in the files",
+        Setting::Checkshot => "Checkshots",
+        Setting::SampleFormat | Setting::CoordinateType | Setting::LineType | Setting::ScalarByte => return None,
+    })
+}
+
+/// What to do next.
+pub fn advice(remedy: &Remedy) -> String {
+    let ways = ways(remedy);
+    if ways.is_empty() {
+        return format!("this can be stated on the command line only: {remedy}");
+    }
+    format!("state {ways}")
+}
+
+/// The note, with where to state otherwise.
+pub fn note(note: &Note) -> String {
+    let ways = note.otherwise.as_ref().map(ways).unwrap_or_default();
+    if ways.is_empty() { note.fact.clone() } else { format!("{} (if not: {ways})", note.fact) }
+}
+
+/// The ways that go through fields alone.
+fn ways(remedy: &Remedy) -> String {
+    let named = |way: &Vec<Statement>| -> Option<String> {
+        let names: Option<Vec<String>> = way.iter().map(named).collect();
+        names.map(|names| names.join(" and "))
+    };
+    remedy.ways.iter().filter_map(named).collect::<Vec<_>>().join(", or ")
+}
+
+fn named(statement: &Statement) -> Option<String> {
+    let field = field(statement.setting)?;
+    Some(statement.value.as_ref().map_or_else(|| format!("“{field}”"), |value| format!("{value} under “{field}”")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_to_be_stated_names_its_field() {
+        assert_eq!(advice(&Setting::MdUnit.stated_as("m or ft")), "state m or ft under “Lengths along the well”");
+        assert_eq!(advice(&Setting::Head.stated()), "state “Head X, Y, m”");
+        let bytes = Remedy::all([Setting::InlineByte.stated_as(9), Setting::CrosslineByte.stated_as(21)]);
+        let typed = Remedy::all([bytes.clone(), Setting::LineType.stated_as("i16")]);
+        assert_eq!(advice(&Remedy::any([typed, bytes])), "state 9 under “Inline” and 21 under “Crossline”");
+        assert!(advice(&Setting::SampleFormat.stated()).ends_with("on the command line only: --sample-format"));
+        assert_eq!(note(&Note::unless("so", Setting::Datum.stated())), "so (if not: “Datum above sea level, m”)");
+        assert_eq!(note(&Note::unless("so", Setting::CoordinateType.stated())), "so");
+    }
+}
