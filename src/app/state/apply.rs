@@ -71,7 +71,10 @@ impl State {
                     None => Task::Apply(Box::new(crate::Command::Import(*command))),
                 }];
             }
-            Action::Export(form) => return self.task(Task::Export(form)),
+            Action::Export(form) => {
+                self.quieten(Place::Foot);
+                return self.task(Task::Export(form));
+            }
             Action::Copy => return self.task(Task::Copy),
             Action::Picking(step) => return self.pick(step),
             Action::Extract(volume, settings) => {

@@ -16,8 +16,10 @@ pub enum Place {
     Data,
     /// Picks, faults, the extraction.
     Interpret,
-    /// Named scenes, view settings and export.
+    /// Named scenes and view settings.
     Scenes,
+    /// The line at the foot: what was done and shows nowhere else.
+    Foot,
     /// The dialogue in front.
     Dialogue,
 }

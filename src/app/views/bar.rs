@@ -156,7 +156,7 @@ fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 mod tests {
     use crate::app::tests::{driven, project, state, wait};
     use eframe::egui::vec2;
-    use egui_kittest::kittest::{NodeT, Queryable};
+    use egui_kittest::kittest::Queryable;
 
     #[test]
     fn nothing_lies_over_anything_else_in_any_window() {

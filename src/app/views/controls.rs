@@ -10,6 +10,8 @@ use survey::VerticalUnit;
 
 /// Angle a perspective begins with.
 const FOV_DEG: f64 = 35.0;
+/// Width of the labels before sliders, points.
+const LABELS: f32 = 100.0;
 /// Room beside a slider for its label and its number, points.
 const BESIDE_SLIDER: f32 = 184.0;
 /// Shares of the block a new corner cut takes.
@@ -101,7 +103,7 @@ fn row(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui) -> eframe::egui::Respo
 
 fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
     let has_layers = !session.document.horizons.is_empty() && session.view.panel != Panel::Interpret;
-    Grid::new("display").num_columns(2).show(ui, |ui| {
+    Grid::new("display").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
         row(ui, "Exaggeration", |ui| {
             ui.add(Slider::new(&mut scene.exaggeration, 0.25..=20.0).logarithmic(true).max_decimals(2).suffix("×"))
         });
@@ -121,7 +123,7 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
             scene.ground = has_ground.then(Ground::default);
         }
         if let Some(ground) = &mut scene.ground {
-            Grid::new("ground").num_columns(2).show(ui, |ui| {
+            Grid::new("ground").num_columns(2).min_col_width(LABELS).show(ui, |ui| {
                 row(ui, "Hill shading", |ui| ui.add(Slider::new(&mut ground.hill_shade, 0.0..=1.0).max_decimals(2)));
                 row(ui, "Light from", |ui| {
                     ui.add(Slider::new(&mut ground.light_deg, -180.0..=180.0).max_decimals(0).suffix("°"))

@@ -1,13 +1,21 @@
 //! The line at the foot: what is under the cursor, and what is under way.
 
 use super::pointed::{self, Pointed};
-use crate::app::state::Session;
+use crate::app::state::{Action, Place, State};
 use crate::app::work::RunningLine;
-use eframe::egui::{Align, Layout, ProgressBar, Ui};
+use eframe::egui::{Align, Label, Layout, ProgressBar, Ui};
 
 /// Shows the line.
-pub fn show(ui: &mut Ui, session: Option<&Session>, pointed: Option<&Pointed>, running: &[RunningLine], device: &str) {
+pub fn show(
+    ui: &mut Ui,
+    state: &State,
+    pointed: Option<&Pointed>,
+    running: &[RunningLine],
+    device: &str,
+    actions: &mut Vec<Action>,
+) {
     ui.horizontal(|ui| {
+        let session = state.session.as_ref();
         if let (Some(session), Some(pointed)) = (session, pointed) {
             ui.label(pointed::sentence(pointed, &session.document));
         } else if let Some(session) = session {
@@ -27,7 +35,12 @@ pub fn show(ui: &mut Ui, session: Option<&Session>, pointed: Option<&Pointed>, r
                     if line.stage.is_empty() { line.title.clone() } else { format!("{}: {}", line.title, line.stage) };
                 ui.label(text);
             }
-            if running.is_empty() && !device.is_empty() {
+            if let Some((index, notice)) = state.notices_at(Place::Foot).last() {
+                if ui.small_button("Dismiss").clicked() {
+                    actions.push(Action::Dismiss(index));
+                }
+                ui.add(Label::new(&notice.text).truncate());
+            } else if running.is_empty() && !device.is_empty() {
                 ui.weak(format!("drawn by {device}"));
             }
         });

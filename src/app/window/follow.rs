@@ -87,7 +87,7 @@ impl Window {
                 Event::Picking { .. } | Event::Erased { .. } => {}
                 Event::Exported(path) => {
                     self.act(Action::Answered);
-                    self.act(Action::Tell(Notice::note(Place::Scenes, format!("written: {}", path.display()))));
+                    self.act(Action::Tell(Notice::note(Place::Foot, format!("Written: {}", path.display()))));
                 }
                 Event::Told(notice) => self.act(Action::Tell(notice)),
             }

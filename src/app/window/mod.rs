@@ -267,7 +267,7 @@ impl Window {
         let running = self.work.running.lines();
         dropped::receive(&ctx, &self.state, !running.is_empty(), &mut actions);
         Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
-            status::show(ui, self.state.session.as_ref(), self.pointed.as_ref(), &running, self.block.device());
+            status::show(ui, &self.state, self.pointed.as_ref(), &running, self.block.device(), &mut actions);
         });
         if self.state.session.is_some() {
             self.work_page(ui, &running, &mut actions);
