@@ -7,7 +7,7 @@ use crate::shown_candidates::ShownCandidates;
 use crate::{data, derived, library, memory, style};
 use glam::{DVec3, Vec3};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
-use render::{Inputs, Lookup, NamedVolume, Scene, VoxelBox, WellPath};
+use render::{Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox, WellPath};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -251,6 +251,40 @@ pub fn load_within(
     })
 }
 
+/// What a scene shows beyond what was loaded.
+pub(crate) struct More {
+    volumes: Vec<LoadedVolume>,
+    candidates: Option<ShownCandidates>,
+}
+
+/// Reads the volumes and horizons that `scene` sees through and that are not loaded yet; the model stays.
+///
+/// # Errors
+/// Damaged data, or cancelled.
+pub(crate) fn read_more(
+    project: &Project,
+    loaded: &Loaded,
+    scene: &Scene,
+    progress: &Progress,
+) -> Result<More, ProjectError> {
+    let document = project.document();
+    let missing: Vec<&str> =
+        scene.media.all().map(|medium| medium.volume.as_str()).filter(|name| !loaded.has_volume(name)).collect();
+    let limit = memory::half_of_available();
+    let volumes = read_volumes(project.root(), document, &loaded.geometry, &missing, limit, progress)?;
+    let candidates = ShownCandidates::load(project, scene, loaded.rock.as_ref().map(|rock| &rock.model), progress)?;
+    Ok(More { volumes, candidates })
+}
+
+impl More {
+    /// Puts it to what is loaded.
+    pub(crate) fn add_to(self, loaded: &mut Loaded) {
+        loaded.volumes.extend(self.volumes);
+        loaded.candidates = self.candidates;
+        loaded.version = new_version();
+    }
+}
+
 /// Reads what interpreting needs: the raw volume, the wells, and of the extraction what `scene` shows; no model, whatever horizons there are.
 ///
 /// # Errors
@@ -340,6 +374,17 @@ pub(crate) fn block_extent(
 }
 
 impl Loaded {
+    /// Whether all is here that a scene sees through.
+    pub fn holds_media(&self, media: &Media) -> bool {
+        let knows = |name: &str| self.candidates.as_ref().is_some_and(|known| !known.leaves_of(name).is_empty());
+        media.all().all(|medium| self.has_volume(&medium.volume))
+            && media.horizons.iter().filter_map(|horizon| horizon.name.as_deref()).all(knows)
+    }
+
+    fn has_volume(&self, name: &str) -> bool {
+        self.volumes.iter().any(|volume| volume.name == name)
+    }
+
     /// A scene with all that only the project knows: colours of raw data where it states none, and the leaves of horizons it names.
     pub fn complete(&self, scene: &Scene) -> Scene {
         let mut scene = Scene { raw: scene.raw.clone().or_else(|| self.raw.clone()), ..scene.clone() };

@@ -135,15 +135,12 @@ impl SeeThrough {
         for (n, shown) in self.horizons.iter().enumerate() {
             let entry = &document.horizons[document.position(Noun::Horizon, &shown.name)?];
             let own = entry.assembly.as_ref().map(|log| log.colour);
+            let colour = shown.colour.or(own).unwrap_or(HORIZON_COLOURS[n % HORIZON_COLOURS.len()]);
             scene.media.horizons.push(PickedHorizon {
                 name: Some(entry.name.clone()),
-                leaves: Vec::new(),
-                colour: shown.colour.or(own).unwrap_or(HORIZON_COLOURS[n % HORIZON_COLOURS.len()]),
-                colouring: Colouring::Own,
                 opacity: shown.opacity,
-                thickness: 1.0,
                 emission: shown.emission,
-                paint: None,
+                ..PickedHorizon::of(Vec::new(), colour)
             });
         }
         for (n, shown) in self.isosurfaces.iter().enumerate() {
@@ -230,16 +227,7 @@ pub fn leaves_in_volume(scene: &mut Scene) {
     }
     let horizons = &mut scene.media.horizons;
     if horizons.is_empty() {
-        horizons.push(PickedHorizon {
-            name: None,
-            leaves: Vec::new(),
-            colour: Colour::WHITE,
-            colouring: Colouring::ByLeaf,
-            opacity: 1.0,
-            thickness: 1.0,
-            emission: 0.0,
-            paint: None,
-        });
+        horizons.push(PickedHorizon::of(Vec::new(), Colour::WHITE));
     }
     horizons.iter_mut().for_each(|horizon| horizon.colouring = Colouring::ByLeaf);
     scene.face_data = FaceData::Rock;

@@ -3,7 +3,6 @@
 use super::picking::Look;
 use super::{Panel, Session};
 use crate::scene::{SeeThrough, Technique};
-use render::media::Colouring;
 use render::{FaceData, Media, PickedHorizon, Scene, Scope};
 use ttf::Colour;
 
@@ -42,14 +41,8 @@ pub fn scene(session: &Session, horizons: Option<&[(Colour, Vec<u32>)]>) -> Scen
         let picked = horizons.into_iter().flatten().filter(|(_, leaves)| !leaves.is_empty());
         scene.media.horizons = picked
             .map(|(colour, leaves)| PickedHorizon {
-                name: None,
-                leaves: leaves.clone(),
-                colour: *colour,
-                colouring: Colouring::Own,
-                opacity: 1.0,
                 thickness: THICKNESS,
-                emission: 0.0,
-                paint: None,
+                ..PickedHorizon::of(leaves.clone(), *colour)
             })
             .collect();
     }

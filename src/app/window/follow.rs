@@ -3,7 +3,7 @@
 use super::Window;
 use crate::app::hold::{Hold, Taken};
 use crate::app::state::{Action, Dialogue, Look, Notice, Panel, Picking, Place, Session};
-use crate::app::work::{Event, Purpose, Wanted};
+use crate::app::work::{Event, Purpose, Seen, Wanted};
 use crate::command::Command;
 use eframe::egui::Context;
 use std::path::Path;
@@ -19,6 +19,8 @@ pub(super) struct Needs {
     /// The colours under the hand.
     raw: Option<RawColour>,
     exaggeration: f64,
+    /// What is seen through.
+    seen: Seen,
     /// While interpreting, the extraction whose candidates are shown, if any are.
     interpreting: Option<Option<String>>,
 }
@@ -119,7 +121,12 @@ impl Window {
             document.layer_names.clear();
             Wanted { root, document, exaggeration: 1.0, purpose: Purpose::Interpret { extraction } }
         } else {
-            Wanted { root, document, exaggeration: needs.exaggeration, purpose: Purpose::Illustrate }
+            Wanted {
+                root,
+                document,
+                exaggeration: needs.exaggeration,
+                purpose: Purpose::Illustrate(needs.seen.clone()),
+            }
         };
         self.needs = Some(needs);
         if self.wanted.as_ref() != Some(&wanted) {
@@ -138,6 +145,7 @@ impl Window {
             layer: self.layers.draft().cloned(),
             raw: self.functions.draft().cloned(),
             exaggeration: session.view.scene.exaggeration,
+            seen: Seen::of(&session.view.scene.media),
             interpreting: (session.view.panel == Panel::Interpret).then(extraction),
         }
     }

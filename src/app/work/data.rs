@@ -10,12 +10,13 @@ use crate::error::ProjectError;
 use crate::pipeline::{self, Loaded};
 use crate::project::{Document, Project};
 use crate::{derived, library, style};
-use render::{FaceData, Scene};
+use render::media::{LayerOpacity, MediumColour, white_ramp};
+use render::{FaceData, Media, Medium, PickedHorizon, Scene};
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError, RwLock};
 use survey::Progress;
 use survey::model::ModelSettings;
-use ttf::TtfTables;
+use ttf::{Colour, TtfTables};
 
 /// Loaded data; whoever only looks must not wait for it (`try_read`).
 pub type Rocks = Arc<RwLock<Loaded>>;
@@ -36,13 +37,52 @@ pub struct Wanted {
 /// What pictures are drawn for.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Purpose {
-    /// To be looked at: with everything that the interpretation makes of the volume.
-    Illustrate,
+    /// To be looked at: with everything that the interpretation makes of the volume, and what is seen through.
+    Illustrate(Seen),
     /// To be interpreted: the volume alone, whatever horizons there are, so that no pick has to wait for a model.
     Interpret {
         /// The extraction whose candidates are shown; absent where none are, for they take five bytes a voxel.
         extraction: Option<String>,
     },
+}
+
+/// What is seen through, by names in their order.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// Volumes.
+    pub volumes: Vec<String>,
+    /// Horizons.
+    pub horizons: Vec<String>,
+}
+
+impl Seen {
+    /// What a scene's media show.
+    pub fn of(media: &Media) -> Self {
+        let mut volumes: Vec<String> = media.all().map(|medium| medium.volume.clone()).collect();
+        let mut horizons: Vec<String> = media.horizons.iter().filter_map(|horizon| horizon.name.clone()).collect();
+        for names in [&mut volumes, &mut horizons] {
+            names.sort();
+            names.dedup();
+        }
+        Self { volumes, horizons }
+    }
+
+    /// A scene that shows this.
+    fn scene(&self, exaggeration: f64) -> Scene {
+        let medium = |volume: &String| Medium {
+            volume: volume.clone(),
+            function: white_ramp(1.0, 0.0),
+            layers: LayerOpacity::Ignored,
+            colour: MediumColour::Function,
+        };
+        let horizon =
+            |name: &String| PickedHorizon { name: Some(name.clone()), ..PickedHorizon::of(Vec::new(), Colour::WHITE) };
+        // Half-way needs everything that any blend needs.
+        let mut scene = Scene { blend: 0.5, exaggeration, ..Scene::default() };
+        scene.media.surroundings = self.volumes.iter().map(medium).collect();
+        scene.media.horizons = self.horizons.iter().map(horizon).collect();
+        scene
+    }
 }
 
 #[derive(Default)]
@@ -91,6 +131,7 @@ struct Kept {
     root: PathBuf,
     key: String,
     volumes: Vec<(String, String)>,
+    seen: Seen,
     rocks: Rocks,
 }
 
@@ -128,24 +169,33 @@ fn work(wished: &Wished<Next>, outbox: &Outbox, running: &Running) {
 
 fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
     let document = &wanted.document;
-    if wanted.purpose != Purpose::Illustrate {
+    let Purpose::Illustrate(seen) = &wanted.purpose else {
         return load_bare(wanted, kept, progress);
-    }
+    };
     let key = derived::parameterization_key(document, &ModelSettings::default(), &pipeline::param_settings(document));
     let volumes = needed_volumes(document);
     let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
-    if let Some(kept) = kept.as_ref().filter(same) {
+    if let Some(kept) = kept.as_mut().filter(|kept| same(&&**kept)) {
+        if kept.seen != *seen {
+            let project = Project::open(&wanted.root)?;
+            let scene = seen.scene(wanted.exaggeration);
+            let more = {
+                let loaded = kept.rocks.read().unwrap_or_else(PoisonError::into_inner);
+                super::compute(|| pipeline::read_more(&project, &loaded, &scene, progress))?
+            };
+            more.add_to(&mut kept.rocks.write().unwrap_or_else(PoisonError::into_inner));
+            kept.seen = seen.clone();
+        }
         restyle(&kept.rocks, wanted)?;
         return Ok(kept.rocks.clone());
     }
     // Memory for one model and its volumes, not for two.
     *kept = None;
     let project = Project::open(&wanted.root)?;
-    // Half-way needs everything that any blend needs.
-    let scene = Scene { blend: 0.5, exaggeration: wanted.exaggeration, ..Scene::default() };
+    let scene = seen.scene(wanted.exaggeration);
     let loaded = super::compute(|| pipeline::load(&project, &scene, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
-    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, rocks: rocks.clone() });
+    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: seen.clone(), rocks: rocks.clone() });
     Ok(rocks)
 }
 
@@ -172,7 +222,7 @@ fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> R
     let scene = Scene { face_data, ..Scene::default() };
     let loaded = super::compute(|| pipeline::load_bare(&project, &scene, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
-    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, rocks: rocks.clone() });
+    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: Seen::default(), rocks: rocks.clone() });
     Ok(rocks)
 }
 

@@ -21,7 +21,7 @@ pub mod slice;
 pub mod swatches;
 mod wishes;
 
-pub use data::{Purpose, Rocks, Wanted};
+pub use data::{Purpose, Rocks, Seen, Wanted};
 pub use map::{MapPicture, Maps};
 pub use picks::{Interpreted, Picks, ShownFault, ShownHorizon, ShownPick};
 pub use picture::{Drawing, Drawn, PictureWish, Touch};

@@ -249,6 +249,14 @@ pub struct PickedHorizon {
     pub paint: Option<Paint>,
 }
 
+impl PickedHorizon {
+    /// An opaque horizon of these leaves in one colour, a voxel thick to either side, that gives off no light.
+    pub fn of(leaves: Vec<u32>, colour: Colour) -> Self {
+        let colouring = Colouring::Own;
+        Self { name: None, leaves, colour, colouring, opacity: 1.0, thickness: 1.0, emission: 0.0, paint: None }
+    }
+}
+
 /// What colours a horizon.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
