@@ -56,7 +56,11 @@ pub fn number(ui: &mut Ui, setting: Setting, value: &mut Option<f64>) {
         let mut typed = value.unwrap_or(0.0);
         let is_stated = value.is_some();
         let drag = DragValue::new(&mut typed).speed(0.1).custom_formatter(|number, decimals| {
-            if is_stated { eframe::egui::emath::format_with_decimals_in_range(number, decimals) } else { AS_FILE.to_owned() }
+            if is_stated {
+                eframe::egui::emath::format_with_decimals_in_range(number, decimals)
+            } else {
+                AS_FILE.to_owned()
+            }
         });
         if ui.add(drag).labelled_by(label.id).changed() {
             *value = Some(typed);

@@ -9,8 +9,8 @@ use crate::app::work::scan::{self, Reading, SurveyScan};
 use crate::command::ImportVolume;
 use crate::project::Polarity;
 use eframe::egui::{
-    Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect, Role,
-    ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
+    Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect,
+    Role, ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::RgbaImage;
@@ -108,8 +108,7 @@ impl Import {
             });
             ui.add_space(6.0);
             Grid::new("units").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
-                let found =
-                    info.map_or(AS_FOUND.to_owned(), |info| format!("{} (found)", info.vertical_unit.symbol()));
+                let found = info.map_or(AS_FOUND.to_owned(), |info| format!("{} (found)", info.vertical_unit.symbol()));
                 let units =
                     [FileUnit::Milliseconds, FileUnit::Metres, FileUnit::Feet].map(|unit| (unit, unit.symbol()));
                 form::choice(ui, Setting::VerticalUnit, &mut options.vertical_unit, &found, &units);

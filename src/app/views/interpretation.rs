@@ -7,7 +7,9 @@ use crate::app::theme;
 use crate::app::work::Work;
 use crate::app::work::scan::{self, InterpretationScan, Reading};
 use crate::command::{AddFault, AddHorizon, Age, Command};
-use eframe::egui::{Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use eframe::egui::{
+    Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui,
+};
 use std::path::{Path, PathBuf};
 use survey::formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use survey::{Contact, Setting};

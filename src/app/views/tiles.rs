@@ -2,9 +2,7 @@
 
 use super::texture;
 use crate::app::work::Swatches;
-use eframe::egui::{
-    Color32, CornerRadius, Rect, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, pos2,
-};
+use eframe::egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, pos2};
 use std::collections::HashMap;
 use ttf::LayerStyle;
 
@@ -33,9 +31,10 @@ impl Tiles {
             if self.textures.len() > KEPT {
                 self.textures.clear();
             }
-            let texture = self.textures.entry(key).or_insert_with_key(|key| {
-                ui.ctx().load_texture(key, texture::pixels(&image), TextureOptions::LINEAR)
-            });
+            let texture = self
+                .textures
+                .entry(key)
+                .or_insert_with_key(|key| ui.ctx().load_texture(key, texture::pixels(&image), TextureOptions::LINEAR));
             let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(texture.id(), rect, uv, Color32::WHITE);
         }

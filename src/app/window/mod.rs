@@ -272,7 +272,8 @@ impl Window {
         if self.state.session.is_some() {
             self.work_page(ui, &running, &mut actions);
         } else {
-            CentralPanel::default().show(ui, |ui| start::show(ui, &self.state, &mut self.present, !running.is_empty(), &mut actions));
+            CentralPanel::default()
+                .show(ui, |ui| start::show(ui, &self.state, &mut self.present, !running.is_empty(), &mut actions));
         }
         self.dialogues(&ctx, &mut actions);
         for action in actions {

@@ -158,9 +158,7 @@ pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) 
 pub fn fault(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) -> Result<InterpretationScan, Notice> {
     let found =
         formats::read_fault(path, geometry, options).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
-    Ok(InterpretationScan {
-        surfaces: found.into_iter().map(|(fault, report)| (fault.name, told(report))).collect(),
-    })
+    Ok(InterpretationScan { surfaces: found.into_iter().map(|(fault, report)| (fault.name, told(report))).collect() })
 }
 
 /// A report whose warnings name the dialogue's fields.

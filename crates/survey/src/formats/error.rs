@@ -191,9 +191,7 @@ pub enum FormatError {
         count: usize,
     },
     /// Line numbers and coordinates point to different places of the survey.
-    #[error(
-        "{file}: '{name}' is {metres:.0} m away when placed by X, Y instead of by inline, crossline (median)"
-    )]
+    #[error("{file}: '{name}' is {metres:.0} m away when placed by X, Y instead of by inline, crossline (median)")]
     LinesDisagree {
         /// The file.
         file: PathBuf,

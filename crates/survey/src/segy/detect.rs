@@ -154,7 +154,8 @@ impl Candidate {
     pub fn remedy(&self) -> Remedy {
         let bytes =
             [Setting::InlineByte.stated_as(self.inline_byte), Setting::CrosslineByte.stated_as(self.crossline_byte)];
-        let own_type = (self.number_type != NumberType::I32).then(|| Setting::LineType.stated_as(self.number_type.name()));
+        let own_type =
+            (self.number_type != NumberType::I32).then(|| Setting::LineType.stated_as(self.number_type.name()));
         Remedy::all(bytes.into_iter().chain(own_type))
     }
 
@@ -428,8 +429,7 @@ impl Search<'_> {
             },
         );
         let bytes = Remedy::all([Setting::InlineByte.stated(), Setting::CrosslineByte.stated()]);
-        let note =
-            Note::unless(fact, Remedy::any([Setting::LineNumbers.stated_as("coordinates-swapped"), bytes]));
+        let note = Note::unless(fact, Remedy::any([Setting::LineNumbers.stated_as("coordinates-swapped"), bytes]));
         if self.options.line_source == LineSource::Headers {
             findings.assumption(note);
         } else {

@@ -165,10 +165,7 @@ pub enum SegyProblem {
         may_repeat: bool,
     },
     /// No header bytes hold line numbers.
-    #[error(
-        "no trace header bytes hold usable inline and crossline numbers: {}",
-        list(tried)
-    )]
+    #[error("no trace header bytes hold usable inline and crossline numbers: {}", list(tried))]
     NoLineNumbers {
         /// The pairs that were looked at.
         tried: Vec<Candidate>,

@@ -164,7 +164,8 @@ pub fn parse_checkshot(
             let before = rows.len();
             rows.retain(|r| r[0].is_finite());
             if rows.len() < before {
-                notes.push(format!("checkshots: {} of {before} lie beyond the well's path", before - rows.len()).into());
+                notes
+                    .push(format!("checkshots: {} of {before} lie beyond the well's path", before - rows.len()).into());
             }
         }
         _ => {}
@@ -191,10 +192,13 @@ pub fn parse_checkshot(
                     });
                 }
             };
-            notes.push(format!(
-                "checkshots: times are in {word}: only so the mean velocity, {:.0} m/s, is that of rock",
-                if unit == 1.0 { 1000.0 * slope } else { slope }
-            ).into());
+            notes.push(
+                format!(
+                    "checkshots: times are in {word}: only so the mean velocity, {:.0} m/s, is that of rock",
+                    if unit == 1.0 { 1000.0 * slope } else { slope }
+                )
+                .into(),
+            );
             unit
         }
     };

@@ -234,9 +234,10 @@ impl Reading<'_> {
             if last < first && column != WellColumn::Tvd {
                 depths.iter_mut().for_each(|d| *d = -*d);
                 let name = if column == WellColumn::Z { "Z" } else { "TVDSS" };
-                self.notes.push(format!(
-                    "{name} falls from {first} to {last} along the hole: elevations, turned positive down"
-                ).into());
+                self.notes.push(
+                    format!("{name} falls from {first} to {last} along the hole: elevations, turned positive down")
+                        .into(),
+                );
             }
             if column == WellColumn::Tvd {
                 depths.iter_mut().for_each(|d| *d -= datum_m);

@@ -97,15 +97,18 @@ pub fn read_well(files: &WellFiles, options: &WellOptions) -> Result<(Well, Well
         }
         let set = log_set(file, &las, &well.path, well.checkshot.as_ref(), &mut report)?;
         let names: Vec<&str> = set.curves.iter().map(|c| c.name.as_str()).collect();
-        report.notes.push(format!(
-            "{}: {} curves ({}), {} samples from MD {:.1} to {:.1} m",
-            set.source,
-            set.curves.len(),
-            names.join(", "),
-            set.md_m.len(),
-            set.md_m.first().unwrap_or(&f64::NAN),
-            set.md_m.last().unwrap_or(&f64::NAN)
-        ).into());
+        report.notes.push(
+            format!(
+                "{}: {} curves ({}), {} samples from MD {:.1} to {:.1} m",
+                set.source,
+                set.curves.len(),
+                names.join(", "),
+                set.md_m.len(),
+                set.md_m.first().unwrap_or(&f64::NAN),
+                set.md_m.last().unwrap_or(&f64::NAN)
+            )
+            .into(),
+        );
         well.logs.push(set);
     }
     Ok((well, report))
@@ -186,11 +189,10 @@ fn log_set(
         on
     });
     if order.len() < all {
-        report.warnings.push(format!(
-            "{}: {} samples whose depth does not increase were left out",
-            file.display(),
-            all - order.len()
-        ).into());
+        report.warnings.push(
+            format!("{}: {} samples whose depth does not increase were left out", file.display(), all - order.len())
+                .into(),
+        );
     }
     if order.is_empty() {
         return Err(WellError::Empty { file: file.to_owned(), what: "samples along the well" });
@@ -198,11 +200,14 @@ fn log_set(
     let [first, end] = path.md_range_m();
     let beyond = order.iter().filter(|&&n| !(first..=end).contains(&md_m[n])).count();
     if beyond > 0 {
-        report.warnings.push(format!(
-            "{}: {beyond} of {} samples lie beyond the path, MD {first:.1} to {end:.1} m",
-            file.display(),
-            order.len()
-        ).into());
+        report.warnings.push(
+            format!(
+                "{}: {beyond} of {} samples lie beyond the path, MD {first:.1} to {end:.1} m",
+                file.display(),
+                order.len()
+            )
+            .into(),
+        );
     }
     check_limits(file, las, report);
     let curves = las.curves.iter().zip(&las.data).skip(1).map(|(item, values)| Curve {

@@ -91,10 +91,10 @@ pub fn parse_tops(
         notes.push(format!("tops: {negative} negative depths were turned positive down (elevations)").into());
     }
     if !twice.is_empty() {
-        notes.push(format!(
-            "tops: the hole crosses the depth of {} more than once; the first is taken",
-            twice.join(", ")
-        ).into());
+        notes.push(
+            format!("tops: the hole crosses the depth of {} more than once; the first is taken", twice.join(", "))
+                .into(),
+        );
     }
     Ok(tops)
 }
@@ -114,11 +114,14 @@ pub(super) fn on_path(rows: Vec<TopRow>, path: &WellPath, warnings: &mut Vec<Not
         }
     }
     if !off.is_empty() {
-        warnings.push(format!(
-            "{} tops lie beyond the path, which runs from MD {first:.1} to {last:.1} m, and were left out: {}",
-            off.len(),
-            off.join(", ")
-        ).into());
+        warnings.push(
+            format!(
+                "{} tops lie beyond the path, which runs from MD {first:.1} to {last:.1} m, and were left out: {}",
+                off.len(),
+                off.join(", ")
+            )
+            .into(),
+        );
     }
     tops.sort_by(|a, b| a.md_m.total_cmp(&b.md_m));
     tops

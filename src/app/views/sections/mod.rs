@@ -18,7 +18,8 @@ use crate::app::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, Sess
 use crate::app::work::{Rocks, SlicePicture, SliceWish, Slices};
 use axes::{extent, name, ticks, value_at, voxel};
 use eframe::egui::{
-    Align2, Color32, Context, DragValue, FontId, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
+    Align2, Color32, Context, DragValue, FontId, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
 };
 use glam::DVec2;
 use lines::{cross, fence_line};

@@ -271,7 +271,10 @@ fn repeated_points_and_spikes_are_reported() {
     assert!(report.notes.iter().any(|n| n.starts_with("6 points share")), "{report}");
     // The spike, and a point of the rim whose neighbours all lie on one side.
     assert!(report.warnings.len() == 1 && report.warnings[0].fact.starts_with("2 points lie more"), "{report}");
-    assert!(report.warnings[0].to_string().contains("+88") || report.warnings[0].to_string().contains("+89"), "{report}");
+    assert!(
+        report.warnings[0].to_string().contains("+88") || report.warnings[0].to_string().contains("+89"),
+        "{report}"
+    );
 }
 
 #[test]

@@ -141,7 +141,10 @@ fn revision_2_coordinates_in_the_trace_header_extension_are_found() {
         };
         assert_eq!(file.scan(&stated).unwrap().geometry.inline_vector, [12.5, 0.0]);
         let beyond = SegyOptions { x_byte: Some(474), ..stated };
-        assert!(matches!(file.scan(&beyond).unwrap_err().problem, SegyProblem::BadSetting { setting: Setting::XByte, .. }));
+        assert!(matches!(
+            file.scan(&beyond).unwrap_err().problem,
+            SegyProblem::BadSetting { setting: Setting::XByte, .. }
+        ));
     }
 }
 

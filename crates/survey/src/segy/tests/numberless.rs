@@ -81,7 +81,11 @@ fn coordinates_rounded_to_metres_holes_and_outlines_do_not_matter() {
         }
         assert_eq!(found.info.duplicate_traces, 0);
         assert!(found.info.geometry.residual_max_bins.unwrap() < 0.08);
-        assert!(found.info.assumptions.iter().any(|a| a.fact.contains("numbered from 1")), "{:?}", found.info.assumptions);
+        assert!(
+            found.info.assumptions.iter().any(|a| a.fact.contains("numbered from 1")),
+            "{:?}",
+            found.info.assumptions
+        );
     }
 }
 
@@ -145,7 +149,11 @@ fn a_few_traces_without_a_place_are_left_out() {
     });
     let found = file.read(&SegyOptions::default()).unwrap();
     assert_eq!((counts(&found.info), found.info.missing_traces), ([12, 15], 5));
-    assert!(found.info.warnings.iter().any(|w| w.fact.contains("5 traces have no X and Y")), "{:?}", found.info.warnings);
+    assert!(
+        found.info.warnings.iter().any(|w| w.fact.contains("5 traces have no X and Y")),
+        "{:?}",
+        found.info.warnings
+    );
 }
 
 #[test]
