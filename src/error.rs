@@ -470,7 +470,7 @@ impl ProjectError {
             ),
             Self::UnfitPicks { .. } => each(
                 "`petroglyph horizon replay --drop-unfit` takes them out; then pick anew",
-                "Pick again what fits takes them out; then pick anew",
+                "Pick again what fits leaves them out; where none fits, pick anew in another horizon",
             ),
             Self::ShortStick { .. } => {
                 each("write a stick as --stick IL,XL,Z IL,XL,Z …", "end a stick after its second place or later")

@@ -11,13 +11,13 @@ use glam::DVec3;
 use interp::faults::Proposal;
 use survey::{Contact, Progress, TriangleMesh};
 
-fn act(harness: &mut Driven, action: Action) {
+pub(super) fn act(harness: &mut Driven, action: Action) {
     harness.state_mut().as_mut().unwrap().act(action);
     harness.run_steps(3);
 }
 
 /// Applies a command as another process would, and has the window read the project again.
-fn applied(harness: &mut Driven, command: &Command) {
+pub(super) fn applied(harness: &mut Driven, command: &Command) {
     let root = state(harness).session.as_ref().unwrap().root.clone();
     Project::open(&root).unwrap().apply(command, &Progress::silent()).unwrap();
     act(harness, Action::Open(root));
@@ -28,13 +28,13 @@ fn applied(harness: &mut Driven, command: &Command) {
 }
 
 /// Chooses an entry of a list that opens under a label.
-fn choose(harness: &mut Driven, list: &str, entry: &str) {
+pub(super) fn choose(harness: &mut Driven, list: &str, entry: &str) {
     click_last(harness, list);
     click(harness, entry);
 }
 
 /// Clicks the last of the buttons with a label.
-fn click_last(harness: &mut Driven, label: &str) {
+pub(super) fn click_last(harness: &mut Driven, label: &str) {
     // As a screen reader does, whether it is scrolled into view or not.
     harness.query_all_by_label(label).last().unwrap().click_accesskit();
     harness.run_steps(3);

@@ -19,6 +19,10 @@ pub mod error;
 pub mod fields;
 mod hold;
 #[cfg(test)]
+mod horizon_tests;
+#[cfg(test)]
+mod panel_tests;
+#[cfg(test)]
 mod picking_tests;
 pub mod raster;
 pub mod state;

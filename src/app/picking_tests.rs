@@ -16,7 +16,7 @@ use survey::Progress;
 const LEAF: u32 = 80;
 
 /// A window on a project with candidates, its interpretation read.
-fn interpreting(folder: &Path) -> Driven {
+pub(super) fn interpreting(folder: &Path) -> Driven {
     let root = project(folder);
     let mut settings = ExtractSettings::default();
     settings.forest.min_leaf_triangles = LEAF;
@@ -31,12 +31,12 @@ fn interpreting(folder: &Path) -> Driven {
     harness
 }
 
-fn act(harness: &mut Driven, step: PickingStep) {
+pub(super) fn act(harness: &mut Driven, step: PickingStep) {
     harness.state_mut().as_mut().unwrap().act(Action::Picking(step));
     harness.run_steps(2);
 }
 
-fn picking(harness: &Driven) -> &super::state::Picking {
+pub(super) fn picking(harness: &Driven) -> &super::state::Picking {
     &state(harness).session.as_ref().unwrap().view.picking
 }
 
@@ -60,7 +60,7 @@ fn press(harness: &mut Driven, at: Pos2, modifiers: Modifiers) {
 }
 
 /// A voxel on a strong reflection of the test survey, sin(0.7 z): its first trough is at z = 3π/2/0.7.
-fn on_a_trough() -> DVec3 {
+pub(super) fn on_a_trough() -> DVec3 {
     DVec3::new(12.0, 10.0, 1.5 * std::f64::consts::PI / 0.7)
 }
 

@@ -56,11 +56,14 @@ impl WellDialogue {
             ui.weak(path.display().to_string());
             notices::show(ui, state, Place::Dialogue, actions);
             self.form(ui);
+            if let Some(unclear) = self.unclear() {
+                ui.colored_label(ui.visuals().error_fg_color, unclear);
+            }
             ui.separator();
             ScrollArea::vertical().max_height(150.0).auto_shrink(false).show(ui, |ui| self.report(ui));
             ui.separator();
             ui.horizontal(|ui| {
-                let can = !self.name.trim().is_empty() && self.reading.is_good(&asked);
+                let can = !self.name.trim().is_empty() && self.unclear().is_none() && self.reading.is_good(&asked);
                 if ui.add_enabled(can, Button::new("Add")).clicked() {
                     let command = AddWell { name: self.name.trim().to_owned(), files, options };
                     actions.push(Action::Apply(Box::new(Command::AddWell(command))));
@@ -119,6 +122,17 @@ impl WellDialogue {
             }
             Some((_, Ok(lines))) => lines.iter().for_each(|line| drop(ui.label(line))),
         });
+    }
+
+    /// What was typed and means nothing.
+    fn unclear(&self) -> Option<String> {
+        let options = self.options();
+        let is_unclear = |text: &str, is_known: bool| !text.trim().is_empty() && !is_known;
+        if is_unclear(&self.kb, options.datum_m.is_some()) {
+            return Some(format!("“{}” is no height in metres", self.kb.trim()));
+        }
+        let head = is_unclear(&self.head, options.head.is_some());
+        head.then(|| format!("“{}” is no X, Y in metres", self.head.trim()))
     }
 
     fn files(&self) -> WellFiles {

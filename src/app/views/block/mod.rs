@@ -1,44 +1,33 @@
 //! The block: pictures from the painter, turned and cut by hand.
 //!
-//! Two spaces: points of the window, and pixels of the picture (points × the display's scale). Cameras are changed in points: [`camera`]
+//! Two spaces: points of the window, and pixels of the picture (points × the display's scale). Cameras are changed in points: [`camera`](crate::app::state::camera)
 //! needs proportions only.
+
+mod compare;
+mod hand;
+
+pub use compare::{clip, compare, panes, rule};
 
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use super::texture;
 use crate::app::state::faces::{self, Handle};
-use crate::app::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, camera, showing};
+use crate::app::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, showing};
 use crate::app::theme;
 use crate::app::work::{Drawing, Drawn, PictureWish, Rocks, Touch};
 use crate::pipeline::Loaded;
-use eframe::egui::{
-    Align2, Color32, ColorImage, CursorIcon, FontId, Modifiers, PointerButton, Pos2, Rect, Response, Role, Sense,
-    Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,
-};
+use compare::fitted;
+use eframe::egui::{Color32, ColorImage, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2};
 use glam::DVec2;
+use hand::Hand;
 use render::{Background, Scene};
 
 /// How near the pointer must be to take hold of a handle or of the wipe's line, points.
 const REACH: f32 = 11.0;
-/// Natural logarithm of the zoom that a point of wheel travel makes.
-const WHEEL: f64 = 0.0022;
-/// Wheel travel that moves a face by a sample, points.
-const WHEEL_STEP: f32 = 24.0;
-
-/// A view is narrow for two blocks beside one another below this width, heights.
-const NARROW: f32 = 1.4;
 
 /// What white volumes are seen before.
 pub const BEHIND_VOLUMES: Color32 = Color32::from_rgb(0x2c, 0x33, 0x3a);
-
-/// What the hand holds.
-enum Grab {
-    Turn,
-    Shift,
-    Wipe,
-    Face { handle: Handle, start: Box<Scene>, from: Pos2, size: DVec2 },
-}
 
 /// The view.
 #[derive(Default)]
@@ -52,9 +41,7 @@ pub struct BlockView {
     number: u64,
     shown: u64,
     is_final: bool,
-    grab: Option<Grab>,
-    /// Wheel travel over a handle not yet used, points.
-    wheel: f32,
+    hand: Hand,
     lasso: LassoLine,
     device: String,
 }
@@ -143,7 +130,7 @@ impl BlockView {
         let handles = if view.handles { faces::handles(&view.scene, geometry, size) } else { Vec::new() };
         let has_lasso = lasso::is_held(ui, session);
         if !has_lasso {
-            self.touch(ui, &response, session, pane, rect, &handles, actions);
+            self.hand.touch(ui, &response, session, [pane, rect], &handles, actions);
         }
         if let Some((rocks, version)) = rocks {
             self.wish(scenes, rocks, version, drawing);
@@ -159,10 +146,10 @@ impl BlockView {
             let on = LassoOn::Block(Box::new(view.scene.clone()), size);
             actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));
         }
-        if response.contains_pointer() || self.grab.is_some() {
+        if response.contains_pointer() || self.hand.is_closed() {
             self.paint_handles(ui, &handles, pane, response.hover_pos());
         }
-        let pointed = response.hover_pos().filter(|_| self.grab.is_none()).and_then(|at| {
+        let pointed = response.hover_pos().filter(|_| !self.hand.is_closed()).and_then(|at| {
             let loaded = rocks?.0.try_read().ok()?;
             pointed::on_block(&loaded, &shown, size, dvec(at - pane.min))
         });
@@ -179,80 +166,9 @@ impl BlockView {
         pointed
     }
 
-    #[expect(clippy::too_many_arguments, reason = "what the hand can touch, and where")]
-    fn touch(
-        &mut self,
-        ui: &Ui,
-        response: &Response,
-        session: &Session,
-        pane: Rect,
-        whole: Rect,
-        handles: &[Handle],
-        actions: &mut Vec<Action>,
-    ) {
-        let Some(geometry) = session.document.geometry.as_ref() else { return };
-        let view = &session.view;
-        let size = dvec(pane.size());
-        let wipe_x = whole.left() + whole.width() * view.wipe;
-        let modifiers = ui.input(|input| input.modifiers);
-        if response.drag_started()
-            && let Some(at) = ui.input(|input| input.pointer.press_origin())
-        {
-            let handle = handles.iter().find(|handle| (screen(pane, handle.at) - at).length() < REACH);
-            self.grab = Some(match handle {
-                _ if view.compare == Compare::Wipe && (at.x - wipe_x).abs() < REACH => Grab::Wipe,
-                Some(handle) => Grab::Face { handle: *handle, start: Box::new(view.scene.clone()), from: at, size },
-                None if modifiers.shift || !response.dragged_by(PointerButton::Primary) => Grab::Shift,
-                None => Grab::Turn,
-            });
-        }
-        let mut scene = view.scene.clone();
-        let delta = dvec(response.drag_delta());
-        if let (Some(grab), Some(at)) = (&self.grab, response.interact_pointer_pos()) {
-            match grab {
-                Grab::Turn => camera::orbit(&mut scene, geometry, size, delta),
-                Grab::Shift => camera::pan(&mut scene, size, delta),
-                Grab::Wipe => actions.push(Action::Wipe((at.x - whole.left()) / whole.width())),
-                Grab::Face { handle, start, from, size } => {
-                    scene = faces::pull(start, geometry, *size, handle, dvec(at - *from));
-                }
-            }
-        }
-        if response.drag_stopped() || !response.dragged() {
-            self.grab = None;
-        }
-        if let Some(at) = response.hover_pos() {
-            let (scroll, pinch) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-            let is_near = |handle: &&Handle| (screen(pane, handle.at) - at).length() < REACH;
-            let factor = (f64::from(scroll) * WHEEL).exp() * f64::from(pinch);
-            if let Some(handle) = handles.iter().find(is_near) {
-                self.wheel += scroll;
-                let steps = (self.wheel / WHEEL_STEP).trunc();
-                self.wheel -= steps * WHEEL_STEP;
-                if steps != 0.0 {
-                    scene = faces::move_face(&scene, geometry, size, handle.face, f64::from(steps));
-                }
-            } else if (factor - 1.0).abs() > 1e-6 {
-                camera::zoom_at(&mut scene, size, dvec(at - pane.min), factor);
-            }
-            let on_wipe = view.compare == Compare::Wipe && (at.x - wipe_x).abs() < REACH;
-            if on_wipe {
-                ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);
-            } else if handles.iter().any(|handle| is_near(&handle)) {
-                ui.ctx().set_cursor_icon(CursorIcon::Grab);
-            }
-        }
-        if response.double_clicked() && modifiers == Modifiers::NONE {
-            actions.push(Action::Stand(crate::app::state::StandardView::Block));
-        }
-        if scene != view.scene {
-            actions.push(Action::Show(Box::new(scene)));
-        }
-    }
-
     /// Asks for other pictures when something that shows has changed.
     fn wish(&mut self, scenes: Vec<Scene>, rocks: &Rocks, version: u64, drawing: &Drawing) {
-        let is_moving = self.grab.is_some();
+        let is_moving = self.hand.is_closed();
         let wished = (scenes, version, is_moving);
         if self.wished.as_ref() == Some(&wished) {
             return;
@@ -290,11 +206,10 @@ impl BlockView {
 
     fn paint_handles(&self, ui: &Ui, handles: &[Handle], pane: Rect, pointer: Option<Pos2>) {
         let accent = theme::accent(ui.visuals());
-        let held = match &self.grab {
-            Some(Grab::Face { handle, .. }) => Some(handle.face),
-            Some(_) => return,
-            None => None,
-        };
+        let held = self.hand.face();
+        if held.is_none() && self.hand.is_closed() {
+            return;
+        }
         let painter = ui.painter_at(pane);
         for handle in handles {
             let at = screen(pane, handle.at);
@@ -319,69 +234,6 @@ fn is_but_for_horizons(one: &Scene, other: &Scene) -> bool {
     without(one) == without(other)
 }
 
-/// How pictures are compared: while interpreting there is only one.
-pub fn compare(session: &Session) -> Compare {
-    if session.view.panel == Panel::Interpret { Compare::Blend } else { session.view.compare }
-}
-
-/// Where each of the compared pictures lies. Blocks are broader than high: in a narrow view two stand one over the other.
-pub fn panes(compare: Compare, rect: Rect) -> Vec<Rect> {
-    match compare {
-        Compare::SideBySide => {
-            let (first, second) = if is_narrow(rect) {
-                rect.split_top_bottom_at_fraction(0.5)
-            } else {
-                rect.split_left_right_at_fraction(0.5)
-            };
-            vec![first, second]
-        }
-        Compare::Blend => vec![rect],
-        Compare::Wipe => vec![rect, rect],
-    }
-}
-
-fn is_narrow(rect: Rect) -> bool {
-    rect.width() < NARROW * rect.height()
-}
-
-/// The part of a pane that its picture is seen in.
-pub fn clip(compare: Compare, index: usize, rect: Rect, wipe: f32) -> Rect {
-    let wipe_x = rect.left() + rect.width() * wipe;
-    match (compare, index) {
-        (Compare::Wipe, 0) => Rect::from_min_max(rect.min, pos2(wipe_x, rect.max.y)),
-        (Compare::Wipe, _) => Rect::from_min_max(pos2(wipe_x, rect.min.y), rect.max),
-        _ => rect,
-    }
-}
-
-/// What parts compared pictures, and which is which.
-pub fn rule(ui: &Ui, compare: Compare, whole: Rect, wipe: f32) {
-    let painter = ui.painter_at(whole);
-    let thin = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
-    let (at, align) = match compare {
-        Compare::Blend => return,
-        Compare::SideBySide if is_narrow(whole) => {
-            painter.hline(whole.x_range(), whole.center().y, thin);
-            ([whole.min, whole.left_center()].map(|at| at + vec2(12.0, 10.0)), [Align2::LEFT_TOP; 2])
-        }
-        _ => {
-            let accent = theme::accent(ui.visuals());
-            let is_wipe = compare == Compare::Wipe;
-            let x = if is_wipe { whole.left() + whole.width() * wipe } else { whole.center().x };
-            painter.vline(x, whole.y_range(), if is_wipe { Stroke::new(2.0, accent) } else { thin });
-            if is_wipe {
-                painter.circle_filled(pos2(x, whole.center().y), 8.0, accent);
-            }
-            let top = pos2(x, whole.top() + 10.0);
-            ([top - vec2(12.0, 0.0), top + vec2(12.0, 0.0)], [Align2::RIGHT_TOP, Align2::LEFT_TOP])
-        }
-    };
-    for ((at, align), text) in at.into_iter().zip(align).zip(["illustrated", "raw"]) {
-        // Pictures lie on light paper in either theme.
-        painter.text(at, align, text, FontId::proportional(13.0), Color32::from_gray(0x20));
-    }
-}
-
 /// Whether the block is seen through.
 pub fn is_clear(session: &Session) -> bool {
     session.view.panel == Panel::Interpret && session.view.picking.look == Look::SeeThrough
@@ -390,13 +242,6 @@ pub fn is_clear(session: &Session) -> bool {
 /// A pane's size in points, as a picture's.
 fn pane_px(pane: Rect) -> [u32; 2] {
     [pane.width(), pane.height()].map(|side| side.max(1.0) as u32)
-}
-
-/// The largest rectangle of a picture's shape in the middle of another: a picture of before the view was resized keeps its shape.
-fn fitted(rect: Rect, shape: Vec2) -> Rect {
-    let scale = (rect.width() / shape.x).min(rect.height() / shape.y);
-    let is_same = (rect.width() / rect.height() / (shape.x / shape.y) - 1.0).abs() < 0.03;
-    if is_same { rect } else { Rect::from_center_size(rect.center(), shape * scale) }
 }
 
 /// What pictures lie on.

@@ -4,6 +4,8 @@
 //! changed and nothing else. Orders are carried out in turn, but of several states to follow, or selections to draw, only the last. Extracting and
 //! looking for faults take long and run on threads of their own, on processors of their own. Places are voxels but where said otherwise.
 
+mod followed;
+
 use super::running::Running;
 use super::{Event, Outbox, compute_apart, spawn};
 use crate::app::state::picking::{Pick, voxel_of};
@@ -15,9 +17,10 @@ use crate::error::ProjectError;
 use crate::project::document::{Assembly, HorizonEntry};
 use crate::project::{Document, Project};
 use crate::{data, extraction, proposals};
+use followed::Followed;
 use glam::DVec3;
 use interp::ExtractReport;
-use interp::assembly::{ClimbSettings, Occupancy, Overlap, Selection, highest_valid, node_above, selected_leaves};
+use interp::assembly::{ClimbSettings, Overlap, highest_valid, selected_leaves};
 use interp::faults::{Proposal, ProposeSettings};
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
@@ -25,7 +28,6 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use survey::model::FaultNetwork;
 use survey::store::StoredCandidates;
 use survey::{Fault, Progress, SurveyGeometry};
 use ttf::Colour;
@@ -178,15 +180,6 @@ fn tell(done: Result<(), ProjectError>, progress: Option<&Progress>, outbox: &Ou
         Err(_) if progress.is_some_and(|progress| progress.check().is_err()) => outbox.wake(),
         Err(error) => outbox.send(Event::Told(Notice::failure(Place::Interpret, &error))),
     }
-}
-
-/// A project followed, and what was read of it.
-struct Followed {
-    root: PathBuf,
-    document: Document,
-    geometry: SurveyGeometry,
-    candidates: Option<Arc<Candidates>>,
-    blocks: Arc<FaultNetwork>,
 }
 
 struct Keeper {
@@ -408,48 +401,6 @@ fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec
         (proposal, fault)
     });
     (open.collect(), kept.unit)
-}
-
-impl Followed {
-    fn candidates(&self) -> Result<&Candidates, ProjectError> {
-        self.candidates.as_deref().ok_or(ProjectError::NotExtracted)
-    }
-
-    /// What the picks of a horizon have selected.
-    fn chosen(&self, horizon: Option<&str>) -> Selection {
-        let entry = self.document.horizons.iter().find(|entry| Some(entry.name.as_str()) == horizon);
-        let log = entry.and_then(|entry| Some((entry, entry.assembly.as_ref()?)));
-        log.zip(self.candidates.as_deref())
-            .and_then(|((entry, log), candidates)| assembly::selection(&entry.name, log, candidates).ok())
-            .unwrap_or_default()
-    }
-
-    /// A selection as sheets; `None` where the extraction has changed and it means nothing any more.
-    fn show(&self, pick: Pick, horizon: Option<&str>) -> Result<Option<ShownPick>, ProjectError> {
-        let candidates = self.candidates()?;
-        let forest = &candidates.forest;
-        if pick.leaf == 0 || pick.leaf as usize > forest.leaves.len() {
-            return Ok(None);
-        }
-        let Ok(node) = node_above(forest, pick.leaf, pick.up) else { return Ok(None) };
-        let range = forest.nodes[node as usize].triangles.clone();
-        let mut own = Selection::default();
-        own.insert(range.clone());
-        let seed = forest.nodes[forest.leaves[pick.leaf as usize - 1] as usize].triangles.start;
-        let sheets = reassemble(forest, &own, &[seed], &self.blocks).sheets;
-        let mut occupancy = Occupancy::new(&forest.surfaces, &self.blocks);
-        for range in self.chosen(horizon).ranges() {
-            occupancy.add(range.clone());
-        }
-        let before = (occupancy.vertices(), occupancy.overlap().traces);
-        occupancy.add(range.clone());
-        let overlap = occupancy.overlap();
-        let (vertices, traces) = (occupancy.vertices() - before.0, overlap.traces - before.1);
-        let is_wrong = traces as f64 > ClimbSettings::default().tolerated_share * vertices as f64;
-        let overlap = overlap_in_lines(Overlap { traces, ..overlap }, &self.geometry);
-        let leaves = forest.leaves_under(node).collect();
-        Ok(Some(ShownPick { pick, sheets, triangles: range.len(), leaves, overlap, is_wrong }))
-    }
 }
 
 /// Voxel position of a place where an overlap is worst.

@@ -1,86 +1,34 @@
-//! Interpreting: horizons and their picks, holes; around them candidates and faults.
+//! The horizons, each with what is known of it; under the one that picks go to, its picks and holes.
 
-use super::candidates::CandidatesPanel;
-use super::faults::FaultsPanel;
-use super::sections::horizon_colour;
-use super::{notices, overlay::Overlay};
-use crate::app::state::picking::voxel_of;
-use crate::app::state::{Action, Look, PickingStep, Place, Session, State, Tool};
-use crate::app::work::{Interpreted, RunningLine, ShownHorizon};
-use crate::command::assembly::HORIZON_COLOURS;
+use super::go;
+use super::palette::palette;
+use crate::app::state::{Action, PickingStep, Session};
+use crate::app::views::sections::horizon_colour;
+use crate::app::work::{Interpreted, ShownHorizon};
 use crate::command::{
-    Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, SetHorizonColour,
+    Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, ReplayPicks, SetHorizonColour,
+    Unfit,
 };
 use crate::project::document::HorizonEntry;
-use eframe::egui::{Button, Color32, DragValue, Grid, RichText, ScrollArea, Sense, Stroke, TextEdit, Ui, vec2};
+use eframe::egui::{Button, DragValue, RichText, Sense, TextEdit, Ui, vec2};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
-use render::FaceData;
-use std::sync::Arc;
 use survey::SurveyGeometry;
-use ttf::Colour;
-
-/// Colours offered for horizons beside those that they get in turn.
-const MORE_COLOURS: [[u8; 3]; 4] = [[0xb8, 0xa8, 0x00], [0xc0, 0x18, 0x2c], [0x1b, 0x78, 0x37], [0x30, 0x30, 0x30]];
 
 /// Holes listed at most.
 const HOLES: usize = 5;
 
-/// The panel, and what is being typed in it.
+/// The list, and what is being typed in it.
 #[derive(Default)]
-pub struct PickingPanel {
-    candidates: CandidatesPanel,
-    faults: FaultsPanel,
+pub(super) struct HorizonList {
     /// A horizon and its new name.
     renaming: Option<(String, String)>,
     max_traces: usize,
-    /// Whether sticks were being drawn, and how many faults were proposed, in the frame before.
-    open: (bool, usize),
 }
 
-impl PickingPanel {
-    /// Shows the panel.
-    pub fn show(
-        &mut self,
-        ui: &mut Ui,
-        state: &State,
-        session: &Session,
-        overlay: &Overlay,
-        running: &[RunningLine],
-        actions: &mut Vec<Action>,
-    ) {
-        notices::show(ui, state, Place::Interpret, actions);
-        let Some(geometry) = &session.document.geometry else {
-            ui.label("There is nothing to interpret yet: add a volume.");
-            return;
-        };
-        ScrollArea::vertical().show(ui, |ui| {
-            let shown = overlay.interpreted().map(Arc::as_ref);
-            ui.heading("Candidates");
-            self.candidates.show(ui, session, shown, running, actions);
-            ui.add_space(8.0);
-            look(ui, session, actions);
-            if shown.is_some_and(|shown| shown.extraction.is_some()) {
-                ui.add_space(8.0);
-                ui.heading("Selected");
-                selected(ui, session, overlay, geometry, actions);
-            }
-            ui.add_space(8.0);
-            ui.heading("Horizons");
-            self.horizons(ui, session, shown, geometry, actions);
-            ui.add_space(8.0);
-            ui.heading("Faults");
-            let faults = ui.scope(|ui| self.faults.show(ui, session, shown, running, geometry, actions)).response;
-            // Who begins to draw, or is proposed something, need not look for where.
-            let open = (session.view.picking.tool == Tool::Sticks, shown.map_or(0, |shown| shown.proposals.len()));
-            if open != self.open && (open.0 || open.1 > 0) {
-                ui.scroll_to_rect(faults.rect, None);
-            }
-            self.open = open;
-        });
-    }
-
-    fn horizons(
+impl HorizonList {
+    /// Shows the list.
+    pub(super) fn show(
         &mut self,
         ui: &mut Ui,
         session: &Session,
@@ -123,7 +71,7 @@ impl PickingPanel {
     }
 
     /// A horizon that does not exist yet.
-    fn begun(&mut self, ui: &mut Ui, session: &Session, name: &str, actions: &mut Vec<Action>) {
+    fn begun(&self, ui: &mut Ui, session: &Session, name: &str, actions: &mut Vec<Action>) {
         let picking = &session.view.picking;
         ui.horizontal(|ui| {
             let chosen = picking.colour_in(&session.document);
@@ -150,7 +98,6 @@ impl PickingPanel {
         geometry: &SurveyGeometry,
         actions: &mut Vec<Action>,
     ) {
-        let apply = |command: Command| Action::Apply(Box::new(command));
         ui.horizontal(|ui| {
             if let Some((_, text)) = self.renaming.as_mut().filter(|(name, _)| *name == entry.name) {
                 let edit = ui.name_inputs("New name", |ui| ui.add(TextEdit::singleline(text).desired_width(140.0)));
@@ -183,11 +130,17 @@ impl PickingPanel {
         ));
         if facts.outdated {
             ui.colored_label(ui.visuals().warn_fg_color, "Its picks are of another extraction.");
-            if ui.button("Pick again").on_hover_text("Make the same picks on the present extraction").clicked() {
-                let command =
-                    crate::command::ReplayPicks { horizon: Some(entry.name.clone()), unfit: Default::default() };
-                actions.push(apply(Command::ReplayPicks(command)));
-            }
+            ui.horizontal_wrapped(|ui| {
+                for (name, unfit, hint) in [
+                    ("Pick again", Unfit::Refuse, "Make the same picks on the present extraction"),
+                    ("Pick again what fits", Unfit::Drop, "And leave out the picks whose nodes are gone"),
+                ] {
+                    if ui.button(name).on_hover_text(hint).clicked() {
+                        let command = ReplayPicks { horizon: Some(entry.name.clone()), unfit };
+                        actions.push(apply(Command::ReplayPicks(command)));
+                    }
+                }
+            });
         }
         if let Some(overlap) = &report.overlap {
             ui.colored_label(
@@ -247,90 +200,6 @@ impl PickingPanel {
     }
 }
 
-/// Moves the sections through a place in line numbers.
-pub(super) fn go(geometry: &SurveyGeometry, place: [f64; 3], actions: &mut Vec<Action>) {
-    actions.push(Action::Slices(voxel_of(geometry, place).to_array()));
-}
-
-fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    let picking = &session.view.picking;
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Pointer");
-        for (tool, name, hint) in [
-            (Tool::Pick, "Pick", "Click a reflection: its leaf is selected"),
-            (Tool::Lasso, "Lasso", "Draw around what is to be erased (or hold A)"),
-        ] {
-            if ui.selectable_label(picking.tool == tool, name).on_hover_text(hint).clicked() {
-                actions.push(Action::Picking(PickingStep::Use(tool)));
-            }
-        }
-    });
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Block");
-        for (look, name, hint) in [
-            (Look::Faces, "Faces", "The faces of the block, with the horizons before them"),
-            (Look::SeeThrough, "See through", "Strong reflections in white, shaded by what lies before them (O)"),
-        ] {
-            if ui.selectable_label(picking.look == look, name).on_hover_text(hint).clicked() {
-                actions.push(Action::Picking(PickingStep::Look(look)));
-            }
-        }
-    });
-    ui.horizontal_wrapped(|ui| {
-        ui.label("Show");
-        for (show, name, hint) in [
-            (FaceData::Rock, "Amplitudes", "The volume as it is"),
-            (FaceData::Leaves, "Leaves", "Candidates, each leaf in a colour of its own"),
-            (FaceData::Distance, "Distances", "White on a candidate, darker away from it"),
-        ] {
-            if ui.selectable_label(picking.show == show, name).on_hover_text(hint).clicked() {
-                actions.push(Action::Picking(PickingStep::Show(show)));
-            }
-        }
-    });
-}
-
-fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
-    let step = |step| Action::Picking(step);
-    let Some(pick) = &session.view.picking.pick else {
-        ui.weak("Click a reflection, on a section or on the block.");
-        ui.weak("Shift adds to what is selected, Alt takes a leaf out.");
-        return;
-    };
-    let facts = overlay.selected().filter(|shown| shown.pick == *pick);
-    let [inline, crossline, z] = pick.at;
-    ui.label(format!("inline {inline:.0}, crossline {crossline:.0}, {z:.1} {}", geometry.vertical.unit.symbol()));
-    let size = facts.map_or_else(String::new, |shown| format!(", {} triangles", shown.triangles));
-    ui.label(format!("level {} of {}{size}", pick.up, pick.levels)).on_hover_text(format!("leaf {}", pick.leaf));
-    if let Some(overlap) = facts.filter(|shown| shown.is_wrong).and_then(|shown| shown.overlap.as_ref()) {
-        ui.colored_label(
-            ui.visuals().warn_fg_color,
-            format!("Lies twice over {} traces, up to {:.0} samples apart: descend.", overlap.traces, overlap.apart),
-        );
-        if ui.small_button("Show where").clicked() {
-            go(geometry, overlap.at.map(f64::from), actions);
-        }
-    }
-    ui.horizontal_wrapped(|ui| {
-        if ui.add_enabled(pick.up < pick.levels, Button::new("Climb")).on_hover_text("Up arrow").clicked() {
-            actions.push(step(PickingStep::Climb(1)));
-        }
-        if ui.add_enabled(pick.up > 0, Button::new("Descend")).on_hover_text("Down arrow").clicked() {
-            actions.push(step(PickingStep::Climb(-1)));
-        }
-        let hint = "As high as it does not lie twice over a trace (H)";
-        if ui.button("Highest valid").on_hover_text(hint).clicked() {
-            actions.push(step(PickingStep::HighestValid));
-        }
-        if ui.button("Add to horizon").on_hover_text("Enter").clicked() {
-            actions.push(step(PickingStep::Accept));
-        }
-        if ui.button("Let go").on_hover_text("Escape").clicked() {
-            actions.push(step(PickingStep::GiveUp));
-        }
-    });
-}
-
 /// The colour of a horizon, to be changed where it was assembled here.
 fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
     match &entry.assembly {
@@ -347,40 +216,12 @@ fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Act
     }
 }
 
-/// A button in a colour that offers others.
-fn palette(ui: &mut Ui, colour: Colour, name: &str) -> Option<Colour> {
-    let paint = |rgb: [u8; 3]| Color32::from_rgb(rgb[0], rgb[1], rgb[2]);
-    let mut chosen = None;
-    let button = Button::new("").fill(paint(colour.rgb)).min_size(vec2(16.0, 16.0));
-    let named = ui.name_inputs(name, |ui| {
-        eframe::egui::containers::menu::MenuButton::from_button(button)
-            .ui(ui, |ui| {
-                Grid::new("colours").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
-                    for (n, rgb) in HORIZON_COLOURS.into_iter().chain(MORE_COLOURS).enumerate() {
-                        let button = Button::new("").fill(paint(rgb)).stroke(Stroke::NONE).min_size(vec2(26.0, 20.0));
-                        if ui.add(button).clicked() {
-                            chosen = Some(Colour::new(rgb[0], rgb[1], rgb[2]));
-                            ui.close();
-                        }
-                        if n % 4 == 3 {
-                            ui.end_row();
-                        }
-                    }
-                });
-            })
-            .0
-    });
-    named.on_hover_text(name);
-    chosen
-}
-
 /// The picks of a horizon, first to last.
 fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
     let Some(log) = &entry.assembly else {
         ui.weak("Imported: it has no picks.");
         return;
     };
-    let apply = |command: Command| Action::Apply(Box::new(command));
     let unit = geometry.vertical.unit.symbol();
     for pick in &log.picks {
         let [inline, crossline, z] = pick.at;
@@ -409,4 +250,8 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
             button(ui, "Take back", "Take back", !only, Command::RemovePick(RemovePick { id: pick.id }));
         });
     }
+}
+
+fn apply(command: Command) -> Action {
+    Action::Apply(Box::new(command))
 }

@@ -2,31 +2,23 @@
 //!
 //! The range of the colours is pulled on the histogram; the picture follows at once, and letting go makes it one command.
 
+mod histogram;
+mod scalars;
+
 use crate::app::state::{Action, Session};
 use crate::app::theme;
 use crate::app::work::{Rocks, Swatches};
 use crate::command::{Command, RemoveScalar, SetRaw, SetScalar};
 use crate::project::Document;
 use crate::style;
-use eframe::egui::{
-    Color32, ComboBox, DragValue, Painter, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2,
-};
+use eframe::egui::{Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
+use histogram::Histogram;
+use scalars::{intervals, ranges};
 use std::collections::HashMap;
 use ttf::{ColourMap, RawColour, ScalarInterval, ScalarTtf};
 
-/// Columns of the histogram.
-const COLUMNS: usize = 96;
-/// Samples looked at for it: enough for its shape.
-const SAMPLES: usize = 1 << 16;
 /// How near the pointer must be to an end of the range, points.
 const REACH: f32 = 10.0;
-
-/// How often values occur.
-struct Histogram {
-    version: u64,
-    counts: Vec<f32>,
-    range: [f32; 2],
-}
 
 /// The panel, and what is being changed in it.
 #[derive(Default)]
@@ -93,18 +85,8 @@ impl Functions {
         }
         let Ok(loaded) = rocks.try_read() else { return };
         let Some(found) = loaded.volumes.iter().find(|loaded| loaded.name == volume) else { return };
-        let samples = found.volume.samples();
-        let step = (samples.len() / SAMPLES).max(1);
-        let values = || samples.iter().step_by(step).copied().filter(|value| value.is_finite());
-        let range = [values().fold(f32::INFINITY, f32::min), values().fold(f32::NEG_INFINITY, f32::max)];
-        let width = (range[1] - range[0]).max(f32::MIN_POSITIVE);
-        let mut counts = vec![0.0f32; COLUMNS];
-        for value in values() {
-            counts[(((value - range[0]) / width * COLUMNS as f32) as usize).min(COLUMNS - 1)] += 1.0;
-        }
-        // Amplitudes crowd around zero; the root lets the tails be seen.
-        counts.iter_mut().for_each(|count| *count = count.sqrt());
-        self.histograms.insert(volume.to_owned(), Histogram { version, counts, range });
+        let histogram = Histogram::of(found.volume.samples(), version);
+        self.histograms.insert(volume.to_owned(), histogram);
     }
 
     /// The histogram over the colours, with the ends of the range to be pulled, and both as numbers.
@@ -201,105 +183,6 @@ impl Functions {
     }
 }
 
-impl Histogram {
-    /// Draws its columns, each in the colour of its value.
-    fn paint(&self, painter: &Painter, rect: Rect, colour: impl Fn(f32) -> Color32) {
-        let [first, last] = self.range;
-        let tallest = self.counts.iter().copied().fold(1e-6, f32::max);
-        let column = rect.width() / COLUMNS as f32;
-        for (index, count) in self.counts.iter().enumerate() {
-            let value = first + (index as f32 + 0.5) / COLUMNS as f32 * (last - first);
-            let corner = pos2(rect.left() + index as f32 * column, rect.bottom() - count / tallest * rect.height());
-            let bar = Rect::from_min_max(corner, pos2(corner.x + column + 0.4, rect.bottom()));
-            painter.rect_filled(bar, 0.0, colour(value));
-        }
-    }
-}
-
-/// The histogram of a volume with the values that have a texture marked.
-fn ranges(ui: &mut Ui, histogram: &Histogram, function: &ScalarTtf) {
-    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 44.0), Sense::hover());
-    let name = format!("Histogram of {}", function.volume);
-    response.widget_info(|| WidgetInfo::labeled(Role::Image, true, &name));
-    let (marked, rest) = (theme::accent(ui.visuals()), ui.visuals().weak_text_color().to_opaque());
-    histogram.paint(&ui.painter_at(rect), rect, |value| {
-        let is_in = function.intervals.iter().any(|interval| (interval.range[0]..interval.range[1]).contains(&value));
-        if is_in { marked } else { rest }
-    });
-}
-
-/// Ranges of values with their textures; a range can be divided, and taken away as long as there is another.
-fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatches) {
-    let (mut split, mut gone) = (None, None);
-    let count = function.intervals.len();
-    for (index, interval) in function.intervals.iter_mut().enumerate() {
-        interval_row(ui, &function.volume, index, interval, swatches);
-        ui.horizontal(|ui| {
-            let ordinal = index + 1;
-            for (axis, name) in ["Repeats along", "Repeats through"].into_iter().enumerate() {
-                if axis == 1 {
-                    ui.label("×");
-                }
-                let drag = DragValue::new(&mut interval.factor[axis]).speed(0.02).range(0.05..=50.0).max_decimals(2);
-                ui.name_inputs(format!("{name} of {} {ordinal}", function.volume), |ui| ui.add(drag))
-                    .on_hover_text(format!("{name}, times the layer's own"));
-            }
-            let drag = DragValue::new(&mut interval.opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
-            ui.name_inputs(format!("Opacity of {} {ordinal}", function.volume), |ui| ui.add(drag))
-                .on_hover_text("Opacity over the layer's pattern");
-            if ui.small_button("Split").on_hover_text("Divide this range in two").clicked() {
-                split = Some(index);
-            }
-            if count > 1 && ui.small_button("−").on_hover_text("No texture for this range").clicked() {
-                gone = Some(index);
-            }
-        });
-    }
-    if let Some(index) = split {
-        let (lower, upper) = halves(function.intervals[index].clone());
-        function.intervals.splice(index..=index, [lower, upper]);
-    }
-    if let Some(index) = gone {
-        function.intervals.remove(index);
-    }
-}
-
-/// A range of values in two: at its middle, or where it has no end as far from the end it has as that is from zero.
-fn halves(interval: ScalarInterval) -> (ScalarInterval, ScalarInterval) {
-    let [low, high] = interval.range;
-    let at = match (low.is_finite(), high.is_finite()) {
-        (true, true) => 0.5 * (low + high),
-        (true, false) => low + low.abs().max(1.0),
-        (false, true) => high - high.abs().max(1.0),
-        (false, false) => 0.0,
-    };
-    (ScalarInterval { range: [low, at], ..interval.clone() }, ScalarInterval { range: [at, high], ..interval })
-}
-
-/// A range of values and its texture.
-fn interval_row(ui: &mut Ui, volume: &str, index: usize, interval: &mut ScalarInterval, swatches: &Swatches) {
-    ui.horizontal_wrapped(|ui| {
-        for (end, word) in ["from", "to"].into_iter().enumerate() {
-            let value = &mut interval.range[end];
-            if value.is_finite() {
-                let speed = value.abs() * 0.01 + 1e-3;
-                let drag = DragValue::new(value).speed(speed);
-                ui.name_inputs(format!("{volume} {word} {}", index + 1), |ui| ui.add(drag));
-            } else {
-                ui.weak(if end == 0 { "lowest" } else { "highest" });
-            }
-        }
-        let combo = ComboBox::from_id_salt((volume, index)).selected_text(&interval.texture).width(120.0);
-        ui.name_inputs(format!("Texture of {volume} {}", index + 1), |ui| {
-            combo.show_ui(ui, |ui| {
-                for pattern in swatches.patterns().iter() {
-                    ui.selectable_value(&mut interval.texture, pattern.name.clone(), &pattern.title);
-                }
-            });
-        });
-    });
-}
-
 /// The colour map, by name.
 fn map(ui: &mut Ui, document: &Document, raw: &mut RawColour) {
     ui.horizontal(|ui| {
@@ -354,18 +237,6 @@ fn pull(domain: &mut [f32; 2], end: usize, value: f32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn halves_of_a_range_meet_and_cover_it() {
-        let inf = f32::INFINITY;
-        for range in [[2.0, 6.0], [3.0, inf], [-inf, -4.0], [-inf, inf], [0.0, inf]] {
-            let whole =
-                ScalarInterval { range, texture: "a".into(), factor: [1.0; 2], opacity: 1.0, colour: None, ink: None };
-            let (lower, upper) = halves(whole);
-            assert_eq!([lower.range[0], upper.range[1]], range);
-            assert!(lower.range[1] == upper.range[0] && lower.range[0] < lower.range[1] && upper.range[0] < range[1]);
-        }
-    }
 
     #[test]
     fn a_centred_range_stays_centred_and_others_keep_their_order() {

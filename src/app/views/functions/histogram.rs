@@ -1,0 +1,47 @@
+//! How often values occur in a volume.
+
+use eframe::egui::{Color32, Painter, Rect, pos2};
+
+/// Columns of the histogram.
+const COLUMNS: usize = 96;
+/// Samples looked at for it: enough for its shape.
+const SAMPLES: usize = 1 << 16;
+
+/// How often values occur.
+pub(super) struct Histogram {
+    /// State of the data that was counted.
+    pub(super) version: u64,
+    counts: Vec<f32>,
+    /// Lowest and highest value.
+    pub(super) range: [f32; 2],
+}
+
+impl Histogram {
+    /// Counts samples.
+    pub(super) fn of(samples: &[f32], version: u64) -> Self {
+        let step = (samples.len() / SAMPLES).max(1);
+        let values = || samples.iter().step_by(step).copied().filter(|value| value.is_finite());
+        let range = [values().fold(f32::INFINITY, f32::min), values().fold(f32::NEG_INFINITY, f32::max)];
+        let width = (range[1] - range[0]).max(f32::MIN_POSITIVE);
+        let mut counts = vec![0.0f32; COLUMNS];
+        for value in values() {
+            counts[(((value - range[0]) / width * COLUMNS as f32) as usize).min(COLUMNS - 1)] += 1.0;
+        }
+        // Amplitudes crowd around zero; the root lets the tails be seen.
+        counts.iter_mut().for_each(|count| *count = count.sqrt());
+        Self { version, counts, range }
+    }
+
+    /// Draws its columns, each in the colour of its value.
+    pub(super) fn paint(&self, painter: &Painter, rect: Rect, colour: impl Fn(f32) -> Color32) {
+        let [first, last] = self.range;
+        let tallest = self.counts.iter().copied().fold(1e-6, f32::max);
+        let column = rect.width() / COLUMNS as f32;
+        for (index, count) in self.counts.iter().enumerate() {
+            let value = first + (index as f32 + 0.5) / COLUMNS as f32 * (last - first);
+            let corner = pos2(rect.left() + index as f32 * column, rect.bottom() - count / tallest * rect.height());
+            let bar = Rect::from_min_max(corner, pos2(corner.x + column + 0.4, rect.bottom()));
+            painter.rect_filled(bar, 0.0, colour(value));
+        }
+    }
+}
