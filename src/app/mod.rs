@@ -29,6 +29,8 @@ pub mod state;
 #[cfg(test)]
 pub(crate) mod tests;
 pub mod theme;
+#[cfg(test)]
+mod through_tests;
 pub mod views;
 pub mod window;
 pub mod work;

@@ -13,6 +13,7 @@ pub mod picking;
 pub mod remembered;
 mod session;
 pub mod showing;
+pub mod through;
 mod view;
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ use compare::fitted;
 use eframe::egui::{Color32, ColorImage, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2};
 use glam::DVec2;
 use hand::Hand;
-use render::{Background, Scene};
+use render::{Background, Faces, Media, Scene};
 
 /// How near the pointer must be to take hold of a handle or of the wipe's line, points.
 const REACH: f32 = 11.0;
@@ -102,14 +102,18 @@ impl BlockView {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Block"));
         let view = &session.view;
-        let holds = |part: fn(&Loaded) -> bool| {
+        let holds = |part: &dyn Fn(&Loaded) -> bool| {
             rocks.is_some_and(|(rocks, _)| rocks.try_read().is_ok_and(|loaded| part(&loaded)))
         };
-        let horizons = holds(|loaded| loaded.candidates.is_some()).then(|| overlay.leaves(session));
+        let horizons = holds(&|loaded| loaded.candidates.is_some()).then(|| overlay.leaves(session));
         let mut shown = showing::scene(session, horizons.as_deref());
         // After interpreting there is no model yet to take the relief from.
-        if !holds(|loaded| loaded.rock.is_some()) {
+        if !holds(&|loaded| loaded.rock.is_some()) {
             shown.ground = None;
+        }
+        // What is to be seen through is shown when it has been read.
+        if view.panel != Panel::Interpret && !holds(&|loaded| loaded.holds_media(&shown.media)) {
+            shown.media = Media::default();
         }
         let compare = compare(session);
         let rects = panes(compare, rect);
@@ -193,7 +197,7 @@ impl BlockView {
 
     fn paint(&self, ui: &Ui, session: &Session, compare: Compare, rects: &[Rect], whole: Rect) {
         let painter = ui.painter_at(whole);
-        painter.rect_filled(whole, 0.0, if is_clear(session) { BEHIND_VOLUMES } else { paper(ui) });
+        painter.rect_filled(whole, 0.0, if is_dark(session) { BEHIND_VOLUMES } else { paper(ui) });
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let wipe = session.view.wipe;
         for (index, (rect, texture)) in rects.iter().zip(&self.panes).enumerate() {
@@ -242,6 +246,11 @@ pub fn is_clear(session: &Session) -> bool {
 /// A pane's size in points, as a picture's.
 fn pane_px(pane: Rect) -> [u32; 2] {
     [pane.width(), pane.height()].map(|side| side.max(1.0) as u32)
+}
+
+/// Whether the block lies on a dark ground: volumes are white.
+pub fn is_dark(session: &Session) -> bool {
+    is_clear(session) || session.view.panel != Panel::Interpret && session.view.scene.media.faces == Faces::None
 }
 
 /// What pictures lie on.

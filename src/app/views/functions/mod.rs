@@ -2,8 +2,10 @@
 //!
 //! The range of the colours is pulled on the histogram; the picture follows at once, and letting go makes it one command.
 
+mod curve;
 mod histogram;
 mod scalars;
+mod through;
 
 use crate::app::state::{Action, Session};
 use crate::app::theme;
@@ -11,6 +13,7 @@ use crate::app::work::{Rocks, Swatches};
 use crate::command::{Command, RemoveScalar, SetRaw, SetScalar};
 use crate::project::Document;
 use crate::style;
+use curve::Curve;
 use eframe::egui::{Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use histogram::Histogram;
 use scalars::{intervals, ranges};
@@ -28,6 +31,7 @@ pub struct Functions {
     sent: bool,
     held: Option<usize>,
     scalar: Option<ScalarTtf>,
+    curve: Curve,
 }
 
 impl Functions {
@@ -56,24 +60,44 @@ impl Functions {
         if self.sent && (style::of_project(document).raw == self.draft) {
             (self.draft, self.sent) = (None, false);
         }
-        let Some(raw) = self.draft.clone().or_else(|| style::of_project(document).raw) else { return };
+        if let Some(raw) = self.draft.clone().or_else(|| style::of_project(document).raw) {
+            self.raw(ui, document, &raw, rocks, actions);
+        }
+        if !document.horizons.is_empty() {
+            ui.add_space(10.0);
+            ui.heading("Textures by value");
+            self.scalars(ui, document, rocks, swatches, actions);
+        }
+        ui.add_space(10.0);
+        let volume = through::volume(session);
+        if let Some(volume) = &volume {
+            self.count(volume, rocks);
+        }
+        let histogram = volume.as_ref().and_then(|volume| self.histograms.get(volume));
+        through::show(ui, session, histogram, &mut self.curve, actions);
+    }
+
+    /// The colours of raw data.
+    fn raw(
+        &mut self,
+        ui: &mut Ui,
+        document: &Document,
+        raw: &RawColour,
+        rocks: Option<(&Rocks, u64)>,
+        actions: &mut Vec<Action>,
+    ) {
         ui.heading("Colours of raw data");
         let mut next = raw.clone();
         map(ui, document, &mut next);
         self.count(&raw.volume, rocks);
         self.range(ui, &mut next);
-        if next != raw {
+        if next != *raw {
             (self.draft, self.sent) = (Some(next), false);
         }
         let is_held = ui.input(|input| input.pointer.any_down()) || ui.ctx().egui_wants_keyboard_input();
         if let Some(raw) = self.draft.clone().filter(|_| !is_held && !self.sent) {
             self.sent = true;
             actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
-        }
-        if !document.horizons.is_empty() {
-            ui.add_space(10.0);
-            ui.heading("Textures by value");
-            self.scalars(ui, document, rocks, swatches, actions);
         }
     }
 

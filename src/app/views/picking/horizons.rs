@@ -234,8 +234,8 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
             }
             ui.weak(format!("level {}", pick.up));
         });
-        ui.horizontal(|ui| {
-            ui.add_space(16.0);
+        ui.horizontal_wrapped(|ui| {
+            ui.add_space(8.0);
             let mut button = |ui: &mut Ui, name: &str, hint: &str, can: bool, command: Command| {
                 let button = ui.add_enabled(can, Button::new(name).small());
                 if button.on_hover_text(format!("{hint} pick {}", pick.id)).clicked() {

@@ -68,7 +68,7 @@ impl Page {
             if self.form.scale_bar == Shown::Yes && self.has_block() { px(sheet::STRIP_MM) as u32 } else { 0 };
         let size_px = [width.saturating_sub(legend_px).max(1), height.saturating_sub(strip_px).max(1)];
         let scene = self.scene();
-        let mut page = RgbaImage::from_pixel(width, height, paper(self.session.view.scene.background));
+        let mut page = RgbaImage::from_pixel(width, height, self.paper());
         let project = Project::open(&self.session.root)?;
         let rocks = self.load(&project, &scene, progress)?;
         let per_point = px(POINT_MM) as f32;
@@ -94,6 +94,13 @@ impl Page {
 
     fn has_block(&self) -> bool {
         self.session.view.layout != Layout::Fence
+    }
+
+    /// What the page is printed on; a dark ground is the block's alone.
+    fn paper(&self) -> Rgba<u8> {
+        let own = self.session.view.scene.background;
+        let background = if block::is_dark(&self.session) { Scene::default().background } else { own };
+        Rgba(background.rgba().map(|channel| (channel * 255.0 + 0.5) as u8))
     }
 
     fn is_interpreting(&self) -> bool {
@@ -139,7 +146,7 @@ impl Page {
         if loaded.rock.is_none() {
             scene.ground = None;
         }
-        if block::is_clear(&self.session) {
+        if block::is_dark(&self.session) {
             let [r, g, b, _] = BEHIND_VOLUMES.to_array();
             scene.background = Background::Colour(Colour::new(r, g, b));
         }
@@ -252,8 +259,4 @@ fn plain(colour: Color32) -> Colour {
 /// Left, top, right and bottom in whole pixels.
 fn pixels(rect: Rect, per_point: f32) -> [u32; 4] {
     [rect.left(), rect.top(), rect.right(), rect.bottom()].map(|side| (side * per_point).round().max(0.0) as u32)
-}
-
-fn paper(background: Background) -> Rgba<u8> {
-    Rgba(background.rgba().map(|channel| (channel * 255.0 + 0.5) as u8))
 }

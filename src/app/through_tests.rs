@@ -1,0 +1,64 @@
+//! Volumes and horizons seen through, by labels.
+
+use super::command_tests::{choose, click_last};
+use super::state::through::{Extent, extent};
+use super::tests::{Driven, click, open, state, wait};
+use egui_kittest::kittest::Queryable;
+use render::{Media, Scene, Shading};
+
+fn scene(harness: &Driven) -> &Scene {
+    &state(harness).session.as_ref().unwrap().view.scene
+}
+
+fn drawn(harness: &mut Driven) {
+    wait(harness, "the picture is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
+    assert!(state(harness).notices.iter().all(|notice| !notice.failed), "{:?}", state(harness).notices);
+}
+
+#[test]
+fn a_volume_fills_the_cut_outs_and_the_block() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Values");
+    click_last(&mut harness, "Cut-outs");
+    drawn(&mut harness);
+    assert_eq!(extent(scene(&harness)), Extent::CutOuts);
+    assert_eq!(scene(&harness).media.cut_outs[0].volume, "seismic");
+    harness.get_by_label("Opacity over the histogram");
+    let stops = scene(&harness).media.cut_outs[0].function.stops.len();
+    assert!(stops > 2);
+    click_last(&mut harness, "Remove stop");
+    assert_eq!(scene(&harness).media.cut_outs[0].function.stops.len(), stops - 1);
+    click_last(&mut harness, "Only in layers that stand out");
+    drawn(&mut harness);
+    click_last(&mut harness, "Whole block");
+    assert_eq!(extent(scene(&harness)), Extent::Block);
+    assert!(scene(&harness).ground.is_none() && scene(&harness).background != Scene::default().background);
+    drawn(&mut harness);
+    choose(&mut harness, "Light", "by gradients");
+    assert!(matches!(scene(&harness).media.shading, Shading::Phong(_)));
+    drawn(&mut harness);
+    click_last(&mut harness, "Nothing");
+    assert_eq!(extent(scene(&harness)), Extent::Nowhere);
+    assert_eq!(scene(&harness).background, Scene::default().background);
+    drawn(&mut harness);
+}
+
+#[test]
+fn a_horizon_glows_in_the_cut_out() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Values");
+    assert_eq!(scene(&harness).media, Media::default());
+    click_last(&mut harness, "Top");
+    wait(&mut harness, "the horizon is seen", |harness| !scene(harness).media.horizons.is_empty());
+    drawn(&mut harness);
+    for label in ["Light of Top", "Top: opacity", "Top: thick", "Top: glow"] {
+        assert!(harness.query_all_by_label(label).next().is_some(), "{label}");
+    }
+    click_last(&mut harness, "near them");
+    drawn(&mut harness);
+    click_last(&mut harness, "Top");
+    assert!(scene(&harness).media.horizons.is_empty());
+    drawn(&mut harness);
+}
