@@ -285,7 +285,8 @@ fn the_controls_cut_and_turn_the_block() {
     act(&mut harness, Action::Arrange(Layout::Map));
     click_last(&mut harness, "Thickness");
     harness.get_by_role_and_label(Role::Image, "Map");
-    choose(&mut harness, "Map of", "Base");
+    click_last(&mut harness, "Map of");
+    click_last(&mut harness, "Base");
     assert_eq!(state(&harness).session.as_ref().unwrap().view.horizon.as_deref(), Some("Base"));
 }
 

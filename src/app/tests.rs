@@ -38,7 +38,8 @@ pub(super) fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> 
     loop {
         harness.step();
         if is_so(harness) {
-            harness.step();
+            // A dialogue finds its place in the frames after its content is complete.
+            harness.run_steps(3);
             return;
         }
         assert!(start.elapsed() < PATIENCE, "still not so: {what}; notices: {:?}", state(harness).notices);
