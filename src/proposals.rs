@@ -1,12 +1,13 @@
 //! Proposed faults, kept until one of them is accepted.
 //!
 //! `derived/fault-proposals.json` holds the last proposals with a key of what they were made from: horizons and faults. Proposals of another
-//! state are not accepted, but for the faults that were accepted from them.
+//! state are not accepted, but for the faults that were accepted from them. What is a fault of the project already is not proposed; it is told.
 
+use crate::command::assembly;
 use crate::data;
 use crate::error::ProjectError;
 use crate::project::{Document, Project};
-use interp::faults::{Evidence, Proposal, ProposeSettings, propose_faults};
+use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
 use interp::reassembly::from_horizon;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -20,48 +21,81 @@ use survey::{Progress, store};
 pub struct Proposals {
     /// Hashes of the horizons.
     pub horizons: Vec<String>,
-    /// The faults.
+    /// The faults, the largest first, minor ones last.
     pub proposals: Vec<Proposal>,
+    /// Faults of the project that were found again, and are not proposed.
+    #[serde(default)]
+    pub repeats: Vec<Repeat>,
     /// Unit of vertical values.
     pub unit: String,
 }
 
+impl Proposals {
+    /// What to say where there are none.
+    pub fn nothing_new(&self) -> Option<&'static str> {
+        match (self.proposals.is_empty(), self.repeats.is_empty()) {
+            (true, true) => Some("the horizons are offset nowhere: no fault is proposed"),
+            (true, false) => Some("the horizons are offset where the project has faults already: no fault is proposed"),
+            _ => None,
+        }
+    }
+
+    fn line(&self, f: &mut fmt::Formatter<'_>, p: &Proposal) -> fmt::Result {
+        let unit = &self.unit;
+        let kind = if p.reverse { "reverse" } else { "normal" };
+        let [a, b] = p.ends;
+        write!(
+            f,
+            "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline {:.0}, crossline {:.0} to inline {:.0}, \
+             crossline {:.0}, {:.0} to {:.0} {unit}; throw by length {:.0} m2, {} pairs on {}, {:.0} m off",
+            p.id,
+            p.strike_deg,
+            p.dip_deg,
+            p.throw[0],
+            p.throw[1],
+            a[0],
+            a[1],
+            b[0],
+            b[1],
+            p.depth[0],
+            p.depth[1],
+            p.offset_m2,
+            p.support,
+            p.horizons.join(", "),
+            p.misfit_m
+        )?;
+        if let Some([on, beside]) = p.semblance {
+            write!(f, "; semblance {on:.2} on it, {beside:.2} beside")?;
+        }
+        Ok(())
+    }
+}
+
 impl fmt::Display for Proposals {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.proposals.is_empty() {
-            return write!(f, "the horizons are offset nowhere: no fault is proposed");
-        }
-        for (n, p) in self.proposals.iter().enumerate() {
+        let mut is_minor = false;
+        for (n, proposal) in self.proposals.iter().enumerate() {
             if n > 0 {
                 writeln!(f)?;
             }
-            let unit = &self.unit;
-            let kind = if p.reverse { "reverse" } else { "normal" };
-            let [a, b] = p.ends;
+            if proposal.is_minor && !is_minor {
+                is_minor = true;
+                writeln!(f, "minor ones, small, scattered or without a break in the data:")?;
+            }
+            self.line(f, proposal)?;
+        }
+        if let Some(nothing) = self.nothing_new() {
+            write!(f, "{nothing}")?;
+        }
+        self.repeats.iter().try_for_each(|repeat| {
+            let Repeat { fault, support, along, off_traces, throw, .. } = repeat;
             write!(
                 f,
-                "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline {:.0}, crossline {:.0} to inline {:.0}, \
-                 crossline {:.0}, {:.0} to {:.0} {unit}; {} pairs on {}, {:.0} m off",
-                p.id,
-                p.strike_deg,
-                p.dip_deg,
-                p.throw[0],
-                p.throw[1],
-                a[0],
-                a[1],
-                b[0],
-                b[1],
-                p.depth[0],
-                p.depth[1],
-                p.support,
-                p.horizons.join(", "),
-                p.misfit_m
-            )?;
-            if let Some([on, beside]) = p.semblance {
-                write!(f, "; semblance {on:.2} on it, {beside:.2} beside")?;
-            }
-        }
-        Ok(())
+                "\nnot proposed: \"{fault}\" again, by {support} pairs along {:.0} % of it, {off_traces:.1} traces off, throw {throw:.0} {}",
+                100.0 * along,
+                self.unit
+            )
+        })
     }
 }
 
@@ -99,9 +133,14 @@ pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progres
         }
         None => None,
     };
-    let found = propose_faults(&horizons, geometry, likeness.as_ref(), settings, progress)?;
-    let proposals =
-        Proposals { horizons: hashes(document), proposals: found, unit: geometry.vertical.unit.symbol().to_owned() };
+    let known = assembly::blocks(project.root(), document, progress)?;
+    let found = propose_faults(&horizons, geometry, &known, likeness.as_ref(), settings, progress)?;
+    let proposals = Proposals {
+        horizons: hashes(document),
+        proposals: found.proposals,
+        repeats: found.repeats,
+        unit: geometry.vertical.unit.symbol().to_owned(),
+    };
     let path = path(project.root());
     let folder = path.parent().unwrap_or(project.root());
     std::fs::create_dir_all(folder).map_err(|source| ProjectError::io("written", folder, source))?;

@@ -45,7 +45,7 @@ fn fault() -> Command {
     Command::PickFault(PickFault { name: "East".into(), sticks: vec![stick(2.0), stick(18.0)] })
 }
 
-/// Two proposals for the horizons as they are, as looking for faults leaves them.
+/// Two proposals and a minor one for the horizons as they are, as looking for faults leaves them.
 fn proposed(project: &Project) {
     let mesh = |x: f64| {
         let corner = |y: f64, z: f64| DVec3::new(x + z, y, z);
@@ -65,10 +65,13 @@ fn proposed(project: &Project) {
         horizons: vec!["Top".into()],
         support: 40,
         misfit_m: 3.0,
+        offset_m2: 6000.0,
+        is_minor: id == 3,
         semblance: None,
     };
     let horizons = project.document().horizons.iter().map(|entry| entry.hash.clone()).collect();
-    let proposals = Proposals { horizons, proposals: vec![proposal(1, 150.0), proposal(2, 350.0)], unit: "ms".into() };
+    let found = vec![proposal(1, 150.0), proposal(2, 350.0), proposal(3, 450.0)];
+    let proposals = Proposals { horizons, proposals: found, repeats: Vec::new(), unit: "ms".into() };
     let folder = project.root().join("derived");
     std::fs::create_dir_all(&folder).unwrap();
     std::fs::write(folder.join("fault-proposals.json"), serde_json::to_string(&proposals).unwrap()).unwrap();
@@ -84,6 +87,9 @@ fn proposed_faults_are_accepted_and_dismissed() {
     click(&mut harness, "Interpret");
     wait(&mut harness, "both are listed", |harness| harness.query_all_by_label_contains("Proposal").count() == 2);
     harness.get_by_label("Name of proposal 1");
+    click(&mut harness, "1 minor proposal");
+    assert_eq!(harness.query_all_by_label_contains("Proposal").count(), 3);
+    click(&mut harness, "1 minor proposal");
     click_last(&mut harness, "Dismiss");
     assert_eq!(harness.query_all_by_label_contains("Proposal").count(), 1);
     assert_eq!(state(&harness).session.as_ref().unwrap().view.picking.dismissed, [2]);

@@ -3,6 +3,7 @@
 use super::{Noun, ProjectError, order};
 use crate::candidates::Candidates;
 use crate::data;
+use crate::derived;
 use crate::held::Held;
 use crate::project::Document;
 use crate::project::Draft;
@@ -124,15 +125,26 @@ pub(crate) fn sentence(conflict: &Conflict) -> String {
     }
 }
 
-/// The faults of the project as blocks; they take longer to make than all else that a pick needs, so whoever makes several picks holds them.
+/// The faults of the project as blocks; they take longer to make than all else that a pick needs, so they are kept beside the project, and whoever
+/// makes several picks holds them.
 pub(crate) fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
     static HELD: Held<(SurveyGeometry, Vec<String>), FaultNetwork> = Held::nothing();
     let geometry = document.frame()?;
     let key = document.faults.iter().map(|entry| format!("{} {} {:?}", entry.name, entry.hash, entry.truncated_by));
     HELD.get_or_make((geometry.clone(), key.collect()), || {
+        if document.faults.is_empty() {
+            return Ok(FaultNetwork::none());
+        }
+        let settings = ModelSettings::default();
+        let key = derived::blocks_key(document, &settings);
+        if let Some(kept) = derived::load_blocks(root, &key) {
+            return Ok(kept);
+        }
         let faults = document.faults.iter().map(|entry| data::read_fault(root, entry));
         let faults = faults.collect::<Result<Vec<_>, _>>()?;
-        Ok(FaultNetwork::build(geometry, &faults, &ModelSettings::default(), progress)?)
+        let made = FaultNetwork::build(geometry, &faults, &settings, progress)?;
+        derived::keep_blocks(root, &key, &made, progress);
+        Ok(made)
     })
 }
 

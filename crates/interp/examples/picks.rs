@@ -137,9 +137,11 @@ fn fault_rows(
     progress: &Progress,
 ) -> Result<String, Box<dyn Error>> {
     let sheets = picked(survey, forest);
+    let none = FaultNetwork::none();
     let names = survey.truth.horizons.iter().map(|horizon| horizon.name.as_str());
     let evidence: Vec<Evidence> = names.zip(&sheets).map(|(name, sheets)| Evidence { name, sheets }).collect();
-    let found = propose_faults(&evidence, &survey.geometry, None, &ProposeSettings::default(), progress)?;
+    let settings = ProposeSettings::default();
+    let found = propose_faults(&evidence, &survey.geometry, &none, None, &settings, progress)?.proposals;
     let mut rows = String::new();
     for (f, truth) in survey.truth.faults.iter().enumerate() {
         let distances = |mesh: &survey::TriangleMesh| {

@@ -11,23 +11,32 @@
 //!    It goes on to where the throw, continued linearly, is nothing; to the walls that its traces reach; up and down to the next
 //!    horizon that passes it unbroken, or through the volume.
 //!
+//!
+//! Pairs that lie on a fault of the project (`known`) are taken out before 3: it is not proposed again.
+//!
+//! Proposals come largest first, by the area of what they tore apart: the throw along their traces, summed over horizons ([`Proposal::offset_m2`]). On real
+//! surveys many are small, where picks are noisy, scatter about their surface, or fit one without a break in the data: those are minor and come last.
+//!
 //! Semblance is evidence, not a source: its mean on the surface is told beside that on both sides of it. It gives a fault its dip where a single
 //! horizon cannot, and what is a bend of one horizon and nothing else is left out unless semblance is less on it than beside. Spaces: rims and pairs are voxel, surfaces
 //! metric (m).
 
 mod bends;
 mod edges;
+mod known;
 mod pairs;
 mod surface;
 #[cfg(test)]
 mod tests;
 mod traces;
 
+pub use known::Repeat;
 pub use pairs::Pair;
 
 use crate::reassembly::VoxelSheet;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
+use survey::model::FaultNetwork;
 use survey::{Cancelled, Fault, Progress, SurveyGeometry, TriangleMesh, Volume};
 
 /// How faults are looked for.
@@ -62,7 +71,7 @@ pub struct Evidence<'a> {
 /// A fault that horizons speak for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Proposal {
-    /// Number by which it is accepted, from 1; the best supported first.
+    /// Number by which it is accepted, from 1; the largest first.
     pub id: u32,
     /// A name to begin with.
     pub name: String,
@@ -86,6 +95,12 @@ pub struct Proposal {
     pub support: usize,
     /// RMS distance of these from its surface, m.
     pub misfit_m: f64,
+    /// Throw along its traces, summed over horizons: the area of what it tore apart, m².
+    #[serde(default)]
+    pub offset_m2: f64,
+    /// Whether it is one of the many small ones, its pairs scatter, or the data show no break on it.
+    #[serde(default)]
+    pub is_minor: bool,
     /// Mean semblance on it and on both sides of it, if there was a volume.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub semblance: Option<[f32; 2]>,
@@ -98,10 +113,23 @@ impl Proposal {
     }
 }
 
+/// What was found.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// New faults, the largest first, minor ones last.
+    pub proposals: Vec<Proposal>,
+    /// Known faults that were found again, and are not proposed, the largest first.
+    pub repeats: Vec<Repeat>,
+}
+
+/// Share of all offset that small proposals hold together, at most.
+const MINOR: f64 = 0.2;
+/// RMS distance of a fault's pairs from its surface from which on it is minor, traces.
+const SCATTER: f64 = 2.0;
 /// How much less semblance is on a fault that only bends one horizon than beside it.
 const BREAK: f32 = 0.02;
 
-/// Looks for faults that offset `horizons`. `semblance` is a volume of the survey's size.
+/// Looks for faults that offset `horizons`, other than those of `known`. `semblance` is a volume of the survey's size.
 ///
 /// Cost: a window of [`ProposeSettings::reach`] around each rim node.
 ///
@@ -110,19 +138,21 @@ const BREAK: f32 = 0.02;
 pub fn propose_faults(
     horizons: &[Evidence],
     geometry: &SurveyGeometry,
+    known: &FaultNetwork,
     semblance: Option<&Volume<f32>>,
     settings: &ProposeSettings,
     progress: &Progress,
-) -> Result<Vec<Proposal>, Cancelled> {
+) -> Result<Found, Cancelled> {
     let [nx, ny, _] = geometry.size();
     let metric = geometry.metric_from_voxel();
     progress.begin("looking for faults", horizons.len() as u64);
+    let mut known = known::Known::of(known, geometry);
     let mut found = Vec::new();
     for (h, horizon) in horizons.iter().enumerate() {
         let pieces = edges::Pieces::of(horizon.sheets, [nx, ny]);
         let mut pairs = pairs::facing(&pieces, h, settings);
         pairs.extend(bends::of(horizon.sheets, [nx, ny], h, settings));
-        found.extend(traces::along_strike(pairs, settings));
+        found.extend(traces::along_strike(known.others(pairs), settings));
         progress.step(1)?;
     }
     let clusters = traces::across_horizons(found, metric, settings);
@@ -137,12 +167,28 @@ pub fn propose_faults(
             proposals.push(proposal);
         }
     }
-    proposals.sort_by_key(|proposal| std::cmp::Reverse((proposal.horizons.len(), proposal.support)));
+    let repeats = known.repeats();
+    let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
+    rank(&mut proposals, repeats.iter().map(|repeat| repeat.offset_m2).sum(), bin_m);
+    Ok(Found { proposals, repeats })
+}
+
+/// Sorts, numbers and names proposals. Minor are the last of them that together hold no more than [`MINOR`] of all offset, theirs and what known faults
+/// repeated, those whose pairs are more than [`SCATTER`] traces off their surface, and those on which semblance is no less than beside.
+fn rank(proposals: &mut [Proposal], repeated: f64, bin_m: f64) {
+    proposals.sort_by(|a, b| b.offset_m2.total_cmp(&a.offset_m2));
+    let mut rest: f64 = proposals.iter().map(|proposal| proposal.offset_m2).sum();
+    let all = rest + repeated;
+    for proposal in proposals.iter_mut() {
+        let whole = proposal.semblance.is_some_and(|[on, beside]| on >= beside);
+        proposal.is_minor = whole || proposal.misfit_m > SCATTER * bin_m || rest <= MINOR * all;
+        rest -= proposal.offset_m2;
+    }
+    proposals.sort_by_key(|proposal| proposal.is_minor);
     for (n, proposal) in proposals.iter_mut().enumerate() {
         proposal.id = n as u32 + 1;
         proposal.name = format!("Fault {}", n + 1);
     }
-    Ok(proposals)
 }
 
 /// Everything to be said of a surface.
@@ -180,6 +226,8 @@ fn describe(
         horizons: names.iter().map(|&h| horizons[h].name.to_owned()).collect(),
         support: cluster.len(),
         misfit_m: surface.misfit_m,
+        offset_m2: surface.offset_m2(cluster, geometry),
+        is_minor: false,
         semblance: semblance.map(|volume| surface::semblance_on(surface, geometry, volume)),
     }
 }

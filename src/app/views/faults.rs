@@ -5,6 +5,7 @@ use crate::app::state::{Action, PickingStep, Session, Tool};
 use crate::app::work::{Interpreted, RunningLine};
 use crate::command::{AcceptFault, Command};
 use eframe::egui::{Button, TextEdit, Ui};
+use interp::faults::Proposal;
 use std::collections::HashMap;
 use survey::SurveyGeometry;
 
@@ -77,35 +78,71 @@ impl FaultsPanel {
             actions.push(Action::ProposeFaults);
         }
         let Some(shown) = shown else { return };
-        for (proposal, _) in shown.proposals.iter().filter(|(proposal, _)| !picking.dismissed.contains(&proposal.id)) {
-            let kind = if proposal.reverse { "reverse" } else { "normal" };
+        let open = || shown.proposals.iter().map(|(proposal, _)| proposal).filter(|proposal| picking.shows(proposal));
+        for proposal in open().filter(|proposal| !proposal.is_minor) {
+            self.proposal(ui, proposal, &shown.unit, geometry, actions);
+        }
+        let dismissed = |id: u32| picking.dismissed.contains(&id);
+        let minor = shown.proposals.iter().filter(|(proposal, _)| proposal.is_minor && !dismissed(proposal.id)).count();
+        if minor > 0 {
             ui.separator();
-            ui.label(format!(
-                "Proposal {}: {kind}, throw {:.0} {} (up to {:.0}), dips {:.0}°, strikes {:.0}°",
-                proposal.id, proposal.throw[0], shown.unit, proposal.throw[1], proposal.dip_deg, proposal.strike_deg
-            ))
-            .on_hover_text(format!(
-                "seen by {} pairs on {}",
-                proposal.support,
-                proposal.horizons.join(", ")
-            ));
-            let name = self.names.entry(proposal.id).or_insert_with(|| proposal.name.clone());
-            ui.horizontal(|ui| {
-                let label = format!("Name of proposal {}", proposal.id);
-                ui.name_inputs(label, |ui| ui.add(TextEdit::singleline(name).desired_width(76.0)));
-                if ui.small_button("Accept").on_hover_text(format!("Accept proposal {}", proposal.id)).clicked() {
-                    let command = AcceptFault { id: proposal.id, name: name.trim().to_owned() };
-                    actions.push(Action::Apply(Box::new(Command::AcceptFault(command))));
-                }
-                if ui.small_button("Dismiss").on_hover_text(format!("Dismiss proposal {}", proposal.id)).clicked() {
-                    actions.push(step(PickingStep::Dismiss(proposal.id)));
-                }
-                if ui.small_button("Go").on_hover_text(format!("Go to proposal {}", proposal.id)).clicked() {
-                    let [a, b] = proposal.ends;
-                    let z = 0.5 * (proposal.depth[0] + proposal.depth[1]);
-                    go(geometry, [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), z], actions);
-                }
-            });
+            let text = format!("{minor} minor proposal{}", if minor == 1 { "" } else { "s" });
+            let hint = "Small ones, together a fifth of all offset or less, and those that scatter or show no break in the data";
+            if ui.selectable_label(picking.minor, text).on_hover_text(hint).clicked() {
+                actions.push(step(PickingStep::Minor(!picking.minor)));
+            }
+        }
+        for proposal in open().filter(|proposal| proposal.is_minor) {
+            self.proposal(ui, proposal, &shown.unit, geometry, actions);
         }
     }
+
+    fn proposal(
+        &mut self,
+        ui: &mut Ui,
+        proposal: &Proposal,
+        unit: &str,
+        geometry: &SurveyGeometry,
+        actions: &mut Vec<Action>,
+    ) {
+        let kind = if proposal.reverse { "reverse" } else { "normal" };
+        ui.separator();
+        ui.label(format!(
+            "Proposal {}: {kind}, throw {:.0} {unit} (up to {:.0}), dips {:.0}°, strikes {:.0}°",
+            proposal.id, proposal.throw[0], proposal.throw[1], proposal.dip_deg, proposal.strike_deg
+        ))
+        .on_hover_text(seen(proposal));
+        let name = self.names.entry(proposal.id).or_insert_with(|| proposal.name.clone());
+        ui.horizontal(|ui| {
+            let label = format!("Name of proposal {}", proposal.id);
+            ui.name_inputs(label, |ui| ui.add(TextEdit::singleline(name).desired_width(76.0)));
+            if ui.small_button("Accept").on_hover_text(format!("Accept proposal {}", proposal.id)).clicked() {
+                let command = AcceptFault { id: proposal.id, name: name.trim().to_owned() };
+                actions.push(Action::Apply(Box::new(Command::AcceptFault(command))));
+            }
+            if ui.small_button("Dismiss").on_hover_text(format!("Dismiss proposal {}", proposal.id)).clicked() {
+                actions.push(Action::Picking(PickingStep::Dismiss(proposal.id)));
+            }
+            if ui.small_button("Go").on_hover_text(format!("Go to proposal {}", proposal.id)).clicked() {
+                let [a, b] = proposal.ends;
+                let z = 0.5 * (proposal.depth[0] + proposal.depth[1]);
+                go(geometry, [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), z], actions);
+            }
+        });
+    }
+}
+
+/// What speaks for a proposal.
+fn seen(proposal: &Proposal) -> String {
+    let mut text = format!(
+        "seen by {} pairs on {}, {:.0} m off its surface; throw by length {:.0} m²",
+        proposal.support,
+        proposal.horizons.join(", "),
+        proposal.misfit_m,
+        proposal.offset_m2
+    );
+    if let Some([on, beside]) = proposal.semblance {
+        text += &format!("; semblance {on:.2} on it, {beside:.2} beside");
+    }
+    text
 }

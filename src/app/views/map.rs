@@ -1,5 +1,7 @@
 //! The map: a horizon's structure, or the thickness below it, north up, with contours, the sections' lines and a colour bar.
 
+mod labels;
+
 use super::texture;
 use crate::app::state::{Action, Session};
 use crate::app::theme;
@@ -205,16 +207,12 @@ impl MapView {
         }
         mesh.indices = vec![0, 1, 2, 0, 2, 3];
         painter.add(Shape::mesh(mesh));
-        for piece in &shown.contours {
-            let stroke = Stroke::new(
-                if piece.is_index { 1.6 } else { 0.7 },
-                Color32::from_black_alpha(if piece.is_index { 220 } else { 150 }),
-            );
-            painter.line_segment(piece.ends.map(|end| sheet.screen(end)), stroke);
-        }
         for ends in &shown.hatching {
             painter.line_segment(ends.map(|end| sheet.screen(end)), Stroke::new(0.9, Color32::from_black_alpha(170)));
         }
+        // Clear of the north arrow.
+        let room = Rect::from_min_max(rect.min + vec2(40.0, 8.0), rect.max - vec2(96.0, 8.0));
+        labels::paint(&painter, &shown.contours, |place| sheet.screen(place), room);
         let line = Stroke::new(1.5, theme::accent(ui.visuals()));
         let [x, y, _] = session.view.slices;
         painter.line_segment([DVec2::new(x, 0.0), DVec2::new(x, ny)].map(|end| sheet.screen(end)), line);

@@ -23,8 +23,8 @@ const NEAR: f64 = 2.5;
 /// Opacity before the block: of horizons, of the one that is picked, and of the selection.
 const OPACITY: [f32; 3] = [0.22, 0.6, 0.85];
 
-/// What lines on a section were made of: the interpretation, the selection, how many proposals are dismissed, and where.
-type Made<P> = (u64, usize, usize, P);
+/// What lines on a section were made of: the interpretation, the selection, how many proposals are dismissed and whether minor ones show, and where.
+type Made<P> = (u64, usize, (usize, bool), P);
 
 /// What is drawn over the pictures while interpreting. Cheap to clone.
 #[derive(Clone, Default)]
@@ -215,17 +215,18 @@ impl Overlay {
 
     fn made<P>(&self, session: &Session, place: P) -> Made<P> {
         let number = self.interpreted.as_ref().map_or(0, |shown| shown.number);
-        (number, self.selection, session.view.picking.dismissed.len(), place)
+        let picking = &session.view.picking;
+        (number, self.selection, (picking.dismissed.len(), picking.minor), place)
     }
 
     fn lines_on(&self, session: &Session, cut: &Cut) -> Lines {
         let Some(shown) = &self.interpreted else { return Lines::default() };
-        let dismissed = &session.view.picking.dismissed;
+        let picking = &session.view.picking;
         let coloured = |made: &dyn Fn(&ShownHorizon) -> Vec<Line>| {
             let horizons = shown.horizons.iter().enumerate();
             horizons.map(|(index, horizon)| (horizon_colour(horizon.colour, index), made(horizon))).collect()
         };
-        let open = shown.proposals.iter().filter(|(proposal, _)| !dismissed.contains(&proposal.id));
+        let open = shown.proposals.iter().filter(|(proposal, _)| picking.shows(proposal));
         let selected = self.selected.iter().flat_map(|shown| &shown.sheets);
         Lines {
             horizons: coloured(&|horizon| horizon.sheets.iter().flat_map(cut.sheet).collect()),

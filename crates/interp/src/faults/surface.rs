@@ -7,6 +7,7 @@ use super::pairs::Pair;
 use super::traces::across_m;
 use super::{Evidence, ProposeSettings, metres};
 use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
 use survey::{SurveyGeometry, TriangleMesh, Volume};
 
 /// Places farther off the fit than this many times its RMS are left out of the next.
@@ -181,6 +182,20 @@ impl Surface {
     /// The throw of a pair, counted towards `across`.
     pub fn throw_across(&self, pair: &Pair) -> f64 {
         f64::from(pair.throw)
+    }
+
+    /// Throw along the traces on all horizons, m²: its mean over each bin along strike on which a horizon has pairs, times the bin.
+    pub fn offset_m2(&self, pairs: &[Pair], geometry: &SurveyGeometry) -> f64 {
+        let metric = geometry.metric_from_voxel();
+        let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
+        let mut bins: BTreeMap<(usize, i64), (f64, f64)> = BTreeMap::new();
+        for pair in pairs {
+            let s = (metres(metric, pair.at) - self.middle).truncate().dot(self.along);
+            let (sum, count) = bins.entry((pair.horizon, (s / bin_m).floor() as i64)).or_default();
+            *sum += f64::from(pair.throw.abs()) * geometry.sample_m();
+            *count += 1.0;
+        }
+        bins.values().map(|(sum, count)| sum / count * bin_m).sum()
     }
 
     /// The two ends at middle depth, metric.

@@ -3,7 +3,7 @@
 use super::*;
 use crate::reassembly::from_horizon;
 use survey::attribute::{DipSettings, SemblanceSettings, dip, semblance};
-use survey::model::FaultNetwork;
+use survey::model::{FaultNetwork, ModelSettings};
 use survey::synth::{SynthSettings, Synthetic};
 use survey::{NodeGrid, Quality, Sheet, VerticalUnit};
 
@@ -41,6 +41,21 @@ fn tracked(survey: &Synthetic) -> Vec<Vec<VoxelSheet>> {
         .collect()
 }
 
+fn found(
+    horizons: &[Evidence],
+    geometry: &SurveyGeometry,
+    known: &FaultNetwork,
+    likeness: Option<&Volume<f32>>,
+) -> Found {
+    let settings = ProposeSettings::default();
+    propose_faults(horizons, geometry, known, likeness, &settings, &Progress::silent()).unwrap()
+}
+
+/// Proposals where no fault is known.
+fn proposed(horizons: &[Evidence], geometry: &SurveyGeometry, likeness: Option<&Volume<f32>>) -> Vec<Proposal> {
+    found(horizons, geometry, &FaultNetwork::none(), likeness).proposals
+}
+
 #[test]
 fn the_faults_of_a_synthetic_survey_are_found_where_they_are() {
     for seed in [1, 2] {
@@ -49,8 +64,7 @@ fn the_faults_of_a_synthetic_survey_are_found_where_they_are() {
         let names: Vec<&str> = survey.horizons.iter().map(|horizon| horizon.name.as_str()).collect();
         let evidence: Vec<Evidence> =
             names.iter().zip(&sheets).map(|(name, sheets)| Evidence { name, sheets }).collect();
-        let settings = ProposeSettings::default();
-        let found = propose_faults(&evidence, &survey.geometry, None, &settings, &Progress::silent()).unwrap();
+        let found = proposed(&evidence, &survey.geometry, None);
         assert_eq!(
             found.len(),
             3,
@@ -91,8 +105,7 @@ fn the_dip_of_a_fault_through_one_horizon_comes_from_the_data() {
     let likeness = semblance(&survey.seismic, &dips, &SemblanceSettings::default(), &Progress::silent()).unwrap();
     let sheets = tracked(&survey).swap_remove(1);
     let evidence = [Evidence { name: "Bravo", sheets: &sheets }];
-    let settings = ProposeSettings::default();
-    let found = propose_faults(&evidence, &survey.geometry, Some(&likeness), &settings, &Progress::silent()).unwrap();
+    let found = proposed(&evidence, &survey.geometry, Some(&likeness));
     for truth in survey.truth.faults.iter().filter(|truth| truth.tip.is_none()) {
         // Where it meets the horizon, on the middle crossline; its dip there is that of the middle of the volume within a few degrees.
         let at = |proposal: &Proposal| {
@@ -120,7 +133,7 @@ fn a_horizon_with_holes_has_no_faults() {
         survey::Horizon { name: "H".into(), sheets: vec![Sheet::new(grid, depth.collect(), Quality::Tracked)] };
     let sheets = from_horizon(&horizon, &geometry, &FaultNetwork::none());
     let evidence = [Evidence { name: "H", sheets: &sheets }];
-    let found = propose_faults(&evidence, &geometry, None, &ProposeSettings::default(), &Progress::silent()).unwrap();
+    let found = proposed(&evidence, &geometry, None);
     assert!(found.is_empty(), "{:?}", found.iter().map(|p| (p.support, p.throw, p.ends)).collect::<Vec<_>>());
 }
 
@@ -141,7 +154,7 @@ fn a_fault_that_was_tracked_across_is_found_by_its_bend() {
     // Four samples over three traces, and no gap.
     let (geometry, sheets) = stepped(|d| 4.0 * (d / 3.0 + 0.5).clamp(0.0, 1.0));
     let evidence = [Evidence { name: "H", sheets: &sheets }];
-    let found = propose_faults(&evidence, &geometry, None, &ProposeSettings::default(), &Progress::silent()).unwrap();
+    let found = proposed(&evidence, &geometry, None);
     assert_eq!(found.len(), 1, "{:?}", found.iter().map(|p| (p.support, p.throw, p.ends)).collect::<Vec<_>>());
     let fault = &found[0];
     assert!((fault.throw[0] - 40.0).abs() < 4.0, "throw {:?} m of 40", fault.throw);
@@ -160,6 +173,89 @@ fn a_fault_that_was_tracked_across_is_found_by_its_bend() {
 fn a_flexure_is_no_fault() {
     let (geometry, sheets) = stepped(|d| 4.0 * (0.5 + 0.5 * (d / 10.0).tanh()));
     let evidence = [Evidence { name: "H", sheets: &sheets }];
-    let found = propose_faults(&evidence, &geometry, None, &ProposeSettings::default(), &Progress::silent()).unwrap();
+    let found = proposed(&evidence, &geometry, None);
     assert!(found.is_empty(), "{:?}", found.iter().map(|p| (p.support, p.throw, p.ends)).collect::<Vec<_>>());
+}
+
+/// The line of [`stepped`] moved `off` traces across, from crossline `from` to `to` and turned by `turn` degrees about its middle, as a vertical fault.
+fn drawn(geometry: &SurveyGeometry, off: f64, [from, to]: [f64; 2], turn: f64, z: [f64; 2]) -> FaultNetwork {
+    let along = DVec2::new(-0.3, 1.0).normalize();
+    let (along, middle) = (along.rotate(DVec2::from_angle(turn.to_radians())), DVec2::new(45.0, 40.0));
+    let place = |y: f64| middle + along * ((y - 40.0) / along.y) - along.perp() * off;
+    let corner = |y: f64, z: f64| geometry.world_from_voxel(place(y).extend(z));
+    let vertices = vec![corner(from, z[0]), corner(to, z[0]), corner(to, z[1]), corner(from, z[1])];
+    let mesh = TriangleMesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] };
+    let fault = Fault { name: "Drawn".into(), mesh, truncated_by: None };
+    FaultNetwork::build(geometry, &[fault], &ModelSettings::default(), &Progress::silent()).unwrap()
+}
+
+#[test]
+fn a_known_fault_is_not_proposed_again_and_another_is() {
+    let (geometry, sheets) = stepped(|d| 4.0 * (d / 3.0 + 0.5).clamp(0.0, 1.0));
+    let evidence = [Evidence { name: "H", sheets: &sheets }];
+    let beside = |known: FaultNetwork| found(&evidence, &geometry, &known, None);
+    let repeated = beside(drawn(&geometry, 2.0, [0.0, 79.0], 0.0, [5.0, 55.0]));
+    assert!(repeated.proposals.is_empty());
+    let [repeat] = repeated.repeats.as_slice() else { panic!("{:?}", repeated.repeats) };
+    assert_eq!(repeat.fault, "Drawn");
+    assert!(repeat.along > 0.8, "along {} of it", repeat.along);
+    assert!((repeat.off_traces - 2.0).abs() < 0.5, "{} traces off", repeat.off_traces);
+    assert!((repeat.throw - 40.0).abs() < 4.0, "throw {} m of 40", repeat.throw);
+    // Drawn above the horizon only, it is the same fault.
+    assert!(beside(drawn(&geometry, 0.0, [0.0, 79.0], 0.0, [5.0, 15.0])).proposals.is_empty());
+    for (why, known) in [
+        ("ten traces beside", drawn(&geometry, 10.0, [0.0, 79.0], 0.0, [5.0, 55.0])),
+        ("across it", drawn(&geometry, 0.0, [0.0, 79.0], 60.0, [5.0, 55.0])),
+    ] {
+        let other = beside(known);
+        assert_eq!((other.proposals.len(), other.repeats.len()), (1, 0), "{why}");
+    }
+    // Drawn up to crossline 20, it goes on from there.
+    let further = beside(drawn(&geometry, 0.0, [0.0, 20.0], 0.0, [5.0, 55.0]));
+    let [proposal] = further.proposals.as_slice() else { panic!("{:?}", further.proposals.len()) };
+    let all = &beside(FaultNetwork::none()).proposals[0];
+    assert_eq!(further.repeats[0].support + proposal.support, all.support);
+    let share = proposal.offset_m2 / all.offset_m2;
+    assert!((0.6..0.8).contains(&share), "{share}");
+}
+
+#[test]
+fn proposals_come_by_the_area_they_tore_apart() {
+    // 40 m along 70 traces of 25 m and more, and 25 m along as many.
+    let both = |d: f32| 4.0 * (d / 3.0 + 0.5).clamp(0.0, 1.0) + 2.5 * ((d - 25.0) / 3.0 + 0.5).clamp(0.0, 1.0);
+    let (geometry, sheets) = stepped(both);
+    let evidence = [Evidence { name: "H", sheets: &sheets }];
+    let found = proposed(&evidence, &geometry, None);
+    let [large, small] = found.as_slice() else { panic!("{:?}", found.iter().map(|p| p.throw).collect::<Vec<_>>()) };
+    for (proposal, throw) in [(large, 40.0), (small, 25.0)] {
+        // Bends are seen some traces off the survey's rim.
+        let length = 80.0 * 1.044 * 25.0;
+        let share = proposal.offset_m2 / (throw * length);
+        assert!((0.8..1.05).contains(&share), "{} m2 of {}", proposal.offset_m2, throw * length);
+    }
+    assert_eq!((large.id, small.id), (1, 2));
+}
+
+/// Offsets of 50, 30, 12, 5 and 3: the last three hold a fifth, unless known faults of 200 were found again too: then the last four.
+#[test]
+fn minor_proposals_hold_a_fifth_of_the_offset_or_are_not_seen_in_the_data() {
+    let (geometry, sheets) = stepped(|d| 4.0 * (d / 3.0 + 0.5).clamp(0.0, 1.0));
+    let one = proposed(&[Evidence { name: "H", sheets: &sheets }], &geometry, None).swap_remove(0);
+    let of = |offset_m2: f64| Proposal { offset_m2, ..one.clone() };
+    let minor = |repeated: f64| {
+        let mut proposals = [50.0, 30.0, 12.0, 5.0, 3.0].map(of);
+        rank(&mut proposals, repeated, 25.0);
+        assert!(proposals.iter().zip(1..).all(|(proposal, id)| proposal.id == id));
+        proposals.map(|proposal| proposal.is_minor)
+    };
+    // One of them is not seen in the data and one scatters: they come last whatever their size.
+    let mut proposals = [60.0, 50.0, 30.0].map(of);
+    proposals[0].semblance = Some([0.9, 0.9]);
+    proposals[1].misfit_m = 51.0;
+    proposals[2].semblance = Some([0.8, 0.9]);
+    rank(&mut proposals, 0.0, 25.0);
+    let ranked = proposals.map(|proposal| (proposal.offset_m2, proposal.is_minor));
+    assert_eq!(ranked, [(30.0, false), (60.0, true), (50.0, true)]);
+    assert_eq!(minor(0.0), [false, false, true, true, true]);
+    assert_eq!(minor(200.0), [false, true, true, true, true]);
 }

@@ -15,6 +15,7 @@ use crate::project::Document;
 use glam::{DVec2, DVec3};
 use interp::ExtractSettings;
 use interp::assembly::Operation;
+use interp::faults::Proposal;
 use render::{FaceData, Scene};
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
@@ -90,6 +91,15 @@ pub struct Picking {
     pub fault: String,
     /// Proposals that are not to be shown, by number.
     pub dismissed: Vec<u32>,
+    /// Whether minor proposals are shown too.
+    pub minor: bool,
+}
+
+impl Picking {
+    /// Whether a proposal is to be shown.
+    pub fn shows(&self, proposal: &Proposal) -> bool {
+        (self.minor || !proposal.is_minor) && !self.dismissed.contains(&proposal.id)
+    }
 }
 
 /// How a click changes the selection.
@@ -164,6 +174,8 @@ pub enum PickingStep {
     MakeFault,
     /// Do not show a proposal any more.
     Dismiss(u32),
+    /// Minor proposals are shown, or not.
+    Minor(bool),
 }
 
 /// What the workers are asked while interpreting.

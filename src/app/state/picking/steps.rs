@@ -122,6 +122,7 @@ impl State {
                 return vec![Task::Apply(Box::new(Command::PickFault(PickFault { name, sticks })))];
             }
             PickingStep::Dismiss(id) => picking.dismissed.push(id),
+            PickingStep::Minor(minor) => picking.minor = minor,
         }
         Vec::new()
     }

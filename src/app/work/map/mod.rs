@@ -1,10 +1,11 @@
 //! A horizon, or the thickness between two, as a map: values at the survey's traces and contours of round values.
 //!
-//! What was not picked, but filled or extrapolated, is hatched; while interpreting, when there is no model, holes are.
+//! Contours are those of a lightly smoothed surface (`smooth`), colours those of the values themselves. What was not picked, but filled or extrapolated, is hatched; while interpreting, when there is no model, holes are.
 
 mod contours;
 mod grid;
 mod hatch;
+mod smooth;
 
 use super::wishes::{Wished, Wishes};
 use super::{Event, Interpreted, Outbox, Rocks};
@@ -52,11 +53,11 @@ pub struct MapWish {
     pub source: MapSource,
 }
 
-/// A contour's piece.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ContourPiece {
-    /// Ends, voxel x and y.
-    pub ends: [DVec2; 2],
+/// A contour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contour {
+    /// Its places, voxel x and y; one that goes around ends where it begins.
+    pub line: Vec<DVec2>,
     /// Its value, in the survey's unit.
     pub value: f64,
     /// Whether it is an index contour.
@@ -69,8 +70,8 @@ pub struct MapPicture {
     pub mapped: Mapped,
     /// A pixel a trace, inlines to the right, crosslines down; transparent where there is no value.
     pub image: RgbaImage,
-    /// Contours in pieces.
-    pub contours: Vec<ContourPiece>,
+    /// Contours of the lightly smoothed surface, by value.
+    pub contours: Vec<Contour>,
     /// Outline and hatching of what was not picked, voxel x and y.
     pub hatching: Vec<[DVec2; 2]>,
     /// Smallest and largest value, in the survey's unit.
@@ -132,6 +133,6 @@ pub fn draw(wish: &MapWish) -> Option<MapPicture> {
         Rgba([r, g, b, 255])
     });
     let interval = contours::interval(spread);
-    let contours = contours::contours(&grid, range, interval);
+    let contours = contours::contours(&smooth::smoothed(&grid, interval), range, interval);
     Some(MapPicture { mapped, image, contours, hatching: hatch::hatching(&grid), range, interval })
 }

@@ -161,8 +161,7 @@ impl Picks {
                     proposals::propose(&project, &ProposeSettings::default(), &progress)
                 });
                 drop(guard);
-                if done.as_ref().is_ok_and(|found| found.proposals.is_empty()) {
-                    let text = "the horizons are offset nowhere: no fault is proposed";
+                if let Some(text) = done.as_ref().ok().and_then(proposals::Proposals::nothing_new) {
                     outbox.send(Event::Told(Notice::note(Place::Interpret, text)));
                 }
                 tell(done.map(drop), Some(&progress), &outbox);

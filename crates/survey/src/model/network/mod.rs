@@ -16,6 +16,7 @@ pub use surface::FaultSurface;
 
 use crate::fault::Fault;
 use crate::geometry::SurveyGeometry;
+use crate::height_field::HeightField;
 use crate::model::report::ModelError;
 use crate::model::settings::ModelSettings;
 use crate::progress::Progress;
@@ -119,11 +120,38 @@ impl FaultNetwork {
         if signatures.len() > MOST_BLOCKS {
             return Err(ModelError::TooMany { what: "fault blocks", found: signatures.len(), limit: MOST_BLOCKS });
         }
-        let mut network = Self { surfaces, truncation, order, signatures, table: Vec::new() };
-        if faults.len() <= TABLE_FAULTS {
-            network.table = (0..1u64 << faults.len()).map(|bits| network.nearest_block(bits)).collect();
+        Ok(Self { surfaces, truncation, order, signatures, table: Vec::new() }.with_table())
+    }
+
+    /// The network that [`Self::surfaces`], [`Self::truncation`] and [`Self::signatures`] are of; `None` where they do not go together.
+    pub fn of_parts(
+        surfaces: Vec<FaultSurface>,
+        truncation: Vec<Option<Truncation>>,
+        signatures: Vec<BlockSignature>,
+    ) -> Option<Self> {
+        let whole = |field: &HeightField| {
+            field.size.iter().all(|&n| n >= 2) && field.size[0].checked_mul(field.size[1]) == Some(field.z.len())
+        };
+        let fields = surfaces.iter().all(|fault| whole(&fault.surface) && whole(&fault.extent));
+        let faults = surfaces.len();
+        if !fields || faults > MOST_FAULTS || truncation.len() != faults || signatures.is_empty() {
+            return None;
         }
-        Ok(network)
+        let by: Vec<Option<usize>> = truncation.iter().map(|truncation| truncation.map(|t| t.by)).collect();
+        if by.iter().flatten().any(|&by| by >= faults) {
+            return None;
+        }
+        let order = ordered(&by).ok()?;
+        Some(Self { surfaces, truncation, order, signatures, table: Vec::new() }.with_table())
+    }
+
+    /// With the table of combinations, where there are few faults.
+    fn with_table(mut self) -> Self {
+        let faults = self.surfaces.len();
+        if faults <= TABLE_FAULTS {
+            self.table = (0..1u64 << faults).map(|bits| self.nearest_block(bits)).collect();
+        }
+        self
     }
 
     /// Count of blocks, at least 1.
@@ -213,14 +241,20 @@ fn truncation_order(faults: &[Fault]) -> Result<Vec<usize>, ModelError> {
             ),
         });
     }
-    let mut order = Vec::with_capacity(faults.len());
-    for start in 0..faults.len() {
-        let mut path = Vec::new();
+    ordered(&by).map_err(|circle| ModelError::CyclicTruncation {
+        names: circle.into_iter().map(|f| faults[f].name.clone()).collect(),
+    })
+}
+
+/// Indices such that each comes after the one it ends at, or else a circle.
+fn ordered(by: &[Option<usize>]) -> Result<Vec<usize>, Vec<usize>> {
+    let mut order = Vec::with_capacity(by.len());
+    for start in 0..by.len() {
+        let mut path: Vec<usize> = Vec::new();
         let mut next = Some(start);
         while let Some(f) = next.filter(|f| !order.contains(f)) {
             if let Some(at) = path.iter().position(|&g| g == f) {
-                let circle = path[at..].iter().chain([&f]).map(|&g: &usize| faults[g].name.clone());
-                return Err(ModelError::CyclicTruncation { names: circle.collect() });
+                return Err(path[at..].iter().copied().chain([f]).collect());
             }
             path.push(f);
             next = by[f];

@@ -1,30 +1,19 @@
-//! What is computed from a project and kept beside it, so that nothing is computed twice and nothing stale is used.
-//!
-//! ```text
-//! derived/grids-KEY.bin           the parameterization as lookups use it (one grid per layer and fault block)
-//! derived/parameterization.zarr   the same sampled on a lattice: i, j, k, layer, block, for other programs; its key inside
-//! ```
-//!
-//! A key is the BLAKE3 hash of everything the result depends on: the version of the program, the frame, contacts, the hashes of
-//! horizons and faults, and the settings. Names are not among them. What has another key is not looked at; undoing a change
-//! therefore finds the earlier result again, as long as it is among the last few kept. Everything here may be deleted, and a result
-//! that cannot be kept (a full disk, a read-only project) is still used.
+//! The parameterization, kept: `grids-KEY.bin` and `parameterization.zarr`.
 
+use super::kept::{Kind, read_array, read_header, write_header};
+use super::{folder, key_of};
 use crate::error::ProjectError;
 use crate::project::Document;
 use param::{ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, VoxelParameterization};
 use serde::{Deserialize, Serialize};
-use std::fs::{self, File};
-use std::io::{self, BufReader, BufWriter, Read, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use survey::Progress;
 use survey::model::ModelSettings;
-use survey::store::{self, ParameterizationVolumes, Replacement, StoredParameterization};
+use survey::store::{self, ParameterizationVolumes, StoredParameterization};
 
-/// Begins a grid file; the last byte is its version.
-const MAGIC: &[u8; 8] = b"PGGRIDS\x01";
-/// Parameterizations kept: the present one, and those that a few undos lead back to.
-const KEPT: usize = 4;
+/// Grid files.
+const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x01", what: "the parameterization" };
 
 /// Identifies a parameterization by what it is computed from.
 pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
@@ -50,54 +39,17 @@ pub fn parameterization_key(document: &Document, model: &ModelSettings, settings
         model,
         settings,
     };
-    // These types hold numbers and strings only, which always serialise.
-    let text = serde_json::to_vec(&inputs).unwrap_or_default();
-    blake3::hash(&text).to_hex()[..32].to_owned()
-}
-
-fn folder(root: &Path) -> PathBuf {
-    root.join("derived")
-}
-
-fn grids_path(root: &Path, key: &str) -> PathBuf {
-    folder(root).join(format!("grids-{key}.bin"))
+    key_of(&inputs)
 }
 
 /// The parameterization kept under `key`, if there is one that is whole.
 pub fn load_grids(root: &Path, key: &str) -> Option<Parameterization> {
-    read_grids(&grids_path(root, key)).ok()
+    GRIDS.load(root, key, read_grids)
 }
 
 /// Keeps a parameterization under `key`; warns when it cannot.
 pub fn keep_grids(root: &Path, key: &str, parameterization: &Parameterization, progress: &Progress) {
-    let path = grids_path(root, key);
-    let written = Replacement::of(&path).map_err(io::Error::other).and_then(|replacement| {
-        write_grids(replacement.path(), parameterization)?;
-        replacement.commit().map_err(io::Error::other)
-    });
-    match written {
-        Ok(()) => forget_old(root),
-        Err(error) => progress.warn(&format!("the parameterization is used but was not kept: {error}")),
-    }
-}
-
-/// Removes all but the newest few grid files.
-fn forget_old(root: &Path) {
-    let mut files: Vec<(std::time::SystemTime, PathBuf)> = fs::read_dir(folder(root))
-        .into_iter()
-        .flatten()
-        .filter_map(|entry| {
-            let entry = entry.ok()?;
-            let name = entry.file_name();
-            let ours = name.to_str()?.starts_with("grids-") && name.to_str()?.ends_with(".bin");
-            ours.then_some((entry.metadata().ok()?.modified().ok()?, entry.path()))
-        })
-        .collect();
-    files.sort();
-    for (_, path) in files.iter().rev().skip(KEPT) {
-        // One that cannot be removed is only in the way of disk space.
-        let _ = fs::remove_file(path);
-    }
+    GRIDS.keep(root, key, progress, |out| write_grids(out, parameterization));
 }
 
 /// The fixed part of a grid file.
@@ -123,34 +75,8 @@ struct GridHeader {
     words: usize,
 }
 
-/// Hashes what passes through.
-struct Hashing<T> {
-    inner: T,
-    hash: blake3::Hasher,
-}
-
-impl<W: Write> Write for Hashing<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        let count = self.inner.write(bytes)?;
-        self.hash.update(&bytes[..count]);
-        Ok(count)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.inner.flush()
-    }
-}
-
-impl<R: Read> Read for Hashing<R> {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let count = self.inner.read(bytes)?;
-        self.hash.update(&bytes[..count]);
-        Ok(count)
-    }
-}
-
-/// Magic, length of the header, header (JSON), offsets and creases of each grid, and the hash of all that.
-fn write_grids(path: &Path, parameterization: &Parameterization) -> io::Result<()> {
+/// The header, then offsets and creases of each grid.
+fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::Result<()> {
     let grid = |grid: &RegionGrid| GridHeader {
         layer: grid.region.layer,
         block: grid.region.block,
@@ -169,47 +95,18 @@ fn write_grids(path: &Path, parameterization: &Parameterization) -> io::Result<(
         blocks: parameterization.blocks,
         grids: parameterization.grids.iter().map(grid).collect(),
     };
-    let header = serde_json::to_vec(&header)?;
-    let mut out = Hashing { inner: BufWriter::new(File::create(path)?), hash: blake3::Hasher::new() };
-    out.write_all(MAGIC)?;
-    out.write_all(&(header.len() as u64).to_le_bytes())?;
-    out.write_all(&header)?;
+    write_header(out, &header)?;
     for grid in &parameterization.grids {
         out.write_all(bytemuck::cast_slice(&grid.offsets))?;
         out.write_all(bytemuck::cast_slice(&grid.creases))?;
     }
-    let hash = out.hash.finalize();
-    let mut file = out.inner;
-    file.write_all(hash.as_bytes())?;
-    file.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()
+    Ok(())
 }
 
-fn read_grids(path: &Path) -> io::Result<Parameterization> {
-    let bad = || io::Error::from(io::ErrorKind::InvalidData);
-    let file = File::open(path)?;
-    let length = file.metadata()?.len();
-    let mut input = Hashing { inner: BufReader::new(file), hash: blake3::Hasher::new() };
-    let mut magic = [0u8; 8];
-    input.read_exact(&mut magic)?;
-    let mut count = [0u8; 8];
-    input.read_exact(&mut count)?;
-    let count = u64::from_le_bytes(count);
-    if magic != *MAGIC || count > length {
-        return Err(bad());
-    }
-    let mut text = vec![0u8; count as usize];
-    input.read_exact(&mut text)?;
-    let header: Header = serde_json::from_slice(&text)?;
+fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization> {
+    let header: Header = read_header(input, length)?;
     let mut grids = Vec::with_capacity(header.grids.len());
     for head in header.grids {
-        // Before memory is taken for what a damaged header claims.
-        if head.nodes as u64 > length / 12 || head.words as u64 > length / 8 {
-            return Err(bad());
-        }
-        let mut offsets = vec![[0f32; 3]; head.nodes];
-        input.read_exact(bytemuck::cast_slice_mut(&mut offsets))?;
-        let mut creases = vec![0u64; head.words];
-        input.read_exact(bytemuck::cast_slice_mut(&mut creases))?;
         grids.push(RegionGrid {
             region: Region { layer: head.layer, block: head.block },
             origin: head.origin,
@@ -218,15 +115,9 @@ fn read_grids(path: &Path) -> io::Result<Parameterization> {
             bottom: SheetRef { horizon: head.bottom.0, shift: head.bottom.1 },
             top: SheetRef { horizon: head.top.0, shift: head.top.1 },
             thickness_m: head.thickness_m,
-            offsets,
-            creases,
+            offsets: read_array(input, head.nodes, length)?,
+            creases: read_array(input, head.words, length)?,
         });
-    }
-    let expected = input.hash.finalize();
-    let mut found = [0u8; 32];
-    input.inner.read_exact(&mut found)?;
-    if expected != found {
-        return Err(bad());
     }
     Ok(Parameterization {
         size: header.size,
@@ -276,7 +167,9 @@ pub fn load_volumes(
 
 #[cfg(test)]
 mod tests {
+    use super::super::kept::KEPT;
     use super::*;
+    use std::fs;
 
     fn parameterization() -> Parameterization {
         let grid = RegionGrid {
@@ -302,7 +195,7 @@ mod tests {
         assert_eq!((kept.size, kept.layers, kept.blocks), (wanted.size, wanted.layers, wanted.blocks));
         assert_eq!(kept.grids, wanted.grids);
         assert!(load_grids(root, "bb").is_none());
-        let path = grids_path(root, "aa");
+        let path = GRIDS.path(root, "aa");
         let whole = fs::read(&path).unwrap();
         for at in [0, 9, 40, whole.len() / 2, whole.len() - 1] {
             let mut damaged = whole.clone();
@@ -320,7 +213,7 @@ mod tests {
         for n in 0..KEPT + 3 {
             keep_grids(folder.path(), &format!("{n}"), &parameterization(), &Progress::silent());
         }
-        assert_eq!(fs::read_dir(super::folder(folder.path())).unwrap().count(), KEPT);
+        assert_eq!(fs::read_dir(super::super::folder(folder.path())).unwrap().count(), KEPT);
     }
 
     #[test]

@@ -1,0 +1,32 @@
+//! What is computed from a project and kept beside it, so that nothing is computed twice and nothing stale is used.
+//!
+//! ```text
+//! derived/blocks-KEY.bin          the faults continued through the volume, and the blocks between them
+//! derived/grids-KEY.bin           the parameterization as lookups use it (one grid per layer and fault block)
+//! derived/parameterization.zarr   the same sampled on a lattice: i, j, k, layer, block, for other programs; its key inside
+//! ```
+//!
+//! A key is the BLAKE3 hash of everything the result depends on: the version of the program, the frame, the hashes of faults, for the
+//! parameterization those of horizons and their contacts, and the settings. What has another key is not looked at; undoing a change
+//! therefore finds the earlier result again, as long as it is among the last few kept. Everything here may be deleted, and a result
+//! that cannot be kept (a full disk, a read-only project) is still used.
+
+mod blocks;
+mod grids;
+mod kept;
+
+pub use blocks::{blocks_key, keep_blocks, load_blocks};
+pub use grids::{keep_grids, load_grids, load_volumes, parameterization_key, volumes_path, write_volumes};
+
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+fn folder(root: &Path) -> PathBuf {
+    root.join("derived")
+}
+
+/// The key of what is computed from `inputs`, which hold numbers and strings only: these always serialise.
+fn key_of(inputs: &impl Serialize) -> String {
+    let text = serde_json::to_vec(inputs).unwrap_or_default();
+    blake3::hash(&text).to_hex()[..32].to_owned()
+}
