@@ -41,8 +41,23 @@ pub(super) struct Known<'a> {
     geometry: &'a SurveyGeometry,
     /// First and last cell along strike of what was interpreted.
     ends: Vec<[f64; 2]>,
-    /// Fault, distance from it (traces), cell along strike, pair.
-    on: Vec<(usize, f64, f64, Pair)>,
+    on: Vec<On>,
+}
+
+/// A pair on a known fault.
+struct On {
+    fault: usize,
+    /// Distance of what lies between its rims from the fault, traces.
+    off: f64,
+    /// Cell along the fault's strike.
+    along: f64,
+    pair: Pair,
+}
+
+impl On {
+    fn throw(&self) -> f64 {
+        f64::from(self.pair.throw.abs())
+    }
 }
 
 impl<'a> Known<'a> {
@@ -60,7 +75,7 @@ impl<'a> Known<'a> {
         let mut others = Vec::with_capacity(pairs.len());
         for pair in pairs {
             match self.nearest(&pair) {
-                Some((fault, off, along)) => self.on.push((fault, off, along, pair)),
+                Some((fault, off, along)) => self.on.push(On { fault, off, along, pair }),
                 None => others.push(pair),
             }
         }
@@ -99,26 +114,25 @@ impl<'a> Known<'a> {
         let surface = &self.network.surfaces()[fault];
         let metric = self.geometry.metric_from_voxel();
         let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
-        let on: Vec<_> = self.on.iter().filter(|(of, ..)| *of == fault).collect();
-        let median = |value: &dyn Fn(&(usize, f64, f64, Pair)) -> f64| {
-            let mut values: Vec<f64> = on.iter().map(|on| value(on)).collect();
+        let on = || self.on.iter().filter(|on| on.fault == fault);
+        let median = |value: fn(&On) -> f64| {
+            let mut values: Vec<f64> = on().map(value).collect();
             values.sort_by(f64::total_cmp);
             values.get(values.len() / 2).copied()
         };
-        let throw = |on: &(usize, f64, f64, Pair)| f64::from(on.3.throw.abs());
-        let (off_traces, throw_samples) = (median(&|on| on.1)?, median(&throw)?);
+        let (off_traces, throw_samples) = (median(|on| on.off)?, median(On::throw)?);
         let mut bins: BTreeMap<(usize, i64), (f64, f64)> = BTreeMap::new();
-        for on in &on {
-            let bin = (on.2 * surface.spacing_m / bin_m).floor() as i64;
-            let (sum, count) = bins.entry((on.3.horizon, bin)).or_default();
-            *sum += throw(on) * self.geometry.sample_m();
+        for on in on() {
+            let bin = (on.along * surface.spacing_m / bin_m).floor() as i64;
+            let (sum, count) = bins.entry((on.pair.horizon, bin)).or_default();
+            *sum += on.throw() * self.geometry.sample_m();
             *count += 1.0;
         }
         let seen: BTreeSet<i64> = bins.keys().map(|(_, bin)| *bin).collect();
         let length = (self.ends[fault][1] - self.ends[fault][0]) * surface.spacing_m / bin_m;
         Some(Repeat {
             fault: surface.name.clone(),
-            support: on.len(),
+            support: on().count(),
             along: (seen.len() as f64 / length.max(1.0)).min(1.0),
             off_traces,
             throw: throw_samples * self.geometry.vertical.interval,

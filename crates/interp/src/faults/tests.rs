@@ -251,7 +251,7 @@ fn minor_proposals_hold_a_fifth_of_the_offset_or_are_not_seen_in_the_data() {
     // One of them is not seen in the data and one scatters: they come last whatever their size.
     let mut proposals = [60.0, 50.0, 30.0].map(of);
     proposals[0].semblance = Some([0.9, 0.9]);
-    proposals[1].misfit_m = 51.0;
+    proposals[1].misfit_m = 76.0;
     proposals[2].semblance = Some([0.8, 0.9]);
     rank(&mut proposals, 0.0, 25.0);
     let ranked = proposals.map(|proposal| (proposal.offset_m2, proposal.is_minor));
