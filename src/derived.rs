@@ -77,7 +77,7 @@ pub fn keep_grids(root: &Path, key: &str, parameterization: &Parameterization, p
     });
     match written {
         Ok(()) => forget_old(root),
-        Err(error) => progress.warn(&format!("the parameterization is used but was not kept: {error}")),
+        Err(error) => progress.warn(format!("the parameterization is used but was not kept: {error}")),
     }
 }
 
