@@ -50,7 +50,7 @@ impl Painter {
                     (!is_software).then_some(renderer)
                 }
                 Err(error) => {
-                    progress.warn(&format!("drawing on the processor, which is slower: {error}"));
+                    progress.warn(format!("drawing on the processor, which is slower: {error}"));
                     None
                 }
             },
@@ -84,7 +84,7 @@ impl Painter {
             Some(Err(error @ (RenderError::OutOfMemory { .. } | RenderError::DeviceLost { .. })))
                 if self.device == Device::Auto =>
             {
-                progress.warn(&format!("drawing on the processor, which is slower: {error}"));
+                progress.warn(format!("drawing on the processor, which is slower: {error}"));
                 self.renderer = None;
                 self.processor.render(scene, &inputs, progress)?
             }

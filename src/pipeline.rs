@@ -322,7 +322,7 @@ fn read_volumes(
         let (volume, level) = data::read_volume_within(root, entry, volume_bytes, progress)?;
         if level > 0 {
             let apart = 1 << level;
-            progress.warn(&format!(
+            progress.warn(format!(
                 "volume {} is shown by one sample in {apart} along each axis, to fit into memory",
                 entry.name
             ));

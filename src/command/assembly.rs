@@ -366,7 +366,7 @@ pub(super) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
     for (name, log) in logs {
         match rebuild(draft, &candidates, &blocks, &name, log, progress) {
             Ok(_) => {}
-            Err(ProjectError::OutdatedPicks { .. }) => progress.warn(&format!(
+            Err(ProjectError::OutdatedPicks { .. }) => progress.warn(format!(
                 "horizon \"{name}\" is as it was: its picks are of another extraction and have to be made again"
             )),
             Err(error) => return Err(error),

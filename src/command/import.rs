@@ -159,13 +159,13 @@ impl ImportVolume {
         let stored = file.store(partial, &fingerprint, &info, memory_bytes, progress).map_err(cancelled_within)?;
         let (done, non_finite) = (stored.ingested, stored.non_finite);
         if done.kept > 0 {
-            progress.warn(&format!(
+            progress.warn(format!(
                 "an interrupted import of this file went on: {} of {} files were there and whole",
                 done.kept, done.files
             ));
         }
         if non_finite > 0 {
-            progress.warn(&format!("{non_finite} samples are no numbers (NaN or infinite) and are read as 0"));
+            progress.warn(format!("{non_finite} samples are no numbers (NaN or infinite) and are read as 0"));
         }
         Ok(done)
     }

@@ -152,7 +152,6 @@ impl WellDialogue {
             head: numbers(&self.head),
             datum_m: numbers(&self.kb).map(|[kb]: [f64; 1]| kb),
             md_unit: self.md_unit,
-            ..WellOptions::default()
         }
     }
 }

@@ -80,14 +80,14 @@ struct Wanted {
 
 /// What is done next: a click waits for no picture.
 enum Next {
-    Touch(Touch),
+    Touch(Box<Touch>),
     Draw(PictureWish),
 }
 
 impl Wanted {
     fn take(&mut self) -> Option<Next> {
         self.progress = None;
-        self.touch.take().map(Next::Touch).or_else(|| self.wish.take().map(Next::Draw))
+        self.touch.take().map(|touch| Next::Touch(Box::new(touch))).or_else(|| self.wish.take().map(Next::Draw))
     }
 }
 

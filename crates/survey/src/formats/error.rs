@@ -1,7 +1,7 @@
 //! What can go wrong with a horizon or fault file, with the facts a user needs to put it right.
 
 use super::{Format, SurfaceKind};
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::{Note, Remedy, Setting};
 use std::path::PathBuf;
 
 /// X or inline range, then Y or crossline range.
@@ -153,8 +153,8 @@ pub enum FormatError {
     },
     /// Most of the surface lies above or below the survey.
     #[error(
-        "{file}: '{name}' lies outside the survey's vertical range: it spans {} to {} {unit} after conversion ({outside} of {total} values outside), the survey {} to {} {unit}. {hint}",
-        found[0], found[1], survey[0], survey[1]
+        "{file}: '{name}' lies outside the survey's vertical range: it spans {} to {} {unit} after conversion ({outside} of {total} values outside), the survey {} to {} {unit}. {}",
+        found[0], found[1], survey[0], survey[1], hint.fact
     )]
     OutsideRange {
         /// The file.
@@ -171,10 +171,8 @@ pub enum FormatError {
         outside: usize,
         /// Values in all.
         total: usize,
-        /// What would make it fit, in words.
-        hint: String,
-        /// What states that.
-        remedy: Remedy,
+        /// What would make it fit, and what states that.
+        hint: Box<Note>,
     },
     /// One value outside the survey occurs again and again.
     #[error(
@@ -240,7 +238,7 @@ impl FormatError {
             Self::Columns { example, .. } => Setting::Columns.stated_as(example),
             Self::UnitMismatch { .. } => Setting::ZUnit.stated(),
             Self::OutsideSurvey { exchanged: true, .. } => Setting::Columns.stated(),
-            Self::OutsideRange { remedy, .. } => remedy.clone(),
+            Self::OutsideRange { hint, .. } => hint.otherwise.clone()?,
             Self::LooksLikeNull { value, .. } => Setting::Null.stated_as(value),
             Self::LinesDisagree { .. } => Setting::PlaceBy.stated_as("lines or xy"),
             _ => return None,

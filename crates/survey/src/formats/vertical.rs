@@ -10,7 +10,7 @@ use super::raw::{RawShape, VerticalFacts};
 use super::report::{Provenance, Settled};
 use super::{FormatError, SurfaceKind};
 use crate::geometry::{VerticalAxis, VerticalUnit};
-use crate::remedy::{Remedy, Setting};
+use crate::remedy::{Note, Remedy, Setting};
 use std::path::Path;
 
 /// Metres in an international foot.
@@ -181,8 +181,7 @@ impl VerticalRule {
             unit: axis.unit.symbol(),
             outside,
             total: values.len(),
-            hint,
-            remedy,
+            hint: Box::new(Note::unless(hint, remedy)),
         })
     }
 
@@ -251,7 +250,7 @@ mod tests {
 
     fn hint(values: &[f64], options: &ImportOptions, axis: &VerticalAxis) -> String {
         match read(values, options, axis) {
-            Err(FormatError::OutsideRange { hint, remedy, .. }) => format!("{hint}: {remedy}"),
+            Err(FormatError::OutsideRange { hint, .. }) => hint.to_string(),
             other => panic!("expected OutsideRange, found {other:?}"),
         }
     }

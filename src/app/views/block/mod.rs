@@ -102,6 +102,7 @@ impl BlockView {
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Block"));
         let view = &session.view;
+        let is_known = rocks.is_none_or(|(rocks, _)| rocks.try_read().is_ok());
         let holds = |part: &dyn Fn(&Loaded) -> bool| {
             rocks.is_some_and(|(rocks, _)| rocks.try_read().is_ok_and(|loaded| part(&loaded)))
         };
@@ -136,7 +137,8 @@ impl BlockView {
         if !has_lasso {
             self.hand.touch(ui, &response, session, [pane, rect], &handles, actions);
         }
-        if let Some((rocks, version)) = rocks {
+        // While they are being changed nobody knows what they hold; the next frame asks again.
+        if let Some((rocks, version)) = rocks.filter(|_| is_known) {
             self.wish(scenes, rocks, version, drawing);
         }
         self.paint(ui, session, compare, &rects, rect);

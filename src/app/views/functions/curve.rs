@@ -78,7 +78,7 @@ impl Curve {
         let Some(&stop) = stops.get(self.chosen) else { return };
         let span = stops[stops.len() - 1].value - stops[0].value;
         let (mut value, mut opacity, mut rgb) = (stop.value, stop.opacity, stop.colour.rgb);
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             ui.name_inputs("Colour of the stop", |ui| ui.color_edit_button_srgb(&mut rgb));
             let drag = DragValue::new(&mut value).speed(f64::from(span) * 0.005);
             ui.name_inputs("Value of the stop", |ui| ui.add(drag));
