@@ -225,8 +225,27 @@ impl Tour {
         self.click("Textures by impedance");
         self.shoot("values")?;
         self.act(Action::Undo);
+        self.click("Cut-outs");
+        self.settle();
+        self.glow("Charlie");
+        self.shoot("seen")?;
+        self.click("Whole block");
+        self.shoot("seen-block")?;
+        self.click("Nothing");
+        self.settle();
         self.act(Action::Panel(Panel::Layers));
         Ok(())
+    }
+
+    /// Has a horizon give off light in what is seen through.
+    fn glow(&mut self, name: &str) {
+        let Some(mut scene) = self.window().state().session.as_ref().map(|session| session.view.scene.clone()) else {
+            return;
+        };
+        let colour = ttf::Colour::new(0xf2, 0xc1, 0x2e);
+        petroglyph::app::state::through::show_horizon(&mut scene, name, colour, true);
+        scene.media.horizons.iter_mut().for_each(|horizon| horizon.emission = 2.0);
+        self.act(Action::Show(Box::new(scene)));
     }
 
     fn dialogues(&mut self) -> anyhow::Result<()> {

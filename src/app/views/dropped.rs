@@ -49,13 +49,13 @@ fn action(path: &Path, state: &State) -> Action {
         Some(_) => Action::Tell(Notice::note(
             Place::Block,
             format!(
-                "{name} is neither a project nor a SEG-Y volume; add a volume first, then horizons, faults and wells"
+                "the file {name} is neither a project nor a SEG-Y volume; add a volume first, then horizons, faults and wells"
             ),
         )),
         None => Action::Tell(Notice::note(
             Place::Start,
             format!(
-                "{name} is neither a project (a folder NAME.petro) nor a SEG-Y volume (.sgy, .segy); open a project before its horizons, faults and wells"
+                "the file {name} is neither a project (a folder NAME.petro) nor a SEG-Y volume (.sgy, .segy); open a project before its horizons, faults and wells"
             ),
         )),
     }

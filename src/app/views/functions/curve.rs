@@ -1,6 +1,7 @@
 //! An RGBA function drawn over the histogram of its volume: stops are dragged for value and opacity, added by a double click, and the one
 //! chosen last has its numbers below.
 
+use super::colour_well;
 use super::histogram::Histogram;
 use crate::app::theme;
 use eframe::egui::{
@@ -79,7 +80,7 @@ impl Curve {
         let span = stops[stops.len() - 1].value - stops[0].value;
         let (mut value, mut opacity, mut rgb) = (stop.value, stop.opacity, stop.colour.rgb);
         ui.horizontal_wrapped(|ui| {
-            ui.name_inputs("Colour of the stop", |ui| ui.color_edit_button_srgb(&mut rgb));
+            colour_well(ui, "Colour of the stop", &mut rgb);
             let drag = DragValue::new(&mut value).speed(f64::from(span) * 0.005);
             ui.name_inputs("Value of the stop", |ui| ui.add(drag));
             let label = ui.weak("opacity");

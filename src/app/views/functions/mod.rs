@@ -258,6 +258,12 @@ fn pull(domain: &mut [f32; 2], end: usize, value: f32) {
     }
 }
 
+/// A colour to be chosen, with a name for those who read the screen: a well has none of its own.
+fn colour_well(ui: &mut Ui, name: &str, rgb: &mut [u8; 3]) {
+    let id = ui.color_edit_button_srgb(rgb).on_hover_text(name).id;
+    ui.ctx().accesskit_node_builder(id, |node| node.set_label(name));
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

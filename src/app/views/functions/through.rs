@@ -1,6 +1,7 @@
 //! What is seen through: a volume in the cut-outs or the whole block by its RGBA function, its light, and horizons that give off light of
 //! their own (P-illus 5.1, P-horiz 5).
 
+use super::colour_well;
 use super::curve::Curve;
 use super::histogram::Histogram;
 use crate::app::state::through::{self, Extent, Light};
@@ -125,7 +126,7 @@ fn horizons(ui: &mut Ui, session: &Session, next: &mut Scene) {
 
 fn numbers(ui: &mut Ui, name: &str, horizon: &mut PickedHorizon) {
     ui.horizontal_wrapped(|ui| {
-        ui.name_inputs(format!("Light of {name}"), |ui| ui.color_edit_button_srgb(&mut horizon.colour.rgb));
+        colour_well(ui, &format!("Light of {name}"), &mut horizon.colour.rgb);
         for (word, value, range, hint) in [
             ("opacity", &mut horizon.opacity, 0.0..=1.0, "Of one voxel of its thickness"),
             ("thick", &mut horizon.thickness, 0.2..=9.0, "Voxels to either side"),
@@ -164,7 +165,7 @@ fn light(ui: &mut Ui, next: &mut Scene) {
     if chosen != present {
         next.media.shading = chosen.shading();
     }
-    Grid::new("light").num_columns(2).show(ui, |ui| {
+    Grid::new("light terms").num_columns(2).show(ui, |ui| {
         let mut row = |name: &str, value: &mut f32, range| {
             let label = ui.label(name);
             ui.add(Slider::new(value, range).max_decimals(2)).labelled_by(label.id);
