@@ -225,14 +225,16 @@ impl Tour {
         self.click("Textures by impedance");
         self.shoot("values")?;
         self.act(Action::Undo);
+        let before = self.window().state().session.as_ref().map(|session| session.view.scene.clone());
         self.click("Cut-outs");
         self.settle();
         self.glow("Charlie");
         self.shoot("seen")?;
         self.click("Whole block");
         self.shoot("seen-block")?;
-        self.click("Nothing");
-        self.settle();
+        if let Some(scene) = before {
+            self.act(Action::Show(Box::new(scene)));
+        }
         self.act(Action::Panel(Panel::Layers));
         Ok(())
     }
@@ -244,7 +246,7 @@ impl Tour {
         };
         let colour = ttf::Colour::new(0xf2, 0xc1, 0x2e);
         petroglyph::app::state::through::show_horizon(&mut scene, name, colour, true);
-        scene.media.horizons.iter_mut().for_each(|horizon| horizon.emission = 2.0);
+        scene.media.horizons.iter_mut().for_each(|horizon| horizon.emission = 0.5);
         self.act(Action::Show(Box::new(scene)));
     }
 

@@ -41,6 +41,7 @@ fn a_volume_fills_the_cut_outs_and_the_block() {
     click_last(&mut harness, "Nothing");
     assert_eq!(extent(scene(&harness)), Extent::Nowhere);
     assert_eq!(scene(&harness).background, Scene::default().background);
+    assert!(scene(&harness).ground.is_some());
     drawn(&mut harness);
 }
 

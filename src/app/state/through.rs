@@ -5,7 +5,7 @@ use crate::error::ProjectError;
 use crate::project::Document;
 use crate::scene::{SeeThrough, Technique};
 use render::media::Interleaved;
-use render::{Faces, Medium, Occlusion, Phong, PickedHorizon, Scene, Scope, Shading};
+use render::{Faces, Ground, Medium, Occlusion, Phong, PickedHorizon, Scene, Scope, Shading};
 use ttf::{Colour, RgbaFunction, RgbaStop};
 
 /// Values up to this share of the volume's clip are clear to begin with: what is left are the strong reflections.
@@ -83,6 +83,7 @@ pub fn see(scene: &mut Scene, document: &Document, extent: Extent, volume: &str)
     if next.media.faces == Faces::None {
         let usual = Scene::default();
         (next.background, next.outlines.edges) = (usual.background, usual.outlines.edges);
+        next.ground = (document.horizons.len() > 1).then(Ground::default);
     }
     next.media.faces = Faces::All;
     next.media.cut_outs.clear();

@@ -134,7 +134,8 @@ impl Plot {
     fn paint(&self, ui: &Ui, histogram: Option<&Histogram>, function: &RgbaFunction, stops: &[Stop], chosen: usize) {
         let painter = ui.painter_at(self.rect);
         let visuals = ui.visuals();
-        painter.rect_filled(self.rect, 4.0, visuals.extreme_bg_color);
+        // White as well as black stands out from it.
+        painter.rect_filled(self.rect, 4.0, Color32::from_gray(if visuals.dark_mode { 0x4a } else { 0xbc }));
         if let Some(histogram) = histogram {
             histogram.paint(&painter, self.rect, |value| {
                 let [r, g, b, _] = function.evaluate(value).map(|channel| (channel * 255.0 + 0.5) as u8);
