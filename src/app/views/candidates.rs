@@ -76,7 +76,7 @@ impl CandidatesPanel {
             });
             ui.end_row();
             ui.label("Follow");
-            ui.horizontal_wrapped(|ui| {
+            ui.vertical(|ui| {
                 for (kind, name) in
                     [(Extremum::Peak, "Peaks"), (Extremum::Trough, "Troughs"), (Extremum::Zero, "Zeros")]
                 {
