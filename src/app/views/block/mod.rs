@@ -38,6 +38,8 @@ pub struct BlockView {
     wished: Option<(Vec<Scene>, u64, bool)>,
     /// The scenes on the screen, if they are drawn in all their pixels.
     fine: Option<Vec<Scene>>,
+    /// Whether the picture that is wished, and the one on the screen, lie on a dark ground.
+    dark: [bool; 2],
     number: u64,
     shown: u64,
     is_final: bool,
@@ -77,6 +79,7 @@ impl BlockView {
         self.is_final = drawn.is_final;
         self.device = drawn.device;
         if let Some((scenes, ..)) = self.wished.as_ref().filter(|_| drawn.number == self.number) {
+            self.dark[1] = self.dark[0];
             if scenes.get(drawn.pane).is_none_or(|scene| scene.size_px != [drawn.image.width(), drawn.image.height()]) {
                 self.fine = None;
             } else if drawn.pane + 1 == scenes.len() {
@@ -139,6 +142,7 @@ impl BlockView {
         }
         // While they are being changed nobody knows what they hold; the next frame asks again.
         if let Some((rocks, version)) = rocks.filter(|_| is_known) {
+            self.dark[0] = is_dark(session);
             self.wish(scenes, rocks, version, drawing);
         }
         self.paint(ui, session, compare, &rects, rect);
@@ -199,7 +203,7 @@ impl BlockView {
 
     fn paint(&self, ui: &Ui, session: &Session, compare: Compare, rects: &[Rect], whole: Rect) {
         let painter = ui.painter_at(whole);
-        painter.rect_filled(whole, 0.0, if is_dark(session) { BEHIND_VOLUMES } else { paper(ui) });
+        painter.rect_filled(whole, 0.0, if self.dark[1] { BEHIND_VOLUMES } else { paper(ui) });
         let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
         let wipe = session.view.wipe;
         for (index, (rect, texture)) in rects.iter().zip(&self.panes).enumerate() {
