@@ -104,8 +104,8 @@ impl Setting {
         }
     }
 
-    /// What its value is, where the option does not say it.
-    fn placeholder(self) -> &'static str {
+    /// What follows the option on the command line, where that does not say it.
+    fn value_name(self) -> &'static str {
         match self {
             Self::Datum => " M",
             Self::Head => " X,Y",
@@ -159,7 +159,7 @@ impl fmt::Display for Statement {
         f.write_str(self.setting.option())?;
         match &self.value {
             Some(value) => write!(f, " {value}"),
-            None => f.write_str(self.setting.placeholder()),
+            None => f.write_str(self.setting.value_name()),
         }
     }
 }
