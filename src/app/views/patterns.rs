@@ -57,24 +57,17 @@ impl Patterns {
                 if found.is_empty() {
                     ui.weak("No pattern is called so. Try a rock's name or an FGDC number.");
                 }
-                let mut family = "";
-                let mut rest = found.as_slice();
-                while let Some(first) = rest.first() {
-                    if first.family != family {
-                        family = &first.family;
-                        ui.add_space(6.0);
-                        ui.strong(capital(family));
-                    }
-                    let count = rest.iter().take_while(|pattern| pattern.family == family).count();
+                for family in families(&found) {
+                    ui.add_space(6.0);
+                    ui.strong(capital(family));
                     ui.horizontal_wrapped(|ui| {
-                        for pattern in &rest[..count] {
+                        for pattern in found.iter().filter(|pattern| pattern.family == family) {
                             if tile(ui, pattern, swatches, tiles) {
                                 actions.push(Action::Apply(Box::new(chosen(session, layer, interval, pattern))));
                                 actions.push(Action::Answered);
                             }
                         }
                     });
-                    rest = &rest[count..];
                 }
             });
             if ui.button("Cancel").clicked() {
@@ -85,6 +78,17 @@ impl Patterns {
             actions.push(Action::Answered);
         }
     }
+}
+
+/// The families of patterns, each once, in the order of the first of each.
+fn families<'a>(patterns: &[&'a Pattern]) -> Vec<&'a str> {
+    let mut families: Vec<&str> = Vec::new();
+    for pattern in patterns {
+        if !families.contains(&pattern.family.as_str()) {
+            families.push(&pattern.family);
+        }
+    }
+    families
 }
 
 /// A tile with its name beneath; answers whether it was clicked.
@@ -146,6 +150,15 @@ fn capital(word: &str) -> String {
 mod tests {
     use super::*;
     use ttf::TextureLibrary;
+
+    #[test]
+    fn a_family_is_shown_once() {
+        let library = TextureLibrary::builtin().unwrap();
+        let patterns: Vec<&Pattern> = library.patterns().collect();
+        let families = families(&patterns);
+        assert!(patterns.iter().all(|pattern| families.contains(&pattern.family.as_str())));
+        assert!(families.iter().enumerate().all(|(n, family)| !families[..n].contains(family)));
+    }
 
     #[test]
     fn patterns_are_found_by_rock_and_by_number() {

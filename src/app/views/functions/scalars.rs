@@ -24,8 +24,9 @@ pub(super) fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatch
     let count = function.intervals.len();
     for (index, interval) in function.intervals.iter_mut().enumerate() {
         interval_row(ui, &function.volume, index, interval, swatches);
-        ui.horizontal(|ui| {
+        ui.horizontal_wrapped(|ui| {
             let ordinal = index + 1;
+            ui.weak("repeats");
             for (axis, name) in ["Repeats along", "Repeats through"].into_iter().enumerate() {
                 if axis == 1 {
                     ui.label("×");
@@ -34,6 +35,7 @@ pub(super) fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatch
                 ui.name_inputs(format!("{name} of {} {ordinal}", function.volume), |ui| ui.add(drag))
                     .on_hover_text(format!("{name}, times the layer's own"));
             }
+            ui.weak("opacity");
             let drag = DragValue::new(&mut interval.opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
             ui.name_inputs(format!("Opacity of {} {ordinal}", function.volume), |ui| ui.add(drag))
                 .on_hover_text("Opacity over the layer's pattern");
