@@ -90,6 +90,12 @@ pub enum ProjectError {
         /// The project.
         path: PathBuf,
     },
+    /// A link where a project keeps a file or folder of its own.
+    #[error("{} is a link, and a project holds none: what it points to could be changed or deleted", path.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+    },
     /// The folder cannot be written.
     #[error("{} cannot be written: it is read-only or belongs to someone else", path.display())]
     ReadOnly {
@@ -420,6 +426,9 @@ impl ProjectError {
             Self::Locked { .. } => {
                 alike("wait until the other command has finished, then try again; nothing was changed")
             }
+            Self::Link { .. } => alike(
+                "if you trust where the project comes from, put a copy of the file or folder in the link's place; nothing was changed",
+            ),
             Self::ReadOnly { .. } => alike("copy the project to a folder you may write to; nothing was changed"),
             Self::DiskFull { .. } => each(
                 "free some space (derived/ may be deleted, `petroglyph prune` forgets undone data), then try again; nothing was changed",

@@ -4,6 +4,7 @@
 //! time is not among them. What has another key is not used. Candidates lie on the project's own lattice, so that a
 //! voxel of theirs is one of the project's.
 
+use crate::derived::Scratch;
 use crate::error::ProjectError;
 use crate::project::Project;
 use crate::project::document::VolumeEntry;
@@ -46,9 +47,12 @@ impl fmt::Display for Extracted {
     }
 }
 
+/// The candidates, in `derived/`.
+const CANDIDATES: &str = "candidates.zarr";
+
 /// Where a project's candidates are.
 pub fn candidates_path(root: &Path) -> PathBuf {
-    root.join("derived").join("candidates.zarr")
+    root.join("derived").join(CANDIDATES)
 }
 
 /// The candidates of a project.
@@ -122,7 +126,9 @@ pub fn extract(
         return Ok(answer(report, false));
     }
     let source = StoredVolume::open(&project.root().join(&entry.file))?;
-    let report = extract_to_store(&file, &key, &source, &settings, progress)?;
+    let scratch = Scratch::begin(project.root())?;
+    let report = extract_to_store(&scratch.path(CANDIDATES), &key, &source, &settings, progress)?;
+    scratch.publish(CANDIDATES)?;
     if let Some(sentence) = report.nothing_found() {
         progress.warn(&sentence);
     }

@@ -5,6 +5,7 @@
 
 use crate::command::assembly;
 use crate::data;
+use crate::derived::Scratch;
 use crate::error::ProjectError;
 use crate::project::{Document, Project};
 use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
@@ -99,8 +100,11 @@ impl fmt::Display for Proposals {
     }
 }
 
+/// The proposals, in `derived/`.
+const FILE: &str = "fault-proposals.json";
+
 fn path(root: &Path) -> PathBuf {
-    root.join("derived/fault-proposals.json")
+    root.join("derived").join(FILE)
 }
 
 fn hashes(document: &Document) -> Vec<String> {
@@ -141,12 +145,12 @@ pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progres
         repeats: found.repeats,
         unit: geometry.vertical.unit.symbol().to_owned(),
     };
-    let path = path(project.root());
-    let folder = path.parent().unwrap_or(project.root());
-    std::fs::create_dir_all(folder).map_err(|source| ProjectError::io("written", folder, source))?;
+    let scratch = Scratch::begin(project.root())?;
+    let path = scratch.path(FILE);
     let text = serde_json::to_string_pretty(&proposals)
         .map_err(|error| ProjectError::Malformed { path: path.clone(), detail: error.to_string() })?;
     store::replace_file(&path, text.as_bytes())?;
+    scratch.publish(FILE)?;
     Ok(proposals)
 }
 

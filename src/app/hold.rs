@@ -3,6 +3,7 @@
 //! The file `window.lock` in the project says whose it is; what counts is the lock on it, since a number outlives its process. A project that cannot be
 //! written to is held by nobody.
 
+use crate::project::storage::open_own;
 use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::Path;
@@ -28,8 +29,7 @@ pub enum Taken {
 impl Hold {
     /// Takes hold of the project in the folder `root`.
     pub fn take(root: &Path) -> Taken {
-        let opened = File::options().create(true).truncate(false).read(true).write(true).open(root.join(NAME));
-        let Ok(mut file) = opened else { return Taken::Here(None) };
+        let Ok(mut file) = open_own(root, NAME) else { return Taken::Here(None) };
         match file.try_lock() {
             Ok(()) => {
                 // Told to people only: without it the lock holds all the same.

@@ -50,7 +50,7 @@ fn project(project: &Project) -> anyhow::Result<Report> {
         }
         report.field(&format!("{noun}s"), names);
     }
-    let history = project.history()?;
+    let history = project.history();
     if let Some(last) = history.iter().rev().find(|line| line.in_effect) {
         report.say(format!("last change: {}", last.summary));
     }

@@ -259,7 +259,7 @@ pub(super) fn put(
     let others = others.collect::<Result<Vec<_>, _>>()?;
     let deeper = others.iter().position(|other| order::is_above(horizon, other, &geometry));
     let position = deeper.unwrap_or(others.len());
-    let (file, new) = draft.generation("horizons", name, "zarr");
+    let (file, new) = draft.generation("horizons", name, "zarr")?;
     store::write_horizon(&new, horizon, progress)?;
     let hash = data::hash_horizon(horizon);
     let document = &mut draft.document;

@@ -83,7 +83,7 @@ impl ComputeAttribute {
         for (suffix, unit) in self.parts() {
             let name = format!("{}{suffix}", self.name);
             draft.document.check_new_name(Noun::Volume, &name)?;
-            let (file, path) = draft.generation("volumes", &name, "zarr");
+            let (file, path) = draft.generation("volumes", &name, "zarr")?;
             let info = VolumeInfo {
                 quantity: Some(format!("{}{}", self.kind.name(), suffix.replace('-', " "))),
                 unit: unit.map(str::to_owned),

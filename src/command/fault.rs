@@ -64,7 +64,7 @@ impl AddFault {
         fault.name.clone_from(&self.name);
         fault.truncated_by.clone_from(&self.truncated_by);
         let hash = data::hash_fault(&fault);
-        let (file, new) = draft.generation("faults", &self.name, "json");
+        let (file, new) = draft.generation("faults", &self.name, "json")?;
         store::write_fault(&new, &fault)?;
         draft.document.faults.push(FaultEntry {
             name: self.name.clone(),

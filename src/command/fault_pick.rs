@@ -107,7 +107,7 @@ impl AcceptFault {
 fn put(draft: &mut Draft, fault: &Fault, source: Source) -> Result<(), ProjectError> {
     let old = draft.document.faults.iter().position(|entry| entry.name == fault.name);
     let truncated_by = old.and_then(|old| draft.document.faults[old].truncated_by.clone());
-    let (file, new) = draft.generation("faults", &fault.name, "json");
+    let (file, new) = draft.generation("faults", &fault.name, "json")?;
     store::write_fault(&new, fault)?;
     let entry = FaultEntry { name: fault.name.clone(), truncated_by, file, hash: data::hash_fault(fault), source };
     match old {

@@ -79,7 +79,7 @@ impl AddHorizon {
         let others = load_all(draft, progress)?;
         let position = self.position(draft, &horizon, &others)?;
         let hash = data::hash_horizon(&horizon);
-        let (file, new) = draft.generation("horizons", &self.name, "zarr");
+        let (file, new) = draft.generation("horizons", &self.name, "zarr")?;
         store::write_horizon(&new, &horizon, progress)?;
         let entry = HorizonEntry {
             name: self.name.clone(),

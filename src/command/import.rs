@@ -78,7 +78,7 @@ impl ImportVolume {
         }
         file.release();
         file.info().warnings.iter().for_each(|warning| progress.warn(warning.clone()));
-        let (stored_as, new) = draft.generation("volumes", &name, "zarr");
+        let (stored_as, new) = draft.generation("volumes", &name, "zarr")?;
         let folder = draft.root().join(IMPORTING);
         let ingested = self.ingest(&file, &geometry, &folder, &new, progress);
         if ingested.is_err() {
@@ -132,11 +132,7 @@ impl ImportVolume {
         let partial = folder.join(new.file_name().unwrap_or_default());
         keep_only(folder, &partial);
         let done = self.ingest_into(file, geometry, &partial, progress)?;
-        let fail = |source| ProjectError::io("written", new, source);
-        if let Some(parent) = new.parent() {
-            fs::create_dir_all(parent).map_err(fail)?;
-        }
-        fs::rename(&partial, new).map_err(fail)?;
+        fs::rename(&partial, new).map_err(|source| ProjectError::io("written", new, source))?;
         // Empty now; an empty folder left behind is no harm.
         let _ = fs::remove_dir(folder);
         Ok(done)

@@ -31,7 +31,7 @@ impl AddTexture {
             return Err(ProjectError::BadName { noun: Noun::Texture, name: pattern.name.clone(), fact });
         }
         let extension = self.path.extension().map_or_else(String::new, |e| e.to_string_lossy().to_lowercase());
-        let (file, new) = draft.generation("textures", &pattern.name, &extension);
+        let (file, new) = draft.generation("textures", &pattern.name, &extension)?;
         // The library names a tile after its file, so the name is that of the copy.
         let name = Path::new(&file).file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         draft.document.check_new_name(Noun::Texture, &name)?;

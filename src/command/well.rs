@@ -223,7 +223,7 @@ impl AddWell {
             detail: error.to_string(),
         };
         let hash = data::hash_well(&well).map_err(unhashable)?;
-        let (file, new) = draft.generation("wells", &self.name, "json");
+        let (file, new) = draft.generation("wells", &self.name, "json")?;
         store::write_well(&new, &well)?;
         let reading = format!(
             "{} stations, datum {} m, {} tops, {} curves",

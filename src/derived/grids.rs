@@ -1,7 +1,7 @@
 //! The parameterization, kept: `grids-KEY.bin` and `parameterization.zarr`.
 
 use super::kept::{Kind, read_array, read_header, write_header};
-use super::{folder, key_of};
+use super::{Scratch, folder, key_of};
 use crate::error::ProjectError;
 use crate::project::Document;
 use param::{ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, VoxelParameterization};
@@ -128,9 +128,12 @@ fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization>
     })
 }
 
+/// The sampled parameterization, in `derived/`.
+const VOLUMES: &str = "parameterization.zarr";
+
 /// Where the sampled parameterization is.
 pub fn volumes_path(root: &Path) -> PathBuf {
-    folder(root).join("parameterization.zarr")
+    folder(root).join(VOLUMES)
 }
 
 /// Writes the sampled parameterization for other programs.
@@ -145,7 +148,9 @@ pub fn write_volumes(
 ) -> Result<VoxelParameterization, ProjectError> {
     let VoxelParameterization { size, i, j, k, layer, block } = voxels;
     let volumes = ParameterizationVolumes { i, j, k, layer, block };
-    store::write_parameterization(&volumes_path(root), &volumes, key, progress)?;
+    let scratch = Scratch::begin(root)?;
+    store::write_parameterization(&scratch.path(VOLUMES), &volumes, key, progress)?;
+    scratch.publish(VOLUMES)?;
     let ParameterizationVolumes { i, j, k, layer, block } = volumes;
     Ok(VoxelParameterization { size, i, j, k, layer, block })
 }

@@ -1,13 +1,13 @@
 //! A file of derived data: a kind, a body, and the BLAKE3 hash of both, so that one that is damaged or cut off is not used.
 
-use super::folder;
+use super::{Scratch, folder};
+use crate::project::storage;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use survey::Progress;
-use survey::store::Replacement;
 
 /// Files kept of each kind: the present one, and those that a few undos lead back to.
 pub(super) const KEPT: usize = 4;
@@ -23,8 +23,12 @@ pub(super) struct Kind {
 }
 
 impl Kind {
+    fn file(&self, key: &str) -> String {
+        format!("{}-{key}.bin", self.prefix)
+    }
+
     pub(super) fn path(&self, root: &Path, key: &str) -> PathBuf {
-        folder(root).join(format!("{}-{key}.bin", self.prefix))
+        folder(root).join(self.file(key))
     }
 
     /// Keeps what `body` writes under `key`; warns when it cannot.
@@ -35,9 +39,10 @@ impl Kind {
         progress: &Progress,
         body: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) {
-        let written = Replacement::of(&self.path(root, key)).map_err(io::Error::other).and_then(|replacement| {
-            self.write(replacement.path(), body)?;
-            replacement.commit().map_err(io::Error::other)
+        let file = self.file(key);
+        let written = Scratch::begin(root).map_err(io::Error::other).and_then(|scratch| {
+            self.write(&scratch.path(&file), body)?;
+            scratch.publish(&file).map_err(io::Error::other)
         });
         match written {
             Ok(()) => self.forget_old(root),
@@ -84,20 +89,16 @@ impl Kind {
     /// Removes all but the newest few files of this kind.
     fn forget_old(&self, root: &Path) {
         let prefix = format!("{}-", self.prefix);
-        let mut files: Vec<(std::time::SystemTime, PathBuf)> = fs::read_dir(folder(root))
-            .into_iter()
-            .flatten()
-            .filter_map(|entry| {
-                let entry = entry.ok()?;
-                let name = entry.file_name();
-                let ours = name.to_str()?.starts_with(&prefix) && name.to_str()?.ends_with(".bin");
-                ours.then_some((entry.metadata().ok()?.modified().ok()?, entry.path()))
-            })
-            .collect();
+        let ours = |name: &String| name.starts_with(&prefix) && name.ends_with(".bin");
+        let written = |name: String| {
+            let facts = fs::symlink_metadata(folder(root).join(&name)).ok()?;
+            facts.is_file().then_some((facts.modified().ok()?, name))
+        };
+        let names = storage::names_in(&folder(root)).into_iter().filter(ours);
+        let mut files: Vec<(std::time::SystemTime, String)> = names.filter_map(written).collect();
         files.sort();
-        for (_, path) in files.iter().rev().skip(KEPT) {
-            // One that cannot be removed is only in the way of disk space.
-            let _ = fs::remove_file(path);
+        for (_, name) in files.iter().rev().skip(KEPT) {
+            storage::remove(root, &format!("{}/{name}", storage::DERIVED));
         }
     }
 }

@@ -7,6 +7,7 @@ pub use super::entries::{
     FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry,
 };
 pub use super::picks::{Assembly, FaultSticks, PickEntry};
+use super::storage;
 use crate::error::{Noun, ProjectError};
 use param::KDefinition;
 use serde::{Deserialize, Serialize};
@@ -135,11 +136,10 @@ impl Document {
             }
         }
         self.check_truncation().map_err(|error| error.to_string())?;
-        // A path that leaves the folder would let a project read, and a prune delete, what is not its own.
-        for file in self.files() {
-            let inside = Path::new(file).components().all(|part| matches!(part, std::path::Component::Normal(_)));
-            if !inside {
-                return Err(format!("the file \"{file}\" is not inside the project"));
+        // Whatever else a name says would let a project read, and a later command delete, what is not its own.
+        for (kind, file) in self.files_by_kind() {
+            if !storage::is_data_file(kind, file) {
+                return Err(format!("the file \"{file}\" is not of the form {kind}/NAME"));
             }
         }
         Ok(())
@@ -160,11 +160,16 @@ impl Document {
 
     /// All data files, relative to the project's folder.
     pub fn files(&self) -> impl Iterator<Item = &str> {
-        let volumes = self.volumes.iter().map(|entry| entry.file.as_str());
-        let horizons = self.horizons.iter().map(|entry| entry.file.as_str());
-        let faults = self.faults.iter().map(|entry| entry.file.as_str());
-        let wells = self.wells.iter().map(|entry| entry.file.as_str());
-        let textures = self.textures.iter().map(|entry| entry.file.as_str());
+        self.files_by_kind().map(|(_, file)| file)
+    }
+
+    /// All data files with the folder each must lie in.
+    fn files_by_kind(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let volumes = self.volumes.iter().map(|entry| ("volumes", entry.file.as_str()));
+        let horizons = self.horizons.iter().map(|entry| ("horizons", entry.file.as_str()));
+        let faults = self.faults.iter().map(|entry| ("faults", entry.file.as_str()));
+        let wells = self.wells.iter().map(|entry| ("wells", entry.file.as_str()));
+        let textures = self.textures.iter().map(|entry| ("textures", entry.file.as_str()));
         volumes.chain(horizons).chain(faults).chain(wells).chain(textures)
     }
 
@@ -284,8 +289,10 @@ mod tests {
     }
 
     #[test]
-    fn files_outside_the_project_are_refused() {
-        for file in ["/etc/passwd", "../other.petro/horizons/A.zarr", "horizons/../../x"] {
+    fn only_data_of_its_own_kind_is_accepted() {
+        for file in
+            ["/etc/passwd", "../other.petro/horizons/A.zarr", "horizons/../../x", "", "horizons", "volumes/A.zarr"]
+        {
             let mut document = document();
             document.horizons[0].file = file.into();
             assert!(document.check().is_err(), "{file}");

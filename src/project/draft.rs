@@ -1,7 +1,7 @@
 //! A state of a project in the making: what a command works on.
 
 use super::document::Document;
-use super::storage;
+use super::{history, storage};
 use crate::error::ProjectError;
 use std::path::{Path, PathBuf};
 
@@ -11,7 +11,7 @@ pub struct Draft {
     root: PathBuf,
     /// The state the command is to leave behind.
     pub document: Document,
-    written: Vec<PathBuf>,
+    written: Vec<String>,
     kept: bool,
 }
 
@@ -25,38 +25,34 @@ impl Draft {
         &self.root
     }
 
-    /// A new place for data in `folder`: the name to put into the document, and the path to write to now.
+    /// A new place for data of a kind (`volumes`, `horizons` …): the file to put into the document, and the path to write to now.
     ///
     /// The file is named after `name` as far as file systems allow, with a number where an older generation of that name is still remembered.
-    pub fn generation(&mut self, folder: &str, name: &str, extension: &str) -> (String, PathBuf) {
+    ///
+    /// # Errors
+    /// The folder to write to cannot be made.
+    pub fn generation(
+        &mut self,
+        kind: &'static str,
+        name: &str,
+        extension: &str,
+    ) -> Result<(String, PathBuf), ProjectError> {
         let slug: String =
             name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
         let slug = slug.trim_start_matches('.');
         let slug = if slug.is_empty() { "_" } else { slug };
-        let taken = |file: &str| {
-            let path = self.root.join(file);
-            path.exists() || self.written.contains(&path)
-        };
-        let mut file = format!("{folder}/{slug}.{extension}");
-        let mut number = 2;
-        while taken(&file) {
-            file = format!("{folder}/{slug}-{number}.{extension}");
-            number += 1;
-        }
-        let path = self.root.join(&file);
-        let new = storage::new_beside(&path);
-        self.written.push(path);
-        (file, new)
+        let taken = |file: &String| self.root.join(file).exists() || self.written.contains(file);
+        let numbered = (2..).map(|number| format!("{kind}/{slug}-{number}.{extension}"));
+        let mut files = std::iter::once(format!("{kind}/{slug}.{extension}")).chain(numbered);
+        let file = files.find(|file| !taken(file)).expect("there are more numbers than files");
+        let path = storage::begin(&self.root, &file)?;
+        self.written.push(file.clone());
+        Ok((file, path))
     }
 
     /// Flushes the data and gives it its names.
     pub(super) fn publish(&self) -> Result<(), ProjectError> {
-        for path in &self.written {
-            let new = storage::new_beside(path);
-            storage::sync_tree(&new)?;
-            storage::rename(&new, path)?;
-        }
-        Ok(())
+        self.written.iter().try_for_each(|file| storage::publish(&self.root, file))
     }
 
     /// The state was saved: the data stays.
@@ -68,10 +64,9 @@ impl Draft {
 impl Drop for Draft {
     fn drop(&mut self) {
         if !self.kept {
-            for path in &self.written {
-                storage::remove(&storage::new_beside(path));
-                storage::remove(path);
-            }
+            // What was published before the save failed; a state that was saved after all keeps its data.
+            let _ = history::release(&self.root, self.written.iter().cloned().collect());
         }
+        storage::remove(&self.root, storage::UNFINISHED);
     }
 }

@@ -5,12 +5,15 @@
 //! history/NNNN.toml   each command with the state it led to (see `history`)
 //! volumes/ horizons/ faults/ wells/ textures/   data, one new file or folder for each generation
 //! derived/            what was computed; may be deleted
+//! unfinished/         what a command under way is writing; removed by the next writer after a crash
+//! importing/          an import that was killed, to go on with
 //! lock                held while a command runs
 //! ```
 //!
 //! [`Project::apply`] is the only way to change one. It takes the lock, reads the state again if another process has
 //! changed it, lets the [`Command`] write new data and a new state, and then replaces `project.toml` by a rename: before that moment the old
-//! state is valid, after it the new one. When anything fails, what was written is removed.
+//! state is valid, after it the new one. When anything fails, what was written is removed. A project may come from a stranger: before
+//! anything is written or deleted, no part of it may be a link, and every data file that a state names must be `KIND/NAME`.
 //!
 //! Deliberately absent: no state is kept in memory that is not on disk, and nothing that is saved is edited in place.
 
@@ -21,7 +24,7 @@ mod history;
 mod layers;
 mod picks;
 pub mod placement;
-mod storage;
+pub(crate) mod storage;
 
 pub use document::{Document, Polarity};
 pub use draft::Draft;
@@ -30,6 +33,7 @@ pub use history::{HISTORY_LIMIT, Step};
 pub(crate) use storage::at_hand;
 
 use crate::command::{Command, Effect, IMPORTING};
+use crate::derived;
 use crate::error::ProjectError;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -68,7 +72,7 @@ impl Project {
         if !root.is_dir() {
             return not_a_project("it is a file, a project is a folder");
         }
-        let path = root.join("project.toml");
+        let path = root.join(storage::STATE);
         if !path.exists() {
             return not_a_project("it has no project.toml");
         }
@@ -142,25 +146,27 @@ impl Project {
         history::forget_all_but(&self.root, self.document.step)
     }
 
-    /// What is remembered, oldest first.
-    ///
-    /// # Errors
-    /// A step cannot be read.
-    pub fn history(&self) -> Result<Vec<HistoryLine>, ProjectError> {
+    /// What is remembered, oldest first; a step that cannot be read says so.
+    pub fn history(&self) -> Vec<HistoryLine> {
         let mut lines = Vec::new();
         for step in history::numbers(&self.root) {
-            if let Some(Step { summary, .. }) = history::read(&self.root, step)? {
-                lines.push(HistoryLine { step, summary, in_effect: step <= self.document.step });
-            }
+            let summary = match history::read(&self.root, step) {
+                Ok(Some(step)) => step.summary,
+                Ok(None) => continue,
+                Err(_) => "cannot be read any more; undo and redo stop here".to_owned(),
+            };
+            lines.push(HistoryLine { step, summary, in_effect: step <= self.document.step });
         }
-        Ok(lines)
+        lines
     }
 
     fn lock(&mut self) -> Result<Lock, ProjectError> {
+        storage::refuse_links(&self.root)?;
         let lock = Lock::take(&self.root)?;
-        let path = self.root.join("project.toml");
+        let path = self.root.join(storage::STATE);
         let text = storage::read_text(&path)?;
         history::recover(&self.root, &text)?;
+        derived::remove_leftovers(&self.root);
         if text != self.text {
             self.document = Document::from_text(&text, &path)?;
             self.text = text;
@@ -171,7 +177,8 @@ impl Project {
 
     /// An edit of `project.toml` by hand becomes a step of its own, so that undoing a later command does not lose it.
     fn adopt_edit(&mut self) -> Result<(), ProjectError> {
-        let known = history::read(&self.root, self.document.step)?;
+        // A step that cannot be read says nothing about an edit.
+        let known = history::read(&self.root, self.document.step).ok().flatten();
         if known.is_none_or(|step| step.project == self.text) {
             return Ok(());
         }
@@ -180,36 +187,45 @@ impl Project {
     }
 
     fn commit(&mut self, mut draft: Draft, summary: String, command: Option<&Command>) -> Result<(), ProjectError> {
-        let path = self.root.join("project.toml");
+        let path = self.root.join(storage::STATE);
         let number = self.document.step + 1;
         draft.document.step = number;
         let text = draft.document.to_text(&path)?;
         // A state that could not be read back must never be saved.
         let document = Document::from_text(&text, &path)?;
         let step = Step { summary, command: command.cloned(), project: text.clone() };
-        let saved = history::prepare(&self.root, number, &step)
-            .and_then(|()| draft.publish())
-            .and_then(|()| storage::replace(&path, text.as_bytes()));
-        if let Err(error) = saved {
-            history::abandon(&self.root, number);
-            return Err(error);
-        }
-        draft.keep();
+        history::prepare(&self.root, number, &step)?;
+        draft.publish()?;
+        storage::replace(&self.root, storage::STATE, text.as_bytes())?;
         self.text = text;
         self.document = document;
         // The new state is saved; if tidying up fails, the next writer does it.
         let _ = history::complete(&self.root, number);
+        draft.keep();
         Ok(())
     }
 
     fn restore(&mut self, step: Step) -> Result<(), ProjectError> {
-        let path = self.root.join("project.toml");
+        let path = self.root.join(storage::STATE);
         let document = Document::from_text(&step.project, &path)?;
-        storage::replace(&path, step.project.as_bytes())?;
+        storage::replace(&self.root, storage::STATE, step.project.as_bytes())?;
+        storage::remove(&self.root, storage::UNFINISHED);
         self.document = document;
         self.text = step.project;
         Ok(())
     }
+}
+
+/// Marks the folder of a project in the making; locked by whoever makes it.
+const CREATING: &str = "creating";
+
+/// Where the project for `destination` is made: `.NAME.new` beside it.
+fn in_the_making(destination: &Path) -> Result<PathBuf, ProjectError> {
+    let name = destination.file_name().ok_or(ProjectError::NotFound { path: destination.to_owned() })?;
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(".new");
+    Ok(destination.with_file_name(hidden))
 }
 
 /// A project in the making, in a hidden folder beside its destination. Dropped without [`NewProject::publish`], it leaves nothing.
@@ -226,14 +242,17 @@ impl NewProject {
         if destination.exists() {
             return Err(ProjectError::Exists { path: destination.to_owned() });
         }
-        let mut name = std::ffi::OsString::from(".");
-        name.push(destination.file_name().ok_or(ProjectError::NotFound { path: destination.to_owned() })?);
-        let root = storage::new_beside(&destination.with_file_name(name));
+        let root = in_the_making(destination)?;
         let fail = |source| ProjectError::io("written", destination, source);
+        let is_ours = root.join(CREATING).exists() || storage::names_in(&root).is_empty();
+        if root.exists() && !is_ours {
+            return Err(ProjectError::Exists { path: root });
+        }
         fs::create_dir_all(&root).map_err(fail)?;
+        storage::refuse_links(&root)?;
         // Two processes may want to create the same project; the one in the making is locked under another name than its own commands use.
-        let lock = Lock::take_named(&root, "creating")?;
-        let path = root.join("project.toml");
+        let lock = Lock::take_named(&root, CREATING)?;
+        let path = root.join(storage::STATE);
         let document = Document::empty(geometry);
         let text = document.to_text(&path)?;
         // From here on, whatever fails removes the folder.
@@ -243,19 +262,24 @@ impl NewProject {
             published: false,
             _lock: lock,
         };
-        for folder in ["history", "volumes", "horizons", "faults", "wells", "textures"] {
-            let folder = begun.project.root.join(folder);
-            storage::remove(&folder);
-            fs::create_dir(folder).map_err(fail)?;
+        let root = &begun.project.root;
+        // What a killed creation left; what it had imported is kept to go on with.
+        for folder in [storage::UNFINISHED, storage::DERIVED] {
+            storage::remove(root, folder);
+        }
+        for folder in ["history"].iter().chain(&storage::KINDS) {
+            storage::remove(root, folder);
+            fs::create_dir(root.join(folder)).map_err(fail)?;
         }
         let step = Step {
             summary: "create".to_owned(),
             command: Some(Command::Create { geometry: document.geometry }),
             project: text.clone(),
         };
-        history::prepare(&begun.project.root, 0, &step)?;
-        storage::replace(&path, text.as_bytes())?;
-        history::complete(&begun.project.root, 0)?;
+        history::prepare(root, 0, &step)?;
+        storage::replace(root, storage::STATE, text.as_bytes())?;
+        history::complete(root, 0)?;
+        storage::remove(root, storage::UNFINISHED);
         Ok(begun)
     }
 
@@ -272,9 +296,9 @@ impl NewProject {
         if self.destination.exists() {
             return Err(ProjectError::Exists { path: self.destination.clone() });
         }
-        storage::remove(&self.project.root.join("creating"));
+        storage::remove(&self.project.root, CREATING);
         // What an import that was killed had written to a project of this name.
-        storage::remove(&self.project.root.join(IMPORTING));
+        storage::remove(&self.project.root, IMPORTING);
         storage::rename(&self.project.root, &self.destination)?;
         self.published = true;
         Project::open(&self.destination)
@@ -284,7 +308,8 @@ impl NewProject {
 impl Drop for NewProject {
     fn drop(&mut self) {
         if !self.published {
-            storage::remove(&self.project.root);
+            // A folder that cannot be removed is found by its marker when a project of this name is created again.
+            let _ = fs::remove_dir_all(&self.project.root);
         }
     }
 }

@@ -1,56 +1,145 @@
-//! Files of a project on disk: atomic replacement, new generations of data, and the lock between writers.
+//! Files of a project on disk: where each may lie, how it is replaced, and the one place that deletes.
 //!
-//! Nothing that a saved state refers to is ever overwritten. A file is replaced by writing `NAME.new` beside it, flushing it to
-//! the disk and renaming it; data sets (folders) are written as `NAME.new` too and get their name just before the project does.
-//! Whatever ends in `.new` after a crash was never part of a project and is removed by the next writer.
+//! A file of a project is named by its path relative to the project's folder, with `/` between the parts. Data that a state
+//! refers to is exactly `KIND/NAME` ([`is_data_file`]), a real file or folder and not a link.
+//!
+//! Nothing that a saved state refers to is ever overwritten. What is being written lies in the folder `unfinished/` under the
+//! same relative path, and is renamed to its place when it is complete ([`publish`], [`replace`]). What a killed program leaves
+//! there was never part of a project; the next writer removes the folder. Names of data therefore never decide what is
+//! a leftover.
+//!
+//! [`remove`] deletes single files of the project's own making and works through a handle on the folder, which cannot be led
+//! outside by a link. Data files go through [`super::history::release`] instead, which first asks every remembered state.
 
 use crate::error::ProjectError;
+use cap_fs_ext::{DirExt, FollowSymlinks, OpenOptionsFollowExt};
+use cap_std::ambient_authority;
+use cap_std::fs::{Dir, OpenOptions};
 use std::fs::{self, File, TryLockError};
-use std::io::Write;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Ending of what is not yet valid.
-pub(crate) const NEW: &str = "new";
+/// The state.
+pub(crate) const STATE: &str = "project.toml";
 
-/// `path` with `.new` appended to its file name.
-pub(crate) fn new_beside(path: &Path) -> PathBuf {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".");
-    name.push(NEW);
-    path.with_file_name(name)
+/// Folder of what is not complete; only the holder of the project's lock writes here.
+pub(crate) const UNFINISHED: &str = "unfinished";
+
+/// Folder of what was computed; may be deleted.
+pub(crate) const DERIVED: &str = "derived";
+
+/// Folders of data, one for each kind.
+pub(crate) const KINDS: [&str; 5] = ["volumes", "horizons", "faults", "wells", "textures"];
+
+/// Everything a project has at its top: folders first, then files.
+const FOLDERS: [&str; 4] = ["history", DERIVED, UNFINISHED, crate::command::IMPORTING];
+const FILES: [&str; 4] = [STATE, "lock", "creating", "window.lock"];
+
+/// Whether `file` names data of the kind `kind`: `KIND/NAME` with one plain name that no other file system reads as a path.
+pub(crate) fn is_data_file(kind: &str, file: &str) -> bool {
+    let Some(name) = file.strip_prefix(kind).and_then(|rest| rest.strip_prefix('/')) else { return false };
+    !name.is_empty()
+        && !name.starts_with('.')
+        && !name.contains(['/', '\\', ':'])
+        && !name.chars().any(char::is_control)
 }
 
-/// Where data of that name lie now: what a command under way has written and not published yet is under its new name.
-pub(crate) fn at_hand(path: PathBuf) -> PathBuf {
-    let new = new_beside(&path);
-    if !path.exists() && new.exists() { new } else { path }
+/// Whether `file` names data of any kind.
+pub(crate) fn is_any_data_file(file: &str) -> bool {
+    KINDS.iter().any(|kind| is_data_file(kind, file))
+}
+
+/// Refuses a project in which a link could lead a writer outside: every folder and file that commands write to, and
+/// everything in it, must be what it seems. Nothing is written before this has passed.
+///
+/// # Errors
+/// [`ProjectError::Link`] with the first link found, or a folder that cannot be read.
+pub(crate) fn refuse_links(root: &Path) -> Result<(), ProjectError> {
+    FILES.iter().chain(&FOLDERS).chain(&KINDS).try_for_each(|name| refuse_links_in(root, Path::new(name)))
+}
+
+fn refuse_links_in(root: &Path, relative: &Path) -> Result<(), ProjectError> {
+    let path = root.join(relative);
+    let facts = match fs::symlink_metadata(&path) {
+        Ok(facts) => facts,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(source) => return Err(ProjectError::io("read", &path, source)),
+    };
+    if facts.is_symlink() {
+        return Err(ProjectError::Link { path });
+    }
+    if facts.is_dir() {
+        let entries = match fs::read_dir(&path) {
+            Ok(entries) => entries,
+            // Another process has just removed its unfinished work.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            Err(source) => return Err(ProjectError::io("read", &path, source)),
+        };
+        for entry in entries {
+            let entry = entry.map_err(|source| ProjectError::io("read", &path, source))?;
+            refuse_links_in(root, &relative.join(entry.file_name()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Where `file` is written until it is complete.
+pub(crate) fn unfinished(root: &Path, file: &str) -> PathBuf {
+    root.join(UNFINISHED).join(file)
+}
+
+/// The same, with its folder made.
+///
+/// # Errors
+/// The folder cannot be made.
+pub(crate) fn begin(root: &Path, file: &str) -> Result<PathBuf, ProjectError> {
+    let path = unfinished(root, file);
+    let folder = path.parent().unwrap_or(root);
+    fs::create_dir_all(folder).map_err(|source| ProjectError::io("written", folder, source))?;
+    Ok(path)
+}
+
+/// Where `file` can be read now: what a command under way has written and not yet published lies in `unfinished/`.
+pub(crate) fn at_hand(root: &Path, file: &str) -> PathBuf {
+    let (path, unfinished) = (root.join(file), unfinished(root, file));
+    if !path.exists() && unfinished.exists() { unfinished } else { path }
+}
+
+/// Flushes what was written for `file` and gives it its place.
+pub(crate) fn publish(root: &Path, file: &str) -> Result<(), ProjectError> {
+    let from = unfinished(root, file);
+    sync_tree(&from)?;
+    rename(&from, &root.join(file))
+}
+
+/// Writes `bytes` to where `file` waits for being published.
+pub(crate) fn write_unfinished(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
+    let path = begin(root, file)?;
+    write_durably(&path, bytes)
+}
+
+/// Replaces `file` by `bytes`: either the old or the new content is there, whatever happens.
+pub(crate) fn replace(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
+    write_unfinished(root, file, bytes)?;
+    rename(&unfinished(root, file), &root.join(file))
 }
 
 /// Writes `bytes` to `path` and flushes them to the disk.
-pub(crate) fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
+fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
     let fail = |source| ProjectError::io("written", path, source);
     let mut file = File::create(path).map_err(fail)?;
-    let written = file.write_all(bytes).and_then(|()| file.sync_all());
-    drop(file);
-    written.map_err(|source| {
-        // A half-written file must not be found by anyone; the first failure is the one to report.
-        let _ = fs::remove_file(path);
-        fail(source)
-    })
+    file.write_all(bytes).and_then(|()| file.sync_all()).map_err(fail)
 }
 
-/// Replaces `path` by `bytes`: either the old or the new content is there, whatever happens.
-pub(crate) fn replace(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
-    let new = new_beside(path);
-    write_durably(&new, bytes)?;
-    rename(&new, path)
-}
-
-/// Renames and flushes the folder entry.
+/// Renames and flushes the entries of both folders.
 pub(crate) fn rename(from: &Path, to: &Path) -> Result<(), ProjectError> {
-    fs::rename(from, to).map_err(|source| ProjectError::io("written", to, source))?;
+    let fail = |source| ProjectError::io("written", to, source);
     if let Some(parent) = to.parent() {
-        sync_folder(parent);
+        fs::create_dir_all(parent).map_err(fail)?;
+    }
+    fs::rename(from, to).map_err(fail)?;
+    for folder in [to.parent(), from.parent()].into_iter().flatten() {
+        sync_folder(folder);
     }
     Ok(())
 }
@@ -63,7 +152,7 @@ fn sync_folder(folder: &Path) {
 }
 
 /// Flushes a file or everything in a folder to the disk.
-pub(crate) fn sync_tree(path: &Path) -> Result<(), ProjectError> {
+fn sync_tree(path: &Path) -> Result<(), ProjectError> {
     let fail = |source| ProjectError::io("written", path, source);
     if path.is_dir() {
         for entry in fs::read_dir(path).map_err(fail)? {
@@ -76,11 +165,41 @@ pub(crate) fn sync_tree(path: &Path) -> Result<(), ProjectError> {
     }
 }
 
-/// Removes a file or a folder with its content, if it is there.
-pub(crate) fn remove(path: &Path) {
-    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
-    // What cannot be removed stays behind as garbage that no state refers to.
-    let _ = removed;
+/// Removes a file or folder of the project, if it is there: the one place where something in a project is deleted.
+///
+/// `file` must lie inside the project; of a link the link itself goes, never what it points to. What cannot be removed stays
+/// behind as something that no state refers to.
+pub(crate) fn remove(root: &Path, file: &str) {
+    let plain =
+        !file.is_empty() && Path::new(file).components().all(|part| matches!(part, std::path::Component::Normal(_)));
+    assert!(plain, "\"{file}\" names nothing inside a project");
+    let _ = remove_inside(root, file);
+}
+
+fn remove_inside(root: &Path, file: &str) -> io::Result<()> {
+    let mut folder = Dir::open_ambient_dir(root, ambient_authority())?;
+    let mut parts = file.split('/').peekable();
+    while let Some(part) = parts.next() {
+        if parts.peek().is_some() {
+            folder = folder.open_dir_nofollow(part)?;
+        } else if folder.symlink_metadata(part)?.is_dir() {
+            folder.remove_dir_all(part)?;
+        } else {
+            folder.remove_file(part)?;
+        }
+    }
+    Ok(())
+}
+
+/// Opens a file at the top of the project for reading and writing, made if it is not there; a link is not followed.
+///
+/// # Errors
+/// It is a link, or cannot be opened.
+pub(crate) fn open_own(root: &Path, name: &str) -> io::Result<File> {
+    let folder = Dir::open_ambient_dir(root, ambient_authority())?;
+    let mut options = OpenOptions::new();
+    options.create(true).truncate(false).read(true).write(true).follow(FollowSymlinks::No);
+    Ok(folder.open_with(name, &options)?.into_std())
 }
 
 /// Reads a text file.
@@ -88,10 +207,10 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ProjectError> {
     fs::read_to_string(path).map_err(|source| ProjectError::io("read", path, source))
 }
 
-/// Entries of a folder by name; none when it is missing.
-pub(crate) fn entries(folder: &Path) -> Vec<PathBuf> {
-    let mut found: Vec<PathBuf> =
-        fs::read_dir(folder).into_iter().flatten().filter_map(|entry| Some(entry.ok()?.path())).collect();
+/// Names of a folder's entries, in order; none when it is missing.
+pub(crate) fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut found: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
     found.sort();
     found
 }
@@ -111,12 +230,7 @@ impl Lock {
     /// Takes the lock in the file `name` of the folder `root`.
     pub(crate) fn take_named(root: &Path, name: &str) -> Result<Self, ProjectError> {
         let path = root.join(name);
-        let file = File::options()
-            .create(true)
-            .truncate(false)
-            .write(true)
-            .open(&path)
-            .map_err(|source| ProjectError::io("written", &path, source))?;
+        let file = open_own(root, name).map_err(|source| ProjectError::io("written", &path, source))?;
         match file.try_lock() {
             Ok(()) => Ok(Self { _file: file }),
             Err(TryLockError::WouldBlock) => Err(ProjectError::Locked { path: root.to_owned() }),
@@ -141,10 +255,50 @@ mod tests {
     #[test]
     fn replacing_leaves_no_second_file() {
         let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.toml");
-        replace(&path, b"one").unwrap();
-        replace(&path, b"two").unwrap();
-        assert_eq!(read_text(&path).unwrap(), "two");
-        assert_eq!(entries(folder.path()), [path]);
+        replace(folder.path(), "a.toml", b"one").unwrap();
+        replace(folder.path(), "a.toml", b"two").unwrap();
+        assert_eq!(read_text(&folder.path().join("a.toml")).unwrap(), "two");
+        remove(folder.path(), UNFINISHED);
+        assert_eq!(names_in(folder.path()), ["a.toml"]);
+    }
+
+    #[test]
+    fn data_is_a_kind_and_a_plain_name() {
+        for good in ["volumes/far.partial-stack.zarr", "volumes/a b.zarr", "volumes/x.new"] {
+            assert!(is_data_file("volumes", good), "{good}");
+        }
+        for bad in [
+            "",
+            "volumes",
+            "volumes/",
+            "volumes/.",
+            "volumes/..",
+            "volumes/a/b",
+            "volumes/a\\b",
+            "horizons/a.zarr",
+            "/volumes/a",
+            "./volumes/a",
+            "volumes//a",
+            "volumes/c:a",
+            "volumes/a\nb",
+        ] {
+            assert!(!is_data_file("volumes", bad), "{bad}");
+        }
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn removing_does_not_leave_the_project_by_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (root, outside) = (folder.path().join("p"), folder.path().join("outside"));
+        fs::create_dir_all(root.join("volumes")).unwrap();
+        fs::create_dir_all(outside.join("kept")).unwrap();
+        fs::write(outside.join("kept/a"), "a").unwrap();
+        std::os::unix::fs::symlink(&outside, root.join("textures")).unwrap();
+        std::os::unix::fs::symlink(&outside, root.join("volumes/v")).unwrap();
+        remove(&root, "textures/kept");
+        remove(&root, "volumes/v");
+        assert!(outside.join("kept/a").exists());
+        assert!(fs::symlink_metadata(root.join("volumes/v")).is_err());
     }
 }

@@ -53,7 +53,7 @@ fn a_command_after_an_undo_forgets_what_was_undone() {
     project.undo().unwrap();
     project.apply(&velocity(4000.0), &Progress::silent()).unwrap();
     assert!(matches!(project.redo(), Err(ProjectError::NothingToRedo)));
-    let steps: Vec<u32> = project.history().unwrap().iter().map(|line| line.step).collect();
+    let steps: Vec<u32> = project.history().iter().map(|line| line.step).collect();
     assert_eq!(steps, [0, 1, 2]);
     project.undo().unwrap();
     assert_eq!(project.document().geometry.as_ref().unwrap().velocity_m_s, 1500.0);
@@ -70,7 +70,7 @@ fn a_refused_command_changes_nothing() {
     cancelled.cancel();
     assert!(matches!(project.apply(&velocity(1600.0), &cancelled), Err(ProjectError::Cancelled(_))));
     assert_eq!(bytes(&project), before);
-    assert_eq!(project.history().unwrap().len(), 1);
+    assert_eq!(project.history().len(), 1);
 }
 
 #[test]
@@ -92,23 +92,23 @@ fn a_crash_before_the_rename_leaves_the_old_state_and_one_after_it_the_new() {
     let mut project = begun(folder.path());
     project.apply(&velocity(1500.0), &Progress::silent()).unwrap();
     let old = bytes(&project);
-    let history = project.root().join("history");
+    let unfinished = |file: &str| storage::begin(project.root(), file).unwrap();
     // Before: the step is prepared, project.toml is not replaced, data is half written.
-    let step = fs::read_to_string(history.join("0001.toml")).unwrap().replace("1500.0", "1700.0");
-    fs::write(history.join("0002.toml.new"), step).unwrap();
-    fs::write(history.join("0003.toml.new"), "summ").unwrap();
-    fs::create_dir_all(project.root().join("volumes/x.zarr.new/0")).unwrap();
-    fs::write(project.root().join("project.toml.new"), "vers").unwrap();
+    let first = project.root().join("history/0001.toml");
+    let step = fs::read_to_string(&first).unwrap().replace("1500.0", "1700.0");
+    fs::write(unfinished("history/0002.toml"), step).unwrap();
+    fs::write(unfinished("history/0003.toml"), "summ").unwrap();
+    fs::create_dir_all(unfinished("volumes/x.zarr/0")).unwrap();
+    fs::write(unfinished("project.toml"), "vers").unwrap();
     Project::open(project.root()).unwrap().undo().unwrap();
     Project::open(project.root()).unwrap().redo().unwrap();
     assert_eq!(bytes(&project), old);
-    for left in ["history/0002.toml.new", "history/0003.toml.new", "volumes/x.zarr.new", "project.toml.new"] {
-        assert!(!project.root().join(left).exists(), "{left}");
-    }
-    // After: project.toml is the new state, its step has not got its name.
-    fs::rename(history.join("0001.toml"), history.join("0001.toml.new")).unwrap();
+    assert_eq!(project.history().len(), 2);
+    assert!(!project.root().join(storage::UNFINISHED).exists());
+    // After: project.toml is the new state, its step has not got its place.
+    fs::rename(&first, unfinished("history/0001.toml")).unwrap();
     Project::open(project.root()).unwrap().undo().unwrap();
-    assert_eq!(project.history().unwrap().len(), 2);
+    assert_eq!(project.history().len(), 2);
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn pruning_forgets_the_way_but_not_the_state() {
 fn a_project_that_is_not_published_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     drop(Project::create(&folder.path().join("a.petro"), None).unwrap());
-    assert!(storage::entries(folder.path()).is_empty());
+    assert!(storage::names_in(folder.path()).is_empty());
     let _first = Project::create(&folder.path().join("a.petro"), None).unwrap();
     assert!(matches!(Project::create(&folder.path().join("a.petro"), None), Err(ProjectError::Locked { .. })));
 }
@@ -144,6 +144,54 @@ fn what_is_no_project_is_said_to_be_none() {
     let path = project.root().join("project.toml");
     fs::write(&path, "version = 2\n").unwrap();
     assert!(matches!(Project::open(project.root()), Err(ProjectError::Newer { found: 2, .. })));
+}
+
+#[test]
+fn a_kill_between_forgetting_a_step_and_releasing_its_data_orphans_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    let path = folder.path().join("t.png");
+    image::RgbImage::from_pixel(2, 2, image::Rgb([1, 0, 0])).save(&path).unwrap();
+    let texture = Command::AddTexture(crate::command::AddTexture { path, width_mm: None });
+    project.apply(&texture, &Progress::silent()).unwrap();
+    project.undo().unwrap();
+    // Killed after the undone step was taken out of the history.
+    fs::rename(
+        project.root().join("history/0001.toml"),
+        storage::begin(project.root(), "forgotten/0001.toml").unwrap(),
+    )
+    .unwrap();
+    assert!(project.root().join("textures/t.png").exists());
+    project.apply(&velocity(1500.0), &Progress::silent()).unwrap();
+    assert!(!project.root().join("textures/t.png").exists());
+}
+
+#[test]
+fn a_damaged_step_is_told_and_stops_no_work() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    let path = folder.path().join("t.png");
+    image::RgbImage::from_pixel(2, 2, image::Rgb([1, 0, 0])).save(&path).unwrap();
+    let texture = Command::AddTexture(crate::command::AddTexture { path, width_mm: None });
+    for command in [velocity(1500.0), texture] {
+        project.apply(&command, &Progress::silent()).unwrap();
+    }
+    project.undo().unwrap();
+    // The undone step that holds the texture, cut in its middle; and the step in effect, unreadable.
+    let step = project.root().join("history/0002.toml");
+    let text = fs::read_to_string(&step).unwrap();
+    fs::write(&step, &text[..text.len() - 20]).unwrap();
+    fs::write(project.root().join("history/0001.toml"), [0xff, 0xfe, 0]).unwrap();
+    assert!(project.history()[1].summary.contains("cannot be read"), "{:?}", project.history());
+    project.apply(&velocity(1600.0), &Progress::silent()).unwrap();
+    assert!(project.root().join("textures/t.png").exists(), "it may still be somebody's");
+    project.prune().unwrap();
+    assert_eq!(project.history().len(), 1);
+    fs::remove_dir_all(project.root().join("history")).unwrap();
+    project.apply(&velocity(1700.0), &Progress::silent()).unwrap();
+    project.apply(&velocity(1800.0), &Progress::silent()).unwrap();
+    project.undo().unwrap();
+    assert_eq!(project.document().geometry.as_ref().unwrap().velocity_m_s, 1700.0);
 }
 
 /// Numbers that look random (the multiplicative congruential generator of Park and Miller).
@@ -196,7 +244,7 @@ fn any_walk_through_the_history_meets_the_same_states() {
             }
             assert_eq!(whole(&project), line[at], "seed {seed}, turn {turn}");
         }
-        let kept = storage::entries(&project.root().join("textures")).len();
+        let kept = storage::names_in(&project.root().join("textures")).len();
         let known: std::collections::BTreeSet<&Vec<u8>> = line.iter().flat_map(|(_, data)| data).collect();
         assert_eq!(kept, known.len(), "data that no state refers to is gone, and no other");
     }

@@ -8,6 +8,7 @@ mod create;
 mod demo;
 mod extraction;
 mod help;
+mod hostile;
 mod kill;
 mod program;
 mod safety;

@@ -107,7 +107,7 @@ impl Order {
 
 /// The project as the window keeps it.
 pub(super) fn snapshot(project: &Project) -> Result<Snapshot, ProjectError> {
-    Ok(Snapshot { root: project.root().to_owned(), document: project.document().clone(), history: project.history()? })
+    Ok(Snapshot { root: project.root().to_owned(), document: project.document().clone(), history: project.history() })
 }
 
 fn file_name(path: &Path) -> String {

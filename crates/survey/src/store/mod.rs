@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Everything is written under another name beside its place, synced and renamed at the very end ([`Replacement`]): a crash, a
-//! cancelled write or a full disk leaves what was there before. [`clean`] removes what a crash left behind. The array library (zarrs) is
+//! cancelled write or a full disk leaves what was there before. The array library (zarrs) is
 //! known to `array` and `sample` alone.
 
 mod array;
@@ -43,7 +43,7 @@ pub use ingest::{
 };
 pub use layout::{BRICK, Layout};
 pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
-pub use replacement::{Replacement, clean, replace_file};
+pub use replacement::{Replacement, replace_file};
 pub use sample::StoredSample;
 pub use volume::{StoredVolume, VolumeInfo};
 pub use well::{read_well, write_well};

@@ -1,19 +1,14 @@
 //! Replacing a file or a folder so that a crash or a full disk never costs the last good state.
 //!
-//! What is written goes to `NAME.partial-<something>` beside the target, is synced, and takes its name by a rename at the very
-//! end. A file is thereby replaced in one step. A folder that is already there is first moved to `NAME.replaced-<something>`, and
-//! removed when the new one has its name; should the program die between the two renames, [`settle`] moves it back.
+//! What is written lies in a hidden file or folder beside the target, `.NAME.partial-PROCESS-COUNT`, is synced, and takes the target's
+//! name by a rename at the very end. A file is thereby replaced in one step. A folder that is already there is first moved to
+//! `.NAME.replaced`, and removed when the new one has its name; should the program die between the two renames, [`settle`] moves
+//! it back. Nothing is ever recognised, or removed, by a part of its name.
 
 use super::error::StoreError;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
-
-/// Follows the name of what is being written.
-const PARTIAL: &str = ".partial-";
-
-/// Follows the name of what is being replaced.
-const REPLACED: &str = ".replaced-";
 
 /// A target that is being written anew. Dropped without [`Replacement::commit`], it leaves nothing behind.
 #[derive(Debug)]
@@ -31,7 +26,7 @@ impl Replacement {
         if let Some(parent) = target.parent() {
             fs::create_dir_all(parent).map_err(|source| StoreError::io("written", parent, source))?;
         }
-        Ok(Self { target: target.to_owned(), partial: beside(target, PARTIAL) })
+        Ok(Self { target: target.to_owned(), partial: partial_of(target) })
     }
 
     /// Where to write.
@@ -47,14 +42,16 @@ impl Replacement {
         let fail = |source| StoreError::io("written", &self.target, source);
         sync_folders(&self.partial).map_err(fail)?;
         if self.target.is_dir() {
-            let replaced = beside(&self.target, REPLACED);
+            let replaced = replaced_of(&self.target);
+            // The target is there, so what a former crash left under this name has been replaced.
+            remove(&replaced);
             fs::rename(&self.target, &replaced).map_err(fail)?;
             if let Err(source) = fs::rename(&self.partial, &self.target) {
                 // Put the old one back; the first failure is the one to report.
                 let _ = fs::rename(&replaced, &self.target);
                 return Err(fail(source));
             }
-            // The new state is complete; an old one that cannot be removed is garbage for `clean`.
+            // The new state is complete; an old one that cannot be removed goes the next time.
             let _ = fs::remove_dir_all(&replaced);
         } else {
             fs::rename(&self.partial, &self.target).map_err(fail)?;
@@ -73,12 +70,23 @@ impl Drop for Replacement {
     }
 }
 
-/// A name beside `target` that nobody else uses.
-fn beside(target: &Path, mark: &str) -> PathBuf {
+/// A hidden name beside `target` that no other writer uses.
+fn partial_of(target: &Path) -> PathBuf {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);
-    let mut name = target.file_name().unwrap_or_default().to_owned();
-    name.push(format!("{mark}{}-{count}", std::process::id()));
+    hidden_beside(target, &format!("partial-{}-{count}", std::process::id()))
+}
+
+/// Where the former folder is while the new one takes its name.
+fn replaced_of(target: &Path) -> PathBuf {
+    hidden_beside(target, "replaced")
+}
+
+fn hidden_beside(target: &Path, ending: &str) -> PathBuf {
+    let mut name = std::ffi::OsString::from(".");
+    name.push(target.file_name().unwrap_or_default());
+    name.push(".");
+    name.push(ending);
     target.with_file_name(name)
 }
 
@@ -105,47 +113,12 @@ fn sync_folders(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Entries of `folder` whose name contains `mark`, with the path they stand in for.
-fn marked(folder: &Path, mark: &str) -> Vec<(PathBuf, PathBuf)> {
-    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
-    let found = entries.filter_map(|entry| {
-        let name = entry.file_name();
-        let (target, _) = name.to_str()?.split_once(mark)?;
-        Some((entry.path(), folder.join(target)))
-    });
-    found.collect()
-}
-
 /// Brings back what a crash in the middle of a replacement left under another name. Called before anything is opened.
 pub(super) fn settle(target: &Path) {
-    if target.exists() {
-        return;
+    if !target.exists() {
+        // Where nothing was left, nothing is to be brought back.
+        let _ = fs::rename(replaced_of(target), target);
     }
-    if let Some(parent) = target.parent()
-        && let Some((replaced, _)) = marked(parent, REPLACED).into_iter().find(|(_, of)| of == target)
-    {
-        let _ = fs::rename(replaced, target);
-    }
-}
-
-/// Cleans a folder of what crashes left in it and returns what was removed or brought back. Nobody may be writing
-/// to the folder meanwhile: call it with the project's lock held.
-pub fn clean(folder: &Path) -> Vec<PathBuf> {
-    let mut touched = Vec::new();
-    for (replaced, target) in marked(folder, REPLACED) {
-        if target.exists() {
-            remove(&replaced);
-            touched.push(replaced);
-        } else {
-            settle(&target);
-            touched.push(target);
-        }
-    }
-    for (partial, _) in marked(folder, PARTIAL) {
-        remove(&partial);
-        touched.push(partial);
-    }
-    touched
 }
 
 /// Replaces a file by `bytes`; creates its parent folders.
@@ -203,18 +176,23 @@ mod tests {
     }
 
     #[test]
-    fn leftovers_of_a_crash_are_cleaned_and_a_lost_name_is_given_back() {
+    fn a_name_lost_in_a_crash_is_given_back_and_no_other_is_touched() {
         let dir = tempfile::tempdir().unwrap();
         let at = |name: &str| dir.path().join(name);
-        folder_with(&at("a.zarr"), "good");
-        folder_with(&at("a.zarr.partial-1-0"), "half");
-        folder_with(&at("a.zarr.replaced-1-1"), "older");
-        folder_with(&at("b.zarr.replaced-1-2"), "good");
-        fs::write(at("c.json.partial-1-3"), "half").unwrap();
-        assert_eq!(clean(dir.path()).len(), 4);
-        assert_eq!(names(dir.path()), ["a.zarr", "b.zarr"]);
+        for ordinary in ["b.zarr.partial-stack", "b.zarr.replaced-2024", "far.partial-stack.zarr"] {
+            folder_with(&at(ordinary), "data");
+        }
+        folder_with(&at(".b.zarr.replaced"), "good");
+        settle(&at("b.zarr"));
+        settle(&at("c.zarr"));
         assert_eq!(fs::read_to_string(at("b.zarr").join("data")).unwrap(), "good");
-        assert_eq!(clean(dir.path()), Vec::<PathBuf>::new());
+        let replacement = Replacement::of(&at("b.zarr")).unwrap();
+        folder_with(replacement.path(), "new");
+        replacement.commit().unwrap();
+        assert_eq!(
+            names(dir.path()),
+            ["b.zarr", "b.zarr.partial-stack", "b.zarr.replaced-2024", "far.partial-stack.zarr"]
+        );
     }
 
     #[test]

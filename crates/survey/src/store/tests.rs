@@ -472,7 +472,7 @@ fn a_volume_left_under_its_replaced_name_is_found() {
     let path = dir.path().join("v.zarr");
     let size = [10, 10, 10];
     write_volume(&path, &volume(size), &info(size), &quiet()).unwrap();
-    fs::rename(&path, dir.path().join("v.zarr.replaced-77-0")).unwrap();
+    fs::rename(&path, dir.path().join(".v.zarr.replaced")).unwrap();
     assert_eq!(StoredVolume::open(&path).unwrap().read_f32(0, &quiet()).unwrap(), volume(size));
 }
 
