@@ -31,10 +31,11 @@ impl Scratch {
         storage::refuse_links(root)?;
         let all = root.join(UNFINISHED);
         let fail = |source| ProjectError::io("written", &all, source);
-        fs::create_dir_all(&all).map_err(fail)?;
         remove_leftovers(root);
         let name = format!("{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
-        let lock = File::create(all.join(lock_of(&name))).map_err(fail)?;
+        let made = || fs::create_dir_all(&all).and_then(|()| File::create(all.join(lock_of(&name))));
+        // Another writer that is done may remove the folder just now.
+        let lock = made().or_else(|_| made()).map_err(fail)?;
         lock.lock().map_err(fail)?;
         fs::create_dir_all(all.join(&name)).map_err(fail)?;
         Ok(Self { root: root.to_owned(), name, _lock: lock })
@@ -62,6 +63,8 @@ impl Drop for Scratch {
     fn drop(&mut self) {
         storage::remove(&self.root, &format!("{UNFINISHED}/{}", self.name));
         storage::remove(&self.root, &format!("{UNFINISHED}/{}", lock_of(&self.name)));
+        // Only when no other writer is at work.
+        let _ = fs::remove_dir(self.root.join(UNFINISHED));
     }
 }
 
