@@ -4,8 +4,8 @@
 //! written as `amplitude.npy` (float32, `[inline][crossline][sample]`), for other programs to be timed on.
 
 use super::{Memory, Sizes, dump};
-use crate::error::ProjectError;
 use interp::{ExtractSettings, extract};
+use project::error::ProjectError;
 use serde::Serialize;
 use std::fmt;
 use std::fs;

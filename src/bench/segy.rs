@@ -4,7 +4,7 @@
 //! segyio on the same files. A third file goes into the store and out of it.
 
 use super::StoreMeasured;
-use crate::error::ProjectError;
+use project::error::ProjectError;
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;

@@ -2,7 +2,7 @@
 //! its pyramid, and read back by inline, crossline and time slice; dip and semblance are computed on it. With a folder given, the file stays
 //! there as `survey.sgy` for other programs to be timed on (`bench/peers.py --store`).
 
-use crate::error::ProjectError;
+use project::error::ProjectError;
 use serde::Serialize;
 use std::fmt;
 use std::fs;

@@ -3,11 +3,6 @@
 use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
 use super::report::Report;
 use super::request::{Request, Usage};
-use crate::candidates::Candidates;
-use crate::command::{
-    AcceptFault, Climb, Command, FillHorizon, Move, MovePick, PickFault, PickNode, ReplayPicks, Unfit,
-};
-use crate::project::Project;
 use anyhow::bail;
 use interp::assembly::Operation;
 use interp::evaluate::{
@@ -15,6 +10,11 @@ use interp::evaluate::{
 };
 use interp::faults::ProposeSettings;
 use interp::holes::FillSettings;
+use project::Project;
+use project::command::{
+    AcceptFault, Climb, Command, FillHorizon, Move, MovePick, PickFault, PickNode, ReplayPicks, Unfit,
+};
+use project::interpretation::candidates::Candidates;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;

@@ -2,8 +2,8 @@
 
 use super::info_interpretation;
 use super::report::Report;
-use crate::error::Noun;
-use crate::project::Project;
+use project::Project;
+use project::error::Noun;
 use serde_json::json;
 use std::path::Path;
 use survey::formats::ImportOptions;

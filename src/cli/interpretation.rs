@@ -6,12 +6,12 @@ use super::args::{
 use super::assembly;
 use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
-use crate::command::{
+use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
     RemovePick, RenameHorizon, SetContact, SetHorizonColour, SetTruncation,
 };
-use crate::memory;
-use crate::project::Polarity;
+use project::document::Polarity;
+use project::memory_budget;
 use survey::Contact;
 use survey::attribute::{DipSettings, SemblanceSettings};
 use survey::formats::{
@@ -41,7 +41,8 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
 /// Bytes of `2G` and the like.
 pub(super) fn bytes(option: &str, typed: Option<&str>) -> Result<Option<u64>, Usage> {
     let parsed = |text| {
-        memory::parse_bytes(text).ok_or_else(|| format!("{option} {text}: expected bytes such as 2G, 800M or 64K"))
+        memory_budget::parse_bytes(text)
+            .ok_or_else(|| format!("{option} {text}: expected bytes such as 2G, 800M or 64K"))
     };
     typed.map(parsed).transpose()
 }

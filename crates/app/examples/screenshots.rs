@@ -8,18 +8,18 @@
 //! made.
 
 use anyhow::{Context as _, bail};
+use app::Window;
+use app::raster::Raster;
+use app::state::picking::voxel_of;
+use app::state::{
+    Action, Appearance, Choice, Compare, Dialogue, ExportForm, How, Interpreted, Layout, Look, Notice, Panel,
+    PickingStep, Place, Target,
+};
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, TexturesDelta, vec2};
 use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, TestRenderer};
 use glam::DVec3;
 use image::{Rgba, RgbaImage};
-use petroglyph::app::Window;
-use petroglyph::app::raster::Raster;
-use petroglyph::app::state::picking::voxel_of;
-use petroglyph::app::state::{
-    Action, Appearance, Choice, Compare, Dialogue, ExportForm, How, Interpreted, Layout, Look, Notice, Panel,
-    PickingStep, Place, Target,
-};
 use render::FaceData;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -245,7 +245,7 @@ impl Tour {
             return;
         };
         let colour = ttf::Colour::new(0xf2, 0xc1, 0x2e);
-        petroglyph::app::state::through::show_horizon(&mut scene, name, colour, true);
+        app::state::through::show_horizon(&mut scene, name, colour, true);
         scene.media.horizons.iter_mut().for_each(|horizon| horizon.emission = 0.5);
         self.act(Action::Show(Box::new(scene)));
     }

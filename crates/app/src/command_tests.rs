@@ -2,13 +2,13 @@
 
 use super::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
 use super::tests::{Driven, click, document, open, state, wait};
-use crate::command::{Command, PickFault};
-use crate::project::Project;
-use crate::proposals::Proposals;
 use eframe::egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
 use interp::faults::Proposal;
+use project::Project;
+use project::command::{Command, PickFault};
+use project::interpretation::proposals::Proposals;
 use survey::{Contact, Progress, TriangleMesh};
 
 pub(super) fn act(harness: &mut Driven, action: Action) {

@@ -3,7 +3,7 @@
 //! The file `window.lock` in the project says whose it is; what counts is the lock on it, since a number outlives its process. A project that cannot be
 //! written to is held by nobody.
 
-use crate::project::storage::open_own;
+use project::folder::open_own;
 use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::Path;

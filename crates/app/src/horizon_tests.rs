@@ -4,12 +4,12 @@ use super::command_tests::{applied, click_last};
 use super::picking_tests::{act, interpreting, on_a_trough, picking};
 use super::state::{Action, How, PickingStep};
 use super::tests::{Driven, click, document, open, state, wait};
-use crate::command::{AddHorizon, Age, Command};
-use crate::project::document::{HorizonEntry, PickEntry};
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use glam::DVec3;
 use interp::ExtractSettings;
+use project::command::{AddHorizon, Age, Command};
+use project::document::{HorizonEntry, PickEntry};
 use survey::Contact;
 use survey::formats::ImportOptions;
 

@@ -8,8 +8,8 @@
 //!   [`work::Event`]s.
 //! - [`views`]: a file for each panel. A panel draws the state and answers with actions; it changes nothing itself.
 //!
-//! What changes a project goes through [`crate::Command`] and the project's history, as on the command line; pictures come from the
-//! same [`crate::picture::Painter`] as `petroglyph render`, so that window and file show the same.
+//! What changes a project goes through [`project::Command`] and the project's history, as on the command line; pictures come from the
+//! same [`project::picture::Painter`] as `petroglyph render`, so that window and file show the same.
 //!
 //! Deliberately absent: no state of a project lives here that is not on disk, and no drawing of rock.
 
@@ -17,6 +17,7 @@
 mod command_tests;
 pub mod error;
 pub mod fields;
+mod hint;
 mod hold;
 #[cfg(test)]
 mod horizon_tests;

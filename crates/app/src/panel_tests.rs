@@ -5,10 +5,10 @@ use super::state::{
     Action, Appearance, Choice, Dialogue, ExportForm, Interpreted, Layout, Panel, PickingStep, Target, Tool,
 };
 use super::tests::{Driven, click, document, driven, open, project, state, survey, wait};
-use crate::command::{Command, SetLayer, SetScalar};
 use eframe::egui::Key;
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
+use project::command::{Command, SetLayer, SetScalar};
 use render::Projection;
 use std::collections::HashSet;
 use std::path::Path;

@@ -2,13 +2,13 @@
 
 use super::state::{Action, How, Layout, Panel, PickingStep, Tool};
 use super::tests::{Driven, click, document, driven, project, state, wait};
-use crate::command::{Climb, Command, PickNode};
-use crate::project::Project;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
 use interp::ExtractSettings;
 use interp::assembly::Operation;
+use project::Project;
+use project::command::{Climb, Command, PickNode};
 use std::path::Path;
 use survey::Progress;
 
@@ -21,7 +21,7 @@ pub(super) fn interpreting(folder: &Path) -> Driven {
     let mut settings = ExtractSettings::default();
     settings.forest.min_leaf_triangles = LEAF;
     let quiet = Progress::silent();
-    crate::extraction::extract(&Project::open(&root).unwrap(), None, &settings, &quiet).unwrap();
+    project::interpretation::extraction::extract(&Project::open(&root).unwrap(), None, &settings, &quiet).unwrap();
     let mut harness = driven(folder, Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
     click(&mut harness, "Interpret");
@@ -79,7 +79,7 @@ fn candidates_are_extracted_from_the_panel() {
     }
     click(&mut harness, "Extract");
     wait(&mut harness, "the surfaces are counted", |harness| harness.query_by_label_contains("surfaces,").is_some());
-    assert!(crate::extraction::candidates_path(&root).exists());
+    assert!(project::interpretation::extraction::candidates_path(&root).exists());
     harness.get_by_label("Extract again");
 }
 
@@ -117,7 +117,7 @@ fn a_click_on_a_section_selects_climbs_and_becomes_a_horizon_as_the_command_make
     settings.forest.min_leaf_triangles = LEAF;
     let quiet = Progress::silent();
     let mut by_command = Project::open(&root).unwrap();
-    crate::extraction::extract(&by_command, None, &settings, &quiet).unwrap();
+    project::interpretation::extraction::extract(&by_command, None, &settings, &quiet).unwrap();
     let command = PickNode {
         at: pick.at,
         horizon: "Horizon 1".into(),
@@ -139,7 +139,8 @@ fn a_click_where_nothing_is_near_says_so() {
     let root = project(folder.path());
     let distance = interp::DistanceSettings { max_distance: 1.0 };
     let settings = ExtractSettings { distance, ..ExtractSettings::default() };
-    crate::extraction::extract(&Project::open(&root).unwrap(), None, &settings, &Progress::silent()).unwrap();
+    project::interpretation::extraction::extract(&Project::open(&root).unwrap(), None, &settings, &Progress::silent())
+        .unwrap();
     let mut harness = driven(folder.path(), Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
     click(&mut harness, "Interpret");

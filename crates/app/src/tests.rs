@@ -2,11 +2,11 @@
 
 use super::state::{Compare, Dialogue, Interpreted, Layout, State, Target};
 use super::window::Window;
-use crate::command::{AddHorizon, Age, Command};
-use crate::project::Project;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use project::Project;
+use project::command::{AddHorizon, Age, Command};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use survey::formats::ImportOptions;
@@ -82,7 +82,7 @@ fn horizon(folder: &Path, name: &str, z: f32) -> PathBuf {
 pub(crate) fn project(folder: &Path) -> PathBuf {
     let root = folder.join("north.petro");
     let mut new = Project::create(&root, None).unwrap();
-    let import = crate::command::ImportVolume {
+    let import = project::command::ImportVolume {
         path: survey(folder),
         name: None,
         polarity: Default::default(),
@@ -114,7 +114,7 @@ pub(super) fn open(folder: &Path) -> Driven {
     harness
 }
 
-pub(super) fn document(harness: &Driven) -> crate::project::Document {
+pub(super) fn document(harness: &Driven) -> project::document::Document {
     Project::open(&state(harness).session.as_ref().unwrap().root).unwrap().document().clone()
 }
 

@@ -1,6 +1,6 @@
 //! What can go wrong with a project, with the facts as fields and a hint for what to do next.
 
-use crate::project::placement::PlacementError;
+use crate::placement::PlacementError;
 use std::io;
 use std::path::{Path, PathBuf};
 use survey::Remedy;
@@ -220,6 +220,12 @@ pub enum ProjectError {
     /// No picture could be made.
     #[error(transparent)]
     Render(#[from] render::RenderError),
+    /// A synthetic survey could not be made.
+    #[error(transparent)]
+    Synth(#[from] survey::synth::SynthError),
+    /// Files of a synthetic survey could not be written or read.
+    #[error(transparent)]
+    SynthFile(#[from] survey::synth::SynthFileError),
     /// Horizon candidates could not be extracted or read.
     #[error(transparent)]
     Interp(interp::Error),
@@ -410,166 +416,28 @@ impl ProjectError {
         }
     }
 
-    /// What to do next, where that can be said in general.
-    pub fn hint(&self) -> Option<Hint> {
-        let alike = |words| Hint::Words { command_line: words, window: words };
-        let each = |command_line, window| Hint::Words { command_line, window };
-        Some(match self {
-            Self::NotFound { .. } => each(
-                "check the path, or make a project with `petroglyph import SURVEY.sgy PROJECT` or `petroglyph create`",
-                "check the path, or begin a new project from SEG-Y",
-            ),
-            Self::NotAProject { .. } => alike("give the folder that holds project.toml, usually NAME.petro"),
-            Self::Exists { .. } => alike("choose another name, or move the old project away first"),
-            Self::Newer { .. } => alike("update Petroglyph, or ask for the project to be saved by the older version"),
-            Self::Malformed { .. } => alike("undo the last edit by hand, or copy the last good state from history/"),
-            Self::Locked { .. } => {
-                alike("wait until the other command has finished, then try again; nothing was changed")
-            }
-            Self::Link { .. } => alike(
-                "if you trust where the project comes from, put a copy of the file or folder in the link's place; nothing was changed",
-            ),
-            Self::ReadOnly { .. } => alike("copy the project to a folder you may write to; nothing was changed"),
-            Self::DiskFull { .. } => each(
-                "free some space (derived/ may be deleted, `petroglyph prune` forgets undone data), then try again; nothing was changed",
-                "free some space (the project's folder derived may be deleted), then try again; nothing was changed",
-            ),
-            Self::Duplicate { .. } => each(
-                "choose another --name, or rename or remove the present one first",
-                "choose another name, or rename or remove the present one first",
-            ),
-            Self::Unknown { .. } => each(
-                "check the spelling; names are listed by `petroglyph info PROJECT`",
-                "check the spelling, and whether it was renamed or removed meanwhile",
-            ),
-            Self::PickOutside { .. } => each(
-                "give INLINE,CROSSLINE,Z as line numbers and in the project's vertical unit",
-                "click inside the survey",
-            ),
-            Self::NoCandidate { .. } => each(
-                "pick there, or extract with another --extrema or a larger --max-distance",
-                "click there, or extract again and follow other extrema or with a larger reach (How)",
-            ),
-            Self::NotAssembled { .. } => each(
-                "choose another --horizon; picks make horizons of their own",
-                "choose another horizon, or begin one (New horizon): picks make horizons of their own",
-            ),
-            Self::NothingLeft { .. } => {
-                each("`petroglyph horizon remove` takes a horizon away", "Remove takes a horizon away")
-            }
-            Self::AlreadyPicked { .. } => {
-                each("pick elsewhere, or climb higher with --up", "pick elsewhere, or climb higher first")
-            }
-            Self::NotPicked { .. } => each(
-                "`petroglyph horizon show` lists the picks and their places",
-                "the picks and their places are listed under the horizon's name",
-            ),
-            Self::SeveralHorizons { .. } => alike("make the picks of each horizon in a step of their own"),
-            Self::UnknownPick { .. } => each(
-                "`petroglyph horizon show PROJECT NAME` lists the picks with their numbers",
-                "the picks with their numbers are listed under the horizon's name",
-            ),
-            Self::AtLeaf { .. } => each(
-                "take the leaf out with `petroglyph pick --remove`, or extract with smaller leaves",
-                "take the leaf out with Alt and a click, or extract again with smaller leaves (How)",
-            ),
-            Self::OutdatedPicks { .. } => each(
-                "`petroglyph horizon replay` makes them again, or extract with the former settings",
-                "choose the horizon and Pick again, or extract with the former settings",
-            ),
-            Self::UnfitPicks { .. } => each(
-                "`petroglyph horizon replay --drop-unfit` takes them out; then pick anew",
-                "Pick again what fits leaves them out; where none fits, pick anew in another horizon",
-            ),
-            Self::ShortStick { .. } => {
-                each("write a stick as --stick IL,XL,Z IL,XL,Z …", "end a stick after its second place or later")
-            }
-            Self::FlatSticks { .. } => alike("draw sticks beside one another, along the fault's dip"),
-            Self::NotDrawn { .. } => each("choose another --name", "choose another fault"),
-            Self::NoEvidence => alike("assemble or import horizons first"),
-            Self::NoProposals | Self::OutdatedProposals => {
-                each("run `petroglyph fault propose PROJECT`", "look for faults again")
-            }
-            Self::UnknownProposal { .. } => {
-                each("`petroglyph fault propose PROJECT` lists them", "look for faults again")
-            }
-            Self::NoGeometry => {
-                each("import a volume, or create the project with --bounds and --size", "add a volume first")
-            }
-            Self::BadName { .. } => alike("use letters, digits, blanks, - and _"),
-            Self::NothingToUndo | Self::NothingToRedo => each(
-                "`petroglyph info PROJECT` shows the history",
-                "another window or command may have changed the project's history",
-            ),
-            Self::Cancelled(_) => alike("nothing was changed"),
-            Self::NotExtracted => each("run `petroglyph extract PROJECT` first", "extract candidates first"),
-            Self::NoVolume => each("import one with `petroglyph import SURVEY.sgy PROJECT`", "add a volume first"),
-            Self::OtherLattice { .. } => {
-                alike("extract from a volume on the project's lattice, or import this one into a project of its own")
-            }
-            Self::Geometry(_) => alike("check the header bytes and bounds the geometry is made from"),
-            Self::Style(_) => each(
-                "`petroglyph patterns OUT.png` draws every pattern with its name",
-                "choose another pattern for the layer, or go back to its default style",
-            ),
-            Self::Scene(_) => each(
-                "`petroglyph scene show` prints a scene; `petroglyph render --help` lists what can be set",
-                "show the whole survey without cut-outs, or another scene",
-            ),
-            Self::Placement { .. } => each(
-                "import it into a project of its own, or check its header bytes with `petroglyph info FILE`",
-                "begin a project of its own with it, or check its header bytes",
-            ),
-            Self::SeveralInFile { .. } => each("choose one with --select NAME", "choose one of those listed"),
-            Self::Crossing { .. } => each(
-                "check unit, sign and picks there, put it elsewhere with --above or --below, or say --contact erosional, onlap or intrusive",
-                "check unit, sign and picks there, or choose another contact: erosional, onlap or intrusive",
-            ),
-            Self::CircularTruncation { .. } => alike("take one of these truncations away"),
-            Self::Segy(error) => Hint::State(error.remedy()?),
-            Self::Format(error) => Hint::State(error.remedy()?),
-            Self::Well(error) => Hint::State(error.remedy()?),
-            // These say what to do in their own words.
-            Self::Io { .. }
-            | Self::Store(_)
-            | Self::Assembly(_)
-            | Self::Attribute(_)
-            | Self::Model(_)
-            | Self::Param(_)
-            | Self::Interp(_)
-            | Self::Render(_) => return None,
-        })
+    /// What can be stated about a file so that this does not happen again, where that is known.
+    pub fn remedy(&self) -> Option<Remedy> {
+        match self {
+            Self::Segy(error) => error.remedy(),
+            Self::Format(error) => error.remedy(),
+            Self::Well(error) => error.remedy(),
+            _ => None,
+        }
     }
 }
 
-/// What to do next about an error.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Hint {
-    /// Said where the error is shown, in the words of that place.
-    Words {
-        /// On the command line.
-        command_line: &'static str,
-        /// In the window.
-        window: &'static str,
-    },
-    /// Something is to be stated about a file; option or field is named by whoever shows it.
-    State(Remedy),
-}
-
-impl Hint {
-    /// What helps against an error, wherever in its chain of causes that is known.
-    pub fn of(error: &(dyn std::error::Error + 'static)) -> Option<Self> {
-        std::iter::successors(Some(error), |error| error.source()).find_map(|error| {
-            let stated = |remedy: Option<Remedy>| remedy.map(Self::State);
-            if let Some(error) = error.downcast_ref::<ProjectError>() {
-                error.hint()
-            } else if let Some(error) = error.downcast_ref::<SegyError>() {
-                stated(error.remedy())
-            } else if let Some(error) = error.downcast_ref::<FormatError>() {
-                stated(error.remedy())
-            } else {
-                stated(error.downcast_ref::<WellError>()?.remedy())
-            }
-        })
-    }
+/// What can be stated about a file against an error, wherever in its chain of causes that is known.
+pub fn remedy_of(error: &(dyn std::error::Error + 'static)) -> Option<Remedy> {
+    std::iter::successors(Some(error), |error| error.source()).find_map(|error| {
+        if let Some(error) = error.downcast_ref::<ProjectError>() {
+            error.remedy()
+        } else if let Some(error) = error.downcast_ref::<SegyError>() {
+            error.remedy()
+        } else if let Some(error) = error.downcast_ref::<FormatError>() {
+            error.remedy()
+        } else {
+            error.downcast_ref::<WellError>()?.remedy()
+        }
+    })
 }

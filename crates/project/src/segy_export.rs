@@ -1,7 +1,7 @@
 //! A volume of a project as a SEG-Y file: streamed, a shard's worth of inlines at a time, so that its size does not matter.
 
+use crate::Project;
 use crate::error::{Noun, ProjectError};
-use crate::project::Project;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::ops::Range;

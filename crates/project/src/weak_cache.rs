@@ -3,9 +3,9 @@
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 /// A value and what it was made of.
-pub(crate) struct Held<K, V>(Mutex<Option<(K, Weak<V>)>>);
+pub(crate) struct WeakCache<K, V>(Mutex<Option<(K, Weak<V>)>>);
 
-impl<K: PartialEq, V> Held<K, V> {
+impl<K: PartialEq, V> WeakCache<K, V> {
     /// Nothing yet.
     pub(crate) const fn nothing() -> Self {
         Self(Mutex::new(None))
@@ -30,7 +30,7 @@ mod tests {
 
     #[test]
     fn a_value_is_made_again_when_it_is_another_or_nobody_holds_it() {
-        let held = Held::nothing();
+        let held = WeakCache::nothing();
         let made = std::cell::Cell::new(0);
         let get = |key: &'static str| {
             let make = || {

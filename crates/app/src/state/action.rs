@@ -6,7 +6,7 @@ use super::notice::Notice;
 use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
 use super::view::{Compare, Layout, Panel, StandardView};
-use crate::command::Command;
+use project::command::Command;
 use render::Scene;
 use std::path::PathBuf;
 
@@ -46,7 +46,7 @@ pub enum Action {
     /// Read a survey into the open project, or into a new one at this place.
     Import {
         /// What to read, and how.
-        command: Box<crate::command::ImportVolume>,
+        command: Box<project::command::ImportVolume>,
         /// Where a new project goes; absent: into the open one.
         into: Option<PathBuf>,
     },
@@ -106,7 +106,7 @@ pub enum Task {
     /// Make a project of a survey, then open it.
     Create {
         /// What to read, and how.
-        command: Box<crate::command::ImportVolume>,
+        command: Box<project::command::ImportVolume>,
         /// The project's folder.
         root: PathBuf,
     },

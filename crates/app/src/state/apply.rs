@@ -1,7 +1,7 @@
 //! What each action does to the state.
 
 use super::{Action, Compare, Dialogue, Notice, Panel, PickingTask, Place, Session, State, Task, View, camera};
-use crate::scene;
+use project::picture::scene;
 
 impl State {
     /// Takes an action in; what others are to do comes out.
@@ -68,7 +68,7 @@ impl State {
                 self.quieten(Place::Dialogue);
                 return vec![match into {
                     Some(root) => Task::Create { command, root },
-                    None => Task::Apply(Box::new(crate::Command::Import(*command))),
+                    None => Task::Apply(Box::new(project::Command::Import(*command))),
                 }];
             }
             Action::Export(form) => {

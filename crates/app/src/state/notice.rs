@@ -1,7 +1,7 @@
 //! What went wrong, kept where it happened until the user has seen it.
 
-use crate::app::fields;
-use crate::error::Hint;
+use crate::{fields, hint};
+use project::error::remedy_of;
 
 /// Where in the window something belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -41,10 +41,7 @@ impl Notice {
     /// Something failed; causes are told once each.
     pub fn failure(place: Place, error: &(dyn std::error::Error + 'static)) -> Self {
         let mut text = error.to_string();
-        let hint = Hint::of(error).map(|hint| match hint {
-            Hint::Words { window, .. } => window.to_owned(),
-            Hint::State(remedy) => fields::advice(&remedy),
-        });
+        let hint = hint::of(error).or_else(|| remedy_of(error).map(|remedy| fields::advice(&remedy)));
         let mut cause = error.source();
         while let Some(inner) = cause {
             let said = inner.to_string();

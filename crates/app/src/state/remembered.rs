@@ -113,7 +113,7 @@ impl Remembered {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::project::Document;
+    use project::document::Document;
 
     #[test]
     fn the_newest_is_first_and_known_once() {

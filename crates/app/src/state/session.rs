@@ -1,7 +1,8 @@
 //! The open project as the window knows it: a copy of its document, its history, and how it is looked at.
 
 use super::view::{Panel, View};
-use crate::project::{Document, HistoryLine};
+use project::HistoryLine;
+use project::document::Document;
 use std::path::PathBuf;
 
 /// A project as it was read.

@@ -2,7 +2,7 @@
 
 use super::picking::Look;
 use super::{Panel, Session};
-use crate::scene::{SeeThrough, Technique};
+use project::picture::scene::{SeeThrough, Technique};
 use render::{FaceData, Media, PickedHorizon, Scene, Scope};
 use ttf::Colour;
 

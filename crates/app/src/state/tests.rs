@@ -1,7 +1,8 @@
 //! States without a window.
 
 use super::*;
-use crate::project::{Document, HistoryLine};
+use project::HistoryLine;
+use project::document::Document;
 use survey::{SurveyGeometry, VerticalUnit};
 
 fn snapshot(root: &str) -> Box<Snapshot> {

@@ -1,9 +1,9 @@
 //! What a view sees through, as the window changes it: one volume in the cut-outs or in the whole block, and horizons in it with light of
 //! their own (P-illus 5.1, P-horiz 5).
 
-use crate::error::ProjectError;
-use crate::project::Document;
-use crate::scene::{SeeThrough, Technique};
+use project::document::Document;
+use project::error::ProjectError;
+use project::picture::scene::{SeeThrough, Technique};
 use render::media::Interleaved;
 use render::{Faces, Ground, Medium, Occlusion, Phong, PickedHorizon, Scene, Scope, Shading};
 use ttf::{Colour, RgbaFunction, RgbaStop};

@@ -1,8 +1,8 @@
 //! How a project is looked at: nothing of this belongs to the project until it is kept as a named scene.
 
 use super::picking::Picking;
-use crate::project::Document;
-use crate::scene;
+use project::document::Document;
+use project::picture::scene;
 use render::{Scene, VoxelBox};
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;

@@ -1,6 +1,6 @@
 //! The line at the top: the project, undo and redo, what fills the middle, raw against illustrated.
 
-use crate::app::state::{
+use crate::state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, State,
 };
 use eframe::egui::{Align, Button, Label, Layout, RichText, Slider, Ui};
@@ -154,7 +154,7 @@ fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
 
 #[cfg(test)]
 mod tests {
-    use crate::app::tests::{driven, project, state, wait};
+    use crate::tests::{driven, project, state, wait};
     use eframe::egui::vec2;
     use egui_kittest::kittest::Queryable;
 

@@ -1,7 +1,7 @@
 //! Horizon candidates: extracting them, and how.
 
-use crate::app::state::{Action, Session};
-use crate::app::work::{Interpreted, RunningLine};
+use crate::state::{Action, Session};
+use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
 

@@ -3,9 +3,9 @@
 //! Ours, not the desktop's, so that it is the same everywhere, needs no desktop service, and can be driven by keys and tests.
 
 use super::notices;
-use crate::app::state::{Action, Choice, Dialogue, Interpreted, Place, State, Target};
-use crate::app::theme;
-use crate::app::work::folder::Folder;
+use crate::state::{Action, Choice, Dialogue, Interpreted, Place, State, Target};
+use crate::theme;
+use crate::work::folder::Folder;
 use eframe::egui::{Context, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
 
@@ -128,8 +128,8 @@ impl Chooser {
             }
             Choice::Texture => {
                 actions.push(Action::Answered);
-                let command = crate::command::AddTexture { path, width_mm: None };
-                actions.push(Action::Apply(Box::new(crate::Command::AddTexture(command))));
+                let command = project::command::AddTexture { path, width_mm: None };
+                actions.push(Action::Apply(Box::new(project::Command::AddTexture(command))));
                 return;
             }
             Choice::NewSurvey => Dialogue::Survey { path, target: Target::NewProject },

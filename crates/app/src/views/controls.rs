@@ -1,10 +1,10 @@
 //! The panel on the right: the camera, the box, the display, and named scenes.
 
 use super::notices;
-use crate::app::state::{Action, Panel, Place, Session, StandardView, State};
-use crate::command::{AddScene, Command, RemoveScene};
+use crate::state::{Action, Panel, Place, Session, StandardView, State};
 use eframe::egui::{Button, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
+use project::command::{AddScene, Command, RemoveScene};
 use render::{Corner, Ground, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 

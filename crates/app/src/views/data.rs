@@ -2,12 +2,12 @@
 
 use super::notices;
 use super::sections::entry_colour;
-use crate::app::state::{Action, Choice, Dialogue, Place, Session, State};
-use crate::command::{
+use crate::state::{Action, Choice, Dialogue, Place, Session, State};
+use eframe::egui::{Align, Button, DragValue, Key, Layout, ScrollArea, Sense, TextEdit, Ui, vec2};
+use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity,
 };
-use crate::style;
-use eframe::egui::{Align, Button, DragValue, Key, Layout, ScrollArea, Sense, TextEdit, Ui, vec2};
+use project::styles;
 use survey::VerticalUnit;
 use ttf::ColourMap;
 
@@ -122,7 +122,7 @@ fn add(ui: &mut Ui, name: &str, choice: Choice, can: bool, actions: &mut Vec<Act
 
 fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     let document = &session.document;
-    let raw = style::of_project(document).raw;
+    let raw = styles::transfer_functions(document).raw;
     for entry in &document.volumes {
         ui.horizontal(|ui| {
             let is_raw = raw.as_ref().is_some_and(|raw| raw.volume == entry.name);
@@ -130,7 +130,7 @@ fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             if radio
                 .on_hover_text(format!("Show as raw data; {} polarity; {}", entry.polarity, entry.source.reading))
                 .clicked()
-                && let Ok(raw) = style::raw_colour(document, Some(&entry.name), ColourMap::Seismics, None)
+                && let Ok(raw) = styles::raw_colour(document, Some(&entry.name), ColourMap::Seismics, None)
             {
                 actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
             }

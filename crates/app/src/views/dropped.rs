@@ -1,8 +1,8 @@
 //! Files dropped on the window: a project is opened, a volume read, a tile added; of anything else it is asked what it holds.
 
-use crate::app::state::{Action, Choice, Dialogue, Interpreted, Notice, Place, State, Target};
-use crate::app::theme;
-use crate::app::views::chooser;
+use crate::state::{Action, Choice, Dialogue, Interpreted, Notice, Place, State, Target};
+use crate::theme;
+use crate::views::chooser;
 use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Modal, Order};
 use std::path::{Path, PathBuf};
 
@@ -40,8 +40,8 @@ fn action(path: &Path, state: &State) -> Action {
     }
     match document {
         Some(_) if chooser::fits(Choice::Texture, &name) => {
-            let command = crate::command::AddTexture { path: path.to_owned(), width_mm: None };
-            Action::Apply(Box::new(crate::Command::AddTexture(command)))
+            let command = project::command::AddTexture { path: path.to_owned(), width_mm: None };
+            Action::Apply(Box::new(project::Command::AddTexture(command)))
         }
         Some(document) if document.geometry.is_some() && path.is_file() => {
             ask(Dialogue::Dropped { path: path.to_owned() })
@@ -101,7 +101,7 @@ pub fn dialogue(ctx: &Context, path: &Path, actions: &mut Vec<Action>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::app::tests::{Driven, click, document, driven, open, project, state, survey, wait};
+    use crate::tests::{Driven, click, document, driven, open, project, state, survey, wait};
     use egui_kittest::kittest::Queryable;
     use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! How large, how fine, and where to.
 
 use super::notices;
-use crate::app::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
-use crate::app::theme;
+use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
+use crate::theme;
 use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
 
 /// Largest picture, pixels a side.

@@ -1,11 +1,11 @@
 //! Faults: drawn by sticks, looked for, accepted.
 
 use super::picking::go;
-use crate::app::state::{Action, PickingStep, Session, Tool};
-use crate::app::work::{Interpreted, RunningLine};
-use crate::command::{AcceptFault, Command};
+use crate::state::{Action, PickingStep, Session, Tool};
+use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Button, TextEdit, Ui};
 use interp::faults::Proposal;
+use project::command::{AcceptFault, Command};
 use std::collections::HashMap;
 use survey::SurveyGeometry;
 

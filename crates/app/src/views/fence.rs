@@ -7,10 +7,10 @@ use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use super::sections::{draw_line, round_step};
 use super::texture;
-use crate::app::state::{Action, Panel, Session};
-use crate::app::theme;
-use crate::app::work::fence::{FencePicture, FenceWish, place, stations};
-use crate::app::work::{Rocks, Slices};
+use crate::state::{Action, Panel, Session};
+use crate::theme;
+use crate::work::fence::{FencePicture, FenceWish, place, stations};
+use crate::work::{Rocks, Slices};
 use eframe::egui::{
     Align2, Button, Color32, Context, FontId, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo,
     pos2, vec2,

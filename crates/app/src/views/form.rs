@@ -1,6 +1,6 @@
 //! Rows of the dialogues' forms: a name and what is stated under it, or left to the file.
 
-use crate::app::fields::field;
+use crate::fields::field;
 use eframe::egui::{ComboBox, DragValue, TextEdit, Ui};
 use survey::Setting;
 

@@ -1,19 +1,19 @@
 //! How a survey would be read: geometry, evidence, a map of the traces, a section; bytes can be changed and show their effect at once.
 
 use super::{form, notices, texture};
-use crate::app::fields;
-use crate::app::state::{Action, Place, State, Target};
-use crate::app::theme;
-use crate::app::work::Work;
-use crate::app::work::scan::{self, Reading, SurveyScan};
-use crate::command::ImportVolume;
-use crate::project::Polarity;
+use crate::fields;
+use crate::state::{Action, Place, State, Target};
+use crate::theme;
+use crate::work::Work;
+use crate::work::scan::{self, Reading, SurveyScan};
 use eframe::egui::{
     Align, Button, CollapsingHeader, Color32, ComboBox, Context, DragValue, Grid, Id, Layout, Mesh, Modal, Pos2, Rect,
     Role, ScrollArea, Sense, Shape, Spinner, TextEdit, TextureHandle, TextureOptions, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::DVec2;
 use image::RgbaImage;
+use project::command::ImportVolume;
+use project::document::Polarity;
 use std::path::{Path, PathBuf};
 use survey::segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
 use survey::{Setting, SurveyGeometry};

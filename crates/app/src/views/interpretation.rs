@@ -2,14 +2,14 @@
 
 use super::layers::contact_name;
 use super::{form, notices};
-use crate::app::state::{Action, Interpreted, Place, Session, State};
-use crate::app::theme;
-use crate::app::work::Work;
-use crate::app::work::scan::{self, InterpretationScan, Reading};
-use crate::command::{AddFault, AddHorizon, Age, Command};
+use crate::state::{Action, Interpreted, Place, Session, State};
+use crate::theme;
+use crate::work::Work;
+use crate::work::scan::{self, InterpretationScan, Reading};
 use eframe::egui::{
     Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui,
 };
+use project::command::{AddFault, AddHorizon, Age, Command};
 use std::path::{Path, PathBuf};
 use survey::formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use survey::{Contact, Setting};

@@ -1,7 +1,7 @@
 //! What the pointer does on sections and on the block: a click picks, a line drawn around erases.
 
-use crate::app::state::{Action, How, Panel, PickingStep, Session, Tool};
-use crate::app::theme;
+use crate::state::{Action, How, Panel, PickingStep, Session, Tool};
+use crate::theme;
 use eframe::egui::{Color32, Key, Painter, Pos2, Response, Shape, Stroke, Ui};
 use glam::DVec3;
 

@@ -1,6 +1,6 @@
 //! Messages, shown where they belong.
 
-use crate::app::state::{Action, Place, State};
+use crate::state::{Action, Place, State};
 use eframe::egui::{Frame, Margin, RichText, Stroke, Ui};
 
 /// Shows the messages of one place, each with what to do next and a button to put it away.

@@ -7,9 +7,9 @@
 use super::sections::horizon_colour;
 use super::surfaces::{self, Cells};
 use super::traces::{self, Line};
-use crate::app::state::picking::voxel_of;
-use crate::app::state::{Panel, Session, SliceKind, camera};
-use crate::app::work::{Interpreted, ShownHorizon, ShownPick};
+use crate::state::picking::voxel_of;
+use crate::state::{Panel, Session, SliceKind, camera};
+use crate::work::{Interpreted, ShownHorizon, ShownPick};
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, vec2};
 use glam::{DVec2, DVec3};
 use interp::holes::Hole;

@@ -1,6 +1,6 @@
 //! What fills the middle of the window, and a printed page: which views, and where.
 
-use crate::app::state::{Layout, SliceKind};
+use crate::state::{Layout, SliceKind};
 use eframe::egui::Rect;
 
 /// A view.

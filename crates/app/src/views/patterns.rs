@@ -2,11 +2,11 @@
 
 use super::notices;
 use super::tiles::Tiles;
-use crate::app::state::{Action, Choice, Dialogue, Place, Session, State};
-use crate::app::theme;
-use crate::app::work::Swatches;
-use crate::command::{Command, SetLayer};
+use crate::state::{Action, Choice, Dialogue, Place, Session, State};
+use crate::theme;
+use crate::work::Swatches;
 use eframe::egui::{Context, Id, Modal, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, WidgetInfo, vec2};
+use project::command::{Command, SetLayer};
 use ttf::{LayerStyle, Pattern};
 
 /// Size of a swatch, points.

@@ -1,8 +1,8 @@
 //! What is under the cursor: the first rock on the ray, and what is known of it.
 
-use crate::app::state::camera;
-use crate::pipeline::Loaded;
+use crate::state::camera;
 use glam::{DVec2, DVec3, Vec3};
+use project::picture::load::Loaded;
 use render::visible::{Ray, Solid};
 use render::{NamedVolume, Scene};
 
@@ -62,7 +62,7 @@ pub fn at_voxel(loaded: &Loaded, voxel: Vec3, axis: Option<usize>) -> Pointed {
 }
 
 /// The place in words: line numbers, depth with its unit, value, layer.
-pub fn sentence(pointed: &Pointed, document: &crate::project::Document) -> String {
+pub fn sentence(pointed: &Pointed, document: &project::document::Document) -> String {
     let Some(geometry) = &document.geometry else { return String::new() };
     let lines = geometry.lines_from_voxel(pointed.voxel.truncate());
     let z = geometry.vertical.value_at(pointed.voxel.z);

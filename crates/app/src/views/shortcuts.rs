@@ -1,16 +1,16 @@
 //! Every action by keyboard: one table that is both obeyed and shown.
 
 use super::lasso;
-use crate::app::state::faces::{self, Face, Owner};
-use crate::app::state::{
+use crate::state::faces::{self, Face, Owner};
+use crate::state::{
     Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State,
     Tool, camera,
 };
-use crate::app::theme;
-use crate::command::{Command, FillHorizon};
+use crate::theme;
 use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};
 use glam::DVec2;
 use interp::holes::FillSettings;
+use project::command::{Command, FillHorizon};
 use render::{FaceData, Scene};
 
 /// What a key does to an open project.

@@ -1,9 +1,9 @@
 //! The start page: go on, open, begin.
 
 use super::{notices, texture};
-use crate::app::state::{Action, Choice, Dialogue, Place, State};
-use crate::app::theme;
-use crate::app::work::folder::Presence;
+use crate::state::{Action, Choice, Dialogue, Place, State};
+use crate::theme;
+use crate::work::folder::Presence;
 use eframe::egui::{
     Align, Button, Color32, Context, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureHandle,
     TextureOptions, Ui, Vec2, WidgetInfo, pos2,

@@ -1,8 +1,8 @@
 //! The line at the foot: what is under the cursor, and what is under way.
 
 use super::pointed::{self, Pointed};
-use crate::app::state::{Action, Place, State};
-use crate::app::work::RunningLine;
+use crate::state::{Action, Place, State};
+use crate::work::RunningLine;
 use eframe::egui::{Align, Label, Layout, ProgressBar, Ui};
 
 /// Shows the line.

@@ -3,7 +3,7 @@
 //! A sheet is drawn in at most `CELLS` cells along each axis, from the far ones to the near ones. A cell is lighter the more it faces the viewer.
 //! Spaces: voxels; points of the window.
 
-use crate::app::state::camera;
+use crate::state::camera;
 use eframe::egui::{Color32, Mesh, Pos2, Rect, Shape, Ui, vec2};
 use glam::{DVec2, DVec3};
 use interp::reassembly::VoxelSheet;

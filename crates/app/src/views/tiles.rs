@@ -1,7 +1,7 @@
 //! Swatches on the screen: textures made of what the swatch thread has drawn.
 
 use super::texture;
-use crate::app::work::Swatches;
+use crate::work::Swatches;
 use eframe::egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, TextureHandle, TextureOptions, Ui, pos2};
 use std::collections::HashMap;
 use ttf::LayerStyle;

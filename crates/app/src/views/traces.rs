@@ -4,8 +4,8 @@
 //! found cell by cell as everywhere on the two triangles of a cell. A mesh is cut triangle by triangle. Across a hole a line has a bridge, straight from rim to
 //! rim. Space: (s, t) of the section, one a sample.
 
-use crate::app::state::SliceKind;
-use crate::app::work::fence::{place, stations};
+use crate::state::SliceKind;
+use crate::work::fence::{place, stations};
 use glam::{DVec2, DVec3};
 use interp::holes::Hole;
 use interp::reassembly::VoxelSheet;

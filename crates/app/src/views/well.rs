@@ -1,14 +1,14 @@
 //! How a well's files would be read; what was found is shown before the well is added.
 
 use super::{form, notices};
-use crate::app::fields;
-use crate::app::state::{Action, Notice, Place, State};
-use crate::app::theme;
-use crate::app::work::Work;
-use crate::app::work::folder::{Folder, Listing};
-use crate::app::work::scan::Reading;
-use crate::command::{AddWell, Command};
+use crate::fields;
+use crate::state::{Action, Notice, Place, State};
+use crate::theme;
+use crate::work::Work;
+use crate::work::folder::{Folder, Listing};
+use crate::work::scan::Reading;
 use eframe::egui::{Button, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use project::command::{AddWell, Command};
 use std::path::{Path, PathBuf};
 use survey::Setting;
 use survey::formats::ZUnit;

@@ -1,11 +1,11 @@
 //! What the window wishes from the workers, and what it makes of their answers.
 
 use super::Window;
-use crate::app::hold::{Hold, Taken};
-use crate::app::state::{Action, Dialogue, Look, Notice, Panel, Picking, Place, Session};
-use crate::app::work::{Event, Purpose, Seen, Wanted};
-use crate::command::Command;
+use crate::hold::{Hold, Taken};
+use crate::state::{Action, Dialogue, Look, Notice, Panel, Picking, Place, Session};
+use crate::work::{Event, Purpose, Seen, Wanted};
 use eframe::egui::Context;
+use project::command::Command;
 use std::path::Path;
 use ttf::{LayerStyle, RawColour};
 
@@ -83,7 +83,7 @@ impl Window {
                 }
                 Event::Picking { root, step } if self.has_open(&root) => self.act(Action::Picking(step)),
                 Event::Erased { root, picks } if self.has_open(&root) => {
-                    self.act(Action::Apply(Box::new(Command::PickSeveral(crate::command::PickNodes { picks }))));
+                    self.act(Action::Apply(Box::new(Command::PickSeveral(project::command::PickNodes { picks }))));
                 }
                 // Of a project that was closed meanwhile.
                 Event::Picking { .. } | Event::Erased { .. } => {}
@@ -109,7 +109,7 @@ impl Window {
         }
         self.swatches.follow(&session.root, &session.document);
         // Neither named views nor the history change what is drawn from.
-        let mut document = crate::project::Document { scenes: Vec::new(), step: 0, ..session.document.clone() };
+        let mut document = project::document::Document { scenes: Vec::new(), step: 0, ..session.document.clone() };
         self.layers.draft_of(&mut document);
         self.functions.draft_of(&mut document);
         let root = session.root.clone();

@@ -1,7 +1,7 @@
 //! How long frames take, as a table in CSV: a line a frame.
 
-use crate::app::error::WindowError;
-use crate::app::work::RunningLine;
+use crate::error::WindowError;
+use crate::work::RunningLine;
 use std::fs::File;
 use std::io::{LineWriter, Write};
 use std::path::Path;

@@ -1,11 +1,11 @@
 //! The page of an open project: the bar, the panels at the sides, and what fills the middle.
 
 use super::Window;
-use crate::app::state::{Action, Panel as Side, Place, Session};
-use crate::app::views::parts::{Part, parts};
-use crate::app::views::{bar, notices, overlay::Overlay};
-use crate::app::work::map::MapSource;
-use crate::app::work::{Rocks, RunningLine};
+use crate::state::{Action, Panel as Side, Place, Session};
+use crate::views::parts::{Part, parts};
+use crate::views::{bar, notices, overlay::Overlay};
+use crate::work::map::MapSource;
+use crate::work::{Rocks, RunningLine};
 use eframe::egui::{self, CentralPanel, Frame, Panel, Ui};
 
 impl Window {

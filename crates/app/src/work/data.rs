@@ -5,11 +5,12 @@
 use super::running::Running;
 use super::wishes::{Wished, Wishes};
 use super::{Event, Outbox};
-use crate::app::state::{Notice, Place};
-use crate::error::ProjectError;
-use crate::pipeline::{self, Loaded};
-use crate::project::{Document, Project};
-use crate::{derived, library, style};
+use crate::state::{Notice, Place};
+use project::Project;
+use project::document::Document;
+use project::error::ProjectError;
+use project::picture::load::{self, Loaded};
+use project::{derived, styles};
 use render::media::{LayerOpacity, MediumColour, white_ramp};
 use render::{FaceData, Media, Medium, PickedHorizon, Scene};
 use std::path::PathBuf;
@@ -172,7 +173,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     let Purpose::Illustrate(seen) = &wanted.purpose else {
         return load_bare(wanted, kept, progress);
     };
-    let key = derived::parameterization_key(document, &ModelSettings::default(), &pipeline::param_settings(document));
+    let key = derived::parameterization_key(document, &ModelSettings::default(), &load::param_settings(document));
     let volumes = needed_volumes(document);
     let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
     if let Some(kept) = kept.as_mut().filter(|kept| same(&&**kept)) {
@@ -181,7 +182,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
             let scene = seen.scene(wanted.exaggeration);
             let more = {
                 let loaded = kept.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                super::compute(|| pipeline::read_more(&project, &loaded, &scene, progress))?
+                super::compute(|| load::read_more(&project, &loaded, &scene, progress))?
             };
             more.add_to(&mut kept.rocks.write().unwrap_or_else(PoisonError::into_inner));
             kept.seen = seen.clone();
@@ -193,7 +194,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     *kept = None;
     let project = Project::open(&wanted.root)?;
     let scene = seen.scene(wanted.exaggeration);
-    let loaded = super::compute(|| pipeline::load(&project, &scene, progress))?;
+    let loaded = super::compute(|| load::load(&project, &scene, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
     *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: seen.clone(), rocks: rocks.clone() });
     Ok(rocks)
@@ -202,14 +203,14 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
 /// What the interpretation is drawn from: the raw volume, the wells, candidates where they are shown.
 fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
     let document = &wanted.document;
-    let raw = style::of_project(document).raw;
+    let raw = styles::transfer_functions(document).raw;
     let entry = raw.as_ref().and_then(|raw| document.volumes.iter().find(|entry| entry.name == raw.volume));
     let key = format!("bare {:?} {:?}", wanted.purpose, document.wells);
     let volumes: Vec<(String, String)> = entry.iter().map(|entry| (entry.name.clone(), entry.hash.clone())).collect();
     let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
     if let Some(kept) = kept.as_ref().filter(same) {
         let mut loaded = kept.rocks.write().unwrap_or_else(PoisonError::into_inner);
-        (loaded.raw, loaded.version) = (raw, pipeline::new_version());
+        (loaded.raw, loaded.version) = (raw, load::new_version());
         drop(loaded);
         return Ok(kept.rocks.clone());
     }
@@ -220,7 +221,7 @@ fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> R
         _ => FaceData::Rock,
     };
     let scene = Scene { face_data, ..Scene::default() };
-    let loaded = super::compute(|| pipeline::load_bare(&project, &scene, progress))?;
+    let loaded = super::compute(|| load::load_bare(&project, &scene, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
     *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: Seen::default(), rocks: rocks.clone() });
     Ok(rocks)
@@ -228,7 +229,7 @@ fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> R
 
 /// Names and hashes of the volumes that pictures of a project show.
 fn needed_volumes(document: &Document) -> Vec<(String, String)> {
-    let functions = style::of_project(document);
+    let functions = styles::transfer_functions(document);
     let scalars = functions.scalars.iter().map(|function| function.volume.clone());
     let wanted: Vec<String> = scalars.chain(functions.raw.map(|raw| raw.volume)).collect();
     let entries = document.volumes.iter().filter(|entry| wanted.contains(&entry.name));
@@ -238,15 +239,15 @@ fn needed_volumes(document: &Document) -> Vec<(String, String)> {
 /// Compiles the styles of a project state into what is loaded.
 fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
     let document = &wanted.document;
-    let functions = style::of_project(document);
+    let functions = styles::transfer_functions(document);
     let tables = {
         let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
         match &loaded.rock {
             None => None,
             Some(rock) => {
-                let library = library::of_project(&wanted.root, document)?;
+                let library = styles::pattern_library(&wanted.root, document)?;
                 let names = document.stratigraphy().layer_names_bottom_up();
-                let block = pipeline::block_extent(&loaded.geometry, rock, names, wanted.exaggeration);
+                let block = load::block_extent(&loaded.geometry, rock, names, wanted.exaggeration);
                 Some(TtfTables::compile(&functions, &block, &library)?)
             }
         }
@@ -254,6 +255,6 @@ fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
     let mut loaded = rocks.write().unwrap_or_else(PoisonError::into_inner);
     loaded.tables = tables;
     loaded.raw = functions.raw;
-    loaded.version = pipeline::new_version();
+    loaded.version = load::new_version();
     Ok(())
 }

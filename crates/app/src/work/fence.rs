@@ -4,9 +4,9 @@
 
 use super::Rocks;
 use super::slice::{SliceLine, lines_of, raster};
-use crate::pipeline::Loaded;
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
+use project::picture::load::Loaded;
 use render::FaceData;
 use survey::section::SectionPlane;
 

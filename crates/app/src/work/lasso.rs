@@ -3,12 +3,12 @@
 //! On a section only what lies near it counts: what cannot be seen there is not drawn around. On the block everything counts that is behind
 //! the line. Spaces: (s, t) of the section; points of the picture; voxels.
 
-use crate::app::state::picking::place_of;
-use crate::app::state::{Lasso, LassoOn, SliceKind, camera};
-use crate::command::{Climb, PickNode};
+use crate::state::picking::place_of;
+use crate::state::{Lasso, LassoOn, SliceKind, camera};
 use glam::{DVec2, DVec3};
 use interp::Forest;
 use interp::assembly::{Operation, Selection};
+use project::command::{Climb, PickNode};
 use survey::SurveyGeometry;
 
 /// How far from a section something counts as on it: traces across, samples along the vertical.

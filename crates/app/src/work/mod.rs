@@ -1,7 +1,7 @@
 //! Everything that takes time, away from the window's thread.
 //!
 //! [`Work`] hands orders to threads and collects their [`Event`]s; [`Running`] lists what is under way, with progress and a way to stop it.
-//! Commands on the project go one after the other (`project`); data are read and models built by [`data`]; pictures
+//! Commands on the project go one after the other (`orders`); data are read and models built by [`data`]; pictures
 //! ([`picture`]) and sections ([`mod@slice`]) are drawn for the latest wish only.
 //!
 //! Invariant: no call from the window's thread waits.
@@ -12,9 +12,9 @@ pub mod folder;
 mod lasso;
 pub mod latest;
 pub mod map;
+mod orders;
 pub mod picks;
 pub mod picture;
-mod project;
 pub mod running;
 pub mod scan;
 pub mod slice;
@@ -30,7 +30,7 @@ pub use slice::{SlicePicture, SliceWish, Slices};
 pub use swatches::Swatches;
 
 use super::state::{Notice, PickingStep, Place, Snapshot, Task};
-use crate::command::PickNode;
+use project::command::PickNode;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
@@ -116,7 +116,7 @@ pub struct Work {
     pub outbox: Outbox,
     /// What is under way.
     pub running: Running,
-    orders: Sender<project::Order>,
+    orders: Sender<orders::Order>,
     data: data::Loader,
     /// Pictures of the block.
     pub drawing: Drawing,
@@ -137,7 +137,7 @@ impl Work {
         let running = Running::default();
         Self {
             events,
-            orders: project::start(outbox.clone(), running.clone()),
+            orders: orders::start(outbox.clone(), running.clone()),
             data: data::Loader::start(outbox.clone(), running.clone()),
             drawing: Drawing::start(outbox.clone()),
             slices: Slices::start(outbox.clone()),
@@ -162,19 +162,19 @@ impl Work {
     pub fn run(&mut self, task: Task, place: Place) {
         let root = || self.root.clone();
         let order = match task {
-            Task::Open(root) => project::Order::Open(root),
-            Task::Demo(folder) => project::Order::Demo(folder),
-            Task::Create { command, root } => project::Order::Create { command, root },
+            Task::Open(root) => orders::Order::Open(root),
+            Task::Demo(folder) => orders::Order::Demo(folder),
+            Task::Create { command, root } => orders::Order::Create { command, root },
             Task::Apply(command) => match root() {
-                Some(root) => project::Order::Apply { root, command, place },
+                Some(root) => orders::Order::Apply { root, command, place },
                 None => return,
             },
             Task::Undo => match root() {
-                Some(root) => project::Order::Undo(root),
+                Some(root) => orders::Order::Undo(root),
                 None => return,
             },
             Task::Redo => match root() {
-                Some(root) => project::Order::Redo(root),
+                Some(root) => orders::Order::Redo(root),
                 None => return,
             },
             Task::Picking(task) => {

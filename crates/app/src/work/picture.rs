@@ -5,10 +5,10 @@
 
 use super::wishes::{Wished, Wishes};
 use super::{Event, Outbox, Rocks};
-use crate::app::state::{How, Notice, PickingStep, Place};
-use crate::picture::{Device, Painter};
+use crate::state::{How, Notice, PickingStep, Place};
 use glam::DVec2;
 use image::RgbaImage;
+use project::picture::{Device, Painter};
 use render::{Media, RenderError, Scene, Shading};
 use std::path::PathBuf;
 use std::sync::PoisonError;

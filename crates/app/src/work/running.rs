@@ -1,8 +1,8 @@
 //! What is under way: titles, progress, a way to stop.
 
 use super::Wake;
-use crate::app::fields;
-use crate::app::state::Place;
+use crate::fields;
+use crate::state::Place;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};

@@ -2,8 +2,8 @@
 
 use super::Work;
 use super::latest::Latest;
-use crate::app::fields;
-use crate::app::state::{Notice, Place};
+use crate::fields;
+use crate::state::{Notice, Place};
 use eframe::egui::Context;
 use image::{Rgba, RgbaImage};
 use std::path::Path;

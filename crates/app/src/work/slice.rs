@@ -6,10 +6,10 @@
 use super::fence::{self, FenceWish};
 use super::wishes::{Wished, Wishes};
 use super::{Event, Outbox, Rocks};
-use crate::app::state::SliceKind;
-use crate::pipeline::Loaded;
+use crate::state::SliceKind;
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};
+use project::picture::load::Loaded;
 use render::leaves;
 use render::{Candidates, FaceData, NamedVolume, VoxelBox};
 use std::collections::HashMap;

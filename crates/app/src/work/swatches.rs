@@ -1,10 +1,10 @@
 //! Swatches of layers and patterns, drawn on a thread: a pattern is rasterised when it is first seen, which takes a while.
 
 use super::{Wake, spawn};
-use crate::app::views::swatch;
-use crate::library;
-use crate::project::Document;
+use crate::views::swatch;
 use image::RgbaImage;
+use project::document::Document;
+use project::styles;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::mpsc::{Sender, channel};
@@ -49,7 +49,7 @@ impl Swatches {
             for order in received {
                 match order {
                     Order::Project(root, document) => {
-                        if let Ok(found) = library::of_project(&root, &document) {
+                        if let Ok(found) = styles::pattern_library(&root, &document) {
                             library = Some(found);
                         }
                         list(&theirs, library.as_ref());

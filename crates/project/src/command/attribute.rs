@@ -1,10 +1,10 @@
 //! Volumes computed from a volume.
 
-use super::stored::{self, Facts};
 use super::{Effect, Noun, ProjectError};
-use crate::memory;
-use crate::project::Draft;
-use crate::project::document::{Polarity, Source};
+use crate::content::volume_facts::{self, Facts};
+use crate::document::{Polarity, Source};
+use crate::folder::Draft;
+use crate::memory_budget;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::attribute::stored::{write_dip, write_envelope, write_semblance};
@@ -92,7 +92,7 @@ impl ComputeAttribute {
             };
             places.push((name, file, path, info));
         }
-        let memory_bytes = self.memory_bytes.unwrap_or_else(memory::half_of_available);
+        let memory_bytes = self.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
         let out = |part: usize| -> (PathBuf, &VolumeInfo) { (places[part].2.clone(), &places[part].3) };
         match self.kind {
             AttributeKind::Envelope => write_envelope(&out(0).0, &source, out(0).1, memory_bytes, progress)?,
@@ -119,7 +119,7 @@ impl ComputeAttribute {
                 },
                 geometry: from.geometry.clone(),
             };
-            draft.document.volumes.push(stored::entry(&path, facts, progress)?);
+            draft.document.volumes.push(volume_facts::entry(&path, facts, progress)?);
             volumes.push((name, info.unit));
         }
         Ok(Effect::AttributeComputed(AttributeComputed { attribute: self.kind.name(), of: from.name, volumes }))

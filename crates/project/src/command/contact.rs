@@ -1,7 +1,7 @@
 //! Contact rules: what a horizon does to its neighbours.
 
 use super::{Effect, Noun, ProjectError};
-use crate::project::Draft;
+use crate::folder::Draft;
 use serde::{Deserialize, Serialize};
 use survey::Contact;
 

@@ -1,10 +1,10 @@
 //! Bringing faults in, saying where they end, taking them out.
 
-use super::assembly::rebuild_all;
 use super::{Effect, Noun, ProjectError};
-use crate::data;
-use crate::project::Draft;
-use crate::project::document::FaultEntry;
+use crate::content;
+use crate::document::FaultEntry;
+use crate::folder::Draft;
+use crate::interpretation::assembly::rebuild_all;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::Progress;
@@ -63,7 +63,7 @@ impl AddFault {
         progress.check()?;
         fault.name.clone_from(&self.name);
         fault.truncated_by.clone_from(&self.truncated_by);
-        let hash = data::hash_fault(&fault);
+        let hash = content::hash_fault(&fault);
         let (file, new) = draft.generation("faults", &self.name, "json")?;
         store::write_fault(&new, &fault)?;
         draft.document.faults.push(FaultEntry {

@@ -1,11 +1,11 @@
 //! Faults drawn by hand as sticks, and proposed ones accepted.
 
-use super::assembly::rebuild_all;
 use super::{Effect, Noun, ProjectError};
-use crate::data;
-use crate::project::Draft;
-use crate::project::document::{FaultEntry, FaultSticks, Source};
-use crate::proposals;
+use crate::content;
+use crate::document::{FaultEntry, FaultSticks, Source};
+use crate::folder::Draft;
+use crate::interpretation::assembly::rebuild_all;
+use crate::interpretation::proposals;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -109,7 +109,7 @@ fn put(draft: &mut Draft, fault: &Fault, source: Source) -> Result<(), ProjectEr
     let truncated_by = old.and_then(|old| draft.document.faults[old].truncated_by.clone());
     let (file, new) = draft.generation("faults", &fault.name, "json")?;
     store::write_fault(&new, fault)?;
-    let entry = FaultEntry { name: fault.name.clone(), truncated_by, file, hash: data::hash_fault(fault), source };
+    let entry = FaultEntry { name: fault.name.clone(), truncated_by, file, hash: content::hash_fault(fault), source };
     match old {
         Some(old) => draft.document.faults[old] = entry,
         None => draft.document.faults.push(entry),

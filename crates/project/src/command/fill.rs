@@ -1,10 +1,10 @@
 //! Filling the holes of a horizon, assembled or imported.
 
-use super::assembly::{self, AssemblyReport, put, rebuild, report_on};
 use super::{Effect, Noun, ProjectError};
-use crate::candidates::Candidates;
-use crate::data;
-use crate::project::Draft;
+use crate::content;
+use crate::folder::Draft;
+use crate::interpretation::assembly::{self, AssemblyReport, put, rebuild, report_on};
+use crate::interpretation::candidates::Candidates;
 use interp::holes::{FillSettings, fill_holes};
 use interp::reassembly::{from_horizon, to_horizon};
 use serde::{Deserialize, Serialize};
@@ -47,7 +47,7 @@ impl FillHorizon {
             }
             None => {
                 let geometry = draft.document.frame()?.clone();
-                let horizon = data::read_horizon(draft.root(), &draft.document.horizons[index], progress)?;
+                let horizon = content::read_horizon(draft.root(), &draft.document.horizons[index], progress)?;
                 let mut sheets = from_horizon(&horizon, &geometry, &blocks);
                 let [nx, ny, _] = geometry.size();
                 let filled = fill_holes(&mut sheets, [nx, ny], &blocks, &self.settings, progress)?;

@@ -3,11 +3,11 @@
 //! A horizon takes its place in the stratigraphy by its depth, or where the user puts it. One that runs through another is refused unless a
 //! contact rule lets one cut the other: the layer between them would be inside out.
 
-use super::order;
 use super::{Effect, Noun, ProjectError};
-use crate::data;
-use crate::project::Draft;
-use crate::project::document::HorizonEntry;
+use crate::content;
+use crate::document::HorizonEntry;
+use crate::folder::Draft;
+use crate::interpretation::order;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::formats::{self, ImportOptions, ImportReport};
@@ -78,7 +78,7 @@ impl AddHorizon {
         progress.check()?;
         let others = load_all(draft, progress)?;
         let position = self.position(draft, &horizon, &others)?;
-        let hash = data::hash_horizon(&horizon);
+        let hash = content::hash_horizon(&horizon);
         let (file, new) = draft.generation("horizons", &self.name, "zarr")?;
         store::write_horizon(&new, &horizon, progress)?;
         let entry = HorizonEntry {
@@ -147,7 +147,7 @@ pub(super) fn reading(report: &ImportReport) -> String {
 }
 
 fn load_all(draft: &Draft, progress: &Progress) -> Result<Vec<Horizon>, ProjectError> {
-    let load = |entry: &HorizonEntry| data::read_horizon(draft.root(), entry, progress);
+    let load = |entry: &HorizonEntry| content::read_horizon(draft.root(), entry, progress);
     draft.document.horizons.iter().map(load).collect()
 }
 

@@ -1,10 +1,11 @@
 //! Bringing volumes in, and taking them out again.
 
-use super::stored::{self, Facts};
 use super::{Effect, Noun, ProjectError};
-use crate::memory;
-use crate::project::document::Polarity;
-use crate::project::{Draft, placement};
+use crate::content::volume_facts::{self, Facts};
+use crate::document::Polarity;
+use crate::folder::{Draft, IMPORTING};
+use crate::memory_budget;
+use crate::placement;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -63,9 +64,6 @@ pub struct RemoveVolume {
     pub name: String,
 }
 
-/// Folder of a project in which a volume is written that is not complete. A killed import leaves it, the next one goes on there.
-pub(crate) const IMPORTING: &str = "importing";
-
 impl ImportVolume {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let name = self.name_in(draft);
@@ -103,7 +101,7 @@ impl ImportVolume {
             source: super::source_of(&self.path, reading(info))?,
             geometry: own,
         };
-        let entry = stored::entry(&new, facts, progress)?;
+        let entry = volume_facts::entry(&new, facts, progress)?;
         let clip = entry.clip;
         draft.document.volumes.push(entry);
         Ok(Effect::VolumeImported(VolumeImported {
@@ -150,7 +148,7 @@ impl ImportVolume {
             source: Some(self.path.display().to_string()),
             ..VolumeInfo::of(geometry.clone())
         };
-        let memory_bytes = self.memory_bytes.unwrap_or_else(memory::half_of_available);
+        let memory_bytes = self.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
         let fingerprint = self.fingerprint(file)?;
         let stored = file.store(partial, &fingerprint, &info, memory_bytes, progress).map_err(cancelled_within)?;
         let (done, non_finite) = (stored.ingested, stored.non_finite);

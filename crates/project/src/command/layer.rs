@@ -1,8 +1,8 @@
 //! How layers look: name, colour, patterns by depth, frequency, opacity (P-illus 4.1).
 
 use super::{Effect, Noun, ProjectError};
-use crate::library;
-use crate::project::Draft;
+use crate::folder::Draft;
+use crate::styles;
 use param::KDefinition;
 use serde::{Deserialize, Serialize};
 use ttf::{Colour, DepthInterval, Frequency, LayerStyle, LayerTtf};
@@ -52,7 +52,7 @@ pub struct ResetLayer {
 impl SetLayer {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let position = draft.document.position(Noun::Layer, &self.layer)?;
-        let library = library::of_project(draft.root(), &draft.document)?;
+        let library = styles::pattern_library(draft.root(), &draft.document)?;
         let document = &mut draft.document;
         if let Some(name) = &self.name {
             document.name_layer(position, name)?;

@@ -4,7 +4,6 @@
 //! overwrites nothing and can fail at any point: [`crate::Project::apply`] discards the draft then. Undo needs nothing
 //! from a command, because every state is remembered.
 
-pub(crate) mod assembly;
 mod attribute;
 mod contact;
 mod fault;
@@ -13,24 +12,19 @@ mod fill;
 mod horizon;
 mod import;
 mod layer;
-mod order;
 pub(crate) mod pick;
 mod scalar;
 mod scene;
-mod stored;
 mod survey_frame;
 mod texture;
 mod well;
 
-pub(crate) use assembly::picked_selection;
-pub use assembly::{AssemblyReport, HoleReport};
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
 pub use fault::{AddFault, FaultAdded, RemoveFault, SetTruncation};
 pub use fault_pick::{AcceptFault, PickFault};
 pub use fill::{FillHorizon, HorizonFilled};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
-pub(crate) use import::IMPORTING;
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
 pub use pick::{
@@ -43,9 +37,9 @@ pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
 pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
 
+use crate::document::Source;
 use crate::error::{Noun, ProjectError};
-use crate::project::Draft;
-use crate::project::document::Source;
+use crate::folder::Draft;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use survey::{Progress, SurveyGeometry};

@@ -1,15 +1,11 @@
 //! Picking: a place becomes a leaf, a leaf a node, a node part of a horizon; and moving a pick later.
 
-use super::assembly::{self, AssemblyReport, rebuild};
 use super::{Effect, Noun, ProjectError};
-use crate::candidates::Candidates;
-use crate::project::Draft;
-use crate::project::document::{Assembly, PickEntry};
-use glam::DVec2;
-use interp::assembly::{
-    AssemblyError, ClimbSettings, Fingerprint, Fit, Hit, Operation, Overlap, Selection, highest_valid, leaf_at,
-    node_above,
-};
+use crate::document::{Assembly, PickEntry};
+use crate::folder::Draft;
+use crate::interpretation::assembly::{self, AssemblyReport, rebuild};
+use crate::interpretation::candidates::Candidates;
+use interp::assembly::{ClimbSettings, Fingerprint, Fit, Operation, Overlap, Selection, highest_valid, node_above};
 use serde::{Deserialize, Serialize};
 use survey::model::FaultNetwork;
 use survey::{Progress, SurveyGeometry};
@@ -157,36 +153,6 @@ impl std::fmt::Display for Replayed {
     }
 }
 
-/// The leaf at a place in line numbers, within the reach of the extraction.
-pub(crate) fn leaf_near(candidates: &Candidates, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<Hit, ProjectError> {
-    let place = geometry.voxel_from_lines(at[0], at[1]);
-    let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
-    leaf_at(&candidates.forest, voxel, candidates.max_distance).map_err(|error| match error {
-        AssemblyError::Outside { .. } => ProjectError::PickOutside {
-            at,
-            inlines: [geometry.inlines.first, geometry.inlines.last()],
-            crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
-            vertical: [geometry.vertical.first, geometry.vertical.last()],
-        },
-        AssemblyError::NothingNear { distance, nearest, max_distance, .. } => {
-            let lines = geometry.lines_from_voxel(DVec2::new(f64::from(nearest.x), f64::from(nearest.y)));
-            let z = geometry.vertical.value_at(f64::from(nearest.z));
-            ProjectError::NoCandidate { at, nearest: [lines.x, lines.y, z], distance, max_distance }
-        }
-        other => ProjectError::Assembly(other),
-    })
-}
-
-/// Levels from a leaf to its root.
-pub(crate) fn levels(candidates: &Candidates, leaf: u32) -> u32 {
-    let mut node = candidates.forest.leaves[leaf as usize - 1];
-    let mut levels = 0;
-    while let Some(parent) = candidates.forest.nodes[node as usize].parent {
-        (node, levels) = (parent, levels + 1);
-    }
-    levels
-}
-
 /// Node, levels and what ended the climb.
 fn climbed(
     candidates: &Candidates,
@@ -219,7 +185,7 @@ impl PickNode {
             operation: self.operation,
             leaf,
             up,
-            levels: levels(&candidates, leaf),
+            levels: candidates.levels(leaf),
             triangles: node.triangles,
             stopped_by,
             result,
@@ -246,7 +212,7 @@ impl PickNode {
         blocks: &FaultNetwork,
     ) -> Result<Option<Overlap>, ProjectError> {
         let chosen = assembly::selection(&self.horizon, log, candidates)?;
-        let hit = leaf_near(candidates, geometry, self.at)?;
+        let hit = candidates.leaf_near(geometry, self.at)?;
         // What is taken out may overlap with what stays.
         let beside = if self.operation == Operation::Add { chosen.clone() } else { Selection::default() };
         let (node, up, stopped_by) = climbed(candidates, hit.leaf, self.climb, &beside, blocks)?;
@@ -389,7 +355,7 @@ impl MovePick {
             operation,
             leaf,
             up,
-            levels: levels(&candidates, leaf),
+            levels: candidates.levels(leaf),
             triangles: node.triangles,
             stopped_by,
             result,
@@ -437,14 +403,14 @@ impl ReplayPicks {
 
 /// Makes one pick again: at its place, at the level whose node is most like what it was.
 fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> Fit {
-    let Ok(hit) = leaf_near(candidates, geometry, pick.at) else { return Fit::Different };
+    let Ok(hit) = candidates.leaf_near(geometry, pick.at) else { return Fit::Different };
     let rank = |fit: Fit| match fit {
         Fit::Same => 0,
         Fit::Similar => 1,
         Fit::Different => 2,
     };
     let mut best: Option<(Fit, u32, Fingerprint)> = None;
-    for up in 0..=levels(candidates, hit.leaf) {
+    for up in 0..=candidates.levels(hit.leaf) {
         let Ok(node) = node_above(&candidates.forest, hit.leaf, up) else { break };
         let now = Fingerprint::of(&candidates.forest, node);
         let fit = pick.node.compare(&now);

@@ -1,8 +1,8 @@
 //! Textures of scalar volumes (P-illus 4.2) and the colours of raw data (P-illus 4.3).
 
 use super::{Effect, Noun, ProjectError};
-use crate::library;
-use crate::project::Draft;
+use crate::folder::Draft;
+use crate::styles;
 use serde::{Deserialize, Serialize};
 use ttf::{RawColour, ScalarTtf};
 
@@ -30,7 +30,7 @@ pub struct SetRaw {
 impl SetScalar {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         draft.document.position(Noun::Volume, &self.function.volume)?;
-        self.function.validate(&library::of_project(draft.root(), &draft.document)?)?;
+        self.function.validate(&styles::pattern_library(draft.root(), &draft.document)?)?;
         let stack = &mut draft.document.style.scalars;
         match stack.iter_mut().find(|present| present.volume == self.function.volume) {
             Some(present) => *present = self.function.clone(),

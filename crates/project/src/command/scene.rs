@@ -1,8 +1,8 @@
 //! Named views.
 
 use super::{Effect, Noun, ProjectError};
-use crate::project::Draft;
-use crate::project::document::SceneEntry;
+use crate::document::SceneEntry;
+use crate::folder::Draft;
 use render::Scene;
 use serde::{Deserialize, Serialize};
 

@@ -1,7 +1,7 @@
 //! Changes to the frame that everything is placed in.
 
 use super::{Effect, ProjectError};
-use crate::project::Draft;
+use crate::folder::Draft;
 use serde::{Deserialize, Serialize};
 
 /// Sets the velocity that turns two-way time into metres.

@@ -1,9 +1,9 @@
 //! The user's own tiles.
 
 use super::{Effect, Noun, ProjectError};
-use crate::library;
-use crate::project::Draft;
-use crate::project::document::TextureEntry;
+use crate::document::TextureEntry;
+use crate::folder::Draft;
+use crate::styles;
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ pub struct AddTexture {
 impl AddTexture {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         // Reading it through the library checks the picture and its name before anything is copied.
-        let mut library = library::of_project(draft.root(), &draft.document)?;
+        let mut library = styles::pattern_library(draft.root(), &draft.document)?;
         let index = library.add_user(&self.path)?;
         let pattern = library.pattern(index);
         let [width, height] = pattern.tile_mm;

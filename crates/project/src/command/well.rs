@@ -1,9 +1,9 @@
 //! Bringing wells in, naming them, taking them out.
 
 use super::{Effect, Noun, ProjectError};
-use crate::data;
-use crate::project::Draft;
-use crate::project::document::{Document, WellEntry};
+use crate::content;
+use crate::document::{Document, WellEntry};
+use crate::folder::Draft;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
@@ -106,7 +106,7 @@ impl WellAdded {
             let Some(place) = well.place_at_md(top.md_m, geometry) else { continue };
             let entry = document.horizons.iter().find(|entry| same_name(&entry.name, &top.name));
             let below_horizon = match entry {
-                Some(entry) => below(&place, &data::read_horizon(root, entry, progress)?),
+                Some(entry) => below(&place, &content::read_horizon(root, entry, progress)?),
                 None => None,
             };
             tops.push(PlacedTop { name: top.name.clone(), place, below_horizon });
@@ -222,7 +222,7 @@ impl AddWell {
             path: self.files.deviation.clone(),
             detail: error.to_string(),
         };
-        let hash = data::hash_well(&well).map_err(unhashable)?;
+        let hash = content::hash_well(&well).map_err(unhashable)?;
         let (file, new) = draft.generation("wells", &self.name, "json")?;
         store::write_well(&new, &well)?;
         let reading = format!(

@@ -1,8 +1,8 @@
 //! What the project keeps about a stored volume, found by reading as little of it as serves.
 
-use super::ProjectError;
-use crate::data;
-use crate::project::document::{Polarity, Source, VolumeEntry};
+use crate::content;
+use crate::document::{Polarity, Source, VolumeEntry};
+use crate::error::ProjectError;
 use std::path::Path;
 use survey::store::StoredVolume;
 use survey::{Progress, SurveyGeometry};
@@ -14,23 +14,23 @@ const SHOWN_SHARE: f32 = 0.99;
 const SAMPLES_ENOUGH: usize = 1 << 20;
 
 /// The facts of a new volume that are found elsewhere than in its samples.
-pub(super) struct Facts {
-    pub(super) name: String,
+pub(crate) struct Facts {
+    pub(crate) name: String,
     /// Relative to the project's folder.
-    pub(super) file: String,
-    pub(super) polarity: Polarity,
-    pub(super) source: Source,
+    pub(crate) file: String,
+    pub(crate) polarity: Polarity,
+    pub(crate) source: Source,
     /// Its own lattice, where that is not the project's.
-    pub(super) geometry: Option<SurveyGeometry>,
+    pub(crate) geometry: Option<SurveyGeometry>,
 }
 
 /// The entry of the volume stored at `path`.
-pub(super) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<VolumeEntry, ProjectError> {
+pub(crate) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<VolumeEntry, ProjectError> {
     let stored = StoredVolume::open(path)?;
     let (_, ranges) = stored.brick_ranges(0)?;
     let lowest = ranges.iter().map(|range| range[0]).filter(|low| !low.is_nan()).fold(f32::INFINITY, f32::min);
     Ok(VolumeEntry {
-        hash: data::hash_stored(&stored)?,
+        hash: content::hash_stored(&stored)?,
         clip: clip_of(&stored, progress)?,
         lowest: if lowest.is_finite() { lowest } else { 0.0 },
         name: facts.name,

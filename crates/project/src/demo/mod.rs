@@ -4,19 +4,20 @@
 //! pictures: illustrative, raw, and half-way between. Of the truth no more is used than one place on each part, as someone has it who
 //! sees the reflector. The look is in `look.toml`.
 
-use crate::candidates::Candidates;
-use crate::command::assembly::blocks;
+pub mod survey_files;
+
+use crate::Project;
 use crate::command::{
     AddFault, AddScene, Climb, Command, Effect, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
 };
-use crate::data;
+use crate::content;
+use crate::document::Polarity;
 use crate::error::{Noun, ProjectError};
-use crate::extraction;
+use crate::interpretation::assembly::blocks;
+use crate::interpretation::candidates::Candidates;
+use crate::interpretation::extraction;
+use crate::picture::load::{self, Stage};
 use crate::picture::{self, Device, Painter};
-use crate::pipeline::{self, Stage};
-use crate::project::{Polarity, Project};
-use crate::synth::{self, SynthSurvey};
-use anyhow::Context;
 use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::evaluate::Parts;
@@ -31,6 +32,7 @@ use survey::formats::ImportOptions;
 use survey::segy::SegyOptions;
 use survey::synth::{SynthSettings, SynthTruth};
 use survey::{Contact, Progress};
+use survey_files::SynthSurvey;
 
 /// Survey, patterns and view.
 #[derive(Debug, Deserialize)]
@@ -76,15 +78,15 @@ impl fmt::Display for Demonstration {
 ///
 /// # Errors
 /// Files that could not be written, no device to draw with, or cancelled.
-pub fn run(out: &Path, progress: &Progress) -> anyhow::Result<Demonstration> {
-    let look: Look = toml::from_str(include_str!("look.toml")).context("the demonstration's look cannot be read")?;
-    fs::create_dir_all(out).with_context(|| format!("{} could not be made", out.display()))?;
+pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectError> {
+    let look: Look = toml::from_str(include_str!("look.toml")).expect("the look is part of the program");
+    fs::create_dir_all(out).map_err(|source| ProjectError::io("written", out, source))?;
     let mut done =
         Demonstration { project: out.join("demo.petro"), pictures: Vec::new(), stages: Vec::new(), steps: Vec::new() };
     let mut stage = Stopwatch::start();
 
     let folder = out.join("survey");
-    let files = synth::write(&folder, &look.synth, progress)?;
+    let files = survey_files::write(&folder, &look.synth, progress)?;
     let [inlines, crosslines, samples] = look.synth.size;
     done.steps.push(format!(
         "made a synthetic survey of {inlines} x {crosslines} x {samples} samples with {} horizons and {} faults in {}",
@@ -114,7 +116,7 @@ pub fn run(out: &Path, progress: &Progress) -> anyhow::Result<Demonstration> {
         project.apply(&Command::AddScene(AddScene { name: name.to_owned(), scene }), progress)?;
     }
     // What the half-way picture needs is what all of them need.
-    let loaded = pipeline::load(&project, &Scene { blend: 0.5, ..scene.clone() }, progress)?;
+    let loaded = load::load(&project, &Scene { blend: 0.5, ..scene.clone() }, progress)?;
     done.stages.extend(loaded.rock.iter().flat_map(|rock| rock.stages.clone()));
     let mut painter = Painter::new(Device::Auto, progress)?;
     for (name, blend) in PICTURES {
@@ -129,10 +131,10 @@ pub fn run(out: &Path, progress: &Progress) -> anyhow::Result<Demonstration> {
 }
 
 /// Imports volumes and faults through the same commands as the command line.
-fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> anyhow::Result<Project> {
+fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> Result<Project, ProjectError> {
     // A former demonstration is replaced; anything else of that name is not ours to remove.
     if path.join("project.toml").exists() {
-        fs::remove_dir_all(path).with_context(|| format!("{} could not be replaced", path.display()))?;
+        fs::remove_dir_all(path).map_err(|source| ProjectError::io("written", path, source))?;
     }
     let mut new = Project::create(path, None)?;
     let project = new.project();
@@ -170,7 +172,7 @@ const NEAR_SAMPLES: f64 = 2.0;
 
 /// Picks every part of every horizon, then the middle of what that left out, climbing to the highest valid node, and fills the holes. Answers the
 /// count of picks.
-fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> anyhow::Result<usize> {
+fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> Result<usize, ProjectError> {
     let truth = SynthTruth::read(&files.truth)?;
     let frame = project.document().frame()?.clone();
     // Held for all picks, so that none has to make them anew.
@@ -199,7 +201,7 @@ fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> 
             }
             let document = project.document();
             let Ok(entry) = document.position(Noun::Horizon, &horizon.name) else { continue };
-            let picked = data::read_horizon(project.root(), &document.horizons[entry], progress)?;
+            let picked = content::read_horizon(project.root(), &document.horizons[entry], progress)?;
             let ny = truth.size[1];
             left = parts.without(&truth, h, |x, y, z| {
                 let depths = picked.sheets.iter().map(|sheet| f64::from(sheet.depth[x * ny + y]));
@@ -217,7 +219,7 @@ fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> 
 }
 
 /// Names and patterns of the layers.
-fn style(project: &mut Project, files: &SynthSurvey, look: &Look, progress: &Progress) -> anyhow::Result<()> {
+fn style(project: &mut Project, files: &SynthSurvey, look: &Look, progress: &Progress) -> Result<(), ProjectError> {
     let named: Vec<(String, String)> =
         project.document().layers().into_iter().zip(files.layer_names.iter().cloned()).collect();
     let names = named.into_iter().map(|(layer, name)| SetLayer { layer, name: Some(name), ..SetLayer::default() });

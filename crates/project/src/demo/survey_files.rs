@@ -1,5 +1,6 @@
 //! A synthetic survey on disk, as a survey comes from others, with what an interpreter would say about its files.
 
+use crate::error::ProjectError;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -62,7 +63,7 @@ impl fmt::Display for SynthSurvey {
 ///
 /// # Errors
 /// A size too small for its folds and faults, files that could not be written, or cancelled.
-pub fn write(out: &Path, settings: &SynthSettings, progress: &Progress) -> anyhow::Result<SynthSurvey> {
+pub fn write(out: &Path, settings: &SynthSettings, progress: &Progress) -> Result<SynthSurvey, ProjectError> {
     let made = Synthetic::generate(settings, progress)?;
     let files = made.write_dir(out, progress)?;
     let horizons = made.stratigraphy.horizons.iter().zip(files.horizons);

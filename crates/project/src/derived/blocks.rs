@@ -2,7 +2,7 @@
 
 use super::kept::{Kind, damaged, read_array, read_header, write_header};
 use super::key_of;
-use crate::project::Document;
+use crate::document::Document;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};

@@ -2,8 +2,8 @@
 
 use super::kept::{Kind, read_array, read_header, write_header};
 use super::{Scratch, folder, key_of};
+use crate::document::Document;
 use crate::error::ProjectError;
-use crate::project::Document;
 use param::{ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, VoxelParameterization};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};

@@ -1,7 +1,7 @@
 //! A file of derived data: a kind, a body, and the BLAKE3 hash of both, so that one that is damaged or cut off is not used.
 
 use super::{Scratch, folder};
-use crate::project::storage;
+use crate::folder::storage;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fs::{self, File};

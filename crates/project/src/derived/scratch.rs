@@ -5,7 +5,7 @@
 
 use super::folder;
 use crate::error::ProjectError;
-use crate::project::storage;
+use crate::folder::storage;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -3,7 +3,7 @@
 //! Styles belong to layers by name. A horizon put into a layer splits it: the part that keeps the old base keeps name and style, the part
 //! above the new horizon starts without. Taking a horizon away joins two layers into one that keeps those of the lower.
 
-use super::document::Document;
+use super::Document;
 use crate::error::{Noun, ProjectError};
 use param::KDefinition;
 
@@ -96,7 +96,7 @@ impl Document {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::project::document::{HorizonEntry, Source};
+    use crate::document::{HorizonEntry, Source};
     use survey::Contact;
     use ttf::{Colour, LayerStyle};
 

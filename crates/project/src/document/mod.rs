@@ -3,13 +3,17 @@
 //! The text is made for people: it can be read, compared and edited. Every command rewrites it in one fixed order, so that two
 //! states differ only where the project does.
 
-pub use super::entries::{
+pub(crate) mod data_file;
+mod entries;
+mod layers;
+mod picks;
+
+use crate::error::{Noun, ProjectError};
+pub use entries::{
     FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry,
 };
-pub use super::picks::{Assembly, FaultSticks, PickEntry};
-use super::storage;
-use crate::error::{Noun, ProjectError};
 use param::KDefinition;
+pub use picks::{Assembly, FaultSticks, PickEntry};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -138,7 +142,7 @@ impl Document {
         self.check_truncation().map_err(|error| error.to_string())?;
         // Whatever else a name says would let a project read, and a later command delete, what is not its own.
         for (kind, file) in self.files_by_kind() {
-            if !storage::is_data_file(kind, file) {
+            if !data_file::is_data_file(kind, file) {
                 return Err(format!("the file \"{file}\" is not of the form {kind}/NAME"));
             }
         }

@@ -1,7 +1,7 @@
 //! A state of a project in the making: what a command works on.
 
-use super::document::Document;
 use super::{history, storage};
+use crate::document::Document;
 use crate::error::ProjectError;
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ pub struct Draft {
 }
 
 impl Draft {
-    pub(super) fn new(root: &Path, document: Document) -> Self {
+    pub(crate) fn new(root: &Path, document: Document) -> Self {
         Self { root: root.to_owned(), document, written: Vec::new(), kept: false }
     }
 
@@ -51,12 +51,12 @@ impl Draft {
     }
 
     /// Flushes the data and gives it its names.
-    pub(super) fn publish(&self) -> Result<(), ProjectError> {
+    pub(crate) fn publish(&self) -> Result<(), ProjectError> {
         self.written.iter().try_for_each(|file| storage::publish(&self.root, file))
     }
 
     /// The state was saved: the data stays.
-    pub(super) fn keep(mut self) {
+    pub(crate) fn keep(mut self) {
         self.kept = true;
     }
 }

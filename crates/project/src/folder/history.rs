@@ -10,9 +10,8 @@
 //!
 //! A step that cannot be read any more is told as such and is no reason to refuse work; whatever it may refer to is kept.
 
-use super::document::Document;
 use super::storage;
-use crate::command::Command;
+use crate::document::{Document, data_file};
 use crate::error::ProjectError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -28,9 +27,9 @@ pub struct Step {
     pub summary: String,
     /// The text of `project.toml` after it.
     pub project: String,
-    /// The command; absent for an edit by hand.
+    /// The command as data; absent for an edit by hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub command: Option<Command>,
+    pub command: Option<toml::Value>,
 }
 
 /// Where a step is, relative to the project.
@@ -134,7 +133,7 @@ fn files_of(step: Option<&Step>) -> BTreeSet<String> {
 /// Deletes those of `files` that neither the present nor any remembered state refers to. What is not `KIND/NAME` is no data of a
 /// project and stays. While the present state cannot be read, everything stays.
 pub(crate) fn release(root: &Path, mut files: BTreeSet<String>) -> Result<(), ProjectError> {
-    files.retain(|file| storage::is_any_data_file(file));
+    files.retain(|file| data_file::is_any_data_file(file));
     if files.is_empty() {
         return Ok(());
     }

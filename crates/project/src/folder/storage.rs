@@ -1,7 +1,7 @@
 //! Files of a project on disk: where each may lie, how it is replaced, and the one place that deletes.
 //!
 //! A file of a project is named by its path relative to the project's folder, with `/` between the parts. Data that a state
-//! refers to is exactly `KIND/NAME` ([`is_data_file`]), a real file or folder and not a link.
+//! refers to is exactly `KIND/NAME` ([`crate::document::data_file`]), a real file or folder and not a link.
 //!
 //! Nothing that a saved state refers to is ever overwritten. What is being written lies in the folder `unfinished/` under the
 //! same relative path, and is renamed to its place when it is complete ([`publish`], [`replace`]). What a killed program leaves
@@ -11,6 +11,7 @@
 //! [`remove`] deletes single files of the project's own making and works through a handle on the folder, which cannot be led
 //! outside by a link. Data files go through [`super::history::release`] instead, which first asks every remembered state.
 
+use crate::document::data_file::KINDS;
 use crate::error::ProjectError;
 use cap_fs_ext::{DirExt, FollowSymlinks, OpenOptionsFollowExt};
 use cap_std::ambient_authority;
@@ -28,26 +29,12 @@ pub(crate) const UNFINISHED: &str = "unfinished";
 /// Folder of what was computed; may be deleted.
 pub(crate) const DERIVED: &str = "derived";
 
-/// Folders of data, one for each kind.
-pub(crate) const KINDS: [&str; 5] = ["volumes", "horizons", "faults", "wells", "textures"];
+/// Folder of an import that is not complete. A killed one leaves it, the next goes on there.
+pub(crate) const IMPORTING: &str = "importing";
 
 /// Everything a project has at its top: folders first, then files.
-const FOLDERS: [&str; 4] = ["history", DERIVED, UNFINISHED, crate::command::IMPORTING];
+const FOLDERS: [&str; 4] = ["history", DERIVED, UNFINISHED, IMPORTING];
 const FILES: [&str; 4] = [STATE, "lock", "creating", "window.lock"];
-
-/// Whether `file` names data of the kind `kind`: `KIND/NAME` with one plain name that no other file system reads as a path.
-pub(crate) fn is_data_file(kind: &str, file: &str) -> bool {
-    let Some(name) = file.strip_prefix(kind).and_then(|rest| rest.strip_prefix('/')) else { return false };
-    !name.is_empty()
-        && !name.starts_with('.')
-        && !name.contains(['/', '\\', ':'])
-        && !name.chars().any(char::is_control)
-}
-
-/// Whether `file` names data of any kind.
-pub(crate) fn is_any_data_file(file: &str) -> bool {
-    KINDS.iter().any(|kind| is_data_file(kind, file))
-}
 
 /// Refuses a project in which a link could lead a writer outside: every folder and file that commands write to, and
 /// everything in it, must be what it seems. Nothing is written before this has passed.
@@ -100,7 +87,7 @@ pub(crate) fn begin(root: &Path, file: &str) -> Result<PathBuf, ProjectError> {
 }
 
 /// Where `file` can be read now: what a command under way has written and not yet published lies in `unfinished/`.
-pub(crate) fn at_hand(root: &Path, file: &str) -> PathBuf {
+pub fn at_hand(root: &Path, file: &str) -> PathBuf {
     let (path, unfinished) = (root.join(file), unfinished(root, file));
     if !path.exists() && unfinished.exists() { unfinished } else { path }
 }
@@ -195,7 +182,7 @@ fn remove_inside(root: &Path, file: &str) -> io::Result<()> {
 ///
 /// # Errors
 /// It is a link, or cannot be opened.
-pub(crate) fn open_own(root: &Path, name: &str) -> io::Result<File> {
+pub fn open_own(root: &Path, name: &str) -> io::Result<File> {
     let folder = Dir::open_ambient_dir(root, ambient_authority())?;
     let mut options = OpenOptions::new();
     options.create(true).truncate(false).read(true).write(true).follow(FollowSymlinks::No);
@@ -260,30 +247,6 @@ mod tests {
         assert_eq!(read_text(&folder.path().join("a.toml")).unwrap(), "two");
         remove(folder.path(), UNFINISHED);
         assert_eq!(names_in(folder.path()), ["a.toml"]);
-    }
-
-    #[test]
-    fn data_is_a_kind_and_a_plain_name() {
-        for good in ["volumes/far.partial-stack.zarr", "volumes/a b.zarr", "volumes/x.new"] {
-            assert!(is_data_file("volumes", good), "{good}");
-        }
-        for bad in [
-            "",
-            "volumes",
-            "volumes/",
-            "volumes/.",
-            "volumes/..",
-            "volumes/a/b",
-            "volumes/a\\b",
-            "horizons/a.zarr",
-            "/volumes/a",
-            "./volumes/a",
-            "volumes//a",
-            "volumes/c:a",
-            "volumes/a\nb",
-        ] {
-            assert!(!is_data_file("volumes", bad), "{bad}");
-        }
     }
 
     #[test]

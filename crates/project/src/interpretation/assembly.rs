@@ -1,13 +1,14 @@
 //! From a horizon's log of picks to its sheets: what every command on picks ends with.
 
-use super::{Noun, ProjectError, order};
-use crate::candidates::Candidates;
-use crate::data;
+use super::order;
+use crate::content;
 use crate::derived;
-use crate::held::Held;
-use crate::project::Document;
-use crate::project::Draft;
-use crate::project::document::{Assembly, HorizonEntry, Source};
+use crate::document::Document;
+use crate::document::{Assembly, HorizonEntry, Source};
+use crate::error::{Noun, ProjectError};
+use crate::folder::Draft;
+use crate::interpretation::candidates::Candidates;
+use crate::weak_cache::WeakCache;
 use interp::Forest;
 use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
@@ -22,7 +23,7 @@ use survey::{Contact, Horizon, Progress, SurveyGeometry, store};
 use ttf::Colour;
 
 /// Colours that horizons get in turn.
-pub(crate) const HORIZON_COLOURS: [[u8; 3]; 8] = [
+pub const HORIZON_COLOURS: [[u8; 3]; 8] = [
     [0xd5, 0x5e, 0x00],
     [0x00, 0x72, 0xb2],
     [0x00, 0x9e, 0x73],
@@ -110,7 +111,7 @@ impl std::fmt::Display for AssemblyReport {
 }
 
 /// A conflict in words.
-pub(crate) fn sentence(conflict: &Conflict) -> String {
+pub fn sentence(conflict: &Conflict) -> String {
     match conflict {
         Conflict::SharedLeaves { horizons: [a, b], leaves, triangles } => {
             format!("\"{a}\" and \"{b}\" share {triangles} triangles of {} leaves", leaves.len())
@@ -127,8 +128,8 @@ pub(crate) fn sentence(conflict: &Conflict) -> String {
 
 /// The faults of the project as blocks; they take longer to make than all else that a pick needs, so they are kept beside the project, and whoever
 /// makes several picks holds them.
-pub(crate) fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
-    static HELD: Held<(SurveyGeometry, Vec<String>), FaultNetwork> = Held::nothing();
+pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
+    static HELD: WeakCache<(SurveyGeometry, Vec<String>), FaultNetwork> = WeakCache::nothing();
     let geometry = document.frame()?;
     let key = document.faults.iter().map(|entry| format!("{} {} {:?}", entry.name, entry.hash, entry.truncated_by));
     HELD.get_or_make((geometry.clone(), key.collect()), || {
@@ -140,7 +141,7 @@ pub(crate) fn blocks(root: &Path, document: &Document, progress: &Progress) -> R
         if let Some(kept) = derived::load_blocks(root, &key) {
             return Ok(kept);
         }
-        let faults = document.faults.iter().map(|entry| data::read_fault(root, entry));
+        let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
         let faults = faults.collect::<Result<Vec<_>, _>>()?;
         let made = FaultNetwork::build(geometry, &faults, &settings, progress)?;
         derived::keep_blocks(root, &key, &made, progress);
@@ -152,7 +153,7 @@ pub(crate) fn blocks(root: &Path, document: &Document, progress: &Progress) -> R
 ///
 /// # Errors
 /// [`ProjectError::OutdatedPicks`] when some of them are of another extraction.
-pub(crate) fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<Selection, ProjectError> {
+pub fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<Selection, ProjectError> {
     let outdated: Vec<u32> =
         log.picks.iter().filter(|pick| pick.extraction != candidates.key).map(|pick| pick.id).collect();
     if !outdated.is_empty() {
@@ -174,14 +175,14 @@ pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Select
 }
 
 /// A colour for the next horizon.
-pub(crate) fn next_colour(document: &Document) -> Colour {
+pub fn next_colour(document: &Document) -> Colour {
     let assembled = document.horizons.iter().filter(|entry| entry.assembly.is_some()).count();
     let [red, green, blue] = HORIZON_COLOURS[assembled % HORIZON_COLOURS.len()];
     Colour::new(red, green, blue)
 }
 
 /// Makes the sheets of horizon `name` from `log` and puts both into the draft, the horizon at its place by depth.
-pub(super) fn rebuild(
+pub(crate) fn rebuild(
     draft: &mut Draft,
     candidates: &Candidates,
     blocks: &FaultNetwork,
@@ -217,14 +218,14 @@ pub(super) fn rebuild(
 }
 
 /// An overlap, if there is one, at its place in line numbers.
-pub(crate) fn overlap_in_lines(overlap: Overlap, geometry: &SurveyGeometry) -> Option<Overlap> {
+pub fn overlap_in_lines(overlap: Overlap, geometry: &SurveyGeometry) -> Option<Overlap> {
     let at = geometry.lines_from_voxel(glam::DVec2::new(f64::from(overlap.at[0]), f64::from(overlap.at[1])));
     let z = geometry.vertical.value_at(f64::from(overlap.at[2]));
     (overlap.traces > 0).then_some(Overlap { at: [at.x as f32, at.y as f32, z as f32], ..overlap })
 }
 
 /// Counts and holes of sheets.
-pub(crate) fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyReport {
+pub fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyReport {
     let [nx, ny, _] = geometry.size();
     let traces = (0..nx * ny).filter(|&n| sheets.iter().any(|sheet| sheet.z[n].is_finite())).count();
     let holes = find_holes(sheets, [nx, ny]);
@@ -245,7 +246,7 @@ pub(crate) fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> Ass
 }
 
 /// Writes a horizon and its entry. One that is there keeps its contact; its place follows its depth.
-pub(super) fn put(
+pub(crate) fn put(
     draft: &mut Draft,
     horizon: &Horizon,
     log: Option<Assembly>,
@@ -255,13 +256,13 @@ pub(super) fn put(
     let name = &horizon.name;
     let old = draft.document.horizons.iter().position(|entry| entry.name == *name);
     let others = draft.document.horizons.iter().filter(|entry| entry.name != *name);
-    let others = others.map(|entry| data::read_horizon(draft.root(), entry, progress));
+    let others = others.map(|entry| content::read_horizon(draft.root(), entry, progress));
     let others = others.collect::<Result<Vec<_>, _>>()?;
     let deeper = others.iter().position(|other| order::is_above(horizon, other, &geometry));
     let position = deeper.unwrap_or(others.len());
     let (file, new) = draft.generation("horizons", name, "zarr")?;
     store::write_horizon(&new, horizon, progress)?;
-    let hash = data::hash_horizon(horizon);
+    let hash = content::hash_horizon(horizon);
     let document = &mut draft.document;
     let source = match (&log, old) {
         (Some(log), _) => {
@@ -307,7 +308,7 @@ fn conflicts_with(
         all.push(if entry.name == name {
             sheets.to_vec()
         } else {
-            from_horizon(&data::read_horizon(draft.root(), entry, progress)?, geometry, blocks)
+            from_horizon(&content::read_horizon(draft.root(), entry, progress)?, geometry, blocks)
         });
     }
     let all: Vec<&[VoxelSheet]> = all.iter().map(Vec::as_slice).collect();
@@ -316,7 +317,7 @@ fn conflicts_with(
 }
 
 /// Conflicts between all horizons of a project, given by their sheets, in line numbers.
-pub(crate) fn conflicts_of(
+pub fn conflicts_of(
     document: &Document,
     candidates: Option<&Candidates>,
     sheets: &[&[VoxelSheet]],
@@ -348,7 +349,7 @@ pub(crate) fn conflicts_of(
 }
 
 /// Makes all assembled horizons anew, after the faults have changed. Those whose picks are of another extraction stay as they are; a warning says so.
-pub(super) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectError> {
+pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectError> {
     let logs: Vec<(String, Assembly)> = draft
         .document
         .horizons
@@ -379,7 +380,7 @@ pub(super) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
 ///
 /// # Errors
 /// There is no such horizon, or it was imported.
-pub(super) fn log_of(draft: &Draft, name: &str) -> Result<Assembly, ProjectError> {
+pub(crate) fn log_of(draft: &Draft, name: &str) -> Result<Assembly, ProjectError> {
     let entry = &draft.document.horizons[draft.document.position(Noun::Horizon, name)?];
     entry.assembly.clone().ok_or_else(|| ProjectError::NotAssembled { horizon: name.to_owned() })
 }

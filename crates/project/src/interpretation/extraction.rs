@@ -4,10 +4,10 @@
 //! time is not among them. What has another key is not used. Candidates lie on the project's own lattice, so that a
 //! voxel of theirs is one of the project's.
 
+use crate::Project;
 use crate::derived::Scratch;
+use crate::document::VolumeEntry;
 use crate::error::ProjectError;
-use crate::project::Project;
-use crate::project::document::VolumeEntry;
 use interp::{ExtractReport, ExtractSettings, Forest, extract_to_store};
 use serde::Serialize;
 use std::fmt;
@@ -67,6 +67,11 @@ pub fn open(project: &Project) -> Result<StoredCandidates, ProjectError> {
     Ok(StoredCandidates::open(&path)?)
 }
 
+/// What the extraction that made these candidates reported; none where that cannot be read.
+pub fn report(candidates: &StoredCandidates) -> Option<ExtractReport> {
+    serde_json::from_value(candidates.info().report.clone()).ok()
+}
+
 /// Surfaces and trees of a project's candidates.
 ///
 /// # Errors
@@ -121,7 +126,7 @@ pub fn extract(
     };
     if let Ok(stored) = StoredCandidates::open(&file)
         && stored.info().key == key
-        && let Ok(report) = serde_json::from_value(stored.info().report.clone())
+        && let Some(report) = report(&stored)
     {
         return Ok(answer(report, false));
     }

@@ -3,11 +3,12 @@
 //! `derived/fault-proposals.json` holds the last proposals with a key of what they were made from: horizons and faults. Proposals of another
 //! state are not accepted, but for the faults that were accepted from them. What is a fault of the project already is not proposed; it is told.
 
-use crate::command::assembly;
-use crate::data;
+use crate::Project;
+use crate::content;
 use crate::derived::Scratch;
+use crate::document::Document;
 use crate::error::ProjectError;
-use crate::project::{Document, Project};
+use crate::interpretation::assembly;
 use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
 use interp::reassembly::from_horizon;
 use serde::{Deserialize, Serialize};
@@ -124,14 +125,14 @@ pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progres
     let none = FaultNetwork::none();
     let mut sheets = Vec::new();
     for entry in &document.horizons {
-        let horizon = data::read_horizon(project.root(), entry, progress)?;
+        let horizon = content::read_horizon(project.root(), entry, progress)?;
         sheets.push(from_horizon(&horizon, geometry, &none));
     }
     let horizons: Vec<Evidence> =
         document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
     let likeness = match document.volumes.iter().find(|entry| entry.geometry.is_none()) {
         Some(entry) => {
-            let seismic = data::read_volume(project.root(), entry, progress)?;
+            let seismic = content::read_volume(project.root(), entry, progress)?;
             let dips = dip(&seismic, &DipSettings::default(), progress);
             dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
         }

@@ -1,10 +1,12 @@
 //! From a project to what renderers take: data read, model built, layers parameterized, styles compiled. Each step is asked for what it
 //! needs and nothing more, and what was computed before is taken from `derived/`.
 
+use crate::Project;
+use crate::document::Document;
 use crate::error::ProjectError;
-use crate::project::{Document, Project, placement};
-use crate::shown_candidates::ShownCandidates;
-use crate::{data, derived, library, memory, style};
+use crate::picture::shown_candidates::ShownCandidates;
+use crate::placement;
+use crate::{content, derived, memory_budget, styles};
 use glam::{DVec3, Vec3};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
 use render::{Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox, WellPath};
@@ -30,7 +32,8 @@ pub struct Stage {
 }
 
 impl Stage {
-    pub(crate) fn new(stage: &'static str, took: Duration) -> Self {
+    /// A stage by its name.
+    pub fn new(stage: &'static str, took: Duration) -> Self {
         Self { stage, seconds: took.as_secs_f64() }
     }
 }
@@ -64,9 +67,9 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
     let geometry = document.frame()?;
     let mut stages = Vec::new();
     let start = Instant::now();
-    let horizons = document.horizons.iter().map(|entry| data::read_horizon(project.root(), entry, progress));
+    let horizons = document.horizons.iter().map(|entry| content::read_horizon(project.root(), entry, progress));
     let horizons = horizons.collect::<Result<Vec<_>, _>>()?;
-    let faults = document.faults.iter().map(|entry| data::read_fault(project.root(), entry));
+    let faults = document.faults.iter().map(|entry| content::read_fault(project.root(), entry));
     let faults = faults.collect::<Result<Vec<_>, _>>()?;
     let settings = ModelSettings::default();
     let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
@@ -178,7 +181,7 @@ pub struct Loaded {
 }
 
 /// A number not given before.
-pub(crate) fn new_version() -> u64 {
+pub fn new_version() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(1);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
@@ -188,7 +191,7 @@ pub(crate) fn new_version() -> u64 {
 /// # Errors
 /// Damaged data, an interpretation that makes no solid model, styles that cannot be drawn, or cancelled.
 pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
-    load_within(project, scene, memory::half_of_available(), progress)
+    load_within(project, scene, memory_budget::half_of_available(), progress)
 }
 
 /// The same with at most so many bytes for the samples of each volume; larger ones come from a coarser level of their pyramid, and a warning says so.
@@ -205,7 +208,7 @@ pub fn load_within(
     let geometry = document.frame()?.clone();
     // Raw data alone needs no interpretation, but outlines and ground do.
     let rock = rock(project, progress)?;
-    let mut functions = style::of_project(document);
+    let mut functions = styles::transfer_functions(document);
     if let Some(raw) = &scene.raw {
         functions.raw = Some(raw.clone());
     }
@@ -220,7 +223,7 @@ pub fn load_within(
     let tables = match &rock {
         None => None,
         Some(rock) => {
-            let library = library::of_project(project.root(), document)?;
+            let library = styles::pattern_library(project.root(), document)?;
             let block =
                 block_extent(&geometry, rock, document.stratigraphy().layer_names_bottom_up(), scene.exaggeration);
             Some(TtfTables::compile(&functions, &block, &library)?)
@@ -252,7 +255,7 @@ pub fn load_within(
 }
 
 /// What a scene shows beyond what was loaded.
-pub(crate) struct More {
+pub struct More {
     volumes: Vec<LoadedVolume>,
     candidates: Option<ShownCandidates>,
 }
@@ -261,16 +264,11 @@ pub(crate) struct More {
 ///
 /// # Errors
 /// Damaged data, or cancelled.
-pub(crate) fn read_more(
-    project: &Project,
-    loaded: &Loaded,
-    scene: &Scene,
-    progress: &Progress,
-) -> Result<More, ProjectError> {
+pub fn read_more(project: &Project, loaded: &Loaded, scene: &Scene, progress: &Progress) -> Result<More, ProjectError> {
     let document = project.document();
     let missing: Vec<&str> =
         scene.media.all().map(|medium| medium.volume.as_str()).filter(|name| !loaded.has_volume(name)).collect();
-    let limit = memory::half_of_available();
+    let limit = memory_budget::half_of_available();
     let volumes = read_volumes(project.root(), document, &loaded.geometry, &missing, limit, progress)?;
     let candidates = ShownCandidates::load(project, scene, loaded.rock.as_ref().map(|rock| &rock.model), progress)?;
     Ok(More { volumes, candidates })
@@ -278,7 +276,7 @@ pub(crate) fn read_more(
 
 impl More {
     /// Puts it to what is loaded.
-    pub(crate) fn add_to(self, loaded: &mut Loaded) {
+    pub fn add_to(self, loaded: &mut Loaded) {
         loaded.volumes.extend(self.volumes);
         loaded.candidates = self.candidates;
         loaded.version = new_version();
@@ -289,14 +287,21 @@ impl More {
 ///
 /// # Errors
 /// Damaged data, or cancelled.
-pub(crate) fn load_bare(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
+pub fn load_bare(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
     let document = project.document();
     let geometry = document.frame()?.clone();
-    let raw = style::of_project(document).raw;
+    let raw = styles::transfer_functions(document).raw;
     let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).collect();
     Ok(Loaded {
         rock: None,
-        volumes: read_volumes(project.root(), document, &geometry, &wanted, memory::half_of_available(), progress)?,
+        volumes: read_volumes(
+            project.root(),
+            document,
+            &geometry,
+            &wanted,
+            memory_budget::half_of_available(),
+            progress,
+        )?,
         packed: None,
         wells: read_wells(project.root(), document, &geometry)?,
         candidates: ShownCandidates::load(project, scene, None, progress)?,
@@ -319,7 +324,7 @@ fn read_volumes(
     for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
         let covers = placement::covers(geometry, entry.geometry.as_ref().unwrap_or(geometry))
             .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
-        let (volume, level) = data::read_volume_within(root, entry, volume_bytes, progress)?;
+        let (volume, level) = content::read_volume_within(root, entry, volume_bytes, progress)?;
         if level > 0 {
             let apart = 1 << level;
             progress.warn(format!(
@@ -337,7 +342,7 @@ fn read_volumes(
 fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Result<Vec<LoadedWell>, ProjectError> {
     let mut wells = Vec::new();
     for entry in &document.wells {
-        let well = data::read_well(root, entry)?;
+        let well = content::read_well(root, entry)?;
         let tops = well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, geometry)).collect();
         wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(geometry), tops });
     }
@@ -355,12 +360,7 @@ fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) 
 
 /// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so
 /// that tiles print in their own shape.
-pub(crate) fn block_extent(
-    geometry: &SurveyGeometry,
-    rock: &Rock,
-    names: Vec<String>,
-    exaggeration: f64,
-) -> BlockExtent {
+pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
     let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
     let extent = [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny];
     let layer =

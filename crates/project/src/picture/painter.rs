@@ -1,7 +1,7 @@
 //! Pictures of a project, and PNG files that know their printed size.
 
 use crate::error::ProjectError;
-use crate::pipeline::{Loaded, Stage};
+use crate::picture::load::{Loaded, Stage};
 use image::RgbaImage;
 use render::reference::CpuRenderer;
 use render::{RenderError, Renderer, Scene};

@@ -1,8 +1,8 @@
 //! Which view of a project is drawn when nothing else is said.
 
+use crate::document::Document;
 use crate::error::{Noun, ProjectError};
-use crate::project::Document;
-use crate::style;
+use crate::styles;
 use render::media::{Colouring, LayerOpacity, MediumColour, white_ramp};
 use render::{
     Background, FaceData, Faces, Ground, Interleaved, Isosurface, Medium, Occlusion, Outlines, Phong, PickedHorizon,
@@ -176,7 +176,7 @@ impl SeeThrough {
         }
         let surfaces_alone = !scene.media.isosurfaces.is_empty() && self.medium.is_none();
         if self.medium.is_some() || scene.media.surroundings.is_empty() && !surfaces_alone {
-            let raw = style::raw_colour(document, self.medium.as_deref(), ColourMap::Grey, None)?;
+            let raw = styles::raw_colour(document, self.medium.as_deref(), ColourMap::Grey, None)?;
             let [low, high] = raw.function.domain;
             let mut function = white_ramp(high, self.clear_below);
             if low >= 0.0 {
@@ -200,7 +200,7 @@ impl SeeThrough {
             scene.media.shading = Shading::Occlusion(Occlusion::default());
         }
         let Some(name) = &self.medium else { return Ok(()) };
-        let mut raw = style::raw_colour(document, Some(name), ColourMap::Seismics, None)?;
+        let mut raw = styles::raw_colour(document, Some(name), ColourMap::Seismics, None)?;
         if let Some(own) = document.style.raw.as_ref().filter(|own| own.volume == *name) {
             raw = own.clone();
         }

@@ -8,12 +8,13 @@
 //!
 //! In memory: five bytes a voxel, and the trees without their triangles.
 
-use crate::command::picked_selection;
+use crate::Project;
+use crate::document::Document;
+use crate::document::PickEntry;
 use crate::error::{Noun, ProjectError};
-use crate::extraction;
-use crate::horizon_distance::{self, FARTHEST};
-use crate::project::document::PickEntry;
-use crate::project::{Document, Project};
+use crate::interpretation::assembly::picked_selection;
+use crate::interpretation::extraction;
+use crate::picture::horizon_distance::{self, FARTHEST};
 use interp::Forest;
 use interp::assembly::selected_leaves;
 use render::media::Colouring;

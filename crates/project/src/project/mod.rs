@@ -1,8 +1,8 @@
 //! A project: a folder `NAME.petro` with what was imported, how it is to be drawn, and how that came about.
 //!
 //! ```text
-//! project.toml        the state (see `document`); replaced as a whole, never changed in place
-//! history/NNNN.toml   each command with the state it led to (see `history`)
+//! project.toml        the state (see [`crate::document`]); replaced as a whole, never changed in place
+//! history/NNNN.toml   each command with the state it led to (see [`crate::folder`])
 //! volumes/ horizons/ faults/ wells/ textures/   data, one new file or folder for each generation
 //! derived/            what was computed; may be deleted
 //! unfinished/         what a command under way is writing; removed by the next writer after a crash
@@ -17,27 +17,13 @@
 //!
 //! Deliberately absent: no state is kept in memory that is not on disk, and nothing that is saved is edited in place.
 
-pub mod document;
-mod draft;
-mod entries;
-mod history;
-mod layers;
-mod picks;
-pub mod placement;
-pub(crate) mod storage;
-
-pub use document::{Document, Polarity};
-pub use draft::Draft;
-pub use history::{HISTORY_LIMIT, Step};
-
-pub(crate) use storage::at_hand;
-
-use crate::command::{Command, Effect, IMPORTING};
+use crate::command::{Command, Effect};
 use crate::derived;
+use crate::document::{Document, data_file};
 use crate::error::ProjectError;
+use crate::folder::{Draft, IMPORTING, Lock, Step, history, storage};
 use std::fs;
 use std::path::{Path, PathBuf};
-use storage::Lock;
 use survey::{Progress, SurveyGeometry};
 
 /// An open project.
@@ -193,7 +179,7 @@ impl Project {
         let text = draft.document.to_text(&path)?;
         // A state that could not be read back must never be saved.
         let document = Document::from_text(&text, &path)?;
-        let step = Step { summary, command: command.cloned(), project: text.clone() };
+        let step = Step { summary, command: command.map(recorded).transpose()?, project: text.clone() };
         history::prepare(&self.root, number, &step)?;
         draft.publish()?;
         storage::replace(&self.root, storage::STATE, text.as_bytes())?;
@@ -214,6 +200,12 @@ impl Project {
         self.text = step.project;
         Ok(())
     }
+}
+
+/// A command as the history keeps it.
+fn recorded(command: &Command) -> Result<toml::Value, ProjectError> {
+    toml::Value::try_from(command)
+        .map_err(|error| ProjectError::Malformed { path: PathBuf::from("history"), detail: error.to_string() })
 }
 
 /// Marks the folder of a project in the making; locked by whoever makes it.
@@ -267,13 +259,13 @@ impl NewProject {
         for folder in [storage::UNFINISHED, storage::DERIVED] {
             storage::remove(root, folder);
         }
-        for folder in ["history"].iter().chain(&storage::KINDS) {
+        for folder in ["history"].iter().chain(&data_file::KINDS) {
             storage::remove(root, folder);
             fs::create_dir(root.join(folder)).map_err(fail)?;
         }
         let step = Step {
             summary: "create".to_owned(),
-            command: Some(Command::Create { geometry: document.geometry }),
+            command: Some(recorded(&Command::Create { geometry: document.geometry })?),
             project: text.clone(),
         };
         history::prepare(root, 0, &step)?;

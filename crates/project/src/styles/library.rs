@@ -1,7 +1,7 @@
 //! The patterns a project can use: the built-in ones and its own tiles.
 
+use crate::document::Document;
 use crate::error::ProjectError;
-use crate::project::Document;
 use std::path::Path;
 use ttf::TextureLibrary;
 
@@ -9,7 +9,7 @@ use ttf::TextureLibrary;
 ///
 /// # Errors
 /// A tile of the project cannot be read any more.
-pub fn of_project(root: &Path, document: &Document) -> Result<TextureLibrary, ProjectError> {
+pub fn pattern_library(root: &Path, document: &Document) -> Result<TextureLibrary, ProjectError> {
     let mut library = TextureLibrary::builtin()?;
     for entry in &document.textures {
         let index = library.add_user(&root.join(&entry.file))?;

@@ -1,7 +1,7 @@
 //! Colours of raw data that fit a project's volumes.
 
+use crate::document::Document;
 use crate::error::{Noun, ProjectError};
-use crate::project::Document;
 use ttf::{ColourMap, RawColour, RgbaFunction, TransferFunctions};
 
 /// A volume of the project in the colours of a map: over `range`, or centred on zero and clipped where 99 % of the samples end. Without a
@@ -28,7 +28,7 @@ pub fn raw_colour(
 }
 
 /// The project's transfer functions, with colours for the first volume where none are set.
-pub fn of_project(document: &Document) -> TransferFunctions {
+pub fn transfer_functions(document: &Document) -> TransferFunctions {
     let mut functions = document.style.functions();
     if functions.raw.is_none() {
         functions.raw = raw_colour(document, None, ColourMap::Seismics, None).ok();

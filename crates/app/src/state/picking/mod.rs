@@ -9,13 +9,14 @@ mod steps;
 mod tests;
 
 use super::{SliceKind, Task};
-use crate::command::{Climb, Command, PickNode, assembly::next_colour};
-use crate::error::Noun;
-use crate::project::Document;
 use glam::{DVec2, DVec3};
 use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::faults::Proposal;
+use project::command::{Climb, Command, PickNode};
+use project::document::Document;
+use project::error::Noun;
+use project::interpretation::assembly::next_colour;
 use render::{FaceData, Scene};
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;

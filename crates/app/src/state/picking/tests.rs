@@ -1,8 +1,8 @@
 //! Steps of the interpretation without a window.
 
 use super::*;
-use crate::app::state::tests::open;
-use crate::app::state::{Action, Notice, Place, State};
+use crate::state::tests::open;
+use crate::state::{Action, Notice, Place, State};
 
 fn picking(state: &State) -> &Picking {
     &state.session.as_ref().unwrap().view.picking

@@ -1,7 +1,7 @@
 //! Pictures that are compared: where each lies, what of it is seen, and what parts them.
 
-use crate::app::state::{Compare, Panel, Session};
-use crate::app::theme;
+use crate::state::{Compare, Panel, Session};
+use crate::theme;
 use eframe::egui::{Align2, Color32, FontId, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
 /// A view is narrow for two blocks beside one another below this width, heights.

@@ -1,8 +1,8 @@
 //! The block under the hand: turned, moved, zoomed, cut by its faces; the line of the wipe.
 
 use super::{REACH, dvec, screen};
-use crate::app::state::faces::{self, Face, Handle};
-use crate::app::state::{Action, Compare, Session, StandardView, camera};
+use crate::state::faces::{self, Face, Handle};
+use crate::state::{Action, Compare, Session, StandardView, camera};
 use eframe::egui::{CursorIcon, Modifiers, PointerButton, Pos2, Rect, Response, Ui};
 use glam::DVec2;
 use render::Scene;

@@ -1,6 +1,6 @@
 //! The block: pictures from the painter, turned and cut by hand.
 //!
-//! Two spaces: points of the window, and pixels of the picture (points × the display's scale). Cameras are changed in points: [`camera`](crate::app::state::camera)
+//! Two spaces: points of the window, and pixels of the picture (points × the display's scale). Cameras are changed in points: [`camera`](crate::state::camera)
 //! needs proportions only.
 
 mod compare;
@@ -12,15 +12,15 @@ use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use super::texture;
-use crate::app::state::faces::{self, Handle};
-use crate::app::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, showing};
-use crate::app::theme;
-use crate::app::work::{Drawing, Drawn, PictureWish, Rocks, Touch};
-use crate::pipeline::Loaded;
+use crate::state::faces::{self, Handle};
+use crate::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, showing};
+use crate::theme;
+use crate::work::{Drawing, Drawn, PictureWish, Rocks, Touch};
 use compare::fitted;
 use eframe::egui::{Color32, ColorImage, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2};
 use glam::DVec2;
 use hand::Hand;
+use project::picture::load::Loaded;
 use render::{Background, Faces, Media, Scene};
 
 /// How near the pointer must be to take hold of a handle or of the wipe's line, points.

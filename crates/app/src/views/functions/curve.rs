@@ -3,7 +3,7 @@
 
 use super::colour_well;
 use super::histogram::Histogram;
-use crate::app::theme;
+use crate::theme;
 use eframe::egui::{
     Button, Color32, DragValue, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };

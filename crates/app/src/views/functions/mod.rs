@@ -7,15 +7,15 @@ mod histogram;
 mod scalars;
 mod through;
 
-use crate::app::state::{Action, Session};
-use crate::app::theme;
-use crate::app::work::{Rocks, Swatches};
-use crate::command::{Command, RemoveScalar, SetRaw, SetScalar};
-use crate::project::Document;
-use crate::style;
+use crate::state::{Action, Session};
+use crate::theme;
+use crate::work::{Rocks, Swatches};
 use curve::Curve;
 use eframe::egui::{Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use histogram::Histogram;
+use project::command::{Command, RemoveScalar, SetRaw, SetScalar};
+use project::document::Document;
+use project::styles;
 use scalars::{intervals, ranges};
 use std::collections::HashMap;
 use ttf::{ColourMap, RawColour, ScalarInterval, ScalarTtf};
@@ -57,10 +57,10 @@ impl Functions {
         actions: &mut Vec<Action>,
     ) {
         let document = &session.document;
-        if self.sent && (style::of_project(document).raw == self.draft) {
+        if self.sent && (styles::transfer_functions(document).raw == self.draft) {
             (self.draft, self.sent) = (None, false);
         }
-        if let Some(raw) = self.draft.clone().or_else(|| style::of_project(document).raw) {
+        if let Some(raw) = self.draft.clone().or_else(|| styles::transfer_functions(document).raw) {
             self.raw(ui, document, &raw, rocks, actions);
         }
         if !document.horizons.is_empty() {
@@ -229,7 +229,7 @@ fn map(ui: &mut Ui, document: &Document, raw: &mut RawColour) {
             );
         });
         if let Some(map) = chosen.filter(|_| chosen != present)
-            && let Ok(next) = style::raw_colour(document, Some(&raw.volume), map, Some(raw.function.domain))
+            && let Ok(next) = styles::raw_colour(document, Some(&raw.volume), map, Some(raw.function.domain))
         {
             *raw = next;
         }

@@ -1,8 +1,8 @@
 //! Textures by value: which ranges of a volume's values have one, and which.
 
 use super::histogram::Histogram;
-use crate::app::theme;
-use crate::app::work::Swatches;
+use crate::theme;
+use crate::work::Swatches;
 use eframe::egui::{ComboBox, DragValue, Role, Sense, Ui, WidgetInfo, vec2};
 use ttf::{ScalarInterval, ScalarTtf};
 

@@ -4,10 +4,10 @@
 use super::colour_well;
 use super::curve::Curve;
 use super::histogram::Histogram;
-use crate::app::state::through::{self, Extent, Light};
-use crate::app::state::{Action, Notice, Place, Session};
-use crate::app::views::controls;
-use crate::app::views::sections::entry_colour;
+use crate::state::through::{self, Extent, Light};
+use crate::state::{Action, Notice, Place, Session};
+use crate::views::controls;
+use crate::views::sections::entry_colour;
 use eframe::egui::{ComboBox, DragValue, Grid, Slider, Ui};
 use render::media::{LayerOpacity, MediumColour};
 use render::{PickedHorizon, Scene, Scope, Shading};

@@ -8,15 +8,15 @@ mod style;
 use super::notices;
 use super::sections::entry_colour;
 use super::tiles::Tiles;
-use crate::app::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
-use crate::app::work::Swatches;
-use crate::command::{Command, ResetLayer, SetContact, SetLayer};
-use crate::project::Document;
-use crate::project::document::HorizonEntry;
+use crate::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
+use crate::work::Swatches;
 use eframe::egui::{
     Button, ComboBox, Frame, Grid, Key, Response, Role, ScrollArea, Sense, Slider, Stroke, TextEdit, Ui, WidgetInfo,
     vec2,
 };
+use project::command::{Command, ResetLayer, SetContact, SetLayer};
+use project::document::Document;
+use project::document::HorizonEntry;
 use style::{colours, definition, frequencies, intervals};
 use survey::Contact;
 use ttf::{Colour, LayerStyle, LayerTtf, TextureLibrary};

@@ -1,10 +1,10 @@
 //! The style of a layer: colours, repeats, beds, patterns by depth.
 
-use crate::app::state::{Action, Dialogue};
-use crate::command::{Command, SetLayer};
-use crate::project::Document;
+use crate::state::{Action, Dialogue};
 use eframe::egui::{ComboBox, DragValue, Slider, Ui};
 use param::KDefinition;
+use project::command::{Command, SetLayer};
+use project::document::Document;
 use ttf::{Colour, DepthInterval, Frequency, LayerStyle};
 
 /// Repeats that a layer begins with when it gets frequencies of its own.

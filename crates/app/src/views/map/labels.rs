@@ -1,7 +1,7 @@
 //! Values on index contours, after cartographers' habits (Imhof, 1975): in the line, which is broken for them, along it, upright, where it is straightest; none
 //! over another, none where there is no room. Space: points on the screen.
 
-use crate::app::work::map::Contour;
+use crate::work::map::Contour;
 use eframe::egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Shape, Stroke, Vec2, epaint::TextShape, vec2};
 use std::f32::consts::PI;
 

@@ -3,9 +3,9 @@
 mod labels;
 
 use super::texture;
-use crate::app::state::{Action, Session};
-use crate::app::theme;
-use crate::app::work::map::{MapPicture, MapSource, MapWish, Mapped, Maps};
+use crate::state::{Action, Session};
+use crate::theme;
+use crate::work::map::{MapPicture, MapSource, MapWish, Mapped, Maps};
 use eframe::egui::{
     Align2, Color32, ComboBox, Context, FontId, Mesh, Pos2, Rect, Role, Sense, Shape, Stroke, TextWrapMode,
     TextureHandle, Ui, Vec2, WidgetInfo, pos2, vec2,

@@ -2,17 +2,17 @@
 
 use super::go;
 use super::palette::palette;
-use crate::app::state::{Action, PickingStep, Session};
-use crate::app::views::sections::horizon_colour;
-use crate::app::work::{Interpreted, ShownHorizon};
-use crate::command::{
-    Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, ReplayPicks, SetHorizonColour,
-    Unfit,
-};
-use crate::project::document::HorizonEntry;
+use crate::state::{Action, PickingStep, Session};
+use crate::views::sections::horizon_colour;
+use crate::work::{Interpreted, ShownHorizon};
 use eframe::egui::{Button, DragValue, RichText, Sense, TextEdit, Ui, vec2};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
+use project::command::{
+    Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, ReplayPicks, SetHorizonColour,
+    Unfit,
+};
+use project::document::HorizonEntry;
 use survey::SurveyGeometry;
 
 /// Holes listed at most.

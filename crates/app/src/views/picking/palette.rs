@@ -1,8 +1,8 @@
 //! The colours that horizons can have.
 
-use crate::command::assembly::HORIZON_COLOURS;
 use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{Button, Color32, Grid, Role, Stroke, Ui, WidgetInfo, vec2};
+use project::interpretation::assembly::HORIZON_COLOURS;
 use ttf::Colour;
 
 /// Colours offered beside those that horizons get in turn.

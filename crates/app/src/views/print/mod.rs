@@ -9,17 +9,18 @@ use super::block::{self, BEHIND_VOLUMES};
 use super::parts::{Part, parts};
 use super::sections::entry_colour;
 use super::{fence::FenceView, map::MapView, overlay::Overlay, sections::Sections};
-use crate::app::raster;
-use crate::app::state::{ExportForm, Layout, Panel, Session, Shown, State, showing};
-use crate::app::work::map::{self, MapSource, MapWish, Mapped};
-use crate::app::work::{Rocks, compute, fence, slice};
-use crate::error::ProjectError;
-use crate::picture::{self, Device, Painter};
-use crate::project::Project;
-use crate::{library, pipeline};
+use crate::raster;
+use crate::state::{ExportForm, Layout, Panel, Session, Shown, State, showing};
+use crate::work::map::{self, MapSource, MapWish, Mapped};
+use crate::work::{Rocks, compute, fence, slice};
 use eframe::egui::{Color32, Pos2, Rect, Ui, vec2};
 use glam::DVec2;
 use image::{Rgba, RgbaImage, imageops};
+use project::Project;
+use project::error::ProjectError;
+use project::picture::load;
+use project::picture::{self, Device, Painter};
+use project::styles;
 use render::{Background, FaceData, Scene};
 use std::path::Path;
 use std::sync::{Arc, PoisonError, RwLock};
@@ -121,11 +122,11 @@ impl Page {
             let shown = self.session.view.picking.show;
             let face_data = if scene.face_data == FaceData::Rock { shown } else { scene.face_data };
             let scene = Scene { face_data, ..scene.clone() };
-            compute(|| pipeline::load_bare(project, &scene, progress))?
+            compute(|| load::load_bare(project, &scene, progress))?
         } else {
             // Half-way needs everything that any blend needs.
             let scene = Scene { blend: 0.5, ..scene.clone() };
-            compute(|| pipeline::load(project, &scene, progress))?
+            compute(|| load::load(project, &scene, progress))?
         };
         Ok(Arc::new(RwLock::new(loaded)))
     }
@@ -238,7 +239,7 @@ impl Page {
             sheet::horizons(page, corner, px, &named.collect::<Vec<_>>());
             return Ok(());
         }
-        let library = library::of_project(project.root(), document)?;
+        let library = styles::pattern_library(project.root(), document)?;
         let names = document.layers();
         let styles: Vec<ttf::LayerStyle> = names
             .iter()

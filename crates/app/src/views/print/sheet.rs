@@ -3,10 +3,10 @@
 //! Lengths are millimetres on paper. Bars hold where the projection is parallel; with a perspective they hold in the middle of the block, and the
 //! caption says so.
 
-use crate::app::state::camera;
-use crate::error::ProjectError;
+use crate::state::camera;
 use glam::DVec2;
 use image::{Rgba, RgbaImage, imageops};
+use project::error::ProjectError;
 use render::{Projection, Scene};
 use survey::{SurveyGeometry, VerticalUnit};
 use ttf::text::{draw_text, measure_text};
@@ -39,7 +39,7 @@ pub(super) fn layers(
     let right = f64::from(sheet.width()) - px(MARGIN_MM);
     for (row, style) in styles.iter().enumerate() {
         let y = top + px(PITCH_MM) * row as f64;
-        let swatch = crate::app::views::swatch::draw(
+        let swatch = crate::views::swatch::draw(
             style,
             library,
             SWATCH_MM.map(|side| px(side).round().max(2.0) as u32),

@@ -1,6 +1,6 @@
 //! Which way a section runs: its axes, their numbers, and the numbers along its edges.
 
-use crate::app::state::SliceKind;
+use crate::state::SliceKind;
 use eframe::egui::{Align2, FontId, Rect, Stroke, Ui, pos2};
 use glam::{DVec2, DVec3};
 use survey::SurveyGeometry;
@@ -51,7 +51,7 @@ pub(super) fn value_at(geometry: &SurveyGeometry, axis: usize, index: f64) -> f6
 }
 
 /// The least of 1, 2, 5 × 10ⁿ that is not less.
-pub(in crate::app::views) fn round_step(least: f64) -> f64 {
+pub(in crate::views) fn round_step(least: f64) -> f64 {
     let decade = 10f64.powf(least.max(1e-9).log10().floor());
     [1.0, 2.0, 5.0, 10.0]
         .into_iter()

@@ -1,11 +1,11 @@
 //! Lines over a section: horizons, faults, the fence, the other two sections.
 
 use super::axes::axes;
-use crate::app::state::{Layout, Session, SliceKind};
-use crate::app::theme;
-use crate::project::document::HorizonEntry;
+use crate::state::{Layout, Session, SliceKind};
+use crate::theme;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui};
 use glam::DVec2;
+use project::document::HorizonEntry;
 use survey::section::{LineKind, LineQuality};
 
 /// Colours of horizons, youngest first, told apart by most eyes and on grey.
@@ -34,7 +34,7 @@ pub fn entry_colour(entry: &HorizonEntry, index: usize) -> Color32 {
 }
 
 /// Solid where picked, dashed where filled, dotted where extrapolated; on a light halo, so that it is seen on any amplitude.
-pub(in crate::app::views) fn draw_line(
+pub(in crate::views) fn draw_line(
     painter: &Painter,
     points: Vec<Pos2>,
     kind: LineKind,

@@ -14,8 +14,8 @@ use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use super::texture;
-use crate::app::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, Session, SliceKind};
-use crate::app::work::{Rocks, SlicePicture, SliceWish, Slices};
+use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, Session, SliceKind};
+use crate::work::{Rocks, SlicePicture, SliceWish, Slices};
 use axes::{extent, name, ticks, value_at, voxel};
 use eframe::egui::{
     Align2, Color32, Context, DragValue, FontId, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, pos2,

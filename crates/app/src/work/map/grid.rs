@@ -3,9 +3,9 @@
 //! Each trace takes the shallowest place where the horizon lies in the block it belongs to; where no block has it, there is no value.
 
 use super::Mapped;
-use crate::app::work::{Interpreted, ShownHorizon};
-use crate::pipeline::Loaded;
+use crate::work::{Interpreted, ShownHorizon};
 use glam::Vec3;
+use project::picture::load::Loaded;
 use survey::{Quality, SurveyGeometry};
 
 /// What is known at a trace.

@@ -1,13 +1,13 @@
 //! A project that is followed: what was read of it, and what a selection is in it.
 
 use super::ShownPick;
-use crate::app::state::picking::Pick;
-use crate::candidates::Candidates;
-use crate::command::assembly::{self, overlap_in_lines};
-use crate::error::ProjectError;
-use crate::project::Document;
+use crate::state::picking::Pick;
 use interp::assembly::{ClimbSettings, Occupancy, Overlap, Selection, node_above};
 use interp::reassembly::reassemble;
+use project::document::Document;
+use project::error::ProjectError;
+use project::interpretation::assembly::{self, overlap_in_lines};
+use project::interpretation::candidates::Candidates;
 use std::path::PathBuf;
 use std::sync::Arc;
 use survey::SurveyGeometry;

@@ -8,15 +8,8 @@ mod followed;
 
 use super::running::Running;
 use super::{Event, Outbox, compute_apart, spawn};
-use crate::app::state::picking::{Pick, voxel_of};
-use crate::app::state::{Notice, PickingStep, PickingTask, Place};
-use crate::candidates::Candidates;
-use crate::command::assembly::{self, AssemblyReport, conflicts_of, overlap_in_lines, report_on, sentence};
-use crate::command::pick::{leaf_near, levels};
-use crate::error::ProjectError;
-use crate::project::document::{Assembly, HorizonEntry};
-use crate::project::{Document, Project};
-use crate::{data, extraction, proposals};
+use crate::state::picking::{Pick, voxel_of};
+use crate::state::{Notice, PickingStep, PickingTask, Place};
 use followed::Followed;
 use glam::DVec3;
 use interp::ExtractReport;
@@ -24,6 +17,14 @@ use interp::assembly::{ClimbSettings, Overlap, highest_valid, selected_leaves};
 use interp::faults::{Proposal, ProposeSettings};
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
+use project::Project;
+use project::content;
+use project::document::Document;
+use project::document::{Assembly, HorizonEntry};
+use project::error::ProjectError;
+use project::interpretation::assembly::{self, AssemblyReport, conflicts_of, overlap_in_lines, report_on, sentence};
+use project::interpretation::candidates::Candidates;
+use project::interpretation::{extraction, proposals};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -249,8 +250,8 @@ impl Keeper {
         let candidates = followed.candidates()?;
         let found = match task {
             PickingTask::Find(at) => {
-                let hit = leaf_near(candidates, &followed.geometry, at)?;
-                Pick { at, leaf: hit.leaf, up: 0, levels: levels(candidates, hit.leaf) }
+                let hit = candidates.leaf_near(&followed.geometry, at)?;
+                Pick { at, leaf: hit.leaf, up: 0, levels: candidates.levels(hit.leaf) }
             }
             PickingTask::HighestValid(pick, horizon) => {
                 let chosen = followed.chosen(horizon.as_deref());
@@ -302,7 +303,7 @@ impl Keeper {
             Some(kept) => kept,
             None => assembly::blocks(&root, &document, &progress)?,
         };
-        let report = stored.and_then(|stored| serde_json::from_value(stored.info().report.clone()).ok());
+        let report = stored.and_then(|stored| extraction::report(&stored));
         let followed = Followed { root, document, geometry, candidates, blocks };
         let shown = self.interpreted(&followed, report, &progress)?;
         drop(guard);
@@ -325,7 +326,7 @@ impl Keeper {
             let key = format!("{} {faults_key}", entry.hash);
             let sheets = match self.sheets.remove(&key) {
                 Some(sheets) => sheets,
-                None => Arc::new(from_horizon(&data::read_horizon(root, entry, progress)?, geometry, blocks)),
+                None => Arc::new(from_horizon(&content::read_horizon(root, entry, progress)?, geometry, blocks)),
             };
             kept.insert(key, sheets);
         }
@@ -358,7 +359,7 @@ impl Keeper {
             }
         });
         let horizons = horizons.collect();
-        let faults = document.faults.iter().map(|entry| Ok(shown(&data::read_fault(root, entry)?, geometry)));
+        let faults = document.faults.iter().map(|entry| Ok(shown(&content::read_fault(root, entry)?, geometry)));
         let faults = faults.collect::<Result<_, ProjectError>>()?;
         let (proposals, unit) = proposed(root, document, geometry);
         self.number += 1;
@@ -391,7 +392,7 @@ fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {
 fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec<(Proposal, ShownFault)>, String) {
     let Ok(kept) = proposals::kept(root, document) else { return (Vec::new(), String::new()) };
     let accepted = |proposal: &Proposal| {
-        let hash = data::hash_fault(&proposal.fault(""));
+        let hash = content::hash_fault(&proposal.fault(""));
         document.faults.iter().any(|entry| entry.hash == hash)
     };
     let open = kept.proposals.into_iter().filter(|proposal| !accepted(proposal));

@@ -23,7 +23,7 @@ struct Depths {
 }
 
 /// Whether `a` is on the whole above `b`; horizons without a common trace are compared by their mean depth.
-pub(super) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
+pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
     let (mut difference, mut common) = (0.0f64, 0usize);
     for (a, b) in common_traces(a, b, geometry) {
         difference += f64::from(a.shallow + a.deep - b.shallow - b.deep);
@@ -41,7 +41,7 @@ fn mean(horizon: &Horizon) -> f64 {
 ///
 /// # Errors
 /// [`ProjectError::Crossing`] with where and by how much.
-pub(super) fn check(younger: &Horizon, older: &Horizon, geometry: &SurveyGeometry) -> Result<(), ProjectError> {
+pub(crate) fn check(younger: &Horizon, older: &Horizon, geometry: &SurveyGeometry) -> Result<(), ProjectError> {
     let tolerance = TOLERANCE_SAMPLES * geometry.vertical.interval as f32;
     let (mut common, mut crossing) = (0usize, 0usize);
     let (mut worst, mut place) = (0.0f32, [0usize; 2]);

@@ -2,11 +2,11 @@
 
 use super::running::{Running, RunningGuard};
 use super::{Event, Outbox, spawn};
-use crate::app::state::{Notice, Place, Snapshot};
-use crate::command::{Command, ImportVolume};
-use crate::demo;
-use crate::error::ProjectError;
-use crate::project::Project;
+use crate::state::{Notice, Place, Snapshot};
+use project::Project;
+use project::command::{Command, ImportVolume};
+use project::demo;
+use project::error::ProjectError;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Sender, channel};
 use survey::Progress;
@@ -33,7 +33,7 @@ pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
                     tell_warnings(&guard, place, &outbox);
                     outbox.send(event);
                 }
-                Err(error) => outbox.send(Event::Told(Notice::failure(place, error.as_ref()))),
+                Err(error) => outbox.send(Event::Told(Notice::failure(place, &error))),
             }
             drop(guard);
             outbox.wake();
@@ -74,7 +74,7 @@ impl Order {
         }
     }
 
-    fn carry_out(self, progress: &Progress) -> anyhow::Result<Event> {
+    fn carry_out(self, progress: &Progress) -> Result<Event, ProjectError> {
         Ok(match self {
             Self::Open(root) => Event::Opened(Box::new(snapshot(&Project::open(&absolute(&root))?)?)),
             Self::Demo(folder) => {
