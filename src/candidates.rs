@@ -9,8 +9,8 @@ use crate::held::Held;
 use interp::Forest;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use store::StoredCandidates;
 use survey::Progress;
-use survey::store::StoredCandidates;
 
 /// By place and key.
 static HELD: Held<(PathBuf, String), Candidates> = Held::nothing();

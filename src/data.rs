@@ -6,7 +6,7 @@ use crate::error::ProjectError;
 use crate::project::at_hand;
 use crate::project::document::{FaultEntry, HorizonEntry, VolumeEntry, WellEntry};
 use std::path::Path;
-use survey::store::{self, StoreError, StoredVolume};
+use store::{StoreError, StoredVolume};
 use survey::{Fault, Horizon, Progress, Volume, Well};
 
 /// BLAKE3 of a volume's size, sample type, the checksums of its bricks and its live-trace mask: what identifies its samples, without reading

@@ -7,14 +7,14 @@
 use crate::error::ProjectError;
 use crate::project::Project;
 use crate::project::document::VolumeEntry;
-use interp::{ExtractReport, ExtractSettings, Forest, extract_to_store};
+use interp::{ExtractReport, ExtractSettings, Forest, extract_into};
 use serde::Serialize;
 use std::fmt;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use store::{CandidateWriter, Replacement, StoredCandidates, StoredVolume};
 use survey::Progress;
-use survey::store::{Replacement, StoredCandidates, StoredVolume};
 
 /// Inlines of a stored volume that are read at a time: an edge of its bricks.
 const SLAB_INLINES: usize = 64;
@@ -122,7 +122,8 @@ pub fn extract(
         return Ok(answer(report, false));
     }
     let source = StoredVolume::open(&project.root().join(&entry.file))?;
-    let report = extract_to_store(&file, &key, &source, &settings, progress)?;
+    let begin = |size, leaves| Ok(CandidateWriter::create(&file, size, leaves)?);
+    let report = extract_into(begin, &key, &source, &settings, progress)?;
     if let Some(sentence) = report.nothing_found() {
         progress.warn(&sentence);
     }

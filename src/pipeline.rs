@@ -6,12 +6,12 @@ use crate::project::{Document, Project, placement};
 use crate::shown_candidates::ShownCandidates;
 use crate::{data, derived, library, memory, style};
 use glam::{DVec3, Vec3};
+use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
 use render::{Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox, WellPath};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use survey::model::{ModelSettings, StructuralModel};
 use survey::{Progress, SurveyGeometry, Volume};
 use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
 

@@ -8,10 +8,10 @@ use crate::command::{AddHorizon, Age, Command};
 use crate::project::document::{HorizonEntry, PickEntry};
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
+use formats::ImportOptions;
 use glam::DVec3;
 use interp::ExtractSettings;
 use survey::Contact;
-use survey::formats::ImportOptions;
 
 fn entry(harness: &Driven) -> Option<HorizonEntry> {
     document(harness).horizons.into_iter().find(|entry| entry.name == "Horizon 1")

@@ -6,12 +6,12 @@
 
 use crate::error::ProjectError;
 use glam::Vec3;
+use model::StructuralModel;
 use rayon::prelude::*;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use survey::Progress;
-use survey::model::StructuralModel;
 
 /// Writes the three files.
 ///

@@ -6,8 +6,8 @@
 use crate::error::ProjectError;
 use crate::pipeline::{self, Rock};
 use glam::{DVec2, DVec3};
+use model::{ModelSettings, StructuralModel};
 use std::f64::consts::TAU;
-use survey::model::{ModelSettings, StructuralModel};
 use survey::{
     Contact, Fault, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,
     TriangleMesh, VerticalUnit,

@@ -12,12 +12,10 @@ use crate::command::{
 };
 use crate::memory;
 use crate::project::Polarity;
+use attribute::{DipSettings, SemblanceSettings};
+use formats::{Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit};
+use segy::WriteFormat;
 use survey::Contact;
-use survey::attribute::{DipSettings, SemblanceSettings};
-use survey::formats::{
-    Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit,
-};
-use survey::segy::WriteFormat;
 
 /// One of several words.
 pub(super) fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {

@@ -14,16 +14,16 @@ use crate::command::{
 };
 use crate::picture::Device;
 use crate::scene::{SeeThrough, ShownHorizon, ShownIsosurface, Technique};
+use formats::{ExportOptions, Format, ImportOptions};
 use glam::DVec2;
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
 use render::{Scalar, Scope};
+use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;
-use survey::formats::{ExportOptions, Format, ImportOptions};
-use survey::segy::{SegyOptions, WriteFormat};
-use survey::synth::SynthSettings;
 use survey::{SurveyGeometry, VerticalUnit};
+use synth::SynthSettings;
 use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
 
 /// Something to do.

@@ -13,11 +13,11 @@ use crate::{
     volume_file,
 };
 use anyhow::Context;
+use formats::{ExportOptions, Format};
 use render::Scene;
 use std::path::Path;
 use std::time::Instant;
 use survey::Progress;
-use survey::formats::{self, ExportOptions, Format};
 use ttf::{TextureLibrary, contact_sheet};
 
 /// Why there is no answer.

@@ -8,9 +8,9 @@ use crate::command::{AddWell, Command, RemoveWell, RenameWell, WellAdded};
 use crate::data;
 use crate::error::Noun;
 use crate::project::Project;
+use formats::ZUnit;
+use formats::well::{WellFiles, WellOptions, WellReport};
 use survey::Progress;
-use survey::formats::ZUnit;
-use survey::well::{WellFiles, WellOptions, WellReport};
 
 /// A typed action as a request.
 pub(super) fn well(action: WellAction) -> Result<Request, Usage> {

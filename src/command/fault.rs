@@ -5,11 +5,10 @@ use super::{Effect, Noun, ProjectError};
 use crate::data;
 use crate::project::Draft;
 use crate::project::document::FaultEntry;
+use formats::{ImportOptions, ImportReport};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::Progress;
-use survey::formats::{self, ImportOptions, ImportReport};
-use survey::store;
 
 /// Reads a fault into the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

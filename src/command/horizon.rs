@@ -8,11 +8,10 @@ use super::{Effect, Noun, ProjectError};
 use crate::data;
 use crate::project::Draft;
 use crate::project::document::HorizonEntry;
+use formats::{ImportOptions, ImportReport};
+use model::ContactRules;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use survey::formats::{self, ImportOptions, ImportReport};
-use survey::model::ContactRules;
-use survey::store;
 use survey::{Contact, Horizon, Progress};
 
 /// Where a horizon goes in the stratigraphy.

@@ -10,8 +10,8 @@ use interp::assembly::{
     AssemblyError, ClimbSettings, Fingerprint, Fit, Hit, Operation, Overlap, Selection, highest_valid, leaf_at,
     node_above,
 };
+use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
-use survey::model::FaultNetwork;
 use survey::{Progress, SurveyGeometry};
 use ttf::Colour;
 

@@ -4,7 +4,7 @@ use super::ProjectError;
 use crate::data;
 use crate::project::document::{Polarity, Source, VolumeEntry};
 use std::path::Path;
-use survey::store::StoredVolume;
+use store::StoredVolume;
 use survey::{Progress, SurveyGeometry};
 
 /// Share of the samples that a colour map shows unclipped.

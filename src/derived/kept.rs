@@ -6,8 +6,8 @@ use serde::de::DeserializeOwned;
 use std::fs::{self, File};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
+use store::Replacement;
 use survey::Progress;
-use survey::store::Replacement;
 
 /// Files kept of each kind: the present one, and those that a few undos lead back to.
 pub(super) const KEPT: usize = 4;

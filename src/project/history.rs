@@ -111,7 +111,7 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
     }
     for folder in ["", "volumes", "horizons", "faults", "textures"] {
         let folder = root.join(folder);
-        survey::store::clean(&folder);
+        store::clean(&folder);
         storage::entries(&folder).iter().filter(|path| is_new(path)).for_each(|path| storage::remove(path));
     }
     Ok(())

@@ -10,8 +10,8 @@ use crate::command::{AddFault, AddHorizon, Age, Command};
 use eframe::egui::{
     Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui,
 };
+use formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use std::path::{Path, PathBuf};
-use survey::formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use survey::{Contact, Setting};
 
 /// The dialogue.

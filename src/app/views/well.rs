@@ -9,10 +9,10 @@ use crate::app::work::folder::{Folder, Listing};
 use crate::app::work::scan::Reading;
 use crate::command::{AddWell, Command};
 use eframe::egui::{Button, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use formats::ZUnit;
+use formats::well::{WellFiles, WellOptions, read_well};
 use std::path::{Path, PathBuf};
 use survey::Setting;
-use survey::formats::ZUnit;
-use survey::well::{WellFiles, WellOptions, read_well};
 
 /// Endings of tables.
 const TABLES: [&str; 3] = ["csv", "txt", "dat"];

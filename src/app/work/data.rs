@@ -10,12 +10,12 @@ use crate::error::ProjectError;
 use crate::pipeline::{self, Loaded};
 use crate::project::{Document, Project};
 use crate::{derived, library, style};
+use model::ModelSettings;
 use render::media::{LayerOpacity, MediumColour, white_ramp};
 use render::{FaceData, Media, Medium, PickedHorizon, Scene};
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError, RwLock};
 use survey::Progress;
-use survey::model::ModelSettings;
 use ttf::{Colour, TtfTables};
 
 /// Loaded data; whoever only looks must not wait for it (`try_read`).

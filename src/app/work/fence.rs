@@ -7,8 +7,8 @@ use super::slice::{SliceLine, lines_of, raster};
 use crate::pipeline::Loaded;
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
+use model::section::SectionPlane;
 use render::FaceData;
-use survey::section::SectionPlane;
 
 /// A fence to be seen.
 #[derive(Clone)]

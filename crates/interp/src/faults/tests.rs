@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::reassembly::from_horizon;
-use survey::attribute::{DipSettings, SemblanceSettings, dip, semblance};
-use survey::model::{FaultNetwork, ModelSettings};
-use survey::synth::{SynthSettings, Synthetic};
+use attribute::{DipSettings, SemblanceSettings, dip, semblance};
+use model::{FaultNetwork, ModelSettings};
 use survey::{NodeGrid, Quality, Sheet, VerticalUnit};
+use synth::{SynthSettings, Synthetic};
 
 fn survey_of(seed: u64) -> Synthetic {
     let settings = SynthSettings { size: [128, 112, 128], seed, snr: None, ..SynthSettings::default() };

@@ -6,7 +6,7 @@ use crate::app::theme;
 use crate::project::document::HorizonEntry;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui};
 use glam::DVec2;
-use survey::section::{LineKind, LineQuality};
+use model::section::{LineKind, LineQuality};
 
 /// Colours of horizons, youngest first, told apart by most eyes and on grey.
 const HORIZON_COLOURS: [Color32; 8] = [

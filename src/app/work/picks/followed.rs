@@ -8,10 +8,10 @@ use crate::error::ProjectError;
 use crate::project::Document;
 use interp::assembly::{ClimbSettings, Occupancy, Overlap, Selection, node_above};
 use interp::reassembly::reassemble;
+use model::FaultNetwork;
 use std::path::PathBuf;
 use std::sync::Arc;
 use survey::SurveyGeometry;
-use survey::model::FaultNetwork;
 
 /// A project followed, and what was read of it.
 pub(super) struct Followed {
