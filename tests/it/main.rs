@@ -10,6 +10,7 @@ mod extraction;
 mod help;
 mod kill;
 mod program;
+mod proposed_faults;
 mod safety;
 mod see_through;
 mod store;

@@ -194,7 +194,7 @@ where
         size,
         max_distance: settings.distance.max_distance,
         leaves: forest.leaf_count(),
-        report: serde_json::to_value(&report).unwrap_or_default(),
+        report: report.clone(),
     };
     drop(forest);
     sink.finish(&info, &tables, progress).map_err(Error::Sink)?;

@@ -24,6 +24,8 @@ use super::pyramid::halved;
 use super::replacement::Replacement;
 use super::sample::StoredSample;
 use rayon::prelude::*;
+use serde::Serialize;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use survey::candidates::{BEYOND, CandidateBox, CandidateInfo, CandidateSink, ForestTables};
 use survey::progress::Progress;
@@ -119,7 +121,12 @@ impl CandidateWriter {
     ///
     /// # Errors
     /// [`StoreError`]; the target is then what it was before.
-    pub fn finish(self, info: &CandidateInfo, forest: &ForestTables, progress: &Progress) -> Result<(), StoreError> {
+    pub fn finish<R: Serialize>(
+        self,
+        info: &CandidateInfo<R>,
+        forest: &ForestTables,
+        progress: &Progress,
+    ) -> Result<(), StoreError> {
         let Self { replacement, size, mut half, .. } = self;
         let group = replacement.path();
         write_group(group, "pyramid", serde_json::Map::new())?;
@@ -163,7 +170,12 @@ impl CandidateSink for CandidateWriter {
         Ok(Self::write_slab(self, first, distance, leaf, progress)?)
     }
 
-    fn finish(self, info: &CandidateInfo, forest: &ForestTables, progress: &Progress) -> Result<(), SourceError> {
+    fn finish<R: Serialize>(
+        self,
+        info: &CandidateInfo<R>,
+        forest: &ForestTables,
+        progress: &Progress,
+    ) -> Result<(), SourceError> {
         Ok(Self::finish(self, info, forest, progress)?)
     }
 }
@@ -261,7 +273,7 @@ fn write_table<T: StoredSample>(
 /// Candidates on disk.
 pub struct StoredCandidates {
     path: PathBuf,
-    info: CandidateInfo,
+    info: CandidateInfo<Value>,
     levels: Vec<[StoredArray; 2]>,
 }
 
@@ -271,7 +283,7 @@ impl StoredCandidates {
     /// # Errors
     /// [`StoreError`] when they are missing, of another kind, newer than this program or damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
-        let info: CandidateInfo = read_header(path, KIND, "horizon candidates")?;
+        let info: CandidateInfo<Value> = read_header(path, KIND, "horizon candidates")?;
         let mut size = info.size;
         let mut opened = Vec::new();
         for level in 0..levels(info.size) {
@@ -296,7 +308,7 @@ impl StoredCandidates {
     }
 
     /// What is known of them.
-    pub fn info(&self) -> &CandidateInfo {
+    pub fn info(&self) -> &CandidateInfo<Value> {
         &self.info
     }
 
@@ -397,7 +409,7 @@ fn widened(ids: &[u16]) -> Vec<u32> {
 mod tests {
     use super::*;
 
-    fn info(size: [usize; 3], leaves: usize) -> CandidateInfo {
+    fn info(size: [usize; 3], leaves: usize) -> CandidateInfo<Value> {
         CandidateInfo {
             key: "k".into(),
             size,

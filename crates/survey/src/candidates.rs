@@ -21,7 +21,7 @@ pub struct CandidateBox {
 
 /// What is known of candidates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CandidateInfo {
+pub struct CandidateInfo<R> {
     /// Identifies what they were computed from.
     pub key: String,
     /// `[inlines, crosslines, samples]`.
@@ -31,7 +31,7 @@ pub struct CandidateInfo {
     /// Leaves, which is the greatest leaf id.
     pub leaves: usize,
     /// What the one who made them reports, settings and counts.
-    pub report: serde_json::Value,
+    pub report: R,
 }
 
 /// Surfaces and trees as tables. What leaves and nodes mean is the business of those who made them.
@@ -70,5 +70,10 @@ pub trait CandidateSink {
     ///
     /// # Errors
     /// What the sink says, or cancelled.
-    fn finish(self, info: &CandidateInfo, forest: &ForestTables, progress: &Progress) -> Result<(), SourceError>;
+    fn finish<R: Serialize>(
+        self,
+        info: &CandidateInfo<R>,
+        forest: &ForestTables,
+        progress: &Progress,
+    ) -> Result<(), SourceError>;
 }

@@ -1,6 +1,7 @@
 //! The whole extraction: in memory and slab by slab, and where there is nothing to find.
 
 use super::*;
+use serde_json::Value;
 use survey::Volume;
 use survey::candidates::{BEYOND, ForestTables};
 
@@ -40,7 +41,7 @@ fn layers_are_as_far_as_their_cosine_says() {
 /// Keeps in memory what it is given, and puts it into `done` at the end.
 struct Kept<'a> {
     candidates: CandidateBox,
-    done: &'a mut Option<(CandidateBox, CandidateInfo, ForestTables)>,
+    done: &'a mut Option<(CandidateBox, CandidateInfo<Value>, ForestTables)>,
 }
 
 /// Inlines of a slab of [`Kept`]: two whole slabs and a rest of what is extracted here.
@@ -60,15 +61,21 @@ impl CandidateSink for Kept<'_> {
         Ok(())
     }
 
-    fn finish(self, info: &CandidateInfo, forest: &ForestTables, _: &Progress) -> Result<(), SourceError> {
-        *self.done = Some((self.candidates, info.clone(), forest.clone()));
+    fn finish<R: Serialize>(
+        self,
+        info: &CandidateInfo<R>,
+        forest: &ForestTables,
+        _: &Progress,
+    ) -> Result<(), SourceError> {
+        let info = serde_json::from_value(serde_json::to_value(info)?)?;
+        *self.done = Some((self.candidates, info, forest.clone()));
         Ok(())
     }
 }
 
 /// A sink that begins when it is asked to.
 fn kept<'a>(
-    done: &'a mut Option<(CandidateBox, CandidateInfo, ForestTables)>,
+    done: &'a mut Option<(CandidateBox, CandidateInfo<Value>, ForestTables)>,
 ) -> impl FnOnce([usize; 3], usize) -> Result<Kept<'a>, SourceError> {
     |size, _| Ok(Kept { candidates: CandidateBox { size, distance: Vec::new(), leaf: Vec::new() }, done })
 }
