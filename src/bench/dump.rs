@@ -5,13 +5,13 @@
 //! x, y, z), `layers`, `blocks`.
 
 use glam::Vec3;
+use model::StructuralModel;
 use project::error::ProjectError;
 use rayon::prelude::*;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use survey::Progress;
-use survey::model::StructuralModel;
 
 /// Writes the three files.
 ///

@@ -11,7 +11,7 @@ use std::fmt;
 use std::fs;
 use std::path::Path;
 use survey::Progress;
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 
 /// Signal to noise of the volumes.
 const SNR: f64 = 3.0;

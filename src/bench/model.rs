@@ -4,10 +4,10 @@
 //! faults in whose hanging wall the point lies. A fault is the plane `s = s₀ + (depth − 1000)/tan 60°` with s = X or Y.
 
 use glam::{DVec2, DVec3};
+use model::{ModelSettings, StructuralModel};
 use project::error::ProjectError;
 use project::picture::load::{self, Rock};
 use std::f64::consts::TAU;
-use survey::model::{ModelSettings, StructuralModel};
 use survey::{
     Contact, Fault, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,
     TriangleMesh, VerticalUnit,

@@ -74,6 +74,7 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "check unit, sign and picks there, put it elsewhere with --above or --below, or say --contact erosional, onlap or intrusive"
         }
         ProjectError::CircularTruncation { .. } => "take one of these truncations away",
+        ProjectError::NotATruth { .. } => "give the folder that `petroglyph synth` wrote",
         // These say what to do in their own words, or by what can be stated about the file.
         ProjectError::Io { .. }
         | ProjectError::Segy(_)
@@ -81,7 +82,6 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         | ProjectError::Well(_)
         | ProjectError::Store(_)
         | ProjectError::Synth(_)
-        | ProjectError::SynthFile(_)
         | ProjectError::Assembly(_)
         | ProjectError::Attribute(_)
         | ProjectError::Model(_)

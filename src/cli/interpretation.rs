@@ -6,18 +6,16 @@ use super::args::{
 use super::assembly;
 use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
+use attribute::{DipSettings, SemblanceSettings};
+use formats::{Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit};
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
     RemovePick, RenameHorizon, SetContact, SetHorizonColour, SetTruncation,
 };
 use project::document::Polarity;
 use project::memory_budget;
+use segy::WriteFormat;
 use survey::Contact;
-use survey::attribute::{DipSettings, SemblanceSettings};
-use survey::formats::{
-    Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit,
-};
-use survey::segy::WriteFormat;
 
 /// One of several words.
 pub(super) fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {

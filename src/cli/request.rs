@@ -8,6 +8,7 @@ use super::view::View;
 use super::well;
 use super::{assembly, extraction, interpretation};
 use crate::bench;
+use formats::{ExportOptions, Format, ImportOptions};
 use glam::DVec2;
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
@@ -19,11 +20,10 @@ use project::command::{
 use project::picture::Device;
 use project::picture::scene::{SeeThrough, ShownHorizon, ShownIsosurface, Technique};
 use render::{Scalar, Scope};
+use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;
-use survey::formats::{ExportOptions, Format, ImportOptions};
-use survey::segy::{SegyOptions, WriteFormat};
-use survey::synth::SynthSettings;
 use survey::{SurveyGeometry, VerticalUnit};
+use synth::SynthSettings;
 use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
 
 /// Something to do.

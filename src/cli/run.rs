@@ -6,6 +6,7 @@ use super::terminal::Terminal;
 use super::{assembly, draw, info, list};
 use crate::bench;
 use anyhow::Context;
+use formats::{ExportOptions, Format};
 use project::Project;
 use project::command::{AddScene, Command, ImportVolume, SetRaw};
 use project::demo::{self, survey_files};
@@ -18,7 +19,6 @@ use render::Scene;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use survey::Progress;
-use survey::formats::{self, ExportOptions, Format};
 use ttf::{TextureLibrary, contact_sheet};
 
 /// Why there is no answer.

@@ -4,13 +4,13 @@ use super::args::{WellAction, WellAddArgs};
 use super::interpretation::word;
 use super::report::Report;
 use super::request::{Listing, Request, Usage, numbers};
+use formats::ZUnit;
+use formats::well::{WellFiles, WellOptions, WellReport};
 use project::Project;
 use project::command::{AddWell, Command, RemoveWell, RenameWell, WellAdded};
 use project::content;
 use project::error::Noun;
 use survey::Progress;
-use survey::formats::ZUnit;
-use survey::well::{WellFiles, WellOptions, WellReport};
 
 /// A typed action as a request.
 pub(super) fn well(action: WellAction) -> Result<Request, Usage> {

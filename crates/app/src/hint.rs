@@ -72,6 +72,7 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "check unit, sign and picks there, or choose another contact: erosional, onlap or intrusive"
         }
         ProjectError::CircularTruncation { .. } => "take one of these truncations away",
+        ProjectError::NotATruth { .. } => "give the folder of a synthetic survey",
         // These say what to do in their own words, or by what can be stated about the file.
         ProjectError::Io { .. }
         | ProjectError::Segy(_)
@@ -79,7 +80,6 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         | ProjectError::Well(_)
         | ProjectError::Store(_)
         | ProjectError::Synth(_)
-        | ProjectError::SynthFile(_)
         | ProjectError::Assembly(_)
         | ProjectError::Attribute(_)
         | ProjectError::Model(_)

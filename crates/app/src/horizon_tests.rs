@@ -6,12 +6,12 @@ use super::state::{Action, How, PickingStep};
 use super::tests::{Driven, click, document, open, state, wait};
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
+use formats::ImportOptions;
 use glam::DVec3;
 use interp::ExtractSettings;
 use project::command::{AddHorizon, Age, Command};
 use project::document::{HorizonEntry, PickEntry};
 use survey::Contact;
-use survey::formats::ImportOptions;
 
 fn entry(harness: &Driven) -> Option<HorizonEntry> {
     document(harness).horizons.into_iter().find(|entry| entry.name == "Horizon 1")

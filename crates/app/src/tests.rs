@@ -5,12 +5,12 @@ use super::window::Window;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
+use formats::ImportOptions;
 use project::Project;
 use project::command::{AddHorizon, Age, Command};
+use segy::WriteOptions;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use survey::formats::ImportOptions;
-use survey::segy::WriteOptions;
 use survey::{Contact, Progress, SurveyGeometry, VerticalUnit, Volume};
 
 /// Longest wait for a worker before a test gives up; far beyond what any needs.
@@ -61,7 +61,7 @@ pub(super) fn survey(folder: &Path) -> PathBuf {
     let path = folder.join("north.sgy");
     let samples = (0..24 * 20 * 32).map(|n| ((n % 32) as f32 * 0.7).sin()).collect();
     let volume = Volume::from_samples([24, 20, 32], samples).unwrap();
-    survey::segy::write(&path, &geometry(), &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+    segy::write(&path, &geometry(), &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
     path
 }
 

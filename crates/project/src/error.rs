@@ -1,12 +1,13 @@
 //! What can go wrong with a project, with the facts as fields and a hint for what to do next.
 
 use crate::placement::PlacementError;
+use formats::FormatError;
+use formats::well::WellFileError;
+use segy::SegyError;
 use std::io;
 use std::path::{Path, PathBuf};
+use store::StoreError;
 use survey::Remedy;
-use survey::formats::FormatError;
-use survey::segy::SegyError;
-use survey::well::WellError;
 
 /// Kinds of named things in a project.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -198,16 +199,16 @@ pub enum ProjectError {
     Format(#[from] FormatError),
     /// A well's file that could not be read.
     #[error(transparent)]
-    Well(#[from] WellError),
+    Well(#[from] WellFileError),
     /// Data of the project that could not be read or written.
     #[error(transparent)]
-    Store(#[from] survey::store::StoreError),
+    Store(#[from] StoreError),
     /// An attribute could not be computed.
     #[error(transparent)]
-    Attribute(#[from] survey::attribute::AttributeError),
+    Attribute(#[from] attribute::AttributeError),
     /// The interpretation does not make a solid model.
     #[error(transparent)]
-    Model(#[from] survey::model::ModelError),
+    Model(#[from] model::ModelError),
     /// The layers could not be parameterized.
     #[error(transparent)]
     Param(#[from] param::ParamError),
@@ -222,10 +223,15 @@ pub enum ProjectError {
     Render(#[from] render::RenderError),
     /// A synthetic survey could not be made.
     #[error(transparent)]
-    Synth(#[from] survey::synth::SynthError),
-    /// Files of a synthetic survey could not be written or read.
-    #[error(transparent)]
-    SynthFile(#[from] survey::synth::SynthFileError),
+    Synth(#[from] synth::SynthError),
+    /// A folder without the truth of a synthetic survey.
+    #[error("{} is not the truth of a synthetic survey ({fact})", path.display())]
+    NotATruth {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fact: String,
+    },
     /// Horizon candidates could not be extracted or read.
     #[error(transparent)]
     Interp(interp::Error),
@@ -393,7 +399,10 @@ impl From<interp::Error> for ProjectError {
     fn from(error: interp::Error) -> Self {
         match error {
             interp::Error::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            interp::Error::Store(error) => Self::Store(error),
+            interp::Error::Sink(error) => match error.downcast::<StoreError>() {
+                Ok(error) => Self::Store(*error),
+                Err(error) => Self::Interp(interp::Error::Sink(error)),
+            },
             other => Self::Interp(other),
         }
     }
@@ -437,7 +446,7 @@ pub fn remedy_of(error: &(dyn std::error::Error + 'static)) -> Option<Remedy> {
         } else if let Some(error) = error.downcast_ref::<FormatError>() {
             error.remedy()
         } else {
-            error.downcast_ref::<WellError>()?.remedy()
+            error.downcast_ref::<WellFileError>()?.remedy()
         }
     })
 }

@@ -2,12 +2,12 @@
 
 use crate::Project;
 use crate::error::{Noun, ProjectError};
+use segy::{WriteFormat, WriteOptions};
 use serde::Serialize;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use survey::segy::{self, WriteFormat, WriteOptions};
-use survey::store::StoredVolume;
+use store::StoredVolume;
 use survey::{Progress, SurveyGeometry};
 
 /// Memory that the samples on their way may take, bytes.
@@ -92,7 +92,7 @@ fn stream(
     progress: &Progress,
 ) -> Result<segy::WriteReport, ProjectError> {
     let [_, crosslines, samples] = stored.size(0);
-    let together = (SLAB_BYTES / (crosslines * samples * size_of::<f32>()).max(1)).clamp(1, survey::store::BRICK);
+    let together = (SLAB_BYTES / (crosslines * samples * size_of::<f32>()).max(1)).clamp(1, store::BRICK);
     let mut source = |lines: Range<usize>| {
         let slab = stored.read_box_f32(0, [lines.start, 0, 0], [lines.len(), crosslines, samples])?;
         Ok(Cow::Owned(slab.into_samples()))

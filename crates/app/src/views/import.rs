@@ -14,8 +14,8 @@ use glam::DVec2;
 use image::RgbaImage;
 use project::command::ImportVolume;
 use project::document::Polarity;
+use segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
 use std::path::{Path, PathBuf};
-use survey::segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
 use survey::{Setting, SurveyGeometry};
 
 /// What a field shows whose value is found in the file.

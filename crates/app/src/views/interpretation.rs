@@ -9,9 +9,9 @@ use crate::work::scan::{self, InterpretationScan, Reading};
 use eframe::egui::{
     Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui,
 };
+use formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use project::command::{AddFault, AddHorizon, Age, Command};
 use std::path::{Path, PathBuf};
-use survey::formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
 use survey::{Contact, Setting};
 
 /// The dialogue.

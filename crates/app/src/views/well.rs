@@ -8,11 +8,11 @@ use crate::work::Work;
 use crate::work::folder::{Folder, Listing};
 use crate::work::scan::Reading;
 use eframe::egui::{Button, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
+use formats::ZUnit;
+use formats::well::{WellFiles, WellOptions, read_well};
 use project::command::{AddWell, Command};
 use std::path::{Path, PathBuf};
 use survey::Setting;
-use survey::formats::ZUnit;
-use survey::well::{WellFiles, WellOptions, read_well};
 
 /// Endings of tables.
 const TABLES: [&str; 3] = ["csv", "txt", "dat"];

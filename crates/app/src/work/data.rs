@@ -6,6 +6,7 @@ use super::running::Running;
 use super::wishes::{Wished, Wishes};
 use super::{Event, Outbox};
 use crate::state::{Notice, Place};
+use model::ModelSettings;
 use project::Project;
 use project::document::Document;
 use project::error::ProjectError;
@@ -16,7 +17,6 @@ use render::{FaceData, Media, Medium, PickedHorizon, Scene};
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError, RwLock};
 use survey::Progress;
-use survey::model::ModelSettings;
 use ttf::{Colour, TtfTables};
 
 /// Loaded data; whoever only looks must not wait for it (`try_read`).

@@ -6,9 +6,9 @@ use super::Rocks;
 use super::slice::{SliceLine, lines_of, raster};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
+use model::section::SectionPlane;
 use project::picture::load::Loaded;
 use render::FaceData;
-use survey::section::SectionPlane;
 
 /// A fence to be seen.
 #[derive(Clone)]

@@ -5,11 +5,11 @@ use super::latest::Latest;
 use crate::fields;
 use crate::state::{Notice, Place};
 use eframe::egui::Context;
+use formats::{ImportOptions, ImportReport};
 use image::{Rgba, RgbaImage};
+use segy::{SegyFile, SegyInfo, SegyOptions};
 use std::path::Path;
 use std::time::{Duration, Instant};
-use survey::formats::{self, ImportOptions, ImportReport};
-use survey::segy::{SegyFile, SegyInfo, SegyOptions};
 use survey::{Progress, SurveyGeometry};
 use ttf::{ColourMap, RgbaFunction};
 
@@ -106,7 +106,7 @@ impl<O: Clone + PartialEq, T: Send + 'static> Reading<O, T> {
 /// # Errors
 /// Why it cannot be read as a volume, for the dialogue.
 pub fn survey(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SurveyScan, Notice> {
-    let failed = |error: survey::segy::SegyError| Notice::failure(Place::Dialogue, &error);
+    let failed = |error: segy::SegyError| Notice::failure(Place::Dialogue, &error);
     let file = SegyFile::open(path, options, progress).map_err(failed)?;
     let geometry = file.geometry().map_err(failed)?;
     Ok(SurveyScan { info: file.info().clone(), geometry, traces: traces(&file), inline: middle_inline(&file) })

@@ -9,12 +9,12 @@ use super::{Event, Outbox, Rocks};
 use crate::state::SliceKind;
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};
+use model::section::{LineKind, LineQuality, Section, SectionPlane};
 use project::picture::load::Loaded;
 use render::leaves;
 use render::{Candidates, FaceData, NamedVolume, VoxelBox};
 use std::collections::HashMap;
 use std::sync::PoisonError;
-use survey::section::{LineKind, LineQuality, Section, SectionPlane};
 
 /// Where there are no data.
 const NO_DATA: Rgba<u8> = Rgba([0xdc, 0xdc, 0xda, 0xff]);

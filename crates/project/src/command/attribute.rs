@@ -5,11 +5,11 @@ use crate::content::volume_facts::{self, Facts};
 use crate::document::{Polarity, Source};
 use crate::folder::Draft;
 use crate::memory_budget;
+use attribute::blocks::{AttributeBlocks, dip_angle_blocks, dip_blocks, envelope_blocks, semblance_blocks};
+use attribute::{AttributeError, DipSettings, SemblanceSettings};
 use serde::{Deserialize, Serialize};
-use std::path::PathBuf;
-use survey::attribute::stored::{write_dip, write_envelope, write_semblance};
-use survey::attribute::{DipSettings, SemblanceSettings};
-use survey::store::{StoredVolume, VolumeInfo};
+use std::path::{Path, PathBuf};
+use store::{StoreError, StoredVolume, VolumeInfo, write_blocks};
 use survey::{Progress, SurveyGeometry};
 
 /// What is computed.
@@ -93,17 +93,18 @@ impl ComputeAttribute {
             places.push((name, file, path, info));
         }
         let memory_bytes = self.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
-        let out = |part: usize| -> (PathBuf, &VolumeInfo) { (places[part].2.clone(), &places[part].3) };
+        let out: Vec<(&Path, &VolumeInfo)> = places.iter().map(|(_, _, path, info)| (path.as_path(), info)).collect();
         match self.kind {
-            AttributeKind::Envelope => write_envelope(&out(0).0, &source, out(0).1, memory_bytes, progress)?,
+            AttributeKind::Envelope => write(out[0], envelope_blocks(&source), memory_bytes, progress)?,
             AttributeKind::Semblance => {
-                let settings = (&self.dip, &self.semblance);
-                write_semblance(&out(0).0, &source, out(0).1, settings, memory_bytes, progress)?;
+                write(out[0], semblance_blocks(&source, &self.dip, &self.semblance), memory_bytes, progress)?;
             }
             AttributeKind::Dip => {
-                let parts = [out(0), out(1), out(2)];
-                let parts = parts.each_ref().map(|(path, info)| (path.as_path(), *info));
-                write_dip(parts, &source, &self.dip, memory_bytes, progress)?;
+                let [inline, crossline] = dip_blocks(&source, &self.dip)?;
+                write(out[1], inline, memory_bytes, progress)?;
+                write(out[2], crossline, memory_bytes, progress)?;
+                let [inline, crossline] = [StoredVolume::open(out[1].0)?, StoredVolume::open(out[2].0)?];
+                write(out[0], dip_angle_blocks(&inline, &crossline, &out[0].1.geometry), memory_bytes, progress)?;
             }
         }
         let mut volumes = Vec::new();
@@ -145,5 +146,28 @@ impl std::fmt::Display for AttributeComputed {
             Some(unit) => writeln!(f, "  volume '{name}', {unit}"),
             None => writeln!(f, "  volume '{name}'"),
         })
+    }
+}
+
+/// Computes an attribute block by block into the store.
+fn write(
+    (path, info): (&Path, &VolumeInfo),
+    mut blocks: AttributeBlocks<'_>,
+    memory_bytes: u64,
+    progress: &Progress,
+) -> Result<(), ProjectError> {
+    let memory_bytes = blocks.writer_memory(memory_bytes);
+    write_blocks(path, &mut blocks, info, memory_bytes, progress).map(|_| ()).map_err(explain)
+}
+
+/// What went wrong in the computation comes back through the writer; taken out again.
+fn explain(error: StoreError) -> ProjectError {
+    let StoreError::Source { path, source } = error else { return error.into() };
+    match source.downcast::<AttributeError>() {
+        Ok(own) => (*own).into(),
+        Err(source) => match source.downcast::<StoreError>() {
+            Ok(store) => (*store).into(),
+            Err(source) => StoreError::Source { path, source }.into(),
+        },
     }
 }

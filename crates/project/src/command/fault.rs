@@ -5,11 +5,10 @@ use crate::content;
 use crate::document::FaultEntry;
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
+use formats::{ImportOptions, ImportReport};
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::Progress;
-use survey::formats::{self, ImportOptions, ImportReport};
-use survey::store;
 
 /// Reads a fault into the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -6,11 +6,11 @@ use crate::document::{FaultEntry, FaultSticks, Source};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use crate::interpretation::proposals;
+use formats::fault_of_sticks;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use survey::formats::fault_of_sticks;
-use survey::{Fault, Progress, store};
+use survey::{Fault, Progress};
 
 /// Adds sticks to a fault that is being drawn; its surface is made from two sticks on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

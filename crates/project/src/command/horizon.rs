@@ -8,11 +8,10 @@ use crate::content;
 use crate::document::HorizonEntry;
 use crate::folder::Draft;
 use crate::interpretation::order;
+use formats::{ImportOptions, ImportReport};
+use model::ContactRules;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use survey::formats::{self, ImportOptions, ImportReport};
-use survey::model::ContactRules;
-use survey::store;
 use survey::{Contact, Horizon, Progress};
 
 /// Where a horizon goes in the stratigraphy.

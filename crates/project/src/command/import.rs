@@ -6,11 +6,11 @@ use crate::document::Polarity;
 use crate::folder::{Draft, IMPORTING};
 use crate::memory_budget;
 use crate::placement;
+use segy::{SegyFile, SegyOptions};
 use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
-use survey::segy::{ExactType, SegyFile, SegyOptions};
-use survey::store::{Ingested, StoreError, StoredSample, VolumeInfo};
+use store::{Ingested, StoreError, VolumeInfo, resume_blocks};
 use survey::{Note, Progress, SurveyGeometry};
 
 /// Reads a SEG-Y volume into the project. The first one gives the survey frame; others must lie in it.
@@ -109,7 +109,7 @@ impl ImportVolume {
             size: file.size(),
             traces: info.traces,
             missing_traces: info.missing_traces,
-            sample_type: type_name(file.exact_type()).to_owned(),
+            sample_type: file.sample_type().name().to_owned(),
             kept_files: ingested.kept,
             polarity: self.polarity,
             clip,
@@ -150,8 +150,10 @@ impl ImportVolume {
         };
         let memory_bytes = self.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
         let fingerprint = self.fingerprint(file)?;
-        let stored = file.store(partial, &fingerprint, &info, memory_bytes, progress).map_err(cancelled_within)?;
-        let (done, non_finite) = (stored.ingested, stored.non_finite);
+        let mut blocks = file.blocks();
+        let done = resume_blocks(partial, &fingerprint, &mut blocks, &info, memory_bytes, progress)
+            .map_err(cancelled_within)?;
+        let non_finite = blocks.non_finite();
         if done.kept > 0 {
             progress.warn(format!(
                 "an interrupted import of this file went on: {} of {} files were there and whole",
@@ -177,7 +179,7 @@ impl ImportVolume {
             "options": self.options,
             "polarity": self.polarity,
             "size": file.size(),
-            "type": type_name(file.exact_type()),
+            "type": file.sample_type().name(),
         })
         .to_string())
     }
@@ -198,7 +200,7 @@ fn is_same_lattice(a: &SurveyGeometry, b: &SurveyGeometry) -> bool {
 }
 
 /// Byte positions and units in one line, for the record.
-fn reading(info: &survey::segy::SegyInfo) -> String {
+fn reading(info: &segy::SegyInfo) -> String {
     let bytes = &info.byte_positions;
     let place = match (bytes.x, bytes.y) {
         (Some(x), Some(y)) => format!("X at {x}, Y at {y}"),
@@ -222,22 +224,11 @@ fn keep_only(folder: &Path, wanted: &Path) {
 /// A cancel that the reader noticed is a cancel, not a failure of the source.
 fn cancelled_within(error: StoreError) -> ProjectError {
     match error {
-        StoreError::Source { path, source } => match source.downcast::<survey::segy::SegyError>() {
+        StoreError::Source { path, source } => match source.downcast::<segy::SegyError>() {
             Ok(segy) => (*segy).into(),
             Err(source) => StoreError::Source { path, source }.into(),
         },
         other => other.into(),
-    }
-}
-
-/// The name of a type as the store spells it.
-fn type_name(exact: ExactType) -> &'static str {
-    match exact {
-        ExactType::Int8 => i8::TYPE,
-        ExactType::Uint8 => u8::TYPE,
-        ExactType::Int16 => i16::TYPE,
-        ExactType::Uint16 => u16::TYPE,
-        ExactType::Float32 => f32::TYPE,
     }
 }
 

@@ -6,8 +6,8 @@ use crate::folder::Draft;
 use crate::interpretation::assembly::{self, AssemblyReport, rebuild};
 use crate::interpretation::candidates::Candidates;
 use interp::assembly::{ClimbSettings, Fingerprint, Fit, Operation, Overlap, Selection, highest_valid, node_above};
+use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
-use survey::model::FaultNetwork;
 use survey::{Progress, SurveyGeometry};
 use ttf::Colour;
 

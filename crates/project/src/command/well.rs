@@ -4,11 +4,12 @@ use super::{Effect, Noun, ProjectError};
 use crate::content;
 use crate::document::{Document, WellEntry};
 use crate::folder::Draft;
+use formats::well::{self, WellFiles, WellOptions, WellReport};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::Path;
-use survey::well::{self, LogSet, TopPlace, WellFiles, WellOptions, WellPlacement, WellReport};
-use survey::{Horizon, Progress, Well, store};
+use survey::well::{LogSet, TopPlace, WellPlacement};
+use survey::{Horizon, Progress, Well};
 
 /// Reads a well into the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -2,7 +2,7 @@
 //!
 //! A hash covers what a computation depends on, values and their place, and nothing else: not names, not files.
 
-use survey::store::{StoreError, StoredVolume};
+use store::{StoreError, StoredVolume};
 use survey::{Fault, Horizon, Well};
 
 /// BLAKE3 of a volume's size, sample type, the checksums of its bricks and its live-trace mask: what identifies its samples, without reading
@@ -61,7 +61,7 @@ pub fn hash_well(well: &Well) -> Result<String, serde_json::Error> {
 mod tests {
     use super::*;
     use survey::{NodeGrid, Quality, Sheet, SurveyGeometry, VerticalUnit};
-    use survey::{Progress, Volume, store};
+    use survey::{Progress, Volume};
 
     #[test]
     fn a_hash_sees_values_place_and_mask_but_not_the_name() {

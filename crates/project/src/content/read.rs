@@ -4,7 +4,7 @@ use crate::document::{FaultEntry, HorizonEntry, VolumeEntry, WellEntry};
 use crate::error::ProjectError;
 use crate::folder::at_hand;
 use std::path::Path;
-use survey::store::{self, StoredVolume};
+use store::{self, StoredVolume};
 use survey::{Fault, Horizon, Progress, Volume, Well};
 
 /// Reads a well of the project in `root`.

@@ -4,7 +4,7 @@ use crate::content;
 use crate::document::{Polarity, Source, VolumeEntry};
 use crate::error::ProjectError;
 use std::path::Path;
-use survey::store::StoredVolume;
+use store::StoredVolume;
 use survey::{Progress, SurveyGeometry};
 
 /// Share of the samples that a colour map shows unclipped.

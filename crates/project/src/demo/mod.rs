@@ -18,19 +18,19 @@ use crate::interpretation::candidates::Candidates;
 use crate::interpretation::extraction;
 use crate::picture::load::{self, Stage};
 use crate::picture::{self, Device, Painter};
+use ::synth::SynthSettings;
+use formats::ImportOptions;
 use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::evaluate::Parts;
 use interp::holes::FillSettings;
 use render::Scene;
+use segy::SegyOptions;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use survey::formats::ImportOptions;
-use survey::segy::SegyOptions;
-use survey::synth::{SynthSettings, SynthTruth};
 use survey::{Contact, Progress};
 use survey_files::SynthSurvey;
 
@@ -173,7 +173,7 @@ const NEAR_SAMPLES: f64 = 2.0;
 /// Picks every part of every horizon, then the middle of what that left out, climbing to the highest valid node, and fills the holes. Answers the
 /// count of picks.
 fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> Result<usize, ProjectError> {
-    let truth = SynthTruth::read(&files.truth)?;
+    let truth = survey_files::read_truth(&files.truth)?;
     let frame = project.document().frame()?.clone();
     // Held for all picks, so that none has to make them anew.
     let _candidates = Candidates::load(project.root(), progress)?;

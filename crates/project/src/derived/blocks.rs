@@ -4,10 +4,10 @@ use super::kept::{Kind, damaged, read_array, read_header, write_header};
 use super::key_of;
 use crate::document::Document;
 use glam::{DMat3, DVec3};
+use model::{BlockSignature, FaultNetwork, FaultSurface, ModelSettings, Truncation};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
 use std::path::Path;
-use survey::model::{BlockSignature, FaultNetwork, FaultSurface, ModelSettings, Truncation};
 use survey::{HeightField, Progress};
 
 const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x01", what: "the fault blocks" };
@@ -108,7 +108,7 @@ fn read(input: &mut dyn Read, length: u64) -> io::Result<FaultNetwork> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::formats::fault_of_sticks;
+    use formats::fault_of_sticks;
     use survey::{Fault, SurveyGeometry, VerticalUnit};
 
     fn geometry() -> SurveyGeometry {

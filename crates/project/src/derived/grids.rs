@@ -4,13 +4,13 @@ use super::kept::{Kind, read_array, read_header, write_header};
 use super::{Scratch, folder, key_of};
 use crate::document::Document;
 use crate::error::ProjectError;
+use model::ModelSettings;
 use param::{ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, VoxelParameterization};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use store::{ParameterizationVolumes, StoredParameterization};
 use survey::Progress;
-use survey::model::ModelSettings;
-use survey::store::{self, ParameterizationVolumes, StoredParameterization};
 
 /// Grid files.
 const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x01", what: "the parameterization" };

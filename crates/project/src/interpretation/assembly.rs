@@ -15,11 +15,11 @@ use interp::assembly::{
 };
 use interp::holes::{Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
+use model::{ContactRules, FaultNetwork, ModelSettings};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use survey::model::{ContactRules, FaultNetwork, ModelSettings};
-use survey::{Contact, Horizon, Progress, SurveyGeometry, store};
+use survey::{Contact, Horizon, Progress, SurveyGeometry};
 use ttf::Colour;
 
 /// Colours that horizons get in turn.

@@ -11,7 +11,7 @@ use interp::Forest;
 use interp::assembly::{AssemblyError, Hit, leaf_at};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use survey::store::StoredCandidates;
+use store::StoredCandidates;
 use survey::{Progress, SurveyGeometry};
 
 /// By place and key.
@@ -86,7 +86,7 @@ mod tests {
     use crate::command::{Command, ImportVolume};
     use crate::document::Polarity;
     use interp::ExtractSettings;
-    use survey::segy::{SegyOptions, WriteOptions};
+    use segy::{SegyOptions, WriteOptions};
     use survey::{VerticalUnit, Volume};
 
     /// A project with a small volume.
@@ -95,7 +95,7 @@ mod tests {
         let samples = (0..24 * 20 * 32).map(|n| ((n % 32) as f32 * 0.7).sin()).collect();
         let volume = Volume::from_samples([24, 20, 32], samples).unwrap();
         let path = folder.join("north.sgy");
-        survey::segy::write(&path, &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+        segy::write(&path, &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
         let mut new = Project::create(&folder.join("north.petro"), None).unwrap();
         let import = ImportVolume {
             path,

@@ -8,14 +8,14 @@ use crate::Project;
 use crate::derived::Scratch;
 use crate::document::VolumeEntry;
 use crate::error::ProjectError;
-use interp::{ExtractReport, ExtractSettings, Forest, extract_to_store};
+use interp::{ExtractReport, ExtractSettings, Forest, extract_into};
 use serde::Serialize;
 use std::fmt;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
+use store::{CandidateWriter, Replacement, StoredCandidates, StoredVolume};
 use survey::Progress;
-use survey::store::{Replacement, StoredCandidates, StoredVolume};
 
 /// Inlines of a stored volume that are read at a time: an edge of its bricks.
 const SLAB_INLINES: usize = 64;
@@ -132,7 +132,8 @@ pub fn extract(
     }
     let source = StoredVolume::open(&project.root().join(&entry.file))?;
     let scratch = Scratch::begin(project.root())?;
-    let report = extract_to_store(&scratch.path(CANDIDATES), &key, &source, &settings, progress)?;
+    let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(CANDIDATES), size, leaves)?);
+    let report = extract_into(begin, &key, &source, &settings, progress)?;
     scratch.publish(CANDIDATES)?;
     if let Some(sentence) = report.nothing_found() {
         progress.warn(&sentence);

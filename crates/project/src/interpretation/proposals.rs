@@ -9,14 +9,14 @@ use crate::derived::Scratch;
 use crate::document::Document;
 use crate::error::ProjectError;
 use crate::interpretation::assembly;
+use attribute::{DipSettings, SemblanceSettings, dip, semblance};
 use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
 use interp::reassembly::from_horizon;
+use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use survey::attribute::{DipSettings, SemblanceSettings, dip, semblance};
-use survey::model::FaultNetwork;
-use survey::{Progress, store};
+use survey::Progress;
 
 /// What was proposed, and for which state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -5,9 +5,9 @@
 //! there already a horizon wins within two voxels and where it is nearer. Voxel space.
 
 use glam::Vec3;
+use model::StructuralModel;
 use rayon::prelude::*;
-use survey::model::StructuralModel;
-use survey::store::{BEYOND, CandidateBox};
+use survey::candidates::{BEYOND, CandidateBox};
 use survey::{Cancelled, Progress};
 
 /// Greatest distance told where nothing else says so, voxels.
@@ -88,9 +88,9 @@ impl Adding<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::model::ModelSettings;
-    use survey::synth::closed_form::ClosedForm;
+    use model::ModelSettings;
     use survey::{SurveyGeometry, VerticalUnit};
+    use synth::closed_form::ClosedForm;
 
     #[test]
     fn distances_to_a_dipping_plane_are_across_it() {

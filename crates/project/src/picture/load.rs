@@ -8,12 +8,12 @@ use crate::picture::shown_candidates::ShownCandidates;
 use crate::placement;
 use crate::{content, derived, memory_budget, styles};
 use glam::{DVec3, Vec3};
+use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
 use render::{Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox, WellPath};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use survey::model::{ModelSettings, StructuralModel};
 use survey::{Progress, SurveyGeometry, Volume};
 use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
 

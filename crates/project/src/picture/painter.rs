@@ -9,8 +9,8 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 use std::time::Instant;
+use store::Replacement;
 use survey::Progress;
-use survey::store::Replacement;
 
 /// What draws.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]

@@ -17,12 +17,13 @@ use crate::interpretation::extraction;
 use crate::picture::horizon_distance::{self, FARTHEST};
 use interp::Forest;
 use interp::assembly::selected_leaves;
+use model::StructuralModel;
 use render::media::Colouring;
 use render::{Candidates, FaceData, Scene};
 use std::collections::BTreeMap;
+use store::StoredCandidates;
+use survey::CandidateBox;
 use survey::Progress;
-use survey::model::StructuralModel;
-use survey::store::{CandidateBox, StoredCandidates};
 
 /// The code of the greatest distance.
 const STEPS: f32 = 254.0;

@@ -5,8 +5,8 @@ use crate::state::{Layout, Session, SliceKind};
 use crate::theme;
 use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui};
 use glam::DVec2;
+use model::section::{LineKind, LineQuality};
 use project::document::HorizonEntry;
-use survey::section::{LineKind, LineQuality};
 
 /// Colours of horizons, youngest first, told apart by most eyes and on grey.
 const HORIZON_COLOURS: [Color32; 8] = [

@@ -4,6 +4,7 @@ use super::ShownPick;
 use crate::state::picking::Pick;
 use interp::assembly::{ClimbSettings, Occupancy, Overlap, Selection, node_above};
 use interp::reassembly::reassemble;
+use model::FaultNetwork;
 use project::document::Document;
 use project::error::ProjectError;
 use project::interpretation::assembly::{self, overlap_in_lines};
@@ -11,7 +12,6 @@ use project::interpretation::candidates::Candidates;
 use std::path::PathBuf;
 use std::sync::Arc;
 use survey::SurveyGeometry;
-use survey::model::FaultNetwork;
 
 /// A project followed, and what was read of it.
 pub(super) struct Followed {

@@ -29,7 +29,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use survey::store::StoredCandidates;
+use store::StoredCandidates;
 use survey::{Fault, Progress, SurveyGeometry};
 use ttf::Colour;
 
