@@ -97,7 +97,7 @@ pub(super) fn fault_accept(project: PathBuf, id: u32, name: String) -> Request {
 /// Measures the present extraction against a synthetic survey's truth.
 pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
-    let truth = crate::synth::read_truth(truth)?;
+    let truth = project::demo::survey_files::read_truth(truth)?;
     let candidates = Candidates::load(project.root(), progress)?;
     let size = candidates.forest.surfaces.size;
     if size != truth.size {
