@@ -100,7 +100,8 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
     done.steps.push(format!("imported volumes and faults into {}", done.project.display()));
     done.stages.push(stage.lap("import"));
 
-    let extracted = extraction::extract(&project, None, &ExtractSettings::default(), progress)?;
+    let extract = Extract { volume: None, settings: ExtractSettings::default() };
+    project.apply(&Command::Extract(extract), progress)?;
     done.steps.push(format!("found {} candidates with {} leaves", extracted.report.surfaces, extracted.report.leaves));
     done.stages.push(stage.lap("candidates"));
     let picks = assemble(&mut project, &files, progress)?;
@@ -176,7 +177,7 @@ fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> 
     let truth = survey_files::read_truth(&files.truth)?;
     let frame = project.document().frame()?.clone();
     // Held for all picks, so that none has to make them anew.
-    let _candidates = Candidates::load(project.root(), progress)?;
+    let _candidates = Candidates::load(project.root(), project.document(), progress)?;
     let _blocks = blocks(project.root(), project.document(), progress)?;
     let mut picks = 0;
     for (h, horizon) in files.horizons.iter().enumerate() {

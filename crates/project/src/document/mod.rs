@@ -10,7 +10,8 @@ mod picks;
 
 use crate::error::{Noun, ProjectError};
 pub use entries::{
-    FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry,
+    ExtractionEntry, FaultEntry, HorizonEntry, Polarity, ProposalsEntry, SceneEntry, Source, Style, TextureEntry,
+    VolumeEntry, WellEntry,
 };
 use param::KDefinition;
 pub use picks::{Assembly, FaultSticks, PickEntry};
@@ -39,6 +40,12 @@ pub struct Document {
     /// Volumes in order of import; the first is the one shown as raw data.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub volumes: Vec<VolumeEntry>,
+    /// The extraction that picks are made from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extraction: Option<ExtractionEntry>,
+    /// The faults that were proposed last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fault_proposals: Option<ProposalsEntry>,
     /// Horizons in age order, youngest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub horizons: Vec<HorizonEntry>,
@@ -77,6 +84,8 @@ impl Document {
             geometry,
             layer_names: Vec::new(),
             volumes: Vec::new(),
+            extraction: None,
+            fault_proposals: None,
             horizons: Vec::new(),
             faults: Vec::new(),
             wells: Vec::new(),
