@@ -4,9 +4,9 @@ use super::checkshot::parse_checkshot;
 use super::deviation::parse_deviation;
 use super::error::WellFileError;
 use super::las::{Las, parse_las};
+use super::options::WellOptions;
 use super::table::FOOT_M;
 use super::tops::{on_path, parse_tops};
-use crate::options::ZUnit;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use survey::remedy::Note;
@@ -27,22 +27,6 @@ pub struct WellFiles {
     /// Time–depth table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checkshot: Option<PathBuf>,
-}
-
-/// What the user says about a well's files; everything has a default.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct WellOptions {
-    /// Name of the well; it also chooses rows of files that hold several wells.
-    pub name: Option<String>,
-    /// Name of the well in such files, when it is another.
-    pub well_in_file: Option<String>,
-    /// X, Y of the head, m; `None` = as the deviation file says.
-    pub head: Option<[f64; 2]>,
-    /// Height of the datum above mean sea level, m; `None` = as the file says, else 0, with a warning.
-    pub datum_m: Option<f64>,
-    /// Unit of lengths along the well where columns do not say; `None` = metres, reported.
-    pub md_unit: Option<ZUnit>,
 }
 
 /// What was read and assumed.
