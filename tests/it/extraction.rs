@@ -2,6 +2,7 @@
 
 use crate::program::{bytes, project, run_in};
 use std::fs;
+use std::path::Path;
 
 #[test]
 fn candidates_are_extracted_once_and_exported_as_points() {

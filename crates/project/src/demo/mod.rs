@@ -8,14 +8,13 @@ pub mod survey_files;
 
 use crate::Project;
 use crate::command::{
-    AddFault, AddScene, Climb, Command, Effect, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
+    AddFault, AddScene, Climb, Command, Effect, Extract, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
 };
 use crate::content;
 use crate::document::Polarity;
 use crate::error::{Noun, ProjectError};
 use crate::interpretation::assembly::blocks;
 use crate::interpretation::candidates::Candidates;
-use crate::interpretation::extraction;
 use crate::picture::load::{self, Stage};
 use crate::picture::{self, Device, Painter};
 use ::synth::SynthSettings;
@@ -101,8 +100,9 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
     done.stages.push(stage.lap("import"));
 
     let extract = Extract { volume: None, settings: ExtractSettings::default() };
-    project.apply(&Command::Extract(extract), progress)?;
-    done.steps.push(format!("found {} candidates with {} leaves", extracted.report.surfaces, extracted.report.leaves));
+    if let Effect::Extracted(found) = project.apply(&Command::Extract(extract), progress)? {
+        done.steps.push(format!("found {} candidates with {} leaves", found.report.surfaces, found.report.leaves));
+    }
     done.stages.push(stage.lap("candidates"));
     let picks = assemble(&mut project, &files, progress)?;
     done.steps.push(format!("assembled {} horizons by {picks} picks", files.horizons.len()));

@@ -3,6 +3,7 @@
 //! The text is made for people: it can be read, compared and edited. Every command rewrites it in one fixed order, so that two
 //! states differ only where the project does.
 
+mod comments;
 pub(crate) mod data_file;
 mod entries;
 mod layers;
@@ -95,6 +96,11 @@ impl Document {
             k: BTreeMap::new(),
             scenes: Vec::new(),
         }
+    }
+
+    /// The text of `project.toml`, with the comments that its former text `old` has.
+    pub(crate) fn to_text_after(&self, old: &str, path: &Path) -> Result<String, ProjectError> {
+        Ok(comments::keep_comments(old, self.to_text(path)?))
     }
 
     /// The text of `project.toml`.

@@ -23,7 +23,7 @@ use survey::Progress;
 const SLAB_INLINES: usize = 64;
 
 /// What an extraction did.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Extracted {
     /// Where the candidates are.
     pub file: PathBuf,

@@ -183,7 +183,7 @@ impl Project {
         let path = self.root.join(storage::STATE);
         let number = self.document.step + 1;
         draft.document.step = number;
-        let text = draft.document.to_text(&path)?;
+        let text = draft.document.to_text_after(&self.text, &path)?;
         // A state that could not be read back must never be saved.
         let document = Document::from_text(&text, &path)?;
         let step = Step { summary, command: command.map(recorded).transpose()?, project: text.clone() };

@@ -31,7 +31,6 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use store::StoredCandidates;
 use survey::{Fault, Progress, SurveyGeometry};
 use ttf::Colour;
 
@@ -147,7 +146,7 @@ impl Picks {
                 let (guard, progress) = running.begin("Extracting", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
                     let mut project = Project::open(&root)?;
-                    project.apply(&Command::Extract(Extract { volume, settings }), &progress)?;
+                    project.apply(&Command::Extract(Extract { volume, settings: *settings }), &progress)?;
                     snapshot(&project)
                 });
                 let warnings = guard.warnings();
