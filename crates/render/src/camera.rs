@@ -76,13 +76,7 @@ impl Camera {
     /// # Errors
     /// The first [`SceneError`] found.
     pub fn validate(&self) -> Result<(), SceneError> {
-        let number = |what: &'static str, value: f64, low: f64, high: f64| {
-            if value >= low && value <= high {
-                Ok(())
-            } else {
-                Err(SceneError::OutOfRange { what, found: value, low, high })
-            }
-        };
+        let number = SceneError::check_range;
         number("the camera's azimuth", self.azimuth_deg.unwrap_or(0.0), -36_000.0, 36_000.0)?;
         number("the camera's elevation", self.elevation_deg, -90.0, 90.0)?;
         number("the camera's zoom", self.zoom, 1e-3, 1e4)?;

@@ -85,6 +85,13 @@ pub enum SceneError {
     },
 }
 
+impl SceneError {
+    /// Refuses a number outside [`low`, `high`], NaN included.
+    pub(crate) fn check_range(what: &'static str, found: f64, low: f64, high: f64) -> Result<(), Self> {
+        if found >= low && found <= high { Ok(()) } else { Err(Self::OutOfRange { what, found, low, high }) }
+    }
+}
+
 /// Why no picture was made.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
@@ -173,4 +180,17 @@ pub enum RenderError {
         /// What the graphics library says.
         reason: String,
     },
+}
+
+impl RenderError {
+    /// The scene shows surfaces of k' without an interpretation.
+    pub(crate) const NO_DEPTHS: Self = Self::Missing {
+        what: "horizons for surfaces of k'",
+        remedy: "add horizons and parameterize the project, or name a volume",
+    };
+    /// The scene shows horizon candidates that are not there.
+    pub(crate) const NO_CANDIDATES: Self = Self::Missing {
+        what: "horizon candidates",
+        remedy: "extract them first, or leave leaves and distances out of the scene",
+    };
 }

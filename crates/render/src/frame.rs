@@ -8,7 +8,6 @@ use crate::leaves::FaceData;
 use crate::media::field::Field;
 use crate::media::prepared::Preparations;
 use crate::media::{Faces, Scalar};
-use crate::outline;
 use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
@@ -23,17 +22,6 @@ use ttf::{RawColour, TtfTables};
 pub const MAX_VOLUMES: usize = 6;
 /// Colour under raw data where there is nothing else.
 const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
-
-/// A scene that shows surfaces of k' without an interpretation.
-pub(crate) const NO_DEPTHS: RenderError = RenderError::Missing {
-    what: "horizons for surfaces of k'",
-    remedy: "add horizons and parameterize the project, or name a volume",
-};
-/// A scene that shows candidates which are not there.
-pub(crate) const NO_CANDIDATES: RenderError = RenderError::Missing {
-    what: "horizon candidates",
-    remedy: "extract them first, or leave leaves and distances out of the scene",
-};
 
 /// Everything a picture needs, with names resolved.
 pub(crate) struct Frame<'a> {
@@ -113,7 +101,7 @@ impl<'a> Frame<'a> {
         let field = Field::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
         let candidates = match (scene.face_data, inputs.candidates) {
             (FaceData::Rock, _) => None,
-            (_, None) => return Err(NO_CANDIDATES),
+            (_, None) => return Err(RenderError::NO_CANDIDATES),
             (_, Some(candidates)) => {
                 candidates.validate()?;
                 Some(candidates)
@@ -121,7 +109,7 @@ impl<'a> Frame<'a> {
         };
         let solid = Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry));
         let longest_m = (0..3).map(|axis| metric.col(axis).length() * roaming_box.extent()[axis]).fold(0.0, f64::max);
-        let background = if outline::has_underlay(scene) { [0.0; 4] } else { scene.background.rgba() };
+        let background = if scene.has_back_edges() { [0.0; 4] } else { scene.background.rgba() };
         Ok(Self {
             background,
             candidates,

@@ -8,9 +8,10 @@ use crate::error::RenderError;
 use crate::frame::Frame;
 use crate::inputs::Inputs;
 use crate::media::interleaved::{halves, interleave};
-use crate::media::light::{Asked, LightVolume};
+use crate::media::light::LightVolume;
+use crate::media::light_grid::Asked;
 use crate::media::prepared::Preparations;
-use crate::outline;
+use crate::outline::draw::draw as draw_outlines;
 use crate::scene::Scene;
 use crate::shade::trace;
 use glam::{DVec2, Vec4};
@@ -93,7 +94,7 @@ fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
             }
         }
     }
-    outline::draw(frame, &mut image);
+    draw_outlines(frame, &mut image);
     Ok(image)
 }
 

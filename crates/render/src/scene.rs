@@ -6,7 +6,7 @@
 use crate::camera::{Camera, View};
 use crate::error::SceneError;
 use crate::leaves::FaceData;
-use crate::media::Media;
+use crate::media::{Faces, Media};
 use crate::outline::Outlines;
 use crate::voxel_box::VoxelBox;
 use crate::wells::WellStyle;
@@ -164,6 +164,11 @@ impl Scene {
         View::new(&self.camera, geometry, &self.box_in(geometry), self.exaggeration, self.size_px)
     }
 
+    /// Whether the edges at the back of the block are drawn behind the media: where volume rendering shows the whole box.
+    pub(crate) fn has_back_edges(&self) -> bool {
+        self.media.faces == Faces::None && self.outlines.edges.width_px > 0.0
+    }
+
     /// The cut-outs, clipped to the roaming box.
     pub fn cuts_in(&self, geometry: &SurveyGeometry) -> Vec<VoxelBox> {
         let roaming_box = self.box_in(geometry);
@@ -179,9 +184,7 @@ impl Scene {
         if [width, height].iter().any(|side| !(1..=MAX_SIDE_PX).contains(side)) {
             return Err(SceneError::ImageSize { width, height, limit: MAX_SIDE_PX });
         }
-        let number = |what: &'static str, found: f64, low: f64, high: f64| {
-            if found >= low && found <= high { Ok(()) } else { Err(SceneError::OutOfRange { what, found, low, high }) }
-        };
+        let number = SceneError::check_range;
         number("the samples a pixel", f64::from(self.samples), 1.0, f64::from(MAX_SAMPLES))?;
         number("the vertical exaggeration", self.exaggeration, 1e-3, 1e3)?;
         number("the blend", f64::from(self.blend), 0.0, 1.0)?;

@@ -51,12 +51,7 @@ impl WellStyle {
     /// # Errors
     /// [`SceneError::OutOfRange`].
     pub fn validate(&self) -> Result<(), SceneError> {
-        let found = f64::from(self.radius);
-        if (0.0..=0.5).contains(&found) {
-            Ok(())
-        } else {
-            Err(SceneError::OutOfRange { what: "the radius of wells", found, low: 0.0, high: 0.5 })
-        }
+        SceneError::check_range("the radius of wells", f64::from(self.radius), 0.0, 0.5)
     }
 }
 

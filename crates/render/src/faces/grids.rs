@@ -10,10 +10,9 @@
 
 use super::layout::GridInfo;
 use crate::error::RenderError;
-use crate::frame::Frame;
-use crate::frame::shows_depths;
+use crate::frame::{Frame, shows_depths};
 use crate::gpu::Gpu;
-use crate::outline::{FaceRect, face_rects};
+use crate::outline::solid::{FaceRect, face_rects};
 use glam::DVec3;
 use param::{Parameterization, RegionGrid, SheetRef};
 use rayon::prelude::*;

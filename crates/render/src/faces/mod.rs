@@ -23,7 +23,7 @@ use crate::gpu::Gpu;
 use crate::inputs::Inputs;
 use crate::media::interleaved::{halves, interleave};
 use crate::media::prepared::Preparations;
-use crate::outline;
+use crate::outline::draw::draw as draw_outlines;
 use crate::scene::Scene;
 use grids::{GridBuffers, Seen};
 use image::RgbaImage;
@@ -203,7 +203,7 @@ impl Renderer {
         let frame = Frame::new(scene, inputs, &mut self.kept)?;
         self.upload(&frame, inputs)?;
         let mut image = self.draw(&frame, progress)?;
-        outline::draw(&frame, &mut image);
+        draw_outlines(&frame, &mut image);
         Ok(image)
     }
 

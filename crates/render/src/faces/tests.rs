@@ -6,7 +6,7 @@ use super::media::{HORIZON_WORDS, MediaParams, MediumInfo};
 use super::textures::TextureInfo;
 use super::volumes::VolumeInfo;
 use super::{Renderer, shader};
-use crate::media::{march, table};
+use crate::media::{march, samples, table};
 use crate::{Inputs, RenderError, Scene, ground, inputs, leaves, visible, wells};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use param::{ParamSettings, Parameterization};
@@ -128,10 +128,10 @@ fn constants_are_the_same() {
         ("NONE", f64::from(ttf::tables::NONE)),
         ("ENTRIES", table::ENTRIES as f64),
         ("OPAQUE", f64::from(table::OPAQUE)),
-        ("NO_DATA", f64::from(table::NO_DATA)),
-        ("NO_DATA_BELOW", f64::from(table::NO_DATA_BELOW)),
+        ("NO_DATA", f64::from(samples::NO_DATA)),
+        ("NO_DATA_BELOW", f64::from(samples::NO_DATA_BELOW)),
         ("SPENT", f64::from(march::SPENT)),
-        ("SOFT", f64::from(crate::media::field::SOFT)),
+        ("SOFT", f64::from(crate::media::shell::SOFT)),
         ("BRICK", crate::media::prepared::BRICK as f64),
         ("MIXED", f64::from(crate::media::bricks::MIXED)),
         ("HORIZON_WORDS", HORIZON_WORDS as f64),

@@ -3,30 +3,20 @@
 //! Voxel space; extinction per unit of length ([`Field::unit_m`] metres of display space), colours linear.
 
 use super::bricks::{BrickContent, Bricks, LayerLooks, LayerMap, MIXED};
-use super::isosurface::{Depths, FieldIsosurface, Scalar};
+use super::horizons::FieldHorizons;
+use super::isosurface::{Depths, FieldIsosurface};
 use super::lit::Lit;
-use super::prepared::{Preparations, Prepared};
-use super::samples::Samples;
-use super::table::{NO_DATA_BELOW, Table, extinction};
-use super::{Colouring, EmptySpace, Faces, Media, Phong, Scope, Shading, white_ramp};
+use super::medium::{FieldMedium, Place};
+use super::prepared::Preparations;
+use super::samples::NO_DATA_BELOW;
+use super::table::{Table, extinction};
+use super::{EmptySpace, Faces, Media, Phong, Scalar, Scope, Shading, white_ramp};
 use crate::camera::View;
 use crate::error::RenderError;
-use crate::frame::{NO_CANDIDATES, NO_DEPTHS};
-use crate::inputs::{Candidates, Inputs, NamedVolume};
-use crate::leaves::{BORDER_TONE, leaf_colour};
+use crate::inputs::Inputs;
 use glam::{Mat3, Vec3};
-use std::sync::Arc;
 use survey::model::StructuralModel;
-use ttf::{TtfTables, linear_from_srgb};
-
-/// Where a medium fills space.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
-    /// The roaming box outside the cut-outs.
-    Surroundings,
-    /// The cut-outs.
-    CutOut,
-}
+use ttf::TtfTables;
 
 /// What is at a point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -37,47 +27,6 @@ pub struct Matter {
     pub colour: Vec3,
     /// Linear light given off.
     pub emission: Vec3,
-}
-
-/// A volume with its function.
-pub struct FieldMedium<'a> {
-    /// The volume.
-    pub volume: NamedVolume<'a>,
-    prepared: Arc<Prepared>,
-    /// Its baked function.
-    pub table: Table,
-    /// Where it shows.
-    pub place: Place,
-    /// What layers do to it; absent where they do nothing.
-    pub layers: Option<LayerLooks>,
-    scale: Vec3,
-    offset: Vec3,
-}
-
-/// A horizon's looks.
-pub struct FieldHorizon<'a> {
-    /// Linear colour.
-    pub colour: Vec3,
-    /// Extinction inside.
-    pub extinction: f32,
-    /// Half of its thickness, voxels.
-    pub thickness: f32,
-    /// Factor on its colour for the light it gives off.
-    pub emission: f32,
-    /// Whether its leaves are told apart by colour.
-    pub by_leaf: bool,
-    /// What is painted on it.
-    pub paint: Option<FieldMedium<'a>>,
-}
-
-/// The horizons shown by their leaves.
-pub struct FieldHorizons<'a> {
-    /// Distances and ids.
-    pub candidates: Candidates<'a>,
-    /// Number of the horizon by leaf id, from 1; 0 = none.
-    pub styles: Vec<u8>,
-    /// The horizons.
-    pub horizons: Vec<FieldHorizon<'a>>,
 }
 
 /// The media of a scene, resolved.
@@ -110,56 +59,6 @@ pub struct Field<'a> {
     pub light: Vec3,
     model: Option<&'a StructuralModel>,
     depths: Option<Depths<'a>>,
-}
-
-/// Half of the border over which a horizon fades, voxels.
-pub const SOFT: f32 = 0.25;
-
-impl<'a> FieldMedium<'a> {
-    /// A volume made ready.
-    pub fn new(volume: NamedVolume<'a>, prepared: Arc<Prepared>, table: Table, place: Place) -> Self {
-        let (scale, offset) = volume.index_from_voxel();
-        Self { volume, prepared, table, place, layers: None, scale, offset }
-    }
-
-    /// Trilinear value at a voxel position; below [`NO_DATA_BELOW`] where there is none.
-    #[inline(always)]
-    pub fn sample(&self, p: Vec3) -> f32 {
-        self.samples().value(p * self.scale + self.offset)
-    }
-
-    /// Central differences over one sample to either side, per voxel of the survey; zero where a neighbour is missing.
-    #[inline]
-    pub fn gradient(&self, p: Vec3) -> Vec3 {
-        self.samples().differences(p * self.scale + self.offset) * 0.5 * self.scale
-    }
-
-    /// Scale and offset from voxel positions to sample numbers.
-    pub(super) fn index_from_voxel(&self) -> (Vec3, Vec3) {
-        (self.scale, self.offset)
-    }
-
-    /// Its samples.
-    #[inline(always)]
-    pub(super) fn samples(&self) -> Samples<'_> {
-        Samples::new(self.prepared.samples(&self.volume), self.volume.volume.size())
-    }
-
-    /// Smallest and largest sample between two voxel positions; `None` where there is none.
-    pub fn range(&self, low: Vec3, high: Vec3) -> Option<[f32; 2]> {
-        self.prepared.range(&self.volume, low, high)
-    }
-
-    /// Whether a brick can show it.
-    fn shows(&self, low: Vec3, high: Vec3, layer: u8) -> bool {
-        let Some([a, b]) = self.prepared.range(&self.volume, low, high) else { return false };
-        let lets_through = match &self.layers {
-            None => true,
-            Some(looks) if layer == MIXED => looks.entries.iter().any(|entry| entry[3] > 0.0),
-            Some(looks) => looks.entries.get(usize::from(layer)).is_some_and(|entry| entry[3] > 0.0),
-        };
-        lets_through && self.table.shows(a, b)
-    }
 }
 
 impl<'a> Field<'a> {
@@ -203,42 +102,15 @@ impl<'a> Field<'a> {
         for surface in &media.isosurfaces {
             let medium = match &surface.of {
                 Scalar::Volume(name) => Some(resolve(name, &white_ramp(1.0, 0.0), Place::Surroundings)?),
-                Scalar::Depth if depths.is_none() => return Err(NO_DEPTHS),
+                Scalar::Depth if depths.is_none() => return Err(RenderError::NO_DEPTHS),
                 Scalar::Depth => None,
             };
             isosurfaces.push(FieldIsosurface::new(surface, medium));
         }
         let horizons = match (media.horizons.is_empty(), inputs.candidates) {
             (true, _) => None,
-            (false, None) => {
-                return Err(NO_CANDIDATES);
-            }
-            (false, Some(candidates)) => {
-                candidates.validate()?;
-                let mut styles = vec![0u8; candidates.leaf.iter().copied().max().unwrap_or(0) as usize + 1];
-                let mut list = Vec::new();
-                for (n, horizon) in media.horizons.iter().enumerate() {
-                    if horizon.leaves.is_empty() {
-                        styles[1..].fill(n as u8 + 1);
-                    }
-                    for &leaf in &horizon.leaves {
-                        if let Some(style) = styles.get_mut(leaf as usize).filter(|_| leaf != 0) {
-                            *style = n as u8 + 1;
-                        }
-                    }
-                    let paint = horizon.paint.as_ref();
-                    let paint = paint.map(|p| resolve(&p.volume, &p.function, Place::Surroundings)).transpose()?;
-                    list.push(FieldHorizon {
-                        colour: Vec3::from_array(horizon.colour.to_unit().map(linear_from_srgb)),
-                        extinction: extinction(horizon.opacity),
-                        thickness: horizon.thickness,
-                        emission: horizon.emission,
-                        by_leaf: horizon.colouring == Colouring::ByLeaf,
-                        paint,
-                    });
-                }
-                Some(FieldHorizons { candidates, styles, horizons: list })
-            }
+            (false, None) => return Err(RenderError::NO_CANDIDATES),
+            (false, Some(candidates)) => Some(FieldHorizons::new(&media.horizons, candidates, &mut resolve)?),
         };
         let display_from_voxel = view.display_from_voxel();
         let light = match media.shading {
@@ -393,87 +265,5 @@ fn thinned(kappa: f32, opacity: f32) -> f32 {
         1.0 => kappa,
         0.0 => 0.0,
         opacity => extinction((1.0 - (-kappa).exp()) * opacity),
-    }
-}
-
-/// A horizon's part at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HorizonAt {
-    /// Share of the place it takes.
-    pub cover: f32,
-    /// Distance to the nearest horizon shown, voxels; large where there is none.
-    pub distance: f32,
-    /// Its extinction.
-    pub extinction: f32,
-    /// Its colour.
-    pub colour: Vec3,
-    /// Factor for the light it gives off.
-    pub emission: f32,
-}
-
-impl Default for HorizonAt {
-    fn default() -> Self {
-        Self { cover: 0.0, distance: 1e9, extinction: 0.0, colour: Vec3::ZERO, emission: 0.0 }
-    }
-}
-
-/// What a brick has of horizons.
-#[derive(Debug, Clone, Copy)]
-struct Near {
-    shows: bool,
-    distance: f32,
-}
-
-impl FieldHorizons<'_> {
-    /// The horizon at a point: distance by trilinear interpolation, leaf by the nearest sample.
-    pub fn at(&self, p: Vec3) -> HorizonAt {
-        let leaf = self.candidates.leaf_at(p);
-        let style = self.styles.get(leaf as usize).copied().unwrap_or(0);
-        if style == 0 {
-            return HorizonAt::default();
-        }
-        let horizon = &self.horizons[usize::from(style) - 1];
-        let distance = self.candidates.distance_at(p);
-        let cover = ((horizon.thickness - distance) / (2.0 * SOFT) + 0.5).clamp(0.0, 1.0);
-        let mut colour = horizon.colour;
-        if horizon.by_leaf {
-            let group = self.candidates.group(leaf);
-            if group == 0 {
-                return HorizonAt::default();
-            }
-            let tone = if cover > 0.0 && self.candidates.is_border(p) { BORDER_TONE } else { 1.0 };
-            colour = Vec3::from_array((leaf_colour(group) * tone).to_array().map(linear_from_srgb));
-        }
-        if let Some(paint) = &horizon.paint
-            && cover > 0.0
-        {
-            let value = paint.sample(p);
-            if value > NO_DATA_BELOW {
-                let [r, g, b, _] = paint.table.entries[paint.table.index(value)];
-                colour = Vec3::new(r, g, b);
-            }
-        }
-        HorizonAt { cover, distance, extinction: horizon.extinction, colour, emission: horizon.emission }
-    }
-
-    fn nearest(&self, low: Vec3, high: Vec3) -> Near {
-        let c = &self.candidates;
-        let from = low.to_array().map(|v| v as usize);
-        let mut near = Near { shows: false, distance: 1e9 };
-        for x in from[0]..=(high.x as usize).min(c.size[0] - 1) {
-            for y in from[1]..=(high.y as usize).min(c.size[1] - 1) {
-                let start = (x * c.size[1] + y) * c.size[2];
-                for n in start + from[2]..=start + (high.z as usize).min(c.size[2] - 1) {
-                    let style = self.styles[c.leaf[n] as usize];
-                    if style != 0 {
-                        let distance = f32::from(c.distance[n]) * c.voxels_per_step;
-                        near.distance = near.distance.min(distance);
-                        // Between samples the interpolated distance is less than at all of them by less than a voxel.
-                        near.shows |= distance <= self.horizons[usize::from(style) - 1].thickness + 1.0 + SOFT;
-                    }
-                }
-            }
-        }
-        near
     }
 }

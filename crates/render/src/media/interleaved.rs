@@ -3,28 +3,9 @@
 //!
 //! Both pictures are drawn whole and then interleaved: nothing in one depends on the other, and every renderer draws them alike.
 
-use super::{Occlusion, Phong, Shading};
+use super::Shading;
 use crate::scene::Scene;
 use image::RgbaImage;
-use serde::{Deserialize, Serialize};
-
-/// Stripes by gradients and by occlusion in turn.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Interleaved {
-    /// The light of the first stripe from the left, and of every other.
-    pub phong: Phong,
-    /// The light of those between.
-    pub occlusion: Occlusion,
-    /// Upright stripes over the width of the picture. Default 8.
-    pub stripes: u32,
-}
-
-impl Default for Interleaved {
-    fn default() -> Self {
-        Self { phong: Phong::default(), occlusion: Occlusion::default(), stripes: 8 }
-    }
-}
 
 /// The two pictures of an interleaved scene.
 pub(crate) fn halves(scene: &Scene) -> Option<([Scene; 2], u32)> {

@@ -9,44 +9,16 @@
 //! which is exact where v is linear. k' is continuous across horizons inside a fault block, so its surfaces end at faults and nowhere else; its gradient is the
 //! Jacobian's. Gradients are per voxel, distances in voxels.
 
+use super::Isosurface;
 use super::bricks::MIXED;
-use super::field::{FieldMedium, SOFT};
-use super::table::{NO_DATA_BELOW, extinction};
-use super::{MAX_ISOSURFACES, Media};
-use crate::error::SceneError;
+use super::medium::FieldMedium;
+use super::samples::NO_DATA_BELOW;
+use super::shell::{SOFT, shell_cover};
+use super::table::extinction;
 use glam::Vec3;
 use param::Parameterization;
-use serde::{Deserialize, Serialize};
 use survey::model::StructuralModel;
-use ttf::{Colour, linear_from_srgb};
-
-/// A surface of one value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Isosurface {
-    /// Of what.
-    pub of: Scalar,
-    /// The value, in the volume's unit; for k' the layer from the bottom, counted from 0, plus k.
-    pub value: f32,
-    /// Its colour.
-    pub colour: Colour,
-    /// Opacity of one unit of length inside the shell. Default 1.
-    #[serde(default = "super::one")]
-    pub opacity: f32,
-    /// Half of its thickness, voxels, at most 9. Default 1.
-    #[serde(default = "super::one")]
-    pub thickness: f32,
-}
-
-/// What has isosurfaces.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scalar {
-    /// A volume, by its name.
-    Volume(String),
-    /// k'.
-    Depth,
-}
+use ttf::linear_from_srgb;
 
 /// An isosurface, resolved.
 pub struct FieldIsosurface<'a> {
@@ -69,36 +41,6 @@ pub struct Depths<'a> {
     pub model: &'a StructuralModel,
     /// k in them.
     pub param: &'a Parameterization,
-}
-
-impl Isosurface {
-    pub(super) fn validate(&self) -> Result<(), SceneError> {
-        let number = |what: &'static str, found: f32, low: f64, high: f64| {
-            let found = f64::from(found);
-            if found >= low && found <= high { Ok(()) } else { Err(SceneError::OutOfRange { what, found, low, high }) }
-        };
-        number("an isosurface's value", self.value, -1e30, 1e30)?;
-        number("an isosurface's opacity", self.opacity, 0.0, 1.0)?;
-        number("an isosurface's thickness", self.thickness, 0.0, 9.0)
-    }
-}
-
-impl Media {
-    /// The volumes that isosurfaces are of.
-    pub fn isosurface_volumes(&self) -> impl Iterator<Item = &String> {
-        self.isosurfaces.iter().filter_map(|surface| match &surface.of {
-            Scalar::Volume(name) => Some(name),
-            Scalar::Depth => None,
-        })
-    }
-
-    pub(super) fn validate_isosurfaces(&self) -> Result<(), SceneError> {
-        let found = self.isosurfaces.len();
-        if found > MAX_ISOSURFACES {
-            return Err(SceneError::TooMany { what: "isosurfaces", found, limit: MAX_ISOSURFACES });
-        }
-        self.isosurfaces.iter().try_for_each(Isosurface::validate)
-    }
 }
 
 impl<'a> FieldIsosurface<'a> {
@@ -131,7 +73,7 @@ impl<'a> FieldIsosurface<'a> {
             (None, None) => return (0.0, Vec3::ZERO),
         };
         let distance = (value - self.value).abs() / gradient.length().max(1e-12);
-        (((self.thickness - distance) / (2.0 * SOFT) + 0.5).clamp(0.0, 1.0), gradient)
+        (shell_cover(self.thickness, distance), gradient)
     }
 
     /// Whether a brick can show it.

@@ -2,7 +2,7 @@
 //!
 //! The ranges are what space is skipped by; they depend on the data alone and are kept while the data stay the same.
 
-use super::table::{NO_DATA, NO_DATA_BELOW};
+use super::samples::{NO_DATA, NO_DATA_BELOW};
 use crate::inputs::NamedVolume;
 use glam::Vec3;
 use rayon::prelude::*;

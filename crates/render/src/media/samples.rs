@@ -11,10 +11,13 @@
 //! Index space: the volume's own sample numbers. A value that needs a missing sample ([`NO_DATA`]) is so far below [`NO_DATA_BELOW`] that it
 //! shows; places outside are missing, and a difference whose either end is missing counts as zero.
 
-use super::table::{NO_DATA, NO_DATA_BELOW};
 use crate::inputs::SLACK;
 use glam::{Vec2, Vec3, Vec4};
 
+/// Values below stand for "no data" (NaN and dead traces).
+pub const NO_DATA_BELOW: f32 = -1.0e30;
+/// What stands for "no data" among samples.
+pub const NO_DATA: f32 = -3.0e38;
 /// Places that are read at once.
 pub const BATCH: usize = 64;
 

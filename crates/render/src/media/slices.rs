@@ -8,11 +8,12 @@
 
 use super::Faces;
 use super::bricks::Line;
-use super::field::{Field, FieldMedium, Matter, Place};
-use super::light::{Asked, LightGrid};
-use super::march::stretches;
-use super::samples::{BATCH, Places, Samples};
-use super::table::{NO_DATA_BELOW, absorbed};
+use super::field::{Field, Matter};
+use super::light_grid::{Asked, LightGrid};
+use super::medium::{FieldMedium, Place};
+use super::samples::{BATCH, NO_DATA_BELOW, Places, Samples};
+use super::stretches::stretches;
+use super::table::absorbed;
 use super::wide::{Loops, widest};
 use super::windows::{Window, windows};
 use crate::camera::View;

@@ -7,10 +7,6 @@ use ttf::{RgbaFunction, linear_from_srgb};
 
 /// Entries of a table.
 pub const ENTRIES: usize = 2048;
-/// Values below stand for "no data" (NaN and dead traces).
-pub const NO_DATA_BELOW: f32 = -1.0e30;
-/// What stands for "no data" among samples.
-pub const NO_DATA: f32 = -3.0e38;
 /// Extinction of an opaque value: one ten-thousandth of a unit lets less than half pass.
 pub const OPAQUE: f32 = 1.0e4;
 

@@ -6,15 +6,12 @@
 //! Widths are pixels of an image 1000 pixels wide or high (the smaller side) and scale with it, so that a figure looks the same at
 //! any resolution.
 
-mod draw;
+pub(crate) mod draw;
 mod hidden;
 mod relief;
-mod solid;
+pub(crate) mod solid;
+mod stroke;
 mod underlay;
-
-pub(crate) use draw::draw;
-pub(crate) use solid::{FaceRect, face_rects};
-pub(crate) use underlay::has_underlay;
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
@@ -75,10 +72,7 @@ impl Outlines {
             ("the width of horizons", self.horizons),
             ("the width of faults", self.faults),
         ] {
-            let found = f64::from(stroke.width_px);
-            if !(0.0..=200.0).contains(&found) {
-                return Err(SceneError::OutOfRange { what, found, low: 0.0, high: 200.0 });
-            }
+            SceneError::check_range(what, f64::from(stroke.width_px), 0.0, 200.0)?;
         }
         Ok(())
     }

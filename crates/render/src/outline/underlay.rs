@@ -2,18 +2,11 @@
 //!
 //! The picture is made without a background; background and back edges are put under it afterwards, in linear light as the media are.
 
-use super::draw::stroke_lines;
+use super::stroke::stroke_lines;
 use crate::frame::Frame;
-use crate::media::Faces;
-use crate::scene::Scene;
 use crate::shade::{encoded, linear};
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};
-
-/// Whether a scene's back edges are drawn behind its media.
-pub(crate) fn has_underlay(scene: &Scene) -> bool {
-    scene.media.faces == Faces::None && scene.outlines.edges.width_px > 0.0
-}
 
 /// Puts the background and the back edges under a picture.
 pub(super) fn underlay(frame: &Frame, image: &mut RgbaImage) {

@@ -4,6 +4,7 @@ use super::*;
 use crate::frame::Frame;
 use crate::inputs::{Inputs, NamedVolume};
 use crate::media::light::LightVolume;
+use crate::media::light_grid::Asked;
 use crate::media::prepared::Preparations;
 use crate::media::{LayerOpacity, MediumColour};
 use crate::media::{Media, Medium, Occlusion, Shading, white_ramp};

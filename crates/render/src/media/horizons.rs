@@ -1,0 +1,155 @@
+//! Horizons shown by the leaves of their trees (P-horiz 5.2). Voxel space; colours linear.
+
+use super::medium::{FieldMedium, Place};
+use super::samples::NO_DATA_BELOW;
+use super::shell::{SOFT, shell_cover};
+use super::table::extinction;
+use super::{Colouring, PickedHorizon};
+use crate::error::RenderError;
+use crate::inputs::Candidates;
+use crate::leaves::{BORDER_TONE, leaf_colour};
+use glam::Vec3;
+use ttf::{RgbaFunction, linear_from_srgb};
+
+/// A horizon's looks.
+pub struct FieldHorizon<'a> {
+    /// Linear colour.
+    pub colour: Vec3,
+    /// Extinction inside.
+    pub extinction: f32,
+    /// Half of its thickness, voxels.
+    pub thickness: f32,
+    /// Factor on its colour for the light it gives off.
+    pub emission: f32,
+    /// Whether its leaves are told apart by colour.
+    pub by_leaf: bool,
+    /// What is painted on it.
+    pub paint: Option<FieldMedium<'a>>,
+}
+
+/// The horizons shown by their leaves.
+pub struct FieldHorizons<'a> {
+    /// Distances and ids.
+    pub candidates: Candidates<'a>,
+    /// Number of the horizon by leaf id, from 1; 0 = none.
+    pub styles: Vec<u8>,
+    /// The horizons.
+    pub horizons: Vec<FieldHorizon<'a>>,
+}
+
+/// A horizon's part at a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HorizonAt {
+    /// Share of the place it takes.
+    pub cover: f32,
+    /// Distance to the nearest horizon shown, voxels; large where there is none.
+    pub distance: f32,
+    /// Its extinction.
+    pub extinction: f32,
+    /// Its colour.
+    pub colour: Vec3,
+    /// Factor for the light it gives off.
+    pub emission: f32,
+}
+
+impl Default for HorizonAt {
+    fn default() -> Self {
+        Self { cover: 0.0, distance: 1e9, extinction: 0.0, colour: Vec3::ZERO, emission: 0.0 }
+    }
+}
+
+/// What a brick has of horizons.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Near {
+    pub shows: bool,
+    pub distance: f32,
+}
+
+impl<'a> FieldHorizons<'a> {
+    /// The horizons of a scene; `resolve` makes a painted volume ready.
+    ///
+    /// # Errors
+    /// Candidates that do not fill their box, and what `resolve` refuses.
+    pub fn new(
+        shown: &[PickedHorizon],
+        candidates: Candidates<'a>,
+        mut resolve: impl FnMut(&str, &RgbaFunction, Place) -> Result<FieldMedium<'a>, RenderError>,
+    ) -> Result<Self, RenderError> {
+        candidates.validate()?;
+        let mut styles = vec![0u8; candidates.leaf.iter().copied().max().unwrap_or(0) as usize + 1];
+        let mut horizons = Vec::new();
+        for (n, horizon) in shown.iter().enumerate() {
+            if horizon.leaves.is_empty() {
+                styles[1..].fill(n as u8 + 1);
+            }
+            for &leaf in &horizon.leaves {
+                if let Some(style) = styles.get_mut(leaf as usize).filter(|_| leaf != 0) {
+                    *style = n as u8 + 1;
+                }
+            }
+            let paint = horizon.paint.as_ref();
+            let paint = paint.map(|p| resolve(&p.volume, &p.function, Place::Surroundings)).transpose()?;
+            horizons.push(FieldHorizon {
+                colour: Vec3::from_array(horizon.colour.to_unit().map(linear_from_srgb)),
+                extinction: extinction(horizon.opacity),
+                thickness: horizon.thickness,
+                emission: horizon.emission,
+                by_leaf: horizon.colouring == Colouring::ByLeaf,
+                paint,
+            });
+        }
+        Ok(Self { candidates, styles, horizons })
+    }
+
+    /// The horizon at a point: distance by trilinear interpolation, leaf by the nearest sample.
+    pub fn at(&self, p: Vec3) -> HorizonAt {
+        let leaf = self.candidates.leaf_at(p);
+        let style = self.styles.get(leaf as usize).copied().unwrap_or(0);
+        if style == 0 {
+            return HorizonAt::default();
+        }
+        let horizon = &self.horizons[usize::from(style) - 1];
+        let distance = self.candidates.distance_at(p);
+        let cover = shell_cover(horizon.thickness, distance);
+        let mut colour = horizon.colour;
+        if horizon.by_leaf {
+            let group = self.candidates.group(leaf);
+            if group == 0 {
+                return HorizonAt::default();
+            }
+            let tone = if cover > 0.0 && self.candidates.is_border(p) { BORDER_TONE } else { 1.0 };
+            colour = Vec3::from_array((leaf_colour(group) * tone).to_array().map(linear_from_srgb));
+        }
+        if let Some(paint) = &horizon.paint
+            && cover > 0.0
+        {
+            let value = paint.sample(p);
+            if value > NO_DATA_BELOW {
+                let [r, g, b, _] = paint.table.entries[paint.table.index(value)];
+                colour = Vec3::new(r, g, b);
+            }
+        }
+        HorizonAt { cover, distance, extinction: horizon.extinction, colour, emission: horizon.emission }
+    }
+
+    pub(super) fn nearest(&self, low: Vec3, high: Vec3) -> Near {
+        let c = &self.candidates;
+        let from = low.to_array().map(|v| v as usize);
+        let mut near = Near { shows: false, distance: 1e9 };
+        for x in from[0]..=(high.x as usize).min(c.size[0] - 1) {
+            for y in from[1]..=(high.y as usize).min(c.size[1] - 1) {
+                let start = (x * c.size[1] + y) * c.size[2];
+                for n in start + from[2]..=start + (high.z as usize).min(c.size[2] - 1) {
+                    let style = self.styles[c.leaf[n] as usize];
+                    if style != 0 {
+                        let distance = f32::from(c.distance[n]) * c.voxels_per_step;
+                        near.distance = near.distance.min(distance);
+                        // Between samples the interpolated distance is less than at all of them by less than a voxel.
+                        near.shows |= distance <= self.horizons[usize::from(style) - 1].thickness + 1.0 + SOFT;
+                    }
+                }
+            }
+        }
+        near
+    }
+}
