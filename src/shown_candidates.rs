@@ -17,7 +17,7 @@ use crate::project::{Document, Project};
 use interp::Forest;
 use interp::assembly::selected_leaves;
 use render::media::Colouring;
-use render::{Candidates, FaceData, Scene};
+use render::{CandidateVolume, FaceData, Scene};
 use std::collections::BTreeMap;
 use survey::Progress;
 use survey::model::StructuralModel;
@@ -173,8 +173,8 @@ impl ShownCandidates {
     }
 
     /// As renderers take them.
-    pub fn candidates(&self) -> Candidates<'_> {
-        Candidates {
+    pub fn candidates(&self) -> CandidateVolume<'_> {
+        CandidateVolume {
             size: self.voxels.size,
             distance: &self.voxels.distance,
             leaf: &self.voxels.leaf,

@@ -17,7 +17,7 @@ pub const EDGE_SHARE: f64 = 0.005;
 
 /// What a comparison found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Comparison {
+pub struct PictureComparison {
     /// Largest channel difference at pixels that are no edge.
     pub worst_off_edges: u8,
     /// Where that is.
@@ -28,7 +28,7 @@ pub struct Comparison {
     pub differing_edge_share: f64,
 }
 
-impl Comparison {
+impl PictureComparison {
     /// Whether the pictures agree as DESIGN 6 asks.
     pub fn agrees(&self) -> bool {
         self.worst_off_edges <= EQUAL && self.differing_edge_share <= EDGE_SHARE
@@ -36,12 +36,13 @@ impl Comparison {
 }
 
 /// Compares a picture with the reference; `None` if their sizes differ or they are empty.
-pub fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<Comparison> {
+pub fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<PictureComparison> {
     if reference.dimensions() != picture.dimensions() || reference.is_empty() {
         return None;
     }
     let (width, height) = reference.dimensions();
-    let mut found = Comparison { worst_off_edges: 0, worst_at: [0; 2], edge_share: 0.0, differing_edge_share: 0.0 };
+    let mut found =
+        PictureComparison { worst_off_edges: 0, worst_at: [0; 2], edge_share: 0.0, differing_edge_share: 0.0 };
     let share = 1.0 / (f64::from(width) * f64::from(height));
     for (x, y, pixel) in reference.enumerate_pixels() {
         let difference = step(pixel.0, picture.get_pixel(x, y).0);

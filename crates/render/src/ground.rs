@@ -5,7 +5,7 @@
 //! `gap` the vertical distance to the nearest sheet and s the ground's steepest slope,
 //! `step = gap / (|d_z| + s·|d_xy|)`, not over a fault in one go and never shorter than [`SHORTEST_STEP`].
 //! The step that ends in rock is cut by the secant where one sheet of one block lies across it, and bisected elsewhere.
-//! Crossing a fault into rock gives the fault scarp, whose normal is the fault's.
+//! BoxCrossing a fault into rock gives the fault scarp, whose normal is the fault's.
 //!
 //! Only horizons that form the ground somewhere in the box are asked on the way ([`Relief::horizons`]): deeper ones cannot, and those cut off
 //! below an erosion surface do not change what is air.

@@ -3,7 +3,7 @@
 use crate::error::RenderError;
 use crate::leaves::{BORDER, BORDER_REACH, BORDER_STEP};
 use crate::voxel_box::VoxelBox;
-use crate::wells::WellPath;
+use crate::wells::DrawnWell;
 use glam::Vec3;
 use param::{PackedVolume, Parameterization};
 use survey::model::StructuralModel;
@@ -26,9 +26,9 @@ pub struct Inputs<'a> {
     /// Scalar volumes, raw data among them.
     pub volumes: &'a [NamedVolume<'a>],
     /// Distances to horizon candidates and their leaves.
-    pub candidates: Option<Candidates<'a>>,
+    pub candidates: Option<CandidateVolume<'a>>,
     /// Wells.
-    pub wells: &'a [WellPath<'a>],
+    pub wells: &'a [DrawnWell<'a>],
     /// Changes whenever data behind any of these references change: what is on the GPU is kept while it stays the same.
     pub version: u64,
 }
@@ -46,7 +46,7 @@ pub struct NamedVolume<'a> {
 
 /// For every sample of the survey the distance to the nearest candidate surface and the leaf of its tree (P-horiz 4.4, 5.2).
 #[derive(Debug, Clone, Copy)]
-pub struct Candidates<'a> {
+pub struct CandidateVolume<'a> {
     /// `[inlines, crosslines, samples]`.
     pub size: [usize; 3],
     /// Distance in steps; 255 = farther.
@@ -60,7 +60,7 @@ pub struct Candidates<'a> {
     pub groups: Option<&'a [u32]>,
 }
 
-impl Candidates<'_> {
+impl CandidateVolume<'_> {
     /// Refuses volumes that do not fill their box.
     ///
     /// # Errors
@@ -266,7 +266,8 @@ mod tests {
             distance.push((below(nearest) / 0.04).min(255.0) as u8);
             leaf.push(if nearest == 0 && x >= 12 { 9 } else { nearest as u32 + 1 });
         }
-        let candidates = Candidates { size, distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
+        let candidates =
+            CandidateVolume { size, distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
         candidates.validate().unwrap();
         for n in 0..900 {
             // About the shell of one voxel around each surface.

@@ -16,7 +16,6 @@ pub mod camera;
 pub mod compare;
 pub mod error;
 pub mod faces;
-mod frame;
 mod gpu;
 pub mod ground;
 pub mod inputs;
@@ -25,6 +24,7 @@ pub mod media;
 pub mod outline;
 pub mod pick;
 pub mod reference;
+mod resolved;
 pub mod scene;
 mod shade;
 pub mod visible;
@@ -34,13 +34,13 @@ pub mod wells;
 pub use camera::{Camera, Projection, View};
 pub use error::{RenderError, SceneError};
 pub use faces::Renderer;
-pub use inputs::{Candidates, Inputs, NamedVolume};
+pub use inputs::{CandidateVolume, Inputs, NamedVolume};
 pub use leaves::FaceData;
 pub use media::{
-    Faces, Interleaved, Isosurface, Media, Medium, Occlusion, Phong, PickedHorizon, Scalar, Scope, Shading,
+    Faces, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading,
 };
 pub use outline::{Outlines, Stroke};
-pub use pick::{Pick, Picked, pick};
+pub use pick::{PickedObject, PickedPoint, pick};
 pub use scene::{Background, Ground, Lookup, Scene};
 pub use voxel_box::{Corner, VoxelBox};
-pub use wells::{WellPath, WellStyle};
+pub use wells::{DrawnWell, WellStyle};

@@ -3,19 +3,19 @@
 //! The same ray as the picture's: the media it passes first, then the face, ground or well that stops it. On the CPU, since it is one ray.
 
 use crate::error::RenderError;
-use crate::frame::Frame;
 use crate::inputs::Inputs;
 use crate::media::march::first_seen;
 use crate::media::prepared::Preparations;
+use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
-use crate::shade::{Hit, stopping_hit};
+use crate::shade::{RayHit, stopping_hit};
 use crate::visible::Ray;
 use glam::{DVec2, Vec3};
 use survey::model::Region;
 
 /// What was hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Picked {
+pub enum PickedObject {
     /// A medium or a horizon in it.
     Medium,
     /// A face of rock.
@@ -28,9 +28,9 @@ pub enum Picked {
 
 /// A place under a pixel.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Pick {
+pub struct PickedPoint {
     /// What was hit.
-    pub what: Picked,
+    pub what: PickedObject,
     /// Where, voxels.
     pub voxel: Vec3,
     /// The nearest sample's leaf among the horizon candidates; absent without candidates or where there is none.
@@ -47,21 +47,21 @@ pub struct Pick {
 ///
 /// # Errors
 /// A scene without a picture, or missing inputs.
-pub fn pick(scene: &Scene, inputs: &Inputs, pixel: DVec2) -> Result<Option<Pick>, RenderError> {
-    let frame = Frame::new(scene, inputs, &mut Preparations::default())?;
-    let ray = Ray::from(frame.view.ray(pixel));
-    let hit = stopping_hit(&frame, &ray, f32::MIN);
-    let seen = frame.field.as_ref().and_then(|field| first_seen(field, &frame.solid, &ray, hit.t()));
+pub fn pick(scene: &Scene, inputs: &Inputs, pixel: DVec2) -> Result<Option<PickedPoint>, RenderError> {
+    let resolved = ResolvedScene::new(scene, inputs, &mut Preparations::default())?;
+    let ray = Ray::from(resolved.view.ray(pixel));
+    let hit = stopping_hit(&resolved, &ray, f32::MIN);
+    let seen = resolved.field.as_ref().and_then(|field| first_seen(field, &resolved.solid, &ray, hit.t()));
     let (what, t) = match (seen, hit) {
-        (Some((t, _)), _) => (Picked::Medium, t),
-        (None, Hit::Background) => return Ok(None),
-        (None, Hit::Face(hit)) => (Picked::Face, hit.t),
-        (None, Hit::Ground(hit)) => (Picked::Ground, hit.t),
-        (None, Hit::Well(hit)) => (Picked::Well(hit.well), hit.t),
+        (Some((t, _)), _) => (PickedObject::Medium, t),
+        (None, RayHit::Background) => return Ok(None),
+        (None, RayHit::Face(hit)) => (PickedObject::Face, hit.t),
+        (None, RayHit::Ground(hit)) => (PickedObject::Ground, hit.t),
+        (None, RayHit::Well(hit)) => (PickedObject::Well(hit.well), hit.t),
     };
     let voxel = ray.at(t);
     let leaf = inputs.candidates.map(|c| c.leaf_at(voxel)).filter(|leaf| *leaf != 0);
-    Ok(Some(Pick {
+    Ok(Some(PickedPoint {
         what,
         voxel,
         leaf,

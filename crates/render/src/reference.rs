@@ -5,13 +5,13 @@
 
 use crate::camera::ViewRay;
 use crate::error::RenderError;
-use crate::frame::Frame;
 use crate::inputs::Inputs;
 use crate::media::interleaved::{halves, interleave};
 use crate::media::light::LightVolume;
 use crate::media::light_grid::Asked;
 use crate::media::prepared::Preparations;
 use crate::outline::draw::draw as draw_outlines;
+use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
 use crate::shade::trace;
 use glam::{DVec2, Vec4};
@@ -43,7 +43,7 @@ impl CpuRenderer {
             let first = self.render(&first, inputs, progress)?;
             return Ok(interleave(first, &self.render(&second, inputs, progress)?, stripes));
         }
-        draw(&Frame::new(scene, inputs, &mut self.kept)?, progress)
+        draw(&ResolvedScene::new(scene, inputs, &mut self.kept)?, progress)
     }
 }
 
@@ -54,15 +54,15 @@ const BLOCK: usize = 8;
 /// Tiles drawn before they are put into the picture.
 const TILES_AT_ONCE: usize = 4096;
 
-fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
-    let light = match &frame.field {
+fn draw(resolved: &ResolvedScene, progress: &Progress) -> Result<RgbaImage, RenderError> {
+    let light = match &resolved.field {
         Some(field) => {
-            let asked = if frame.tubes.is_some() { Asked::Everywhere } else { Asked::Block };
-            LightVolume::new(field, &frame.view, &frame.solid, &frame.roaming_box, asked, progress)?
+            let asked = if resolved.tubes.is_some() { Asked::Everywhere } else { Asked::Block };
+            LightVolume::new(field, &resolved.view, &resolved.solid, &resolved.roaming_box, asked, progress)?
         }
         None => None,
     };
-    let [width, height] = frame.scene.size_px;
+    let [width, height] = resolved.scene.size_px;
     let across = width.div_ceil(TILE);
     let tiles = across * height.div_ceil(TILE);
     progress.begin("render", u64::from(tiles));
@@ -78,7 +78,7 @@ fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
                 for y in (top..bottom).step_by(BLOCK) {
                     for x in (left..right).step_by(BLOCK) {
                         let (across, down) = ((right - x).min(BLOCK as u32), (bottom - y).min(BLOCK as u32));
-                        for (n, pixel) in (0..).zip(block(frame, light.as_ref(), [x, y], [across, down])) {
+                        for (n, pixel) in (0..).zip(block(resolved, light.as_ref(), [x, y], [across, down])) {
                             let (column, row) = (x - left + n % across, y - top + n / across);
                             pixels[(row * (right - left) + column) as usize] = pixel;
                         }
@@ -94,23 +94,28 @@ fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
             }
         }
     }
-    draw_outlines(frame, &mut image);
+    draw_outlines(resolved, &mut image);
     Ok(image)
 }
 
 /// The averaged colours of a block of pixels, straight 8-bit RGBA, row by row.
-fn block(frame: &Frame, light: Option<&LightVolume>, [left, top]: [u32; 2], [across, down]: [u32; 2]) -> Vec<[u8; 4]> {
-    let samples = frame.scene.samples;
+fn block(
+    resolved: &ResolvedScene,
+    light: Option<&LightVolume>,
+    [left, top]: [u32; 2],
+    [across, down]: [u32; 2],
+) -> Vec<[u8; 4]> {
+    let samples = resolved.scene.samples;
     let per_pixel = samples * samples;
     let rays: Vec<ViewRay> = (0..across * down * per_pixel)
         .map(|n| {
             let (pixel, sub) = (n / per_pixel, n % per_pixel);
             let corner = DVec2::new(f64::from(left + pixel % across), f64::from(top + pixel / across));
             let offset = DVec2::new(f64::from(sub % samples) + 0.5, f64::from(sub / samples) + 0.5);
-            frame.view.ray(corner + offset / f64::from(samples))
+            resolved.view.ray(corner + offset / f64::from(samples))
         })
         .collect();
-    let colours = trace(frame, light, &rays);
+    let colours = trace(resolved, light, &rays);
     let average = |colours: &[Vec4]| {
         let sum: Vec4 = colours.iter().map(|colour| (colour.truncate() * colour.w).extend(colour.w)).sum();
         straight_bytes(sum / per_pixel as f32)

@@ -66,7 +66,7 @@ pub struct Solid {
 
 /// The interval of t over which a ray is inside a box, and the axes of the planes at its ends.
 #[derive(Debug, Clone, Copy)]
-struct Crossing {
+struct BoxCrossing {
     enter: f32,
     exit: f32,
     enter_axis: usize,
@@ -76,8 +76,8 @@ struct Crossing {
 /// Largest component that counts as parallel to a plane is replaced by this, so that 1/d stays finite.
 const PARALLEL: f32 = 1e-12;
 
-fn cross(ray: &Ray, [low, high]: [Vec3; 2]) -> Crossing {
-    let mut crossing = Crossing { enter: f32::MIN, exit: f32::MAX, enter_axis: 0, exit_axis: 0 };
+fn cross(ray: &Ray, [low, high]: [Vec3; 2]) -> BoxCrossing {
+    let mut crossing = BoxCrossing { enter: f32::MIN, exit: f32::MAX, enter_axis: 0, exit_axis: 0 };
     for axis in 0..3 {
         let d = ray.direction[axis];
         let d = if d.abs() < PARALLEL { PARALLEL } else { d };

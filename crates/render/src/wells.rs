@@ -18,7 +18,7 @@ use ttf::Colour;
 
 /// A well to draw.
 #[derive(Debug, Clone, Copy)]
-pub struct WellPath<'a> {
+pub struct DrawnWell<'a> {
     /// Its name.
     pub name: &'a str,
     /// Its path from the surface down, voxels.
@@ -98,7 +98,7 @@ const TOP_WIDTH: f32 = 1.6;
 impl Tubes {
     /// The wells inside a block; `None` where there are none.
     pub fn new(
-        wells: &[WellPath],
+        wells: &[DrawnWell],
         style: &WellStyle,
         view: &View,
         longest_m: f64,

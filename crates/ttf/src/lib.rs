@@ -39,7 +39,7 @@ pub use library::{Pattern, TextureLibrary};
 pub use raster::{MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX};
 pub use rgba::{RgbaFunction, RgbaStop, symmetric_clip};
 pub use scalar::{ScalarInterval, ScalarTtf};
-pub use shade::{FlatFootprint, FlatPoint, ShadePoint, blend_raw, shade};
+pub use shade::{FlatFootprint, LayerPoint, ShadePoint, blend_raw, shade};
 pub use sheet::contact_sheet;
 pub use tables::{BlockExtent, LayerExtent, TtfTables};
 pub use texture::Texture;

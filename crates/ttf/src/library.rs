@@ -39,11 +39,11 @@ pub struct Pattern {
 /// The textures by name.
 #[derive(Debug)]
 pub struct TextureLibrary {
-    entries: Vec<Entry>,
+    entries: Vec<LibraryEntry>,
 }
 
 #[derive(Debug)]
-struct Entry {
+struct LibraryEntry {
     pattern: Pattern,
     svg: Option<String>,
     texture: OnceLock<Arc<Texture>>,
@@ -108,7 +108,7 @@ impl TextureLibrary {
         if self.find(&pattern.name).is_some() {
             return Err(Error::DuplicateTexture { texture: pattern.name });
         }
-        self.entries.push(Entry { pattern, svg, texture });
+        self.entries.push(LibraryEntry { pattern, svg, texture });
         Ok(self.entries.len() - 1)
     }
 

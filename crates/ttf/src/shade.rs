@@ -16,7 +16,7 @@ use crate::tables::{NONE, TtfTables};
 
 /// A point of a face in flat space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlatPoint {
+pub struct LayerPoint {
     /// Along x; 0 to 1 over the block, beyond it near the walls.
     pub i: f32,
     /// Along y; 0 to 1 over the block, beyond it near the walls.
@@ -40,7 +40,7 @@ pub struct FlatFootprint {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadePoint {
     /// Where it is in flat space.
-    pub flat: FlatPoint,
+    pub flat: LayerPoint,
     /// How flat space changes around it.
     pub footprint: FlatFootprint,
     /// The face it lies on.
@@ -213,7 +213,7 @@ mod tests {
 
     fn at(i: f32, k: f32, layer: u32) -> ShadePoint {
         ShadePoint {
-            flat: FlatPoint { i, j: 0.1, k, layer },
+            flat: LayerPoint { i, j: 0.1, k, layer },
             footprint: FlatFootprint::default(),
             face: FaceFrame::new([0.0, 1.0, 0.0]),
             grad_k: [0.0, 0.0, -1.0],

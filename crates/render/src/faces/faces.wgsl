@@ -85,7 +85,7 @@ fn slide_on_plane(drift: vec3<f32>, direction: vec3<f32>, axis: u32) -> vec3<f32
 }
 
 fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
-    var point: FlatPoint;
+    var point: ShadePoint;
     if lookup != LOOKUP_RAW {
         var flat: FlatSample;
         if lookup == LOOKUP_EXACT {

@@ -10,9 +10,9 @@
 
 use super::layout::GridInfo;
 use crate::error::RenderError;
-use crate::frame::{Frame, shows_depths};
 use crate::gpu::Gpu;
 use crate::outline::solid::{FaceRect, face_rects};
+use crate::resolved::{ResolvedScene, shows_depths};
 use glam::DVec3;
 use param::{Parameterization, RegionGrid, SheetRef};
 use rayon::prelude::*;
@@ -28,20 +28,20 @@ const FAR_LEVELS: f32 = 3.0;
 
 /// What of the grids is seen: faces towards the camera, and the ground of a box.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct VisibleParts {
     faces: Vec<FaceRect>,
     ground: Option<[DVec3; 2]>,
     /// Whether the inside of the block is looked at, all of it.
     inside: bool,
 }
 
-impl Seen {
-    /// What a frame looks at.
-    pub fn of(frame: &Frame) -> Self {
-        let mut faces = face_rects(&frame.solid, &frame.view);
+impl VisibleParts {
+    /// What a resolved looks at.
+    pub fn of(resolved: &ResolvedScene) -> Self {
+        let mut faces = face_rects(&resolved.solid, &resolved.view);
         faces.retain(|face| face.faces_camera);
-        let ground = frame.relief.as_ref().map(|_| frame.solid.roaming_box.map(|corner| corner.as_dvec3()));
-        Self { faces, ground, inside: shows_depths(frame.scene) }
+        let ground = resolved.relief.as_ref().map(|_| resolved.solid.roaming_box.map(|corner| corner.as_dvec3()));
+        Self { faces, ground, inside: shows_depths(resolved.scene) }
     }
 }
 
@@ -50,13 +50,18 @@ pub struct GridBuffers {
     pub infos: wgpu::Buffer,
     pub columns: wgpu::Buffer,
     pub offsets: wgpu::Buffer,
-    pub seen: Seen,
+    pub seen: VisibleParts,
 }
 
 impl GridBuffers {
     /// Uploads what is seen.
-    pub fn new(gpu: &Gpu, model: &StructuralModel, param: &Parameterization, seen: Seen) -> Result<Self, RenderError> {
-        let windows: Vec<Vec<Window>> = param.grids.par_iter().map(|grid| windows(model, grid, &seen)).collect();
+    pub fn new(
+        gpu: &Gpu,
+        model: &StructuralModel,
+        param: &Parameterization,
+        seen: VisibleParts,
+    ) -> Result<Self, RenderError> {
+        let windows: Vec<Vec<LevelRange>> = param.grids.par_iter().map(|grid| windows(model, grid, &seen)).collect();
         let mut infos = Vec::new();
         let mut columns: Vec<[u32; 2]> = Vec::new();
         let mut offsets: Vec<[f32; 3]> = Vec::new();
@@ -95,12 +100,12 @@ impl GridBuffers {
 
 /// Levels of a column that are seen: `first..end`, none where they are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Window {
+struct LevelRange {
     first: u16,
     end: u16,
 }
 
-impl Window {
+impl LevelRange {
     const NONE: Self = Self { first: 0, end: 0 };
 
     fn join(&mut self, other: Self) {
@@ -113,13 +118,13 @@ impl Window {
 }
 
 /// The window of each column of a grid, `[x][y]`.
-fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &Seen) -> Vec<Window> {
+fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &VisibleParts) -> Vec<LevelRange> {
     let [nx, ny] = grid.size;
-    let mut windows = vec![Window::NONE; nx * ny];
+    let mut windows = vec![LevelRange::NONE; nx * ny];
     if windows.is_empty() || grid.offsets.is_empty() {
         return windows;
     }
-    let whole = Window { first: 0, end: grid.levels.min(usize::from(u16::MAX)) as u16 };
+    let whole = LevelRange { first: 0, end: grid.levels.min(usize::from(u16::MAX)) as u16 };
     if seen.inside {
         windows.fill(whole);
         return windows;
@@ -169,7 +174,7 @@ fn plane_levels(model: &StructuralModel, grid: &RegionGrid, z: impl Fn(f32, f32)
 
 /// Opens the windows of columns to the levels that a surface crosses in them and in their neighbours.
 fn add_windows(
-    windows: &mut [Window],
+    windows: &mut [LevelRange],
     grid: &RegionGrid,
     levels: &[f32],
     xs: std::ops::RangeInclusive<usize>,
@@ -197,7 +202,7 @@ fn add_windows(
             // At the ends the cubic leans on the three levels there.
             let first = first.min(last - 2.0).max(0.0);
             let end = end.max(3.0).min(last + 1.0);
-            windows[x * ny + y].join(Window { first: first as u16, end: end as u16 });
+            windows[x * ny + y].join(LevelRange { first: first as u16, end: end as u16 });
         }
     }
 }

@@ -19,15 +19,15 @@ struct Added {
     alpha: f32,
 }
 
-fn add_stretch(before: Added, origin: vec3<f32>, per_depth: vec3<f32>, depths: vec2<f32>, place: u32) -> Added {
+fn add_stretch(before: Added, origin: vec3<f32>, per_depth: vec3<f32>, depths: vec2<f32>, zone: u32) -> Added {
     var added = before;
     let p = origin + per_depth * (0.5 * (depths.x + depths.y));
     let content = brick_word(brick_at(p));
-    if (content >> (8u * place) & 255u) != 0u {
+    if (content >> (8u * zone) & 255u) != 0u {
         return added;
     }
     let units = media.slice_units * (depths.y - depths.x) / media.cells_low.w;
-    let matter = matter_at(p, place, content, vec3(0.0, 0.0, 1.0));
+    let matter = matter_at(p, zone, content, vec3(0.0, 0.0, 1.0));
     let alpha = 1.0 - exp(-matter.extinction * units);
     added.light += vec4(matter.emission * alpha, (1.0 - exp(-matter.extinction)) * units);
     added.alpha += alpha * (1.0 - added.alpha);
@@ -67,18 +67,18 @@ fn slice_adds(cell: vec2<u32>) -> Added {
         }
         let span = next_span(origin, direction, t);
         var to = outer.exit;
-        var place = CUT_OUT;
+        var zone = CUT_OUT;
         if span.found {
             if span.t <= t + TOUCH {
-                place = SURROUNDINGS;
+                zone = SURROUNDINGS;
                 to = min(span.end, outer.exit);
             } else {
                 to = min(span.t, outer.exit);
             }
         }
         let depths = vec2(max(t / norm, near), min(to / norm, far));
-        if (place == CUT_OUT || faces_shown != FACES_ALL) && depths.y > depths.x {
-            added = add_stretch(added, origin, per_depth, depths, place);
+        if (zone == CUT_OUT || faces_shown != FACES_ALL) && depths.y > depths.x {
+            added = add_stretch(added, origin, per_depth, depths, zone);
         }
         t = max(to, t + 0.5 * TOUCH);
     }

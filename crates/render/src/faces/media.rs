@@ -5,15 +5,15 @@
 
 use crate::camera::View;
 use crate::error::RenderError;
-use crate::frame::Frame;
 use crate::gpu::Gpu;
-use crate::inputs::Candidates;
+use crate::inputs::CandidateVolume;
 use crate::leaves::FaceData;
-use crate::media::field::Field;
+use crate::media::field::MediaField;
 use crate::media::light_grid::{LightGrid, cells_from_voxel};
-use crate::media::medium::{FieldMedium, Place};
-use crate::media::table::{ENTRIES, Table};
+use crate::media::medium::{FieldMedium, Zone};
+use crate::media::table::{ENTRIES, FunctionTable};
 use crate::media::{Faces, MAX_MEDIA, Scope, Shading};
+use crate::resolved::ResolvedScene;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Mat3, Vec3};
 use ttf::tables::NONE;
@@ -27,7 +27,7 @@ pub struct MediumInfo {
     pub slot: u32,
     pub table: u32,
     pub layers: u32,
-    pub place: u32,
+    pub zone: u32,
     pub coloured: u32,
     pub padding: u32,
 }
@@ -84,20 +84,22 @@ pub struct MediaVariant {
 }
 
 impl MediaVariant {
-    /// What a frame needs.
-    pub fn of(frame: &Frame) -> Self {
-        let faces_shown = match frame.scene.media.faces {
+    /// What a resolved needs.
+    pub fn of(resolved: &ResolvedScene) -> Self {
+        let faces_shown = match resolved.scene.media.faces {
             Faces::All => 0,
             Faces::CutOuts => 1,
             Faces::None => 2,
         };
-        let face_data = match (frame.scene.face_data, frame.candidates.is_some()) {
+        let face_data = match (resolved.scene.face_data, resolved.candidates.is_some()) {
             (FaceData::Leaves, true) => 1,
             (FaceData::Distance, true) => 2,
             _ => 0,
         };
-        let with_wells = u32::from(frame.tubes.is_some());
-        let Some(field) = &frame.field else { return Self { faces_shown, face_data, with_wells, ..Self::default() } };
+        let with_wells = u32::from(resolved.tubes.is_some());
+        let Some(field) = &resolved.field else {
+            return Self { faces_shown, face_data, with_wells, ..Self::default() };
+        };
         Self {
             face_data,
             with_wells,
@@ -133,27 +135,27 @@ impl MediaVariant {
 }
 
 /// The horizon candidates that a picture looks at.
-pub fn candidates_of<'f, 'a>(frame: &'f Frame<'a>) -> Option<&'f Candidates<'a>> {
-    let of_field = frame.field.as_ref().and_then(|field| field.horizons.as_ref()).map(|h| &h.candidates);
-    frame.candidates.as_ref().or(of_field)
+pub fn candidates_of<'f, 'a>(resolved: &'f ResolvedScene<'a>) -> Option<&'f CandidateVolume<'a>> {
+    let of_field = resolved.field.as_ref().and_then(|field| field.horizons.as_ref()).map(|h| &h.candidates);
+    resolved.candidates.as_ref().or(of_field)
 }
 
-/// Where light is carried for a frame, if it is.
-pub fn light_grid(frame: &Frame) -> Option<LightGrid> {
-    let field = frame.field.as_ref()?;
+/// Where light is carried for a resolved, if it is.
+pub fn light_grid(resolved: &ResolvedScene) -> Option<LightGrid> {
+    let field = resolved.field.as_ref()?;
     let Shading::Occlusion(occlusion) = field.shading else { return None };
-    Some(LightGrid::new(&occlusion, &frame.view, &frame.roaming_box, f64::from(field.unit_m)))
+    Some(LightGrid::new(&occlusion, &resolved.view, &resolved.roaming_box, f64::from(field.unit_m)))
 }
 
 /// Appends the media to the words and says where they are.
-pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32>) -> MediaParams {
+pub fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &mut Vec<u32>) -> MediaParams {
     let mut params = MediaParams::zeroed();
     let plain = |v: Vec3| v.extend(0.0).to_array();
     let columns = |m: Mat3| [plain(m.x_axis), plain(m.y_axis), plain(m.z_axis)];
-    [params.display_x, params.display_y, params.display_z] = columns(frame.view.display_from_voxel().as_mat3());
+    [params.display_x, params.display_y, params.display_z] = columns(resolved.view.display_from_voxel().as_mat3());
     params.scales[3] = 1.0;
     params.leaves[3] = NONE;
-    if let Some(candidates) = candidates_of(frame) {
+    if let Some(candidates) = candidates_of(resolved) {
         let [x, y, z] = candidates.size.map(|n| n as u32);
         params.candidates = [x, y, z, 0];
         params.scales[3] = candidates.voxels_per_step;
@@ -163,7 +165,7 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
             words.extend_from_slice(groups);
         }
     }
-    if let Some(tubes) = &frame.tubes {
+    if let Some(tubes) = &resolved.tubes {
         params.wells = words.len() as u32;
         params.capsules = tubes.capsules.len() as u32;
         for capsule in &tubes.capsules {
@@ -172,7 +174,7 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
             add(words, &[a.x, a.y, a.z, capsule.radius, b.x, b.y, b.z, red, green, blue]);
         }
     }
-    let Some(field) = &frame.field else { return params };
+    let Some(field) = &resolved.field else { return params };
     [params.covector_x, params.covector_y, params.covector_z] = columns(field.display_normal_from_voxel);
     params.light = field.light.extend(1.0).to_array();
     if let Shading::Phong(phong) = field.shading {
@@ -180,7 +182,7 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
         params.phong = [phong.ambient, phong.diffuse, phong.specular, 0.0];
     }
     if let Some(grid) = grid {
-        set_light(&mut params, &frame.view, grid);
+        set_light(&mut params, &resolved.view, grid);
     }
     params.scales = [field.samples_per_unit, field.unit_m, field.reach, params.scales[3]];
     for (info, medium) in params.media.iter_mut().zip(&field.media) {
@@ -189,10 +191,10 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
         *info = MediumInfo {
             low: medium.table.low,
             scale: medium.table.scale,
-            slot: slot(frame, medium),
+            slot: slot(resolved, medium),
             table,
             layers,
-            place: u32::from(medium.place == Place::CutOut),
+            zone: u32::from(medium.zone == Zone::CutOut),
             coloured: u32::from(medium.layers.as_ref().is_some_and(|looks| looks.colours)),
             padding: 0,
         };
@@ -200,10 +202,10 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
     let [x, y, z] = field.bricks.size.map(|n| n as u32);
     params.bricks = [x, y, z, words.len() as u32];
     words.extend_from_slice(&field.bricks.words);
-    add_horizons(frame, field, words, &mut params);
+    add_horizons(resolved, field, words, &mut params);
     params.cells[3] = words.len() as u32;
     for surface in &field.isosurfaces {
-        let slot = surface.medium.as_ref().map_or(NONE, |medium| slot(frame, medium));
+        let slot = surface.medium.as_ref().map_or(NONE, |medium| slot(resolved, medium));
         let [r, g, b] = surface.colour.to_array();
         add(words, &[r, g, b, surface.extinction, surface.thickness, surface.value]);
         words.extend([slot, 0]);
@@ -233,8 +235,8 @@ fn set_light(params: &mut MediaParams, view: &View, grid: &LightGrid) {
     params.slice_units = grid.slice_units;
 }
 
-fn slot(frame: &Frame, medium: &FieldMedium) -> u32 {
-    let position = frame.tables.volumes.iter().position(|name| name == medium.volume.name);
+fn slot(resolved: &ResolvedScene, medium: &FieldMedium) -> u32 {
+    let position = resolved.tables.volumes.iter().position(|name| name == medium.volume.name);
     position.map_or(NONE, |slot| slot as u32)
 }
 
@@ -244,12 +246,12 @@ fn add(words: &mut Vec<u32>, values: &[f32]) -> u32 {
     first
 }
 
-fn add_table(words: &mut Vec<u32>, table: &Table) -> u32 {
+fn add_table(words: &mut Vec<u32>, table: &FunctionTable) -> u32 {
     debug_assert_eq!(table.entries.len(), ENTRIES);
     add(words, table.entries.as_flattened())
 }
 
-fn add_horizons(frame: &Frame, field: &Field, words: &mut Vec<u32>, params: &mut MediaParams) {
+fn add_horizons(resolved: &ResolvedScene, field: &MediaField, words: &mut Vec<u32>, params: &mut MediaParams) {
     let scope = match field.scope {
         Scope::Everywhere => 0,
         Scope::NearHorizons => 1,
@@ -279,7 +281,7 @@ fn add_horizons(frame: &Frame, field: &Field, words: &mut Vec<u32>, params: &mut
         record[6] = NONE;
         record[10] = u32::from(horizon.by_leaf);
         if let (Some(medium), Some(table)) = (&horizon.paint, paint) {
-            record[6] = slot(frame, medium);
+            record[6] = slot(resolved, medium);
             record[7] = table;
             record[8] = medium.table.low.to_bits();
             record[9] = medium.table.scale.to_bits();
@@ -296,7 +298,7 @@ pub struct CandidateTextures {
 
 impl CandidateTextures {
     /// Uploads them; `None` makes textures of one texel, to bind where nothing is read.
-    pub fn new(gpu: &Gpu, candidates: Option<&Candidates>) -> Result<Self, RenderError> {
+    pub fn new(gpu: &Gpu, candidates: Option<&CandidateVolume>) -> Result<Self, RenderError> {
         let [nx, ny, nz] = candidates.map_or([1; 3], |c| c.size);
         let limit = gpu.device.limits().max_texture_dimension_3d as usize;
         if [nx, ny, nz].into_iter().any(|n| n > limit) {

@@ -12,7 +12,7 @@ struct MediumInfo {
     table: u32,
     layers: u32,
     // 0 surroundings, 1 cut-outs.
-    place: u32,
+    zone: u32,
     // 1 where layers colour it.
     coloured: u32,
     padding_0: u32,
@@ -300,7 +300,7 @@ fn isosurface_at(record: u32, p: vec3<f32>) -> vec4<f32> {
 }
 
 // One medium takes the way of several: a way of its own, with its returns, crashes Mesa 22.3's software driver where faces of rock stop rays.
-fn matter_at(p: vec3<f32>, place: u32, brick: u32, towards: vec3<f32>) -> Matter {
+fn matter_at(p: vec3<f32>, zone: u32, brick: u32, towards: vec3<f32>) -> Matter {
     var horizon: HorizonAt;
     horizon.distance = 1e9;
     if with_leaves == 1u {
@@ -327,7 +327,7 @@ fn matter_at(p: vec3<f32>, place: u32, brick: u32, towards: vec3<f32>) -> Matter
     }
     if rest > 0.0 && in_scope {
         for (var n = 0u; n < media_count; n += 1u) {
-            if media.media[n].place == place {
+            if media.media[n].zone == zone {
                 let one = of_medium(n, p, brick, towards);
                 sum.extinction += one.extinction * rest;
                 sum.colour += one.colour * (one.extinction * rest);
@@ -375,14 +375,14 @@ struct Gathered {
 }
 
 fn through(
-    origin: vec3<f32>, direction: vec3<f32>, t_from: f32, t_to: f32, place: u32, towards: vec3<f32>, units: f32, before: Gathered,
+    origin: vec3<f32>, direction: vec3<f32>, t_from: f32, t_to: f32, zone: u32, towards: vec3<f32>, units: f32, before: Gathered,
 ) -> Gathered {
     var gathered = before;
     let length = (t_to - t_from) * units;
     let steps = max(ceil(length * media.scales.x), 1.0);
     let step_t = (t_to - t_from) / steps;
     let step = length / steps;
-    let shift = 8u * place;
+    let shift = 8u * zone;
     let inverse = 1.0 / select(direction, vec3(1e-6), abs(direction) < vec3(1e-6));
     var n = 0.0;
     loop {
@@ -391,7 +391,7 @@ fn through(
         let content = brick_word(brick);
         let distance = content >> shift & 255u;
         if distance == 0u {
-            let matter = matter_at(p, place, content, towards);
+            let matter = matter_at(p, zone, content, towards);
             if matter.extinction > 0.0 {
                 let alpha = 1.0 - exp(-matter.extinction * step);
                 var colour = matter.colour;
@@ -445,17 +445,17 @@ fn gather(origin: vec3<f32>, direction: vec3<f32>, start: f32, stop: f32) -> Gat
         }
         let span = next_span(origin, direction, t);
         var to = last;
-        var place = CUT_OUT;
+        var zone = CUT_OUT;
         if span.found {
             if span.t <= t + TOUCH {
-                place = SURROUNDINGS;
+                zone = SURROUNDINGS;
                 to = min(span.end, last);
             } else {
                 to = min(span.t, last);
             }
         }
-        if to > t + TOUCH && (place == CUT_OUT || faces_shown != FACES_ALL) {
-            gathered = through(origin, direction, t, to, place, towards, units, gathered);
+        if to > t + TOUCH && (zone == CUT_OUT || faces_shown != FACES_ALL) {
+            gathered = through(origin, direction, t, to, zone, towards, units, gathered);
         }
         t = max(to, t + 0.5 * TOUCH);
     }

@@ -18,14 +18,14 @@ mod textures;
 mod volumes;
 
 use crate::error::RenderError;
-use crate::frame::{Flat, Frame, MAX_VOLUMES};
 use crate::gpu::Gpu;
 use crate::inputs::Inputs;
 use crate::media::interleaved::{halves, interleave};
 use crate::media::prepared::Preparations;
 use crate::outline::draw::draw as draw_outlines;
+use crate::resolved::{Flat, MAX_VOLUMES, ResolvedScene};
 use crate::scene::Scene;
-use grids::{GridBuffers, Seen};
+use grids::{GridBuffers, VisibleParts};
 use image::RgbaImage;
 use layout::FaceParams;
 use light::LightBuffers;
@@ -35,7 +35,7 @@ use std::collections::HashMap;
 use survey::Progress;
 use textures::TextureBuffers;
 use ttf::tables::NONE;
-use volumes::{VolumeInfo, no_volume, upload_volume};
+use volumes::{VolumePlacement, no_volume, upload_volume};
 
 /// The shader: the pass first, so that its error lines are true, then the snippets.
 pub(crate) const SHADER: &str = concat!(
@@ -71,7 +71,7 @@ pub struct Renderer {
     module: wgpu::ShaderModule,
     layouts: [wgpu::BindGroupLayout; 4],
     pipeline_layout: wgpu::PipelineLayout,
-    pipelines: HashMap<(Variant, Pass), wgpu::ComputePipeline>,
+    pipelines: HashMap<(Variant, EntryPoint), wgpu::ComputePipeline>,
     version: Option<u64>,
     model: Option<ModelBuffers>,
     grids: Option<GridBuffers>,
@@ -107,7 +107,7 @@ struct Variant {
 
 /// The entry points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-enum Pass {
+enum EntryPoint {
     Draw,
     Carry,
 }
@@ -200,15 +200,15 @@ impl Renderer {
             let first = self.render(&first, inputs, progress)?;
             return Ok(interleave(first, &self.render(&second, inputs, progress)?, stripes));
         }
-        let frame = Frame::new(scene, inputs, &mut self.kept)?;
-        self.upload(&frame, inputs)?;
-        let mut image = self.draw(&frame, progress)?;
-        draw_outlines(&frame, &mut image);
+        let resolved = ResolvedScene::new(scene, inputs, &mut self.kept)?;
+        self.upload(&resolved, inputs)?;
+        let mut image = self.draw(&resolved, progress)?;
+        draw_outlines(&resolved, &mut image);
         Ok(image)
     }
 
     /// Brings the device's copies up to date.
-    fn upload(&mut self, frame: &Frame, inputs: &Inputs) -> Result<(), RenderError> {
+    fn upload(&mut self, resolved: &ResolvedScene, inputs: &Inputs) -> Result<(), RenderError> {
         if self.version != Some(inputs.version) {
             self.model = None;
             self.grids = None;
@@ -218,17 +218,17 @@ impl Renderer {
             self.version = Some(inputs.version);
         }
         let gpu = &self.gpu;
-        let flat = frame.rock.filter(|_| frame.illustrated).map(|rock| rock.flat);
-        if let Some(rock) = frame.rock
+        let flat = resolved.interpretation.filter(|_| resolved.illustrated).map(|interpretation| interpretation.flat);
+        if let Some(interpretation) = resolved.interpretation
             && self.model.is_none()
         {
-            self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, rock.model))?);
+            self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, interpretation.model))?);
         }
-        if let (Some(rock), Some(Flat::Exact(param))) = (frame.rock, flat) {
-            let seen = Seen::of(frame);
+        if let (Some(interpretation), Some(Flat::Exact(param))) = (resolved.interpretation, flat) {
+            let seen = VisibleParts::of(resolved);
             if !self.grids.as_ref().is_some_and(|grids| grids.seen == seen) {
                 self.grids = None;
-                self.grids = Some(gpu.guarded(|| GridBuffers::new(gpu, rock.model, param, seen))?);
+                self.grids = Some(gpu.guarded(|| GridBuffers::new(gpu, interpretation.model, param, seen))?);
             }
         }
         if let Some(Flat::Packed(packed)) = flat
@@ -236,13 +236,13 @@ impl Renderer {
         {
             self.packed = Some(gpu.guarded(|| PackedTexture::new(gpu, Some(packed)))?);
         }
-        if !self.textures.as_ref().is_some_and(|held| held.hold(&frame.tables.textures)) {
-            self.textures = Some(gpu.guarded(|| Ok(TextureBuffers::new(gpu, &frame.tables.textures)))?);
+        if !self.textures.as_ref().is_some_and(|held| held.hold(&resolved.tables.textures)) {
+            self.textures = Some(gpu.guarded(|| Ok(TextureBuffers::new(gpu, &resolved.tables.textures)))?);
         }
-        if let (Some(candidates), None) = (media::candidates_of(frame), &self.candidates) {
+        if let (Some(candidates), None) = (media::candidates_of(resolved), &self.candidates) {
             self.candidates = Some(gpu.guarded(|| CandidateTextures::new(gpu, Some(candidates)))?);
         }
-        for volume in frame.volumes.iter().flatten() {
+        for volume in resolved.volumes.iter().flatten() {
             if !self.volumes.contains_key(volume.name) {
                 let texture = gpu.guarded(|| upload_volume(gpu, volume))?;
                 self.volumes.insert(volume.name.to_owned(), texture);
@@ -251,61 +251,69 @@ impl Renderer {
         Ok(())
     }
 
-    fn variant(&self, frame: &Frame) -> Variant {
+    fn variant(&self, resolved: &ResolvedScene) -> Variant {
         Variant {
-            lookup: match frame.rock.filter(|_| frame.illustrated).map(|rock| rock.flat) {
+            lookup: match resolved
+                .interpretation
+                .filter(|_| resolved.illustrated)
+                .map(|interpretation| interpretation.flat)
+            {
                 None => 0,
                 Some(Flat::Exact(_)) => 1,
                 Some(Flat::Packed(_)) => 2,
             },
-            with_ground: frame.relief.as_ref().map_or(0, |relief| if relief.opacity < 1.0 { 2 } else { 1 }),
-            with_raw: u32::from(frame.tables.globals.raw_volume != NONE),
-            with_scalars: u32::from(frame.illustrated && !frame.tables.scalars.is_empty()),
-            volume_count: frame.volumes.len() as u32,
-            has_faults: frame.rock.map_or(0, |rock| u32::from(!rock.model.faults().surfaces().is_empty())),
-            has_horizons: frame.rock.map_or(0, |rock| u32::from(!rock.model.stratigraphy().horizons.is_empty())),
+            with_ground: resolved.relief.as_ref().map_or(0, |relief| if relief.opacity < 1.0 { 2 } else { 1 }),
+            with_raw: u32::from(resolved.tables.globals.raw_volume != NONE),
+            with_scalars: u32::from(resolved.illustrated && !resolved.tables.scalars.is_empty()),
+            volume_count: resolved.volumes.len() as u32,
+            has_faults: resolved
+                .interpretation
+                .map_or(0, |interpretation| u32::from(!interpretation.model.faults().surfaces().is_empty())),
+            has_horizons: resolved
+                .interpretation
+                .map_or(0, |interpretation| u32::from(!interpretation.model.stratigraphy().horizons.is_empty())),
             pool_chunk: self.model.as_ref().map_or(1, |m| m.pool_chunk),
             pool_chunks: self.model.as_ref().map_or(1, |m| m.pool_chunks() as u32),
-            media: MediaVariant::of(frame),
+            media: MediaVariant::of(resolved),
         }
     }
 
-    fn draw(&mut self, frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
-        let variant = self.variant(frame);
-        let grid = media::light_grid(frame);
-        self.make_pipeline(variant, Pass::Draw)?;
+    fn draw(&mut self, resolved: &ResolvedScene, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        let variant = self.variant(resolved);
+        let grid = media::light_grid(resolved);
+        self.make_pipeline(variant, EntryPoint::Draw)?;
         if let Some(grid) = &grid {
-            self.make_pipeline(variant, Pass::Carry)?;
+            self.make_pipeline(variant, EntryPoint::Carry)?;
             if !self.light.as_ref().is_some_and(|held| held.fits(grid.size)) {
                 self.light = None;
                 self.light = Some(self.gpu.guarded(|| LightBuffers::new(&self.gpu, grid.size))?);
             }
         }
-        let pipeline = &self.pipelines[&(variant, Pass::Draw)];
-        let [width, height] = frame.scene.size_px;
-        let side = tile_side(frame.scene.samples);
+        let pipeline = &self.pipelines[&(variant, EntryPoint::Draw)];
+        let [width, height] = resolved.scene.size_px;
+        let side = tile_side(resolved.scene.samples);
         let mut image = RgbaImage::new(width, height);
         let tiles: Vec<[u32; 4]> = (0..height.div_ceil(side))
             .flat_map(|row| (0..width.div_ceil(side)).map(move |column| [column * side, row * side]))
             .map(|[x, y]| [x, y, side.min(width - x), side.min(height - y)])
             .collect();
         self.gpu.guarded(|| {
-            let target = Target::new(&self.gpu, side);
-            let mut params = FaceParams::of(frame);
+            let target = TileTarget::new(&self.gpu, side);
+            let mut params = FaceParams::of(resolved);
             let params_buffer = self.gpu.uniform("params", bytemuck::bytes_of(&params));
-            let mut words = layout::relief_map(frame);
-            let media = media::media_params(frame, grid.as_ref(), &mut words);
+            let mut words = layout::relief_map(resolved);
+            let media = media::media_params(resolved, grid.as_ref(), &mut words);
             let media = self.gpu.uniform("media", bytemuck::bytes_of(&media));
             let words = self.gpu.storage("words", bytemuck::cast_slice(&words));
             let buffers = [&params_buffer, &target.pixels, &words, &media];
             if let (Some(grid), Some(light)) = (&grid, &self.light) {
-                let groups = self.bind_groups(frame, buffers, &self.no_light);
-                let pipeline = &self.pipelines[&(variant, Pass::Carry)];
+                let groups = self.bind_groups(resolved, buffers, &self.no_light);
+                let pipeline = &self.pipelines[&(variant, EntryPoint::Carry)];
                 let own = (&self.light_layout, &params_buffer, &words);
                 light.carry(&self.gpu, pipeline, own, &groups[1..], grid, progress)?;
             }
             let carried = self.light.as_ref().filter(|_| grid.is_some()).map_or(&self.no_light, |light| &light.volume);
-            let groups = self.bind_groups(frame, buffers, carried);
+            let groups = self.bind_groups(resolved, buffers, carried);
             progress.begin("render", tiles.len() as u64);
             for tile in tiles {
                 params.tile = tile;
@@ -318,7 +326,7 @@ impl Renderer {
         Ok(image)
     }
 
-    fn make_pipeline(&mut self, variant: Variant, pass: Pass) -> Result<(), RenderError> {
+    fn make_pipeline(&mut self, variant: Variant, pass: EntryPoint) -> Result<(), RenderError> {
         if !self.pipelines.contains_key(&(variant, pass)) {
             let pipeline = self.gpu.guarded(|| Ok(on_a_large_stack(|| self.pipeline(variant, pass))))?;
             self.pipelines.insert((variant, pass), pipeline);
@@ -326,7 +334,7 @@ impl Renderer {
         Ok(())
     }
 
-    fn pipeline(&self, variant: Variant, pass: Pass) -> wgpu::ComputePipeline {
+    fn pipeline(&self, variant: Variant, pass: EntryPoint) -> wgpu::ComputePipeline {
         let mut constants = vec![
             ("lookup", f64::from(variant.lookup)),
             ("with_ground", f64::from(variant.with_ground)),
@@ -340,8 +348,8 @@ impl Renderer {
         ];
         constants.extend(variant.media.constants());
         let (label, layout) = match pass {
-            Pass::Draw => ("draw", &self.pipeline_layout),
-            Pass::Carry => ("carry", &self.light_pipeline_layout),
+            EntryPoint::Draw => ("draw", &self.pipeline_layout),
+            EntryPoint::Carry => ("carry", &self.light_pipeline_layout),
         };
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(label),
@@ -357,10 +365,15 @@ impl Renderer {
     }
 
     /// `buffers`: parameters, pixels, words, media.
-    fn bind_groups(&self, frame: &Frame, buffers: [&wgpu::Buffer; 4], light: &wgpu::Texture) -> [wgpu::BindGroup; 4] {
+    fn bind_groups(
+        &self,
+        resolved: &ResolvedScene,
+        buffers: [&wgpu::Buffer; 4],
+        light: &wgpu::Texture,
+    ) -> [wgpu::BindGroup; 4] {
         let [params, pixels, words, media] = buffers;
         let gpu = &self.gpu;
-        let tables = &frame.tables;
+        let tables = &resolved.tables;
         let storage = |label: &str, bytes: &[u8]| gpu.storage(label, bytes);
         let globals = gpu.uniform("ttf", bytemuck::bytes_of(&tables.globals));
         let layers = storage("layers", bytemuck::cast_slice(&tables.layers));
@@ -379,13 +392,13 @@ impl Renderer {
             Some(textures) => (textures.infos.as_entire_binding(), textures.texels.as_entire_binding()),
             None => (none(), none()),
         };
-        let mut volume_infos = [VolumeInfo::default(); MAX_VOLUMES];
+        let mut volume_infos = [VolumePlacement::default(); MAX_VOLUMES];
         let views: Vec<wgpu::TextureView> = (0..MAX_VOLUMES)
             .map(|slot| {
-                let volume = frame.volumes.get(slot).copied().flatten();
+                let volume = resolved.volumes.get(slot).copied().flatten();
                 let texture = volume.and_then(|v| self.volumes.get(v.name)).unwrap_or(&self.no_volume);
                 if let Some(volume) = volume {
-                    volume_infos[slot] = VolumeInfo::of(&volume);
+                    volume_infos[slot] = VolumePlacement::of(&volume);
                 }
                 texture.create_view(&wgpu::TextureViewDescriptor::default())
             })
@@ -462,12 +475,12 @@ fn tile_side(samples: u32) -> u32 {
 }
 
 /// A tile's pixels on the device and their way back.
-struct Target {
+struct TileTarget {
     pixels: wgpu::Buffer,
     readback: wgpu::Buffer,
 }
 
-impl Target {
+impl TileTarget {
     fn new(gpu: &Gpu, side: u32) -> Self {
         let buffer = |label, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -67,7 +67,7 @@ const ACROSS_ONLY_SHARE: f32 = 0.35;
 const ALONG_ONLY_SHARE: f32 = 0.65;
 
 // A point of a face in flat space, and how flat space changes there.
-struct FlatPoint {
+struct ShadePoint {
     ijk: vec3<f32>,
     // Change of (i, j, k) per sample step to the right and down the image.
     dx: vec3<f32>,
@@ -132,7 +132,7 @@ fn map_flat(mappings: Mappings, mapping: u32, flat: vec3<f32>) -> vec2<f32> {
     return vec2(i, j);
 }
 
-fn sample_mapped(texture: u32, frequency: vec2<f32>, point: FlatPoint, mappings: Mappings) -> vec4<f32> {
+fn sample_mapped(texture: u32, frequency: vec2<f32>, point: ShadePoint, mappings: Mappings) -> vec4<f32> {
     let scale = frequency * ttf.global_frequency;
     var sum = vec4(0.0);
     // As many rounds as mappings have a weight: mostly one.
@@ -207,7 +207,7 @@ fn blend_raw(colour: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
 }
 
 // The colour of a point of a face of constant x, y or z at voxel position p.
-fn shade(point: FlatPoint, axis: u32, p: vec3<f32>) -> vec3<f32> {
+fn shade(point: ShadePoint, axis: u32, p: vec3<f32>) -> vec3<f32> {
     let layer = layers[point.layer];
     var colour = layer.colour.rgb;
     var frequency = layer.frequency;

@@ -4,7 +4,7 @@ use super::layout::{FaceParams, FaultInfo, GridInfo, ModelInfo, PackedInfo, Shee
 use super::light::Slice;
 use super::media::{HORIZON_WORDS, MediaParams, MediumInfo};
 use super::textures::TextureInfo;
-use super::volumes::VolumeInfo;
+use super::volumes::VolumePlacement;
 use super::{Renderer, shader};
 use crate::media::{march, samples, table};
 use crate::{Inputs, RenderError, Scene, ground, inputs, leaves, visible, wells};
@@ -76,14 +76,14 @@ fn structs_have_the_same_layout() {
     check!(m, GridInfo: origin, size, levels, first_column, bottom_horizon, top_horizon, bottom_shift, top_shift);
     check!(m, PackedInfo: scale, size, i_range, j_range, layers, blocks);
     check!(m, TextureInfo: mean, offset, side, levels);
-    check!(m, VolumeInfo: scale, offset, size);
+    check!(m, VolumePlacement: scale, offset, size);
     check!(m, TtfGlobals: no_data, raw_domain, blend, global_frequency, aspect_j, raw_volume, scalar_count, stop_count);
     check!(m, LayerEntry: colour, frequency, first_interval, interval_count);
     check!(m, IntervalEntry: colour, ink, k, frequency, texture);
     check!(m, ScalarEntry: colour, ink, range, factor, texture, volume, opacity);
     check!(m, StopEntry: colour, at);
     check!(m, Slice: index, side);
-    check!(m, MediumInfo: low, scale, slot, table, layers, place, coloured);
+    check!(m, MediumInfo: low, scale, slot, table, layers, zone, coloured);
     check!(m, MediaParams: display_x, display_y, display_z, covector_x, covector_y, covector_z, light, phong, cells_x,
         cells_y, cells_z, cells_shift, cells_low, back, right, up, forward, grid, cells, bricks, scales, candidates,
         leaves, slice_units, groups, wells, capsules, media);

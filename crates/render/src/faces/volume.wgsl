@@ -1,6 +1,6 @@
 // Scalar volumes on their own lattices and extents: the twin of `NamedVolume::sample`.
 
-struct VolumeInfo {
+struct VolumePlacement {
     // Sample index = voxel position · scale + offset; w unused.
     scale: vec4<f32>,
     offset: vec4<f32>,
@@ -8,7 +8,7 @@ struct VolumeInfo {
     size: vec4<u32>,
 }
 
-@group(2) @binding(0) var<uniform> volume_infos: array<VolumeInfo, 6>;
+@group(2) @binding(0) var<uniform> volume_infos: array<VolumePlacement, 6>;
 // Texel (x, y, z) of a texture is sample (z, y, x) of the volume, so that z stays fastest in memory.
 @group(2) @binding(1) var volume_0: texture_3d<f32>;
 @group(2) @binding(2) var volume_1: texture_3d<f32>;

@@ -14,7 +14,7 @@ const NO_DATA: f32 = -3.0e38;
 /// Where a volume lies, as the shader has it.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
-pub struct VolumeInfo {
+pub struct VolumePlacement {
     /// Sample index = voxel position · scale + offset; w unused.
     pub scale: [f32; 4],
     /// See `scale`.
@@ -23,7 +23,7 @@ pub struct VolumeInfo {
     pub size: [u32; 4],
 }
 
-impl VolumeInfo {
+impl VolumePlacement {
     /// The place of this volume.
     pub fn of(volume: &NamedVolume) -> Self {
         let (scale, offset) = volume.index_from_voxel();

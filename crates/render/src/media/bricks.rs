@@ -71,7 +71,7 @@ impl Bricks {
 
     /// The first of some places in a brick that shows something, in the surroundings (`shift` 0) or in the cut-outs (8), from place `n` on; `end` where there is none.
     #[inline(always)]
-    pub fn first_shown(&self, line: &Line, mut n: u32, end: u32, shift: u32) -> u32 {
+    pub fn first_shown(&self, line: &SampleLine, mut n: u32, end: u32, shift: u32) -> u32 {
         while n < end {
             let brick = self.at(line.at + line.per * n as f32);
             let distance = (self.word(brick) >> shift & 255) as i32;
@@ -92,7 +92,7 @@ impl Bricks {
 
 /// Evenly spaced places on a straight line, voxels.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Line {
+pub struct SampleLine {
     /// The first.
     pub at: Vec3,
     /// The way to the next.
@@ -100,7 +100,7 @@ pub struct Line {
     inverse: Vec3,
 }
 
-impl Line {
+impl SampleLine {
     /// From the first place, and the way to the next.
     pub fn new(at: Vec3, per: Vec3) -> Self {
         Self { at, per, inverse: per.recip() }

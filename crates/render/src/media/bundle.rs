@@ -1,6 +1,6 @@
 //! Many rays through one volume side by side: the case that has to be quick.
 //!
-//! What [`super::march::gather`] gathers, where one medium is all there is ([`super::field::Field::alone`]). A bundle of neighbouring rays advances
+//! What [`super::march::gather`] gathers, where one medium is all there is ([`super::field::MediaField::alone`]). A bundle of neighbouring rays advances
 //! together, eight samples of each at a time, so that they find in the cache what their neighbours read, and each stage is a short loop over
 //! [`BATCH`] samples of several rays, without a branch: places, values, extinctions. Only then does each ray take up what it met, sample by sample.
 //!
@@ -15,13 +15,13 @@
 
 use super::Faces;
 use super::Shading;
-use super::bricks::{Bricks, Line};
-use super::field::Field;
+use super::bricks::{Bricks, SampleLine};
+use super::field::MediaField;
 use super::light::LightVolume;
-use super::lit::{Surfaces, half_way};
+use super::lit::{LitSurfaces, half_way};
 use super::march::{Gathered, SPENT, gather};
-use super::medium::{FieldMedium, Place};
-use super::samples::{BATCH, NO_DATA_BELOW, Places, Samples};
+use super::medium::{FieldMedium, Zone};
+use super::samples::{BATCH, IndexPositions, NO_DATA_BELOW, VolumeSamples};
 use super::stretches::stretches;
 use super::table::absorbed;
 use super::wide::{Loops, widest};
@@ -36,7 +36,7 @@ const NUMBERS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 /// Gathers what rays meet between two distances each; quick where neighbours in the list are neighbours in the picture.
 pub fn gather_all(
-    field: &Field,
+    field: &MediaField,
     light: Option<&LightVolume>,
     solid: &Solid,
     rays: &[(Ray, [f32; 2])],
@@ -60,7 +60,7 @@ pub fn gather_all(
 struct Bundle<'b> {
     bricks: &'b Bricks,
     medium: &'b FieldMedium<'b>,
-    samples: Samples<'b>,
+    samples: VolumeSamples<'b>,
     light: Option<&'b LightVolume>,
     shading: Shading,
     /// The direction to the light of surfaces, in display space.
@@ -92,7 +92,7 @@ struct Leg {
     /// Voxel position of the first sample and the way to the next.
     at: Vec3,
     per: Vec3,
-    /// Samples, and their optical length.
+    /// VolumeSamples, and their optical length.
     steps: u32,
     step: f32,
 }
@@ -104,7 +104,7 @@ struct Walker {
     /// Its legs that are still to come.
     legs: std::ops::Range<usize>,
     /// Voxel positions of the leg's samples.
-    line: Line,
+    line: SampleLine,
     /// The first and the way to the next in index space.
     index: Vec3,
     index_per: Vec3,
@@ -119,20 +119,20 @@ struct Walker {
 
 /// Samples of several rays.
 struct Batch {
-    places: Places,
+    places: IndexPositions,
     values: [f32; BATCH],
     entries: [u32; BATCH],
     extinctions: [f32; BATCH],
     /// The rays they are of, [`LANES`] samples each, and how many of those count.
     walkers: [(usize, usize); BATCH / LANES],
     filled: usize,
-    seen: [Seen; BATCH],
-    surfaces: Surfaces,
+    seen: [VisibleSample; BATCH],
+    surfaces: LitSurfaces,
 }
 
 /// A sample that shows something.
 #[derive(Clone, Copy, Default)]
-struct Seen {
+struct VisibleSample {
     walker: usize,
     n: f32,
     entry: usize,
@@ -142,7 +142,7 @@ struct Seen {
 
 impl<'b> Bundle<'b> {
     fn new(
-        field: &'b Field,
+        field: &'b MediaField,
         medium: &'b FieldMedium,
         light: Option<&'b LightVolume>,
         solid: &Solid,
@@ -158,7 +158,7 @@ impl<'b> Bundle<'b> {
             let first = legs.len();
             stretches(solid, ray, *between, |stretch| {
                 // Rock that is drawn as faces is not looked into.
-                if stretch.place == medium.place && (stretch.place == Place::CutOut || field.faces != Faces::All) {
+                if stretch.zone == medium.zone && (stretch.zone == Zone::CutOut || field.faces != Faces::All) {
                     let [from, to] = stretch.t;
                     let steps = ((to - from) * units * field.samples_per_unit).ceil().max(1.0);
                     let step_t = (to - from) / steps;
@@ -179,7 +179,7 @@ impl<'b> Bundle<'b> {
             towards_light: field.light,
             plain: plain.map(Vec3::from_array),
             normal: field.display_normal_from_voxel * Mat3::from_diagonal(medium.index_from_voxel().0 * 0.5),
-            shift: if medium.place == Place::CutOut { 8 } else { 0 },
+            shift: if medium.zone == Zone::CutOut { 8 } else { 0 },
             walkers,
             legs,
         }
@@ -270,7 +270,7 @@ impl<'b> Bundle<'b> {
             for (lane, alpha) in alphas[..count].iter().enumerate() {
                 let weight = alpha * passes;
                 // Written in any case, counted if it shows: no branch.
-                batch.seen[found] = Seen {
+                batch.seen[found] = VisibleSample {
                     walker: index,
                     n: (walker.n + lane as u32) as f32,
                     entry: batch.entries[lanes.start + lane] as usize,
@@ -322,7 +322,7 @@ impl Walker {
         Self {
             half,
             legs,
-            line: Line::default(),
+            line: SampleLine::default(),
             index: Vec3::ZERO,
             index_per: Vec3::ZERO,
             n: 0,
@@ -348,7 +348,7 @@ impl Walker {
 
     fn begin(&mut self, leg: &Leg, medium: &FieldMedium) {
         let (scale, offset) = medium.index_from_voxel();
-        self.line = Line::new(leg.at, leg.per);
+        self.line = SampleLine::new(leg.at, leg.per);
         self.index = leg.at * scale + offset;
         self.index_per = leg.per * scale;
         self.n = 0;
@@ -360,14 +360,14 @@ impl Walker {
 impl Batch {
     fn new() -> Self {
         Self {
-            places: Places::default(),
+            places: IndexPositions::default(),
             values: [0.0; BATCH],
             entries: [0; BATCH],
             extinctions: [0.0; BATCH],
             walkers: [(0, 0); BATCH / LANES],
             filled: 0,
-            seen: [Seen::default(); BATCH],
-            surfaces: Surfaces::new(),
+            seen: [VisibleSample::default(); BATCH],
+            surfaces: LitSurfaces::new(),
         }
     }
 
@@ -388,7 +388,7 @@ impl Batch {
 
     /// Values and extinctions of its samples.
     #[inline(always)]
-    fn read(&mut self, samples: &Samples, medium: &FieldMedium) {
+    fn read(&mut self, samples: &VolumeSamples, medium: &FieldMedium) {
         let count = self.filled * LANES;
         samples.values(&self.places, count, &mut self.values);
         let table = &medium.table;

@@ -1,16 +1,16 @@
 //! The media of a scene at any point: extinction, colour, emission.
 //!
-//! Voxel space; extinction per unit of length ([`Field::unit_m`] metres of display space), colours linear.
+//! Voxel space; extinction per unit of length ([`MediaField::unit_m`] metres of display space), colours linear.
 
 use super::bricks::{BrickContent, Bricks, LayerLooks, LayerMap, MIXED};
 use super::horizons::FieldHorizons;
-use super::isosurface::{Depths, FieldIsosurface};
+use super::isosurface::{FieldIsosurface, StratigraphicDepth};
 use super::lit::Lit;
-use super::medium::{FieldMedium, Place};
+use super::medium::{FieldMedium, Zone};
 use super::prepared::Preparations;
 use super::samples::NO_DATA_BELOW;
-use super::table::{Table, extinction};
-use super::{EmptySpace, Faces, Media, Phong, Scalar, Scope, Shading, white_ramp};
+use super::table::{FunctionTable, extinction};
+use super::{EmptySpace, Faces, IsosurfaceSource, Media, Phong, Scope, Shading, white_ramp};
 use crate::camera::View;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
@@ -30,7 +30,7 @@ pub struct Matter {
 }
 
 /// The media of a scene, resolved.
-pub struct Field<'a> {
+pub struct MediaField<'a> {
     /// Those of the surroundings first.
     pub media: Vec<FieldMedium<'a>>,
     /// Horizons by their leaves.
@@ -58,10 +58,10 @@ pub struct Field<'a> {
     /// Direction to the light in display space, unit.
     pub light: Vec3,
     model: Option<&'a StructuralModel>,
-    depths: Option<Depths<'a>>,
+    depths: Option<StratigraphicDepth<'a>>,
 }
 
-impl<'a> Field<'a> {
+impl<'a> MediaField<'a> {
     /// The media of a scene; `None` when it has none.
     ///
     /// # Errors
@@ -77,33 +77,33 @@ impl<'a> Field<'a> {
         if media.is_empty() {
             return Ok(None);
         }
-        let mut resolve = |name: &str, function: &ttf::RgbaFunction, place: Place| {
+        let mut resolve = |name: &str, function: &ttf::RgbaFunction, zone: Zone| {
             function.validate(&format!("the medium `{name}`"))?;
             let volume = *inputs.volumes.iter().find(|v| v.name == name).ok_or_else(|| RenderError::UnknownVolume {
                 name: name.to_owned(),
                 present: inputs.volumes.iter().map(|v| v.name.to_owned()).collect(),
             })?;
             let prepared = kept.of(inputs.version, &volume);
-            Ok::<_, RenderError>(FieldMedium::new(volume, prepared, Table::new(function), place))
+            Ok::<_, RenderError>(FieldMedium::new(volume, prepared, FunctionTable::new(function), zone))
         };
         let model = inputs.model;
         let mut resolved = Vec::new();
-        let places = [(&media.surroundings, Place::Surroundings), (&media.cut_outs, Place::CutOut)];
-        for (medium, place) in places.into_iter().flat_map(|(list, place)| list.iter().map(move |m| (m, place))) {
-            let mut made = resolve(&medium.volume, &medium.function, place)?;
+        let zones = [(&media.surroundings, Zone::Surroundings), (&media.cut_outs, Zone::CutOut)];
+        for (medium, zone) in zones.into_iter().flat_map(|(list, zone)| list.iter().map(move |m| (m, zone))) {
+            let mut made = resolve(&medium.volume, &medium.function, zone)?;
             made.layers = LayerLooks::new(medium, tables, model, ground_is_shown);
             resolved.push(made);
         }
         let depths = match (inputs.model, inputs.param) {
-            (Some(model), Some(param)) => Some(Depths { model, param }),
+            (Some(model), Some(param)) => Some(StratigraphicDepth { model, param }),
             _ => None,
         };
         let mut isosurfaces = Vec::new();
         for surface in &media.isosurfaces {
             let medium = match &surface.of {
-                Scalar::Volume(name) => Some(resolve(name, &white_ramp(1.0, 0.0), Place::Surroundings)?),
-                Scalar::Depth if depths.is_none() => return Err(RenderError::NO_DEPTHS),
-                Scalar::Depth => None,
+                IsosurfaceSource::Volume(name) => Some(resolve(name, &white_ramp(1.0, 0.0), Zone::Surroundings)?),
+                IsosurfaceSource::Depth if depths.is_none() => return Err(RenderError::NO_DEPTHS),
+                IsosurfaceSource::Depth => None,
             };
             isosurfaces.push(FieldIsosurface::new(surface, medium));
         }
@@ -153,25 +153,25 @@ impl<'a> Field<'a> {
             let layer = map.as_ref().map_or(MIXED, |map| map.layer(brick));
             let [low, high] = Bricks::corners(brick);
             let near = self.horizons.as_ref().map(|h| h.nearest(low, high));
-            let shows = |place: Place| {
+            let shows = |zone: Zone| {
                 empty_space == EmptySpace::Sampled
                     || near.is_some_and(|near| near.shows)
                     || self.isosurfaces.iter().any(|surface| surface.shows(low, high, layer))
                     || (self.scope != Scope::NearHorizons || near.is_some_and(|near| near.distance <= self.reach + 1.0))
-                        && self.media.iter().any(|m| m.place == place && m.shows(low, high, layer))
+                        && self.media.iter().any(|m| m.zone == zone && m.shows(low, high, layer))
             };
-            BrickContent { shows: [shows(Place::Surroundings), shows(Place::CutOut)], layer }
+            BrickContent { shows: [shows(Zone::Surroundings), shows(Zone::CutOut)], layer }
         })
     }
 
     /// What is at a point of a place, in a brick with this word. `towards` points to the viewer, unit, in display space.
     #[inline(always)]
-    pub fn at(&self, p: Vec3, place: Place, word: u32, towards: Vec3) -> Matter {
+    pub fn at(&self, p: Vec3, zone: Zone, word: u32, towards: Vec3) -> Matter {
         if self.media.len() == 1 && self.horizons.is_none() && self.isosurfaces.is_empty() {
             let medium = &self.media[0];
-            return if medium.place == place { self.of_medium(medium, p, word, towards) } else { Matter::default() };
+            return if medium.zone == zone { self.of_medium(medium, p, word, towards) } else { Matter::default() };
         }
-        self.mixed(p, place, word, towards)
+        self.mixed(p, zone, word, towards)
     }
 
     #[inline(always)]
@@ -211,7 +211,7 @@ impl<'a> Field<'a> {
     }
 
     /// Several media and horizons at one place.
-    fn mixed(&self, p: Vec3, place: Place, word: u32, towards: Vec3) -> Matter {
+    fn mixed(&self, p: Vec3, zone: Zone, word: u32, towards: Vec3) -> Matter {
         let horizon = self.horizons.as_ref().map(|h| h.at(p)).unwrap_or_default();
         let mut rest = 1.0 - horizon.cover;
         let in_scope = match self.scope {
@@ -234,7 +234,7 @@ impl<'a> Field<'a> {
             }
         }
         if rest > 0.0 && in_scope {
-            for medium in self.media.iter().filter(|m| m.place == place) {
+            for medium in self.media.iter().filter(|m| m.zone == zone) {
                 let one = self.of_medium(medium, p, word, towards);
                 sum.extinction += one.extinction * rest;
                 sum.colour += one.colour * (one.extinction * rest);

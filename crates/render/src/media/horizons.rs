@@ -1,12 +1,12 @@
 //! Horizons shown by the leaves of their trees (P-horiz 5.2). Voxel space; colours linear.
 
-use super::medium::{FieldMedium, Place};
+use super::medium::{FieldMedium, Zone};
 use super::samples::NO_DATA_BELOW;
 use super::shell::{SOFT, shell_cover};
 use super::table::extinction;
 use super::{Colouring, PickedHorizon};
 use crate::error::RenderError;
-use crate::inputs::Candidates;
+use crate::inputs::CandidateVolume;
 use crate::leaves::{BORDER_TONE, leaf_colour};
 use glam::Vec3;
 use ttf::{RgbaFunction, linear_from_srgb};
@@ -30,7 +30,7 @@ pub struct FieldHorizon<'a> {
 /// The horizons shown by their leaves.
 pub struct FieldHorizons<'a> {
     /// Distances and ids.
-    pub candidates: Candidates<'a>,
+    pub candidates: CandidateVolume<'a>,
     /// Number of the horizon by leaf id, from 1; 0 = none.
     pub styles: Vec<u8>,
     /// The horizons.
@@ -60,7 +60,7 @@ impl Default for HorizonAt {
 
 /// What a brick has of horizons.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Near {
+pub(super) struct NearHorizon {
     pub shows: bool,
     pub distance: f32,
 }
@@ -69,11 +69,11 @@ impl<'a> FieldHorizons<'a> {
     /// The horizons of a scene; `resolve` makes a painted volume ready.
     ///
     /// # Errors
-    /// Candidates that do not fill their box, and what `resolve` refuses.
+    /// CandidateVolume that do not fill their box, and what `resolve` refuses.
     pub fn new(
         shown: &[PickedHorizon],
-        candidates: Candidates<'a>,
-        mut resolve: impl FnMut(&str, &RgbaFunction, Place) -> Result<FieldMedium<'a>, RenderError>,
+        candidates: CandidateVolume<'a>,
+        mut resolve: impl FnMut(&str, &RgbaFunction, Zone) -> Result<FieldMedium<'a>, RenderError>,
     ) -> Result<Self, RenderError> {
         candidates.validate()?;
         let mut styles = vec![0u8; candidates.leaf.iter().copied().max().unwrap_or(0) as usize + 1];
@@ -88,7 +88,7 @@ impl<'a> FieldHorizons<'a> {
                 }
             }
             let paint = horizon.paint.as_ref();
-            let paint = paint.map(|p| resolve(&p.volume, &p.function, Place::Surroundings)).transpose()?;
+            let paint = paint.map(|p| resolve(&p.volume, &p.function, Zone::Surroundings)).transpose()?;
             horizons.push(FieldHorizon {
                 colour: Vec3::from_array(horizon.colour.to_unit().map(linear_from_srgb)),
                 extinction: extinction(horizon.opacity),
@@ -132,10 +132,10 @@ impl<'a> FieldHorizons<'a> {
         HorizonAt { cover, distance, extinction: horizon.extinction, colour, emission: horizon.emission }
     }
 
-    pub(super) fn nearest(&self, low: Vec3, high: Vec3) -> Near {
+    pub(super) fn nearest(&self, low: Vec3, high: Vec3) -> NearHorizon {
         let c = &self.candidates;
         let from = low.to_array().map(|v| v as usize);
-        let mut near = Near { shows: false, distance: 1e9 };
+        let mut near = NearHorizon { shows: false, distance: 1e9 };
         for x in from[0]..=(high.x as usize).min(c.size[0] - 1) {
             for y in from[1]..=(high.y as usize).min(c.size[1] - 1) {
                 let start = (x * c.size[1] + y) * c.size[2];

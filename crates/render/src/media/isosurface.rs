@@ -36,7 +36,7 @@ pub struct FieldIsosurface<'a> {
 
 /// The interpretation that k' is of.
 #[derive(Clone, Copy)]
-pub struct Depths<'a> {
+pub struct StratigraphicDepth<'a> {
     /// Where regions are.
     pub model: &'a StructuralModel,
     /// k in them.
@@ -56,7 +56,7 @@ impl<'a> FieldIsosurface<'a> {
     }
 
     /// The share of a place that it takes, and the gradient there.
-    pub fn at(&self, p: Vec3, depths: Option<Depths>) -> (f32, Vec3) {
+    pub fn at(&self, p: Vec3, depths: Option<StratigraphicDepth>) -> (f32, Vec3) {
         let (value, gradient) = match (&self.medium, depths) {
             (Some(medium), _) => {
                 let value = medium.sample(p);
@@ -65,7 +65,7 @@ impl<'a> FieldIsosurface<'a> {
                 }
                 (value, medium.gradient(p))
             }
-            (None, Some(Depths { model, param })) => {
+            (None, Some(StratigraphicDepth { model, param })) => {
                 let region = model.region_at(p);
                 let (flat, jacobian) = param.lookup_in(model, p, region);
                 (f32::from(region.layer) + flat.k, Vec3::from_array(jacobian[2]))

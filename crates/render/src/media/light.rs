@@ -19,7 +19,7 @@
 //! slices it is a Gaussian. Nothing comes in from outside the grid. How it is carried on the processor: the module `slices`.
 
 use super::Shading;
-use super::field::Field;
+use super::field::MediaField;
 use super::light_grid::{Asked, LightGrid, cells_from_voxel};
 use super::slices::{Carried, carry};
 use crate::camera::View;
@@ -43,7 +43,7 @@ impl LightVolume {
     /// # Errors
     /// Cancelled.
     pub fn new(
-        field: &Field,
+        field: &MediaField,
         view: &View,
         solid: &Solid,
         roaming_box: &VoxelBox,

@@ -12,8 +12,8 @@ pub struct Lit {
     half: Vec3,
 }
 
-/// Surfaces in the same light, component by component.
-pub struct Surfaces {
+/// LitSurfaces in the same light, component by component.
+pub struct LitSurfaces {
     /// Their normals, of any length, in display space.
     pub normals: [[f32; BATCH]; 3],
     /// [`half_way`] of their rays.
@@ -44,7 +44,7 @@ impl Lit {
     }
 }
 
-impl Surfaces {
+impl LitSurfaces {
     /// None yet.
     pub fn new() -> Self {
         Self { normals: [[0.0; BATCH]; 3], halves: [[0.0; BATCH]; 3], factor: [0.0; BATCH], white: [0.0; BATCH] }
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn many_surfaces_are_lit_as_each_is() {
         let phong = Phong { shininess: 7.0, ..Phong::default() };
-        let (light, mut surfaces) = (Vec3::new(0.6, 0.0, 0.8), Surfaces::new());
+        let (light, mut surfaces) = (Vec3::new(0.6, 0.0, 0.8), LitSurfaces::new());
         let vector = |n: usize| Vec3::new((n as f32).sin(), (n as f32 * 1.7).cos(), (n as f32 * 0.3).sin());
         for n in 0..BATCH {
             // The first has no normal.

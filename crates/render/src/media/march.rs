@@ -9,9 +9,9 @@
 //! so a homogeneous medium absorbs 1 − e^(−κℓ) exactly. Steps in bricks that show nothing are jumped over, a ray that lets less than
 //! [`SPENT`] pass has ended. Voxel space; t in voxels along the ray.
 
-use super::field::{Field, Matter};
+use super::field::{Matter, MediaField};
 use super::light::LightVolume;
-use super::medium::Place;
+use super::medium::Zone;
 use super::prepared::BRICK;
 use super::stretches::{Stretch, stretches};
 use super::table::absorbed;
@@ -38,7 +38,13 @@ impl Default for Gathered {
 }
 
 /// Gathers what a ray meets between two distances.
-pub fn gather(field: &Field, light: Option<&LightVolume>, solid: &Solid, ray: &Ray, between: [f32; 2]) -> Gathered {
+pub fn gather(
+    field: &MediaField,
+    light: Option<&LightVolume>,
+    solid: &Solid,
+    ray: &Ray,
+    between: [f32; 2],
+) -> Gathered {
     let mut gathered = Gathered::default();
     let along = field.display_from_voxel * ray.direction;
     let metres = along.length();
@@ -46,7 +52,7 @@ pub fn gather(field: &Field, light: Option<&LightVolume>, solid: &Solid, ray: &R
     stretches(solid, ray, between, |stretch| {
         let path = Path { field, light, ray, towards, units: metres / field.unit_m };
         // Rock that is drawn as faces is not looked into.
-        if gathered.passes > SPENT && (stretch.place == Place::CutOut || field.faces != Faces::All) {
+        if gathered.passes > SPENT && (stretch.zone == Zone::CutOut || field.faces != Faces::All) {
             path.through(stretch, &mut gathered, |_, _| true);
         }
     });
@@ -55,7 +61,7 @@ pub fn gather(field: &Field, light: Option<&LightVolume>, solid: &Solid, ray: &R
 
 /// What a step needs to know.
 struct Path<'a> {
-    field: &'a Field<'a>,
+    field: &'a MediaField<'a>,
     light: Option<&'a LightVolume>,
     ray: &'a Ray,
     towards: Vec3,
@@ -71,7 +77,7 @@ impl Path<'_> {
         let steps = (length * self.field.samples_per_unit).ceil().max(1.0);
         let (step_t, step) = ((to - from) / steps, length / steps);
         let steps = steps as u32;
-        let shift = if stretch.place == Place::CutOut { 8 } else { 0 };
+        let shift = if stretch.zone == Zone::CutOut { 8 } else { 0 };
         let bricks = &self.field.bricks;
         let mut n = 0;
         while n < steps {
@@ -85,7 +91,7 @@ impl Path<'_> {
                 for n in n..next {
                     let t = from + (n as f32 + 0.5) * step_t;
                     let p = self.ray.at(t);
-                    let matter = self.field.at(p, stretch.place, word, self.towards);
+                    let matter = self.field.at(p, stretch.zone, word, self.towards);
                     if matter.extinction > 0.0 {
                         let alpha = absorbed(matter.extinction * step);
                         gathered.colour += self.shaded(&matter, p) * (alpha * gathered.passes);
@@ -125,17 +131,17 @@ fn exit_t(ray: &Ray, brick: [i32; 3], around: i32) -> f32 {
 }
 
 /// The first place on a ray, before `stop`, at which something shows: the distance along the ray, and what shows there.
-pub fn first_seen(field: &Field, solid: &Solid, ray: &Ray, stop: f32) -> Option<(f32, Place)> {
+pub fn first_seen(field: &MediaField, solid: &Solid, ray: &Ray, stop: f32) -> Option<(f32, Zone)> {
     let along = field.display_from_voxel * ray.direction;
     let mut found = None;
     stretches(solid, ray, [f32::MIN, stop], |stretch| {
-        let looked_into = stretch.place == Place::CutOut || field.faces != Faces::All;
+        let looked_into = stretch.zone == Zone::CutOut || field.faces != Faces::All;
         if found.is_none() && looked_into {
             let towards = -along.normalize_or_zero();
             let path = Path { field, light: None, ray, towards, units: along.length() / field.unit_m };
             path.through(stretch, &mut Gathered::default(), |t, alpha| {
                 if alpha > 0.02 {
-                    found = Some((t, stretch.place));
+                    found = Some((t, stretch.zone));
                 }
                 found.is_none()
             });
@@ -145,7 +151,7 @@ pub fn first_seen(field: &Field, solid: &Solid, ray: &Ray, stop: f32) -> Option<
 }
 
 /// Whether this scene's light must be carried before its picture is drawn.
-pub fn needs_light(field: &Field) -> bool {
+pub fn needs_light(field: &MediaField) -> bool {
     matches!(field.shading, Shading::Occlusion(_))
 }
 

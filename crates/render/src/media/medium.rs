@@ -2,15 +2,15 @@
 
 use super::bricks::{LayerLooks, MIXED};
 use super::prepared::Prepared;
-use super::samples::Samples;
-use super::table::Table;
+use super::samples::VolumeSamples;
+use super::table::FunctionTable;
 use crate::inputs::NamedVolume;
 use glam::Vec3;
 use std::sync::Arc;
 
 /// Where a medium fills space.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum Zone {
     /// The roaming box outside the cut-outs.
     Surroundings,
     /// The cut-outs.
@@ -23,9 +23,9 @@ pub struct FieldMedium<'a> {
     pub volume: NamedVolume<'a>,
     prepared: Arc<Prepared>,
     /// Its baked function.
-    pub table: Table,
+    pub table: FunctionTable,
     /// Where it shows.
-    pub place: Place,
+    pub zone: Zone,
     /// What layers do to it; absent where they do nothing.
     pub layers: Option<LayerLooks>,
     scale: Vec3,
@@ -34,9 +34,9 @@ pub struct FieldMedium<'a> {
 
 impl<'a> FieldMedium<'a> {
     /// A volume made ready.
-    pub fn new(volume: NamedVolume<'a>, prepared: Arc<Prepared>, table: Table, place: Place) -> Self {
+    pub fn new(volume: NamedVolume<'a>, prepared: Arc<Prepared>, table: FunctionTable, zone: Zone) -> Self {
         let (scale, offset) = volume.index_from_voxel();
-        Self { volume, prepared, table, place, layers: None, scale, offset }
+        Self { volume, prepared, table, zone, layers: None, scale, offset }
     }
 
     /// Trilinear value at a voxel position; below [`NO_DATA_BELOW`] where there is none.
@@ -58,8 +58,8 @@ impl<'a> FieldMedium<'a> {
 
     /// Its samples.
     #[inline(always)]
-    pub(super) fn samples(&self) -> Samples<'_> {
-        Samples::new(self.prepared.samples(&self.volume), self.volume.volume.size())
+    pub(super) fn samples(&self) -> VolumeSamples<'_> {
+        VolumeSamples::new(self.prepared.samples(&self.volume), self.volume.volume.size())
     }
 
     /// Smallest and largest sample between two voxel positions; `None` where there is none.

@@ -38,7 +38,7 @@ mod wide;
 mod windows;
 
 pub use settings::{
-    Colouring, EmptySpace, Faces, Isosurface, LayerOpacity, MAX_HORIZONS, MAX_ISOSURFACES, MAX_MEDIA, Media, Medium,
-    MediumColour, Paint, PickedHorizon, Scalar, Scope, white_ramp,
+    Colouring, EmptySpace, Faces, Isosurface, IsosurfaceSource, LayerOpacity, MAX_HORIZONS, MAX_ISOSURFACES, MAX_MEDIA,
+    Media, Medium, MediumColour, Paint, PickedHorizon, Scope, white_ramp,
 };
 pub use shading::{Interleaved, Occlusion, Phong, Shading};

@@ -23,7 +23,7 @@ pub const BATCH: usize = 64;
 
 /// A volume's samples, z fastest, missing ones as [`NO_DATA`].
 #[derive(Clone, Copy)]
-pub struct Samples<'s> {
+pub struct VolumeSamples<'s> {
     values: &'s [f32],
     size: [usize; 3],
     /// From a sample to the next along each axis; nothing along an axis of one sample.
@@ -32,18 +32,18 @@ pub struct Samples<'s> {
 }
 
 /// Places in index space, coordinate by coordinate.
-pub struct Places {
+pub struct IndexPositions {
     /// x, y and z.
     pub axes: [[f32; BATCH]; 3],
 }
 
-impl Default for Places {
+impl Default for IndexPositions {
     fn default() -> Self {
         Self { axes: [[0.0; BATCH]; 3] }
     }
 }
 
-impl<'s> Samples<'s> {
+impl<'s> VolumeSamples<'s> {
     /// Samples of a volume of this size.
     pub fn new(values: &'s [f32], size: [usize; 3]) -> Self {
         let step = |axis: usize, stride: usize| if size[axis] > 1 { stride } else { 0 };
@@ -71,7 +71,7 @@ impl<'s> Samples<'s> {
 
     /// The values at the first `count` places.
     #[inline(always)]
-    pub fn values(&self, places: &Places, count: usize, values: &mut [f32; BATCH]) {
+    pub fn values(&self, places: &IndexPositions, count: usize, values: &mut [f32; BATCH]) {
         let mut starts = [0u32; BATCH];
         let mut fractions = [[0.0f32; BATCH]; 3];
         // What a value is at most: all there is inside, nothing outside.
@@ -230,8 +230,8 @@ mod tests {
             let covers = VoxelBox { min: [0.0; 3], max: size.map(|n| n.max(2) as f64 - 1.0) };
             let named = NamedVolume { name: "v", volume: &volume, covers };
             let patched: Vec<f32> = volume.samples().iter().map(|v| if v.is_finite() { *v } else { NO_DATA }).collect();
-            let samples = Samples::new(&patched, size);
-            let (mut missing, mut places, mut expected) = (0, Places::default(), [0.0; BATCH]);
+            let samples = VolumeSamples::new(&patched, size);
+            let (mut missing, mut places, mut expected) = (0, IndexPositions::default(), [0.0; BATCH]);
             for n in 0..40 * BATCH {
                 let place = |axis: usize| (size[axis] as f32 + 1.0) * noise(3 * n + axis) - 1.0;
                 let (p, lane) = (Vec3::new(place(0), place(1), place(2)), n % BATCH);
@@ -260,7 +260,7 @@ mod tests {
         let size = [8, 9, 10];
         let mut all: Vec<f32> = (0..720).map(noise).collect();
         all[345] = NO_DATA;
-        let samples = Samples::new(&all, size);
+        let samples = VolumeSamples::new(&all, size);
         for n in 0..3000 {
             let place = |axis: usize| (size[axis] as f32 - 1.0) * noise(7 * n + axis);
             let p = Vec3::new(place(0), place(1), place(2));

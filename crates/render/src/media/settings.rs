@@ -183,7 +183,7 @@ pub enum Colouring {
 #[serde(deny_unknown_fields)]
 pub struct Isosurface {
     /// Of what.
-    pub of: Scalar,
+    pub of: IsosurfaceSource,
     /// The value, in the volume's unit; for k' the layer from the bottom, counted from 0, plus k.
     pub value: f32,
     /// Its colour.
@@ -199,7 +199,7 @@ pub struct Isosurface {
 /// What has isosurfaces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Scalar {
+pub enum IsosurfaceSource {
     /// A volume, by its name.
     Volume(String),
     /// k'.
@@ -256,8 +256,8 @@ impl Media {
     /// The volumes that isosurfaces are of.
     pub fn isosurface_volumes(&self) -> impl Iterator<Item = &String> {
         self.isosurfaces.iter().filter_map(|surface| match &surface.of {
-            Scalar::Volume(name) => Some(name),
-            Scalar::Depth => None,
+            IsosurfaceSource::Volume(name) => Some(name),
+            IsosurfaceSource::Depth => None,
         })
     }
 

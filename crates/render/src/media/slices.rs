@@ -7,15 +7,15 @@
 //! show, and their values are read [`BATCH`] at a time. Cells at which a stretch of the medium begins or ends inside the slice are placed one by one.
 
 use super::Faces;
-use super::bricks::Line;
-use super::field::{Field, Matter};
+use super::bricks::SampleLine;
+use super::field::{Matter, MediaField};
 use super::light_grid::{Asked, LightGrid};
-use super::medium::{FieldMedium, Place};
-use super::samples::{BATCH, NO_DATA_BELOW, Places, Samples};
+use super::medium::{FieldMedium, Zone};
+use super::samples::{BATCH, IndexPositions, NO_DATA_BELOW, VolumeSamples};
 use super::stretches::stretches;
 use super::table::absorbed;
 use super::wide::{Loops, widest};
-use super::windows::{Window, windows};
+use super::windows::{CellWindow, windows};
 use crate::camera::View;
 use crate::visible::{Ray, Solid};
 use crate::voxel_box::VoxelBox;
@@ -25,7 +25,7 @@ use survey::{Cancelled, Progress};
 
 /// λ and E of every slice's front, in its window, row by row, slice by slice.
 pub(super) struct Carried {
-    pub windows: Vec<Window>,
+    pub windows: Vec<CellWindow>,
     /// Where in the lists below each window begins.
     pub starts: Vec<usize>,
     pub lambda: Vec<f32>,
@@ -36,25 +36,25 @@ pub(super) struct Carried {
 #[derive(Debug, Clone, Copy)]
 struct Passage {
     between: [f32; 2],
-    place: Place,
+    zone: Zone,
 }
 
-const NOTHING: Passage = Passage { between: [0.0; 2], place: Place::Surroundings };
+const NOTHING: Passage = Passage { between: [0.0; 2], zone: Zone::Surroundings };
 
 /// What lies where in the grid.
-struct Block<'c> {
-    field: &'c Field<'c>,
+struct BlockPassages<'c> {
+    field: &'c MediaField<'c>,
     view: &'c View,
     grid: &'c LightGrid,
     /// The medium and its samples, where that is all there is.
-    alone: Option<(&'c FieldMedium<'c>, Samples<'c>)>,
+    alone: Option<(&'c FieldMedium<'c>, VolumeSamples<'c>)>,
     /// The cells' first stretches of matter, their second ones and so on.
     passages: Vec<Vec<Passage>>,
 }
 
 /// Carries light through a block.
 pub(super) fn carry(
-    field: &Field,
+    field: &MediaField,
     view: &View,
     solid: &Solid,
     roaming_box: &VoxelBox,
@@ -64,7 +64,7 @@ pub(super) fn carry(
 ) -> Result<Carried, Cancelled> {
     let [nu, nv, slices] = grid.size;
     let emits = field.horizons.as_ref().is_some_and(|h| h.horizons.iter().any(|one| one.emission > 0.0));
-    let block = Block::new(field, view, solid, grid);
+    let block = BlockPassages::new(field, view, solid, grid);
     let windows = windows(grid, view, roaming_box, asked);
     let mut starts = Vec::with_capacity(windows.len());
     let mut count = 0;
@@ -84,7 +84,8 @@ pub(super) fn carry(
     progress.begin("light", slices as u64);
     for (front, (window, start)) in windows.iter().zip(&starts).enumerate() {
         let [width, height] = window.size();
-        let pass = Pass { block: &block, window: *window, front, pitch, before: &before, glow_before: &glow_before };
+        let pass =
+            SlicePass { block: &block, window: *window, front, pitch, before: &before, glow_before: &glow_before };
         let rows = |first: usize| first * pitch..;
         let kept = &mut lambda[*start..start + width * height];
         let carried = &mut after[rows(window.low[1] + 1)][..height * pitch];
@@ -116,8 +117,8 @@ pub(super) fn carry(
 /// Rows that one task computes.
 const ROWS: usize = 16;
 
-impl<'c> Block<'c> {
-    fn new(field: &'c Field<'c>, view: &'c View, solid: &Solid, grid: &'c LightGrid) -> Self {
+impl<'c> BlockPassages<'c> {
+    fn new(field: &'c MediaField<'c>, view: &'c View, solid: &Solid, grid: &'c LightGrid) -> Self {
         let [nu, nv, _] = grid.size;
         let alone = field.alone().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize);
         let most = solid.cut_outs.len() * 2 + 1;
@@ -132,13 +133,13 @@ impl<'c> Block<'c> {
                     let slice = |t: f32| ((f64::from(t) / norm - grid.near) / grid.slice) as f32;
                     let mut rank = 0;
                     stretches(solid, &ray, [f32::MIN, f32::INFINITY], |stretch| {
-                        let seen_into = stretch.place == Place::CutOut || field.faces != Faces::All;
-                        let asked = alone.is_none_or(|medium| medium.place == stretch.place);
+                        let seen_into = stretch.zone == Zone::CutOut || field.faces != Faces::All;
+                        let asked = alone.is_none_or(|medium| medium.zone == stretch.zone);
                         if seen_into && asked && rank < most {
                             if rank == ranks.len() {
                                 ranks.push(vec![NOTHING; nu]);
                             }
-                            ranks[rank][u] = Passage { between: stretch.t.map(slice), place: stretch.place };
+                            ranks[rank][u] = Passage { between: stretch.t.map(slice), zone: stretch.zone };
                             rank += 1;
                         }
                     });
@@ -164,20 +165,20 @@ impl<'c> Block<'c> {
     fn slice(&self, u: usize, v: usize, slice: usize) -> (f32, f32, Vec3) {
         let mut sum = (0.0, 0.0, Vec3::ZERO);
         for passages in &self.passages {
-            let Passage { between: [from, to], place } = passages[v * self.grid.size[0] + u];
+            let Passage { between: [from, to], zone } = passages[v * self.grid.size[0] + u];
             let (from, to) = (from.max(slice as f32), to.min((slice + 1) as f32));
             if to <= from {
                 continue;
             }
             let p = self.voxel(u, v, f64::from(0.5 * (from + to))).as_vec3();
             let word = self.field.bricks.word(self.field.bricks.at(p));
-            let shift = if place == Place::CutOut { 8 } else { 0 };
+            let shift = if zone == Zone::CutOut { 8 } else { 0 };
             if word >> shift & 255 != 0 {
                 continue;
             }
             let (_, direction) = self.view.depth_ray(cell_middle(self.grid, u, v));
             let towards = -(self.field.display_from_voxel * direction.as_vec3()).normalize_or_zero();
-            let Matter { extinction, emission, .. } = self.field.at(p, place, word, towards);
+            let Matter { extinction, emission, .. } = self.field.at(p, zone, word, towards);
             if extinction <= 0.0 {
                 continue;
             }
@@ -196,16 +197,16 @@ fn cell_middle(grid: &LightGrid, u: usize, v: usize) -> DVec2 {
 }
 
 /// One slice.
-struct Pass<'p> {
-    block: &'p Block<'p>,
-    window: Window,
+struct SlicePass<'p> {
+    block: &'p BlockPassages<'p>,
+    window: CellWindow,
     front: usize,
     pitch: usize,
     before: &'p [f32],
     glow_before: &'p [Vec3],
 }
 
-impl Pass<'_> {
+impl SlicePass<'_> {
     /// Blurs some rows of the window, from row `first` on: λ of what comes out is kept, and itself is what the slice adds to.
     fn rows(&self, first: usize, kept: &mut [f32], carried: &mut [f32]) {
         widest(Blurring { pass: self, first, kept, carried });
@@ -250,7 +251,7 @@ impl Pass<'_> {
 
 /// Some rows of a slice being blurred.
 struct Blurring<'p> {
-    pass: &'p Pass<'p>,
+    pass: &'p SlicePass<'p>,
     first: usize,
     kept: &'p mut [f32],
     carried: &'p mut [f32],
@@ -302,16 +303,16 @@ where
 
 /// Some rows of a slice taking up what one medium occludes.
 struct Occluding<'p> {
-    pass: &'p Pass<'p>,
+    pass: &'p SlicePass<'p>,
     medium: &'p FieldMedium<'p>,
-    samples: &'p Samples<'p>,
+    samples: &'p VolumeSamples<'p>,
     first: usize,
     carried: &'p mut [f32],
 }
 
 /// Cells that wait for their values.
 struct Waiting {
-    places: Places,
+    places: IndexPositions,
     /// Where each cell is among those carried, and the length of its medium in the slice.
     cells: [usize; BATCH],
     lengths: [f32; BATCH],
@@ -323,20 +324,21 @@ impl Loops for Occluding<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let mut waiting = Waiting { places: Places::default(), cells: [0; BATCH], lengths: [0.0; BATCH], filled: 0 };
+        let mut waiting =
+            Waiting { places: IndexPositions::default(), cells: [0; BATCH], lengths: [0.0; BATCH], filled: 0 };
         let Self { pass, medium, samples, first, carried } = self;
         let (block, slice) = (pass.block, pass.front as f32);
         let [low, high] = [pass.window.low[0], pass.window.high[0]];
         let (nu, units) = (block.grid.size[0], block.grid.slice_units);
         let (scale, offset) = medium.index_from_voxel();
-        let shift = if medium.place == Place::CutOut { 8 } else { 0 };
+        let shift = if medium.zone == Zone::CutOut { 8 } else { 0 };
         let bricks = &block.field.bricks;
         for row in 0..carried.len() / pass.pitch {
             let v = pass.window.low[1] + first + row;
             let start = row * pass.pitch + 1;
             let middle = f64::from(slice) + 0.5;
             let at = block.voxel(low, v, middle);
-            let line = Line::new(at.as_vec3(), (block.voxel(low + 1, v, middle) - at).as_vec3());
+            let line = SampleLine::new(at.as_vec3(), (block.voxel(low + 1, v, middle) - at).as_vec3());
             let (index, index_per) = (line.at * scale + offset, line.per * scale);
             for passages in &block.passages {
                 let passages = &passages[v * nu..(v + 1) * nu];
@@ -389,14 +391,14 @@ impl Waiting {
 
     /// Makes room for a run.
     #[inline(always)]
-    fn settle(&mut self, medium: &FieldMedium, samples: &Samples, carried: &mut [f32]) {
+    fn settle(&mut self, medium: &FieldMedium, samples: &VolumeSamples, carried: &mut [f32]) {
         if self.filled + LANES as usize > BATCH {
             self.read(medium, samples, carried);
         }
     }
 
     #[inline(always)]
-    fn read(&mut self, medium: &FieldMedium, samples: &Samples, carried: &mut [f32]) {
+    fn read(&mut self, medium: &FieldMedium, samples: &VolumeSamples, carried: &mut [f32]) {
         let (mut values, mut entries) = ([0.0; BATCH], [0; BATCH]);
         samples.values(&self.places, self.filled, &mut values);
         medium.table.entries_of(&values, &mut entries);

@@ -17,7 +17,7 @@ pub fn extinction(opacity: f32) -> f32 {
 
 /// A baked function.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
+pub struct FunctionTable {
     /// Linear red, green, blue and extinction by entry.
     pub entries: Vec<[f32; 4]>,
     /// The extinctions alone: what most samples ask for, small enough to stay at hand.
@@ -34,7 +34,7 @@ pub struct Table {
     visible_before: Vec<u32>,
 }
 
-impl Table {
+impl FunctionTable {
     /// Bakes a valid function.
     pub fn new(function: &RgbaFunction) -> Self {
         let entries: Vec<[f32; 4]> = function
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn entries_are_linear_colour_and_extinction() {
         let stop = |at: f32, opacity: f32| RgbaStop { at, colour: Colour::new(188, 255, 0), opacity };
-        let table = Table::new(&RgbaFunction {
+        let table = FunctionTable::new(&RgbaFunction {
             domain: [0.0, 2.0],
             stops: vec![stop(0.0, 0.0), stop(0.5, 0.0), stop(1.0, 1.0)],
         });

@@ -10,14 +10,14 @@ use glam::{DVec2, DVec3};
 
 /// A rectangle of cells of a slice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Window {
+pub(super) struct CellWindow {
     /// First cell to the right and up.
     pub low: [usize; 2],
     /// One behind the last.
     pub high: [usize; 2],
 }
 
-impl Window {
+impl CellWindow {
     const NONE: Self = Self { low: [usize::MAX; 2], high: [0; 2] };
 
     pub fn size(&self) -> [usize; 2] {
@@ -52,26 +52,26 @@ impl Window {
 }
 
 /// The window of every front, from the first slice's to the last's back.
-pub(super) fn windows(grid: &LightGrid, view: &View, roaming_box: &VoxelBox, asked: Asked) -> Vec<Window> {
+pub(super) fn windows(grid: &LightGrid, view: &View, roaming_box: &VoxelBox, asked: Asked) -> Vec<CellWindow> {
     let slices = grid.size[2];
-    let whole = Window { low: [0; 2], high: [grid.size[0], grid.size[1]] };
+    let whole = CellWindow { low: [0; 2], high: [grid.size[0], grid.size[1]] };
     // The cells around what the block takes of each slice.
-    let sections: Vec<Window> = match asked {
+    let sections: Vec<CellWindow> = match asked {
         Asked::Everywhere => vec![whole; slices],
         Asked::Block => (0..slices).map(|slice| section(grid, view, roaming_box, slice)).collect(),
     };
-    let section = |slice: usize| sections.get(slice).copied().unwrap_or(Window::NONE);
-    let read = |front: usize| section(front).hull(front.checked_sub(1).map_or(Window::NONE, section));
+    let section = |slice: usize| sections.get(slice).copied().unwrap_or(CellWindow::NONE);
+    let read = |front: usize| section(front).hull(front.checked_sub(1).map_or(CellWindow::NONE, section));
     // What light has come to, from the front on; what still matters, from the back on.
-    let mut lit = Window::NONE;
-    let reached: Vec<Window> = (0..=slices)
+    let mut lit = CellWindow::NONE;
+    let reached: Vec<CellWindow> = (0..=slices)
         .map(|front| {
             lit = lit.grown(grid).hull(section(front));
             lit
         })
         .collect();
-    let mut wanted = Window::NONE;
-    let mut windows = vec![Window::NONE; slices + 1];
+    let mut wanted = CellWindow::NONE;
+    let mut windows = vec![CellWindow::NONE; slices + 1];
     for front in (0..=slices).rev() {
         let needed = wanted.grown(grid);
         wanted = read(front).hull(needed);
@@ -81,7 +81,7 @@ pub(super) fn windows(grid: &LightGrid, view: &View, roaming_box: &VoxelBox, ask
 }
 
 /// The cells around the part of the block in a slice: those of any point's interpolation, and one more for rounding.
-fn section(grid: &LightGrid, view: &View, roaming_box: &VoxelBox, slice: usize) -> Window {
+fn section(grid: &LightGrid, view: &View, roaming_box: &VoxelBox, slice: usize) -> CellWindow {
     let (linear, shift) = view.eye_from_voxel();
     let eyes = roaming_box.corners().map(|corner| linear * corner + shift);
     let depths = [slice, slice + 1].map(|n| grid.near + n as f64 * grid.slice);
@@ -110,7 +110,7 @@ fn section(grid: &LightGrid, view: &View, roaming_box: &VoxelBox, slice: usize) 
         }
     }
     let cell = |v: f64, axis: usize| v.clamp(0.0, grid.size[axis] as f64) as usize;
-    Window {
+    CellWindow {
         low: [cell(low.x.floor() - 1.0, 0), cell(low.y.floor() - 1.0, 1)],
         high: [cell(high.x.floor() + 3.0, 0), cell(high.y.floor() + 3.0, 1)],
     }

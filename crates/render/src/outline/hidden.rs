@@ -5,8 +5,8 @@
 //! edge itself may pass on either side.
 
 use crate::camera::View;
-use crate::frame::Frame;
 use crate::media::march::gather;
+use crate::resolved::ResolvedScene;
 use crate::shade::first_hit;
 use crate::visible::Ray;
 use glam::{DVec2, DVec3};
@@ -24,27 +24,27 @@ const BISECTIONS: usize = 7;
 
 /// How far in front of a point the first hit of the ray through its pixel lies, voxels; negative when the ray meets nothing
 /// until behind the point.
-pub(super) fn covered_by(frame: &Frame, p: DVec3) -> f64 {
-    let view_ray = frame.view.ray(frame.view.project(p));
+pub(super) fn covered_by(resolved: &ResolvedScene, p: DVec3) -> f64 {
+    let view_ray = resolved.view.ray(resolved.view.project(p));
     let t = (p - view_ray.origin).dot(view_ray.direction);
-    t - f64::from(first_hit(frame, &Ray::from(view_ray), f32::MIN).t())
+    t - f64::from(first_hit(resolved, &Ray::from(view_ray), f32::MIN).t())
 }
 
 /// Whether the media in front of a point hide lines there: less than half of the light passes.
-fn is_veiled(frame: &Frame, p: DVec3) -> bool {
-    let view_ray = frame.view.ray(frame.view.project(p));
+fn is_veiled(resolved: &ResolvedScene, p: DVec3) -> bool {
+    let view_ray = resolved.view.ray(resolved.view.project(p));
     let t = (p - view_ray.origin).dot(view_ray.direction) - SAME;
     let ray = Ray::from(view_ray);
-    if frame.tubes.as_ref().is_some_and(|tubes| tubes.hit(&ray, t as f32).is_some()) {
+    if resolved.tubes.as_ref().is_some_and(|tubes| tubes.hit(&ray, t as f32).is_some()) {
         return true;
     }
-    let Some(field) = &frame.field else { return false };
-    gather(field, None, &frame.solid, &ray, [f32::MIN, t as f32]).passes < 0.5
+    let Some(field) = &resolved.field else { return false };
+    gather(field, None, &resolved.solid, &ray, [f32::MIN, t as f32]).passes < 0.5
 }
 
 /// Whether the block's surface is at `p` and nothing is in front of it.
-pub(super) fn is_seen(frame: &Frame, p: DVec3) -> bool {
-    covered_by(frame, p).abs() < SAME && !is_veiled(frame, p)
+pub(super) fn is_seen(resolved: &ResolvedScene, p: DVec3) -> bool {
+    covered_by(resolved, p).abs() < SAME && !is_veiled(resolved, p)
 }
 
 /// The parts of a polyline (voxel) for which `seen` holds, in pixels.

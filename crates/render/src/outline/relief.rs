@@ -5,8 +5,8 @@
 
 use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
-use crate::frame::{Frame, Rock};
 use crate::ground::is_air;
+use crate::resolved::{Interpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -30,7 +30,7 @@ pub(super) struct ReliefLines {
 
 /// Heights of one block's ground at the corners of cells.
 struct Map<'a> {
-    rock: Rock<'a>,
+    interpretation: Interpretation<'a>,
     block: u16,
     low: DVec3,
     counts: [usize; 2],
@@ -44,7 +44,7 @@ impl Map<'_> {
 
     fn ground(&self, node: DVec2) -> DVec3 {
         let xy = self.xy(node);
-        let z = self.rock.model.horizon_z(0, self.block, xy.x as f32, xy.y as f32);
+        let z = self.interpretation.model.horizon_z(0, self.block, xy.x as f32, xy.y as f32);
         xy.extend(f64::from(z))
     }
 
@@ -76,30 +76,34 @@ impl Map<'_> {
     }
 }
 
-/// The lines of the frame's ground.
-pub(super) fn relief_lines(frame: &Frame) -> ReliefLines {
+/// The lines of the resolved's ground.
+pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
     let mut lines = ReliefLines::default();
-    let (Some(_), Some(rock)) = (&frame.relief, frame.rock) else { return lines };
-    let [low, high] = frame.solid.roaming_box.map(|c| c.as_dvec3());
+    let (Some(_), Some(interpretation)) = (&resolved.relief, resolved.interpretation) else { return lines };
+    let [low, high] = resolved.solid.roaming_box.map(|c| c.as_dvec3());
     let counts = [0, 1].map(|axis: usize| (high[axis] - low[axis]).ceil().max(1.0) as usize);
     let step = (high - low).truncate() / DVec2::new(counts[0] as f64, counts[1] as f64);
-    for block in 0..rock.model.block_count() as u16 {
-        let map = Map { rock, block, low, counts, step };
-        for fault in 0..rock.model.faults().surfaces().len() {
-            let side = |node: DVec2| f64::from(rock.model.faults().side(fault, map.ground(node).as_vec3()));
+    for block in 0..interpretation.model.block_count() as u16 {
+        let map = Map { interpretation, block, low, counts, step };
+        for fault in 0..interpretation.model.faults().surfaces().len() {
+            let side = |node: DVec2| f64::from(interpretation.model.faults().side(fault, map.ground(node).as_vec3()));
             let segments = map.zero_lines(side);
-            lines.faults.extend(seen(frame, rock, &segments, |p| beside_fault(rock, fault, block, p)));
+            lines
+                .faults
+                .extend(seen(resolved, interpretation, &segments, |p| beside_fault(interpretation, fault, block, p)));
         }
         let facing = |node: DVec2| {
             let p = map.ground(node);
             let (dx, dy) = (map.ground(node + DVec2::X) - p, map.ground(node + DVec2::Y) - p);
-            dx.cross(dy).dot(frame.view.towards_camera(p))
+            dx.cross(dy).dot(resolved.view.towards_camera(p))
         };
         let segments = map.zero_lines(facing);
-        lines.crests.extend(seen(frame, rock, &segments, |p| (rock.model.block_at(p.as_vec3()) == block).then_some(p)));
+        lines.crests.extend(seen(resolved, interpretation, &segments, |p| {
+            (interpretation.model.block_at(p.as_vec3()) == block).then_some(p)
+        }));
     }
-    let scale = frame.scene.size_px.into_iter().min().map_or(0.0, f64::from) / f64::from(NOMINAL_SIDE_PX);
-    let shortest = SHORTEST_CREST * f64::from(frame.scene.outlines.horizons.width_px) * scale;
+    let scale = resolved.scene.size_px.into_iter().min().map_or(0.0, f64::from) / f64::from(NOMINAL_SIDE_PX);
+    let shortest = SHORTEST_CREST * f64::from(resolved.scene.outlines.horizons.width_px) * scale;
     lines.crests = without_specks(lines.crests, shortest);
     lines
 }
@@ -136,44 +140,44 @@ fn first_of(group: &mut [usize], mut index: usize) -> usize {
 }
 
 /// A point of the block's own ground right beside a real fault; `None` where the fault does not end that ground.
-fn beside_fault(rock: Rock, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
-    let faults = rock.model.faults();
+fn beside_fault(interpretation: Interpretation, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
+    let faults = interpretation.model.faults();
     if !faults.is_real(fault, p.as_vec3()) {
         return None;
     }
     let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
-    let holds_block = |aside: f64| rock.model.block_at((p + normal * aside).as_vec3()) == block;
+    let holds_block = |aside: f64| interpretation.model.block_at((p + normal * aside).as_vec3()) == block;
     let inwards = match (holds_block(ACROSS), holds_block(-ACROSS)) {
         (true, false) => normal,
         (false, true) => -normal,
         _ => return None,
     };
     let q = p + inwards * INTO_BLOCK;
-    Some(q.with_z(rock.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
+    Some(q.with_z(interpretation.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
 }
 
 /// The parts of segments that lie on drawn ground and have nothing in front. `ground` gives the point of the block's ground that a
 /// point of the line stands for.
 fn seen(
-    frame: &Frame,
-    rock: Rock,
+    resolved: &ResolvedScene,
+    interpretation: Interpretation,
     segments: &[[DVec3; 2]],
     ground: impl Fn(DVec3) -> Option<DVec3> + Sync,
 ) -> Vec<Vec<DVec2>> {
-    let [low, high] = frame.solid.roaming_box.map(|c| c.as_dvec3());
+    let [low, high] = resolved.solid.roaming_box.map(|c| c.as_dvec3());
     let is_seen = |p: DVec3| {
         p.z >= low.z
             && p.z <= high.z
-            && !cut_away(frame, p)
-            && ground(p).is_some_and(|q| !is_air(rock.model, (q + DVec3::Z * 0.1).as_vec3()))
-            && covered_by(frame, p) < IN_FRONT
+            && !cut_away(resolved, p)
+            && ground(p).is_some_and(|q| !is_air(interpretation.model, (q + DVec3::Z * 0.1).as_vec3()))
+            && covered_by(resolved, p) < IN_FRONT
     };
-    segments.par_iter().flat_map_iter(|segment| seen_parts(&frame.view, segment, is_seen)).collect()
+    segments.par_iter().flat_map_iter(|segment| seen_parts(&resolved.view, segment, is_seen)).collect()
 }
 
-fn cut_away(frame: &Frame, p: DVec3) -> bool {
+fn cut_away(resolved: &ResolvedScene, p: DVec3) -> bool {
     let p = p.as_vec3();
-    frame.solid.cut_outs.iter().any(|[low, high]| p.cmpge(*low).all() && p.cmple(*high).all())
+    resolved.solid.cut_outs.iter().any(|[low, high]| p.cmpge(*low).all() && p.cmple(*high).all())
 }
 
 #[cfg(test)]

@@ -5,8 +5,9 @@ use crate::media::medium;
 use render::compare::compare;
 use render::media::{Colouring, LayerOpacity, MediumColour, Paint, white_ramp};
 use render::{
-    Background, Camera, Candidates, FaceData, Faces, Ground, Interleaved, Isosurface, Media, Medium, NamedVolume,
-    Occlusion, Outlines, Phong, PickedHorizon, Projection, Renderer, Scalar, Scene, Scope, Shading, VoxelBox, WellPath,
+    Background, Camera, CandidateVolume, DrawnWell, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource,
+    Media, Medium, NamedVolume, Occlusion, Outlines, Phong, PickedHorizon, Projection, Renderer, Scene, Scope, Shading,
+    VoxelBox,
 };
 use survey::Progress;
 use survey::synth::{SynthSettings, Synthetic};
@@ -16,16 +17,16 @@ use ttf::{
 };
 
 /// Distances to a few of the horizons that the synthetic survey has, as an extraction would give them.
-struct Made {
+struct MadeCandidates {
     distance: Vec<u8>,
     leaf: Vec<u32>,
 }
 
 const STEP: f32 = 0.04;
 
-fn candidates_of(block: &Block) -> Made {
+fn candidates_of(block: &Block) -> MadeCandidates {
     let [nx, ny, nz] = block.geometry.size();
-    let mut made = Made { distance: vec![255; nx * ny * nz], leaf: vec![0; nx * ny * nz] };
+    let mut made = MadeCandidates { distance: vec![255; nx * ny * nz], leaf: vec![0; nx * ny * nz] };
     for n in 0..nx * ny * nz {
         let p = glam::Vec3::new((n / (ny * nz)) as f32, (n / nz % ny) as f32, (n % nz) as f32);
         let fault_block = block.model.block_at(p);
@@ -120,7 +121,7 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
             },
         ),
         ("isosurfaces", {
-            let surface = |of: Scalar, value: f32, opacity: f32| Isosurface {
+            let surface = |of: IsosurfaceSource, value: f32, opacity: f32| Isosurface {
                 of,
                 value,
                 colour: Colour::new(230, 180, 90),
@@ -128,9 +129,9 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 thickness: 1.0,
             };
             let surfaces = vec![
-                surface(Scalar::Volume("seismic".into()), 0.4 * clip, 0.5),
-                surface(Scalar::Depth, 2.5, 1.0),
-                surface(Scalar::Volume("impedance".into()), 5000.0, 1.0),
+                surface(IsosurfaceSource::Volume("seismic".into()), 0.4 * clip, 0.5),
+                surface(IsosurfaceSource::Depth, 2.5, 1.0),
+                surface(IsosurfaceSource::Volume("impedance".into()), 5000.0, 1.0),
             ];
             let shading = Shading::Phong(Phong::default());
             with(Media { isosurfaces: surfaces, samples_per_voxel: 4.0, ..none(vec![ramp.clone()], shading) })
@@ -224,10 +225,10 @@ fn gpu_and_cpu_see_through_the_same() {
     let groups: Vec<u32> = (0..64).map(|leaf| if leaf == 12 { 0 } else { leaf / 2 }).collect();
     let path =
         [glam::DVec3::new(20.0, 14.0, -5.0), glam::DVec3::new(22.0, 13.0, 20.0), glam::DVec3::new(27.0, 10.0, 44.0)];
-    let wells = [WellPath { name: "A-1", path: &path, tops: &path[1..2] }];
+    let wells = [DrawnWell { name: "A-1", path: &path, tops: &path[1..2] }];
     let mut inputs = block.inputs(&volumes);
     inputs.wells = &wells;
-    inputs.candidates = Some(Candidates {
+    inputs.candidates = Some(CandidateVolume {
         size: synthetic.geometry.size(),
         distance: &made.distance,
         leaf: &made.leaf,

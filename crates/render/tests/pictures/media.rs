@@ -6,8 +6,8 @@ use image::RgbaImage;
 use render::media::{Colouring, EmptySpace, LayerOpacity, MediumColour, white_ramp};
 use render::reference::render;
 use render::{
-    Background, Camera, Candidates, Faces, Ground, Inputs, Isosurface, Media, Medium, NamedVolume, Occlusion, Outlines,
-    Picked, PickedHorizon, Projection, Scalar, Scene, Scope, Shading, VoxelBox, WellPath, pick,
+    Background, Camera, CandidateVolume, DrawnWell, Faces, Ground, Inputs, Isosurface, IsosurfaceSource, Media, Medium,
+    NamedVolume, Occlusion, Outlines, PickedHorizon, PickedObject, Projection, Scene, Scope, Shading, VoxelBox, pick,
 };
 use survey::synth::closed_form::ClosedForm;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
@@ -336,7 +336,7 @@ fn an_emitter_lights_a_white_wall_in_its_colour() {
         }
     }
     let candidates =
-        Candidates { size: [side; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
+        CandidateVolume { size: [side; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
     let inputs = Inputs { candidates: Some(candidates), ..Inputs::raw(&geometry, &volumes) };
     let glowing = Colour::new(255, 128, 0);
     let media = |emission: f32, scope: Scope| Media {
@@ -436,9 +436,9 @@ fn what_is_under_a_pixel_is_what_shows_there() {
     let leaf: Vec<u32> = (0..33 * 33 * 33).map(|n| if n / 33 % 33 >= 11 { 9 } else { 0 }).collect();
     let distance = vec![25u8; leaf.len()];
     let candidates =
-        Candidates { size: [33; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
+        CandidateVolume { size: [33; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
     let path = [DVec3::new(4.0, 3.0, -9.0), DVec3::new(4.0, 3.0, 40.0)];
-    let wells = [WellPath { name: "A", path: &path, tops: &path[..0] }];
+    let wells = [DrawnWell { name: "A", path: &path, tops: &path[..0] }];
     let inputs = Inputs { candidates: Some(candidates), wells: &wells, ..Inputs::raw(&geometry, &volumes) };
     let media = Media {
         faces: Faces::None,
@@ -451,18 +451,18 @@ fn what_is_under_a_pixel_is_what_shows_there() {
     let at = |x: f64| pick(&scene, &inputs, view.project(DVec3::new(x, 0.0, 16.0))).unwrap();
     let seen = at(20.0).unwrap();
     // Between the samples at 11 (clear) and 12 (opaque) the value passes ½.
-    assert_eq!(seen.what, Picked::Medium);
+    assert_eq!(seen.what, PickedObject::Medium);
     assert!((seen.voxel.y - 11.6).abs() < 0.2 && (seen.voxel.x - 20.0).abs() < 0.3, "{seen:?}");
     assert_eq!((seen.leaf, seen.region), (Some(9), None));
     assert!((seen.leaf_distance.unwrap() - 1.0).abs() < 1e-4 && seen.values[0] > 0.5);
     let well = at(4.0).unwrap();
-    assert_eq!((well.what, well.leaf), (Picked::Well(0), None));
+    assert_eq!((well.what, well.leaf), (PickedObject::Well(0), None));
     assert!((2.0..3.0).contains(&well.voxel.y), "{well:?}");
     assert_eq!(pick(&scene, &inputs, DVec2::new(-30.0, 5.0)).unwrap(), None);
     let raw = ttf::RawColour::new("v", white_ramp(1.0, 0.5));
     let faces = Scene { media: Media::default(), blend: 1.0, raw: Some(raw), ..scene.clone() };
     let face = pick(&faces, &inputs, view.project(DVec3::new(20.0, 0.0, 16.0))).unwrap().unwrap();
-    assert_eq!((face.what, face.voxel.y, face.values[0]), (Picked::Face, 0.0, 0.0));
+    assert_eq!((face.what, face.voxel.y, face.values[0]), (PickedObject::Face, 0.0, 0.0));
 }
 
 #[test]
@@ -479,8 +479,13 @@ fn an_isosurface_is_where_its_value_is_and_hides_what_is_behind() {
     let volumes = [NamedVolume::whole("v", &volume)];
     let inputs = Inputs::raw(&geometry, &volumes);
     let colour = Colour::new(200, 120, 40);
-    let surface =
-        |opacity: f32| Isosurface { of: Scalar::Volume("v".into()), value: 12.0, colour, opacity, thickness: 1.0 };
+    let surface = |opacity: f32| Isosurface {
+        of: IsosurfaceSource::Volume("v".into()),
+        value: 12.0,
+        colour,
+        opacity,
+        thickness: 1.0,
+    };
     let media = |opacity: f32| Media {
         faces: Faces::None,
         samples_per_voxel: 8.0,
@@ -494,10 +499,10 @@ fn an_isosurface_is_where_its_value_is_and_hides_what_is_behind() {
     let expected = byte((1.0 - 0.7f64.powi(2)) * f64::from(ttf::linear_from_srgb(200.0 / 255.0)));
     assert!((f64::from(thin.get_pixel(16, 16).0[0]) - expected).abs() < 2.0, "{:?} {expected}", thin.get_pixel(16, 16));
     let found = pick(&head_on([33, 33], media(1.0)), &inputs, DVec2::splat(16.5)).unwrap().unwrap();
-    assert!((found.voxel.y - 11.0).abs() < 0.5 && found.what == Picked::Medium, "{found:?}");
+    assert!((found.voxel.y - 11.0).abs() < 0.5 && found.what == PickedObject::Medium, "{found:?}");
     let sparse = Media { empty_space: EmptySpace::Sampled, ..media(0.3) };
     assert_eq!(draw(&head_on([33, 33], sparse), &inputs), thin);
-    let missing = Media { isosurfaces: vec![Isosurface { of: Scalar::Depth, ..surface(1.0) }], ..media(1.0) };
+    let missing = Media { isosurfaces: vec![Isosurface { of: IsosurfaceSource::Depth, ..surface(1.0) }], ..media(1.0) };
     let error = render(&head_on([9, 9], missing), &inputs, &Progress::silent()).unwrap_err();
     assert!(error.to_string().contains("k'"), "{error}");
 }
@@ -507,8 +512,13 @@ fn a_surface_of_k_lies_between_its_horizons() {
     let geometry = SurveyGeometry::regular([41, 31, 41], 25.0, 10.0, VerticalUnit::Metres);
     let closed = ClosedForm::dipping(&geometry, &[14.0, 27.0], 12.0, 30.0);
     let block = Block::of(&closed, &TransferFunctions::default(), &TextureLibrary::builtin().unwrap());
-    let surface =
-        Isosurface { of: Scalar::Depth, value: 1.5, colour: Colour::new(250, 250, 250), opacity: 1.0, thickness: 1.0 };
+    let surface = Isosurface {
+        of: IsosurfaceSource::Depth,
+        value: 1.5,
+        colour: Colour::new(250, 250, 250),
+        opacity: 1.0,
+        thickness: 1.0,
+    };
     let media = Media { faces: Faces::None, isosurfaces: vec![surface], ..Media::default() };
     let scene = Scene { media, outlines: Outlines::none(), size_px: [60, 45], samples: 1, ..Scene::default() };
     let inputs = block.inputs(&[]);

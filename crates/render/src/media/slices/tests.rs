@@ -1,13 +1,13 @@
 //! Light is the same whatever is left out and by whichever way it is computed.
 
 use super::*;
-use crate::frame::Frame;
 use crate::inputs::{Inputs, NamedVolume};
 use crate::media::light::LightVolume;
 use crate::media::light_grid::Asked;
 use crate::media::prepared::Preparations;
 use crate::media::{LayerOpacity, MediumColour};
 use crate::media::{Media, Medium, Occlusion, Shading, white_ramp};
+use crate::resolved::ResolvedScene;
 use crate::{Camera, Projection, Scene};
 use survey::{SurveyGeometry, VerticalUnit, Volume};
 
@@ -84,10 +84,12 @@ fn light_in_the_block_does_not_depend_on_windows_or_runs() {
         for cut in [false, true] {
             let light = |unseen: bool, asked: Asked| {
                 let (scene, mut kept) = (scene(projection, cut, unseen), Preparations::default());
-                let frame = Frame::new(&scene, &inputs, &mut kept).unwrap();
-                let field = frame.field.as_ref().unwrap();
+                let resolved = ResolvedScene::new(&scene, &inputs, &mut kept).unwrap();
+                let field = resolved.field.as_ref().unwrap();
                 assert_eq!(field.alone().is_none(), unseen);
-                LightVolume::new(field, &frame.view, &frame.solid, &frame.roaming_box, asked, &quiet).unwrap().unwrap()
+                LightVolume::new(field, &resolved.view, &resolved.solid, &resolved.roaming_box, asked, &quiet)
+                    .unwrap()
+                    .unwrap()
             };
             let whole = light(false, Asked::Everywhere);
             let (windowed, general) = (light(false, Asked::Block), light(true, Asked::Block));

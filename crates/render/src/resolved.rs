@@ -3,11 +3,11 @@
 use crate::camera::View;
 use crate::error::RenderError;
 use crate::ground::Relief;
-use crate::inputs::{Candidates, Inputs, NamedVolume};
+use crate::inputs::{CandidateVolume, Inputs, NamedVolume};
 use crate::leaves::FaceData;
-use crate::media::field::Field;
+use crate::media::field::MediaField;
 use crate::media::prepared::Preparations;
-use crate::media::{Faces, Scalar};
+use crate::media::{Faces, IsosurfaceSource};
 use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
@@ -24,7 +24,7 @@ pub const MAX_VOLUMES: usize = 6;
 const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
 
 /// Everything a picture needs, with names resolved.
-pub(crate) struct Frame<'a> {
+pub(crate) struct ResolvedScene<'a> {
     pub scene: &'a Scene,
     pub view: View,
     pub solid: Solid,
@@ -35,7 +35,7 @@ pub(crate) struct Frame<'a> {
     /// One per entry of `tables.volumes`; `None` where the picture does not need it.
     pub volumes: Vec<Option<NamedVolume<'a>>>,
     /// What illustrates; `None` shows raw data alone.
-    pub rock: Option<Rock<'a>>,
+    pub interpretation: Option<Interpretation<'a>>,
     /// Whether textures show at all: there is an interpretation and the blend is not wholly raw.
     pub illustrated: bool,
     /// The ground, if the scene has one.
@@ -47,16 +47,16 @@ pub(crate) struct Frame<'a> {
     /// Behind everything, straight: nothing where edges are to be drawn behind what is seen through.
     pub background: [f32; 4],
     /// Horizon candidates, where faces show them.
-    pub candidates: Option<Candidates<'a>>,
+    pub candidates: Option<CandidateVolume<'a>>,
     /// Wells.
     pub tubes: Option<Tubes>,
     /// What is seen through.
-    pub field: Option<Field<'a>>,
+    pub field: Option<MediaField<'a>>,
 }
 
 /// The interpretation and the map to flat space.
 #[derive(Clone, Copy)]
-pub(crate) struct Rock<'a> {
+pub(crate) struct Interpretation<'a> {
     pub model: &'a StructuralModel,
     pub flat: Flat<'a>,
 }
@@ -68,12 +68,12 @@ pub(crate) enum Flat<'a> {
     Packed(&'a PackedVolume),
 }
 
-impl<'a> Frame<'a> {
+impl<'a> ResolvedScene<'a> {
     /// Checks the scene against the inputs.
     pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Preparations) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
-        let rock = resolve_rock(scene, inputs)?;
-        let tables = resolve_tables(scene, inputs, rock.is_some())?;
+        let interpretation = resolve_interpretation(scene, inputs)?;
+        let tables = resolve_tables(scene, inputs, interpretation.is_some())?;
         let mut tables = tables;
         let media: Vec<&String> =
             scene.media.all().map(|m| &m.volume).chain(paints(scene)).chain(scene.media.isosurface_volumes()).collect();
@@ -84,9 +84,11 @@ impl<'a> Frame<'a> {
         }
         let volumes = resolve_volumes(&tables, &media, inputs.volumes)?;
         let roaming_box = scene.box_in(inputs.geometry);
-        let relief = match (&scene.ground, rock) {
+        let relief = match (&scene.ground, interpretation) {
             (None, _) => None,
-            (Some(ground), Some(rock)) => Some(Relief::new(ground, scene, inputs.geometry, rock.model)),
+            (Some(ground), Some(interpretation)) => {
+                Some(Relief::new(ground, scene, inputs.geometry, interpretation.model))
+            }
             (Some(_), None) => {
                 return Err(RenderError::Missing {
                     what: "horizons for the ground",
@@ -98,7 +100,7 @@ impl<'a> Frame<'a> {
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
         let view = scene.view(inputs.geometry);
-        let field = Field::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
+        let field = MediaField::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
         let candidates = match (scene.face_data, inputs.candidates) {
             (FaceData::Rock, _) => None,
             (_, None) => return Err(RenderError::NO_CANDIDATES),
@@ -122,8 +124,8 @@ impl<'a> Frame<'a> {
             solid,
             tables,
             volumes,
-            rock,
-            illustrated: rock.is_some() && (!hidden || shows_depths(scene)),
+            interpretation,
+            illustrated: interpretation.is_some() && (!hidden || shows_depths(scene)),
             relief,
             voxel_m: DVec3::new(metric.x_axis.length(), metric.y_axis.length(), metric.z_axis.length()).as_vec3(),
         })
@@ -131,7 +133,7 @@ impl<'a> Frame<'a> {
 }
 
 /// The model and the lookup that the scene asks for; `None` when there is nothing to illustrate with.
-fn resolve_rock<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Rock<'a>>, RenderError> {
+fn resolve_interpretation<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Interpretation<'a>>, RenderError> {
     let (Some(model), Some(tables)) = (inputs.model, inputs.tables) else { return Ok(None) };
     if tables.layers.len() < model.layer_count() {
         return Err(RenderError::LayerCount { styled: tables.layers.len(), layers: model.layer_count() });
@@ -147,7 +149,7 @@ fn resolve_rock<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Rock<'a
         },
         remedy: "parameterize the project first",
     })?;
-    Ok(Some(Rock { model, flat }))
+    Ok(Some(Interpretation { model, flat }))
 }
 
 /// The transfer functions as this scene uses them.
@@ -223,7 +225,7 @@ fn set_raw(tables: &mut TtfTables, raw: &RawColour) {
 
 /// Whether flat coordinates are looked up inside the block.
 pub(crate) fn shows_depths(scene: &Scene) -> bool {
-    scene.media.isosurfaces.iter().any(|surface| surface.of == Scalar::Depth)
+    scene.media.isosurfaces.iter().any(|surface| surface.of == IsosurfaceSource::Depth)
 }
 
 /// Volumes painted on horizons.
