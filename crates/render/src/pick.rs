@@ -1,6 +1,8 @@
-//! What is under a pixel (P-horiz 5.3): the first place that is not clear, and everything known about it.
+//! Identifies what is under a pixel (P-horiz 5.3): the first point that is not transparent, and what is known
+//! about it.
 //!
-//! The same ray as the picture's: the media it passes first, then the face, ground or well that stops it. On the CPU, since it is one ray.
+//! The ray is that of the picture: through the media, to the face, ground or well that stops it. A single ray
+//! is traced on the CPU.
 
 use crate::error::RenderError;
 use crate::inputs::Inputs;
@@ -13,40 +15,42 @@ use crate::visible::Ray;
 use glam::{DVec2, Vec3};
 use survey::model::Region;
 
-/// What was hit.
+/// The kind of object that was hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PickedObject {
-    /// A medium or a horizon in it.
+    /// A medium, or a horizon or isosurface in it.
     Medium,
-    /// A face of rock.
+    /// A face of the block.
     Face,
     /// The ground.
     Ground,
-    /// A well, by its number.
+    /// A well, by its index.
     Well(usize),
 }
 
-/// A place under a pixel.
+/// The point under a pixel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PickedPoint {
-    /// What was hit.
+    /// The kind of object that was hit.
     pub what: PickedObject,
-    /// Where, voxels.
+    /// Its voxel position.
     pub voxel: Vec3,
-    /// The nearest sample's leaf among the horizon candidates; absent without candidates or where there is none.
+    /// Leaf of the horizon candidates at the nearest sample. Absent without candidates, or if there is no
+    /// leaf.
     pub leaf: Option<u32>,
     /// Distance to that candidate, voxels.
     pub leaf_distance: Option<f32>,
-    /// Layer and block; absent without an interpretation.
+    /// Layer and block. Absent without an interpretation.
     pub region: Option<Region>,
-    /// Values of all volumes there, in their order; NaN where they have none.
+    /// Values of all volumes at the point, in the order of the inputs; NaN where a volume has none.
     pub values: Vec<f32>,
 }
 
-/// The first place that shows under a pixel position (x right, y down, pixel centres at halves); `None` for the background.
+/// The first visible point under a pixel position (x right, y down, pixel centres at halves); `None` for the
+/// background.
 ///
 /// # Errors
-/// A scene without a picture, or missing inputs.
+/// A scene that cannot be drawn, or missing inputs.
 pub fn pick(scene: &Scene, inputs: &Inputs, pixel: DVec2) -> Result<Option<PickedPoint>, RenderError> {
     let resolved = ResolvedScene::new(scene, inputs, &mut Preparations::default())?;
     let ray = Ray::from(resolved.view.ray(pixel));

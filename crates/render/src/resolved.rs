@@ -1,4 +1,4 @@
-//! A scene and its inputs, checked and resolved: what both renderers start from.
+//! A scene and its inputs, checked and with all names resolved: the starting point of both renderers.
 
 use crate::camera::View;
 use crate::error::RenderError;
@@ -18,50 +18,51 @@ use survey::model::StructuralModel;
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
 use ttf::{RawColour, TtfTables};
 
-/// Volumes that a picture can show.
+/// Largest number of volumes in a picture.
 pub const MAX_VOLUMES: usize = 6;
-/// Colour under raw data where there is nothing else.
+/// Colour below raw data if there is no interpretation.
 const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
 
-/// Everything a picture needs, with names resolved.
+/// Everything that a picture needs, with names resolved.
 pub(crate) struct ResolvedScene<'a> {
     pub scene: &'a Scene,
     pub view: View,
     pub solid: Solid,
     /// The part of the survey shown.
     pub roaming_box: VoxelBox,
-    /// The transfer functions with the scene's blend, frequency and raw data.
+    /// The transfer functions with the blend, global frequency and raw data of the scene.
     pub tables: TtfTables,
-    /// One per entry of `tables.volumes`; `None` where the picture does not need it.
+    /// One volume per entry of `tables.volumes`; `None` where the picture does not need it.
     pub volumes: Vec<Option<NamedVolume<'a>>>,
-    /// What illustrates; `None` shows raw data alone.
+    /// The interpretation. `None`: the picture shows raw data alone.
     pub interpretation: Option<Interpretation<'a>>,
-    /// Whether textures show at all: there is an interpretation and the blend is not wholly raw.
+    /// Whether textures are visible at all: there is an interpretation, and the blend is not entirely raw.
     pub illustrated: bool,
     /// The ground, if the scene has one.
     pub relief: Option<Relief>,
     /// Metres between voxels along x, y, z.
     pub voxel_m: Vec3,
-    /// Factor on the colour of faces across x, y, z.
+    /// Factors on the colour of faces of constant x, y, z.
     pub tones: [f32; 3],
-    /// Behind everything, straight: nothing where edges are to be drawn behind what is seen through.
+    /// Background, straight RGBA. Transparent if edges are drawn behind the media: then they and the
+    /// background are added at the end.
     pub background: [f32; 4],
-    /// Horizon candidates, where faces show them.
+    /// Horizon candidates, if faces show them.
     pub candidates: Option<CandidateVolume<'a>>,
     /// Wells.
     pub tubes: Option<Tubes>,
-    /// What is seen through.
+    /// The media (volume rendering).
     pub field: Option<MediaField<'a>>,
 }
 
-/// The interpretation and the map to flat space.
+/// The interpretation, and the map to flat space.
 #[derive(Clone, Copy)]
 pub(crate) struct Interpretation<'a> {
     pub model: &'a StructuralModel,
     pub flat: Flat<'a>,
 }
 
-/// The two lookups.
+/// The two ways to look up flat coordinates.
 #[derive(Clone, Copy)]
 pub(crate) enum Flat<'a> {
     Exact(&'a Parameterization),
@@ -69,7 +70,7 @@ pub(crate) enum Flat<'a> {
 }
 
 impl<'a> ResolvedScene<'a> {
-    /// Checks the scene against the inputs.
+    /// Checks the scene against the inputs and resolves its names.
     pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Preparations) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
         let interpretation = resolve_interpretation(scene, inputs)?;
@@ -132,7 +133,7 @@ impl<'a> ResolvedScene<'a> {
     }
 }
 
-/// The model and the lookup that the scene asks for; `None` when there is nothing to illustrate with.
+/// The model and the lookup that the scene asks for; `None` if there is no interpretation.
 fn resolve_interpretation<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Interpretation<'a>>, RenderError> {
     let (Some(model), Some(tables)) = (inputs.model, inputs.tables) else { return Ok(None) };
     if tables.layers.len() < model.layer_count() {
@@ -152,7 +153,7 @@ fn resolve_interpretation<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Opti
     Ok(Some(Interpretation { model, flat }))
 }
 
-/// The transfer functions as this scene uses them.
+/// The transfer functions with the settings of the scene.
 fn resolve_tables(scene: &Scene, inputs: &Inputs, illustrated: bool) -> Result<TtfTables, RenderError> {
     let mut tables = inputs.tables.cloned().unwrap_or_else(no_tables);
     tables.globals.blend = scene.blend;
@@ -201,7 +202,7 @@ fn no_tables() -> TtfTables {
     }
 }
 
-/// Puts the scene's raw data in place of the transfer functions'.
+/// Replaces the raw data of the transfer functions by those of the scene.
 fn set_raw(tables: &mut TtfTables, raw: &RawColour) {
     let slot = tables.volumes.iter().position(|name| *name == raw.volume).unwrap_or_else(|| {
         tables.volumes.push(raw.volume.clone());
@@ -223,17 +224,17 @@ fn set_raw(tables: &mut TtfTables, raw: &RawColour) {
     tables.globals.no_data = raw.no_data.map_or([0.0; 4], |colour| rgba(colour, 1.0));
 }
 
-/// Whether flat coordinates are looked up inside the block.
+/// Whether flat coordinates are needed inside the block and not only on faces.
 pub(crate) fn shows_depths(scene: &Scene) -> bool {
     scene.media.isosurfaces.iter().any(|surface| surface.of == IsosurfaceSource::Depth)
 }
 
-/// Volumes painted on horizons.
+/// Names of the volumes that are painted on horizons.
 fn paints(scene: &Scene) -> impl Iterator<Item = &String> {
     scene.media.horizons.iter().filter_map(|horizon| horizon.paint.as_ref()).map(|paint| &paint.volume)
 }
 
-/// The volumes behind the slots that are in use.
+/// The volumes of the slots that are in use.
 fn resolve_volumes<'a>(
     tables: &TtfTables,
     media: &[&String],
@@ -256,7 +257,7 @@ fn resolve_volumes<'a>(
     (0u32..).zip(&tables.volumes).map(|(slot, name)| is_used(slot).then(|| find(name)).transpose()).collect()
 }
 
-/// Darkens the vertical faces by how far they turn to the viewer's right.
+/// Factors that darken one pair of vertical faces: the pair whose visible face points farther to the right.
 fn tones(view: &View, centre: &DVec3, face_tone: f32) -> [f32; 3] {
     let here = view.project(*centre);
     let towards = view.towards_camera(*centre);

@@ -1,7 +1,9 @@
-//! What a ray shows: the media it passes, and the colour of the point that stops it: region, flat coordinates, texture, scalar stack, raw data (P-illus 3.5, 4, 5).
+//! The colour of a ray: the media along it, and the point that stops it. That point gets its colour from its
+//! region, flat coordinates, texture, scalar functions and raw data (P-illus 3.5, 4, 5).
 //!
-//! The pixel's footprint on the plane of a face is exact: with ray `o + t·d` and plane normal n, a step of the pixel moves the hit by
-//! `∂p = ∂o + t·∂d + ∂t·d`, `∂t = −n·(∂o + t·∂d)/(n·d)`; the Jacobian of (i, j, k) takes it to flat space.
+//! The footprint of a pixel on the plane of a face is exact. With ray `o + t·d` and plane normal n, a step of
+//! the pixel moves the hit by `∂p = ∂o + t·∂d + ∂t·d`, `∂t = −n·(∂o + t·∂d)/(n·d)`; the Jacobian of (i, j, k)
+//! maps it to flat space.
 
 use crate::camera::ViewRay;
 use crate::ground::GroundHit;
@@ -17,7 +19,8 @@ use glam::{Vec3, Vec4};
 use survey::model::Region;
 use ttf::{FaceFrame, FlatFootprint, LayerPoint, ShadePoint, linear_from_srgb, srgb_from_linear};
 
-/// Straight RGBA along rays: what stops each, and what is behind ground that lets light through. Quickest for neighbours in the picture.
+/// Straight RGBA of rays: of what stops each, and of what lies behind a ground that is not opaque. Fastest
+/// for rays that are neighbours in the picture.
 pub(crate) fn trace(resolved: &ResolvedScene, light: Option<&LightVolume>, view_rays: &[ViewRay]) -> Vec<Vec4> {
     let looks: Vec<RaySegment> = view_rays
         .iter()
@@ -57,7 +60,7 @@ struct RaySegment<'r> {
     start: f32,
 }
 
-/// Straight RGBA of hits with the media in front of them.
+/// Straight RGBA of hits, with the media in front of them.
 fn seen(resolved: &ResolvedScene, light: Option<&LightVolume>, looks: &[RaySegment]) -> Vec<Vec4> {
     let behind = |look: &RaySegment| match look.hit {
         RayHit::Background => Vec4::from_array(resolved.background),
@@ -73,13 +76,13 @@ fn seen(resolved: &ResolvedScene, light: Option<&LightVolume>, looks: &[RaySegme
     let colours = looks.iter().zip(gathered).map(|(look, gathered)| {
         let behind = behind(look);
         let lit = light.filter(|_| look.hit.t().is_finite()).map(|light| light.at(look.ray.at(look.hit.t())));
-        if gathered.passes == 1.0 && lit.is_none_or(|lit| lit == Vec3::ONE) {
+        if gathered.transmittance == 1.0 && lit.is_none_or(|lit| lit == Vec3::ONE) {
             return behind;
         }
         let far = linear(behind.truncate()) * lit.unwrap_or(Vec3::ONE);
-        // Premultiplied by what is covered, then straight again.
-        let sum = gathered.colour + far * (behind.w * gathered.passes);
-        let alpha = 1.0 - gathered.passes * (1.0 - behind.w);
+        // Composited as premultiplied colour, then converted to straight colour.
+        let sum = gathered.colour + far * (behind.w * gathered.transmittance);
+        let alpha = 1.0 - gathered.transmittance * (1.0 - behind.w);
         encoded(sum / alpha.max(1e-6)).extend(alpha)
     });
     colours.collect()
@@ -91,14 +94,15 @@ pub(crate) fn linear(encoded: Vec3) -> Vec3 {
 
 pub(crate) fn encoded(linear: Vec3) -> Vec3 {
     let coded = |c: f32| srgb_from_linear(c.clamp(0.0, 1.0));
-    // Grey, as white media are throughout, takes one power in place of three.
+    // Grey values, as of white media, take one power instead of three.
     if linear.x == linear.y && linear.y == linear.z {
         return Vec3::splat(coded(linear.x));
     }
     Vec3::from_array(linear.to_array().map(coded))
 }
 
-/// What stops a ray in this scene at or after distance `start`: a well, or the first face or ground, one of the cut-outs' back faces or ground, or nothing.
+/// What stops a ray in this scene at or after distance `start`: a well, a face of the block or of a cut-out,
+/// the ground, or nothing.
 pub(crate) fn stopping_hit(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayHit {
     let hit = stopping_rock(resolved, ray, start);
     match resolved.tubes.as_ref().and_then(|tubes| tubes.hit(ray, hit.t())) {
@@ -133,7 +137,7 @@ fn stopping_rock(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayHit {
     }
 }
 
-/// What a ray meets first.
+/// What stops a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum RayHit {
     Background,
@@ -154,7 +158,7 @@ impl RayHit {
     }
 }
 
-/// The first face of rock at or after distance `start`, or the ground behind faces of air.
+/// The first face of rock at or after distance `start`, or the ground if that face lies in air.
 pub(crate) fn first_hit(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayHit {
     let mut from = start;
     for _ in 0..=resolved.solid.cut_outs.len() + 1 {
@@ -203,7 +207,7 @@ fn face_colour(resolved: &ResolvedScene, view_ray: &ViewRay, hit: &FaceHit) -> V
     with_candidates(resolved, hit.point, rock) * resolved.tones[hit.axis]
 }
 
-/// The colour of a face with the candidates it is to show.
+/// The colour of a face, with horizon candidates if the scene shows them.
 fn with_candidates(resolved: &ResolvedScene, p: Vec3, rock: Vec3) -> Vec3 {
     let Some(candidates) = &resolved.candidates else { return rock };
     let distance = candidates.distance_at(p);
@@ -216,7 +220,8 @@ fn with_candidates(resolved: &ResolvedScene, p: Vec3, rock: Vec3) -> Vec3 {
     }
 }
 
-/// The colour of the ground: the average of the texture just below it, hill-shaded, blended to the raw data (P-illus 5, 5.2).
+/// The colour of the ground: the average of the texture just below it, hill-shaded and blended with the raw
+/// data (P-illus 5, 5.2).
 fn ground_colour(resolved: &ResolvedScene, hit: &GroundHit) -> Vec3 {
     let (Some(relief), Some(interpretation)) = (&resolved.relief, resolved.interpretation) else { return Vec3::ZERO };
     let region = hit.region;
@@ -233,7 +238,7 @@ fn ground_colour(resolved: &ResolvedScene, hit: &GroundHit) -> Vec3 {
     Vec3::from_array(ttf::blend_raw(&resolved.tables, lit.to_array(), value))
 }
 
-/// The change of the hit on its plane for a step of one pixel to the right (0) or down (1), voxels.
+/// The change of the hit on its plane for a step of one pixel to the right (n = 0) or down (n = 1), voxels.
 fn pixel_shift(ray: &ViewRay, hit: &FaceHit, n: usize) -> Vec3 {
     let drift = ray.origin_step[n] + ray.direction_step[n] * f64::from(hit.t);
     let slide = -drift[hit.axis] / ray.direction[hit.axis];
@@ -246,7 +251,8 @@ fn scalar_values(resolved: &ResolvedScene, p: Vec3) -> Vec<f32> {
 }
 
 impl Interpretation<'_> {
-    /// Flat coordinates and their Jacobian per voxel. The exact path takes the region that is known, or asks the model.
+    /// Flat coordinates and their Jacobian per voxel. The exact lookup uses the given region, or looks it up
+    /// in the model.
     pub fn flat_at(&self, p: Vec3, region: Option<Region>) -> (param::FlatPoint, [[f32; 3]; 3]) {
         match self.flat {
             Flat::Exact(param) => param.lookup_in(self.model, p, region.unwrap_or_else(|| self.model.region_at(p))),

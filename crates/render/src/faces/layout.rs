@@ -1,13 +1,13 @@
-//! The structs that Rust and the shader share, field by field in the shader's order and names.
+//! The structs that Rust and the shader share, field by field in the order and with the names of the shader.
 //!
-//! A test reads the WGSL with naga and compares every offset; nothing else keeps them together.
+//! A test reads the WGSL with naga and compares every offset.
 
 use crate::resolved::ResolvedScene;
 use crate::scene::MAX_CUT_OUTS;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 
-/// What changes with every picture and tile.
+/// Parameters of a picture and a tile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct FaceParams {
@@ -49,7 +49,7 @@ pub struct SheetInfo {
     pub padding: [u32; 3],
 }
 
-/// A fault surface: rows of its resolved relative to the model's centre, and its height field.
+/// A fault surface: the rows of its frame relative to the centre of the model, and its height field.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct FaultInfo {
@@ -87,7 +87,7 @@ pub struct GridInfo {
     pub padding: [u32; 2],
 }
 
-/// The packed volume's place and ranges.
+/// Size, scale and value ranges of the packed volume.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
 pub struct PackedInfo {
@@ -100,7 +100,7 @@ pub struct PackedInfo {
     pub padding: [u32; 2],
 }
 
-/// The ground's horizons and coarse map, as the shader has them.
+/// The horizons and the coarse map of the ground, as 32-bit words for the shader.
 pub fn relief_map(resolved: &ResolvedScene) -> Vec<u32> {
     let Some(relief) = &resolved.relief else { return Vec::new() };
     let horizons = relief.horizons.iter().map(|&h| h as u32);

@@ -1,4 +1,5 @@
-// Occlusion and emission carried from slice to slice: the twin of `media::light`. One invocation is one cell of a slice.
+// Propagates occlusion and emission from slice to slice: the twin of `media::light`. One invocation computes
+// one cell of a slice.
 
 struct Slice {
     index: u32,
@@ -9,11 +10,11 @@ struct Slice {
 }
 
 @group(0) @binding(3) var<uniform> slice: Slice;
-// Emission (xyz) and occlusion (w) of two slices in turn.
+// Emission (xyz) and occlusion (w) of two slices, which alternate.
 @group(0) @binding(4) var<storage, read_write> carried: array<vec4<f32>>;
 @group(0) @binding(5) var light_out: texture_storage_3d<rgba16float, write>;
 
-// What a slice adds: light given off (xyz), occlusion (w), and its opacity.
+// What a slice adds: emitted light (xyz), occlusion (w), and its opacity.
 struct Added {
     light: vec4<f32>,
     alpha: f32,

@@ -1,7 +1,7 @@
-//! The media on the GPU: numbers, words and textures of `media.wgsl`.
+//! The media on the GPU: parameters, words and textures of `media.wgsl`.
 //!
-//! Everything of variable length (tables, opacities, bricks, styles) lies in the one buffer of words that the ground's map is in, since
-//! storage bindings are few on some adapters.
+//! Everything of variable length (tables, opacities, bricks, styles) lies in the buffer of 32-bit words that
+//! also holds the map of the ground, since some adapters have few storage bindings.
 
 use crate::camera::View;
 use crate::error::RenderError;
@@ -18,7 +18,7 @@ use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Mat3, Vec3};
 use ttf::tables::NONE;
 
-/// A medium, as the shader has it.
+/// A medium, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
 pub struct MediumInfo {
@@ -32,7 +32,7 @@ pub struct MediumInfo {
     pub padding: u32,
 }
 
-/// The media of a scene, as the shader has them.
+/// The media of a scene, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct MediaParams {
@@ -66,10 +66,10 @@ pub struct MediaParams {
     pub media: [MediumInfo; MAX_MEDIA],
 }
 
-/// Words of a horizon's record.
+/// Number of words in the record of a horizon.
 pub const HORIZON_WORDS: usize = 12;
 
-/// A pipeline's constants about media.
+/// The constants of a pipeline that depend on media.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct MediaVariant {
     with_media: u32,
@@ -84,7 +84,7 @@ pub struct MediaVariant {
 }
 
 impl MediaVariant {
-    /// What a resolved needs.
+    /// The constants for a scene.
     pub fn of(resolved: &ResolvedScene) -> Self {
         let faces_shown = match resolved.scene.media.faces {
             Faces::All => 0,
@@ -107,7 +107,7 @@ impl MediaVariant {
             with_media: 1,
             shading: match field.shading {
                 Shading::Unshaded => 0,
-                // Each stripe is drawn as its own scene.
+                // The two shadings are drawn as separate scenes.
                 Shading::Phong(_) | Shading::Interleaved(_) => 1,
                 Shading::Occlusion(_) => 2,
             },
@@ -118,7 +118,7 @@ impl MediaVariant {
         }
     }
 
-    /// Names and values of the overrides.
+    /// Names and values of the override constants.
     pub fn constants(&self) -> [(&'static str, f64); 9] {
         [
             ("face_data", f64::from(self.face_data)),
@@ -134,20 +134,20 @@ impl MediaVariant {
     }
 }
 
-/// The horizon candidates that a picture looks at.
+/// The horizon candidates that a picture shows.
 pub fn candidates_of<'f, 'a>(resolved: &'f ResolvedScene<'a>) -> Option<&'f CandidateVolume<'a>> {
     let of_field = resolved.field.as_ref().and_then(|field| field.horizons.as_ref()).map(|h| &h.candidates);
     resolved.candidates.as_ref().or(of_field)
 }
 
-/// Where light is carried for a resolved, if it is.
+/// The grid in which light is propagated, if the scene has occlusion.
 pub fn light_grid(resolved: &ResolvedScene) -> Option<LightGrid> {
     let field = resolved.field.as_ref()?;
     let Shading::Occlusion(occlusion) = field.shading else { return None };
     Some(LightGrid::new(&occlusion, &resolved.view, &resolved.roaming_box, f64::from(field.unit_m)))
 }
 
-/// Appends the media to the words and says where they are.
+/// Appends the media to the words, and returns parameters with their positions.
 pub fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &mut Vec<u32>) -> MediaParams {
     let mut params = MediaParams::zeroed();
     let plain = |v: Vec3| v.extend(0.0).to_array();
@@ -237,7 +237,7 @@ fn set_light(params: &mut MediaParams, view: &View, grid: &LightGrid) {
 
 fn slot(resolved: &ResolvedScene, medium: &FieldMedium) -> u32 {
     let position = resolved.tables.volumes.iter().position(|name| name == medium.volume.name);
-    position.map_or(NONE, |slot| slot as u32)
+    position.expect("the volumes of all media have a slot") as u32
 }
 
 fn add(words: &mut Vec<u32>, values: &[f32]) -> u32 {
@@ -290,21 +290,23 @@ fn add_horizons(resolved: &ResolvedScene, field: &MediaField, words: &mut Vec<u3
     }
 }
 
-/// Distances and leaves on the GPU.
+/// Distances and leaves of candidates on the GPU.
 pub struct CandidateTextures {
     pub distances: wgpu::Texture,
     pub leaves: wgpu::Texture,
 }
 
 impl CandidateTextures {
-    /// Uploads them; `None` makes textures of one texel, to bind where nothing is read.
+    /// Uploads candidates. `None` creates textures of one texel, which are bound if nothing is read.
     pub fn new(gpu: &Gpu, candidates: Option<&CandidateVolume>) -> Result<Self, RenderError> {
         let [nx, ny, nz] = candidates.map_or([1; 3], |c| c.size);
         let limit = gpu.device.limits().max_texture_dimension_3d as usize;
         if [nx, ny, nz].into_iter().any(|n| n > limit) {
             return Err(RenderError::Unsuitable {
                 adapter: gpu.adapter_name.clone(),
-                reason: format!("the candidates have {nx} x {ny} x {nz} samples, its limit is {limit} a side"),
+                reason: format!(
+                    "the candidates have {nx} x {ny} x {nz} samples, but its limit is {limit} along each axis"
+                ),
             });
         }
         let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };
@@ -322,7 +324,7 @@ impl CandidateTextures {
     }
 }
 
-/// A 3D texture that shaders read.
+/// A 3D texture that shaders can read.
 pub fn texture(
     gpu: &Gpu,
     label: &str,
@@ -342,7 +344,7 @@ pub fn texture(
     })
 }
 
-/// The sampler of all filtered volumes.
+/// The sampler of all volumes that the hardware interpolates.
 pub fn filtering(gpu: &Gpu) -> wgpu::Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("filtering"),

@@ -1,11 +1,12 @@
-//! The GPU pass that draws faces, cut-outs and the ground, without a window.
+//! The GPU renderer, without a window: draws faces, cut-outs, the ground, media and wells.
 //!
-//! One compute shader, assembled from the pass and the snippets it uses; each has a CPU twin that it names. A picture is drawn in
-//! tiles, so that no dispatch runs long enough for a driver's watchdog, cancelling is quick, and an image may be larger than any
-//! limit of the device. Everything uploaded is kept while [`Inputs::version`] stays the same; of the parameterization only what is seen is there.
+//! There is one compute shader, assembled from the file of the pass and the files that it uses; each names
+//! its CPU twin. A picture is drawn in tiles, so that no dispatch runs long enough for the watchdog of a
+//! driver, cancelling is quick, and an image may exceed the limits of the device. Uploaded data are kept
+//! while [`Inputs::version`] stays the same. Of the parameterization only the visible part is uploaded.
 //!
-//! Compute, not fragments: on data-centre cards compute has been seen far faster, and on the software driver both are the
-//! same.
+//! A compute shader instead of a fragment shader: on data-centre cards it was found to be far faster, and on
+//! the software driver there is no difference.
 
 mod grids;
 mod layout;
@@ -37,7 +38,7 @@ use textures::TextureBuffers;
 use ttf::tables::NONE;
 use volumes::{VolumePlacement, no_volume, upload_volume};
 
-/// The shader: the pass first, so that its error lines are true, then the snippets.
+/// The shader: the file of the pass first, so that line numbers in its errors are right, then the others.
 pub(crate) const SHADER: &str = concat!(
     include_str!("faces.wgsl"),
     include_str!("visible.wgsl"),
@@ -49,23 +50,24 @@ pub(crate) const SHADER: &str = concat!(
     include_str!("texture.wgsl"),
     include_str!("volume.wgsl"),
     include_str!("media.wgsl"),
+    include_str!("march.wgsl"),
     include_str!("light.wgsl"),
     include_str!("leaves.wgsl"),
     include_str!("wells.wgsl"),
 );
 
-/// The shader with the way to filter volumes that a device has.
+/// The shader with the volume interpolation that a device supports.
 pub(crate) fn shader(filters_floats: bool) -> String {
     let filter = if filters_floats { include_str!("filtered.wgsl") } else { include_str!("by_hand.wgsl") };
     [SHADER, filter].concat()
 }
 
-/// Samples that one dispatch computes at most: a tenth of a second on the software driver.
+/// Largest number of samples in one dispatch: a tenth of a second on the software driver.
 const SAMPLES_PER_TILE: u32 = 1 << 17;
 /// Side of a workgroup, pixels.
 const WORKGROUP: u32 = 8;
 
-/// Draws scenes on the GPU, keeping what it uploaded.
+/// Draws scenes on the GPU. Keeps what it has uploaded.
 pub struct Renderer {
     gpu: Gpu,
     module: wgpu::ShaderModule,
@@ -90,7 +92,7 @@ pub struct Renderer {
     filtering: wgpu::Sampler,
 }
 
-/// A pipeline's constants.
+/// The constants of a pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Variant {
     lookup: u32,
@@ -105,7 +107,7 @@ struct Variant {
     media: MediaVariant,
 }
 
-/// The entry points.
+/// The entry points of the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 enum EntryPoint {
     Draw,
@@ -116,14 +118,15 @@ impl Renderer {
     /// Opens a device and compiles the shader.
     ///
     /// # Errors
-    /// [`RenderError::NoAdapter`] without a Vulkan driver, [`RenderError::Unsuitable`] for one that is too small.
+    /// [`RenderError::NoAdapter`] without a Vulkan driver; [`RenderError::Unsuitable`] if its limits are too
+    /// low.
     pub fn headless() -> Result<Self, RenderError> {
         let gpu = Gpu::headless()?;
         let make = gpu.guarded(|| Self::with(&gpu))?;
         Ok(make(gpu))
     }
 
-    /// Makes what stays the same for all pictures.
+    /// Creates what is the same for all pictures.
     fn with(gpu: &Gpu) -> Result<impl FnOnce(Gpu) -> Self + use<>, RenderError> {
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("faces"),
@@ -176,15 +179,15 @@ impl Renderer {
         &self.gpu.adapter_name
     }
 
-    /// Gives the device up, as a driver does that is restarted: what follows is the same, so that it can be tried out.
+    /// Loses the device, as if its driver were restarted, so that recovery can be tested.
     pub fn lose_device(&self) {
         self.gpu.device.destroy();
     }
 
-    /// Draws the scene. A device that is lost is opened anew, once, with all that it held.
+    /// Draws the scene. If the device is lost, it is opened again, once, and all data are uploaded again.
     ///
     /// # Errors
-    /// A scene without a picture, missing inputs, cancellation, or what the device says.
+    /// A scene that cannot be drawn, missing inputs, cancellation, or an error of the device.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
         match self.render_once(scene, inputs, progress) {
             Err(RenderError::DeviceLost { .. }) => {
@@ -207,7 +210,7 @@ impl Renderer {
         Ok(image)
     }
 
-    /// Brings the device's copies up to date.
+    /// Uploads what the device does not hold yet.
     fn upload(&mut self, resolved: &ResolvedScene, inputs: &Inputs) -> Result<(), RenderError> {
         if self.version != Some(inputs.version) {
             self.model = None;
@@ -364,7 +367,7 @@ impl Renderer {
         })
     }
 
-    /// `buffers`: parameters, pixels, words, media.
+    /// The bind groups of a picture. `buffers`: parameters, pixels, words, media.
     fn bind_groups(
         &self,
         resolved: &ResolvedScene,
@@ -380,7 +383,7 @@ impl Renderer {
         let intervals = storage("intervals", bytemuck::cast_slice(&tables.intervals));
         let mut entries = tables.scalars.clone();
         for entry in &mut entries {
-            // Shaders may not rely on infinities.
+            // WGSL does not guarantee infinities.
             entry.range = entry.range.map(|end| end.clamp(f32::MIN, f32::MAX));
         }
         let scalars = storage("scalar entries", bytemuck::cast_slice(&entries));
@@ -443,10 +446,11 @@ impl Renderer {
     }
 }
 
-/// Stack for compiling shaders, bytes: the software driver's compiler recurses deeply, and threads of tests and pools are small.
+/// Stack for compiling shaders, bytes. The compiler of the software driver recurses deeply, and the threads
+/// of tests and pools have small stacks.
 const COMPILER_STACK: usize = 64 << 20;
 
-/// Runs something on a thread with a large stack, or here where no thread can be had.
+/// Runs work on a thread with a large stack, or on this thread if none can be started.
 fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let (sender, receiver) = std::sync::mpsc::channel();
     let mut work = Some(work);
@@ -468,13 +472,13 @@ fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// Side of a tile at so many samples a pixel along each axis: a multiple of the workgroup.
+/// Side of a tile for a number of samples per pixel along each axis: a multiple of the side of a workgroup.
 fn tile_side(samples: u32) -> u32 {
     let pixels = SAMPLES_PER_TILE / (samples * samples);
     (pixels.isqrt() / WORKGROUP * WORKGROUP).clamp(4 * WORKGROUP, 1024)
 }
 
-/// A tile's pixels on the device and their way back.
+/// The pixels of a tile on the device, and the buffer in which they are read back.
 struct TileTarget {
     pixels: wgpu::Buffer,
     readback: wgpu::Buffer,
@@ -519,7 +523,7 @@ impl TileTarget {
         gpu.queue.submit([encoder.finish()]);
         let (sender, receiver) = std::sync::mpsc::channel();
         self.readback.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
-            // The receiver waits below; it is gone only when this function has failed already.
+            // The receiver waits below. It is gone only if this function has already failed.
             let _ = sender.send(result);
         });
         gpu.wait()?;
@@ -540,7 +544,7 @@ impl TileTarget {
     }
 }
 
-/// The four groups: picture, textures and tables, volumes, model.
+/// The layouts of the four bind groups: picture, textures and tables, volumes, model.
 fn bind_group_layouts(gpu: &Gpu) -> [wgpu::BindGroupLayout; 4] {
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let uniform = buffer(wgpu::BufferBindingType::Uniform);

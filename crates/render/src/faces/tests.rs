@@ -38,7 +38,8 @@ fn the_shader_is_valid() {
     }
 }
 
-/// Compares a struct's members with Rust's fields: same names, same order, same offsets, same size. Padding is Rust's own business.
+/// Compares the members of a struct with Rust's fields: same names, order, offsets and size. Padding is
+/// ignored.
 fn same_layout(module: &naga::Module, name: &str, size: usize, fields: &[(&str, usize)]) {
     let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
     let Some((_, naga::Type { inner: naga::TypeInner::Struct { members, span }, .. })) = found else {
@@ -147,7 +148,7 @@ fn constants_are_the_same() {
     }
 }
 
-/// A model that does not fit one buffer is split over two, and refused when it does not fit those.
+/// A model that does not fit into one buffer is split over two, and refused if it does not fit into those.
 #[test]
 fn a_split_pool_draws_the_same() {
     if std::env::var("PETROGLYPH_GPU_TESTS").is_ok_and(|value| value == "skip") {
@@ -195,7 +196,7 @@ fn a_split_pool_draws_the_same() {
     let pool: usize = (0..4).map(|n| model.sheet(n / 2, (n % 2) as u16).z.len()).sum();
     renderer.gpu.buffer_floats = pool * 5 / 8;
     renderer.model = None;
-    // The grids stay where they are.
+    // The grids are not uploaded again.
     let split = renderer.render(&scene, &inputs, &quiet).unwrap();
     assert!(renderer.model.as_ref().is_some_and(|model| model.pool_chunks() == 2));
     assert!(split == whole);

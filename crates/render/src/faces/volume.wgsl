@@ -17,7 +17,7 @@ struct VolumePlacement {
 @group(2) @binding(5) var volume_4: texture_3d<f32>;
 @group(2) @binding(6) var volume_5: texture_3d<f32>;
 
-// Stands for NaN and for dead traces, which shaders may not rely on.
+// Value of NaN and of dead traces, since WGSL does not guarantee NaN.
 const NO_DATA: f32 = -3.0e38;
 const NO_WEIGHT: f32 = 1e-5;
 const SLACK: f32 = 1e-3;
@@ -26,7 +26,7 @@ fn is_no_data(value: f32) -> bool {
     return value < -1.0e38;
 }
 
-// Volumes in use, so that nothing is read from the others.
+// Number of volumes in use; nothing is read from the others.
 override volume_count: u32 = 6u;
 
 fn load_volume(slot: u32, at: vec3<u32>) -> f32 {

@@ -1,8 +1,9 @@
-//! The media of a scene at any point: extinction, colour, emission.
+//! The media of a scene, evaluated at any point: extinction, colour and emission.
 //!
-//! Voxel space; extinction per unit of length ([`MediaField::unit_m`] metres of display space), colours linear.
+//! Voxel space; extinction per unit of length ([`MediaField::unit_m`] metres of display space), colours
+//! linear.
 
-use super::bricks::{BrickContent, Bricks, LayerLooks, LayerMap, MIXED};
+use super::bricks::{BrickContent, Bricks, LayerAppearance, LayerMap, MIXED};
 use super::horizons::FieldHorizons;
 use super::isosurface::{FieldIsosurface, StratigraphicDepth};
 use super::lit::Lit;
@@ -18,32 +19,32 @@ use glam::{Mat3, Vec3};
 use survey::model::StructuralModel;
 use ttf::TtfTables;
 
-/// What is at a point.
+/// The optical properties of a point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Matter {
-    /// Extinction per unit of length; 0 = nothing.
+    /// Extinction per unit of length; 0: the point is transparent.
     pub extinction: f32,
-    /// Linear colour, lit by Phong's model if the scene asks.
+    /// Linear colour, shaded by Phong's model if the scene asks for it.
     pub colour: Vec3,
-    /// Linear light given off.
+    /// Linear emitted light.
     pub emission: Vec3,
 }
 
-/// The media of a scene, resolved.
+/// The media of a scene, with names resolved.
 pub struct MediaField<'a> {
-    /// Those of the surroundings first.
+    /// The media; those of the surroundings first.
     pub media: Vec<FieldMedium<'a>>,
-    /// Horizons by their leaves.
+    /// Horizons shown by their leaves.
     pub horizons: Option<FieldHorizons<'a>>,
-    /// Surfaces of one value.
+    /// Isosurfaces.
     pub isosurfaces: Vec<FieldIsosurface<'a>>,
-    /// Space that shows nothing.
+    /// Bricks for empty-space skipping.
     pub bricks: Bricks,
-    /// How the media are lit.
+    /// The shading.
     pub shading: Shading,
     /// Which faces stop rays.
     pub faces: Faces,
-    /// Where media are shown.
+    /// Where media are visible.
     pub scope: Scope,
     /// Distance that counts as near a horizon, voxels.
     pub reach: f32,
@@ -51,9 +52,9 @@ pub struct MediaField<'a> {
     pub samples_per_unit: f32,
     /// Unit of length, m of display space.
     pub unit_m: f32,
-    /// Linear part of voxel → display.
+    /// Linear map from voxel to display space.
     pub display_from_voxel: Mat3,
-    /// Voxel covector → display covector.
+    /// Map from voxel covectors to display covectors.
     pub display_normal_from_voxel: Mat3,
     /// Direction to the light in display space, unit.
     pub light: Vec3,
@@ -62,10 +63,11 @@ pub struct MediaField<'a> {
 }
 
 impl<'a> MediaField<'a> {
-    /// The media of a scene; `None` when it has none.
+    /// The media of a scene; `None` if it has none.
     ///
     /// # Errors
-    /// Functions that cannot be evaluated; horizons without candidates.
+    /// Functions that cannot be evaluated; unknown volumes; horizons without candidates; surfaces of k'
+    /// without an interpretation.
     pub fn new(
         media: &Media,
         inputs: &Inputs<'a>,
@@ -91,7 +93,7 @@ impl<'a> MediaField<'a> {
         let zones = [(&media.surroundings, Zone::Surroundings), (&media.cut_outs, Zone::CutOut)];
         for (medium, zone) in zones.into_iter().flat_map(|(list, zone)| list.iter().map(move |m| (m, zone))) {
             let mut made = resolve(&medium.volume, &medium.function, zone)?;
-            made.layers = LayerLooks::new(medium, tables, model, ground_is_shown);
+            made.layers = LayerAppearance::new(medium, tables, model, ground_is_shown);
             resolved.push(made);
         }
         let depths = match (inputs.model, inputs.param) {
@@ -138,11 +140,12 @@ impl<'a> MediaField<'a> {
         Ok(Some(field))
     }
 
-    /// The one medium, where there is nothing else to see and nothing to ask but its function.
-    pub fn alone(&self) -> Option<&FieldMedium<'a>> {
+    /// The single medium, if the scene has no horizons, isosurfaces or further media, and layers do not
+    /// change that medium.
+    pub fn only_medium(&self) -> Option<&FieldMedium<'a>> {
         let [medium] = &self.media[..] else { return None };
-        let alone = self.horizons.is_none() && self.isosurfaces.is_empty() && medium.layers.is_none();
-        alone.then_some(medium)
+        let only = self.horizons.is_none() && self.isosurfaces.is_empty() && medium.layers.is_none();
+        only.then_some(medium)
     }
 
     fn fill_bricks(&self, samples: [usize; 3], empty_space: EmptySpace) -> Bricks {
@@ -164,7 +167,8 @@ impl<'a> MediaField<'a> {
         })
     }
 
-    /// What is at a point of a place, in a brick with this word. `towards` points to the viewer, unit, in display space.
+    /// The optical properties of a point in a zone, in a brick with this word. `towards` is the unit
+    /// direction to the viewer in display space.
     #[inline(always)]
     pub fn at(&self, p: Vec3, zone: Zone, word: u32, towards: Vec3) -> Matter {
         if self.media.len() == 1 && self.horizons.is_none() && self.isosurfaces.is_empty() {
@@ -200,8 +204,8 @@ impl<'a> MediaField<'a> {
         Matter { extinction, colour, emission: Vec3::ZERO }
     }
 
-    /// The looks of the layer at a place: known for the brick, or asked of the model.
-    fn layer_entry(&self, looks: &LayerLooks, p: Vec3, word: u32) -> [f32; 4] {
+    /// The appearance of the layer at a point. The layer is known for the brick, or looked up in the model.
+    fn layer_entry(&self, looks: &LayerAppearance, p: Vec3, word: u32) -> [f32; 4] {
         let hint = (word >> 16 & 255) as u8;
         let layer = match (hint, self.model) {
             (MIXED, Some(model)) => usize::from(model.region_at(p).layer),
@@ -210,7 +214,7 @@ impl<'a> MediaField<'a> {
         looks.entries.get(layer).copied().unwrap_or_default()
     }
 
-    /// Several media and horizons at one place.
+    /// Several media, horizons and isosurfaces at a point.
     fn mixed(&self, p: Vec3, zone: Zone, word: u32, towards: Vec3) -> Matter {
         let horizon = self.horizons.as_ref().map(|h| h.at(p)).unwrap_or_default();
         let mut rest = 1.0 - horizon.cover;
@@ -253,13 +257,13 @@ impl<'a> MediaField<'a> {
         sum
     }
 
-    /// A colour under Phong's light.
+    /// A colour shaded by Phong's model.
     fn lit(&self, phong: Phong, gradient: Vec3, colour: Vec3, towards: Vec3) -> Vec3 {
         Lit::new(phong, self.light, towards).on(self.display_normal_from_voxel * gradient, colour)
     }
 }
 
-/// The extinction whose opacity is that of `kappa` times a factor.
+/// The extinction whose opacity is that of `kappa` multiplied by a factor.
 fn thinned(kappa: f32, opacity: f32) -> f32 {
     match opacity {
         1.0 => kappa,

@@ -1,4 +1,4 @@
-//! Horizons shown by the leaves of their trees (P-horiz 5.2). Voxel space; colours linear.
+//! Horizons shown by the leaves of their surface trees (P-horiz 5.2). Voxel space; linear colours.
 
 use super::medium::{FieldMedium, Zone};
 use super::samples::NO_DATA_BELOW;
@@ -11,7 +11,7 @@ use crate::leaves::{BORDER_TONE, leaf_colour};
 use glam::Vec3;
 use ttf::{RgbaFunction, linear_from_srgb};
 
-/// A horizon's looks.
+/// How a horizon is drawn.
 pub struct FieldHorizon<'a> {
     /// Linear colour.
     pub colour: Vec3,
@@ -19,36 +19,36 @@ pub struct FieldHorizon<'a> {
     pub extinction: f32,
     /// Half of its thickness, voxels.
     pub thickness: f32,
-    /// Factor on its colour for the light it gives off.
+    /// Emission, as a factor on its colour.
     pub emission: f32,
-    /// Whether its leaves are told apart by colour.
+    /// Whether its leaves differ in colour.
     pub by_leaf: bool,
-    /// What is painted on it.
+    /// The volume that is painted on it.
     pub paint: Option<FieldMedium<'a>>,
 }
 
-/// The horizons shown by their leaves.
+/// The horizons that are shown by their leaves.
 pub struct FieldHorizons<'a> {
-    /// Distances and ids.
+    /// The distances to candidates, and their leaves.
     pub candidates: CandidateVolume<'a>,
-    /// Number of the horizon by leaf id, from 1; 0 = none.
+    /// Number of the horizon by leaf id, counted from 1; 0 stands for none.
     pub styles: Vec<u8>,
     /// The horizons.
     pub horizons: Vec<FieldHorizon<'a>>,
 }
 
-/// A horizon's part at a point.
+/// A horizon at a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HorizonAt {
-    /// Share of the place it takes.
+    /// Fraction of the point that it covers.
     pub cover: f32,
-    /// Distance to the nearest horizon shown, voxels; large where there is none.
+    /// Distance to the nearest horizon that is shown, voxels; large if there is none.
     pub distance: f32,
     /// Its extinction.
     pub extinction: f32,
     /// Its colour.
     pub colour: Vec3,
-    /// Factor for the light it gives off.
+    /// Emission, as a factor on the colour.
     pub emission: f32,
 }
 
@@ -58,7 +58,7 @@ impl Default for HorizonAt {
     }
 }
 
-/// What a brick has of horizons.
+/// Horizons in a brick.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NearHorizon {
     pub shows: bool,
@@ -66,10 +66,10 @@ pub(super) struct NearHorizon {
 }
 
 impl<'a> FieldHorizons<'a> {
-    /// The horizons of a scene; `resolve` makes a painted volume ready.
+    /// The horizons of a scene; `resolve` prepares a volume that is painted on one.
     ///
     /// # Errors
-    /// CandidateVolume that do not fill their box, and what `resolve` refuses.
+    /// Candidates whose lists do not match their size, and everything that `resolve` refuses.
     pub fn new(
         shown: &[PickedHorizon],
         candidates: CandidateVolume<'a>,
@@ -101,7 +101,8 @@ impl<'a> FieldHorizons<'a> {
         Ok(Self { candidates, styles, horizons })
     }
 
-    /// The horizon at a point: distance by trilinear interpolation, leaf by the nearest sample.
+    /// The horizon at a point: the distance is interpolated trilinearly, the leaf is that of the nearest
+    /// sample.
     pub fn at(&self, p: Vec3) -> HorizonAt {
         let leaf = self.candidates.leaf_at(p);
         let style = self.styles.get(leaf as usize).copied().unwrap_or(0);
@@ -144,7 +145,8 @@ impl<'a> FieldHorizons<'a> {
                     if style != 0 {
                         let distance = f32::from(c.distance[n]) * c.voxels_per_step;
                         near.distance = near.distance.min(distance);
-                        // Between samples the interpolated distance is less than at all of them by less than a voxel.
+                        // Between samples, the interpolated distance may be smaller than at all of them, but
+                        // by less than a voxel.
                         near.shows |= distance <= self.horizons[usize::from(style) - 1].thickness + 1.0 + SOFT;
                     }
                 }

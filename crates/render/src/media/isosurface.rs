@@ -1,13 +1,15 @@
-//! Surfaces of one value: of a volume, or of k', the layer's number from the bottom plus k (P-illus 5).
+//! Isosurfaces of a volume, or of k', the layer number from the bottom plus k (P-illus 5).
 //!
-//! A surface v = c is shown as a shell of half thickness h about it, like a horizon by its leaves. The distance of a point is, to first order,
+//! An isosurface v = c is drawn as a shell of half thickness h around it, as horizons are. The distance of a
+//! point from it is, to first order,
 //!
 //! ```text
 //! d ≈ |v − c| / |∇v|
 //! ```
 //!
-//! which is exact where v is linear. k' is continuous across horizons inside a fault block, so its surfaces end at faults and nowhere else; its gradient is the
-//! Jacobian's. Gradients are per voxel, distances in voxels.
+//! which is exact where v is linear. k' is continuous across horizons inside a fault block, so its
+//! isosurfaces end at faults and nowhere else; its gradient comes from the Jacobian. Gradients are per voxel,
+//! distances in voxels.
 
 use super::Isosurface;
 use super::bricks::MIXED;
@@ -20,9 +22,9 @@ use param::Parameterization;
 use survey::model::StructuralModel;
 use ttf::linear_from_srgb;
 
-/// An isosurface, resolved.
+/// An isosurface, with its volume resolved.
 pub struct FieldIsosurface<'a> {
-    /// Its volume; absent for k'.
+    /// Its volume. Absent for k'.
     pub medium: Option<FieldMedium<'a>>,
     /// The value.
     pub value: f32,
@@ -34,17 +36,17 @@ pub struct FieldIsosurface<'a> {
     pub thickness: f32,
 }
 
-/// The interpretation that k' is of.
+/// The interpretation, from which k' is computed.
 #[derive(Clone, Copy)]
 pub struct StratigraphicDepth<'a> {
-    /// Where regions are.
+    /// The structural model, which has the regions.
     pub model: &'a StructuralModel,
-    /// k in them.
+    /// The parameterization, which has k.
     pub param: &'a Parameterization,
 }
 
 impl<'a> FieldIsosurface<'a> {
-    /// A surface of a volume made ready, or of k'.
+    /// An isosurface of a prepared volume, or of k'.
     pub fn new(surface: &Isosurface, medium: Option<FieldMedium<'a>>) -> Self {
         Self {
             medium,
@@ -55,7 +57,7 @@ impl<'a> FieldIsosurface<'a> {
         }
     }
 
-    /// The share of a place that it takes, and the gradient there.
+    /// The fraction of a point that it covers, and the gradient there.
     pub fn at(&self, p: Vec3, depths: Option<StratigraphicDepth>) -> (f32, Vec3) {
         let (value, gradient) = match (&self.medium, depths) {
             (Some(medium), _) => {
@@ -76,12 +78,12 @@ impl<'a> FieldIsosurface<'a> {
         (shell_cover(self.thickness, distance), gradient)
     }
 
-    /// Whether a brick can show it.
+    /// Whether the isosurface may be visible in a brick.
     pub fn shows(&self, low: Vec3, high: Vec3, layer: u8) -> bool {
         let reach = Vec3::splat(self.thickness + SOFT);
         match &self.medium {
             Some(medium) => {
-                // The shell follows the first-order distance, whose gradient reaches a sample to either side.
+                // The shell uses the first-order distance, whose gradient takes one sample on either side.
                 let range = medium.range(low - reach - 1.0, high + reach + 1.0);
                 range.is_some_and(|[a, b]| a <= self.value && self.value <= b)
             }

@@ -1,6 +1,7 @@
-//! A volume with its transfer function, made ready for a scene. Voxel space; extinction per unit of length, colours linear.
+//! A volume with its transfer function, prepared for a scene. Voxel space; extinction per unit of length,
+//! linear colours.
 
-use super::bricks::{LayerLooks, MIXED};
+use super::bricks::{LayerAppearance, MIXED};
 use super::prepared::Prepared;
 use super::samples::VolumeSamples;
 use super::table::FunctionTable;
@@ -8,7 +9,7 @@ use crate::inputs::NamedVolume;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Where a medium fills space.
+/// A part of the roaming box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Zone {
     /// The roaming box outside the cut-outs.
@@ -17,57 +18,59 @@ pub enum Zone {
     CutOut,
 }
 
-/// A volume with its function.
+/// A volume with its transfer function.
 pub struct FieldMedium<'a> {
     /// The volume.
     pub volume: NamedVolume<'a>,
     prepared: Arc<Prepared>,
-    /// Its baked function.
+    /// The tabulated transfer function.
     pub table: FunctionTable,
-    /// Where it shows.
+    /// The zone in which it is visible.
     pub zone: Zone,
-    /// What layers do to it; absent where they do nothing.
-    pub layers: Option<LayerLooks>,
+    /// How layers change it. Absent if they do not.
+    pub layers: Option<LayerAppearance>,
     scale: Vec3,
     offset: Vec3,
 }
 
 impl<'a> FieldMedium<'a> {
-    /// A volume made ready.
+    /// A prepared volume.
     pub fn new(volume: NamedVolume<'a>, prepared: Arc<Prepared>, table: FunctionTable, zone: Zone) -> Self {
         let (scale, offset) = volume.index_from_voxel();
         Self { volume, prepared, table, zone, layers: None, scale, offset }
     }
 
-    /// Trilinear value at a voxel position; below [`NO_DATA_BELOW`] where there is none.
+    /// Value at a voxel position, interpolated trilinearly; below [`super::samples::NO_DATA_BELOW`] if there
+    /// is none.
     #[inline(always)]
     pub fn sample(&self, p: Vec3) -> f32 {
         self.samples().value(p * self.scale + self.offset)
     }
 
-    /// Central differences over one sample to either side, per voxel of the survey; zero where a neighbour is missing.
+    /// Gradient per voxel of the survey, by central differences over one sample on either side; 0 along an
+    /// axis if a neighbour is missing.
     #[inline]
     pub fn gradient(&self, p: Vec3) -> Vec3 {
         self.samples().differences(p * self.scale + self.offset) * 0.5 * self.scale
     }
 
-    /// Scale and offset from voxel positions to sample numbers.
+    /// Scale and offset from voxel positions to sample indices.
     pub(super) fn index_from_voxel(&self) -> (Vec3, Vec3) {
         (self.scale, self.offset)
     }
 
-    /// Its samples.
+    /// The samples.
     #[inline(always)]
     pub(super) fn samples(&self) -> VolumeSamples<'_> {
         VolumeSamples::new(self.prepared.samples(&self.volume), self.volume.volume.size())
     }
 
-    /// Smallest and largest sample between two voxel positions; `None` where there is none.
+    /// Smallest and largest sample between two voxel positions; `None` if there is none.
     pub fn range(&self, low: Vec3, high: Vec3) -> Option<[f32; 2]> {
         self.prepared.range(&self.volume, low, high)
     }
 
-    /// Whether a brick can show it.
+    /// Whether the medium may be visible in a brick.
     pub(super) fn shows(&self, low: Vec3, high: Vec3, layer: u8) -> bool {
         let Some([a, b]) = self.prepared.range(&self.volume, low, high) else { return false };
         let lets_through = match &self.layers {

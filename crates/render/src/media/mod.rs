@@ -1,19 +1,20 @@
-//! What is seen through: volumes in the cut-outs and around them, and how light moves in them (P-illus 5.1, P-horiz 5).
+//! Volume rendering: volumes in the cut-outs and around them, and how they are lit (P-illus 5.1, P-horiz 5).
 //!
-//! A medium turns a scalar volume into extinction and colour. The opacity α₀ of its RGBA function is that of one *unit* of length; over a
-//! length Δ it is
+//! A medium maps a scalar volume to extinction and colour. The opacity α₀ of its RGBA function is that of one
+//! *unit* of length. Over a length Δ it is
 //!
 //! ```text
 //! α = 1 − (1 − α₀)^(Δ/Δ₀) = 1 − exp(−κ·Δ/Δ₀)      κ = −ln(1 − α₀)
 //! ```
 //!
-//! so that no picture depends on the number of samples. The unit Δ₀ is the cube root of a voxel's volume in display space (m, exaggerated):
-//! an isotropic medium in the space that is looked at, equal to the voxel on a cubic lattice. Several media at one place add their
-//! extinctions and mix their colours by them. Light is linear; the sum is encoded at the end.
+//! so that no picture depends on the number of samples. The unit Δ₀ is the cube root of the volume of a voxel
+//! in display space (m, exaggerated): the medium is isotropic in display space, and the unit equals the voxel
+//! on a cubic lattice. Where several media overlap, their extinctions add, and their colours are averaged
+//! with the extinctions as weights. Light is linear; the sum is sRGB-encoded at the end.
 //!
-//! Where light is shadowed by what lies in front, [`light`] carries occlusion and emission from slice to slice before the
-//! picture is drawn, and [`march`] reads them; [`bundle`] does so for many rays at once where one volume is all there is. Space is
-//! skipped by [`bricks`].
+//! With occlusion shading, [`light`] propagates occlusion and emission from slice to slice before the picture
+//! is drawn, and [`march`] reads the result. [`bundle`] marches many rays at once if there is only one
+//! volume. [`bricks`] is for empty-space skipping.
 
 pub mod bricks;
 pub mod bundle;

@@ -1,40 +1,47 @@
-//! What a scene says of its media, as it is written in its file.
+//! The media of a scene, as they are written in its file.
 
 use super::shading::Shading;
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
 use ttf::{Colour, RgbaFunction, RgbaStop};
 
-/// Most media in a scene, cut-outs and surroundings together.
+/// Largest number of media in a scene, cut-outs and surroundings together.
 pub const MAX_MEDIA: usize = 4;
-/// Most horizons that a scene shows by their leaves.
+/// Largest number of horizons that a scene shows by their leaves.
 pub const MAX_HORIZONS: usize = 255;
-/// Most isosurfaces in a scene.
+/// Largest number of isosurfaces in a scene.
 pub const MAX_ISOSURFACES: usize = 4;
 
-/// What is seen through, and how it is lit.
+/// The volume rendering of a scene.
+///
+/// ```
+/// let media: render::Media = toml::from_str("faces = 'none'\nshading = { occlusion = { spread = 0.5 } }").unwrap();
+/// assert!(media.is_empty() && media.validate().is_ok());
+/// assert_eq!(media.samples_per_voxel, 2.0);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Media {
-    /// Which faces of rock stop a ray. Default all.
+    /// Which faces of the block are drawn and stop a ray. Default all.
     pub faces: Faces,
     /// Samples of a ray per unit of length. Default 2.
     pub samples_per_voxel: f32,
     /// How the media are lit. Default unshaded.
     pub shading: Shading,
-    /// Whether rays jump over space that shows nothing; the picture is the same. Default skipped.
+    /// Whether rays skip empty space. The picture is the same. Default skipped.
     pub empty_space: EmptySpace,
-    /// Where the media are shown, by the distance to the horizons below. Default everywhere.
+    /// Where the media are visible, depending on the distance to the horizons below. Default everywhere.
     pub scope: Scope,
     /// Distance that counts as near a horizon for `scope`, voxels, at most 10. Default 5.
     pub reach: f32,
-    /// What fills the cut-outs. Default nothing.
+    /// Media in the cut-outs. Default none.
     pub cut_outs: Vec<Medium>,
-    /// What fills the rest of the roaming box; it shows where no face of rock is in front. Default nothing.
+    /// Media in the rest of the roaming box. They are visible where no face of the block is in front. Default
+    /// none.
     pub surroundings: Vec<Medium>,
     /// Horizons shown by the leaves of their trees (P-horiz 5.2).
     pub horizons: Vec<PickedHorizon>,
-    /// Surfaces of one value, wherever media are.
+    /// Isosurfaces, in the cut-outs and around them.
     pub isosurfaces: Vec<Isosurface>,
 }
 
@@ -55,52 +62,52 @@ impl Default for Media {
     }
 }
 
-/// Which faces of rock are drawn and stop a ray.
+/// Which faces of the block are drawn and stop a ray.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Faces {
-    /// Those of the roaming box and of the cut-outs.
+    /// The faces of the roaming box and of the cut-outs.
     #[default]
     All,
-    /// The back faces of the cut-outs only: the surroundings are seen through (P-illus 5.1).
+    /// Only the back faces of the cut-outs: the surroundings are rendered as a volume (P-illus 5.1).
     CutOuts,
-    /// None: the whole box is a medium.
+    /// None: the whole box is rendered as a volume.
     None,
 }
 
-/// What rays do where nothing shows.
+/// What rays do in empty space.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EmptySpace {
-    /// They jump over it.
+    /// They skip it.
     #[default]
     Skipped,
-    /// They sample it all the same: to measure what skipping gains.
+    /// They sample it nevertheless, to measure what skipping gains.
     Sampled,
 }
 
-/// Where media are shown.
+/// Where media are visible.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scope {
     /// Everywhere.
     #[default]
     Everywhere,
-    /// Near the horizons shown only.
+    /// Only near the horizons that are shown.
     NearHorizons,
-    /// Everywhere but near the horizons shown.
+    /// Everywhere except near the horizons that are shown.
     AwayFromHorizons,
 }
 
-/// A volume seen through an RGBA function.
+/// A volume with its RGBA function.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Medium {
     /// The volume's name.
     pub volume: String,
-    /// Value → colour and the opacity of one unit of length.
+    /// Maps a value to colour and to the opacity of one unit of length.
     pub function: RgbaFunction,
-    /// Whether the layers' opacities multiply it. Default not.
+    /// Whether the opacities of the layers multiply its opacity. Default not.
     #[serde(default)]
     pub layers: LayerOpacity,
     /// Where its colour comes from. Default the function.
@@ -108,18 +115,20 @@ pub struct Medium {
     pub colour: MediumColour,
 }
 
-/// What colours a medium.
+/// Where the colour of a medium comes from.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MediumColour {
     /// Its function.
     #[default]
     Function,
-    /// The layer at the place: the average of its pattern, as rock that was left standing (P-illus, figure 11).
+    /// The layer at the point: the average of its pattern, so that the medium looks like the rock of the
+    /// layer (P-illus, figure 11).
     Layers,
 }
 
-/// Whether the opacity of the layer at a place multiplies that of a medium (P-illus 5.1): layers with one extrude into the cut-out.
+/// Whether the opacity of the layer at a point multiplies that of a medium (P-illus 5.1). Layers with an
+/// opacity extrude into the cut-out.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum LayerOpacity {
@@ -130,19 +139,20 @@ pub enum LayerOpacity {
     Followed,
 }
 
-/// A horizon shown where the closest leaf is one of its own and near enough.
+/// A horizon, visible where the nearest leaf is one of its own and close enough.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PickedHorizon {
-    /// The horizon of an interpretation that it is: who brings the candidates puts that horizon's leaves below. Absent: the leaves as they are.
+    /// The name of the interpreted horizon that it shows. The caller, who provides the candidates, enters the
+    /// leaves of that horizon below. Absent: the leaves are shown as they are.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
-    /// Its leaves' ids; none = every leaf there is.
+    /// The ids of its leaves. Empty: all leaves.
     #[serde(default)]
     pub leaves: Vec<u32>,
     /// Its colour.
     pub colour: Colour,
-    /// Whether its leaves are told apart. Default not.
+    /// Whether its leaves differ in colour. Default not.
     #[serde(default)]
     pub colouring: Colouring,
     /// Opacity of one unit of length. Default 1.
@@ -151,40 +161,41 @@ pub struct PickedHorizon {
     /// Half of its thickness, voxels, at most 9. Default 1.
     #[serde(default = "one")]
     pub thickness: f32,
-    /// Light it gives off, in its own colour; 1 is as bright as it is lit. Default 0.
+    /// Light that it emits, in its own colour; 1 is as bright as it is when fully lit. Default 0.
     #[serde(default)]
     pub emission: f32,
-    /// An attribute painted on it in place of the colour.
+    /// An attribute that is painted on it in place of its colour.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub paint: Option<Paint>,
 }
 
 impl PickedHorizon {
-    /// An opaque horizon of these leaves in one colour, a voxel thick to either side, that gives off no light.
+    /// An opaque horizon of these leaves in one colour, one voxel thick on either side, without emission.
     pub fn of(leaves: Vec<u32>, colour: Colour) -> Self {
         let colouring = Colouring::Own;
         Self { name: None, leaves, colour, colouring, opacity: 1.0, thickness: 1.0, emission: 0.0, paint: None }
     }
 }
 
-/// What colours a horizon.
+/// Where the colour of a horizon comes from.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Colouring {
     /// Its own colour.
     #[default]
     Own,
-    /// Each leaf, or each group of leaves, another colour, with dark borders (P-horiz, figure 3).
+    /// Each leaf or group of leaves has a colour of its own, with dark borders (P-horiz, figure 3).
     ByLeaf,
 }
 
-/// A surface of one value.
+/// An isosurface: the surface on which a scalar has one value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Isosurface {
-    /// Of what.
+    /// The scalar.
     pub of: IsosurfaceSource,
-    /// The value, in the volume's unit; for k' the layer from the bottom, counted from 0, plus k.
+    /// The value, in the unit of the volume. For k' it is the layer number from the bottom, counted from 0,
+    /// plus k.
     pub value: f32,
     /// Its colour.
     pub colour: Colour,
@@ -196,13 +207,13 @@ pub struct Isosurface {
     pub thickness: f32,
 }
 
-/// What has isosurfaces.
+/// A scalar that can have isosurfaces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum IsosurfaceSource {
     /// A volume, by its name.
     Volume(String),
-    /// k'.
+    /// The packed depth k' of P-illus 3.3, here the layer number plus k.
     Depth,
 }
 
@@ -212,7 +223,7 @@ pub enum IsosurfaceSource {
 pub struct Paint {
     /// The volume's name.
     pub volume: String,
-    /// Value → colour; its opacity is not asked.
+    /// Maps a value to a colour; its opacity is ignored.
     pub function: RgbaFunction,
 }
 
@@ -220,8 +231,8 @@ fn one() -> f32 {
     1.0
 }
 
-/// The function of P-horiz 6 for a volume clipped at ±`clip`: white throughout, values from low to high transparent to opaque; values below
-/// `start` (in shares of the clip) are clear.
+/// The function of P-horiz 6 for a volume clipped at ±`clip`: white, with opacity rising from low to high
+/// values. Values below `start` (as a fraction of the clip) are transparent.
 ///
 /// ```
 /// let function = render::media::white_ramp(100.0, 0.0);
@@ -240,7 +251,7 @@ pub fn white_ramp(clip: f32, start: f32) -> RgbaFunction {
 }
 
 impl Media {
-    /// Whether anything is seen through.
+    /// Whether there is nothing to render as a volume.
     pub fn is_empty(&self) -> bool {
         self.cut_outs.is_empty()
             && self.surroundings.is_empty()
@@ -248,12 +259,12 @@ impl Media {
             && self.isosurfaces.is_empty()
     }
 
-    /// All media, those of the surroundings first.
+    /// All media; those of the surroundings first.
     pub fn all(&self) -> impl Iterator<Item = &Medium> {
         self.surroundings.iter().chain(&self.cut_outs)
     }
 
-    /// The volumes that isosurfaces are of.
+    /// The names of the volumes that have isosurfaces.
     pub fn isosurface_volumes(&self) -> impl Iterator<Item = &String> {
         self.isosurfaces.iter().filter_map(|surface| match &surface.of {
             IsosurfaceSource::Volume(name) => Some(name),
@@ -261,14 +272,14 @@ impl Media {
         })
     }
 
-    /// Refuses what cannot be drawn.
+    /// Checks that this can be drawn.
     ///
     /// # Errors
     /// The first [`SceneError`] found.
     pub fn validate(&self) -> Result<(), SceneError> {
         let number = |what, found: f32, low, high| SceneError::check_range(what, f64::from(found), low, high);
-        number("the samples a voxel", self.samples_per_voxel, 0.05, 32.0)?;
-        number("the reach of horizons", self.reach, 0.0, 10.0)?;
+        number("the number of samples per voxel", self.samples_per_voxel, 0.05, 32.0)?;
+        number("the distance that counts as near a horizon", self.reach, 0.0, 10.0)?;
         if self.all().count() > MAX_MEDIA {
             return Err(SceneError::TooMany { what: "media", found: self.all().count(), limit: MAX_MEDIA });
         }

@@ -1,36 +1,38 @@
-//! How the media of a scene are lit, as it is written in its file.
+//! The shading of the media of a scene, as it is written in its file.
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
 
-/// How media are lit.
+/// The shading of media.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shading {
-    /// Not: emission and absorption.
+    /// None: emission and absorption only.
     #[default]
     Unshaded,
-    /// By the gradient of the first medium's volume.
+    /// By the gradient of the volume.
     Phong(Phong),
-    /// Without gradients: by what lies in front (P-horiz 5.1).
+    /// By what lies in front, without gradients (P-horiz 5.1).
     Occlusion(Occlusion),
     /// Both in stripes, to compare them.
     Interleaved(Interleaved),
 }
 
-/// Light reflected by surfaces of equal value, two-sided: `ambient + diffuse·|n·l|` on the colour, and `specular·|n·h|^shininess` of white.
+/// Phong's reflection model on isosurfaces of the volume, two-sided: `ambient + diffuse·|n·l|` multiplies the
+/// colour, and `specular·|n·h|^shininess` of white is added.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Phong {
-    /// Light without direction. Default 0.2.
+    /// Ambient light. Default 0.2.
     pub ambient: f32,
-    /// Light by the angle to the surface. Default 0.65.
+    /// Diffuse light. Default 0.65.
     pub diffuse: f32,
     /// Strength of highlights. Default 0.15.
     pub specular: f32,
     /// Exponent of highlights. Default 20.
     pub shininess: f32,
-    /// Direction to the light: right, up, towards the viewer. Default (−0.7, 0.8, 0.6): from the side, so that shapes show.
+    /// Direction to the light: right, up, towards the viewer. Default (−0.7, 0.8, 0.6): from the side, so
+    /// that shapes are visible.
     pub light: [f32; 3],
 }
 
@@ -40,18 +42,18 @@ impl Default for Phong {
     }
 }
 
-/// Occlusion and emission carried from slice to slice (P-horiz 5.1).
+/// Occlusion and emission propagated from slice to slice (P-horiz 5.1).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Occlusion {
-    /// σ₀: standard deviation of the blur over one unit of depth, units. Default 1: an opening angle of about 45° at one unit that narrows with
-    /// distance, as the incremental blur of the paper has it.
+    /// σ₀: standard deviation of the blur over one unit of depth, units. Default 1: an opening angle of about
+    /// 45° at one unit, which narrows with distance, as for the incremental blur of the paper.
     pub spread: f32,
     /// Factor on the occlusion. Default 1, as published.
     pub strength: f32,
     /// Slices per unit of depth. Default 1.
     pub slices_per_voxel: f32,
-    /// Most cells of a slice along a side; larger scenes have larger cells. Default 256.
+    /// Largest number of cells along a side of a slice; larger scenes have larger cells. Default 256.
     pub max_cells: u32,
 }
 
@@ -61,15 +63,15 @@ impl Default for Occlusion {
     }
 }
 
-/// Stripes by gradients and by occlusion in turn.
+/// Two shadings in alternating stripes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Interleaved {
-    /// The light of the first stripe from the left, and of every other.
+    /// The shading of the first stripe from the left, and of every second one.
     pub phong: Phong,
-    /// The light of those between.
+    /// The shading of the stripes between.
     pub occlusion: Occlusion,
-    /// Upright stripes over the width of the picture. Default 8.
+    /// Number of vertical stripes across the picture. Default 8.
     pub stripes: u32,
 }
 
@@ -84,7 +86,7 @@ fn number(what: &'static str, found: f32, low: f64, high: f64) -> Result<(), Sce
 }
 
 impl Shading {
-    /// Refuses what cannot be drawn.
+    /// Checks that this can be drawn.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`].
@@ -94,7 +96,7 @@ impl Shading {
             Self::Phong(phong) => phong.validate(),
             Self::Occlusion(occlusion) => occlusion.validate(),
             Self::Interleaved(both) => {
-                number("the stripes", both.stripes as f32, 1.0, 1024.0)?;
+                number("the number of stripes", both.stripes as f32, 1.0, 1024.0)?;
                 both.phong.validate()?;
                 both.occlusion.validate()
             }
@@ -116,7 +118,7 @@ impl Occlusion {
     fn validate(&self) -> Result<(), SceneError> {
         number("the spread of occlusion", self.spread, 0.0, 16.0)?;
         number("the strength of occlusion", self.strength, 0.0, 100.0)?;
-        number("the slices a voxel", self.slices_per_voxel, 0.05, 16.0)?;
-        number("the cells of a slice", self.max_cells as f32, 8.0, 2048.0)
+        number("the number of slices per voxel", self.slices_per_voxel, 0.05, 16.0)?;
+        number("the number of cells along a slice", self.max_cells as f32, 8.0, 2048.0)
     }
 }

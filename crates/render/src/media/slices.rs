@@ -1,10 +1,11 @@
-//! Light carried from slice to slice on the processor: what [`super::light::LightVolume`] keeps of each.
+//! Propagates light from slice to slice on the CPU, and stores what [`super::light::LightVolume`] reads.
 //!
-//! One pass over a slice blurs what comes from the slice before, keeps λ and E of it, and adds what the slice itself occludes and gives off: in the slice's
-//! window ([`super::windows`]) alone.
+//! One pass over a slice blurs the light of the slice before, stores λ and E, and adds what the slice itself
+//! occludes and emits. Only the window of the slice ([`super::windows`]) is computed.
 //!
-//! Where one medium is all there is, a row of cells is a line through the volume: cells whose whole slice is in the block are taken in runs that skip bricks with nothing to
-//! show, and their values are read [`BATCH`] at a time. Cells at which a stretch of the medium begins or ends inside the slice are placed one by one.
+//! If there is only one medium, a row of cells is a line through the volume. Cells whose whole slice lies in
+//! the medium are processed in runs that skip empty bricks, and their values are read [`BATCH`] at a time.
+//! Cells in which a stretch of the medium begins or ends inside the slice are processed one by one.
 
 use super::Faces;
 use super::bricks::SampleLine;
@@ -23,16 +24,16 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// λ and E of every slice's front, in its window, row by row, slice by slice.
+/// λ and E at the front of every slice, in its window: row by row, slice by slice.
 pub(super) struct Carried {
     pub windows: Vec<CellWindow>,
-    /// Where in the lists below each window begins.
+    /// Index in the lists below at which each window begins.
     pub starts: Vec<usize>,
     pub lambda: Vec<f32>,
     pub emission: Option<Vec<Vec3>>,
 }
 
-/// A stretch of a cell's ray in one place, in slices.
+/// A stretch of the ray through a cell that lies in one zone; distances in slices.
 #[derive(Debug, Clone, Copy)]
 struct Passage {
     between: [f32; 2],
@@ -41,18 +42,18 @@ struct Passage {
 
 const NOTHING: Passage = Passage { between: [0.0; 2], zone: Zone::Surroundings };
 
-/// What lies where in the grid.
+/// The media in the grid.
 struct BlockPassages<'c> {
     field: &'c MediaField<'c>,
     view: &'c View,
     grid: &'c LightGrid,
-    /// The medium and its samples, where that is all there is.
+    /// The single medium and its samples, if there is only one.
     alone: Option<(&'c FieldMedium<'c>, VolumeSamples<'c>)>,
-    /// The cells' first stretches of matter, their second ones and so on.
+    /// The first stretch of each cell, then the second of each cell, and so on.
     passages: Vec<Vec<Passage>>,
 }
 
-/// Carries light through a block.
+/// Propagates light through a block.
 pub(super) fn carry(
     field: &MediaField,
     view: &View,
@@ -72,10 +73,10 @@ pub(super) fn carry(
         starts.push(count);
         count += window.size()[0] * window.size()[1];
     }
-    // Every value is written below, by the threads: zeros cost nothing until then.
+    // Every value is written below, by several threads; zeroed memory costs nothing until then.
     let mut lambda = vec![0.0f32; count];
     let mut emission = emits.then(|| vec![Vec3::ZERO; count]);
-    // Slices with an empty cell to every side.
+    // Slices with a border of empty cells.
     let pitch = nu + 2;
     let padded = pitch * (nv + 2);
     let (mut before, mut after) = (vec![0.0f32; padded], vec![0.0f32; padded]);
@@ -114,13 +115,13 @@ pub(super) fn carry(
     Ok(Carried { windows, starts, lambda, emission })
 }
 
-/// Rows that one task computes.
+/// Number of rows that one task computes.
 const ROWS: usize = 16;
 
 impl<'c> BlockPassages<'c> {
     fn new(field: &'c MediaField<'c>, view: &'c View, solid: &Solid, grid: &'c LightGrid) -> Self {
         let [nu, nv, _] = grid.size;
-        let alone = field.alone().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize);
+        let alone = field.only_medium().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize);
         let most = solid.cut_outs.len() * 2 + 1;
         let rows: Vec<Vec<Vec<Passage>>> = (0..nv)
             .into_par_iter()
@@ -155,13 +156,13 @@ impl<'c> BlockPassages<'c> {
         Self { field, view, grid, alone: alone.map(|medium| (medium, medium.samples())), passages }
     }
 
-    /// The voxel position of a cell's middle at a depth in slices.
+    /// Voxel position of the middle of a cell at a depth in slices.
     fn voxel(&self, u: usize, v: usize, slice: f64) -> DVec3 {
         let (origin, direction) = self.view.depth_ray(cell_middle(self.grid, u, v));
         origin + direction * (self.grid.near + slice * self.grid.slice)
     }
 
-    /// What a slice of a cell adds, whatever is there: occlusion, opacity, and light given off.
+    /// What a slice adds in a cell, for any media: occlusion, opacity and emitted light.
     fn slice(&self, u: usize, v: usize, slice: usize) -> (f32, f32, Vec3) {
         let mut sum = (0.0, 0.0, Vec3::ZERO);
         for passages in &self.passages {
@@ -196,7 +197,7 @@ fn cell_middle(grid: &LightGrid, u: usize, v: usize) -> DVec2 {
     grid.low + DVec2::new(u as f64 + 0.5, v as f64 + 0.5) * grid.cell
 }
 
-/// One slice.
+/// The pass over one slice.
 struct SlicePass<'p> {
     block: &'p BlockPassages<'p>,
     window: CellWindow,
@@ -207,7 +208,8 @@ struct SlicePass<'p> {
 }
 
 impl SlicePass<'_> {
-    /// Blurs some rows of the window, from row `first` on: λ of what comes out is kept, and itself is what the slice adds to.
+    /// Blurs rows of the window from row `first` on, stores λ, and leaves the blurred occlusion in `carried`
+    /// for the slice to add to.
     fn rows(&self, first: usize, kept: &mut [f32], carried: &mut [f32]) {
         widest(Blurring { pass: self, first, kept, carried });
     }
@@ -229,7 +231,7 @@ impl SlicePass<'_> {
         }
     }
 
-    /// The same for scenes with light given off.
+    /// Blurs emission and adds both emission and occlusion, for scenes with emission.
     fn glowing_rows(&self, first: usize, kept: &mut [Vec3], carried: &mut [f32], glow: &mut [Vec3]) {
         let [low, high] = [self.window.low[0], self.window.high[0]];
         let side = self.block.grid.side_weight(self.front);
@@ -249,7 +251,7 @@ impl SlicePass<'_> {
     }
 }
 
-/// Some rows of a slice being blurred.
+/// Blurs rows of a slice.
 struct Blurring<'p> {
     pass: &'p SlicePass<'p>,
     first: usize,
@@ -275,7 +277,8 @@ impl Loops for Blurring<'_> {
     }
 }
 
-/// Cells of a row blurred by the 3 × 3 kernel with this weight to either side; rows and slices have an empty cell to every side.
+/// Blurs a row of cells with the 3 × 3 kernel that has this weight on either side. Rows and slices have a
+/// border of empty cells.
 #[inline(always)]
 fn blur_row<T>(from: &[T], to: &mut [T], pitch: usize, row: usize, [low, high]: [usize; 2], side: f32)
 where
@@ -284,7 +287,7 @@ where
     let middle = 1.0 - 2.0 * side;
     let cells = |row: usize| &from[row * pitch + low..][..high - low + 2];
     let (below, here, above) = (cells(row), cells(row + 1), cells(row + 2));
-    // A part at a time, so that the mixed columns stay at hand.
+    // A part at a time, so that the blurred columns stay in the cache.
     const PART: usize = 128;
     let mut mixed = [T::default(); PART + 2];
     for start in (0..high - low).step_by(PART) {
@@ -301,7 +304,7 @@ where
     }
 }
 
-/// Some rows of a slice taking up what one medium occludes.
+/// Adds what a single medium occludes in rows of a slice.
 struct Occluding<'p> {
     pass: &'p SlicePass<'p>,
     medium: &'p FieldMedium<'p>,
@@ -310,10 +313,10 @@ struct Occluding<'p> {
     carried: &'p mut [f32],
 }
 
-/// Cells that wait for their values.
+/// Cells whose values are to be read together.
 struct Waiting {
     places: IndexPositions,
-    /// Where each cell is among those carried, and the length of its medium in the slice.
+    /// Index of each cell in the row buffer, and the length of the medium in the slice.
     cells: [usize; BATCH],
     lengths: [f32; BATCH],
     filled: usize,
@@ -377,7 +380,7 @@ impl Loops for Occluding<'_> {
     }
 }
 
-/// Cells of a run that are taken without asking for empty space between them.
+/// Number of cells of a run between two lookups of empty space.
 const LANES: u32 = 8;
 
 impl Waiting {

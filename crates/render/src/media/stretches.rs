@@ -1,14 +1,15 @@
-//! The stretches of a ray in and outside cut-outs (P-illus 5.1, figure 10). Voxel space; t in voxels along the ray.
+//! Divides a ray into stretches inside and outside cut-outs (P-illus 5.1, figure 10). Voxel space; t in
+//! voxels along the ray.
 
 use super::medium::Zone;
 use crate::visible::{Ray, Solid, TOUCH};
 
-/// A stretch of a ray in one place.
+/// A part of a ray that lies in one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
-    /// Where it begins and ends.
+    /// The distances at which it begins and ends.
     pub t: [f32; 2],
-    /// What it is in.
+    /// The zone.
     pub zone: Zone,
 }
 

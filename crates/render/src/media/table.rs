@@ -1,41 +1,48 @@
-//! RGBA functions baked for a medium: linear colour and extinction at evenly spaced values.
+//! RGBA functions of media as tables: linear colour and extinction at evenly spaced values.
 //!
-//! The nearest of [`ENTRIES`] entries is taken, so that a lookup is one load on the GPU; the value's error is 1/4096 of the domain.
+//! A lookup takes the nearest of [`ENTRIES`] entries, so that it is a single load on the GPU. The error in
+//! the value is at most 1/4096 of the domain.
 
 use super::samples::whole;
 use ttf::{RgbaFunction, linear_from_srgb};
 
-/// Entries of a table.
+/// Number of entries.
 pub const ENTRIES: usize = 2048;
-/// Extinction of an opaque value: one ten-thousandth of a unit lets less than half pass.
+/// Extinction of an opaque value: a ten-thousandth of a unit transmits less than half.
 pub const OPAQUE: f32 = 1.0e4;
 
-/// −ln(1 − α₀), finite.
+/// −ln(1 − α₀), limited to [`OPAQUE`].
+///
+/// ```
+/// use render::media::table::{absorbed, extinction};
+/// assert!((extinction(0.5) - std::f32::consts::LN_2).abs() < 1e-6);
+/// assert!((absorbed(extinction(0.3)) - 0.3).abs() < 1e-5);
+/// ```
 pub fn extinction(opacity: f32) -> f32 {
     if opacity >= 0.9999 { OPAQUE } else { -(-opacity.max(0.0)).ln_1p() }
 }
 
-/// A baked function.
+/// A tabulated function.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FunctionTable {
-    /// Linear red, green, blue and extinction by entry.
+    /// Linear red, green, blue, and extinction.
     pub entries: Vec<[f32; 4]>,
-    /// The extinctions alone: what most samples ask for, small enough to stay at hand.
+    /// The extinctions alone. Most samples need nothing else, and they fit into the cache.
     pub extinctions: Vec<f32>,
-    /// The opacity of one unit by entry.
+    /// The opacity of one unit of length.
     pub opacities: Vec<f32>,
-    /// The colour of all entries, where they have the same.
+    /// The colour of all entries, if they have the same.
     pub uniform: Option<[f32; 3]>,
     /// Value of the first entry.
     pub low: f32,
     /// Entries per unit of value.
     pub scale: f32,
-    /// Entries with extinction before each index.
+    /// Number of entries with extinction before each index.
     visible_before: Vec<u32>,
 }
 
 impl FunctionTable {
-    /// Bakes a valid function.
+    /// Tabulates a function, which must be valid.
     pub fn new(function: &RgbaFunction) -> Self {
         let entries: Vec<[f32; 4]> = function
             .bake(ENTRIES)
@@ -66,13 +73,13 @@ impl FunctionTable {
         }
     }
 
-    /// The entry of a value that is data.
+    /// The index of the entry of a value; the value must not be missing.
     #[inline(always)]
     pub fn index(&self, value: f32) -> usize {
         ((value - self.low) * self.scale + 0.5).clamp(0.0, (ENTRIES - 1) as f32) as i32 as usize
     }
 
-    /// The entries of many values; of no meaning for those that are not data.
+    /// The indices of the entries of many values; meaningless for missing values.
     #[inline(always)]
     pub fn entries_of(&self, values: &[f32], entries: &mut [u32]) {
         const LAST: f32 = (ENTRIES - 1) as f32;
@@ -83,16 +90,17 @@ impl FunctionTable {
         }
     }
 
-    /// Whether any value between two is visible.
+    /// Whether any value between two values is visible.
     pub fn shows(&self, low: f32, high: f32) -> bool {
         low <= high && self.visible_before[self.index(high) + 1] > self.visible_before[self.index(low)]
     }
 }
 
-/// The share that is absorbed over an optical depth x ≥ 0: 1 − e^(−x), to about 10⁻⁶ and quicker than the library's.
+/// The fraction that is absorbed over an optical depth x ≥ 0: 1 − e^(−x), to about 10⁻⁶, faster than the
+/// library function.
 #[inline(always)]
 pub fn absorbed(x: f32) -> f32 {
-    // e^(−x) = 2^(−n) · 2^(−f), the latter by its series around ½.
+    // e^(−x) = 2^(−n) · 2^(−f), where the second factor is a series around ½.
     let y = (x * std::f32::consts::LOG2_E).min(126.0);
     let n = y as i32;
     let f = (y - n as f32 - 0.5) * -std::f32::consts::LN_2;

@@ -1,4 +1,4 @@
-//! Lines gathered from sections and edges, and stroked over a picture.
+//! Collects the lines of a picture from sections and edges, and strokes them.
 
 use super::hidden::{ASIDE, IN_FRONT, covered_by, is_seen, seen_parts};
 use super::relief::relief_lines;
@@ -13,7 +13,7 @@ use image::RgbaImage;
 use rayon::prelude::*;
 use survey::section::{LineKind, Section, SectionPlane};
 
-/// Seen lines by what they are, pixels.
+/// Visible lines by kind, pixels.
 #[derive(Debug, Default)]
 pub(crate) struct OutlineLines {
     pub edges: Vec<Vec<DVec2>>,
@@ -41,7 +41,7 @@ impl OutlineLines {
         lines
     }
 
-    /// The section's lines on one face.
+    /// Adds the lines of the section on one face.
     fn add_face(&mut self, resolved: &ResolvedScene, interpretation: Interpretation, rect: &FaceRect) {
         if !rect.faces_camera && (resolved.relief.is_none() || rect.axis == 2) {
             return;
@@ -58,7 +58,7 @@ impl OutlineLines {
         for line in section.lines.iter().filter(|_| rect.faces_camera) {
             match line.kind {
                 LineKind::Fault { real: true, .. } => self.faults.extend(seen(&line.points)),
-                // Beyond a tip nothing was interpreted, but different layers meet.
+                // Beyond its tip a fault is not interpreted, but different layers meet there.
                 LineKind::Horizon { .. } | LineKind::Fault { .. } => self.horizons.extend(seen(&line.points)),
                 LineKind::Frame => {}
             }
@@ -84,7 +84,7 @@ impl FaceRect {
     }
 }
 
-/// The runs of a ring that do not lie on the border of its rectangle: where air meets rock.
+/// The parts of a ring that do not lie on the border of its rectangle: where air meets rock.
 fn rim_parts(ring: &[DVec2], extent: [f64; 2]) -> Vec<Vec<DVec2>> {
     const ON: f64 = 1e-6;
     let on_border = |a: DVec2, b: DVec2| {
@@ -107,10 +107,10 @@ fn rim_parts(ring: &[DVec2], extent: [f64; 2]) -> Vec<Vec<DVec2>> {
     parts
 }
 
-/// Whether a point of a line on a face is seen: the face itself, on one side of the line at least.
+/// Whether a point of a line on a face is visible: the face itself is, on at least one side of the line.
 fn seen_on_face(resolved: &ResolvedScene, rect: &FaceRect, p: DVec3) -> bool {
     let (u, v) = (DVec3::AXES[(rect.axis + 1) % 3], DVec3::AXES[(rect.axis + 2) % 3]);
-    // Downwards first: with the ground shown, rock lies there.
+    // Downwards first, since rock lies there if the ground is shown.
     let beside =
         if rect.axis == 2 { [u, -u, v, -v] } else { [DVec3::Z, -DVec3::Z, u + v - DVec3::Z, DVec3::Z - u - v] };
     beside.into_iter().any(|aside| {
@@ -119,8 +119,8 @@ fn seen_on_face(resolved: &ResolvedScene, rect: &FaceRect, p: DVec3) -> bool {
     })
 }
 
-/// Whether a point of the ground's rim on a face that looks away is seen: nothing in front, and rock beside it (not so for a fault
-/// between air and air).
+/// Whether a point of the ground's edge is visible on a face that looks away from the camera: nothing is in
+/// front of it, and there is rock beside it (not so for a fault between air and air).
 fn seen_over_rim(resolved: &ResolvedScene, interpretation: Interpretation, rect: &FaceRect, p: DVec3) -> bool {
     let along = DVec3::AXES[1 - rect.axis];
     let into_rock = DVec3::AXES[rect.axis] * rect.rock;
@@ -131,9 +131,9 @@ fn seen_over_rim(resolved: &ResolvedScene, interpretation: Interpretation, rect:
     [DVec3::Z, along, -along].into_iter().any(is_rock) && covered_by(resolved, p) < IN_FRONT
 }
 
-/// The seen parts of an edge: where one of its faces is seen right beside it.
+/// The visible parts of an edge: where one of its faces is visible right beside it.
 fn seen_edge(resolved: &ResolvedScene, edge: &EdgeLine) -> Vec<Vec<DVec2>> {
-    // Not from the very ends, where the ray could pass the block.
+    // Not at the very ends, where the ray could miss the block.
     let inset = (edge.ends[1] - edge.ends[0]).normalize_or_zero() * ASIDE;
     let along = |p: DVec3| {
         let length = (edge.ends[1] - edge.ends[0]).length();
@@ -144,7 +144,7 @@ fn seen_edge(resolved: &ResolvedScene, edge: &EdgeLine) -> Vec<Vec<DVec2>> {
     seen_parts(&resolved.view, &edge.ends, seen)
 }
 
-/// Strokes a picture's outlines over it, anti-aliased, on sRGB-encoded values.
+/// Strokes the outlines of a picture over it, anti-aliased, on sRGB-encoded values.
 pub(crate) fn draw(resolved: &ResolvedScene, image: &mut RgbaImage) {
     let outlines = resolved.scene.outlines;
     if resolved.scene.has_back_edges() {

@@ -1,7 +1,8 @@
-//! Lines on the ground: fault traces and the crests behind which it disappears.
+//! Lines on the ground: fault traces, and the crests behind which the ground disappears.
 //!
-//! Both are zero lines over the map of one block's ground h(x, y): of the fault's side at (x, y, h), and of
-//! (∂h/∂x, ∂h/∂y, −1)·d, d the viewing direction. They are found on cells of a voxel by linear interpolation (marching squares).
+//! Both are zero contours on the map of the ground h(x, y) of one block: of the signed distance to the fault
+//! at (x, y, h), and of (∂h/∂x, ∂h/∂y, −1)·d, where d is the viewing direction. They are found by linear
+//! interpolation in cells of one voxel (marching squares).
 
 use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
@@ -11,24 +12,26 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// How far from a fault its block's ground is asked for, voxels: far enough that the rock below an overhanging scarp is met.
+/// How far from a fault the ground of its block is tested, voxels: far enough to meet the rock below an
+/// overhanging scarp.
 const INTO_BLOCK: f64 = 0.3;
-/// How far beside a line its blocks are told apart, voxels: beyond the sagitta that a bowed fault has over one cell.
+/// How far beside a line the blocks on its sides are looked up, voxels: farther than a curved fault deviates
+/// from its chord over one cell.
 const ACROSS: f64 = 0.12;
 
-/// Shortest crest that is drawn, line widths.
+/// Shortest crest that is drawn, in line widths.
 const SHORTEST_CREST: f64 = 24.0;
-/// Ends of lines nearer than about this meet, pixels: they are computed once from either cell.
+/// Ends of lines closer than about this are joined, pixels; each cell computes them once.
 const MEETING_PX: f64 = 0.5;
 
-/// Seen parts of the ground's lines, pixels.
+/// Visible parts of the lines on the ground, pixels.
 #[derive(Debug, Default)]
 pub(super) struct ReliefLines {
     pub faults: Vec<Vec<DVec2>>,
     pub crests: Vec<Vec<DVec2>>,
 }
 
-/// Heights of one block's ground at the corners of cells.
+/// Heights of the ground of one block at the corners of cells.
 struct Map<'a> {
     interpretation: Interpretation<'a>,
     block: u16,
@@ -48,7 +51,7 @@ impl Map<'_> {
         xy.extend(f64::from(z))
     }
 
-    /// Segments on which a function of the map is zero, as points of the ground.
+    /// Segments on which a function on the map is zero, as points on the ground.
     fn zero_lines(&self, f: impl Fn(DVec2) -> f64 + Sync) -> Vec<[DVec3; 2]> {
         let [nx, ny] = self.counts;
         let values: Vec<f64> = (0..(nx + 1) * (ny + 1))
@@ -76,7 +79,7 @@ impl Map<'_> {
     }
 }
 
-/// The lines of the resolved's ground.
+/// The lines on the ground of a scene.
 pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
     let mut lines = ReliefLines::default();
     let (Some(_), Some(interpretation)) = (&resolved.relief, resolved.interpretation) else { return lines };
@@ -108,8 +111,8 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
     lines
 }
 
-/// Leaves out lines that, with all that meet them, are shorter than `shortest` pixels: a relief that is rough by less than a line is wide
-/// has crests that only look like dirt.
+/// Removes lines that are, together with all lines that meet them, shorter than `shortest` pixels. If the
+/// relief is rough on a scale finer than the line width, its crests look like dirt.
 fn without_specks(lines: Vec<Vec<DVec2>>, shortest: f64) -> Vec<Vec<DVec2>> {
     let length = |line: &Vec<DVec2>| line.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum::<f64>();
     let mut group: Vec<usize> = (0..lines.len()).collect();
@@ -130,7 +133,7 @@ fn without_specks(lines: Vec<Vec<DVec2>>, shortest: f64) -> Vec<Vec<DVec2>> {
     lines.into_iter().zip(whole).filter_map(|(line, whole)| whole.then_some(line)).collect()
 }
 
-/// The first line of a line's group; the way there is shortened.
+/// The first line of the group of a line; shortens the path to it (union–find).
 fn first_of(group: &mut [usize], mut index: usize) -> usize {
     while group[index] != index {
         group[index] = group[group[index]];
@@ -139,7 +142,8 @@ fn first_of(group: &mut [usize], mut index: usize) -> usize {
     index
 }
 
-/// A point of the block's own ground right beside a real fault; `None` where the fault does not end that ground.
+/// A point on the ground of the block right beside the interpreted part of a fault; `None` if the fault does
+/// not end that ground.
 fn beside_fault(interpretation: Interpretation, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
     let faults = interpretation.model.faults();
     if !faults.is_real(fault, p.as_vec3()) {
@@ -156,8 +160,8 @@ fn beside_fault(interpretation: Interpretation, fault: usize, block: u16, p: DVe
     Some(q.with_z(interpretation.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
 }
 
-/// The parts of segments that lie on drawn ground and have nothing in front. `ground` gives the point of the block's ground that a
-/// point of the line stands for.
+/// The parts of segments that lie on ground that is drawn, with nothing in front. `ground` returns the point
+/// on the ground of the block for a point of the line.
 fn seen(
     resolved: &ResolvedScene,
     interpretation: Interpretation,
@@ -187,7 +191,7 @@ mod tests {
     #[test]
     fn specks_go_and_lines_in_pieces_stay() {
         let at = |x: f64| DVec2::new(x, 7.25);
-        // Ten pieces of four pixels that meet, one alone, and two that meet beside it.
+        // Ten pieces of four pixels that meet, a single one, and two that meet beside it.
         let chain = (0..10).map(|n| vec![at(4.0 * f64::from(n)), at(4.0 * f64::from(n) + 4.0)]);
         let alone = vec![at(100.0), at(109.0)];
         let pair = [vec![at(200.0), at(205.0)], vec![at(209.0), at(205.0)]];

@@ -1,6 +1,8 @@
-//! Edges of a block that is seen through: those at its back are drawn behind what the rays gathered, those at its front over it.
+//! Edges of a block that is rendered as a volume: those at the back are drawn behind the media, those at the
+//! front over them.
 //!
-//! The picture is made without a background; background and back edges are put under it afterwards, in linear light as the media are.
+//! The picture is drawn without a background. Background and back edges are composited below it afterwards,
+//! in linear light as the media are.
 
 use super::stroke::stroke_lines;
 use crate::resolved::ResolvedScene;
@@ -8,7 +10,7 @@ use crate::shade::{encoded, linear};
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};
 
-/// Puts the background and the back edges under a picture.
+/// Composites the background and the back edges below a picture.
 pub(super) fn underlay(resolved: &ResolvedScene, image: &mut RgbaImage) {
     let background = resolved.scene.background.rgba().map(|c| (c * 255.0 + 0.5) as u8);
     let mut below = RgbaImage::from_pixel(image.width(), image.height(), Rgba(background));
@@ -33,7 +35,7 @@ fn back_edges(resolved: &ResolvedScene) -> Vec<Vec<DVec2>> {
         .collect()
 }
 
-/// Straight RGBA over straight RGBA in linear light.
+/// Composites straight RGBA over straight RGBA in linear light.
 fn over(above: [u8; 4], below: [u8; 4]) -> [u8; 4] {
     match (above[3], below[3]) {
         (255, _) => return above,

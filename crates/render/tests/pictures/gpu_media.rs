@@ -1,4 +1,4 @@
-//! The GPU sees through media as the CPU reference does: at most 2/255 apart off the edges.
+//! The GPU renders media as the CPU reference does: at most 2/255 apart off the edges.
 
 use crate::block::Block;
 use crate::media::medium;
@@ -16,7 +16,7 @@ use ttf::{
     symmetric_clip,
 };
 
-/// Distances to a few of the horizons that the synthetic survey has, as an extraction would give them.
+/// Distances to some horizons of the synthetic survey, as an extraction would give them.
 struct MadeCandidates {
     distance: Vec<u8>,
     leaf: Vec<u32>,
@@ -188,7 +188,7 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
 }
 
 #[test]
-fn gpu_and_cpu_see_through_the_same() {
+fn gpu_and_cpu_render_media_alike() {
     if std::env::var("PETROGLYPH_GPU_TESTS").is_ok_and(|value| value == "skip") {
         eprintln!("skipped: PETROGLYPH_GPU_TESTS=skip");
         return;

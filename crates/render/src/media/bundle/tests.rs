@@ -1,4 +1,4 @@
-//! A bundle of rays gathers what each would alone.
+//! A bundle of rays gives the same result as each ray alone.
 
 use super::*;
 use crate::inputs::{Inputs, NamedVolume};
@@ -11,7 +11,7 @@ use glam::DVec2;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use ttf::{Colour, RgbaFunction, RgbaStop};
 
-/// Smooth with noise, without pattern; some samples and a corner of traces missing.
+/// A smooth volume with noise; some samples and the traces of a corner are missing.
 fn volume(size: [usize; 3]) -> Volume<f32> {
     let count: usize = size.iter().product();
     let value = |n: usize| {
@@ -39,7 +39,7 @@ fn function(colours: [Colour; 2]) -> RgbaFunction {
     }
 }
 
-/// The largest difference in colour or light, and the most that was covered.
+/// The largest difference in colour or transmittance, and the largest opacity.
 fn apart(scene: &Scene, inputs: &Inputs) -> (f32, f32) {
     let mut kept = Preparations::default();
     let resolved = ResolvedScene::new(scene, inputs, &mut kept).unwrap();
@@ -51,7 +51,7 @@ fn apart(scene: &Scene, inputs: &Inputs) -> (f32, f32) {
     let rays: Vec<(Ray, [f32; 2])> = (0..width * height)
         .map(|n| {
             let pixel = DVec2::new(f64::from(n % width), f64::from(n / width));
-            // Some end early.
+            // Some rays end early.
             let end = if n % 5 == 0 { 3.0 * f64::from(width) as f32 } else { f32::INFINITY };
             (Ray::from(resolved.view.ray(pixel)), [f32::MIN, end])
         })
@@ -62,7 +62,10 @@ fn apart(scene: &Scene, inputs: &Inputs) -> (f32, f32) {
     for ((ray, between), found) in rays.iter().zip(&all) {
         let alone = gather(field, light.as_ref(), &resolved.solid, ray, *between);
         let colour = (alone.colour - found.colour).abs().max_element();
-        most = (most.0.max(colour).max((alone.passes - found.passes).abs()), most.1.max(1.0 - found.passes));
+        most = (
+            most.0.max(colour).max((alone.transmittance - found.transmittance).abs()),
+            most.1.max(1.0 - found.transmittance),
+        );
     }
     most
 }
