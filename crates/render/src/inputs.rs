@@ -190,6 +190,14 @@ impl<'a> Inputs<'a> {
 }
 
 impl<'a> NamedVolume<'a> {
+    /// The volume of this name.
+    pub(crate) fn find(volumes: &[Self], name: &str) -> Result<Self, RenderError> {
+        volumes.iter().find(|v| v.name == name).copied().ok_or_else(|| RenderError::UnknownVolume {
+            name: name.to_owned(),
+            present: volumes.iter().map(|v| v.name.to_owned()).collect(),
+        })
+    }
+
     /// A volume on the lattice of the survey.
     pub fn whole(name: &'a str, volume: &'a Volume<f32>) -> Self {
         Self { name, volume, covers: VoxelBox::of_size(volume.size()) }

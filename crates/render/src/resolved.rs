@@ -74,10 +74,8 @@ impl<'a> ResolvedScene<'a> {
     pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Preparations) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
         let interpretation = resolve_interpretation(scene, inputs)?;
-        let tables = resolve_tables(scene, inputs, interpretation.is_some())?;
-        let mut tables = tables;
-        let media: Vec<&String> =
-            scene.media.all().map(|m| &m.volume).chain(paints(scene)).chain(scene.media.isosurface_volumes()).collect();
+        let mut tables = resolve_tables(scene, inputs, interpretation.is_some())?;
+        let media = media_volumes(scene);
         for name in &media {
             if !tables.volumes.contains(name) {
                 tables.volumes.push((*name).clone());
@@ -85,37 +83,18 @@ impl<'a> ResolvedScene<'a> {
         }
         let volumes = resolve_volumes(&tables, &media, inputs.volumes)?;
         let roaming_box = scene.box_in(inputs.geometry);
-        let relief = match (&scene.ground, interpretation) {
-            (None, _) => None,
-            (Some(ground), Some(interpretation)) => {
-                Some(Relief::new(ground, scene, inputs.geometry, interpretation.model))
-            }
-            (Some(_), None) => {
-                return Err(RenderError::Missing {
-                    what: "horizons for the ground",
-                    remedy: "add horizons, or leave `ground` out of the scene",
-                });
-            }
-        };
+        let relief = resolve_relief(scene, inputs, interpretation)?;
         let hidden =
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
         let view = scene.view(inputs.geometry);
         let field = MediaField::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
-        let candidates = match (scene.face_data, inputs.candidates) {
-            (FaceData::Rock, _) => None,
-            (_, None) => return Err(RenderError::NO_CANDIDATES),
-            (_, Some(candidates)) => {
-                candidates.validate()?;
-                Some(candidates)
-            }
-        };
         let solid = Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry));
         let longest_m = (0..3).map(|axis| metric.col(axis).length() * roaming_box.extent()[axis]).fold(0.0, f64::max);
         let background = if scene.has_back_edges() { [0.0; 4] } else { scene.background.rgba() };
         Ok(Self {
             background,
-            candidates,
+            candidates: resolve_candidates(scene, inputs)?,
             tubes: Tubes::new(inputs.wells, &scene.wells, &view, longest_m, solid.roaming_box),
             field,
             roaming_box,
@@ -151,6 +130,34 @@ fn resolve_interpretation<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Opti
         remedy: "parameterize the project first",
     })?;
     Ok(Some(Interpretation { model, flat }))
+}
+
+/// The ground, if the scene shows it.
+fn resolve_relief(
+    scene: &Scene,
+    inputs: &Inputs,
+    interpretation: Option<Interpretation>,
+) -> Result<Option<Relief>, RenderError> {
+    match (&scene.ground, interpretation) {
+        (None, _) => Ok(None),
+        (Some(ground), Some(interpretation)) => {
+            Ok(Some(Relief::new(ground, scene, inputs.geometry, interpretation.model)))
+        }
+        (Some(_), None) => Err(RenderError::Missing {
+            what: "horizons for the ground",
+            remedy: "add horizons, or leave `ground` out of the scene",
+        }),
+    }
+}
+
+/// The horizon candidates, if faces show them.
+fn resolve_candidates<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<CandidateVolume<'a>>, RenderError> {
+    if scene.face_data == FaceData::Rock {
+        return Ok(None);
+    }
+    let candidates = inputs.candidates.ok_or(RenderError::NO_CANDIDATES)?;
+    candidates.validate()?;
+    Ok(Some(candidates))
 }
 
 /// The transfer functions with the settings of the scene.
@@ -229,9 +236,10 @@ pub(crate) fn shows_depths(scene: &Scene) -> bool {
     scene.media.isosurfaces.iter().any(|surface| surface.of == IsosurfaceSource::Depth)
 }
 
-/// Names of the volumes that are painted on horizons.
-fn paints(scene: &Scene) -> impl Iterator<Item = &String> {
-    scene.media.horizons.iter().filter_map(|horizon| horizon.paint.as_ref()).map(|paint| &paint.volume)
+/// Names of the volumes of all media, painted horizons and isosurfaces.
+fn media_volumes(scene: &Scene) -> Vec<&String> {
+    let painted = scene.media.horizons.iter().filter_map(|horizon| horizon.paint.as_ref()).map(|paint| &paint.volume);
+    scene.media.all().map(|m| &m.volume).chain(painted).chain(scene.media.isosurface_volumes()).collect()
 }
 
 /// The volumes of the slots that are in use.
@@ -248,13 +256,10 @@ fn resolve_volumes<'a>(
             || tables.scalars.iter().any(|s| s.volume == slot)
             || media.contains(&&tables.volumes[slot as usize])
     };
-    let find = |name: &String| {
-        volumes.iter().find(|v| v.name == *name).copied().ok_or_else(|| RenderError::UnknownVolume {
-            name: name.clone(),
-            present: volumes.iter().map(|v| v.name.to_owned()).collect(),
-        })
-    };
-    (0u32..).zip(&tables.volumes).map(|(slot, name)| is_used(slot).then(|| find(name)).transpose()).collect()
+    (0u32..)
+        .zip(&tables.volumes)
+        .map(|(slot, name)| is_used(slot).then(|| NamedVolume::find(volumes, name)).transpose())
+        .collect()
 }
 
 /// Factors that darken one pair of vertical faces: the pair whose visible face points farther to the right.

@@ -220,6 +220,25 @@ impl Renderer {
             self.volumes.clear();
             self.version = Some(inputs.version);
         }
+        self.upload_interpretation(resolved)?;
+        let gpu = &self.gpu;
+        if !self.textures.as_ref().is_some_and(|held| held.hold(&resolved.tables.textures)) {
+            self.textures = Some(gpu.guarded(|| Ok(TextureBuffers::new(gpu, &resolved.tables.textures)))?);
+        }
+        if let (Some(candidates), None) = (media::candidates_of(resolved), &self.candidates) {
+            self.candidates = Some(gpu.guarded(|| CandidateTextures::new(gpu, Some(candidates)))?);
+        }
+        for volume in resolved.volumes.iter().flatten() {
+            if !self.volumes.contains_key(volume.name) {
+                let texture = gpu.guarded(|| upload_volume(gpu, volume))?;
+                self.volumes.insert(volume.name.to_owned(), texture);
+            }
+        }
+        Ok(())
+    }
+
+    /// Uploads the model, and the grids or the packed volume, as the scene needs them.
+    fn upload_interpretation(&mut self, resolved: &ResolvedScene) -> Result<(), RenderError> {
         let gpu = &self.gpu;
         let flat = resolved.interpretation.filter(|_| resolved.illustrated).map(|interpretation| interpretation.flat);
         if let Some(interpretation) = resolved.interpretation
@@ -238,18 +257,6 @@ impl Renderer {
             && self.packed.is_none()
         {
             self.packed = Some(gpu.guarded(|| PackedTexture::new(gpu, Some(packed)))?);
-        }
-        if !self.textures.as_ref().is_some_and(|held| held.hold(&resolved.tables.textures)) {
-            self.textures = Some(gpu.guarded(|| Ok(TextureBuffers::new(gpu, &resolved.tables.textures)))?);
-        }
-        if let (Some(candidates), None) = (media::candidates_of(resolved), &self.candidates) {
-            self.candidates = Some(gpu.guarded(|| CandidateTextures::new(gpu, Some(candidates)))?);
-        }
-        for volume in resolved.volumes.iter().flatten() {
-            if !self.volumes.contains_key(volume.name) {
-                let texture = gpu.guarded(|| upload_volume(gpu, volume))?;
-                self.volumes.insert(volume.name.to_owned(), texture);
-            }
         }
         Ok(())
     }

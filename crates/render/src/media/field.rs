@@ -14,7 +14,7 @@ use super::table::{FunctionTable, extinction};
 use super::{EmptySpace, Faces, IsosurfaceSource, Media, Phong, Scope, Shading, white_ramp};
 use crate::camera::View;
 use crate::error::RenderError;
-use crate::inputs::Inputs;
+use crate::inputs::{Inputs, NamedVolume};
 use glam::{Mat3, Vec3};
 use survey::model::StructuralModel;
 use ttf::TtfTables;
@@ -81,10 +81,7 @@ impl<'a> MediaField<'a> {
         }
         let mut resolve = |name: &str, function: &ttf::RgbaFunction, zone: Zone| {
             function.validate(&format!("the medium `{name}`"))?;
-            let volume = *inputs.volumes.iter().find(|v| v.name == name).ok_or_else(|| RenderError::UnknownVolume {
-                name: name.to_owned(),
-                present: inputs.volumes.iter().map(|v| v.name.to_owned()).collect(),
-            })?;
+            let volume = NamedVolume::find(inputs.volumes, name)?;
             let prepared = kept.of(inputs.version, &volume);
             Ok::<_, RenderError>(FieldMedium::new(volume, prepared, FunctionTable::new(function), zone))
         };
@@ -100,15 +97,15 @@ impl<'a> MediaField<'a> {
             (Some(model), Some(param)) => Some(StratigraphicDepth { model, param }),
             _ => None,
         };
-        let mut isosurfaces = Vec::new();
-        for surface in &media.isosurfaces {
+        let isosurfaces = media.isosurfaces.iter().map(|surface| {
             let medium = match &surface.of {
                 IsosurfaceSource::Volume(name) => Some(resolve(name, &white_ramp(1.0, 0.0), Zone::Surroundings)?),
                 IsosurfaceSource::Depth if depths.is_none() => return Err(RenderError::NO_DEPTHS),
                 IsosurfaceSource::Depth => None,
             };
-            isosurfaces.push(FieldIsosurface::new(surface, medium));
-        }
+            Ok(FieldIsosurface::new(surface, medium))
+        });
+        let isosurfaces = isosurfaces.collect::<Result<_, _>>()?;
         let horizons = match (media.horizons.is_empty(), inputs.candidates) {
             (true, _) => None,
             (false, None) => return Err(RenderError::NO_CANDIDATES),

@@ -42,7 +42,29 @@ fn candidates_of(block: &Block) -> MadeCandidates {
     made
 }
 
-fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> {
+/// The media from which scenes are composed.
+struct Parts {
+    base: Scene,
+    ramp: Medium,
+    colours: Medium,
+    impedance: Medium,
+    horizons: Vec<PickedHorizon>,
+}
+
+fn picked(first: u32, colour: Colour, emission: f32) -> PickedHorizon {
+    PickedHorizon {
+        name: None,
+        leaves: (first..first + 10).collect(),
+        colour,
+        colouring: Colouring::Own,
+        opacity: 0.9,
+        thickness: 1.0,
+        emission,
+        paint: None,
+    }
+}
+
+fn parts(base: &Scene, clip: f32) -> Parts {
     let ramp = medium("seismic", white_ramp(clip, 0.1));
     let colours = Medium {
         layers: LayerOpacity::Followed,
@@ -59,25 +81,6 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
             RgbaFunction { domain: [2000.0, 9000.0], stops: vec![stop(0.0, 0.0), stop(0.3, 0.05), stop(1.0, 0.3)] },
         )
     };
-    let perspective = Camera {
-        projection: Projection::Perspective { fov_deg: 45.0 },
-        azimuth_deg: Some(130.0),
-        elevation_deg: 40.0,
-        ..Camera::default()
-    };
-    let none =
-        |surroundings: Vec<Medium>, shading| Media { faces: Faces::None, surroundings, shading, ..Media::default() };
-    let occlusion = Shading::Occlusion(Occlusion::default());
-    let picked = |first: u32, colour: Colour, emission: f32| PickedHorizon {
-        name: None,
-        leaves: (first..first + 10).collect(),
-        colour,
-        colouring: Colouring::Own,
-        opacity: 0.9,
-        thickness: 1.0,
-        emission,
-        paint: None,
-    };
     let painted = PickedHorizon {
         paint: Some(Paint {
             volume: "impedance".into(),
@@ -86,9 +89,23 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
         ..picked(21, Colour::WHITE, 0.0)
     };
     let horizons = vec![picked(1, Colour::new(240, 60, 150), 0.0), picked(11, Colour::new(250, 200, 30), 1.5), painted];
+    Parts { base: base.clone(), ramp, colours, impedance, horizons }
+}
+
+/// Scenes of volumes without cut-outs, and of candidates on faces.
+fn volume_scenes(parts: &Parts, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> {
+    let Parts { base, ramp, impedance, horizons, .. } = parts;
+    let occlusion = Shading::Occlusion(Occlusion::default());
+    let perspective = Camera {
+        projection: Projection::Perspective { fov_deg: 45.0 },
+        azimuth_deg: Some(130.0),
+        elevation_deg: 40.0,
+        ..Camera::default()
+    };
+    let none =
+        |surroundings: Vec<Medium>, shading| Media { faces: Faces::None, surroundings, shading, ..Media::default() };
     let clear = Scene { background: Background::Colour(Colour::new(40, 50, 60)), ..base.clone() };
     let with = |media: Media| Scene { media, ..clear.clone() };
-    let cut_outs = vec![cut];
     let by_leaf = PickedHorizon { leaves: Vec::new(), colouring: Colouring::ByLeaf, ..picked(1, Colour::WHITE, 0.0) };
     vec![
         ("leaves on faces", Scene { face_data: FaceData::Leaves, ..clear.clone() }),
@@ -108,18 +125,6 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 ..none(vec![ramp.clone()], occlusion)
             }),
         ),
-        (
-            "extruding",
-            Scene {
-                cut_outs: cut_outs.clone(),
-                ground: Some(Ground::default()),
-                media: Media {
-                    cut_outs: vec![colours.clone(), Medium { colour: MediumColour::Layers, ..colours.clone() }],
-                    ..Media::default()
-                },
-                ..base.clone()
-            },
-        ),
         ("isosurfaces", {
             let surface = |of: IsosurfaceSource, value: f32, opacity: f32| Isosurface {
                 of,
@@ -138,8 +143,29 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
         }),
         ("interleaved", {
             let both = Interleaved { stripes: 3, ..Interleaved::default() };
-            with(none(vec![ramp], Shading::Interleaved(both)))
+            with(none(vec![ramp.clone()], Shading::Interleaved(both)))
         }),
+    ]
+}
+
+/// Scenes of media in cut-outs and around them.
+fn cut_out_scenes(parts: &Parts, cut: VoxelBox) -> Vec<(&'static str, Scene)> {
+    let Parts { base, colours, impedance, horizons, .. } = parts;
+    let occlusion = Shading::Occlusion(Occlusion::default());
+    let cut_outs = vec![cut];
+    vec![
+        (
+            "extruding",
+            Scene {
+                cut_outs: cut_outs.clone(),
+                ground: Some(Ground::default()),
+                media: Media {
+                    cut_outs: vec![colours.clone(), Medium { colour: MediumColour::Layers, ..colours.clone() }],
+                    ..Media::default()
+                },
+                ..base.clone()
+            },
+        ),
         (
             "ground that lets light through",
             Scene {
@@ -160,7 +186,7 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 cut_outs: cut_outs.clone(),
                 media: Media {
                     faces: Faces::CutOuts,
-                    surroundings: vec![impedance],
+                    surroundings: vec![impedance.clone()],
                     cut_outs: vec![colours.clone()],
                     shading: occlusion,
                     ..Media::default()
@@ -180,11 +206,21 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
             "horizons in a cut-out",
             Scene {
                 cut_outs,
-                media: Media { cut_outs: vec![colours], horizons, shading: occlusion, ..Media::default() },
+                media: Media {
+                    cut_outs: vec![colours.clone()],
+                    horizons: horizons.clone(),
+                    shading: occlusion,
+                    ..Media::default()
+                },
                 ..base.clone()
             },
         ),
     ]
+}
+
+fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> {
+    let parts = parts(base, clip);
+    [volume_scenes(&parts, cut, clip), cut_out_scenes(&parts, cut)].concat()
 }
 
 #[test]
