@@ -113,7 +113,7 @@ impl Camera {
                 .flat_map(|n| [CORNER_VIEW_DEG, -CORNER_VIEW_DEG].map(|turn| n.x.atan2(n.y).to_degrees() + turn))
                 .map(|bearing| (bearing + 540.0).rem_euclid(360.0) - 180.0)
                 .min_by(|a, b| a.abs().total_cmp(&b.abs()))
-                .unwrap_or(0.0)
+                .expect("four bearings were compared")
         })
     }
 }

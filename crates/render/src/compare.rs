@@ -69,7 +69,7 @@ pub fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<PictureComp
 
 /// Largest channel difference of two pixels.
 fn step(a: [u8; 4], b: [u8; 4]) -> u8 {
-    a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+    a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).fold(0, u8::max)
 }
 
 fn is_edge(image: &RgbaImage, x: u32, y: u32) -> bool {

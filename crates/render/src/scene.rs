@@ -189,7 +189,7 @@ impl Scene {
             return Err(SceneError::ImageSize { width, height, limit: MAX_SIDE_PX });
         }
         let number = SceneError::check_range;
-        number("the samples a pixel", f64::from(self.samples), 1.0, f64::from(MAX_SAMPLES))?;
+        number("the number of samples per pixel", f64::from(self.samples), 1.0, f64::from(MAX_SAMPLES))?;
         number("the vertical exaggeration", self.exaggeration, 1e-3, 1e3)?;
         number("the blend", f64::from(self.blend), 0.0, 1.0)?;
         number("the global frequency", f64::from(self.global_frequency), 1e-4, 1e4)?;

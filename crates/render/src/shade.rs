@@ -22,23 +22,23 @@ use ttf::{FaceFrame, FlatFootprint, LayerPoint, ShadePoint, linear_from_srgb, sr
 /// Straight RGBA of rays: of what stops each, and of what lies behind a ground that is not opaque. Fastest
 /// for rays that are neighbours in the picture.
 pub(crate) fn trace(resolved: &ResolvedScene, light: Option<&LightVolume>, view_rays: &[ViewRay]) -> Vec<Vec4> {
-    let looks: Vec<RaySegment> = view_rays
+    let segments: Vec<RaySegment> = view_rays
         .iter()
         .map(|view_ray| {
             let ray = Ray::from(*view_ray);
             RaySegment { view_ray, ray, hit: stopping_hit(resolved, &ray, f32::MIN), start: f32::MIN }
         })
         .collect();
-    let mut colours = seen(resolved, light, &looks);
+    let mut colours = seen(resolved, light, &segments);
     let mut through = Vec::new();
     let mut behind = Vec::new();
-    for (n, look) in looks.iter().enumerate() {
-        if let RayHit::Ground(ground) = look.hit
+    for (n, segment) in segments.iter().enumerate() {
+        if let RayHit::Ground(ground) = segment.hit
             && colours[n].w < 1.0
         {
-            let after = resolved.solid.next_span(&look.ray, ground.t).map_or(f32::INFINITY, |span| span.end);
+            let after = resolved.solid.next_span(&segment.ray, ground.t).map_or(f32::INFINITY, |span| span.end);
             through.push(n);
-            behind.push(RaySegment { hit: stopping_hit(resolved, &look.ray, after), start: ground.t, ..*look });
+            behind.push(RaySegment { hit: stopping_hit(resolved, &segment.ray, after), start: ground.t, ..*segment });
         }
     }
     for (n, behind) in through.into_iter().zip(seen(resolved, light, &behind)) {
@@ -61,21 +61,22 @@ struct RaySegment<'r> {
 }
 
 /// Straight RGBA of hits, with the media in front of them.
-fn seen(resolved: &ResolvedScene, light: Option<&LightVolume>, looks: &[RaySegment]) -> Vec<Vec4> {
-    let behind = |look: &RaySegment| match look.hit {
+fn seen(resolved: &ResolvedScene, light: Option<&LightVolume>, segments: &[RaySegment]) -> Vec<Vec4> {
+    let behind = |segment: &RaySegment| match segment.hit {
         RayHit::Background => Vec4::from_array(resolved.background),
-        RayHit::Face(hit) => face_colour(resolved, look.view_ray, &hit).extend(1.0),
+        RayHit::Face(hit) => face_colour(resolved, segment.view_ray, &hit).extend(1.0),
         RayHit::Ground(hit) => {
             ground_colour(resolved, &hit).extend(resolved.relief.as_ref().map_or(1.0, |r| r.opacity))
         }
         RayHit::Well(hit) => hit.colour.extend(1.0),
     };
-    let Some(field) = &resolved.field else { return looks.iter().map(behind).collect() };
-    let rays: Vec<(Ray, [f32; 2])> = looks.iter().map(|look| (look.ray, [look.start, look.hit.t()])).collect();
+    let Some(field) = &resolved.field else { return segments.iter().map(behind).collect() };
+    let rays: Vec<(Ray, [f32; 2])> =
+        segments.iter().map(|segment| (segment.ray, [segment.start, segment.hit.t()])).collect();
     let gathered = gather_all(field, light, &resolved.solid, &rays);
-    let colours = looks.iter().zip(gathered).map(|(look, gathered)| {
-        let behind = behind(look);
-        let lit = light.filter(|_| look.hit.t().is_finite()).map(|light| light.at(look.ray.at(look.hit.t())));
+    let colours = segments.iter().zip(gathered).map(|(segment, gathered)| {
+        let behind = behind(segment);
+        let lit = light.filter(|_| segment.hit.t().is_finite()).map(|light| light.at(segment.ray.at(segment.hit.t())));
         if gathered.transmittance == 1.0 && lit.is_none_or(|lit| lit == Vec3::ONE) {
             return behind;
         }
@@ -223,7 +224,9 @@ fn with_candidates(resolved: &ResolvedScene, p: Vec3, rock: Vec3) -> Vec3 {
 /// The colour of the ground: the average of the texture just below it, hill-shaded and blended with the raw
 /// data (P-illus 5, 5.2).
 fn ground_colour(resolved: &ResolvedScene, hit: &GroundHit) -> Vec3 {
-    let (Some(relief), Some(interpretation)) = (&resolved.relief, resolved.interpretation) else { return Vec3::ZERO };
+    let (Some(relief), Some(interpretation)) = (&resolved.relief, resolved.interpretation) else {
+        unreachable!("only a scene with a ground has hits of it")
+    };
     let region = hit.region;
     let (layer, k) = if resolved.illustrated {
         let (flat, _) = interpretation.flat_at(hit.point, Some(region));

@@ -108,7 +108,7 @@ fn face() -> &'static FontRef<'static> {
 /// `ab_glyph` scales by the height of the face; sizes here are per em, as in typography.
 fn scale(size_px: f32) -> PxScale {
     let face = face();
-    let per_em = face.units_per_em().unwrap_or(1000.0);
+    let per_em = face.units_per_em().expect("the embedded face states its units per em");
     PxScale::from(size_px * face.height_unscaled() / per_em)
 }
 

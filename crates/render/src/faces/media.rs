@@ -187,7 +187,7 @@ pub fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &
     params.scales = [field.samples_per_unit, field.unit_m, field.reach, params.scales[3]];
     for (info, medium) in params.media.iter_mut().zip(&field.media) {
         let table = add_table(words, &medium.table);
-        let layers = medium.layers.as_ref().map_or(NONE, |looks| add(words, looks.entries.as_flattened()));
+        let layers = medium.layers.as_ref().map_or(NONE, |appearance| add(words, appearance.entries.as_flattened()));
         *info = MediumInfo {
             low: medium.table.low,
             scale: medium.table.scale,
@@ -195,7 +195,7 @@ pub fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &
             table,
             layers,
             zone: u32::from(medium.zone == Zone::CutOut),
-            coloured: u32::from(medium.layers.as_ref().is_some_and(|looks| looks.colours)),
+            coloured: u32::from(medium.layers.as_ref().is_some_and(|appearance| appearance.colours)),
             padding: 0,
         };
     }

@@ -188,10 +188,10 @@ fn of_medium(n: u32, p: vec3<f32>, brick: u32, towards: vec3<f32>) -> Matter {
         if layer == MIXED {
             layer = layer_at(p, block_at(p));
         }
-        let looks = info.layers + 4u * layer;
-        let opacity = word(looks + 3u);
+        let appearance = info.layers + 4u * layer;
+        let opacity = word(appearance + 3u);
         if info.coloured == 1u {
-            matter.colour = vec3(word(looks), word(looks + 1u), word(looks + 2u));
+            matter.colour = vec3(word(appearance), word(appearance + 1u), word(appearance + 2u));
         }
         if opacity != 1.0 {
             matter.extinction = extinction_of((1.0 - exp(-matter.extinction)) * opacity);

@@ -186,9 +186,9 @@ impl<'a> MediaField<'a> {
             return Matter::default();
         }
         let mut colour = Vec3::new(r, g, b);
-        if let Some(looks) = &medium.layers {
-            let [r, g, b, opacity] = self.layer_entry(looks, p, word);
-            if looks.colours {
+        if let Some(appearance) = &medium.layers {
+            let [r, g, b, opacity] = self.layer_entry(appearance, p, word);
+            if appearance.colours {
                 colour = Vec3::new(r, g, b);
             }
             extinction = thinned(extinction, opacity);
@@ -202,13 +202,13 @@ impl<'a> MediaField<'a> {
     }
 
     /// The appearance of the layer at a point. The layer is known for the brick, or looked up in the model.
-    fn layer_entry(&self, looks: &LayerAppearance, p: Vec3, word: u32) -> [f32; 4] {
+    fn layer_entry(&self, appearance: &LayerAppearance, p: Vec3, word: u32) -> [f32; 4] {
         let hint = (word >> 16 & 255) as u8;
         let layer = match (hint, self.model) {
             (MIXED, Some(model)) => usize::from(model.region_at(p).layer),
             (hint, _) => usize::from(hint),
         };
-        looks.entries.get(layer).copied().unwrap_or_default()
+        *appearance.entries.get(layer).expect("every layer of the model has an appearance")
     }
 
     /// Several media, horizons and isosurfaces at a point.

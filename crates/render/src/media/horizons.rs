@@ -105,7 +105,7 @@ impl<'a> FieldHorizons<'a> {
     /// sample.
     pub fn at(&self, p: Vec3) -> HorizonAt {
         let leaf = self.candidates.leaf_at(p);
-        let style = self.styles.get(leaf as usize).copied().unwrap_or(0);
+        let style = self.styles[leaf as usize];
         if style == 0 {
             return HorizonAt::default();
         }

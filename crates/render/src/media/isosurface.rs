@@ -72,7 +72,7 @@ impl<'a> FieldIsosurface<'a> {
                 let (flat, jacobian) = param.lookup_in(model, p, region);
                 (f32::from(region.layer) + flat.k, Vec3::from_array(jacobian[2]))
             }
-            (None, None) => return (0.0, Vec3::ZERO),
+            (None, None) => unreachable!("without an interpretation, a field with surfaces of k' is refused"),
         };
         let distance = (value - self.value).abs() / gradient.length().max(1e-12);
         (shell_cover(self.thickness, distance), gradient)

@@ -75,8 +75,8 @@ impl<'a> FieldMedium<'a> {
         let Some([a, b]) = self.prepared.range(&self.volume, low, high) else { return false };
         let lets_through = match &self.layers {
             None => true,
-            Some(looks) if layer == MIXED => looks.entries.iter().any(|entry| entry[3] > 0.0),
-            Some(looks) => looks.entries.get(usize::from(layer)).is_some_and(|entry| entry[3] > 0.0),
+            Some(appearance) if layer == MIXED => appearance.entries.iter().any(|entry| entry[3] > 0.0),
+            Some(appearance) => appearance.entries.get(usize::from(layer)).is_some_and(|entry| entry[3] > 0.0),
         };
         lets_through && self.table.shows(a, b)
     }

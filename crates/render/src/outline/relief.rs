@@ -105,7 +105,7 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
             (interpretation.model.block_at(p.as_vec3()) == block).then_some(p)
         }));
     }
-    let scale = resolved.scene.size_px.into_iter().min().map_or(0.0, f64::from) / f64::from(NOMINAL_SIDE_PX);
+    let scale = f64::from(resolved.scene.size_px[0].min(resolved.scene.size_px[1])) / f64::from(NOMINAL_SIDE_PX);
     let shortest = SHORTEST_CREST * f64::from(resolved.scene.outlines.horizons.width_px) * scale;
     lines.crests = without_specks(lines.crests, shortest);
     lines
