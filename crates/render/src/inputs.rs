@@ -61,6 +61,21 @@ pub struct NamedVolume<'a> {
 
 /// The distance volume of the horizon candidates (P-horiz 4.4, 5.2): for every sample of the survey, the
 /// distance to the nearest candidate surface and the leaf of its surface tree there.
+///
+/// ```
+/// use glam::Vec3;
+/// // A trace of three samples with the leaf 7 on the middle one; a step is half a voxel.
+/// let candidates = render::CandidateVolume {
+///     size: [1, 1, 3],
+///     distance: &[2, 0, 2],
+///     leaf: &[7; 3],
+///     voxels_per_step: 0.5,
+///     groups: None,
+/// };
+/// candidates.validate().unwrap();
+/// assert_eq!(candidates.leaf_at(Vec3::new(0.0, 0.0, 1.2)), 7);
+/// assert_eq!(candidates.distance_at(Vec3::new(0.0, 0.0, 0.5)), 0.5);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct CandidateVolume<'a> {
     /// `[inlines, crosslines, samples]`.

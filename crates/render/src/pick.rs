@@ -49,6 +49,26 @@ pub struct PickedPoint {
 /// The first visible point under a pixel position (x right, y down, pixel centres at halves); `None` for the
 /// background.
 ///
+/// ```
+/// use glam::DVec2;
+/// use render::{Camera, Inputs, NamedVolume, PickedObject, Scene};
+/// use survey::{SurveyGeometry, VerticalUnit, Volume};
+/// use ttf::{ColourMap, RawColour, RgbaFunction};
+/// let geometry = SurveyGeometry::regular([5; 3], 10.0, 10.0, VerticalUnit::Metres);
+/// let volume = Volume::filled([5; 3], 3.0f32);
+/// let volumes = [NamedVolume::whole("seismic", &volume)];
+/// // Seen from above, the middle of the image is the middle of the top face.
+/// let scene = Scene {
+///     size_px: [100, 100],
+///     camera: Camera { azimuth_deg: Some(0.0), elevation_deg: 90.0, ..Camera::default() },
+///     raw: Some(RawColour::new("seismic", RgbaFunction::centred(ColourMap::Grey, 5.0))),
+///     ..Scene::default()
+/// };
+/// let point = render::pick(&scene, &Inputs::raw(&geometry, &volumes), DVec2::splat(50.0)).unwrap().unwrap();
+/// assert_eq!((point.what, point.values[0]), (PickedObject::Face, 3.0));
+/// assert!((point.voxel - glam::Vec3::new(2.0, 2.0, 0.0)).length() < 1e-3);
+/// ```
+///
 /// # Errors
 /// A scene that cannot be drawn, or missing inputs.
 pub fn pick(scene: &Scene, inputs: &Inputs, pixel: DVec2) -> Result<Option<PickedPoint>, RenderError> {

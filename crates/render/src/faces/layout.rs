@@ -7,6 +7,9 @@ use crate::scene::MAX_CUT_OUTS;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 
+/// Side of a workgroup, pixels or cells.
+pub const WORKGROUP: u32 = 8;
+
 /// Parameters of a picture and a tile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]

@@ -1,7 +1,7 @@
 //! The pass that propagates occlusion and emission from slice to slice: one dispatch per slice. Its result is
 //! the light volume.
 
-use super::WORKGROUP;
+use super::layout::WORKGROUP;
 use super::media::texture;
 use crate::error::RenderError;
 use crate::gpu::Gpu;

@@ -28,7 +28,7 @@ use crate::resolved::{Flat, MAX_VOLUMES, ResolvedScene};
 use crate::scene::Scene;
 use grids::{GridBuffers, VisibleParts};
 use image::RgbaImage;
-use layout::FaceParams;
+use layout::{FaceParams, WORKGROUP};
 use light::LightBuffers;
 use media::{CandidateTextures, MediaVariant};
 use model::{ModelBuffers, POOL_BUFFERS, PackedTexture};
@@ -64,8 +64,6 @@ pub(crate) fn shader(filters_floats: bool) -> String {
 
 /// Largest number of samples in one dispatch: a tenth of a second on the software driver.
 const SAMPLES_PER_TILE: u32 = 1 << 17;
-/// Side of a workgroup, pixels.
-const WORKGROUP: u32 = 8;
 
 /// Draws scenes on the GPU. Keeps what it has uploaded.
 pub struct Renderer {
