@@ -1,10 +1,10 @@
-//! Draws a block of the synthetic survey: `cargo run -p petroglyph-render --example block -- OUT_DIR [SIZE] [PICTURE]`.
+//! Draws a block of the synthetic survey: `cargo run -p petroglyph-render --example block -- OUT_DIR [SIZE]
+//! [PICTURE]`.
 //!
-//! Writes illustrative, raw and half-way pictures, a corner cut, a stair and the ground as relief, each from the CPU reference and
-//! from the GPU, and prints their times and differences.
+//! Writes illustrative, raw and half-blended pictures, a corner cut, a stair and the ground as relief, each
+//! by the CPU reference and by the GPU. Prints their times and differences.
 
 use glam::DVec3;
-use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::compare::compare;
 use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Scene, VoxelBox};
@@ -12,6 +12,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 use survey::Progress;
+use model::{ModelSettings, StructuralModel};
 use synth::{SynthSettings, Synthetic};
 use ttf::{
     BlockExtent, ColourMap, LayerExtent, RawColour, RgbaFunction, TextureLibrary, TransferFunctions, TtfTables,

@@ -12,7 +12,7 @@ use image::{Rgba, RgbaImage};
 use model::section::{LineKind, LineQuality, Section, SectionPlane};
 use project::picture::load::Loaded;
 use render::leaves;
-use render::{Candidates, FaceData, NamedVolume, VoxelBox};
+use render::{CandidateVolume, FaceData, NamedVolume, VoxelBox};
 use std::collections::HashMap;
 use std::sync::PoisonError;
 
@@ -179,7 +179,7 @@ fn raw_colour(loaded: &Loaded) -> impl Fn(Vec3) -> Option<Rgba<u8>> + '_ {
 }
 
 /// A leaf in its colour over the raw data, or the distance in its place.
-fn lay_candidates(pixel: &mut Rgba<u8>, candidates: &Candidates, point: Vec3, show: FaceData) {
+fn lay_candidates(pixel: &mut Rgba<u8>, candidates: &CandidateVolume, point: Vec3, show: FaceData) {
     let distance = candidates.distance_at(point);
     let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
     if show == FaceData::Distance {

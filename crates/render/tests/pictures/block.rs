@@ -1,14 +1,14 @@
-//! Small models to draw in tests.
+//! Small models that tests draw.
 
 use glam::DVec3;
-use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::{Inputs, NamedVolume, VoxelBox};
-use survey::{Fault, Horizon, Progress, Stratigraphy, SurveyGeometry};
+use model::{ModelSettings, StructuralModel};
 use synth::closed_form::ClosedForm;
+use survey::{Fault, Horizon, Progress, Stratigraphy, SurveyGeometry};
 use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 
-/// A model with everything derived from it.
+/// A model with all data derived from it.
 pub struct Block {
     pub geometry: SurveyGeometry,
     pub model: StructuralModel,
