@@ -1,14 +1,14 @@
 //! Picking: a place becomes a leaf, a leaf a node, a node part of a horizon; and moving a pick later.
 
-use super::assembly::{self, AssemblyReport, rebuild};
+use super::assembly::{self, AssemblyReport, ReportedOverlap, rebuild};
 use super::{Effect, Noun, ProjectError};
 use crate::candidates::Candidates;
 use crate::project::Draft;
 use crate::project::document::{Assembly, PickEntry};
 use glam::DVec2;
 use interp::assembly::{
-    AssemblyError, ClimbSettings, Fingerprint, Fit, Hit, Operation, Overlap, Selection, highest_valid, leaf_at,
-    node_above,
+    AssemblyError, ClimbSettings, ClosestLeaf, Fingerprint, NodeFit, Operation, Overlap, Selection, highest_valid,
+    leaf_at, node_above,
 };
 use serde::{Deserialize, Serialize};
 use survey::model::FaultNetwork;
@@ -102,9 +102,9 @@ pub struct Picked {
     pub levels: u32,
     /// Triangles of the node.
     pub triangles: u32,
-    /// Overlap of the next higher node, that ended the climb.
+    /// Overlap of the next higher node, which ended the climb.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub stopped_by: Option<Overlap>,
+    pub stopped_by: Option<ReportedOverlap>,
     /// The horizon now.
     pub result: AssemblyReport,
 }
@@ -139,7 +139,7 @@ pub struct ReplayedPick {
     /// Its number.
     pub pick: u32,
     /// How its node compares with what it was.
-    pub fit: Fit,
+    pub fit: NodeFit,
     /// Triangles it had and has.
     pub triangles: [u32; 2],
 }
@@ -147,9 +147,9 @@ pub struct ReplayedPick {
 impl std::fmt::Display for Replayed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let count = |fit| self.picks.iter().filter(|pick| pick.fit == fit).count();
-        write!(f, "{} picks are what they were, {} nearly", count(Fit::Same), count(Fit::Similar))?;
+        write!(f, "{} picks are what they were, {} nearly", count(NodeFit::Same), count(NodeFit::Similar))?;
         let dropped: Vec<String> =
-            self.picks.iter().filter(|p| p.fit == Fit::Different).map(|p| p.pick.to_string()).collect();
+            self.picks.iter().filter(|p| p.fit == NodeFit::Different).map(|p| p.pick.to_string()).collect();
         if !dropped.is_empty() {
             write!(f, "; no longer fit and are gone: {}", dropped.join(", "))?;
         }
@@ -158,7 +158,11 @@ impl std::fmt::Display for Replayed {
 }
 
 /// The leaf at a place in line numbers, within the reach of the extraction.
-pub(crate) fn leaf_near(candidates: &Candidates, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<Hit, ProjectError> {
+pub(crate) fn leaf_near(
+    candidates: &Candidates,
+    geometry: &SurveyGeometry,
+    at: [f64; 3],
+) -> Result<ClosestLeaf, ProjectError> {
     let place = geometry.voxel_from_lines(at[0], at[1]);
     let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
     leaf_at(&candidates.forest, voxel, candidates.max_distance).map_err(|error| match error {
@@ -210,7 +214,9 @@ impl PickNode {
         let candidates = Candidates::load(draft.root(), progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let id = next_id(draft);
-        let stopped_by = self.enter(&mut log, id, draft.document.frame()?, &candidates, &blocks)?;
+        let geometry = draft.document.frame()?.clone();
+        let stopped_by = self.enter(&mut log, id, &geometry, &candidates, &blocks)?;
+        let stopped_by = stopped_by.and_then(|overlap| ReportedOverlap::new(overlap, &geometry));
         let PickEntry { leaf, up, node, .. } = log.picks[log.picks.len() - 1];
         let result = rebuild(draft, &candidates, &blocks, &self.horizon, log, progress)?;
         Ok(Effect::Picked(Box::new(Picked {
@@ -380,6 +386,8 @@ impl MovePick {
         rest.picks.remove(place);
         let beside = assembly::selection(&name, &rest, &candidates)?;
         let (node, up, stopped_by) = climbed(&candidates, leaf, climb, &beside, &blocks)?;
+        let geometry = draft.document.frame()?;
+        let stopped_by = stopped_by.and_then(|overlap| ReportedOverlap::new(overlap, geometry));
         let node = Fingerprint::of(&candidates.forest, node);
         (log.picks[place].up, log.picks[place].node) = (up, node);
         let result = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
@@ -420,10 +428,10 @@ impl ReplayPicks {
                 let before = pick.node.triangles;
                 let fit = again(pick, &candidates, &geometry);
                 done.picks.push(ReplayedPick { pick: pick.id, fit, triangles: [before, pick.node.triangles] });
-                if fit == Fit::Different {
+                if fit == NodeFit::Different {
                     unfit.push(pick.id);
                 }
-                fit != Fit::Different
+                fit != NodeFit::Different
             });
             if !unfit.is_empty() && (self.unfit == Unfit::Refuse || log.picks.is_empty()) {
                 return Err(ProjectError::UnfitPicks { horizon: name, picks: unfit });
@@ -436,14 +444,14 @@ impl ReplayPicks {
 }
 
 /// Makes one pick again: at its place, at the level whose node is most like what it was.
-fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> Fit {
-    let Ok(hit) = leaf_near(candidates, geometry, pick.at) else { return Fit::Different };
-    let rank = |fit: Fit| match fit {
-        Fit::Same => 0,
-        Fit::Similar => 1,
-        Fit::Different => 2,
+fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> NodeFit {
+    let Ok(hit) = leaf_near(candidates, geometry, pick.at) else { return NodeFit::Different };
+    let rank = |fit: NodeFit| match fit {
+        NodeFit::Same => 0,
+        NodeFit::Similar => 1,
+        NodeFit::Different => 2,
     };
-    let mut best: Option<(Fit, u32, Fingerprint)> = None;
+    let mut best: Option<(NodeFit, u32, Fingerprint)> = None;
     for up in 0..=levels(candidates, hit.leaf) {
         let Ok(node) = node_above(&candidates.forest, hit.leaf, up) else { break };
         let now = Fingerprint::of(&candidates.forest, node);
@@ -455,8 +463,8 @@ fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometr
             break;
         }
     }
-    let Some((fit, up, node)) = best else { return Fit::Different };
-    if fit != Fit::Different {
+    let Some((fit, up, node)) = best else { return NodeFit::Different };
+    if fit != NodeFit::Different {
         (pick.leaf, pick.up, pick.node) = (hit.leaf, up, node);
         pick.extraction.clone_from(&candidates.key);
     }

@@ -31,7 +31,7 @@ use crate::forest::Forest;
 use crate::lanes::widest;
 use index::{CellIndex, TriangleLists};
 use rayon::prelude::*;
-use search::Block;
+use search::ColumnBlock;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use survey::Progress;
@@ -136,7 +136,8 @@ impl<'a> LeafDistances<'a> {
     /// Prepares the search.
     ///
     /// # Errors
-    /// [`Error::Setting`], and [`Error::MalformedSurfaces`] when a triangle spans more than one cell of the lattice.
+    /// [`Error::Setting`], and [`Error::MalformedSurfaces`] when a triangle spans more than one cell of the
+    /// lattice.
     pub fn new(forest: &'a Forest, settings: &DistanceSettings) -> Result<Self, Error> {
         if !(settings.max_distance > 0.0 && settings.max_distance <= LIMIT) {
             return Err(Error::Setting {
@@ -193,7 +194,7 @@ impl<'a> LeafDistances<'a> {
                 let columns = from..(from + BLOCK).min(y.end);
                 progress.check()?;
                 let done = (lines.len() * columns.len()) as u64;
-                widest(Block { size, settings: &self.settings, index, x: lines.clone(), y: columns, rows });
+                widest(ColumnBlock { size, settings: &self.settings, index, x: lines.clone(), y: columns, rows });
                 Ok::<(), Error>(progress.step(done)?)
             })?;
         }

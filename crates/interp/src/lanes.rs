@@ -15,7 +15,10 @@ pub(crate) trait Wide {
 pub(crate) fn widest(work: impl Wide) {
     #[cfg(target_arch = "x86_64")]
     if is_x86_feature_detected!("avx2") {
-        #[expect(unsafe_code, reason = "0.85 of the time of four lanes; the line above checks that the processor has AVX2")]
+        #[expect(
+            unsafe_code,
+            reason = "0.85 of the time of four lanes; the line above checks that the processor has AVX2"
+        )]
         unsafe {
             in_eight_lanes(work);
         }

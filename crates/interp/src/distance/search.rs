@@ -22,7 +22,7 @@ const _: () = assert!(RUN == LANES);
 const SLACK: f32 = 1e-3;
 
 /// The columns of a block, with the rows that receive their results.
-pub(super) struct Block<'a, 'r> {
+pub(super) struct ColumnBlock<'a, 'r> {
     pub(super) size: [usize; 3],
     pub(super) settings: &'a DistanceSettings,
     /// An index that covers everything within reach of the block.
@@ -32,11 +32,11 @@ pub(super) struct Block<'a, 'r> {
     pub(super) rows: BlockRows<'r>,
 }
 
-impl Wide for Block<'_, '_> {
+impl Wide for ColumnBlock<'_, '_> {
     #[inline(always)]
     fn run(self) {
         let Self { size: [_, _, nz], settings, index, x, y, rows } = self;
-        let mut column = Column::new(index, settings.max_distance, nz);
+        let mut column = ColumnSearch::new(index, settings.max_distance, nz);
         for (row, line) in rows.into_iter().zip(x) {
             for (n, crossline) in y.clone().enumerate() {
                 column.search([line, crossline], if n == 0 { Neighbour::None } else { Neighbour::Before });
@@ -76,7 +76,7 @@ fn apart(at: usize, unit: usize, count: usize) -> f32 {
 
 /// A cell near a column: its triangles, and the column minus its near corner.
 #[derive(Clone, Copy, Default)]
-struct Near<'a> {
+struct NearCell<'a> {
     cell: Cell<'a>,
     apart: [f32; 2],
     /// Squared horizontal distance of column and cell.
@@ -84,7 +84,7 @@ struct Near<'a> {
 }
 
 /// The column being searched. Arrays are padded to whole runs.
-struct Column<'a> {
+struct ColumnSearch<'a> {
     index: &'a CellIndex,
     max: f32,
     count: usize,
@@ -95,7 +95,7 @@ struct Column<'a> {
     bound: Vec<f32>,
 }
 
-impl<'a> Column<'a> {
+impl<'a> ColumnSearch<'a> {
     fn new(index: &'a CellIndex, max: f32, count: usize) -> Self {
         let padded = count.div_ceil(RUN).max(1) * RUN;
         Self {
@@ -141,8 +141,8 @@ impl<'a> Column<'a> {
 
     /// The four cells around a column and the twelve next to those.
     #[inline(always)]
-    fn near(&self, [x, y]: [usize; 2]) -> ([Near<'a>; 4], [Near<'a>; 12]) {
-        let (mut around, mut next) = ([Near::default(); 4], [Near::default(); 12]);
+    fn near(&self, [x, y]: [usize; 2]) -> ([NearCell<'a>; 4], [NearCell<'a>; 12]) {
+        let (mut around, mut next) = ([NearCell::default(); 4], [NearCell::default(); 12]);
         let (mut first, mut second) = (around.iter_mut(), next.iter_mut());
         for (far_x, far_y) in (0..4).flat_map(|far_x| (0..4).map(move |far_y| (far_x, far_y))) {
             let off = |far: usize| (far == 0 || far == 3) as usize;
@@ -152,7 +152,7 @@ impl<'a> Column<'a> {
             // Cells begin from two traces before the column to one trace behind it.
             if let (Some(cell_x), Some(cell_y)) = ((x + far_x).checked_sub(2), (y + far_y).checked_sub(2)) {
                 let apart = [2.0 - far_x as f32, 2.0 - far_y as f32];
-                *near = Near { cell: self.index.cell(cell_x, cell_y), apart, h_sq: ring as f32 };
+                *near = NearCell { cell: self.index.cell(cell_x, cell_y), apart, h_sq: ring as f32 };
             }
         }
         (around, next)
@@ -168,7 +168,7 @@ impl<'a> Column<'a> {
     /// Lowers the bounds by the triangles' corners on this trace, and by the bounds of samples above and
     /// below.
     #[inline(always)]
-    fn bound_by_extrema(&mut self, around: &[Near<'_>; 4]) {
+    fn bound_by_extrema(&mut self, around: &[NearCell<'_>; 4]) {
         let last = self.bound.len() - 1;
         for near in around {
             let far = near.apart.map(|apart| apart as u32);
@@ -197,7 +197,7 @@ impl<'a> Column<'a> {
 
     /// Tests a run against the triangles of the four cells around the column.
     #[inline(always)]
-    fn visit_around(&mut self, around: &[Near<'_>; 4], run: usize) {
+    fn visit_around(&mut self, around: &[NearCell<'_>; 4], run: usize) {
         let [first, last] = [run * RUN, (run + 1) * RUN - 1];
         // The depths that the first sample reaches up to and the last one down to.
         let [up, down] = [first as f32 - self.bound[first], last as f32 + self.bound[last]];
@@ -219,7 +219,7 @@ impl<'a> Column<'a> {
 
     /// Tests a run against the triangles of the twelve cells that are one away.
     #[inline(always)]
-    fn visit_next(&mut self, next: &[Near<'_>; 12], run: usize) {
+    fn visit_next(&mut self, next: &[NearCell<'_>; 12], run: usize) {
         let begin = (run * RUN) as f32;
         // The depths that the samples reach at a horizontal distance of one cell.
         let [mut up, mut down] = [f32::INFINITY, f32::NEG_INFINITY];

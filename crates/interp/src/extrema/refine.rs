@@ -17,7 +17,8 @@ const MAX_SHIFT: f64 = 0.75;
 /// Newton steps. The start is within 0.05 of the answer, and two steps reach single precision.
 const STEPS: usize = 3;
 
-/// Offset (−0.75 … 0.75) and height of the maximum of `sign`·trace at sample z, which is greater than its two neighbours.
+/// Offset (−0.75 … 0.75) and height of the maximum of `sign`·trace at sample z, which is greater than its two
+/// neighbours.
 #[inline]
 pub fn maximum(trace: &[f32], z: usize, sign: f32) -> (f32, f32) {
     let at = |index: usize| f64::from(trace[index] * sign);

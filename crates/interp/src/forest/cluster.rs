@@ -37,7 +37,7 @@ pub(super) fn cluster(patches: &Patches, progress: &Progress) -> Result<Vec<[u32
     } else {
         let regions = regions(patches);
         let parts = regions.par_iter().map(|own| cluster_region(patches, own, progress));
-        let parts: Vec<Region> = parts.collect::<Result<_, Cancelled>>()?;
+        let parts: Vec<MergedRegion> = parts.collect::<Result<_, Cancelled>>()?;
         Clusters::after(patches, &parts, &mut merges)
     };
     clusters.merge_chains(&mut merges, progress)?;
@@ -57,14 +57,14 @@ fn regions(patches: &Patches) -> Vec<Vec<u32>> {
 }
 
 /// The result of one region, in ids of the surface.
-struct Region {
+struct MergedRegion {
     merges: Vec<[u32; 2]>,
     /// The remaining parts: id, moments, and neighbours as patches of the surface.
     left: Vec<(u32, Moments, Vec<u32>)>,
 }
 
 /// Merges the parts that have all their neighbours in the region.
-fn cluster_region(patches: &Patches, own: &[u32], progress: &Progress) -> Result<Region, Cancelled> {
+fn cluster_region(patches: &Patches, own: &[u32], progress: &Progress) -> Result<MergedRegion, Cancelled> {
     progress.check()?;
     // `own` ascends, so local ids keep the order of the surface's.
     let local = |patch: u32| own.binary_search(&patch).map_or(OUTSIDE, |n| n as u32);
@@ -90,7 +90,7 @@ fn cluster_region(patches: &Patches, own: &[u32], progress: &Progress) -> Result
         }
     }
     let merges = merges.into_iter().map(|pair| pair.map(|n| own[n as usize])).collect();
-    Ok(Region { merges, left })
+    Ok(MergedRegion { merges, left })
 }
 
 /// The parts of a surface while they are merged.
@@ -139,7 +139,7 @@ impl Clusters {
     }
 
     /// The state after the merges of all regions.
-    fn after(patches: &Patches, regions: &[Region], merges: &mut Vec<[u32; 2]>) -> Self {
+    fn after(patches: &Patches, regions: &[MergedRegion], merges: &mut Vec<[u32; 2]>) -> Self {
         let count = patches.len();
         let mut all = Self::new(vec![Moments::EMPTY; count], (0..count).map(|_| std::iter::empty()));
         for region in regions {

@@ -157,7 +157,8 @@ mod tests {
             })
             .collect();
         let whole = triangles.iter().fold(Moments::EMPTY, |sum, t| sum.union(&Moments::of_triangle(*t)));
-        // The integral of a quadratic over a triangle is exact at the midpoints of its edges, a third of the area each.
+        // The integral of a quadratic over a triangle is exact at the midpoints of its edges, a third of the
+        // area each.
         let samples: Vec<(f64, [f64; 3])> = triangles
             .iter()
             .flat_map(|t| {

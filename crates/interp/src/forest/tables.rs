@@ -67,7 +67,8 @@ impl Forest {
         Ok(forest)
     }
 
-    /// The trees that rows of nodes describe, without vertices and triangles: enough to climb, and to tell leaves.
+    /// The trees that rows of nodes describe, without vertices and triangles: enough to climb, and to tell
+    /// leaves.
     ///
     /// # Errors
     /// [`Error::DamagedForest`] when they contradict each other.

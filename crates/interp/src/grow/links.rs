@@ -92,7 +92,15 @@ impl<'e> Side<'e> {
 }
 
 /// Links two traces. `next` and `back` begin at the first extremum of their trace.
-fn link(from: &Side, to: &Side, axis: usize, reach: f32, next: &mut [u32], back: &mut [u32], scratch: &mut [Vec<u32>; 2]) {
+fn link(
+    from: &Side,
+    to: &Side,
+    axis: usize,
+    reach: f32,
+    next: &mut [u32],
+    back: &mut [u32],
+    scratch: &mut [Vec<u32>; 2],
+) {
     let [forward, backward] = scratch;
     from.choose(to, axis, 1.0, reach, forward);
     to.choose(from, axis, -1.0, reach, backward);

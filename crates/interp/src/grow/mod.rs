@@ -110,13 +110,17 @@ pub enum GrowError<E = std::convert::Infallible> {
         found: usize,
     },
     /// [`GrowSettings::join_share`] is out of range.
-    #[error("the share of a boundary that joins pieces is {found}; give 0.4 (a good choice) to 1, or more to join nothing")]
+    #[error(
+        "the share of a boundary that joins pieces is {found}; give 0.4 (a good choice) to 1, or more to join nothing"
+    )]
     JoinShare {
         /// The value given.
         found: f32,
     },
     /// [`GrowSettings::fault_evidence`] is out of range.
-    #[error("the least evidence for a fault is {found}; give 25 (a good choice) to 200, or infinity to look for no faults")]
+    #[error(
+        "the least evidence for a fault is {found}; give 25 (a good choice) to 200, or infinity to look for no faults"
+    )]
     FaultEvidence {
         /// The value given.
         found: f32,

@@ -203,7 +203,14 @@ pub(super) fn cuts(
 }
 
 /// Adds the evidence of the links of one kind along `axis`.
-fn collect(grid: &mut EvidenceGrid, extrema: &Extrema, links: &Links, evidence: &[[u8; 2]], noise: &Noise, axis: usize) {
+fn collect(
+    grid: &mut EvidenceGrid,
+    extrema: &Extrema,
+    links: &Links,
+    evidence: &[[u8; 2]],
+    noise: &Noise,
+    axis: usize,
+) {
     let [nx, ny, _] = extrema.size;
     let direction = [NEXT_X, NEXT_Y][axis];
     let (across_count, along_count) = if axis == 0 { (nx, ny) } else { (ny, nx) };

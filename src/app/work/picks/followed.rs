@@ -3,7 +3,7 @@
 use super::ShownPick;
 use crate::app::state::picking::Pick;
 use crate::candidates::Candidates;
-use crate::command::assembly::{self, overlap_in_lines};
+use crate::command::assembly::{self, ReportedOverlap};
 use crate::error::ProjectError;
 use crate::project::Document;
 use interp::assembly::{ClimbSettings, Occupancy, Overlap, Selection, node_above};
@@ -59,7 +59,7 @@ impl Followed {
         let overlap = occupancy.overlap();
         let (vertices, traces) = (occupancy.vertices() - before.0, overlap.traces - before.1);
         let is_wrong = traces as f64 > ClimbSettings::default().tolerated_share * vertices as f64;
-        let overlap = overlap_in_lines(Overlap { traces, ..overlap }, &self.geometry);
+        let overlap = ReportedOverlap::new(Overlap { traces, ..overlap }, &self.geometry);
         let leaves = forest.leaves_under(node).collect();
         Ok(Some(ShownPick { pick, sheets, triangles: range.len(), leaves, overlap, is_wrong }))
     }

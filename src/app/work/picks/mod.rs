@@ -11,7 +11,7 @@ use super::{Event, Outbox, compute_apart, spawn};
 use crate::app::state::picking::{Pick, voxel_of};
 use crate::app::state::{Notice, PickingStep, PickingTask, Place};
 use crate::candidates::Candidates;
-use crate::command::assembly::{self, AssemblyReport, conflicts_of, overlap_in_lines, report_on, sentence};
+use crate::command::assembly::{self, AssemblyReport, ReportedOverlap, conflicts_of, report_on, sentence};
 use crate::command::pick::{leaf_near, levels};
 use crate::error::ProjectError;
 use crate::project::document::{Assembly, HorizonEntry};
@@ -20,7 +20,7 @@ use crate::{data, extraction, proposals};
 use followed::Followed;
 use glam::DVec3;
 use interp::ExtractReport;
-use interp::assembly::{ClimbSettings, Overlap, highest_valid, selected_leaves};
+use interp::assembly::{ClimbSettings, highest_valid, selected_leaves};
 use interp::faults::{Proposal, ProposeSettings};
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
@@ -93,7 +93,7 @@ pub struct ShownPick {
     /// Its leaves.
     pub leaves: Vec<u32>,
     /// Where it would lie over the horizon or itself, in line numbers.
-    pub overlap: Option<Overlap>,
+    pub overlap: Option<ReportedOverlap>,
     /// Whether that is more than noise makes.
     pub is_wrong: bool,
 }
@@ -340,7 +340,7 @@ impl Keeper {
             let chosen = log.zip(candidates).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
             let overlap = chosen.as_ref().zip(candidates).and_then(|(chosen, candidates)| {
                 let found = reassemble(&candidates.forest, chosen, &seeds(log, candidates), blocks).overlap;
-                overlap_in_lines(found, geometry)
+                ReportedOverlap::new(found, geometry)
             });
             let mine = conflicts.iter().filter(|conflict| conflict.horizons().contains(&entry.name));
             ShownHorizon {
@@ -403,6 +403,6 @@ fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec
 }
 
 /// Voxel position of a place where an overlap is worst.
-pub fn voxel_of_overlap(geometry: &SurveyGeometry, overlap: &Overlap) -> DVec3 {
-    voxel_of(geometry, overlap.at.map(f64::from))
+pub fn voxel_of_overlap(geometry: &SurveyGeometry, overlap: &ReportedOverlap) -> DVec3 {
+    voxel_of(geometry, overlap.at)
 }
