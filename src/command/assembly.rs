@@ -456,12 +456,11 @@ pub(super) fn log_of(draft: &Draft, name: &str) -> Result<Assembly, ProjectError
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::synth::{SynthSettings, Synthetic};
+    use survey::VerticalUnit;
 
     #[test]
     fn negative_line_numbers_are_kept() {
-        let settings = SynthSettings { size: [32, 32, 32], snr: None, ..SynthSettings::default() };
-        let mut geometry = Synthetic::generate(&settings, &Progress::silent()).unwrap().geometry;
+        let mut geometry = SurveyGeometry::regular([32, 32, 32], 25.0, 10.0, VerticalUnit::Metres);
         (geometry.inlines.first, geometry.inlines.step) = (-40, 2);
         (geometry.crosslines.first, geometry.crosslines.step) = (-7, 1);
         let horizons = ["a".to_owned(), "b".to_owned()];

@@ -9,7 +9,7 @@
 //!   means that surfaces were merged wrongly. Without interpreted faults there is only one block, and the two
 //!   sides of a reverse fault overlap rightly. Therefore overlaps are reported and not refused.
 //! - A [`Fingerprint`] records what a node was; a replay on another extraction compares nodes with it.
-//! - [`conflicts`] finds where horizons contradict one another.
+//! - [`conflicts()`] finds where horizons contradict one another.
 //!
 //! P-horiz leaves the choice of the level to the user, who recognises wrong overlaps by their shadows.
 //! [`highest_valid`] counts them. Space: voxels.

@@ -150,21 +150,21 @@ const BREAK: f32 = 0.02;
 /// ```
 /// use interp::faults::{Evidence, ProposeSettings, propose_faults};
 /// use interp::reassembly::VoxelSheet;
-/// use survey::Progress;
 /// use survey::model::FaultNetwork;
-/// use survey::synth::{SynthSettings, Synthetic};
+/// use survey::{Progress, SurveyGeometry, VerticalUnit};
 ///
-/// // Flat horizons have no rims that face one another, so nothing is proposed.
-/// let settings = SynthSettings { size: [32, 32, 32], snr: None, ..SynthSettings::default() };
-/// let geometry = Synthetic::generate(&settings, &Progress::silent())?.geometry;
-/// let mut sheet = VoxelSheet::empty(0, 32 * 32);
-/// sheet.z.fill(12.0);
-/// let flat = Evidence { name: "flat", sheets: &[sheet] };
-/// let none = FaultNetwork::none();
-/// let settings = ProposeSettings::default();
-/// let found = propose_faults(&[flat], &geometry, &none, None, &settings, &Progress::silent())?;
-/// assert!(found.proposals.is_empty() && found.repeats.is_empty());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// // A flat horizon that is 6 samples (60 m) deeper from inline index 30 on: a fault with that throw.
+/// let geometry = SurveyGeometry::regular([60, 60, 60], 25.0, 10.0, VerticalUnit::Metres);
+/// let mut sheet = VoxelSheet::empty(0, 60 * 60);
+/// for (trace, z) in sheet.z.iter_mut().enumerate() {
+///     *z = if trace / 60 < 30 { 20.0 } else { 26.0 };
+/// }
+/// let horizons = [Evidence { name: "H", sheets: &[sheet] }];
+/// let (known, settings) = (FaultNetwork::none(), ProposeSettings::default());
+/// let found = propose_faults(&horizons, &geometry, &known, None, &settings, &Progress::silent())?;
+/// assert_eq!(found.proposals.len(), 1);
+/// assert!((found.proposals[0].throw[0] - 60.0).abs() < 1e-3);
+/// # Ok::<(), survey::Cancelled>(())
 /// ```
 pub fn propose_faults(
     horizons: &[Evidence],
