@@ -12,7 +12,7 @@ mod text;
 
 pub use path::{Cap, Ink, Path, PathItem, Rule, Segment, Stroke};
 pub use picture::{Picture, Sampling};
-pub use text::{Across, Anchor, Halo, Text, Upright};
+pub use text::{Across, Anchor, Halo, Text, Upright, width_of};
 
 use crate::Rect;
 use glam::DVec2;
