@@ -42,7 +42,7 @@ gallery: demo
 
 # The demonstration's project is copied: its panels change it on the way.
 screenshots: demo
-	cargo build --locked --example screenshots
+	cargo build --locked -p petroglyph-app --example screenshots
 	for size in $(SIZES); do for appearance in $(APPEARANCES); do \
 		rm -rf out/screenshots/demo && mkdir -p out/screenshots && cp -r $(OUT) out/screenshots/demo && \
 		target/debug/examples/screenshots out/screenshots/demo out/screenshots $$size $$appearance || exit 1; \

@@ -5,14 +5,14 @@
 
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};
+use model::section::SectionPlane;
+use model::{ModelSettings, StructuralModel};
 use param::accuracy::{self, HorizonPoint, Spread};
 use param::{FlatPoint, PackedVolume, ParamSettings, Parameterization, Region};
 use render::{Inputs, Lookup, Outlines, Renderer, Scene, VoxelBox};
-use survey::model::{ModelSettings, StructuralModel};
-use survey::section::SectionPlane;
-use survey::synth::closed_form::ClosedForm;
-use survey::synth::{SynthSettings, SynthTruth, Synthetic};
 use survey::{Fault, Horizon, Progress, Stratigraphy, SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
+use synth::{SynthSettings, SynthTruth, Synthetic};
 use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 
 /// Places measured on each horizon in each block.

@@ -1,5 +1,8 @@
 //! The `petroglyph` program.
 
+mod bench;
+mod cli;
+
 fn main() -> std::process::ExitCode {
-    petroglyph::cli::main()
+    cli::main()
 }

@@ -11,7 +11,7 @@ pub use inputs::{HAND_WRITTEN, WELL_FILES, interpretation, well_path};
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::path::{Path, PathBuf};
 
-use survey::segy::{
+use segy::{
     ByteOrder, FileUnit, KeptDuplicate, LengthUnit, LineSource, NumberType, SampleFormat, SegyFile, SegyOptions,
     TraceWeight,
 };

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::Path;
 
-use survey::formats::{Format, write_fault, write_horizon};
-use survey::segy::{self, ByteOrder, WriteFormat, WriteOptions};
+use formats::{Format, write_fault, write_horizon};
+use segy::{ByteOrder, WriteFormat, WriteOptions};
 use survey::{Progress, Volume};
 
 type Done = Result<(), Box<dyn std::error::Error>>;

@@ -4,14 +4,14 @@
 //! extended sheets. `meta.json`: `size`, `margin` (nodes around the survey), `metric_m` (metres per voxel along
 //! x, y, z), `layers`, `blocks`.
 
-use crate::error::ProjectError;
 use glam::Vec3;
+use model::StructuralModel;
+use project::error::ProjectError;
 use rayon::prelude::*;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use survey::Progress;
-use survey::model::StructuralModel;
 
 /// Writes the three files.
 ///

@@ -4,14 +4,14 @@
 //! written as `amplitude.npy` (float32, `[inline][crossline][sample]`), for other programs to be timed on.
 
 use super::{Memory, Sizes, dump};
-use crate::error::ProjectError;
 use interp::{ExtractSettings, extract};
+use project::error::ProjectError;
 use serde::Serialize;
 use std::fmt;
 use std::fs;
 use std::path::Path;
 use survey::Progress;
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 
 /// Signal to noise of the volumes.
 const SNR: f64 = 3.0;

@@ -13,10 +13,10 @@ pub mod segy;
 pub use self::interp::ExtractionRow;
 mod store;
 
-use crate::error::ProjectError;
-use crate::picture::{Device, Painter};
-use crate::pipeline::{self, Loaded, Rock, Stage};
 use param::{PackedVolume, ParamSettings, Parameterization};
+use project::error::ProjectError;
+use project::picture::load::{self, Loaded, Rock, Stage};
+use project::picture::{Device, Painter};
 use render::{Lookup, Scene};
 use serde::Serialize;
 use std::fmt;
@@ -212,7 +212,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
             wells: Vec::new(),
             raw: None,
             tables: Some(tables),
-            version: pipeline::new_version(),
+            version: load::new_version(),
         },
     ))
 }

@@ -3,11 +3,11 @@
 //! In metres, with the cube 5000 m wide and 2000 m deep: horizon h is at `d_h + A·sin(2πX/λ₁)·cos(2πY/λ₂) + Σ throw_f` over the
 //! faults in whose hanging wall the point lies. A fault is the plane `s = s₀ + (depth − 1000)/tan 60°` with s = X or Y.
 
-use crate::error::ProjectError;
-use crate::pipeline::{self, Rock};
 use glam::{DVec2, DVec3};
+use model::{ModelSettings, StructuralModel};
+use project::error::ProjectError;
+use project::picture::load::{self, Rock};
 use std::f64::consts::TAU;
-use survey::model::{ModelSettings, StructuralModel};
 use survey::{
     Contact, Fault, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,
     TriangleMesh, VerticalUnit,
@@ -113,6 +113,6 @@ pub(super) fn build(geometry: &SurveyGeometry, progress: &Progress) -> Result<St
 /// Default styles.
 pub(super) fn tables(geometry: &SurveyGeometry, rock: &Rock) -> Result<TtfTables, ProjectError> {
     let names = rock.model.stratigraphy().layer_names_bottom_up();
-    let block = pipeline::block_extent(geometry, rock, names, 1.0);
+    let block = load::block_extent(geometry, rock, names, 1.0);
     Ok(TtfTables::compile(&TransferFunctions::default(), &block, &TextureLibrary::builtin()?)?)
 }

@@ -4,12 +4,12 @@
 //! segyio on the same files. A third file goes into the store and out of it.
 
 use super::StoreMeasured;
-use crate::error::ProjectError;
+use project::error::ProjectError;
+use segy::{SegyOptions, WriteFormat, WriteOptions};
 use serde::Serialize;
 use std::fmt;
 use std::path::Path;
 use std::time::Instant;
-use survey::segy::{self, SegyOptions, WriteFormat, WriteOptions};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
 /// Readings of each file; the quickest counts, since other programs only ever slow one down.

@@ -2,15 +2,15 @@
 //! its pyramid, and read back by inline, crossline and time slice; dip and semblance are computed on it. With a folder given, the file stays
 //! there as `survey.sgy` for other programs to be timed on (`bench/peers.py --store`).
 
-use crate::error::ProjectError;
+use attribute::{DipSettings, SemblanceSettings, dip, semblance};
+use project::error::ProjectError;
+use segy::{SegyFile, SegyOptions, WriteOptions};
 use serde::Serialize;
 use std::fmt;
 use std::fs;
 use std::path::Path;
 use std::time::Instant;
-use survey::attribute::{DipSettings, SemblanceSettings, dip, semblance};
-use survey::segy::{self, SegyFile, SegyOptions, WriteOptions};
-use survey::store::{StoredVolume, VolumeInfo, WriteSettings};
+use store::{MEMORY_BYTES, StoredVolume, VolumeInfo, resume_blocks};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
 /// Each section is read so often; the shortest time counts, as on the other side.
@@ -133,7 +133,7 @@ fn measure(side: usize, kept: &Path, own: &Path, progress: &Progress) -> Result<
 fn ingest(file: &Path, zarr: &Path, progress: &Progress) -> Result<(), ProjectError> {
     let opened = SegyFile::open(file, &SegyOptions::default(), progress)?;
     let info = VolumeInfo::of(opened.geometry()?);
-    opened.store(zarr, "bench", &info, WriteSettings::default().memory_bytes, progress)?;
+    resume_blocks(zarr, "bench", &mut opened.blocks(), &info, MEMORY_BYTES, progress)?;
     Ok(())
 }
 

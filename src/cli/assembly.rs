@@ -3,11 +3,6 @@
 use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
 use super::report::Report;
 use super::request::{Request, Usage};
-use crate::candidates::Candidates;
-use crate::command::{
-    AcceptFault, Climb, Command, FillHorizon, Move, MovePick, PickFault, PickNode, ReplayPicks, Unfit,
-};
-use crate::project::Project;
 use anyhow::bail;
 use interp::assembly::Operation;
 use interp::evaluate::{
@@ -15,11 +10,15 @@ use interp::evaluate::{
 };
 use interp::faults::ProposeSettings;
 use interp::holes::FillSettings;
+use model::FaultNetwork;
+use project::Project;
+use project::command::{
+    AcceptFault, Climb, Command, FillHorizon, Move, MovePick, PickFault, PickNode, ReplayPicks, Unfit,
+};
+use project::interpretation::candidates::Candidates;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;
-use survey::model::FaultNetwork;
-use survey::synth::SynthTruth;
 
 /// Three numbers with commas.
 fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
@@ -98,7 +97,7 @@ pub(super) fn fault_accept(project: PathBuf, id: u32, name: String) -> Request {
 /// Measures the present extraction against a synthetic survey's truth.
 pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
-    let truth = SynthTruth::read(truth)?;
+    let truth = project::demo::survey_files::read_truth(truth)?;
     let candidates = Candidates::load(project.root(), progress)?;
     let size = candidates.forest.surfaces.size;
     if size != truth.size {

@@ -3,9 +3,10 @@
 use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
-use crate::picture::{self, Painter};
-use crate::project::Project;
-use crate::{memory, pipeline, scene};
+use project::Project;
+use project::memory_budget;
+use project::picture::{self, Painter};
+use project::picture::{load, scene};
 use render::Scene;
 use std::path::Path;
 use survey::{Progress, VerticalUnit};
@@ -31,8 +32,8 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         scene.blend = 0.0;
     }
     scene.validate(document.frame()?)?;
-    let volume_bytes = request.volume_bytes.unwrap_or_else(memory::half_of_available);
-    let loaded = pipeline::load_within(&project, &scene, volume_bytes, progress)?;
+    let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
+    let loaded = load::load_within(&project, &scene, volume_bytes, progress)?;
     let mut painter = Painter::new(request.device, progress)?;
     let (image, stage) = painter.draw(&scene, &loaded, progress)?;
     picture::write_png(&request.out, &image, request.dpi)?;

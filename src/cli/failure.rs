@@ -1,7 +1,8 @@
 //! Failures on the terminal: one sentence, a hint, an exit code.
 
+use super::hint;
 use super::run::Failure;
-use crate::error::Hint;
+use project::error::remedy_of;
 use std::process::ExitCode;
 
 /// Prints a failure: the error's chain in one sentence and what to do next.
@@ -10,7 +11,8 @@ pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
         Failure::Usage(reason) => (2, reason.clone(), GENERAL_HINT.to_owned()),
         Failure::Failed(error) => {
             let sentence = sentence(error);
-            match hint(error) {
+            match hint::of(error.as_ref()).or_else(|| remedy_of(error.as_ref()).map(|remedy| format!("state {remedy}")))
+            {
                 Some(hint) => (1, sentence, hint),
                 None => advice(sentence),
             }
@@ -49,13 +51,6 @@ fn sentence(error: &anyhow::Error) -> String {
         }
     }
     sentence
-}
-
-fn hint(error: &anyhow::Error) -> Option<String> {
-    Some(match Hint::of(error.as_ref())? {
-        Hint::Words { command_line, .. } => command_line.to_owned(),
-        Hint::State(remedy) => format!("state {remedy}"),
-    })
 }
 
 #[cfg(test)]

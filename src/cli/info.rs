@@ -2,12 +2,12 @@
 
 use super::info_interpretation;
 use super::report::Report;
-use crate::error::Noun;
-use crate::project::Project;
+use formats::ImportOptions;
+use project::Project;
+use project::error::Noun;
+use segy::{SegyFile, SegyOptions};
 use serde_json::json;
 use std::path::Path;
-use survey::formats::ImportOptions;
-use survey::segy::{SegyFile, SegyOptions};
 use survey::{Progress, SurveyGeometry};
 
 /// Describes whatever is at `path`: a project when it is a folder, else a horizon, fault or well file, else a SEG-Y file.

@@ -1,11 +1,11 @@
 //! `petroglyph info` of horizon, fault and well files: what they hold before they are imported.
 
 use super::report::Report;
+use formats::well::{self, WellFileDescription};
+use formats::{FileDescription, FormatError, ImportOptions, SurfaceDescription};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
-use survey::formats::{self, FileDescription, FormatError, ImportOptions, SurfaceDescription};
-use survey::well::{self, WellFileDescription};
 
 /// Files longer than this are volumes.
 const LARGEST: u64 = 2 << 30;

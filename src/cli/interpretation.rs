@@ -6,18 +6,16 @@ use super::args::{
 use super::assembly;
 use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
-use crate::command::{
+use attribute::{DipSettings, SemblanceSettings};
+use formats::{Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit};
+use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
     RemovePick, RenameHorizon, SetContact, SetHorizonColour, SetTruncation,
 };
-use crate::memory;
-use crate::project::Polarity;
+use project::document::Polarity;
+use project::memory_budget;
+use segy::WriteFormat;
 use survey::Contact;
-use survey::attribute::{DipSettings, SemblanceSettings};
-use survey::formats::{
-    Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit,
-};
-use survey::segy::WriteFormat;
 
 /// One of several words.
 pub(super) fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {
@@ -41,7 +39,8 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
 /// Bytes of `2G` and the like.
 pub(super) fn bytes(option: &str, typed: Option<&str>) -> Result<Option<u64>, Usage> {
     let parsed = |text| {
-        memory::parse_bytes(text).ok_or_else(|| format!("{option} {text}: expected bytes such as 2G, 800M or 64K"))
+        memory_budget::parse_bytes(text)
+            .ok_or_else(|| format!("{option} {text}: expected bytes such as 2G, 800M or 64K"))
     };
     typed.map(parsed).transpose()
 }

@@ -3,11 +3,11 @@
 use super::report::Report;
 use super::request::Listing;
 use super::well;
-use crate::data;
-use crate::error::Noun;
-use crate::library;
-use crate::project::Project;
-use crate::scene;
+use project::Project;
+use project::content;
+use project::error::Noun;
+use project::picture::scene;
+use project::styles;
 use serde_json::{Value, json};
 use survey::Progress;
 use ttf::{LayerStyle, LayerTtf};
@@ -59,7 +59,7 @@ fn horizons(project: &Project) -> Report {
 fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
     let document = project.document();
     let entry = &document.horizons[document.position(Noun::Horizon, name)?];
-    let horizon = data::read_horizon(project.root(), entry, &Progress::silent())?;
+    let horizon = content::read_horizon(project.root(), entry, &Progress::silent())?;
     let unit = document.frame()?.vertical.unit.symbol();
     let mut report = Report::default();
     report.say(format!("{name}: {:?}, {}", entry.contact, entry.source.reading).to_lowercase());
@@ -105,7 +105,7 @@ fn faults(project: &Project) -> Report {
 
 fn layers(project: &Project) -> anyhow::Result<Report> {
     let document = project.document();
-    let library = library::of_project(project.root(), document)?;
+    let library = styles::pattern_library(project.root(), document)?;
     let names = document.layers();
     let mut report = Report::default();
     let mut objects = Vec::new();

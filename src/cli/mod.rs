@@ -8,6 +8,7 @@ mod assembly;
 mod draw;
 mod extraction;
 mod failure;
+mod hint;
 mod info;
 mod info_interpretation;
 mod interpretation;

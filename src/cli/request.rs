@@ -8,22 +8,22 @@ use super::view::View;
 use super::well;
 use super::{assembly, extraction, interpretation};
 use crate::bench;
-use crate::command::{
-    AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer, SetScalar,
-    SetVelocity,
-};
-use crate::picture::Device;
-use crate::scene::{SeeThrough, ShownHorizon, ShownIsosurface, Technique};
+use formats::{ExportOptions, Format, ImportOptions};
 use glam::DVec2;
 use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
+use project::command::{
+    AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer, SetScalar,
+    SetVelocity,
+};
+use project::picture::Device;
+use project::picture::scene::{SeeThrough, ShownHorizon, ShownIsosurface, Technique};
 use render::{Scalar, Scope};
+use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;
-use survey::formats::{ExportOptions, Format, ImportOptions};
-use survey::segy::{SegyOptions, WriteFormat};
-use survey::synth::SynthSettings;
 use survey::{SurveyGeometry, VerticalUnit};
+use synth::SynthSettings;
 use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
 
 /// Something to do.

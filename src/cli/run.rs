@@ -4,20 +4,21 @@ use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
 use super::{assembly, draw, info, list};
-use crate::command::{AddScene, Command, ImportVolume, SetRaw};
-use crate::error::Noun;
-use crate::pipeline::Stage;
-use crate::project::Project;
-use crate::{
-    app, bench, data, demo, derived, extraction, library, picture, pipeline, proposals, scene, style, synth,
-    volume_file,
-};
+use crate::bench;
 use anyhow::Context;
+use formats::{ExportOptions, Format};
+use project::Project;
+use project::command::{AddScene, Command, ImportVolume, SetRaw};
+use project::demo::{self, survey_files};
+use project::error::Noun;
+use project::interpretation::{extraction, proposals};
+use project::picture::load::Stage;
+use project::picture::{self, load, scene};
+use project::{content, derived, segy_export, styles};
 use render::Scene;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use survey::Progress;
-use survey::formats::{self, ExportOptions, Format};
 use ttf::{TextureLibrary, contact_sheet};
 
 /// Why there is no answer.
@@ -35,18 +36,31 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
     }
 }
 
+/// Opens the window; it shows progress itself, and Ctrl-C is to end it at once.
+#[cfg(feature = "window")]
+fn open_window(project: Option<PathBuf>, frame_times: Option<&Path>) -> anyhow::Result<Report> {
+    app::run(project, frame_times)?;
+    Ok(Report::default())
+}
+
+/// Says that there is none.
+#[cfg(not(feature = "window"))]
+fn open_window(_: Option<PathBuf>, _: Option<&Path>) -> anyhow::Result<Report> {
+    anyhow::bail!(
+        "this program was built without its window; build it with the feature `window`, which is on by default"
+    )
+}
+
 /// Does it.
 pub(super) fn run(request: Request) -> Result<Report, Failure> {
     if let Request::Window { project, frame_times } = request {
-        // The window shows progress itself, and Ctrl-C is to end it at once.
-        app::run(project, frame_times.as_deref())?;
-        return Ok(Report::default());
+        return Ok(open_window(project, frame_times.as_deref())?);
     }
     let (terminal, progress) = Terminal::start();
     let mut report = match request {
         Request::Window { .. } => Report::default(),
         Request::Demo { out } => told(demo::run(&out, &progress)?),
-        Request::Synth { out, settings } => told(synth::write(&out, &settings, &progress)?),
+        Request::Synth { out, settings } => told(survey_files::write(&out, &settings, &progress)?),
         Request::Info { path, segy, reading } => info::describe(&path, &segy, &reading, &progress)?,
         Request::Import { project, command } => import(&project, command, &progress)?,
         Request::Export { project, out, horizon, format, options } => {
@@ -62,7 +76,7 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             report
         }
         Request::ExportVolume { project, out, volume, format } => {
-            told(volume_file::write(&Project::open(&project)?, &out, &volume, format, &progress)?)
+            told(segy_export::write(&Project::open(&project)?, &out, &volume, format, &progress)?)
         }
         Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,
@@ -91,7 +105,7 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
         }
         Request::SetRaw { project, volume, map, range } => {
             let project = Project::open(&project)?;
-            let raw = style::raw_colour(project.document(), volume.as_deref(), map, range)?;
+            let raw = styles::raw_colour(project.document(), volume.as_deref(), map, range)?;
             change(project, &Command::SetRaw(SetRaw { raw }), &progress)?
         }
         Request::List { project, what } => list::list(&Project::open(&project)?, what)?,
@@ -165,7 +179,7 @@ fn export(
     let project = Project::open(project)?;
     let document = project.document();
     let entry = &document.horizons[document.position(Noun::Horizon, horizon)?];
-    let horizon = data::read_horizon(project.root(), entry, progress)?;
+    let horizon = content::read_horizon(project.root(), entry, progress)?;
     let written = formats::write_horizon_as(out, &horizon, document.frame()?, format, options)?;
     let mut report = Report::line(format!("{} written as {format}", out.display()));
     for note in &written.notes {
@@ -182,7 +196,7 @@ fn parameterize(path: &Path, size: Option<[usize; 3]>, progress: &Progress) -> a
         Some(size) => size,
         None => project.document().frame()?.size(),
     };
-    let Some(mut rock) = pipeline::rock(&project, progress)? else {
+    let Some(mut rock) = load::rock(&project, progress)? else {
         anyhow::bail!(
             "the project has no horizons, so there are no layers to parameterize; add one with `petroglyph horizon add`"
         );
@@ -234,7 +248,7 @@ fn patterns(out: &Path, project: Option<&Path>) -> anyhow::Result<Report> {
     let library = match project {
         Some(path) => {
             let project = Project::open(path)?;
-            library::of_project(project.root(), project.document())?
+            styles::pattern_library(project.root(), project.document())?
         }
         None => TextureLibrary::builtin()?,
     };

@@ -4,13 +4,13 @@ use super::args::{WellAction, WellAddArgs};
 use super::interpretation::word;
 use super::report::Report;
 use super::request::{Listing, Request, Usage, numbers};
-use crate::command::{AddWell, Command, RemoveWell, RenameWell, WellAdded};
-use crate::data;
-use crate::error::Noun;
-use crate::project::Project;
+use formats::ZUnit;
+use formats::well::{WellFiles, WellOptions, WellReport};
+use project::Project;
+use project::command::{AddWell, Command, RemoveWell, RenameWell, WellAdded};
+use project::content;
+use project::error::Noun;
 use survey::Progress;
-use survey::formats::ZUnit;
-use survey::well::{WellFiles, WellOptions, WellReport};
 
 /// A typed action as a request.
 pub(super) fn well(action: WellAction) -> Result<Request, Usage> {
@@ -62,7 +62,7 @@ pub(super) fn list(project: &Project) -> Report {
 pub(super) fn show(project: &Project, name: &str) -> anyhow::Result<Report> {
     let document = project.document();
     let entry = &document.wells[document.position(Noun::Well, name)?];
-    let well = data::read_well(project.root(), entry)?;
+    let well = content::read_well(project.root(), entry)?;
     let found = WellAdded::of(&well, project.root(), document, WellReport::default(), &Progress::silent())?;
     let mut report = Report::line(found.to_string().trim_end());
     report.fields(&found).field("stations", well.path.stations());

@@ -11,6 +11,7 @@ mod help;
 mod hostile;
 mod kill;
 mod program;
+mod proposed_faults;
 mod safety;
 mod see_through;
 mod store;

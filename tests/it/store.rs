@@ -1,12 +1,12 @@
 //! Volumes into the store and out of it: bounded memory, every trace order, interruptions, SEG-Y again, attributes.
 
 use crate::program::{Run, bytes, command, project, run_in};
+use segy::{SegyOptions, WriteFormat, WriteOptions};
 use std::fs;
 use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
-use survey::segy::{self, SegyOptions, WriteFormat, WriteOptions};
-use survey::store::StoredVolume;
+use store::StoredVolume;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
 /// Whole numbers below 2¹⁵ that no two neighbours share.

@@ -9,8 +9,8 @@ use interp::{Extremum, GrowSettings, Method, Surface, Surfaces, Vertex, grow_sur
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::time::Instant;
-use survey::synth::{SynthSettings, Synthetic};
 use survey::{Progress, Volume};
+use synth::{SynthSettings, Synthetic};
 
 /// Signal-to-noise ratios.
 const RATIOS: [f64; 3] = [10.0, 3.0, 1.5];

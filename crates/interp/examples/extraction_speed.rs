@@ -13,8 +13,8 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{BufReader, BufWriter, Read, Write};
 use std::path::Path;
 use std::time::Instant;
-use survey::synth::{SynthSettings, Synthetic};
 use survey::{Progress, Volume};
+use synth::{SynthSettings, Synthetic};
 
 /// Bytes of a NumPy header.
 const HEADER: usize = 128;

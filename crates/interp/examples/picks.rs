@@ -8,10 +8,10 @@ use interp::evaluate::{EvaluateSettings, HorizonScore, Parts, PickSettings, Trut
 use interp::faults::{Evidence, ProposeSettings, propose_faults};
 use interp::reassembly::{VoxelSheet, reassemble};
 use interp::{Forest, ForestSettings, GrowSettings, grow_surfaces};
+use model::FaultNetwork;
 use std::error::Error;
 use survey::Progress;
-use survey::model::FaultNetwork;
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 
 /// Signal-to-noise ratios.
 const SNR: [f64; 3] = [10.0, 3.0, 1.5];

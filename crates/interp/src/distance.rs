@@ -31,7 +31,7 @@ use search::Block;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use survey::Progress;
-pub use survey::store::BEYOND;
+pub use survey::candidates::BEYOND;
 
 /// The code of the greatest distance.
 const FARTHEST: f32 = 254.0;

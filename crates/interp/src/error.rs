@@ -1,6 +1,7 @@
 //! What can stand against an extraction or an assembly.
 
 use survey::Cancelled;
+use survey::source::SourceError;
 
 /// A failure of this crate.
 #[derive(Debug, thiserror::Error)]
@@ -35,9 +36,9 @@ pub enum Error {
     /// Surfaces could not be grown.
     #[error(transparent)]
     Growing(Box<dyn std::error::Error + Send + Sync>),
-    /// Candidates could not be read or written.
+    /// Candidates could not be handed over.
     #[error(transparent)]
-    Store(#[from] survey::store::StoreError),
+    Sink(SourceError),
     /// Stored trees contradict each other.
     #[error("the stored surface trees are damaged: {fact}; delete them and extract again")]
     DamagedForest {

@@ -25,7 +25,7 @@ pub use truth::{TruthEvent, TruthIndex};
 use crate::surfaces::Surfaces;
 use rayon::prelude::*;
 use serde::Serialize;
-use survey::synth::SynthTruth;
+use synth::SynthTruth;
 
 /// What counts as right.
 #[derive(Debug, Clone, PartialEq)]

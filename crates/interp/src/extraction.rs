@@ -1,6 +1,6 @@
 //! From a volume to horizon candidates: surfaces, their trees, and for every voxel the closest leaf.
 //!
-//! [`extract`] keeps the result in memory; [`extract_to_store`] writes it slab by slab, for volumes larger than memory too: growing reads
+//! [`extract`] keeps the result in memory; [`extract_into`] hands it over slab by slab, for volumes larger than memory too: growing reads
 //! slabs ([`SlabSource`]), and of distances one slab is in memory at a time. Both give the same candidates. Space: voxels.
 
 #[cfg(test)]
@@ -8,16 +8,15 @@ mod tests;
 
 use crate::distance::{DistanceSettings, LeafDistances};
 use crate::error::Error;
-use crate::extrema::{ExtremaError, SlabSource};
+use crate::extrema::ExtremaError;
 use crate::forest::{Forest, ForestSettings};
 use crate::grow::{GrowError, GrowSettings, grow_slabs};
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::ops::Range;
-use std::path::Path;
 use std::time::Instant;
 use survey::Progress;
-use survey::store::{CandidateBox, CandidateInfo, CandidateWriter, StoreError, StoredVolume};
+use survey::candidates::{CandidateBox, CandidateInfo, CandidateSink};
+use survey::source::{SlabSource, SourceError};
 
 /// How candidates are extracted.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -151,12 +150,13 @@ where
     Ok(Extraction { forest, candidates, report })
 }
 
-/// Extracts the candidates of a volume into the store; `key` identifies source and settings. What is at `path` is replaced at the very end.
+/// Extracts the candidates of a volume slab by slab into a sink, which `begin` makes for a size and a count of leaves; `key` identifies
+/// source and settings.
 ///
 /// # Errors
-/// As [`extract`], and [`Error::Store`]; `path` is then what it was before.
-pub fn extract_to_store<S>(
-    path: &Path,
+/// As [`extract`], and [`Error::Sink`]; the sink is then dropped before its end.
+pub fn extract_into<S, K>(
+    begin: impl FnOnce([usize; 3], usize) -> Result<K, SourceError>,
     key: &str,
     source: &S,
     settings: &ExtractSettings,
@@ -165,18 +165,19 @@ pub fn extract_to_store<S>(
 where
     S: SlabSource,
     GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
+    K: CandidateSink,
 {
     let start = Instant::now();
     let (forest, mut report) = grow_forest(source, settings, progress)?;
     let size = source.size();
-    let mut writer = CandidateWriter::create(path, size, forest.leaf_count())?;
+    let mut sink = begin(size, forest.leaf_count()).map_err(Error::Sink)?;
     let measuring = Instant::now();
     let distances = LeafDistances::new(&forest, &settings.distance)?;
     let (mut reached, mut storing) = (0, 0.0);
-    distances.slabs(writer.slab_inlines(), progress, |slab| {
+    distances.slabs(sink.slab_inlines(), progress, |slab| {
         let writing = Instant::now();
         reached += slab.leaf.iter().filter(|&&leaf| leaf != 0).count();
-        writer.write_slab(slab.x.start, &slab.distance, &slab.leaf, progress)?;
+        sink.write_slab(slab.x.start, &slab.distance, &slab.leaf, progress).map_err(Error::Sink)?;
         storing += writing.elapsed().as_secs_f64();
         Ok::<(), Error>(())
     })?;
@@ -193,10 +194,10 @@ where
         size,
         max_distance: settings.distance.max_distance,
         leaves: forest.leaf_count(),
-        report: serde_json::to_value(&report).unwrap_or_default(),
+        report: report.clone(),
     };
     drop(forest);
-    writer.finish(&info, &tables, progress)?;
+    sink.finish(&info, &tables, progress).map_err(Error::Sink)?;
     report.seconds.storing += writing.elapsed().as_secs_f64();
     report.seconds.total = start.elapsed().as_secs_f64();
     Ok(report)
@@ -231,25 +232,4 @@ where
         seconds: StageSeconds { growing, trees: start.elapsed().as_secs_f64() - growing, ..StageSeconds::default() },
     };
     Ok((forest, report))
-}
-
-impl SlabSource for StoredVolume {
-    type Error = StoreError;
-
-    fn size(&self) -> [usize; 3] {
-        Self::size(self, 0)
-    }
-
-    fn read(&self, inlines: Range<usize>, visit: &mut dyn FnMut(usize, usize, &[f32])) -> Result<(), StoreError> {
-        let [_, ny, nz] = Self::size(self, 0);
-        let slab = self.read_box_f32(0, [inlines.start, 0, 0], [inlines.len(), ny, nz])?;
-        for x in 0..inlines.len() {
-            for y in 0..ny {
-                if slab.is_live(x, y) {
-                    visit(inlines.start + x, y, slab.trace(x, y));
-                }
-            }
-        }
-        Ok(())
-    }
 }

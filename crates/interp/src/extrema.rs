@@ -13,41 +13,8 @@ pub mod refine;
 use crate::surfaces::Extremum;
 use rayon::prelude::*;
 use std::ops::Range;
-use survey::{Progress, Volume};
-
-/// Where traces come from: a volume in memory, or a store that is read slab by slab.
-pub trait SlabSource: Sync {
-    /// Why a slab could not be read.
-    type Error: Send;
-
-    /// `[inlines, crosslines, samples]`.
-    fn size(&self) -> [usize; 3];
-
-    /// Calls `visit(x, y, trace)` for every live trace with x in `inlines`, in the order (x, y).
-    ///
-    /// # Errors
-    /// What the source says.
-    fn read(&self, inlines: Range<usize>, visit: &mut dyn FnMut(usize, usize, &[f32])) -> Result<(), Self::Error>;
-}
-
-impl SlabSource for Volume<f32> {
-    type Error = std::convert::Infallible;
-
-    fn size(&self) -> [usize; 3] {
-        Self::size(self)
-    }
-
-    fn read(&self, inlines: Range<usize>, visit: &mut dyn FnMut(usize, usize, &[f32])) -> Result<(), Self::Error> {
-        for x in inlines {
-            for y in 0..self.size()[1] {
-                if self.is_live(x, y) {
-                    visit(x, y, self.trace(x, y));
-                }
-            }
-        }
-        Ok(())
-    }
-}
+use survey::Progress;
+use survey::source::SlabSource;
 
 /// The extrema of one kind, trace by trace in the order (x, y), top first.
 #[derive(Debug, Clone, PartialEq)]

@@ -35,8 +35,8 @@ pub use pairs::Pair;
 
 use crate::reassembly::VoxelSheet;
 use glam::{DVec2, DVec3};
+use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
-use survey::model::FaultNetwork;
 use survey::{Cancelled, Fault, Progress, SurveyGeometry, TriangleMesh, Volume};
 
 /// How faults are looked for.

@@ -10,8 +10,8 @@ mod tests;
 use crate::reassembly::VoxelSheet;
 use fill::Plate;
 use glam::Vec3;
+use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
-use survey::model::FaultNetwork;
 use survey::{Cancelled, Progress, Quality};
 
 /// A hole in a sheet.

@@ -10,8 +10,8 @@ use crate::assembly::{Overlap, Selection};
 use crate::forest::Forest;
 use crate::surfaces::Vertex;
 use glam::Vec3;
+use model::FaultNetwork;
 use std::collections::{HashSet, VecDeque};
-use survey::model::FaultNetwork;
 use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry};
 
 /// A sheet on the survey's lattice.

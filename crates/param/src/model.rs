@@ -1,9 +1,9 @@
 //! What the parameterization needs to know of an interpretation.
 
 use glam::{DMat3, Vec3};
+pub use model::Region;
+use model::StructuralModel;
 use survey::HeightField;
-pub use survey::model::Region;
-use survey::model::StructuralModel;
 
 /// An interpretation made solid: sheets that are defined everywhere, and the region of every point.
 ///

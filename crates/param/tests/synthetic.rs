@@ -1,9 +1,9 @@
 //! The synthetic survey with its faults and its unconformity: k on the true horizons, angles, blocks.
 
+use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization, accuracy};
 use survey::Progress;
-use survey::model::{ModelSettings, StructuralModel};
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 
 #[test]
 fn the_synthetic_survey_holds_the_designs_figures() {

@@ -4,6 +4,7 @@
 //! from the GPU, and prints their times and differences.
 
 use glam::DVec3;
+use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::compare::compare;
 use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Scene, VoxelBox};
@@ -11,8 +12,7 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 use survey::Progress;
-use survey::model::{ModelSettings, StructuralModel};
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 use ttf::{
     BlockExtent, ColourMap, LayerExtent, RawColour, RgbaFunction, TextureLibrary, TransferFunctions, TtfTables,
     symmetric_clip,

@@ -6,8 +6,8 @@
 //! voxels, and never more than [`FARTHEST`].
 
 use glam::{DVec2, DVec3};
+use model::section::SectionPlane;
 use rayon::prelude::*;
-use survey::section::SectionPlane;
 
 /// Distances beyond this count as this, voxels.
 pub const FARTHEST: f64 = 4.0;
@@ -49,7 +49,7 @@ impl BoundaryAccuracy {
 ///
 /// ```
 /// use glam::DVec3;
-/// let plane = survey::section::SectionPlane::inline(0.0, DVec3::ZERO, DVec3::splat(10.0));
+/// let plane = model::section::SectionPlane::inline(0.0, DVec3::ZERO, DVec3::splat(10.0));
 /// let found = render::accuracy::boundaries(&plane, 4.0, |p| u32::from(p.z > 5.05), |p| u32::from(p.z > 5.0)).unwrap();
 /// assert!((found.worst - 0.05).abs() < 1e-3);
 /// ```

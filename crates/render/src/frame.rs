@@ -14,8 +14,8 @@ use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
 use crate::wells::Tubes;
 use glam::{DVec3, Vec3};
+use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
-use survey::model::StructuralModel;
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
 use ttf::{RawColour, TtfTables};
 

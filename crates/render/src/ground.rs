@@ -17,9 +17,9 @@
 use crate::scene::{Ground, Scene};
 use crate::visible::Ray;
 use glam::{DVec3, Mat3, Vec2, Vec3};
+use model::{Region, StructuralModel};
 use rayon::prelude::*;
 use survey::SurveyGeometry;
-use survey::model::{Region, StructuralModel};
 
 /// Shortest step near the ground, voxels: ridges thinner than this can be missed.
 pub const SHORTEST_STEP: f32 = 0.5;
@@ -361,9 +361,9 @@ impl Heights {
 mod tests {
     use super::*;
     use crate::VoxelBox;
+    use model::ModelSettings;
     use survey::Progress;
-    use survey::model::ModelSettings;
-    use survey::synth::{SynthSettings, Synthetic};
+    use synth::{SynthSettings, Synthetic};
 
     /// Walks rays in short steps and asks the model itself.
     #[test]

@@ -5,8 +5,8 @@ use crate::leaves::{BORDER, BORDER_REACH, BORDER_STEP};
 use crate::voxel_box::VoxelBox;
 use crate::wells::WellPath;
 use glam::Vec3;
+use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
-use survey::model::StructuralModel;
 use survey::{SurveyGeometry, Volume};
 use ttf::TtfTables;
 

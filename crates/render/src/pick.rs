@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::shade::{Hit, stopping_hit};
 use crate::visible::Ray;
 use glam::{DVec2, Vec3};
-use survey::model::Region;
+use model::Region;
 
 /// What was hit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -14,7 +14,7 @@ use crate::media::light::LightVolume;
 use crate::visible::{FaceHit, Ray, TOUCH};
 use crate::wells::WellHit;
 use glam::{Vec3, Vec4};
-use survey::model::Region;
+use model::Region;
 use ttf::{FaceFrame, FlatFootprint, FlatPoint, ShadePoint, linear_from_srgb, srgb_from_linear};
 
 /// Straight RGBA along rays: what stops each, and what is behind ground that lets light through. Quickest for neighbours in the picture.

@@ -4,7 +4,7 @@
 //! sample costs less than its share of the former.
 
 /// `count` zeros. The memory is first touched, and so placed, by the threads that write to it.
-pub(crate) fn zeroed(count: usize) -> Vec<f32> {
+pub fn zeroed(count: usize) -> Vec<f32> {
     let samples = vec![0.0_f32; count];
     advise(&samples);
     samples

@@ -1,8 +1,12 @@
-//! Nouns and files of a seismic survey and its interpretation.
+//! The nouns of a seismic survey and its interpretation.
 //!
 //! Everything the other crates share lives here: where a sample is ([`geometry`]), what was measured
-//! ([`volume`]), what was interpreted ([`horizon`], [`fault`], [`stratigraphy`]), and the surfaces they are
-//! evaluated on ([`height_field`], [`mesh`]).
+//! ([`volume`], [`well`]), what was interpreted ([`horizon`], [`fault`], [`stratigraphy`]), the surfaces they are
+//! evaluated on ([`height_field`], [`mesh`]), what was found in a volume ([`candidates`]), how long work reports and is cancelled
+//! ([`progress`]), what can be stated about a file ([`remedy`]), and how samples are handed on when they do not all fit into memory
+//! ([`source`]).
+//!
+//! Deliberately absent: files and formats, the store, any algorithm on more than one of these nouns.
 //!
 //! # Spaces
 //!
@@ -15,25 +19,22 @@
 //!
 //! Only [`geometry::SurveyGeometry`] converts between them.
 
-pub mod attribute;
+pub mod candidates;
 pub mod fault;
-pub mod formats;
 pub mod geometry;
 pub mod height_field;
 pub mod horizon;
-mod huge_pages;
+pub mod huge_pages;
 pub mod mesh;
-pub mod model;
 pub mod progress;
 pub mod remedy;
-pub mod section;
-pub mod segy;
-pub mod store;
+pub mod sample;
+pub mod source;
 pub mod stratigraphy;
-pub mod synth;
 pub mod volume;
 pub mod well;
 
+pub use candidates::{CandidateBox, CandidateInfo, ForestTables};
 pub use fault::Fault;
 pub use geometry::{LineAxis, SurveyGeometry, VerticalAxis, VerticalUnit};
 pub use height_field::HeightField;

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use petroglyph::project::Document;
+use project::document::Document;
 
 /// Writes what fuzzing starts from to the folder that the environment names (`FUZZ_SEEDS`), if it names one.
 fn write_seeds() -> Result<(), Box<dyn std::error::Error>> {

@@ -6,9 +6,9 @@
 use super::{CutLine, Source, lines_of, pixels};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
+use model::section::SectionPlane;
 use render::FaceData;
 use survey::SurveyGeometry;
-use survey::section::SectionPlane;
 
 /// A leg shorter than this is none, voxels.
 const SHORTEST: f64 = 1e-6;

@@ -1,9 +1,9 @@
 //! The three sections along the lattice: which way they run, and the numbers that people know their places by.
 
 use glam::{DVec2, DVec3};
+use model::section::SectionPlane;
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
-use survey::section::SectionPlane;
 
 /// A section along the lattice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -14,8 +14,8 @@ pub use kind::{SectionKind, value_at};
 
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
+use model::section::{LineKind, LineQuality, Section, SectionPlane};
 use render::{FaceData, Inputs, VoxelBox};
-use survey::section::{LineKind, LineQuality, Section, SectionPlane};
 use ttf::RawColour;
 
 /// What sections are cut from. Cheap to copy.

@@ -12,8 +12,8 @@ use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Picture, Stroke
 use crate::style::{ACCENT, FAULT_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RIM_PT, TITLE_PT};
 use glam::DVec2;
 use image::RgbaImage;
+use model::section::{LineKind, LineQuality};
 use std::sync::Arc;
-use survey::section::{LineKind, LineQuality};
 use ttf::Colour;
 
 /// Height of the row with the title, points.

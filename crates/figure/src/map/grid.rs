@@ -5,8 +5,8 @@
 use super::Mapped;
 use crate::interpretation::{Interpretation, SheetHole};
 use glam::Vec3;
+use model::StructuralModel;
 use rayon::prelude::*;
-use survey::model::StructuralModel;
 use survey::{Quality, SurveyGeometry};
 
 /// What is known at a trace.

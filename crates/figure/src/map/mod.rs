@@ -15,8 +15,8 @@ use crate::interpretation::Interpretation;
 use glam::DVec2;
 use grid::Grid;
 use image::{Rgba, RgbaImage};
+use model::StructuralModel;
 use survey::SurveyGeometry;
-use survey::model::StructuralModel;
 use ttf::{Colour, ColourMap, RgbaFunction};
 
 /// What is mapped, by indices of horizons, youngest first.

@@ -4,7 +4,7 @@ use super::error::AssemblyError;
 use super::occupancy::{Occupancy, Overlap};
 use super::selection::Selection;
 use crate::forest::Forest;
-use survey::model::FaultNetwork;
+use model::FaultNetwork;
 
 /// How far a climb may go.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -4,9 +4,9 @@
 
 use crate::surfaces::Surfaces;
 use glam::Vec3;
+use model::FaultNetwork;
 use serde::Serialize;
 use std::ops::Range;
-use survey::model::FaultNetwork;
 
 /// Where sheets lie over one another.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

@@ -6,9 +6,9 @@ use crate::holes::find_holes;
 use crate::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
 use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
 use glam::Vec3;
-use survey::model::{FaultNetwork, ModelSettings};
-use survey::synth::closed_form::ClosedForm;
+use model::{FaultNetwork, ModelSettings};
 use survey::{Progress, Quality, SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
 
 /// One surface: z over traces; a cell has two triangles where its four corners have a vertex.
 pub(crate) type Height<'a> = &'a dyn Fn(usize, usize) -> Option<f32>;

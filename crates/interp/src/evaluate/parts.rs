@@ -8,7 +8,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::VecDeque;
-use survey::synth::SynthTruth;
+use synth::SynthTruth;
 
 /// A connected part of a true horizon.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]

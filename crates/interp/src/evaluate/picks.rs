@@ -13,12 +13,12 @@ use super::{EvaluateSettings, Parts, TruthIndex, share};
 use crate::assembly::{ClimbSettings, Selection, highest_valid, leaf_at};
 use crate::forest::Forest;
 use glam::Vec3;
+use model::FaultNetwork;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::VecDeque;
-use survey::model::FaultNetwork;
-use survey::synth::SynthTruth;
 use survey::{Cancelled, Progress};
+use synth::SynthTruth;
 
 /// When a horizon is done, and how picks are made.
 #[derive(Debug, Clone, PartialEq)]
@@ -81,7 +81,7 @@ pub fn count_picks(
     progress: &Progress,
 ) -> Result<Vec<PickScore>, Cancelled> {
     progress.begin("picking", truth.horizons.len() as u64);
-    let score = |(h, horizon): (usize, &survey::synth::TruthHorizon)| {
+    let score = |(h, horizon): (usize, &synth::TruthHorizon)| {
         let target = Target::of(forest, truth, index, h, evaluate.tolerance);
         let parts = Parts::of(truth, h);
         let mut sizes = vec![0; parts.empty().len()];

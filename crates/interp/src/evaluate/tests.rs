@@ -2,9 +2,9 @@
 
 use super::*;
 use crate::surfaces::{Extremum, Surface, Vertex};
+use model::FaultNetwork;
 use survey::Progress;
-use survey::model::FaultNetwork;
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 
 fn truth() -> SynthTruth {
     let settings = SynthSettings { size: [48, 40, 64], snr: None, ..SynthSettings::default() };

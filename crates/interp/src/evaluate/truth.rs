@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 use std::ops::Range;
-use survey::synth::{Reflector, SynthTruth};
+use synth::{Reflector, SynthTruth};
 
 /// A reflector over one trace.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,8 +1,9 @@
-//! The whole extraction: in memory and through the store, and where there is nothing to find.
+//! The whole extraction: in memory and slab by slab, and where there is nothing to find.
 
 use super::*;
+use serde_json::Value;
 use survey::Volume;
-use survey::store::{BEYOND, StoredCandidates};
+use survey::candidates::{BEYOND, ForestTables};
 
 /// Dipping layers, a cosine of depth.
 fn layered(size: [usize; 3]) -> Volume<f32> {
@@ -37,27 +38,76 @@ fn layers_are_as_far_as_their_cosine_says() {
     }
 }
 
+/// Keeps in memory what it is given, and puts it into `done` at the end.
+struct Kept<'a> {
+    candidates: CandidateBox,
+    done: &'a mut Option<(CandidateBox, CandidateInfo<Value>, ForestTables)>,
+}
+
+/// Inlines of a slab of [`Kept`]: two whole slabs and a rest of what is extracted here.
+const SLAB: usize = 64;
+
+impl CandidateSink for Kept<'_> {
+    fn slab_inlines(&self) -> usize {
+        SLAB
+    }
+
+    fn write_slab(&mut self, first: usize, distance: &[u8], leaf: &[u32], _: &Progress) -> Result<(), SourceError> {
+        let [nx, ny, nz] = self.candidates.size;
+        assert_eq!((self.candidates.distance.len(), first % SLAB), (first * ny * nz, 0));
+        assert_eq!((distance.len(), leaf.len()), ((nx - first).min(SLAB) * ny * nz, distance.len()));
+        self.candidates.distance.extend(distance);
+        self.candidates.leaf.extend(leaf);
+        Ok(())
+    }
+
+    fn finish<R: Serialize>(
+        self,
+        info: &CandidateInfo<R>,
+        forest: &ForestTables,
+        _: &Progress,
+    ) -> Result<(), SourceError> {
+        let info = serde_json::from_value(serde_json::to_value(info)?)?;
+        *self.done = Some((self.candidates, info, forest.clone()));
+        Ok(())
+    }
+}
+
+/// A sink that begins when it is asked to.
+fn kept<'a>(
+    done: &'a mut Option<(CandidateBox, CandidateInfo<Value>, ForestTables)>,
+) -> impl FnOnce([usize; 3], usize) -> Result<Kept<'a>, SourceError> {
+    |size, _| Ok(Kept { candidates: CandidateBox { size, distance: Vec::new(), leaf: Vec::new() }, done })
+}
+
 #[test]
-fn the_store_gives_what_memory_holds() {
+fn slabs_give_what_memory_holds() {
     let size = [150, 20, 40];
     let volume = layered(size);
     let wanted = extracted(&volume);
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("candidates.zarr");
     let silent = Progress::silent();
     let settings = ExtractSettings::default();
-    let report = extract_to_store(&path, "key", &volume, &settings, &silent).unwrap();
-    let stored = StoredCandidates::open(&path).unwrap();
-    assert_eq!((stored.info().key.as_str(), stored.info().leaves), ("key", report.leaves));
-    assert_eq!(stored.read(0, &silent).unwrap(), wanted.candidates);
-    assert_eq!(Forest::from_tables(stored.read_forest(&silent).unwrap(), size).unwrap(), wanted.forest);
-    let kept: ExtractReport = serde_json::from_value(stored.info().report.clone()).unwrap();
-    assert_eq!((kept.surfaces, kept.within_reach), (wanted.report.surfaces, wanted.report.within_reach));
+    let mut done = None;
+    let report = extract_into(kept(&mut done), "key", &volume, &settings, &silent).unwrap();
+    let (candidates, info, tables) = done.take().unwrap();
+    assert_eq!((info.key.as_str(), info.leaves), ("key", report.leaves));
+    assert_eq!(candidates, wanted.candidates);
+    assert_eq!(Forest::from_tables(tables, size).unwrap(), wanted.forest);
+    let told: ExtractReport = serde_json::from_value(info.report).unwrap();
+    assert_eq!((told.surfaces, told.within_reach), (wanted.report.surfaces, wanted.report.within_reach));
     let cancelled = Progress::silent();
     cancelled.cancel();
-    let again = extract_to_store(&path, "other", &volume, &settings, &cancelled);
+    let again = extract_into(kept(&mut done), "other", &volume, &settings, &cancelled);
     assert!(matches!(again, Err(Error::Cancelled(_))));
-    assert_eq!(StoredCandidates::open(&path).unwrap().info().key, "key", "what was there is still there");
+    assert_eq!(done, None, "a sink is not ended by a cancel");
+}
+
+#[test]
+fn a_sink_that_fails_is_said() {
+    let full = |_: [usize; 3], _: usize| -> Result<Kept<'static>, SourceError> { Err("the disk is full".into()) };
+    let settings = ExtractSettings::default();
+    let error = extract_into(full, "", &layered([8, 8, 40]), &settings, &Progress::silent()).unwrap_err();
+    assert!(matches!(error, Error::Sink(_)) && error.to_string() == "the disk is full");
 }
 
 #[test]
@@ -70,10 +120,9 @@ fn nothing_is_found_where_nothing_is() {
         assert_eq!((found.report.surfaces, found.report.leaves), (0, 0));
         assert!(found.report.nothing_found().unwrap().contains("no surface at least 4 traces wide"));
         assert!(found.candidates.distance.iter().all(|&code| code == BEYOND));
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("candidates.zarr");
-        extract_to_store(&path, "", &volume, &ExtractSettings::default(), &Progress::silent()).unwrap();
-        assert_eq!(StoredCandidates::open(&path).unwrap().info().leaves, 0);
+        let mut done = None;
+        extract_into(kept(&mut done), "", &volume, &ExtractSettings::default(), &Progress::silent()).unwrap();
+        assert_eq!(done.unwrap().1.leaves, 0);
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::*;
 use std::f64::consts::TAU;
+use survey::Volume;
 
 fn found(trace: &[f32], kind: Extremum) -> Vec<(f32, f32)> {
     let mut all = Vec::new();

@@ -8,10 +8,10 @@
 
 use super::Pair;
 use glam::{DVec2, DVec3, Vec3};
+use model::{FaultNetwork, FaultSurface};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use survey::SurveyGeometry;
-use survey::model::{FaultNetwork, FaultSurface};
 
 /// Farthest that the rims of a pair may be from a known fault, traces: what the proposals of drawn faults are off by, and half as much again.
 const REACH: f64 = 5.0;

@@ -2,10 +2,9 @@
 
 use super::*;
 use crate::reassembly::from_horizon;
-use survey::attribute::{DipSettings, SemblanceSettings, dip, semblance};
-use survey::model::{FaultNetwork, ModelSettings};
-use survey::synth::{SynthSettings, Synthetic};
+use model::{FaultNetwork, ModelSettings};
 use survey::{NodeGrid, Quality, Sheet, VerticalUnit};
+use synth::{SynthSettings, Synthetic};
 
 fn survey_of(seed: u64) -> Synthetic {
     let settings = SynthSettings { size: [128, 112, 128], seed, snr: None, ..SynthSettings::default() };
@@ -94,28 +93,6 @@ fn the_faults_of_a_synthetic_survey_are_found_where_they_are() {
             assert!((0.7..1.35).contains(&throw), "{}: {:?} of {}", truth.name, nearest.throw, truth.throw_m);
             assert!(nearest.horizons.len() >= 3, "{:?}", nearest.horizons);
         }
-    }
-}
-
-/// One horizon knows a fault's place and not its dip: semblance along it does.
-#[test]
-fn the_dip_of_a_fault_through_one_horizon_comes_from_the_data() {
-    let survey = survey_of(1);
-    let dips = dip(&survey.seismic, &DipSettings::default(), &Progress::silent()).unwrap();
-    let likeness = semblance(&survey.seismic, &dips, &SemblanceSettings::default(), &Progress::silent()).unwrap();
-    let sheets = tracked(&survey).swap_remove(1);
-    let evidence = [Evidence { name: "Bravo", sheets: &sheets }];
-    let found = proposed(&evidence, &survey.geometry, Some(&likeness));
-    for truth in survey.truth.faults.iter().filter(|truth| truth.tip.is_none()) {
-        // Where it meets the horizon, on the middle crossline; its dip there is that of the middle of the volume within a few degrees.
-        let at = |proposal: &Proposal| {
-            let middle = proposal.mesh.vertices.iter().copied().sum::<DVec3>() / proposal.mesh.vertices.len() as f64;
-            truth.side_m(survey.geometry.metric_from_voxel() * survey.geometry.voxel_from_world(middle)).abs()
-        };
-        let nearest = found.iter().min_by(|a, b| at(a).total_cmp(&at(b))).unwrap();
-        let dip_deg = (1.0 / truth.run.abs()).atan().to_degrees();
-        assert!((nearest.dip_deg - dip_deg).abs() < 8.0, "{}: {} of {dip_deg} degrees", truth.name, nearest.dip_deg);
-        assert_eq!(nearest.reverse, truth.throw_m < 0.0, "{}", truth.name);
     }
 }
 

@@ -3,7 +3,7 @@
 use super::{Forest, Node, check};
 use crate::error::Error;
 use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
-use survey::store::ForestTables;
+use survey::candidates::ForestTables;
 
 /// Stands for "none" in a table.
 const NONE: u32 = u32::MAX;

@@ -39,10 +39,11 @@ mod surroundings;
 mod tests;
 mod union_find;
 
-use crate::extrema::{ExtremaError, SlabSource, find_extrema};
+use crate::extrema::{ExtremaError, find_extrema};
 use crate::surfaces::{Extremum, Surfaces};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use survey::source::SlabSource;
 use survey::{Progress, Volume};
 
 /// How surfaces are grown.

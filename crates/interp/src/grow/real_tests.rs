@@ -2,9 +2,9 @@
 
 use super::{GrowSettings, grow_surfaces};
 use crate::surfaces::{Surface, Surfaces};
+use segy::SegyOptions;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use survey::segy::{self, SegyOptions};
 use survey::{Progress, Volume};
 
 /// The folder of the real data, if it is known.

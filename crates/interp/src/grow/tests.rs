@@ -3,7 +3,7 @@
 use super::*;
 use crate::evaluate::{EvaluateSettings, evaluate};
 use crate::surfaces::Surface;
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 
 /// A volume of reflectors of alternating polarity every `spacing` samples, at depth(x, y) + n·spacing.
 fn layered(size: [usize; 3], spacing: f32, depth: impl Fn(usize, usize) -> f32) -> Volume<f32> {

@@ -1,9 +1,9 @@
 //! Holes filled beside closed forms, and never across a fault.
 
 use super::*;
-use survey::model::ModelSettings;
-use survey::synth::closed_form::ClosedForm;
+use model::ModelSettings;
 use survey::{SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
 
 const SIZE: [usize; 2] = [60, 50];
 

@@ -15,9 +15,9 @@ use crate::frame::shows_depths;
 use crate::gpu::Gpu;
 use crate::outline::{FaceRect, face_rects};
 use glam::DVec3;
+use model::StructuralModel;
 use param::{Parameterization, RegionGrid, SheetRef};
 use rayon::prelude::*;
-use survey::model::StructuralModel;
 use ttf::tables::NONE;
 
 /// Thickness below which a layer has no inside, voxels, as `param` and the shader have it.

@@ -12,8 +12,8 @@ use super::prepared::BRICK;
 use super::{LayerOpacity, Medium, MediumColour};
 use crate::ground::air_layer;
 use glam::Vec3;
+use model::StructuralModel;
 use rayon::prelude::*;
-use survey::model::StructuralModel;
 use ttf::{TtfTables, linear_from_srgb};
 
 /// Largest distance stored, bricks.
@@ -258,9 +258,9 @@ impl LayerLooks {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use model::ModelSettings;
     use survey::Progress;
-    use survey::model::ModelSettings;
-    use survey::synth::{SynthSettings, Synthetic};
+    use synth::{SynthSettings, Synthetic};
 
     #[test]
     fn distances_are_those_of_a_search() {

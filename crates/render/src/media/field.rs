@@ -15,8 +15,8 @@ use crate::frame::{NO_CANDIDATES, NO_DEPTHS};
 use crate::inputs::{Candidates, Inputs, NamedVolume};
 use crate::leaves::{BORDER_TONE, leaf_colour};
 use glam::{Mat3, Vec3};
+use model::StructuralModel;
 use std::sync::Arc;
-use survey::model::StructuralModel;
 use ttf::{TtfTables, linear_from_srgb};
 
 /// Where a medium fills space.

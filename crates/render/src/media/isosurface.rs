@@ -15,9 +15,9 @@ use super::table::{NO_DATA_BELOW, extinction};
 use super::{MAX_ISOSURFACES, Media};
 use crate::error::SceneError;
 use glam::Vec3;
+use model::StructuralModel;
 use param::Parameterization;
 use serde::{Deserialize, Serialize};
-use survey::model::StructuralModel;
 use ttf::{Colour, linear_from_srgb};
 
 /// A surface of one value.

@@ -10,8 +10,8 @@ use crate::ground::{air_layer, is_air};
 use crate::media::Faces;
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
+use model::section::{LineKind, Section, SectionPlane};
 use rayon::prelude::*;
-use survey::section::{LineKind, Section, SectionPlane};
 use tiny_skia::{LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
 
 /// Seen lines by what they are, pixels.

@@ -1,11 +1,11 @@
 //! Small models to draw in tests.
 
 use glam::DVec3;
+use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::{Inputs, NamedVolume, VoxelBox};
-use survey::model::{ModelSettings, StructuralModel};
-use survey::synth::closed_form::ClosedForm;
 use survey::{Fault, Horizon, Progress, Stratigraphy, SurveyGeometry};
+use synth::closed_form::ClosedForm;
 use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 
 /// A model with everything derived from it.

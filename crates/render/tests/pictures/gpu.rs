@@ -10,7 +10,7 @@ use render::{
     VoxelBox,
 };
 use survey::Progress;
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 use ttf::{
     Colour, ColourMap, RawColour, RgbaFunction, ScalarInterval, ScalarTtf, TextureLibrary, TransferFunctions,
     symmetric_clip,

@@ -9,7 +9,7 @@ use render::{
     Occlusion, Outlines, Phong, PickedHorizon, Projection, Renderer, Scalar, Scene, Scope, Shading, VoxelBox, WellPath,
 };
 use survey::Progress;
-use survey::synth::{SynthSettings, Synthetic};
+use synth::{SynthSettings, Synthetic};
 use ttf::{
     Colour, ColourMap, LayerStyle, LayerTtf, RawColour, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions,
     symmetric_clip,

@@ -9,8 +9,8 @@ use render::{
     Background, Camera, Candidates, Faces, Ground, Inputs, Isosurface, Media, Medium, NamedVolume, Occlusion, Outlines,
     Picked, PickedHorizon, Projection, Scalar, Scene, Scope, Shading, VoxelBox, WellPath, pick,
 };
-use survey::synth::closed_form::ClosedForm;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+use synth::closed_form::ClosedForm;
 use ttf::{Colour, LayerStyle, LayerTtf, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions, srgb_from_linear};
 
 /// One colour and opacity for every value.

@@ -1,65 +1,10 @@
-//! What can go wrong with a well's files, with the facts a user needs to put it right.
+//! What cannot be the path of a well, or its time–depth table, with the facts a user needs to put it right.
 
 use crate::remedy::{Remedy, Setting};
-use std::path::PathBuf;
 
-/// Why a well was not read.
-#[derive(Debug, thiserror::Error)]
+/// Why numbers make no well.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WellError {
-    /// A file cannot be read.
-    #[error("cannot read {file}: {source}")]
-    Io {
-        /// The file.
-        file: PathBuf,
-        /// What the system says.
-        source: std::io::Error,
-    },
-    /// A line does not hold what it should.
-    #[error("{file}, line {line}: expected {expected}, found {found}")]
-    Syntax {
-        /// The file.
-        file: PathBuf,
-        /// Line number, from 1.
-        line: usize,
-        /// What should be there.
-        expected: String,
-        /// What is there.
-        found: String,
-    },
-    /// The columns do not say where the well is.
-    #[error("{file}: {why}; name the columns in a header line, for example {example}")]
-    Columns {
-        /// The file.
-        file: PathBuf,
-        /// What is missing.
-        why: String,
-        /// A header that would do.
-        example: &'static str,
-    },
-    /// There are no rows.
-    #[error("{file} holds no {what}; check that it is the file meant")]
-    Empty {
-        /// The file.
-        file: PathBuf,
-        /// What was looked for.
-        what: &'static str,
-    },
-    /// The well head is not known.
-    #[error("{file} gives no X, Y of the well head, in metres")]
-    NoHead {
-        /// The file.
-        file: PathBuf,
-    },
-    /// A file of several wells has none of the name.
-    #[error("{file} has no well named '{wanted}'; it has: {available}")]
-    NoSuchWell {
-        /// The file.
-        file: PathBuf,
-        /// The name.
-        wanted: String,
-        /// The names there are.
-        available: String,
-    },
     /// Values that must increase do not.
     #[error("the {what} must increase, but {after} follows {before}; sort the file or remove the row")]
     NotIncreasing {
@@ -113,59 +58,11 @@ pub enum WellError {
     /// A coordinate is infinite or no number.
     #[error("a coordinate is no number or beyond 1e12; check the units")]
     NotANumber,
-    /// The unit is not known.
-    #[error("{file}: {what} could be in {candidates}; say which in its header, for example {header}")]
-    UnclearUnit {
-        /// The file.
-        file: PathBuf,
-        /// What has no unit.
-        what: String,
-        /// Units that would fit.
-        candidates: &'static str,
-        /// A header that settles it.
-        header: &'static str,
-    },
-    /// A LAS file of a version that is not read.
-    #[error("{file} is LAS {version}; LAS 1.2 and 2.0 are read: export it as LAS 2.0")]
-    LasVersion {
-        /// The file.
-        file: PathBuf,
-        /// Its version.
-        version: String,
-    },
-    /// A LAS file that lacks something.
-    #[error("{file}: {why}; check that it is a LAS 2.0 file that was copied in full")]
-    Las {
-        /// The file.
-        file: PathBuf,
-        /// What is missing or wrong.
-        why: String,
-    },
-    /// The index of a LAS file cannot be laid along the well.
-    #[error("{file}: the index {mnemonic} is in '{unit}'; {instead}")]
-    LasIndex {
-        /// The file.
-        file: PathBuf,
-        /// The index curve.
-        mnemonic: String,
-        /// Its unit.
-        unit: String,
-        /// What to do.
-        instead: &'static str,
-        /// Whether the well's checkshots would do.
-        needs_checkshot: bool,
-    },
 }
 
 impl WellError {
-    /// What to state so that the well is read, where that may help.
+    /// What to state so that they do, where that may help.
     pub fn remedy(&self) -> Option<Remedy> {
-        Some(match self {
-            Self::NoHead { .. } => Setting::Head.stated(),
-            Self::NoSuchWell { .. } => Setting::WellInFile.stated(),
-            Self::ShorterThanStraight { .. } => Setting::MdUnit.stated_as("m or ft"),
-            Self::LasIndex { needs_checkshot: true, .. } => Setting::Checkshot.stated(),
-            _ => return None,
-        })
+        matches!(self, Self::ShorterThanStraight { .. }).then(|| Setting::MdUnit.stated_as("m or ft"))
     }
 }

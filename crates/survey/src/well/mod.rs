@@ -2,7 +2,7 @@
 //!
 //! A well's axis is measured depth (MD, m, 0 at its datum, usually the kelly bushing). Its path lies in the world: X east,
 //! Y north, TVDSS = true vertical depth below mean sea level, m, positive down; a datum 25 m above the sea is at
-//! TVDSS = −25. Files in feet are converted when read, with the international foot.
+//! TVDSS = −25.
 //!
 //! Between two surveyed stations with directions the path is the circular arc that touches both (minimum curvature); between
 //! stations that are places alone it is straight. In a time survey TVDSS becomes TWT through the well's checkshots, else
@@ -20,30 +20,18 @@
 //! ```
 
 mod checkshot;
-mod columns;
-mod describe;
-mod deviation;
 mod error;
-mod las;
 mod log;
 mod path;
 mod place;
-mod read;
-mod table;
 #[cfg(test)]
 mod tests;
-mod tops;
 
-pub use checkshot::{Checkshot, TimeDepth, parse_checkshot};
-pub use describe::{WellColumnDescription, WellFileDescription, WellFileKind, describe};
-pub use deviation::{Deviation, parse_deviation};
+pub use checkshot::{Checkshot, TimeDepth};
 pub use error::WellError;
-pub use las::{Las, LasItem, parse_las};
 pub use log::{Curve, LogSet};
 pub use path::{Station, Survey, WellPath};
 pub use place::{TopPlace, WellPlacement};
-pub use read::{WellFiles, WellOptions, WellReport, read_well};
-pub use tops::{TopRow, parse_tops};
 
 use serde::{Deserialize, Serialize};
 

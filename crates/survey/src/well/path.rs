@@ -11,7 +11,7 @@
 //! which at f = 1 is the usual Δs/2 · (t₀ + t₁) · tan(β/2)/(β/2). For β → 0 it is the parabola p₀ + Δs·(f·t₀ + f²/2·(t₁ − t₀)).
 //! Vectors are (east, north, down), m; azimuths count clockwise from grid north, inclinations from the vertical.
 
-use super::WellError;
+use super::error::WellError;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 

@@ -1,6 +1,7 @@
 //! A well in a survey: in voxels, and where it lies against it.
 
-use super::{TimeDepth, Well};
+use super::Well;
+use super::checkshot::TimeDepth;
 use crate::geometry::{SurveyGeometry, VerticalUnit};
 use glam::DVec3;
 use serde::Serialize;

@@ -1,0 +1,272 @@
+//! What the other tests leave out of the panels and commands: each by its label, each seen in the project.
+
+use super::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
+use super::tests::{Driven, click, document, open, state, wait};
+use eframe::egui::Key;
+use egui_kittest::kittest::{NodeT, Queryable};
+use glam::DVec3;
+use interp::faults::Proposal;
+use project::Project;
+use project::command::{Command, PickFault};
+use project::interpretation::proposals::Proposals;
+use survey::{Contact, Progress, TriangleMesh};
+
+pub(super) fn act(harness: &mut Driven, action: Action) {
+    harness.state_mut().as_mut().unwrap().act(action);
+    harness.run_steps(3);
+}
+
+/// Applies a command as another process would, and has the window read the project again.
+pub(super) fn applied(harness: &mut Driven, command: &Command) {
+    let root = state(harness).session.as_ref().unwrap().root.clone();
+    Project::open(&root).unwrap().apply(command, &Progress::silent()).unwrap();
+    act(harness, Action::Open(root));
+    let step = document(harness).step;
+    wait(harness, "the window has read it", |harness| {
+        state(harness).session.as_ref().is_some_and(|session| session.document.step == step)
+    });
+}
+
+/// Chooses an entry of a list that opens under a label.
+pub(super) fn choose(harness: &mut Driven, list: &str, entry: &str) {
+    click_last(harness, list);
+    click(harness, entry);
+}
+
+/// Clicks the last of the buttons with a label.
+pub(super) fn click_last(harness: &mut Driven, label: &str) {
+    // As a screen reader does, whether it is scrolled into view or not.
+    harness.query_all_by_label(label).last().unwrap().click_accesskit();
+    harness.run_steps(3);
+}
+
+fn fault() -> Command {
+    let stick = |crossline: f64| vec![[9.0, crossline, 4.0], [13.0, crossline, 120.0]];
+    Command::PickFault(PickFault { name: "East".into(), sticks: vec![stick(2.0), stick(18.0)] })
+}
+
+/// Two proposals and a minor one for the horizons as they are, as looking for faults leaves them.
+fn proposed(project: &Project) {
+    let mesh = |x: f64| {
+        let corner = |y: f64, z: f64| DVec3::new(x + z, y, z);
+        let vertices = vec![corner(-50.0, 0.0), corner(550.0, 0.0), corner(550.0, 124.0), corner(-50.0, 124.0)];
+        TriangleMesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] }
+    };
+    let proposal = |id: u32, x: f64| Proposal {
+        id,
+        name: format!("Fault {id}"),
+        mesh: mesh(x),
+        strike_deg: 0.0,
+        dip_deg: 45.0,
+        reverse: false,
+        throw: [12.0, 16.0],
+        ends: [[x / 25.0, 1.0], [x / 25.0, 20.0]],
+        depth: [0.0, 124.0],
+        horizons: vec!["Top".into()],
+        support: 40,
+        misfit_m: 3.0,
+        offset_m2: 6000.0,
+        is_minor: id == 3,
+        semblance: None,
+    };
+    let horizons = project.document().horizons.iter().map(|entry| entry.hash.clone()).collect();
+    let found = vec![proposal(1, 150.0), proposal(2, 350.0), proposal(3, 450.0)];
+    let proposals = Proposals { horizons, proposals: found, repeats: Vec::new(), unit: "ms".into() };
+    let folder = project.root().join("derived");
+    std::fs::create_dir_all(&folder).unwrap();
+    std::fs::write(folder.join("fault-proposals.json"), serde_json::to_string(&proposals).unwrap()).unwrap();
+}
+
+#[test]
+fn proposed_faults_are_accepted_and_dismissed() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = super::tests::project(folder.path());
+    proposed(&Project::open(&root).unwrap());
+    let mut harness = super::tests::driven(folder.path(), Some(root));
+    wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+    click(&mut harness, "Interpret");
+    wait(&mut harness, "both are listed", |harness| harness.query_all_by_label_contains("Proposal").count() == 2);
+    harness.get_by_label("Name of proposal 1");
+    click(&mut harness, "1 minor proposal");
+    assert_eq!(harness.query_all_by_label_contains("Proposal").count(), 3);
+    click(&mut harness, "1 minor proposal");
+    click_last(&mut harness, "Dismiss");
+    assert_eq!(harness.query_all_by_label_contains("Proposal").count(), 1);
+    assert_eq!(state(&harness).session.as_ref().unwrap().view.picking.dismissed, [2]);
+    click_last(&mut harness, "Go");
+    assert_eq!(state(&harness).session.as_ref().unwrap().view.slices[0], 5.0);
+    click_last(&mut harness, "Accept");
+    wait(&mut harness, "the fault is there", |harness| document(harness).faults.len() == 1);
+    assert_eq!(document(&harness).faults[0].name, "Fault 1");
+    wait(&mut harness, "it is no proposal any more", |harness| {
+        harness.query_all_by_label_contains("Proposal").count() == 0
+    });
+    // Looking again makes another list, in which nothing is dismissed; flat horizons have no offset.
+    click_last(&mut harness, "Look for faults");
+    assert!(state(&harness).session.as_ref().unwrap().view.picking.dismissed.is_empty());
+    wait(&mut harness, "it is said that there are none", |harness| !state(harness).notices.is_empty());
+    assert!(state(&harness).notices[0].text.contains("no fault is proposed"), "{:?}", state(&harness).notices);
+}
+
+#[test]
+fn data_are_renamed_removed_and_given_a_velocity() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    applied(&mut harness, &fault());
+    click(&mut harness, "Data");
+    click(&mut harness, "Base");
+    click(&mut harness, "Rename");
+    harness.get_by_label("New name").type_text("ment");
+    harness.run_steps(2);
+    harness.key_press(Key::Enter);
+    wait(&mut harness, "the horizon has another name", |harness| document(harness).horizons[1].name.contains("ment"));
+    harness.get_by_label("East");
+    // Volume, two horizons, the fault.
+    harness.query_all_by_label("Remove").nth(3).unwrap().click();
+    wait(&mut harness, "the fault is gone", |harness| document(harness).faults.is_empty());
+    harness.query_all_by_label("Velocity").last().unwrap().focus();
+    harness.run_steps(2);
+    harness.key_press(Key::ArrowUp);
+    harness.run_steps(2);
+    harness.key_press(Key::Tab);
+    wait(&mut harness, "the velocity is another", |harness| {
+        document(harness).geometry.as_ref().is_some_and(|geometry| geometry.velocity_m_s != 2000.0)
+    });
+    harness.query_all_by_label("Remove").next().unwrap().click();
+    wait(&mut harness, "the volume is gone", |harness| document(harness).volumes.is_empty());
+}
+
+#[test]
+fn a_fault_comes_in_through_its_dialogue() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let path = folder.path().join("west.csv");
+    let mut text = "x,y,z\n".to_owned();
+    for (n, y) in [0.0, 150.0, 300.0, 450.0].into_iter().enumerate() {
+        for z in [0.0, 40.0, 80.0, 120.0] {
+            text += &format!("{},{y},{z}\n", 250.0 + z + n as f64);
+        }
+    }
+    std::fs::write(&path, text).unwrap();
+    act(&mut harness, Action::Ask(Box::new(Dialogue::Interpretation { path, kind: Interpreted::Fault })));
+    for label in ["Name", "Vertical unit", "Sign", "Factor", "Ends at"] {
+        assert!(harness.query_all_by_label(label).count() > 0, "{label}");
+    }
+    wait(&mut harness, "the file is read", |harness| {
+        harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())
+    });
+    click(&mut harness, "Add");
+    wait(&mut harness, "the fault is there", |harness| document(harness).faults.len() == 1);
+    wait(&mut harness, "the dialogue has gone", |harness| state(harness).dialogue.is_none());
+}
+
+#[test]
+fn contacts_beds_and_default_styles_are_set_in_the_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    choose(&mut harness, "Contact of Base", "erosional");
+    wait(&mut harness, "the contact is set", |harness| document(harness).horizons[1].contact == Contact::Erosional);
+    click(&mut harness, "Layer Top - Base");
+    choose(&mut harness, "Beds", "parallel to the base");
+    wait(&mut harness, "the beds are set", |harness| !document(harness).k.is_empty());
+    wait(&mut harness, "the window knows", |harness| !state(harness).session.as_ref().unwrap().document.k.is_empty());
+    click(&mut harness, "Default style");
+    wait(&mut harness, "they are as they were", |harness| document(harness).k.is_empty());
+}
+
+#[test]
+fn raw_colours_and_textures_by_value_are_changed_and_taken_away() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Values");
+    choose(&mut harness, "Colours", "grey");
+    wait(&mut harness, "the colours are set", |harness| document(harness).style.raw.is_some());
+    click(&mut harness, "Textures by seismic");
+    wait(&mut harness, "the textures are there", |harness| document(harness).style.scalars.len() == 1);
+    wait(&mut harness, "they are listed", |harness| harness.query_by_label("Opacity of seismic 1").is_some());
+    harness.get_by_label("Repeats along of seismic 1");
+    click(&mut harness, "Split");
+    wait(&mut harness, "there are two", |harness| document(harness).style.scalars[0].intervals.len() == 2);
+    wait(&mut harness, "both are listed", |harness| harness.query_by_label("Opacity of seismic 2").is_some());
+    harness.query_all_by_label("Remove").next().unwrap().click();
+    wait(&mut harness, "they are gone", |harness| document(harness).style.scalars.is_empty());
+}
+
+#[test]
+fn a_tile_of_ones_own_and_a_kept_view_come_and_go() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let tile = folder.path().join("dots.png");
+    image::RgbaImage::from_pixel(8, 8, image::Rgba([9, 9, 9, 255])).save(&tile).unwrap();
+    act(&mut harness, Action::Ask(Box::new(Dialogue::Choose(super::state::Choice::Texture))));
+    harness.get_by_label("Path").focus();
+    harness.step();
+    harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
+    harness.get_by_label("Path").type_text(&tile.display().to_string());
+    harness.run_steps(2);
+    click(&mut harness, "Add");
+    wait(&mut harness, "the tile is there", |harness| document(harness).textures.len() == 1);
+    harness.get_by_label("Scene name").focus();
+    harness.step();
+    harness.get_by_label("Scene name").type_text("plan");
+    harness.run_steps(2);
+    click(&mut harness, "Keep view");
+    wait(&mut harness, "the view is kept", |harness| document(harness).scenes.len() == 1);
+    wait(&mut harness, "it is listed", |harness| harness.query_by_label("plan").is_some());
+    click_last(&mut harness, "Remove");
+    wait(&mut harness, "it is gone", |harness| document(harness).scenes.is_empty());
+}
+
+#[test]
+fn a_well_is_listed_and_removed() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let deviation = folder.path().join("W-1.csv");
+    std::fs::write(&deviation, "md_m,x_m,y_m,tvdss_m\n0,250,250,0\n40,250,250,40\n100,260,250,99\n").unwrap();
+    act(&mut harness, Action::Ask(Box::new(Dialogue::Well { path: deviation })));
+    for label in ["Name", "Tops", "Logs", "Checkshots", "Datum above sea level, m", "Lengths along the well"] {
+        assert!(harness.query_all_by_label(label).count() > 0, "{label}");
+    }
+    wait(&mut harness, "the files are read", |harness| {
+        harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())
+    });
+    click(&mut harness, "Add");
+    wait(&mut harness, "the well is there", |harness| document(harness).wells.len() == 1);
+    act(&mut harness, Action::Panel(Panel::Data));
+    wait(&mut harness, "it is listed", |harness| harness.query_by_label("W-1").is_some());
+    click_last(&mut harness, "Remove");
+    wait(&mut harness, "it is gone", |harness| document(harness).wells.is_empty());
+}
+
+#[test]
+fn what_is_on_the_screen_is_exported_while_interpreting() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let export = |harness: &mut Driven, name: &str| {
+        let path = folder.path().join(name);
+        let form = super::state::ExportForm {
+            size_cm: [10.0, 7.0],
+            dpi: 60.0,
+            ..super::state::ExportForm::new(path.display().to_string())
+        };
+        act(harness, Action::Export(Box::new(form)));
+        wait(harness, "it is written", |_| path.exists());
+        image::open(&path).unwrap().to_rgb8()
+    };
+    let illustrated = export(&mut harness, "illustrated.png");
+    click(&mut harness, "Interpret");
+    act(&mut harness, Action::Picking(PickingStep::Look(super::state::Look::Faces)));
+    wait(&mut harness, "the horizons are read", |harness| harness.query_all_by_label_contains("%").count() > 0);
+    let faces = export(&mut harness, "faces.png");
+    act(&mut harness, Action::Arrange(super::state::Layout::Sections));
+    let sections = export(&mut harness, "sections.png");
+    act(&mut harness, Action::Arrange(super::state::Layout::Map));
+    let map = export(&mut harness, "map.png");
+    act(&mut harness, Action::Picking(PickingStep::Look(super::state::Look::SeeThrough)));
+    let through = export(&mut harness, "through.png");
+    let all = [&illustrated, &faces, &sections, &map, &through];
+    for (n, picture) in all.iter().enumerate() {
+        assert!(all[..n].iter().all(|other| other != picture), "picture {n} is as one before");
+        assert_eq!(picture.get_pixel(230, 160).0, [255; 3], "paper in the corner of picture {n}");
+    }
+}

@@ -1,0 +1,178 @@
+//! What each action does to the state.
+
+use super::{Action, Compare, Dialogue, Notice, Panel, PickingTask, Place, Session, State, Task, View, camera};
+use project::picture::scene;
+
+impl State {
+    /// Takes an action in; what others are to do comes out.
+    pub fn apply(&mut self, action: Action) -> Vec<Task> {
+        match action {
+            Action::Open(path) => {
+                self.quieten(Place::Start);
+                return vec![Task::Open(path)];
+            }
+            Action::Recover => {
+                self.quieten(Place::Start);
+                return self.remembered.left.iter().map(|left| Task::Open(left.root.clone())).collect();
+            }
+            Action::Abandon => {
+                self.remembered.left = None;
+                return vec![Task::Remember];
+            }
+            Action::Forget(path) => {
+                self.remembered.forget(&path);
+                return vec![Task::Remember];
+            }
+            Action::Demo(folder) => {
+                self.dialogue = None;
+                self.quieten(Place::Start);
+                return vec![Task::Demo(folder)];
+            }
+            Action::Close => {
+                self.session = None;
+                self.dialogue = None;
+                self.notices.clear();
+                self.remembered.left = None;
+                return vec![Task::Release, Task::Remember];
+            }
+            Action::Opened(snapshot) => return self.opened(*snapshot),
+            Action::Changed(snapshot) => {
+                if let Some(session) = self.session.as_mut().filter(|session| session.root == snapshot.root) {
+                    session.renew(*snapshot);
+                }
+            }
+            Action::Tell(notice) => {
+                if notice.failed && notice.place == Place::Interpret {
+                    self.reselect();
+                }
+                self.notices.retain(|known| *known != notice);
+                self.notices.push(notice);
+            }
+            Action::Dismiss(index) => {
+                if index < self.notices.len() {
+                    self.notices.remove(index);
+                }
+            }
+            Action::Ask(dialogue) => {
+                self.quieten(Place::Dialogue);
+                self.dialogue = Some(*dialogue);
+            }
+            Action::Answered => {
+                self.quieten(Place::Dialogue);
+                self.dialogue = None;
+            }
+            Action::Apply(command) => return self.task(Task::Apply(command)),
+            Action::Undo => return self.task(Task::Undo),
+            Action::Redo => return self.task(Task::Redo),
+            Action::Import { command, into } => {
+                self.quieten(Place::Dialogue);
+                return vec![match into {
+                    Some(root) => Task::Create { command, root },
+                    None => Task::Apply(Box::new(project::Command::Import(*command))),
+                }];
+            }
+            Action::Export(form) => {
+                self.quieten(Place::Foot);
+                return self.task(Task::Export(form));
+            }
+            Action::Copy => return self.task(Task::Copy),
+            Action::Picking(step) => return self.pick(step),
+            Action::Extract(volume, settings) => {
+                self.quieten(Place::Interpret);
+                return self.task(Task::Picking(PickingTask::Extract(volume, settings)));
+            }
+            Action::ProposeFaults => {
+                self.quieten(Place::Interpret);
+                // Numbers of former proposals mean nothing in the next list.
+                if let Some(session) = &mut self.session {
+                    session.view.picking.dismissed.clear();
+                }
+                return self.task(Task::Picking(PickingTask::ProposeFaults));
+            }
+            Action::Appear(appearance) => {
+                self.remembered.appearance = appearance;
+                return vec![Task::Remember];
+            }
+            Action::Scale(scale) => {
+                self.remembered.scale = Some(scale.clamp(0.6, 3.0));
+                return vec![Task::Remember];
+            }
+            other => self.look(other),
+        }
+        Vec::new()
+    }
+
+    /// Actions on the view of the open project; without one they mean nothing.
+    fn look(&mut self, action: Action) {
+        let Some(session) = &mut self.session else { return };
+        let view = &mut session.view;
+        match action {
+            Action::Show(scene) if session.document.geometry.as_ref().is_some_and(|f| scene.validate(f).is_ok()) => {
+                view.scene = *scene;
+            }
+            Action::ShowNamed(name) => match scene::choose(&session.document, Some(&name)) {
+                Ok(scene) => view.scene = scene,
+                Err(error) => self.notices.push(Notice::failure(Place::Scenes, &error)),
+            },
+            Action::Stand(place) => camera::stand(&mut view.scene, place),
+            Action::Arrange(layout) => view.layout = layout,
+            Action::Compare(compare) => view.compare = compare,
+            Action::Wipe(at) => view.wipe = at.clamp(0.02, 0.98),
+            Action::Slices(at) => {
+                view.slices = at;
+                view.fit(&session.document);
+            }
+            Action::Fence(corners) => {
+                view.fence = corners;
+                view.fit(&session.document);
+            }
+            Action::Panel(panel) => view.panel = panel,
+            Action::Layer(layer) => view.layer = layer,
+            Action::Horizon(horizon) => view.horizon = horizon,
+            Action::Handles(shown) => view.handles = shown,
+            _ => {}
+        }
+    }
+
+    fn opened(&mut self, snapshot: super::Snapshot) -> Vec<Task> {
+        let left = self.remembered.left.take().filter(|left| left.root == snapshot.root);
+        self.remembered.add(&snapshot.root);
+        self.notices.clear();
+        self.dialogue = None;
+        self.session = Some(Session::new(snapshot, left.map(|left| left.view)));
+        self.mark();
+        vec![Task::Remember]
+    }
+
+    /// Notes how the project is looked at, so that it can be gone on from.
+    pub fn mark(&mut self) {
+        self.remembered.left = self
+            .session
+            .as_ref()
+            .map(|session| super::remembered::Left { root: session.root.clone(), view: session.view.clone() });
+    }
+
+    /// A task that needs a project.
+    fn task(&self, task: Task) -> Vec<Task> {
+        if self.session.is_some() { vec![task] } else { Vec::new() }
+    }
+
+    /// Takes the notices of one place away: something new is begun there.
+    fn quieten(&mut self, place: Place) {
+        self.notices.retain(|notice| notice.place != place);
+    }
+
+    /// Whether a dialogue or a text field in it must keep the shortcuts of the views.
+    pub fn is_asking(&self) -> bool {
+        matches!(&self.dialogue, Some(dialogue) if !matches!(dialogue, Dialogue::Shortcuts))
+    }
+
+    /// The scenes drawn side by side or over one another in the block view: blends and their order.
+    pub fn blends(view: &View) -> Vec<f32> {
+        match view.compare {
+            _ if view.panel == Panel::Interpret => vec![1.0],
+            Compare::Blend => vec![view.scene.blend],
+            Compare::SideBySide | Compare::Wipe => vec![0.0, 1.0],
+        }
+    }
+}

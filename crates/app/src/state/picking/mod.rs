@@ -1,0 +1,270 @@
+//! What is being interpreted: the horizon that picks go to, the node that is selected but not accepted yet, sticks being drawn.
+//!
+//! A click selects a leaf (a [`Pick`] in the making), keys climb and descend, Enter makes it part of the horizon through the same command that
+//! `petroglyph pick` gives. What is not accepted yet belongs to the view, so it is written down with it and outlives a crash. Places are line numbers
+//! and vertical values, as commands take them; (s, t) and voxels are converted here.
+
+mod steps;
+#[cfg(test)]
+mod tests;
+
+use super::{SliceKind, Task};
+use glam::{DVec2, DVec3};
+use interp::ExtractSettings;
+use interp::assembly::Operation;
+use interp::faults::Proposal;
+use project::command::{Climb, Command, PickNode};
+use project::document::Document;
+use project::error::Noun;
+use project::interpretation::assembly::next_colour;
+use render::{FaceData, Scene};
+use serde::{Deserialize, Serialize};
+use survey::SurveyGeometry;
+use ttf::Colour;
+
+/// Decimals that places are rounded to: a thousandth of a line is far less than a hand can aim at, and can be typed again.
+const DECIMALS: f64 = 1000.0;
+
+/// What the pointer does on sections and on the block.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Tool {
+    /// Selects candidates.
+    #[default]
+    Pick,
+    /// Erases what it draws around.
+    Lasso,
+    /// Draws fault sticks.
+    Sticks,
+}
+
+/// How the block is shown.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Look {
+    /// Its faces, with the horizons in front of them as through glass.
+    Faces,
+    /// Seen through, in the occlusion slicer with a white function (P-horiz 6).
+    #[default]
+    SeeThrough,
+}
+
+/// A node that is selected and not accepted yet.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Pick {
+    /// Inline, crossline and vertical value of the place clicked.
+    pub at: [f64; 3],
+    /// The leaf there.
+    pub leaf: u32,
+    /// Levels above it.
+    pub up: u32,
+    /// Levels from the leaf to the root.
+    pub levels: u32,
+}
+
+/// What is being interpreted.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Picking {
+    /// The horizon that picks go to; it may not exist yet.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub horizon: Option<String>,
+    /// Colour of a horizon that does not exist yet, if one was chosen.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
+    /// The selected node.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pick: Option<Pick>,
+    /// The node just accepted, until the project has it.
+    #[serde(skip)]
+    pub accepted: Option<Pick>,
+    /// What the pointer does.
+    pub tool: Tool,
+    /// How the block is shown.
+    pub look: Look,
+    /// What faces and sections show.
+    pub show: FaceData,
+    /// The stick being drawn.
+    pub stick: Vec<[f64; 3]>,
+    /// Sticks drawn for a fault that was not made yet.
+    pub sticks: Vec<Vec<[f64; 3]>>,
+    /// Name of that fault.
+    pub fault: String,
+    /// Proposals that are not to be shown, by number.
+    pub dismissed: Vec<u32>,
+    /// Whether minor proposals are shown too.
+    pub minor: bool,
+}
+
+impl Picking {
+    /// Whether a proposal is to be shown.
+    pub fn shows(&self, proposal: &Proposal) -> bool {
+        (self.minor || !proposal.is_minor) && !self.dismissed.contains(&proposal.id)
+    }
+}
+
+/// How a click changes the selection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum How {
+    /// It becomes the selection; what was selected and not accepted is let go.
+    Replace,
+    /// What is selected is accepted first.
+    Extend,
+    /// The leaf is taken out of the horizon.
+    Remove,
+}
+
+/// A line drawn around what is to be erased.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lasso {
+    /// What it was drawn on.
+    pub on: LassoOn,
+    /// Its corners: (s, t) of the section, or points of the picture.
+    pub corners: Vec<DVec2>,
+}
+
+/// What a lasso was drawn on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LassoOn {
+    /// A section at a voxel position.
+    Section(SliceKind, f64),
+    /// A picture of the block, of this size in points.
+    Block(Box<Scene>, DVec2),
+}
+
+/// Something done while interpreting.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PickingStep {
+    /// A click on rock, voxel.
+    At(DVec3, How),
+    /// A leaf was found.
+    Found(Pick),
+    /// Climb so many levels; negative descends.
+    Climb(i32),
+    /// Climb to the highest node without overlap.
+    HighestValid,
+    /// Make the selection part of the horizon.
+    Accept,
+    /// Let go of the selection, or of the stick being drawn.
+    GiveUp,
+    /// Begin another horizon, under a name of its own.
+    Begin,
+    /// Picks go to this horizon from now on.
+    Choose(String),
+    /// The horizon that does not exist yet gets this name.
+    Name(String),
+    /// The horizon that does not exist yet gets this colour.
+    Tint(Colour),
+    /// Use another tool.
+    Use(Tool),
+    /// Show the block otherwise.
+    Look(Look),
+    /// Show something else on faces and sections.
+    Show(FaceData),
+    /// Erase what was drawn around.
+    Erase(Lasso),
+    /// The next place of a stick, voxel.
+    Stick(DVec3),
+    /// The stick is complete.
+    EndStick,
+    /// Take the last place of the sticks back.
+    Backspace,
+    /// Name of the fault being drawn.
+    NameFault(String),
+    /// Make a fault of the sticks.
+    MakeFault,
+    /// Do not show a proposal any more.
+    Dismiss(u32),
+    /// Minor proposals are shown, or not.
+    Minor(bool),
+}
+
+/// What the workers are asked while interpreting.
+#[derive(Debug, Clone)]
+pub enum PickingTask {
+    /// The leaf at a place.
+    Find([f64; 3]),
+    /// The highest node above a pick without overlap, for a horizon.
+    HighestValid(Pick, Option<String>),
+    /// Take out of a horizon what a lasso holds.
+    Erase(Lasso, String),
+    /// Extract candidates of a volume.
+    Extract(Option<String>, Box<ExtractSettings>),
+    /// Look for faults.
+    ProposeFaults,
+}
+
+/// Line numbers and vertical value of a voxel position.
+pub fn place_of(geometry: &SurveyGeometry, voxel: DVec3) -> [f64; 3] {
+    let lines = geometry.lines_from_voxel(voxel.truncate());
+    let z = geometry.vertical.value_at(voxel.z);
+    [lines.x, lines.y, z].map(|value| (value * DECIMALS).round() / DECIMALS)
+}
+
+/// Voxel position of line numbers and vertical value.
+pub fn voxel_of(geometry: &SurveyGeometry, place: [f64; 3]) -> DVec3 {
+    geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]))
+}
+
+/// A name that nothing of a kind has: "Horizon 1", "Horizon 2", …
+pub fn free_name(document: &Document, noun: Noun, word: &str) -> String {
+    let names = document.names(noun);
+    let mut number = 1;
+    loop {
+        let name = format!("{word} {number}");
+        if !names.iter().any(|known| known.eq_ignore_ascii_case(&name)) {
+            return name;
+        }
+        number += 1;
+    }
+}
+
+impl Picking {
+    /// Lets go of what the project no longer has: a horizon that was renamed or removed.
+    pub fn fit(&mut self, before: &Document, now: &Document) {
+        let Some(name) = &self.horizon else { return };
+        let had = before.horizons.iter().any(|entry| entry.name == *name);
+        let has = now.horizons.iter().any(|entry| entry.name == *name);
+        if had && !has {
+            let place = before.horizons.iter().position(|entry| entry.name == *name);
+            let renamed = (before.horizons.len() == now.horizons.len())
+                .then(|| now.horizons.get(place?).map(|entry| entry.name.clone()))
+                .flatten();
+            self.horizon = renamed;
+        }
+        if has {
+            self.colour = None;
+        }
+    }
+
+    /// The command that accepts the selection.
+    pub fn command(&self) -> Option<PickNode> {
+        let pick = self.pick.as_ref()?;
+        Some(PickNode {
+            at: pick.at,
+            horizon: self.horizon.clone()?,
+            operation: Operation::Add,
+            colour: self.colour,
+            climb: Climb::Levels(pick.up),
+        })
+    }
+
+    /// Colour of the horizon that picks go to.
+    pub fn colour_in(&self, document: &Document) -> Colour {
+        let entry = document.horizons.iter().find(|entry| Some(&entry.name) == self.horizon.as_ref());
+        let known = entry.and_then(|entry| entry.assembly.as_ref()).map(|log| log.colour);
+        known.or(self.colour).unwrap_or_else(|| next_colour(document))
+    }
+
+    fn accept(&mut self) -> Option<Task> {
+        let command = self.command()?;
+        self.accepted = self.pick.take();
+        Some(Task::Apply(Box::new(Command::Pick(command))))
+    }
+
+    fn end_stick(&mut self) {
+        if self.stick.len() > 1 {
+            self.sticks.push(std::mem::take(&mut self.stick));
+        }
+    }
+}

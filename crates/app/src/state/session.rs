@@ -1,0 +1,89 @@
+//! The open project as the window knows it: a copy of its document, its history, and how it is looked at.
+
+use super::view::{Panel, View};
+use project::HistoryLine;
+use project::document::Document;
+use std::path::PathBuf;
+
+/// A project as it was read.
+#[derive(Debug, Clone)]
+pub struct Snapshot {
+    /// Its folder.
+    pub root: PathBuf,
+    /// Its state.
+    pub document: Document,
+    /// Its history, oldest first.
+    pub history: Vec<HistoryLine>,
+}
+
+/// The open project.
+#[derive(Debug, Clone)]
+pub struct Session {
+    /// Its folder.
+    pub root: PathBuf,
+    /// Its state as last read.
+    pub document: Document,
+    /// Grows with each state read: steps of the history come again after undo.
+    pub revision: u64,
+    /// Its history, oldest first.
+    pub history: Vec<HistoryLine>,
+    /// How it is looked at.
+    pub view: View,
+}
+
+impl Session {
+    /// A project just opened, looked at as `view` says or else in its own first scene.
+    pub fn new(snapshot: Snapshot, view: Option<View>) -> Self {
+        let Snapshot { root, document, history } = snapshot;
+        let mut view = view.unwrap_or_else(|| View::of(&document));
+        view.fit(&document);
+        Self { root, document, revision: 0, history, view }
+    }
+
+    /// Takes a new state of the same project over; the view stays as far as it still fits.
+    pub fn renew(&mut self, snapshot: Snapshot) {
+        let had_frame = self.document.geometry.is_some();
+        let was_bare = self.document.horizons.is_empty();
+        self.view.picking.fit(&self.document, &snapshot.document);
+        self.view.picking.accepted = None;
+        self.document = snapshot.document;
+        self.revision += 1;
+        self.history = snapshot.history;
+        let illustrates_now = was_bare && !self.document.horizons.is_empty();
+        if !had_frame || illustrates_now {
+            let usual = View::of(&self.document).scene;
+            if self.view.panel == Panel::Interpret {
+                // Who is picking keeps camera, box and cut-outs; the illustration begins when it is looked at.
+                self.view.scene.blend = usual.blend;
+                self.view.scene.ground = usual.ground;
+            } else {
+                self.view.scene = usual;
+            }
+        }
+        self.view.fit(&self.document);
+    }
+
+    /// The name the project goes by: its folder's without the ending.
+    pub fn name(&self) -> String {
+        self.root
+            .file_stem()
+            .map_or_else(|| self.root.display().to_string(), |stem| stem.to_string_lossy().into_owned())
+    }
+
+    /// What undo would take back.
+    pub fn undoable(&self) -> Option<&str> {
+        let step = self.document.step;
+        self.history.iter().find(|line| line.step == step && step > 0).map(|line| line.summary.as_str())
+    }
+
+    /// What redo would bring back.
+    pub fn redoable(&self) -> Option<&str> {
+        let step = self.document.step + 1;
+        self.history.iter().find(|line| line.step == step).map(|line| line.summary.as_str())
+    }
+
+    /// Whether there is something to draw.
+    pub fn is_drawable(&self) -> bool {
+        self.document.geometry.is_some() && !(self.document.volumes.is_empty() && self.document.horizons.is_empty())
+    }
+}

@@ -1,0 +1,50 @@
+//! What the block shows while interpreting: the view's own scene in raw colours, or seen through in the occlusion slicer (P-horiz 6).
+
+use super::picking::Look;
+use super::{Panel, Session};
+use project::picture::scene::{SeeThrough, Technique};
+use render::{FaceData, Media, PickedHorizon, Scene, Scope};
+use ttf::Colour;
+
+/// Values up to this share of the volume's clip are clear in the white function: what is left are the strong reflections.
+const CLEAR_BELOW: f32 = 0.35;
+/// Half of a horizon's thickness where the block is seen through, voxels.
+const THICKNESS: f32 = 1.2;
+
+/// The scene that the block view draws; `horizons` are those to be seen in it by their colour and leaves, absent while no candidates are in
+/// memory.
+pub fn scene(session: &Session, horizons: Option<&[(Colour, Vec<u32>)]>) -> Scene {
+    let view = &session.view;
+    let mut scene = view.scene.clone();
+    if view.panel != Panel::Interpret {
+        return scene;
+    }
+    scene.blend = 1.0;
+    scene.ground = None;
+    scene.media = Media::default();
+    scene.face_data = if horizons.is_some() { view.picking.show } else { FaceData::Rock };
+    if view.picking.look == Look::SeeThrough {
+        scene.face_data = FaceData::Rock;
+        let see = SeeThrough {
+            technique: Some(Technique::Occlusion),
+            medium: None,
+            clear_below: CLEAR_BELOW,
+            isosurfaces: Vec::new(),
+            horizons: Vec::new(),
+            scope: Scope::Everywhere,
+        };
+        // A project without a volume shows its faces.
+        if see.change(&mut scene, &session.document).is_err() {
+            scene.media = Media::default();
+            return scene;
+        }
+        let picked = horizons.into_iter().flatten().filter(|(_, leaves)| !leaves.is_empty());
+        scene.media.horizons = picked
+            .map(|(colour, leaves)| PickedHorizon {
+                thickness: THICKNESS,
+                ..PickedHorizon::of(leaves.clone(), *colour)
+            })
+            .collect();
+    }
+    scene
+}

@@ -1,0 +1,186 @@
+//! How a project is looked at: nothing of this belongs to the project until it is kept as a named scene.
+
+use super::picking::Picking;
+use project::document::Document;
+use project::picture::scene;
+use render::{Scene, VoxelBox};
+use serde::{Deserialize, Serialize};
+use survey::SurveyGeometry;
+
+/// What fills the middle of the window.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Layout {
+    /// The block alone.
+    #[default]
+    Block,
+    /// The block and the three sections through one point.
+    Sections,
+    /// A horizon as a map beside the block.
+    Map,
+    /// The slice, and a section along a line drawn on it.
+    Fence,
+}
+
+/// How raw and illustrated stand beside each other.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Compare {
+    /// One picture, blended as the slider says.
+    #[default]
+    Blend,
+    /// Illustrated on the left, raw on the right, one camera.
+    SideBySide,
+    /// One over the other, parted by a line that can be dragged.
+    Wipe,
+}
+
+/// What the left panel shows.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Panel {
+    /// The stratigraphic column.
+    #[default]
+    Layers,
+    /// Volumes, horizons, faults, wells.
+    Data,
+    /// Colours and textures by value.
+    Values,
+    /// Candidates, picks, faults.
+    Interpret,
+}
+
+/// A section along the lattice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SliceKind {
+    /// Constant x.
+    Inline,
+    /// Constant y.
+    Crossline,
+    /// Constant z.
+    Slice,
+}
+
+impl SliceKind {
+    /// All three.
+    pub const ALL: [Self; 3] = [Self::Inline, Self::Crossline, Self::Slice];
+
+    /// The axis that is constant.
+    pub fn axis(self) -> usize {
+        match self {
+            Self::Inline => 0,
+            Self::Crossline => 1,
+            Self::Slice => 2,
+        }
+    }
+}
+
+/// Where the camera can be put at once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StandardView {
+    /// Over a corner, as block diagrams are drawn.
+    Block,
+    /// Straight down, north up.
+    Top,
+    /// Looking north.
+    North,
+    /// Looking east.
+    East,
+    /// Looking south.
+    South,
+    /// Looking west.
+    West,
+}
+
+impl StandardView {
+    /// All of them, in the order they are offered.
+    pub const ALL: [Self; 6] = [Self::Block, Self::Top, Self::North, Self::East, Self::South, Self::West];
+
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Block => "Block",
+            Self::Top => "From above",
+            Self::North => "Look north",
+            Self::East => "Look east",
+            Self::South => "Look south",
+            Self::West => "Look west",
+        }
+    }
+}
+
+/// How the open project is looked at.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct View {
+    /// Camera, box, cut-outs, blend: what the picture shows. Its size is that of the last export.
+    pub scene: Scene,
+    /// What fills the middle.
+    pub layout: Layout,
+    /// Raw against illustrated.
+    pub compare: Compare,
+    /// Where the wipe's line stands, share of the width.
+    pub wipe: f32,
+    /// The point the sections run through, voxel.
+    pub slices: [f64; 3],
+    /// Corners of the fence, voxel x and y.
+    #[serde(default)]
+    pub fence: Vec<[f64; 2]>,
+    /// What the left panel shows.
+    pub panel: Panel,
+    /// The layer whose style is shown.
+    pub layer: Option<String>,
+    /// The horizon that the map shows.
+    pub horizon: Option<String>,
+    /// Whether handles of box and cut-outs are shown.
+    pub handles: bool,
+    /// What is being interpreted.
+    #[serde(default)]
+    pub picking: Picking,
+}
+
+impl View {
+    /// The first scene of a project, or its default view.
+    pub fn of(document: &Document) -> Self {
+        let scene = scene::choose(document, None).unwrap_or_default();
+        let size = document.geometry.as_ref().map_or([1; 3], SurveyGeometry::size);
+        Self {
+            scene,
+            layout: Layout::Block,
+            compare: Compare::Blend,
+            wipe: 0.5,
+            slices: size.map(|count| (count / 2) as f64),
+            fence: Vec::new(),
+            panel: Panel::Layers,
+            layer: None,
+            horizon: None,
+            handles: true,
+            picking: Picking::default(),
+        }
+    }
+
+    /// Lets go of what the project no longer has.
+    pub fn fit(&mut self, document: &Document) {
+        let Some(geometry) = &document.geometry else { return };
+        if self.scene.validate(geometry).is_err() {
+            self.scene = View::of(document).scene;
+        }
+        if document.horizons.is_empty() {
+            self.scene.ground = None;
+        }
+        if document.volumes.is_empty() {
+            self.scene.blend = 0.0;
+        } else if document.horizons.is_empty() {
+            self.scene.blend = 1.0;
+        }
+        let last = VoxelBox::of_size(geometry.size()).max;
+        for (at, last) in self.slices.iter_mut().zip(last) {
+            *at = at.clamp(0.0, last).round();
+        }
+        for corner in &mut self.fence {
+            *corner = [0, 1].map(|axis| corner[axis].clamp(0.0, last[axis]));
+        }
+        self.layer = self.layer.take().filter(|name| document.layers().contains(name));
+        self.horizon = self.horizon.take().filter(|name| document.horizons.iter().any(|entry| entry.name == *name));
+    }
+}

@@ -1,0 +1,185 @@
+//! The line at the top: the project, undo and redo, what fills the middle, raw against illustrated.
+
+use crate::state::{
+    Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, State,
+};
+use eframe::egui::{Align, Button, Label, Layout, RichText, Slider, Ui};
+use render::Scene;
+
+/// Room for everything but the project's name and the comparison, points.
+const OTHERS: f32 = 680.0;
+/// Room for the comparison, points.
+const COMPARISON: f32 = 440.0;
+/// Room for the menu that it folds into, points.
+const MENU: f32 = 110.0;
+/// The shortest and the longest that a project's name is shown, points.
+const NAME: [f32; 2] = [60.0, 280.0];
+
+/// Shows the line.
+pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
+    // Interpreting is done on the raw volume: there is nothing to compare it with.
+    let compares = session.view.panel != Panel::Interpret;
+    let folds = ui.available_width() < OTHERS + NAME[0] + COMPARISON;
+    let comparison_room = match (compares, folds) {
+        (false, _) => 0.0,
+        (true, false) => COMPARISON,
+        (true, true) => MENU,
+    };
+    let name_room = (ui.available_width() - OTHERS - comparison_room).clamp(NAME[0], NAME[1]);
+    ui.horizontal(|ui| {
+        menu(ui, state, session, actions);
+        ui.scope(|ui| {
+            ui.set_max_width(name_room);
+            let name = Label::new(RichText::new(session.name()).strong().size(16.0)).truncate();
+            ui.add(name).on_hover_text(session.root.display().to_string());
+        });
+        ui.separator();
+        history(ui, session, actions);
+        ui.separator();
+        for (layout, name, hint) in [
+            (Arrangement::Block, "Block", "The block alone (1)"),
+            (Arrangement::Sections, "Sections", "The block and three sections through one point (2)"),
+            (Arrangement::Map, "Map", "A horizon as a map with contours (3)"),
+            (Arrangement::Fence, "Fence", "A section along a line drawn on the slice (4)"),
+        ] {
+            if ui.selectable_label(session.view.layout == layout, name).on_hover_text(hint).clicked() {
+                actions.push(Action::Arrange(layout));
+            }
+        }
+        if compares {
+            ui.separator();
+            if folds {
+                ui.menu_button("Compare", |ui| comparison(ui, session, actions));
+            } else {
+                comparison(ui, session, actions);
+            }
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            if ui.button("?").on_hover_text("Shortcuts (?)").clicked() {
+                actions.push(Action::Ask(Box::new(Dialogue::Shortcuts)));
+            }
+            if ui
+                .add_enabled(session.is_drawable(), Button::new("Copy"))
+                .on_hover_text("Copy the picture (Ctrl Shift C)")
+                .clicked()
+            {
+                actions.push(Action::Copy);
+            }
+            let form = ExportForm::new(session.root.with_extension("png").display().to_string());
+            let can = session.is_drawable();
+            let export = ui.add_enabled(can, Button::new("Export…")).on_hover_text("Draw to a file (Ctrl E)");
+            if export.clicked() {
+                actions.push(Action::Ask(Box::new(Dialogue::Export(form))));
+            }
+        });
+    });
+}
+
+fn menu(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
+    ui.menu_button("Project", |ui| {
+        let ask = |choice: Choice| Action::Ask(Box::new(Dialogue::Choose(choice)));
+        let has_frame = session.document.geometry.is_some();
+        for (name, action, can) in [
+            ("Open…", ask(Choice::Project), true),
+            ("New from SEG-Y…", ask(Choice::NewSurvey), true),
+            ("Add a volume…", ask(Choice::MoreSurvey), true),
+            ("Add a horizon…", ask(Choice::Horizon), has_frame),
+            ("Add a fault…", ask(Choice::Fault), has_frame),
+            ("Add a well…", ask(Choice::Well), has_frame),
+            ("Add a tile…", ask(Choice::Texture), true),
+            ("Close", Action::Close, true),
+        ] {
+            if ui.add_enabled(can, Button::new(name)).clicked() {
+                actions.push(action);
+                ui.close();
+            }
+        }
+        ui.separator();
+        let appearance = state.remembered.appearance;
+        for choice in [Appearance::System, Appearance::Light, Appearance::Dark] {
+            if ui.radio(appearance == choice, format!("{} appearance", choice.name())).clicked() {
+                actions.push(Action::Appear(choice));
+            }
+        }
+        ui.separator();
+        let scale = state.remembered.scale.unwrap_or(1.0);
+        for (name, factor) in [("Larger", 1.1), ("Smaller", 1.0 / 1.1)] {
+            if ui.button(name).clicked() {
+                actions.push(Action::Scale(scale * factor));
+            }
+        }
+    });
+}
+
+fn history(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    for (name, what, keys, action) in [
+        ("Undo", session.undoable(), "Ctrl Z", Action::Undo),
+        ("Redo", session.redoable(), "Ctrl Shift Z", Action::Redo),
+    ] {
+        let hint = what.map_or_else(String::new, |what| format!("{name}: {what} ({keys})"));
+        let button = ui.add_enabled(what.is_some(), Button::new(name)).on_hover_text(hint);
+        if button.clicked() {
+            actions.push(action);
+        }
+    }
+}
+
+fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let document = &session.document;
+    let both = !document.horizons.is_empty() && !document.volumes.is_empty();
+    ui.add_enabled_ui(both, |ui| {
+        for (compare, name, hint) in [
+            (Compare::Blend, "Blend", "One picture, blended from illustrated to raw"),
+            (Compare::SideBySide, "Side by side", "Illustrated and raw beside each other"),
+            (Compare::Wipe, "Wipe", "Illustrated over raw, with a line to drag"),
+        ] {
+            let label = ui.selectable_label(session.view.compare == compare, name).on_hover_text(hint);
+            if label.clicked() {
+                actions.push(Action::Compare(compare));
+            }
+        }
+        if session.view.compare == Compare::Blend {
+            let mut blend = session.view.scene.blend;
+            let name = ui.weak("to raw");
+            ui.spacing_mut().slider_width = 80.0;
+            let slider = ui.add(Slider::new(&mut blend, 0.0..=1.0).fixed_decimals(2));
+            if slider.labelled_by(name.id).on_hover_text("0 is illustrated, 1 is raw").changed() {
+                actions.push(Action::Show(Box::new(Scene { blend, ..session.view.scene.clone() })));
+            }
+        }
+    })
+    .response
+    .on_disabled_hover_text("Needs a volume and horizons");
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::tests::{driven, project, state, wait};
+    use eframe::egui::vec2;
+    use egui_kittest::kittest::Queryable;
+
+    #[test]
+    fn nothing_lies_over_anything_else_in_any_window() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("a_survey_with_a_name_that_is_longer_than_most_2026_int16.petro");
+        std::fs::rename(project(folder.path()), &root).unwrap();
+        let mut harness = driven(folder.path(), Some(root));
+        wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+        for (width, is_folded) in [(860.0, true), (1024.0, true), (1280.0, false), (1920.0, false)] {
+            harness.set_size(vec2(width, 600.0));
+            harness.run_steps(3);
+            assert_eq!(harness.query_by_label("Compare").is_some(), is_folded, "{width}");
+            let last = if is_folded { "Compare" } else { "Wipe" };
+            let order = ["Project", "Undo", "Redo", "Sections", "Map", "Fence", last, "Export…", "Copy", "?"];
+            let rects = order.map(|label| harness.get_by_label(label).rect());
+            for (pair, names) in rects.windows(2).zip(order.windows(2)) {
+                assert!(pair[0].right() <= pair[1].left(), "{} and {} at {width}: {pair:?}", names[0], names[1]);
+            }
+            assert!(rects.iter().all(|rect| rect.right() <= width), "{width}: {rects:?}");
+            if !is_folded {
+                let number = harness.get_all_by_label("to raw").map(|node| node.rect().right()).fold(0.0, f32::max);
+                assert!(number <= rects[7].left(), "the slider lies under Export at {width}");
+            }
+        }
+    }
+}

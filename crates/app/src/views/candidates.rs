@@ -1,0 +1,123 @@
+//! Horizon candidates: extracting them, and how.
+
+use crate::state::{Action, Session};
+use crate::work::{Interpreted, RunningLine};
+use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
+use interp::{ExtractSettings, Extremum, Method};
+
+/// What is to be extracted.
+#[derive(Default)]
+pub struct CandidatesPanel {
+    settings: ExtractSettings,
+    volume: Option<String>,
+}
+
+impl CandidatesPanel {
+    /// Shows the panel.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        shown: Option<&Interpreted>,
+        running: &[RunningLine],
+        actions: &mut Vec<Action>,
+    ) {
+        if let Some(line) = running.iter().find(|line| line.title == "Extracting") {
+            ui.label(if line.stage.is_empty() { "extracting" } else { &line.stage });
+            ui.horizontal(|ui| {
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    if ui.button("Stop extracting").clicked() {
+                        line.progress.cancel();
+                    }
+                    ui.add(ProgressBar::new(line.share().unwrap_or(0.0)).show_percentage());
+                });
+            });
+            ui.weak("Work goes on meanwhile.");
+            return;
+        }
+        let found = shown.and_then(|shown| shown.extraction.as_ref());
+        if found.is_none() {
+            ui.label("Find every reflection that can be followed; horizons are then put together from them.");
+        }
+        let name = if found.is_some() { "Extract again" } else { "Extract" };
+        let can = session.document.volumes.iter().any(|entry| entry.geometry.is_none());
+        ui.horizontal_wrapped(|ui| {
+            if let Some(report) = found {
+                ui.label(format!("{} surfaces, {} leaves", report.surfaces, report.leaves));
+            }
+            if ui.add_enabled(can, Button::new(name)).on_disabled_hover_text("Needs a volume").clicked() {
+                actions.push(Action::Extract(self.volume.clone(), Box::new(self.settings.clone())));
+            }
+        });
+        ui.collapsing("How", |ui| self.extraction_settings(ui, session));
+    }
+
+    fn extraction_settings(&mut self, ui: &mut Ui, session: &Session) {
+        let settings = &mut self.settings;
+        Grid::new("extraction").num_columns(2).show(ui, |ui| {
+            let own = || session.document.volumes.iter().filter(|entry| entry.geometry.is_none());
+            if own().count() > 1 {
+                let label = ui.label("Volume");
+                let first = own().next().map_or_else(String::new, |entry| entry.name.clone());
+                ui.label_inputs_by(label.id, |ui| {
+                    let text = self.volume.clone().unwrap_or(first);
+                    ComboBox::from_id_salt("extracted").selected_text(text).show_ui(ui, |ui| {
+                        for entry in own() {
+                            ui.selectable_value(&mut self.volume, Some(entry.name.clone()), &entry.name);
+                        }
+                    });
+                });
+                ui.end_row();
+            }
+            ui.label("Method");
+            ui.horizontal(|ui| {
+                ui.selectable_value(&mut settings.grow.method, Method::Ours, "Ours");
+                ui.selectable_value(&mut settings.grow.method, Method::Paper, "Paper's");
+            });
+            ui.end_row();
+            ui.label("Follow");
+            ui.vertical(|ui| {
+                for (kind, name) in
+                    [(Extremum::Peak, "Peaks"), (Extremum::Trough, "Troughs"), (Extremum::Zero, "Zeros")]
+                {
+                    let mut is_followed = settings.grow.extrema.contains(&kind);
+                    if ui.checkbox(&mut is_followed, name).changed() {
+                        settings.grow.extrema.retain(|known| *known != kind);
+                        if is_followed {
+                            settings.grow.extrema.push(kind);
+                        }
+                    }
+                }
+            });
+            ui.end_row();
+            let label = ui.label("Least front width");
+            let drag = DragValue::new(&mut settings.grow.min_front_width).range(2..=64).suffix(" traces");
+            ui.add(drag).labelled_by(label.id);
+            ui.end_row();
+            let label = ui.label("Fault evidence");
+            let drag = DragValue::new(&mut settings.grow.fault_evidence).range(5.0..=10_000.0).speed(1.0);
+            let hint = "The more is asked, the fewer cuts: 25 for clean data, 100 to 200 where samples are clipped or reflectors chaotic";
+            ui.add(drag).labelled_by(label.id).on_hover_text(hint);
+            ui.end_row();
+            let label = ui.label("Join pieces from");
+            let mut percent = 100.0 * settings.grow.join_share;
+            let drag = DragValue::new(&mut percent).range(5.0..=101.0).speed(1.0).suffix(" %");
+            let hint = "Share of the common boundary that must speak for joining two pieces; 101 joins none";
+            if ui.add(drag).labelled_by(label.id).on_hover_text(hint).changed() {
+                settings.grow.join_share = percent / 100.0;
+            }
+            ui.end_row();
+            let label = ui.label("Least leaf");
+            let drag = DragValue::new(&mut settings.forest.min_leaf_triangles).range(1..=100_000).suffix(" triangles");
+            ui.add(drag).labelled_by(label.id);
+            ui.end_row();
+            let label = ui.label("Reach");
+            let drag = DragValue::new(&mut settings.distance.max_distance).range(1.0..=10.0).suffix(" voxels");
+            ui.add(drag).labelled_by(label.id);
+            ui.end_row();
+        });
+        if ui.small_button("Usual settings").clicked() {
+            *settings = ExtractSettings::default();
+        }
+    }
+}

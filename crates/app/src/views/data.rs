@@ -1,0 +1,175 @@
+//! Volumes, horizons, faults and wells of the project.
+
+use super::notices;
+use super::sections::entry_colour;
+use crate::state::{Action, Choice, Dialogue, Place, Session, State};
+use eframe::egui::{Align, Button, DragValue, Key, Layout, ScrollArea, Sense, TextEdit, Ui, vec2};
+use project::command::{
+    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity,
+};
+use project::styles;
+use survey::VerticalUnit;
+use ttf::ColourMap;
+
+/// The panel, and what is being typed in it.
+#[derive(Default)]
+pub struct Data {
+    /// A horizon and its new name.
+    renaming: Option<(String, String)>,
+    velocity: Option<f64>,
+}
+
+impl Data {
+    /// Shows the panel.
+    pub fn show(&mut self, ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
+        notices::show(ui, state, Place::Data, actions);
+        ScrollArea::vertical().show(ui, |ui| {
+            ui.heading("Volumes");
+            volumes(ui, session, actions);
+            ui.add_space(10.0);
+            ui.heading("Horizons");
+            self.horizons(ui, session, actions);
+            ui.add_space(10.0);
+            ui.heading("Faults");
+            faults(ui, session, actions);
+            ui.add_space(10.0);
+            wells(ui, session, actions);
+            self.survey(ui, session, actions);
+        });
+    }
+
+    fn horizons(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        for (index, entry) in session.document.horizons.iter().enumerate() {
+            ui.horizontal(|ui| {
+                let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+                ui.painter().circle_filled(rect.center(), 5.0, entry_colour(entry, index));
+                if let Some((_, text)) = self.renaming.as_mut().filter(|(name, _)| *name == entry.name) {
+                    let edit = ui.name_inputs("New name", |ui| ui.add(TextEdit::singleline(text).desired_width(150.0)));
+                    edit.request_focus();
+                    if ui.input(|input| input.key_pressed(Key::Enter)) || edit.clicked_elsewhere() {
+                        let to = text.trim().to_owned();
+                        if !to.is_empty() && to != entry.name {
+                            let command = RenameHorizon { from: entry.name.clone(), to };
+                            actions.push(Action::Apply(Box::new(Command::RenameHorizon(command))));
+                        }
+                        self.renaming = None;
+                    }
+                    return;
+                }
+                let is_chosen = session.view.horizon.as_deref() == Some(&entry.name);
+                let label = ui.selectable_label(is_chosen, &entry.name);
+                if label.on_hover_text(&entry.source.reading).clicked() {
+                    actions.push(Action::Horizon((!is_chosen).then(|| entry.name.clone())));
+                }
+                if is_chosen
+                    && ui.small_button("Rename").on_hover_text(format!("Rename horizon {}", entry.name)).clicked()
+                {
+                    self.renaming = Some((entry.name.clone(), entry.name.clone()));
+                }
+                if remove(ui, &format!("Remove horizon {}", entry.name)) {
+                    let command = RemoveHorizon { name: entry.name.clone() };
+                    actions.push(Action::Apply(Box::new(Command::RemoveHorizon(command))));
+                }
+            });
+        }
+        add(ui, "Add a horizon…", Choice::Horizon, session.document.geometry.is_some(), actions);
+    }
+
+    fn survey(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        let Some(geometry) = &session.document.geometry else { return };
+        ui.heading("Survey");
+        let [inlines, crosslines, samples] = geometry.size();
+        ui.label(format!("{inlines} inlines, {crosslines} crosslines, {samples} samples"));
+        let [x, y] = [geometry.inline_vector, geometry.crossline_vector].map(|vector| vector.length());
+        ui.label(format!(
+            "bins of {x:.2} × {y:.2} m, {} {} apart",
+            geometry.vertical.interval,
+            geometry.vertical.unit.symbol()
+        ));
+        if geometry.vertical.unit == VerticalUnit::Milliseconds {
+            ui.horizontal(|ui| {
+                let label = ui.label("Velocity").on_hover_text("Turns two-way time into metres");
+                let mut velocity = self.velocity.unwrap_or(geometry.velocity_m_s);
+                let drag =
+                    DragValue::new(&mut velocity).speed(10.0).range(300.0..=9000.0).suffix(" m/s").max_decimals(0);
+                let response = ui.add(drag).labelled_by(label.id);
+                if response.changed() {
+                    self.velocity = Some(velocity);
+                }
+                let is_done = !response.dragged() && !response.has_focus();
+                if let Some(velocity_m_s) = self.velocity.filter(|_| is_done) {
+                    self.velocity = None;
+                    if velocity_m_s != geometry.velocity_m_s {
+                        actions.push(Action::Apply(Box::new(Command::SetVelocity(SetVelocity { velocity_m_s }))));
+                    }
+                }
+            });
+        }
+    }
+}
+
+/// A button at the right end of a row; answers whether it was clicked.
+pub(super) fn remove(ui: &mut Ui, hint: &str) -> bool {
+    ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.small_button("Remove").on_hover_text(hint).clicked())
+        .inner
+}
+
+fn add(ui: &mut Ui, name: &str, choice: Choice, can: bool, actions: &mut Vec<Action>) {
+    if ui.add_enabled(can, Button::new(name)).clicked() {
+        actions.push(Action::Ask(Box::new(Dialogue::Choose(choice))));
+    }
+}
+
+fn volumes(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let document = &session.document;
+    let raw = styles::transfer_functions(document).raw;
+    for entry in &document.volumes {
+        ui.horizontal(|ui| {
+            let is_raw = raw.as_ref().is_some_and(|raw| raw.volume == entry.name);
+            let radio = ui.radio(is_raw, &entry.name);
+            if radio
+                .on_hover_text(format!("Show as raw data; {} polarity; {}", entry.polarity, entry.source.reading))
+                .clicked()
+                && let Ok(raw) = styles::raw_colour(document, Some(&entry.name), ColourMap::Seismics, None)
+            {
+                actions.push(Action::Apply(Box::new(Command::SetRaw(SetRaw { raw }))));
+            }
+            if remove(ui, &format!("Remove volume {}", entry.name)) {
+                let command = RemoveVolume { name: entry.name.clone() };
+                actions.push(Action::Apply(Box::new(Command::RemoveVolume(command))));
+            }
+        });
+    }
+    add(ui, "Add a volume…", Choice::MoreSurvey, true, actions);
+}
+
+fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    ui.heading("Wells");
+    for entry in &session.document.wells {
+        ui.horizontal(|ui| {
+            ui.label(&entry.name).on_hover_text(&entry.source.reading);
+            if remove(ui, &format!("Remove well {}", entry.name)) {
+                let command = RemoveWell { name: entry.name.clone() };
+                actions.push(Action::Apply(Box::new(Command::RemoveWell(command))));
+            }
+        });
+    }
+    add(ui, "Add a well…", Choice::Well, session.document.geometry.is_some(), actions);
+    ui.add_space(10.0);
+}
+
+fn faults(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    for entry in &session.document.faults {
+        ui.horizontal(|ui| {
+            ui.label(&entry.name).on_hover_text(&entry.source.reading);
+            if let Some(other) = &entry.truncated_by {
+                ui.weak(format!("ends at {other}"));
+            }
+            if remove(ui, &format!("Remove fault {}", entry.name)) {
+                let command = RemoveFault { name: entry.name.clone() };
+                actions.push(Action::Apply(Box::new(Command::RemoveFault(command))));
+            }
+        });
+    }
+    add(ui, "Add a fault…", Choice::Fault, session.document.geometry.is_some(), actions);
+}

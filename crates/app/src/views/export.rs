@@ -1,0 +1,89 @@
+//! How large, how fine, and where to.
+
+use super::notices;
+use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
+use crate::theme;
+use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
+
+/// Largest picture, pixels a side.
+const LARGEST: u32 = 16_000;
+
+/// Shows the dialogue.
+pub fn show(
+    ctx: &Context,
+    state: &State,
+    session: &Session,
+    form: &ExportForm,
+    is_drawing: bool,
+    actions: &mut Vec<Action>,
+) {
+    let modal = Modal::new(Id::unique("export")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+        ui.set_width(440.0);
+        ui.heading("Export the picture");
+        notices::show(ui, state, Place::Dialogue, actions);
+        let mut next = form.clone();
+        Grid::new("export").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
+            let label = ui.label("File");
+            ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
+            ui.end_row();
+            ui.label("Size");
+            ui.horizontal(|ui| {
+                for (index, name) in ["Width", "Height"].into_iter().enumerate() {
+                    let drag = DragValue::new(&mut next.size_cm[index]).speed(0.1).range(1.0..=120.0).max_decimals(2);
+                    ui.name_inputs(name, |ui| ui.add(drag));
+                    ui.label(if index == 0 { "×" } else { "cm" });
+                }
+            });
+            ui.end_row();
+            let label = ui.label("Resolution");
+            let drag = DragValue::new(&mut next.dpi).speed(5.0).range(36.0..=1200.0).max_decimals(0).suffix(" dpi");
+            ui.add(drag).labelled_by(label.id);
+            ui.end_row();
+            ui.label("With");
+            ui.vertical(|ui| {
+                let has_layers = !session.document.horizons.is_empty();
+                for (shown, name, can) in [
+                    (&mut next.legend, "Legend", has_layers),
+                    (&mut next.scale_bar, "Scale bar and exaggeration", true),
+                ] {
+                    let mut is_shown = *shown == Shown::Yes;
+                    if ui.add_enabled(can, eframe::egui::Checkbox::new(&mut is_shown, name)).changed() {
+                        *shown = if is_shown { Shown::Yes } else { Shown::No };
+                    }
+                }
+            });
+            ui.end_row();
+        });
+        let [width, height] = next.size_px();
+        let is_too_large = width.max(height) > LARGEST;
+        let text = format!("{width} × {height} pixels");
+        if is_too_large {
+            ui.colored_label(
+                ui.visuals().error_fg_color,
+                format!("{text}: too large, lower the size or the resolution"),
+            );
+        } else {
+            ui.weak(text);
+        }
+        ui.horizontal(|ui| {
+            let can = !is_drawing && !is_too_large && !next.path.trim().is_empty();
+            let is_entered = can && ui.input(|input| input.key_pressed(Key::Enter));
+            if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || is_entered {
+                actions.push(Action::Export(Box::new(next.clone())));
+            }
+            if ui.button("Cancel").clicked() {
+                actions.push(Action::Answered);
+            }
+            if is_drawing {
+                ui.add(Spinner::new());
+                ui.label("Drawing…");
+            }
+        });
+        if next != *form {
+            actions.push(Action::Ask(Box::new(Dialogue::Export(next))));
+        }
+    });
+    if modal.should_close() {
+        actions.push(Action::Answered);
+    }
+}

@@ -1,0 +1,148 @@
+//! Faults: drawn by sticks, looked for, accepted.
+
+use super::picking::go;
+use crate::state::{Action, PickingStep, Session, Tool};
+use crate::work::{Interpreted, RunningLine};
+use eframe::egui::{Button, TextEdit, Ui};
+use interp::faults::Proposal;
+use project::command::{AcceptFault, Command};
+use std::collections::HashMap;
+use survey::SurveyGeometry;
+
+/// What is being typed.
+#[derive(Default)]
+pub struct FaultsPanel {
+    /// Names for proposals, by number.
+    names: HashMap<u32, String>,
+}
+
+impl FaultsPanel {
+    /// Shows the panel.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        shown: Option<&Interpreted>,
+        running: &[RunningLine],
+        geometry: &SurveyGeometry,
+        actions: &mut Vec<Action>,
+    ) {
+        let picking = &session.view.picking;
+        let step = |step| Action::Picking(step);
+        let is_drawing = picking.tool == Tool::Sticks;
+        if ui
+            .selectable_label(is_drawing, "Draw sticks")
+            .on_hover_text("Click along the fault on a section; Enter ends a stick (F)")
+            .clicked()
+        {
+            actions.push(step(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks })));
+        }
+        if is_drawing || !picking.sticks.is_empty() {
+            let complete = picking.sticks.len();
+            ui.label(format!(
+                "{complete} stick{} drawn, {} place{} on the next",
+                if complete == 1 { "" } else { "s" },
+                picking.stick.len(),
+                if picking.stick.len() == 1 { "" } else { "s" }
+            ));
+            ui.horizontal(|ui| {
+                if ui.add_enabled(picking.stick.len() > 1, Button::new("End stick")).on_hover_text("Enter").clicked() {
+                    actions.push(step(PickingStep::EndStick));
+                }
+                let some = !(picking.stick.is_empty() && picking.sticks.is_empty());
+                if ui.add_enabled(some, Button::new("Take back")).on_hover_text("Backspace").clicked() {
+                    actions.push(step(PickingStep::Backspace));
+                }
+            });
+            ui.horizontal(|ui| {
+                let mut name = picking.fault.clone();
+                let edit = ui.name_inputs("Name of the fault", |ui| {
+                    ui.add(TextEdit::singleline(&mut name).desired_width(120.0))
+                });
+                if edit.changed() {
+                    actions.push(step(PickingStep::NameFault(name.clone())));
+                }
+                let can = !name.trim().is_empty() && (complete > 0 || picking.stick.len() > 1);
+                if ui.add_enabled(can, Button::new("Make fault")).clicked() {
+                    actions.push(step(PickingStep::MakeFault));
+                }
+            });
+        }
+        for entry in &session.document.faults {
+            ui.label(&entry.name).on_hover_text(&entry.source.reading);
+        }
+        let is_looking = running.iter().any(|line| line.title == "Looking for faults");
+        let can = !session.document.horizons.is_empty() && !is_looking;
+        let hint = "Where horizons are offset, a fault is proposed";
+        if ui.add_enabled(can, Button::new("Look for faults")).on_hover_text(hint).clicked() {
+            actions.push(Action::ProposeFaults);
+        }
+        let Some(shown) = shown else { return };
+        let open = || shown.proposals.iter().map(|(proposal, _)| proposal).filter(|proposal| picking.shows(proposal));
+        for proposal in open().filter(|proposal| !proposal.is_minor) {
+            self.proposal(ui, proposal, &shown.unit, geometry, actions);
+        }
+        let dismissed = |id: u32| picking.dismissed.contains(&id);
+        let minor = shown.proposals.iter().filter(|(proposal, _)| proposal.is_minor && !dismissed(proposal.id)).count();
+        if minor > 0 {
+            ui.separator();
+            let text = format!("{minor} minor proposal{}", if minor == 1 { "" } else { "s" });
+            let hint = "Small ones, together a fifth of all offset or less, and those that scatter or show no break in the data";
+            if ui.selectable_label(picking.minor, text).on_hover_text(hint).clicked() {
+                actions.push(step(PickingStep::Minor(!picking.minor)));
+            }
+        }
+        for proposal in open().filter(|proposal| proposal.is_minor) {
+            self.proposal(ui, proposal, &shown.unit, geometry, actions);
+        }
+    }
+
+    fn proposal(
+        &mut self,
+        ui: &mut Ui,
+        proposal: &Proposal,
+        unit: &str,
+        geometry: &SurveyGeometry,
+        actions: &mut Vec<Action>,
+    ) {
+        let kind = if proposal.reverse { "reverse" } else { "normal" };
+        ui.separator();
+        ui.label(format!(
+            "Proposal {}: {kind}, throw {:.0} {unit} (up to {:.0}), dips {:.0}°, strikes {:.0}°",
+            proposal.id, proposal.throw[0], proposal.throw[1], proposal.dip_deg, proposal.strike_deg
+        ))
+        .on_hover_text(seen(proposal));
+        let name = self.names.entry(proposal.id).or_insert_with(|| proposal.name.clone());
+        ui.horizontal(|ui| {
+            let label = format!("Name of proposal {}", proposal.id);
+            ui.name_inputs(label, |ui| ui.add(TextEdit::singleline(name).desired_width(76.0)));
+            if ui.small_button("Accept").on_hover_text(format!("Accept proposal {}", proposal.id)).clicked() {
+                let command = AcceptFault { id: proposal.id, name: name.trim().to_owned() };
+                actions.push(Action::Apply(Box::new(Command::AcceptFault(command))));
+            }
+            if ui.small_button("Dismiss").on_hover_text(format!("Dismiss proposal {}", proposal.id)).clicked() {
+                actions.push(Action::Picking(PickingStep::Dismiss(proposal.id)));
+            }
+            if ui.small_button("Go").on_hover_text(format!("Go to proposal {}", proposal.id)).clicked() {
+                let [a, b] = proposal.ends;
+                let z = 0.5 * (proposal.depth[0] + proposal.depth[1]);
+                go(geometry, [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1]), z], actions);
+            }
+        });
+    }
+}
+
+/// What speaks for a proposal.
+fn seen(proposal: &Proposal) -> String {
+    let mut text = format!(
+        "seen by {} pairs on {}, {:.0} m off its surface; throw by length {:.0} m²",
+        proposal.support,
+        proposal.horizons.join(", "),
+        proposal.misfit_m,
+        proposal.offset_m2
+    );
+    if let Some([on, beside]) = proposal.semblance {
+        text += &format!("; semblance {on:.2} on it, {beside:.2} beside");
+    }
+    text
+}

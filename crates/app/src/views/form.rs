@@ -1,0 +1,80 @@
+//! Rows of the dialogues' forms: a name and what is stated under it, or left to the file.
+
+use crate::fields::field;
+use eframe::egui::{ComboBox, DragValue, TextEdit, Ui};
+use survey::Setting;
+
+/// What a field shows that is left to the file.
+pub const AS_FILE: &str = "as the file says";
+
+/// The name of a setting's field.
+pub fn name_of(setting: Setting) -> &'static str {
+    field(setting).unwrap_or_else(|| setting.option())
+}
+
+/// A choice that may be left to the file; `unstated` is what it shows then.
+pub fn choice<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    setting: Setting,
+    value: &mut Option<T>,
+    unstated: &str,
+    choices: &[(T, &str)],
+) {
+    let name = name_of(setting);
+    let label = ui.label(name);
+    let shown = choices.iter().find(|(choice, _)| Some(*choice) == *value).map_or(unstated, |(_, name)| name);
+    ui.label_inputs_by(label.id, |ui| {
+        ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
+            ui.selectable_value(value, None, unstated);
+            for (choice, name) in choices {
+                ui.selectable_value(value, Some(*choice), *name);
+            }
+        });
+    });
+    ui.end_row();
+}
+
+/// A choice with one of its values to begin with.
+pub fn one_of<T: Copy + PartialEq>(ui: &mut Ui, setting: Setting, value: &mut T, choices: &[(T, &str)]) {
+    let name = name_of(setting);
+    let label = ui.label(name);
+    let shown = choices.iter().find(|(choice, _)| choice == value).map_or("", |(_, name)| name);
+    ui.label_inputs_by(label.id, |ui| {
+        ComboBox::from_id_salt(name).selected_text(shown).show_ui(ui, |ui| {
+            for (choice, name) in choices {
+                ui.selectable_value(value, *choice, *name);
+            }
+        });
+    });
+    ui.end_row();
+}
+
+/// A number that may be left to the file.
+pub fn number(ui: &mut Ui, setting: Setting, value: &mut Option<f64>) {
+    let label = ui.label(name_of(setting));
+    ui.horizontal(|ui| {
+        let mut typed = value.unwrap_or(0.0);
+        let is_stated = value.is_some();
+        let drag = DragValue::new(&mut typed).speed(0.1).custom_formatter(|number, decimals| {
+            if is_stated {
+                eframe::egui::emath::format_with_decimals_in_range(number, decimals)
+            } else {
+                AS_FILE.to_owned()
+            }
+        });
+        if ui.add(drag).labelled_by(label.id).changed() {
+            *value = Some(typed);
+        }
+        if is_stated && ui.small_button("×").on_hover_text(format!("{}: {AS_FILE}", name_of(setting))).clicked() {
+            *value = None;
+        }
+    });
+    ui.end_row();
+}
+
+/// A line of text.
+pub fn text(ui: &mut Ui, setting: Setting, hint: &str, text: &mut String) {
+    let label = ui.label(name_of(setting));
+    ui.add(TextEdit::singleline(text).hint_text(hint).desired_width(240.0)).labelled_by(label.id);
+    ui.end_row();
+}

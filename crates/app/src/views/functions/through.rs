@@ -1,0 +1,187 @@
+//! What is seen through: a volume in the cut-outs or the whole block by its RGBA function, its light, and horizons that give off light of
+//! their own (P-illus 5.1, P-horiz 5).
+
+use super::colour_well;
+use super::curve::Curve;
+use super::histogram::Histogram;
+use crate::state::through::{self, Extent, Light};
+use crate::state::{Action, Notice, Place, Session};
+use crate::views::controls;
+use crate::views::sections::entry_colour;
+use eframe::egui::{ComboBox, DragValue, Grid, Slider, Ui};
+use render::media::{LayerOpacity, MediumColour};
+use render::{PickedHorizon, Scene, Scope, Shading};
+use ttf::Colour;
+
+/// The volume that is seen through, or would be.
+pub(super) fn volume(session: &Session) -> Option<String> {
+    let media = &session.view.scene.media;
+    let first = || session.document.volumes.first().map(|entry| entry.name.clone());
+    media.all().next().map(|medium| medium.volume.clone()).or_else(first)
+}
+
+/// Shows where and how the scene is seen through.
+pub(super) fn show(
+    ui: &mut Ui,
+    session: &Session,
+    histogram: Option<&Histogram>,
+    curve: &mut Curve,
+    actions: &mut Vec<Action>,
+) {
+    let mut next = session.view.scene.clone();
+    ui.heading("Seen through");
+    if let Some(volume) = volume(session) {
+        place(ui, session, &volume, &mut next, actions);
+        if let Some(medium) = through::medium(&mut next) {
+            curve.show(ui, histogram, &mut medium.function);
+            let mut follows = medium.layers == LayerOpacity::Followed;
+            let hint = "Layers stand out by their own opacity (Layers, In cut-outs); the others stay clear";
+            if ui.checkbox(&mut follows, "Only in layers that stand out").on_hover_text(hint).changed() {
+                medium.layers = if follows { LayerOpacity::Followed } else { LayerOpacity::Ignored };
+            }
+            let mut is_rock = medium.colour == MediumColour::Layers;
+            if ui.checkbox(&mut is_rock, "In the layers' colours").changed() {
+                medium.colour = if is_rock { MediumColour::Layers } else { MediumColour::Function };
+            }
+        }
+    }
+    horizons(ui, session, &mut next);
+    if !next.media.is_empty() {
+        light(ui, &mut next);
+    }
+    if next != session.view.scene {
+        actions.push(Action::Show(Box::new(next)));
+    }
+}
+
+/// Where, and which volume.
+fn place(ui: &mut Ui, session: &Session, volume: &str, next: &mut Scene, actions: &mut Vec<Action>) {
+    let present = through::extent(next);
+    let (mut extent, mut name) = (present, volume.to_owned());
+    ui.horizontal_wrapped(|ui| {
+        for (choice, label, hint) in [
+            (Extent::Nowhere, "Nothing", "Rock all over"),
+            (Extent::CutOuts, "Cut-outs", "A volume fills the cut-outs before the rock behind them"),
+            (Extent::Block, "Whole block", "A volume in place of the rock"),
+        ] {
+            ui.selectable_value(&mut extent, choice, label).on_hover_text(hint);
+        }
+    });
+    if present != Extent::Nowhere {
+        let label = ui.label("Volume seen through");
+        ui.label_inputs_by(label.id, |ui| {
+            ComboBox::from_id_salt("medium").selected_text(&name).show_ui(ui, |ui| {
+                for entry in &session.document.volumes {
+                    ui.selectable_value(&mut name, entry.name.clone(), &entry.name);
+                }
+            });
+        });
+    }
+    if (extent, name.as_str()) == (present, volume) {
+        return;
+    }
+    if let Err(error) = through::see(next, &session.document, extent, &name) {
+        actions.push(Action::Tell(Notice::failure(Place::Data, &error)));
+    }
+    if let (Extent::CutOuts, true, Some(geometry)) = (extent, next.cut_outs.is_empty(), &session.document.geometry) {
+        next.cut_outs.push(controls::nearest_cut(next, geometry));
+    }
+}
+
+/// The horizons, each with its light.
+fn horizons(ui: &mut Ui, session: &Session, next: &mut Scene) {
+    let entries = &session.document.horizons;
+    if entries.is_empty() {
+        return;
+    }
+    ui.label("Horizons in it");
+    for (index, entry) in entries.iter().enumerate() {
+        let is_this = |horizon: &PickedHorizon| horizon.name.as_deref() == Some(entry.name.as_str());
+        let mut is_shown = next.media.horizons.iter().any(is_this);
+        if ui.checkbox(&mut is_shown, &entry.name).changed() {
+            let [r, g, b, _] = entry_colour(entry, index).to_array();
+            through::show_horizon(next, &entry.name, Colour::new(r, g, b), is_shown);
+        }
+        if let Some(horizon) = next.media.horizons.iter_mut().find(|horizon| is_this(horizon)) {
+            ui.indent(&entry.name, |ui| numbers(ui, &entry.name, horizon));
+        }
+    }
+    if !next.media.horizons.is_empty() {
+        ui.horizontal_wrapped(|ui| {
+            ui.label("Volume");
+            for (scope, name) in [
+                (Scope::Everywhere, "everywhere"),
+                (Scope::NearHorizons, "near them"),
+                (Scope::AwayFromHorizons, "away from them"),
+            ] {
+                ui.selectable_value(&mut next.media.scope, scope, name);
+            }
+            if next.media.scope != Scope::Everywhere {
+                let drag = DragValue::new(&mut next.media.reach).range(0.5..=10.0).speed(0.1).suffix(" voxels");
+                ui.name_inputs("Reach of horizons", |ui| ui.add(drag));
+            }
+        });
+    }
+}
+
+fn numbers(ui: &mut Ui, name: &str, horizon: &mut PickedHorizon) {
+    ui.horizontal_wrapped(|ui| {
+        colour_well(ui, &format!("Light of {name}"), &mut horizon.colour.rgb);
+        for (word, value, range, hint) in [
+            ("opacity", &mut horizon.opacity, 0.0..=1.0, "Of one voxel of its thickness"),
+            ("thick", &mut horizon.thickness, 0.2..=9.0, "Voxels to either side"),
+            (
+                "glow",
+                &mut horizon.emission,
+                0.0..=20.0,
+                "Light it gives off, which falls on what lies around; 1 is as bright as it is lit",
+            ),
+        ] {
+            ui.weak(word);
+            let drag = DragValue::new(value).range(range).speed(0.02).max_decimals(2);
+            ui.name_inputs(format!("{name}: {word}"), |ui| ui.add(drag)).on_hover_text(hint);
+        }
+    });
+}
+
+fn light(ui: &mut Ui, next: &mut Scene) {
+    let present = Light::of(next);
+    let mut chosen = present;
+    let label = ui.label("Light");
+    ui.label_inputs_by(label.id, |ui| {
+        let names = [
+            (Light::None, "none"),
+            (Light::Gradients, "by gradients"),
+            (Light::Occlusion, "by what lies in front"),
+            (Light::Stripes, "both, in stripes"),
+        ];
+        let shown = names.iter().find(|(light, _)| *light == present).map_or("", |(_, name)| name);
+        ComboBox::from_id_salt("light").selected_text(shown).show_ui(ui, |ui| {
+            for (light, name) in names {
+                ui.selectable_value(&mut chosen, light, name);
+            }
+        });
+    });
+    if chosen != present {
+        next.media.shading = chosen.shading();
+    }
+    Grid::new("light terms").num_columns(2).show(ui, |ui| {
+        let mut row = |name: &str, value: &mut f32, range| {
+            let label = ui.label(name);
+            ui.add(Slider::new(value, range).max_decimals(2)).labelled_by(label.id);
+            ui.end_row();
+        };
+        match &mut next.media.shading {
+            Shading::Unshaded | Shading::Interleaved(_) => {}
+            Shading::Phong(phong) => {
+                row("Ambient", &mut phong.ambient, 0.0..=1.0);
+                row("Diffuse", &mut phong.diffuse, 0.0..=1.5);
+                row("Highlights", &mut phong.specular, 0.0..=1.0);
+            }
+            Shading::Occlusion(occlusion) => {
+                row("Shadows", &mut occlusion.strength, 0.0..=4.0);
+                row("Spread", &mut occlusion.spread, 0.1..=4.0);
+            }
+        }
+    });
+}

@@ -1,0 +1,187 @@
+//! How a horizon or fault file would be read: unit, sign, factor; what was found is shown before it is added.
+
+use super::layers::contact_name;
+use super::{form, notices};
+use crate::state::{Action, Interpreted, Place, Session, State};
+use crate::theme;
+use crate::work::Work;
+use crate::work::scan::{self, InterpretationScan, Reading};
+use eframe::egui::{
+    Button, CollapsingHeader, ComboBox, Context, DragValue, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui,
+};
+use formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
+use project::command::{AddFault, AddHorizon, Age, Command};
+use std::path::{Path, PathBuf};
+use survey::{Contact, Setting};
+
+/// The dialogue.
+#[derive(Default)]
+pub struct Interpretation {
+    path: PathBuf,
+    name: String,
+    options: ImportOptions,
+    /// The columns as they are typed.
+    columns: String,
+    /// Which of several surfaces of the file is added.
+    chosen: Option<String>,
+    contact: Contact,
+    truncated_by: Option<String>,
+    reading: Reading<ImportOptions, InterpretationScan>,
+}
+
+impl Interpretation {
+    /// Shows the dialogue.
+    #[expect(clippy::too_many_arguments, reason = "a panel is handed the parts of the window it needs, and no others")]
+    pub fn show(
+        &mut self,
+        ctx: &Context,
+        state: &State,
+        session: &Session,
+        work: &Work,
+        path: &Path,
+        kind: Interpreted,
+        actions: &mut Vec<Action>,
+    ) {
+        if self.path != path {
+            let name = path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+            *self = Self { path: path.to_owned(), name, ..Self::default() };
+        }
+        if let Some(geometry) = session.document.geometry.clone() {
+            let (file, options) = (self.path.clone(), self.options.clone());
+            self.reading.follow(ctx, work, "Reading the file", &self.options, move |_| match kind {
+                Interpreted::Fault => scan::fault(&file, &geometry, &options),
+                Interpreted::Horizon => scan::horizon(&file, &geometry, &options),
+            });
+        }
+        let modal = Modal::new(Id::unique("interpretation")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
+            ui.set_width(620.0);
+            ui.heading(if kind == Interpreted::Fault { "Add a fault" } else { "Add a horizon" });
+            ui.weak(path.display().to_string());
+            notices::show(ui, state, Place::Dialogue, actions);
+            self.form(ui, session, kind);
+            ui.separator();
+            let height = (ctx.content_rect().height() - 460.0).clamp(90.0, 260.0);
+            ScrollArea::vertical()
+                .max_height(height)
+                .min_scrolled_height(height)
+                .auto_shrink(false)
+                .show(ui, |ui| self.report(ui));
+            ui.separator();
+            ui.horizontal(|ui| {
+                let can = !self.name.trim().is_empty() && self.reading.is_good(&self.options);
+                if ui.add_enabled(can, Button::new("Add")).clicked() {
+                    actions.push(Action::Apply(Box::new(self.command(kind))));
+                }
+                if ui.button("Cancel").clicked() {
+                    actions.push(Action::Answered);
+                }
+            });
+        });
+        if modal.should_close() {
+            actions.push(Action::Answered);
+        }
+        if actions.iter().any(|action| matches!(action, Action::Answered)) {
+            self.path = PathBuf::new();
+        }
+    }
+
+    fn form(&mut self, ui: &mut Ui, session: &Session, kind: Interpreted) {
+        Grid::new("interpretation").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
+            let label = ui.label("Name");
+            ui.add(TextEdit::singleline(&mut self.name).desired_width(240.0)).labelled_by(label.id);
+            ui.end_row();
+            let units =
+                [ZUnit::Milliseconds, ZUnit::Seconds, ZUnit::Metres, ZUnit::Feet].map(|unit| (unit, unit.symbol()));
+            form::choice(ui, Setting::ZUnit, &mut self.options.z_unit, form::AS_FILE, &units);
+            let signs = [(ZPositive::Down, "positive down"), (ZPositive::Up, "positive up")];
+            form::choice(ui, Setting::ZPositive, &mut self.options.z_positive, form::AS_FILE, &signs);
+            let label = ui.label(form::name_of(Setting::ZFactor));
+            ui.add(DragValue::new(&mut self.options.z_factor).speed(0.01)).labelled_by(label.id);
+            ui.end_row();
+            if kind == Interpreted::Fault {
+                let label = ui.label("Ends at");
+                ui.label_inputs_by(label.id, |ui| {
+                    let shown = self.truncated_by.clone().unwrap_or_else(|| "nothing".to_owned());
+                    ComboBox::from_id_salt("ends at").selected_text(shown).show_ui(ui, |ui| {
+                        ui.selectable_value(&mut self.truncated_by, None, "nothing");
+                        for fault in &session.document.faults {
+                            ui.selectable_value(&mut self.truncated_by, Some(fault.name.clone()), &fault.name);
+                        }
+                    });
+                });
+            } else {
+                let label = ui.label("Contact");
+                ui.label_inputs_by(label.id, |ui| {
+                    ComboBox::from_id_salt("contact").selected_text(contact_name(self.contact)).show_ui(ui, |ui| {
+                        for contact in [Contact::Conformable, Contact::Erosional, Contact::Onlap, Contact::Intrusive] {
+                            ui.selectable_value(&mut self.contact, contact, contact_name(contact));
+                        }
+                    });
+                });
+            }
+            ui.end_row();
+        });
+        // What an error asks for must be in sight.
+        let is_refused = self.reading.with(|found| matches!(found, Some((_, Err(_)))));
+        CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| self.more(ui));
+    }
+
+    /// What is seldom to be stated.
+    fn more(&mut self, ui: &mut Ui) {
+        let options = &mut self.options;
+        Grid::new("more").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
+            let formats: Vec<(Format, &str)> = Format::all().map(|format| (format, format.name())).collect();
+            form::choice(ui, Setting::Format, &mut options.format, form::AS_FILE, &formats);
+            form::text(ui, Setting::Columns, "inline, crossline, x, y, z, name, stick or -", &mut self.columns);
+            match Column::parse_list(self.columns.trim()) {
+                _ if self.columns.trim().is_empty() => options.columns = None,
+                Ok(columns) => options.columns = Some(columns),
+                Err(unknown) => {
+                    ui.label("");
+                    ui.colored_label(ui.visuals().error_fg_color, format!("“{unknown}” is no column"));
+                    ui.end_row();
+                }
+            }
+            form::number(ui, Setting::Null, &mut options.null);
+            let by = [(PlaceBy::Lines, "line numbers"), (PlaceBy::World, "X and Y")];
+            form::choice(ui, Setting::PlaceBy, &mut options.place_by, "line numbers, if X and Y agree", &by);
+            let orders = [(ValueOrder::Columns, "columns"), (ValueOrder::Rows, "rows")];
+            form::choice(ui, Setting::ValueOrder, &mut options.value_order, "the smoother", &orders);
+        });
+    }
+
+    fn report(&mut self, ui: &mut Ui) {
+        let (name, chosen) = (&mut self.name, &mut self.chosen);
+        self.reading.with(|found| match found {
+            None => {
+                ui.add(Spinner::new());
+            }
+            Some((_, Err(notice))) => {
+                ui.colored_label(ui.visuals().error_fg_color, &notice.text);
+                if let Some(hint) = &notice.hint {
+                    ui.label(hint);
+                }
+            }
+            Some((_, Ok(scan))) => {
+                for (surface, report) in &scan.surfaces {
+                    let is_chosen = chosen.as_ref() == Some(surface);
+                    if scan.surfaces.len() > 1 && ui.selectable_label(is_chosen, surface).clicked() {
+                        name.clone_from(surface);
+                        *chosen = Some(surface.clone());
+                    }
+                    ui.label(report.trim_end());
+                }
+            }
+        });
+    }
+
+    fn command(&self, kind: Interpreted) -> Command {
+        let (path, name) = (self.path.clone(), self.name.trim().to_owned());
+        let options = ImportOptions { select: self.chosen.clone(), ..self.options.clone() };
+        if kind == Interpreted::Fault {
+            Command::AddFault(AddFault { path, name, truncated_by: self.truncated_by.clone(), options })
+        } else {
+            Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: Age::ByDepth, options })
+        }
+    }
+}

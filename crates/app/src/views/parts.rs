@@ -1,0 +1,50 @@
+//! What fills the middle of the window, and a printed page: which views, and where.
+
+use crate::state::{Layout, SliceKind};
+use eframe::egui::Rect;
+
+/// A view.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The block.
+    Block,
+    /// A section.
+    Section(SliceKind),
+    /// The map.
+    Map,
+    /// The fence.
+    Fence,
+}
+
+/// Room between views, points.
+const GAP: f32 = 3.0;
+
+/// Two views stand beside one another where the room is broader than so many heights, else one over the other.
+const BROAD: f32 = 1.2;
+
+/// The views of a layout with their places in a rectangle.
+pub fn parts(layout: Layout, whole: Rect) -> Vec<(Part, Rect)> {
+    let two = |first: Part, second: Part| {
+        let is_broad = whole.width() > BROAD * whole.height();
+        let (a, b) =
+            if is_broad { whole.split_left_right_at_fraction(0.42) } else { whole.split_top_bottom_at_fraction(0.42) };
+        vec![(first, a.shrink(GAP)), (second, b.shrink(GAP))]
+    };
+    match layout {
+        Layout::Block => vec![(Part::Block, whole)],
+        Layout::Map => two(Part::Block, Part::Map),
+        Layout::Fence => two(Part::Section(SliceKind::Slice), Part::Fence),
+        Layout::Sections => {
+            let (top, bottom) = whole.split_top_bottom_at_fraction(0.5);
+            let rows = [
+                (top, [Part::Block, Part::Section(SliceKind::Inline)]),
+                (bottom, [Part::Section(SliceKind::Slice), Part::Section(SliceKind::Crossline)]),
+            ];
+            let quarters = rows.into_iter().flat_map(|(row, [first, second])| {
+                let (left, right) = row.split_left_right_at_fraction(0.5);
+                [(first, left.shrink(GAP)), (second, right.shrink(GAP))]
+            });
+            quarters.collect()
+        }
+    }
+}

@@ -1,0 +1,257 @@
+//! The horizons, each with what is known of it; under the one that picks go to, its picks and holes.
+
+use super::go;
+use super::palette::palette;
+use crate::state::{Action, PickingStep, Session};
+use crate::views::sections::horizon_colour;
+use crate::work::{Interpreted, ShownHorizon};
+use eframe::egui::{Button, DragValue, RichText, Sense, TextEdit, Ui, vec2};
+use interp::assembly::Operation;
+use interp::holes::FillSettings;
+use project::command::{
+    Command, FillHorizon, Move, MovePick, RemoveHorizon, RemovePick, RenameHorizon, ReplayPicks, SetHorizonColour,
+    Unfit,
+};
+use project::document::HorizonEntry;
+use survey::SurveyGeometry;
+
+/// Holes listed at most.
+const HOLES: usize = 5;
+
+/// The list, and what is being typed in it.
+#[derive(Default)]
+pub(super) struct HorizonList {
+    /// A horizon and its new name.
+    renaming: Option<(String, String)>,
+    max_traces: usize,
+}
+
+impl HorizonList {
+    /// Shows the list.
+    pub(super) fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        shown: Option<&Interpreted>,
+        geometry: &SurveyGeometry,
+        actions: &mut Vec<Action>,
+    ) {
+        let picking = &session.view.picking;
+        let document = &session.document;
+        if ui.button("New horizon").on_hover_text("What you pick next becomes another horizon (N)").clicked() {
+            actions.push(Action::Picking(PickingStep::Begin));
+        }
+        for (index, entry) in document.horizons.iter().enumerate() {
+            let facts = shown.and_then(|shown| shown.horizons.iter().find(|horizon| horizon.name == entry.name));
+            let is_current = picking.horizon.as_deref() == Some(&entry.name);
+            ui.horizontal(|ui| {
+                swatch(ui, entry, index, actions);
+                let label = ui.selectable_label(is_current, RichText::new(&entry.name).strong());
+                if label.on_hover_text("Picks go to this horizon").clicked() {
+                    actions.push(Action::Picking(PickingStep::Choose(entry.name.clone())));
+                }
+                if let Some(facts) = facts {
+                    ui.weak(format!("{:.0} %", 100.0 * facts.report.share)).on_hover_text("Of the traces");
+                    if facts.report.overlap.is_some() || !facts.conflicts.is_empty() || facts.outdated {
+                        let colour = ui.visuals().warn_fg_color;
+                        let hint = "It overlaps or contradicts; choose it to see where";
+                        ui.colored_label(colour, "!").on_hover_text(hint);
+                    }
+                }
+            });
+            if is_current {
+                ui.indent("current", |ui| self.current(ui, session, entry, facts, geometry, actions));
+            }
+        }
+        if let Some(name) =
+            picking.horizon.as_ref().filter(|name| !document.horizons.iter().any(|entry| entry.name == **name))
+        {
+            self.begun(ui, session, name, actions);
+        }
+    }
+
+    /// A horizon that does not exist yet.
+    fn begun(&self, ui: &mut Ui, session: &Session, name: &str, actions: &mut Vec<Action>) {
+        let picking = &session.view.picking;
+        ui.horizontal(|ui| {
+            let chosen = picking.colour_in(&session.document);
+            if let Some(colour) = palette(ui, chosen, "Colour of the new horizon") {
+                actions.push(Action::Picking(PickingStep::Tint(colour)));
+            }
+            let mut text = name.to_owned();
+            let edit = ui.name_inputs("Name of the new horizon", |ui| {
+                ui.add(TextEdit::singleline(&mut text).desired_width(150.0))
+            });
+            if edit.changed() {
+                actions.push(Action::Picking(PickingStep::Name(text)));
+            }
+        });
+        ui.weak("New: it begins with the first pick that you accept.");
+    }
+
+    fn current(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        entry: &HorizonEntry,
+        facts: Option<&ShownHorizon>,
+        geometry: &SurveyGeometry,
+        actions: &mut Vec<Action>,
+    ) {
+        ui.horizontal(|ui| {
+            if let Some((_, text)) = self.renaming.as_mut().filter(|(name, _)| *name == entry.name) {
+                let edit = ui.name_inputs("New name", |ui| ui.add(TextEdit::singleline(text).desired_width(140.0)));
+                if ui.small_button("Rename").clicked() || edit.lost_focus() {
+                    let to = text.trim().to_owned();
+                    if !to.is_empty() && to != entry.name {
+                        actions.push(apply(Command::RenameHorizon(RenameHorizon { from: entry.name.clone(), to })));
+                    }
+                    self.renaming = None;
+                }
+            } else {
+                if ui.small_button("Rename…").clicked() {
+                    self.renaming = Some((entry.name.clone(), entry.name.clone()));
+                }
+                if ui.small_button("Remove").on_hover_text(format!("Remove horizon {}", entry.name)).clicked() {
+                    let command = RemoveHorizon { name: entry.name.clone() };
+                    actions.push(apply(Command::RemoveHorizon(command)));
+                }
+            }
+        });
+        let Some(facts) = facts else { return };
+        let report = &facts.report;
+        let plural = |count: usize| if count == 1 { "" } else { "s" };
+        ui.label(format!(
+            "{} nodes on {:.1} % of the traces, {} sheet{}",
+            report.nodes,
+            100.0 * report.share,
+            report.sheets,
+            plural(report.sheets)
+        ));
+        if facts.outdated {
+            ui.colored_label(ui.visuals().warn_fg_color, "Its picks are of another extraction.");
+            ui.horizontal_wrapped(|ui| {
+                for (name, unfit, hint) in [
+                    ("Pick again", Unfit::Refuse, "Make the same picks on the present extraction"),
+                    ("Pick again what fits", Unfit::Drop, "And leave out the picks whose nodes are gone"),
+                ] {
+                    if ui.button(name).on_hover_text(hint).clicked() {
+                        let command = ReplayPicks { horizon: Some(entry.name.clone()), unfit };
+                        actions.push(apply(Command::ReplayPicks(command)));
+                    }
+                }
+            });
+        }
+        if let Some(overlap) = &report.overlap {
+            ui.colored_label(
+                ui.visuals().warn_fg_color,
+                format!("Overlaps itself at {} traces, by up to {:.0} samples.", overlap.traces, overlap.apart),
+            );
+            if ui.small_button("Show the overlap").clicked() {
+                go(geometry, overlap.at.map(f64::from), actions);
+            }
+        }
+        for conflict in &facts.conflicts {
+            ui.colored_label(ui.visuals().warn_fg_color, format!("Conflict: {conflict}."));
+        }
+        picks(ui, entry, geometry, actions);
+        self.holes(ui, session, entry, facts, actions);
+    }
+
+    fn holes(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        entry: &HorizonEntry,
+        facts: &ShownHorizon,
+        actions: &mut Vec<Action>,
+    ) {
+        let holes = &facts.holes;
+        let traces: usize = holes.iter().map(|hole| hole.traces).sum();
+        if holes.is_empty() {
+            ui.weak("no holes");
+            return;
+        }
+        let counted = |count: usize, noun: &str| format!("{count} {noun}{}", if count == 1 { "" } else { "s" });
+        ui.label(format!("{} with {}", counted(holes.len(), "hole"), counted(traces, "trace")));
+        ui.horizontal_wrapped(|ui| {
+            for hole in holes.iter().take(HOLES) {
+                let hint = "Move the sections through this hole";
+                if ui.small_button(counted(hole.traces, "trace")).on_hover_text(hint).clicked() {
+                    let [x, y] = hole.at.map(|at| at as f64);
+                    actions.push(Action::Slices([x, y, session.view.slices[2]]));
+                }
+            }
+            if holes.len() > HOLES {
+                ui.weak(format!("and {} smaller", holes.len() - HOLES));
+            }
+        });
+        ui.horizontal(|ui| {
+            if ui.button("Fill holes").on_hover_text("With the smoothest surface, never across a fault").clicked() {
+                let settings = FillSettings { max_traces: (self.max_traces > 0).then_some(self.max_traces) };
+                let command = FillHorizon { name: entry.name.clone(), settings };
+                actions.push(Action::Apply(Box::new(Command::FillHorizon(command))));
+            }
+            let drag = DragValue::new(&mut self.max_traces).range(0..=1_000_000).custom_formatter(|value, _| {
+                if value == 0.0 { "of any size".to_owned() } else { format!("up to {value:.0} traces") }
+            });
+            ui.name_inputs("Largest hole to fill", |ui| ui.add(drag));
+        });
+    }
+}
+
+/// The colour of a horizon, to be changed where it was assembled here.
+fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
+    match &entry.assembly {
+        Some(log) => {
+            if let Some(colour) = palette(ui, log.colour, &format!("Colour of {}", entry.name)) {
+                let command = SetHorizonColour { horizon: entry.name.clone(), colour };
+                actions.push(Action::Apply(Box::new(Command::SetHorizonColour(command))));
+            }
+        }
+        None => {
+            let (rect, _) = ui.allocate_exact_size(vec2(16.0, 16.0), Sense::hover());
+            ui.painter().circle_filled(rect.center(), 6.0, horizon_colour(None, index));
+        }
+    }
+}
+
+/// The picks of a horizon, first to last.
+fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
+    let Some(log) = &entry.assembly else {
+        ui.weak("Imported: it has no picks.");
+        return;
+    };
+    let unit = geometry.vertical.unit.symbol();
+    for pick in &log.picks {
+        let [inline, crossline, z] = pick.at;
+        let sign = if pick.operation == Operation::Add { "+" } else { "−" };
+        ui.horizontal(|ui| {
+            let text = format!("{sign} {}: {inline:.0}, {crossline:.0}, {z:.0} {unit}", pick.id);
+            let hint = format!("Go to pick {}: inline, crossline, {unit}", pick.id);
+            if ui.selectable_label(false, text).on_hover_text(hint).clicked() {
+                go(geometry, pick.at, actions);
+            }
+            ui.weak(format!("level {}", pick.up));
+        });
+        ui.horizontal_wrapped(|ui| {
+            ui.add_space(8.0);
+            let mut button = |ui: &mut Ui, name: &str, hint: &str, can: bool, command: Command| {
+                let button = ui.add_enabled(can, Button::new(name).small());
+                if button.on_hover_text(format!("{hint} pick {}", pick.id)).clicked() {
+                    actions.push(apply(command));
+                }
+            };
+            let to = |to: Move| Command::MovePick(MovePick { id: pick.id, to });
+            button(ui, "Up", "Climb with", true, to(Move::Up(1)));
+            button(ui, "Down", "Descend with", pick.up > 0, to(Move::Down(1)));
+            button(ui, "Highest", "Highest valid for", true, to(Move::HighestValid));
+            let only = log.picks.len() == 1;
+            button(ui, "Take back", "Take back", !only, Command::RemovePick(RemovePick { id: pick.id }));
+        });
+    }
+}
+
+fn apply(command: Command) -> Action {
+    Action::Apply(Box::new(command))
+}

@@ -1,0 +1,153 @@
+//! Interpreting: candidates, what is selected, horizons with their picks, faults.
+
+mod horizons;
+mod palette;
+
+use super::candidates::CandidatesPanel;
+use super::faults::FaultsPanel;
+use super::{notices, overlay::Overlay};
+use crate::state::picking::voxel_of;
+use crate::state::{Action, Look, PickingStep, Place, Session, State, Tool};
+use crate::work::RunningLine;
+use eframe::egui::{Button, ScrollArea, Ui};
+use horizons::HorizonList;
+use render::FaceData;
+use std::sync::Arc;
+use survey::SurveyGeometry;
+
+/// The panel, and what is being typed in it.
+#[derive(Default)]
+pub struct PickingPanel {
+    candidates: CandidatesPanel,
+    horizons: HorizonList,
+    faults: FaultsPanel,
+    /// Whether sticks were being drawn, and how many faults were proposed, in the frame before.
+    open: (bool, usize),
+}
+
+impl PickingPanel {
+    /// Shows the panel.
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        state: &State,
+        session: &Session,
+        overlay: &Overlay,
+        running: &[RunningLine],
+        actions: &mut Vec<Action>,
+    ) {
+        notices::show(ui, state, Place::Interpret, actions);
+        let Some(geometry) = &session.document.geometry else {
+            ui.label("There is nothing to interpret yet: add a volume.");
+            return;
+        };
+        ScrollArea::vertical().show(ui, |ui| {
+            let shown = overlay.interpreted().map(Arc::as_ref);
+            ui.heading("Candidates");
+            self.candidates.show(ui, session, shown, running, actions);
+            ui.add_space(8.0);
+            look(ui, session, actions);
+            if shown.is_some_and(|shown| shown.extraction.is_some()) {
+                ui.add_space(8.0);
+                ui.heading("Selected");
+                selected(ui, session, overlay, geometry, actions);
+            }
+            ui.add_space(8.0);
+            ui.heading("Horizons");
+            self.horizons.show(ui, session, shown, geometry, actions);
+            ui.add_space(8.0);
+            ui.heading("Faults");
+            let faults = ui.scope(|ui| self.faults.show(ui, session, shown, running, geometry, actions)).response;
+            // Who begins to draw, or is proposed something, need not look for where.
+            let open = (session.view.picking.tool == Tool::Sticks, shown.map_or(0, |shown| shown.proposals.len()));
+            if open != self.open && (open.0 || open.1 > 0) {
+                ui.scroll_to_rect(faults.rect, None);
+            }
+            self.open = open;
+        });
+    }
+}
+
+/// Moves the sections through a place in line numbers.
+pub(super) fn go(geometry: &SurveyGeometry, place: [f64; 3], actions: &mut Vec<Action>) {
+    actions.push(Action::Slices(voxel_of(geometry, place).to_array()));
+}
+
+fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let picking = &session.view.picking;
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Pointer");
+        for (tool, name, hint) in [
+            (Tool::Pick, "Pick", "Click a reflection: its leaf is selected"),
+            (Tool::Lasso, "Lasso", "Draw around what is to be erased (or hold A)"),
+        ] {
+            if ui.selectable_label(picking.tool == tool, name).on_hover_text(hint).clicked() {
+                actions.push(Action::Picking(PickingStep::Use(tool)));
+            }
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Block");
+        for (look, name, hint) in [
+            (Look::Faces, "Faces", "The faces of the block, with the horizons before them"),
+            (Look::SeeThrough, "See through", "Strong reflections in white, shaded by what lies before them (O)"),
+        ] {
+            if ui.selectable_label(picking.look == look, name).on_hover_text(hint).clicked() {
+                actions.push(Action::Picking(PickingStep::Look(look)));
+            }
+        }
+    });
+    ui.horizontal_wrapped(|ui| {
+        ui.label("Show");
+        for (show, name, hint) in [
+            (FaceData::Rock, "Amplitudes", "The volume as it is"),
+            (FaceData::Leaves, "Leaves", "Candidates, each leaf in a colour of its own"),
+            (FaceData::Distance, "Distances", "White on a candidate, darker away from it"),
+        ] {
+            if ui.selectable_label(picking.show == show, name).on_hover_text(hint).clicked() {
+                actions.push(Action::Picking(PickingStep::Show(show)));
+            }
+        }
+    });
+}
+
+fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
+    let step = |step| Action::Picking(step);
+    let Some(pick) = &session.view.picking.pick else {
+        ui.weak("Click a reflection, on a section or on the block.");
+        ui.weak("Shift adds to what is selected, Alt takes a leaf out.");
+        return;
+    };
+    let facts = overlay.selected().filter(|shown| shown.pick == *pick);
+    let [inline, crossline, z] = pick.at;
+    ui.label(format!("inline {inline:.0}, crossline {crossline:.0}, {z:.1} {}", geometry.vertical.unit.symbol()));
+    let size = facts.map_or_else(String::new, |shown| format!(", {} triangles", shown.triangles));
+    ui.label(format!("level {} of {}{size}", pick.up, pick.levels)).on_hover_text(format!("leaf {}", pick.leaf));
+    if let Some(overlap) = facts.filter(|shown| shown.is_wrong).and_then(|shown| shown.overlap.as_ref()) {
+        ui.colored_label(
+            ui.visuals().warn_fg_color,
+            format!("Lies twice over {} traces, up to {:.0} samples apart: descend.", overlap.traces, overlap.apart),
+        );
+        if ui.small_button("Show where").clicked() {
+            go(geometry, overlap.at.map(f64::from), actions);
+        }
+    }
+    ui.horizontal_wrapped(|ui| {
+        if ui.add_enabled(pick.up < pick.levels, Button::new("Climb")).on_hover_text("Up arrow").clicked() {
+            actions.push(step(PickingStep::Climb(1)));
+        }
+        if ui.add_enabled(pick.up > 0, Button::new("Descend")).on_hover_text("Down arrow").clicked() {
+            actions.push(step(PickingStep::Climb(-1)));
+        }
+        let hint = "As high as it does not lie twice over a trace (H)";
+        if ui.button("Highest valid").on_hover_text(hint).clicked() {
+            actions.push(step(PickingStep::HighestValid));
+        }
+        if ui.button("Add to horizon").on_hover_text("Enter").clicked() {
+            actions.push(step(PickingStep::Accept));
+        }
+        if ui.button("Let go").on_hover_text("Escape").clicked() {
+            actions.push(step(PickingStep::GiveUp));
+        }
+    });
+}

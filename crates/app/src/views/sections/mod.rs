@@ -1,0 +1,282 @@
+//! Inline, crossline and slice through one point: amplitudes with horizons and faults over them.
+//!
+//! Spaces: (s, t) of the section, one a sample; points of the window, y down. Both axes are stretched to the view, so a section fills
+//! it whatever its shape; the wheel with Ctrl zooms about the pointer, a drag moves, the wheel alone goes to the next section.
+
+mod axes;
+mod lines;
+
+pub(super) use axes::round_step;
+pub(super) use lines::draw_line;
+pub use lines::{entry_colour, horizon_colour};
+
+use super::lasso::{self, LassoLine};
+use super::overlay::Overlay;
+use super::pointed::{self, Pointed};
+use super::texture;
+use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, Session, SliceKind};
+use crate::work::{Rocks, SlicePicture, SliceWish, Slices};
+use axes::{extent, name, ticks, value_at, voxel};
+use eframe::egui::{
+    Align2, Color32, Context, DragValue, FontId, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, pos2,
+    vec2,
+};
+use glam::DVec2;
+use lines::{cross, fence_line};
+use render::FaceData;
+use std::collections::HashMap;
+use survey::SurveyGeometry;
+
+/// Room for numbers at the left and the top, points.
+const MARGIN: Vec2 = vec2(52.0, 20.0);
+/// Height of the name above a printed section, points.
+const TITLE: f32 = 20.0;
+/// Zoom stays between these.
+const ZOOM: [f32; 2] = [1.0, 40.0];
+/// Wheel travel that goes to the next section, points.
+const WHEEL_STEP: f32 = 24.0;
+
+/// One section on the screen.
+struct Pane {
+    texture: Option<TextureHandle>,
+    shown: Option<SlicePicture>,
+    wished: Option<(f64, u64, FaceData)>,
+    zoom: f32,
+    /// Which part of the section is in the middle, shares.
+    middle: Vec2,
+    /// Wheel travel not yet used.
+    wheel: f32,
+    lasso: LassoLine,
+}
+
+impl Default for Pane {
+    fn default() -> Self {
+        Self {
+            texture: None,
+            shown: None,
+            wished: None,
+            zoom: 1.0,
+            middle: vec2(0.5, 0.5),
+            wheel: 0.0,
+            lasso: LassoLine::default(),
+        }
+    }
+}
+
+/// The three sections.
+#[derive(Default)]
+pub struct Sections {
+    panes: HashMap<SliceKind, Pane>,
+}
+
+impl Sections {
+    /// Takes a section in.
+    pub fn receive(&mut self, ctx: &Context, picture: SlicePicture) {
+        let pane = self.panes.entry(picture.kind).or_default();
+        texture::keep(&mut pane.texture, ctx, name(picture.kind), texture::pixels(&picture.image));
+        pane.shown = Some(picture);
+    }
+
+    /// Shows one section in all the room there is; answers what is under the cursor.
+    #[expect(clippy::too_many_arguments, reason = "a panel is handed the parts of the window it needs, and no others")]
+    pub fn show(
+        &mut self,
+        ui: &mut Ui,
+        session: &Session,
+        kind: SliceKind,
+        rocks: Option<(&Rocks, u64)>,
+        slices: &Slices,
+        overlay: &mut Overlay,
+        actions: &mut Vec<Action>,
+    ) -> Option<Pointed> {
+        let geometry = session.document.geometry.as_ref()?;
+        let pane = self.panes.entry(kind).or_default();
+        let at = session.view.slices[kind.axis()];
+        let is_interpreting = session.view.panel == Panel::Interpret;
+        let show = if is_interpreting { session.view.picking.show } else { FaceData::Rock };
+        if let Some((rocks, version)) = rocks
+            && pane.wished != Some((at, version, show))
+        {
+            pane.wished = Some((at, version, show));
+            slices.cut(SliceWish { kind, at, rocks: rocks.clone(), show });
+        }
+        header(ui, session, kind, geometry, actions);
+        let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{} section", name(kind))));
+        let body = body_of(whole);
+        if !body.is_positive() {
+            return None;
+        }
+        let has_lasso = lasso::is_held(ui, session);
+        if !has_lasso {
+            pane.touch(ui, &response, body);
+        }
+        let image = pane.paint(ui, session, kind, whole, overlay)?;
+        let painter = ui.painter_at(body);
+        let extent = extent(kind, geometry.size());
+        let to_section = |pointer: Pos2| {
+            let share = (pointer - image.min) / image.size();
+            DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y)
+        };
+        if let Some(line) = pane.lasso.draw(&painter, &response, has_lasso) {
+            let corners = line.into_iter().map(to_section).collect();
+            let on = LassoOn::Section(kind, at);
+            actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));
+        }
+        let st = response.hover_pos().filter(|pointer| body.contains(*pointer)).map(to_section)?;
+        if !(st.x >= 0.0 && st.y >= 0.0 && st.x <= extent.x && st.y <= extent.y) {
+            return None;
+        }
+        let voxel = voxel(kind, at, st);
+        pane.step(ui, session, kind, actions);
+        if kind == SliceKind::Slice && session.view.layout == Layout::Fence {
+            if response.clicked() {
+                let mut fence = session.view.fence.clone();
+                fence.push([voxel.x, voxel.y]);
+                actions.push(Action::Fence(fence));
+            }
+        } else {
+            lasso::click(ui, &response, session, voxel, actions);
+        }
+        let loaded = rocks?.0.try_read().ok()?;
+        Some(pointed::at_voxel(&loaded, voxel.as_vec3(), Some(kind.axis())))
+    }
+}
+
+impl Sections {
+    /// The same views of the sections, without pictures of them.
+    pub fn alike(&self) -> Self {
+        let alike = |pane: &Pane| Pane { zoom: pane.zoom, middle: pane.middle, ..Pane::default() };
+        Self { panes: self.panes.iter().map(|(kind, pane)| (*kind, alike(pane))).collect() }
+    }
+
+    /// Paints a section under its name and number, for a printed page.
+    pub fn print(&mut self, ui: &Ui, session: &Session, kind: SliceKind, rect: Rect, overlay: &mut Overlay) {
+        let Some(geometry) = &session.document.geometry else { return };
+        let (title, whole) = rect.split_top_bottom_at_y(rect.top() + TITLE);
+        let value = value_at(geometry, kind.axis(), session.view.slices[kind.axis()]);
+        let unit = if kind == SliceKind::Slice { geometry.vertical.unit.symbol() } else { "" };
+        let text = format!("{} {value} {unit}", name(kind));
+        let at = title.left_center() + vec2(MARGIN.x, 0.0);
+        ui.painter().text(
+            at,
+            Align2::LEFT_CENTER,
+            text.trim_end(),
+            FontId::proportional(14.0),
+            ui.visuals().text_color(),
+        );
+        self.panes.entry(kind).or_default().paint(ui, session, kind, whole, overlay);
+    }
+}
+
+/// The section itself, without the numbers along its edges.
+fn body_of(whole: Rect) -> Rect {
+    Rect::from_min_max(whole.min + MARGIN, whole.max - vec2(13.0, 4.0))
+}
+
+impl Pane {
+    /// Paints the section with its numbers into a rectangle; answers where all of it lies.
+    fn paint(&self, ui: &Ui, session: &Session, kind: SliceKind, whole: Rect, overlay: &mut Overlay) -> Option<Rect> {
+        let geometry = session.document.geometry.as_ref()?;
+        let body = body_of(whole);
+        let extent = extent(kind, geometry.size());
+        let image = self.image_rect(body);
+        let painter = ui.painter_at(body);
+        painter.rect_filled(body, 0.0, super::block::paper(ui));
+        if let Some(texture) = &self.texture {
+            // Sample centres lie at the ends of the axes: half a pixel of the raster hangs over.
+            let half = vec2(0.5 / (extent.x as f32 + 1.0), 0.5 / (extent.y as f32 + 1.0));
+            let uv = Rect::from_min_max(pos2(half.x, half.y), pos2(1.0 - half.x, 1.0 - half.y));
+            painter.image(texture.id(), image, uv, Color32::WHITE);
+        }
+        let to_screen = |st: DVec2| {
+            image.min + vec2((st.x / extent.x) as f32 * image.width(), (st.y / extent.y) as f32 * image.height())
+        };
+        if let Some(picture) = self.shown.as_ref().filter(|_| session.view.panel != Panel::Interpret) {
+            for line in &picture.lines {
+                let points: Vec<Pos2> = line.points.iter().map(|st| to_screen(*st)).collect();
+                draw_line(&painter, points, line.kind, line.quality, session);
+            }
+        }
+        overlay.on_section(&painter, session, kind, &to_screen);
+        fence_line(ui, &painter, session, kind, &to_screen);
+        cross(ui, &painter, session, kind, body, &to_screen);
+        ticks(ui, whole, body, image, kind, geometry);
+        Some(image)
+    }
+
+    /// Where the whole section lies on the screen.
+    fn image_rect(&self, body: Rect) -> Rect {
+        let size = body.size() * self.zoom;
+        Rect::from_min_size(body.center() - self.middle * size, size)
+    }
+
+    fn touch(&mut self, ui: &Ui, response: &eframe::egui::Response, body: Rect) {
+        if response.dragged() {
+            self.middle -= response.drag_delta() / (body.size() * self.zoom);
+        }
+        if let Some(pointer) = response.hover_pos() {
+            let factor = ui.input(|input| input.zoom_delta());
+            if factor != 1.0 {
+                let before = self.image_rect(body);
+                let share = (pointer - before.min) / before.size();
+                self.zoom = (self.zoom * factor).clamp(ZOOM[0], ZOOM[1]);
+                self.middle = share - (pointer - body.center()) / (body.size() * self.zoom);
+            }
+        }
+        if response.double_clicked() {
+            (self.zoom, self.middle) = (1.0, vec2(0.5, 0.5));
+        }
+        let half = 0.5 / self.zoom;
+        self.middle = self.middle.clamp(Vec2::splat(half), Vec2::splat(1.0 - half));
+    }
+
+    /// The wheel goes to the next section.
+    fn step(&mut self, ui: &Ui, session: &Session, kind: SliceKind, actions: &mut Vec<Action>) {
+        let (scroll, has_zoomed) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta() != 1.0));
+        if has_zoomed {
+            return;
+        }
+        self.wheel += scroll;
+        let steps = (self.wheel / WHEEL_STEP).trunc();
+        if steps != 0.0 {
+            self.wheel -= steps * WHEEL_STEP;
+            let mut slices = session.view.slices;
+            slices[kind.axis()] -= f64::from(steps);
+            actions.push(Action::Slices(slices));
+        }
+    }
+}
+
+/// Name and number of the section; the number can be typed and dragged.
+fn header(ui: &mut Ui, session: &Session, kind: SliceKind, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
+    ui.horizontal(|ui| {
+        let label = ui.strong(name(kind));
+        let axis = kind.axis();
+        let last = geometry.size()[axis].saturating_sub(1) as f64;
+        let index = session.view.slices[axis];
+        let mut number = value_at(geometry, axis, index);
+        let ends = [value_at(geometry, axis, 0.0), value_at(geometry, axis, last)];
+        let per_sample = value_at(geometry, axis, 1.0) - value_at(geometry, axis, 0.0);
+        let suffix = if axis == 2 { format!(" {}", geometry.vertical.unit.symbol()) } else { String::new() };
+        let drag = DragValue::new(&mut number)
+            .speed(per_sample.abs() * 0.5)
+            .range(ends[0].min(ends[1])..=ends[0].max(ends[1]))
+            .max_decimals(if axis == 2 { 1 } else { 0 })
+            .suffix(suffix);
+        if ui.add(drag).labelled_by(label.id).changed() {
+            let mut slices = session.view.slices;
+            slices[axis] = ((number - ends[0]) / per_sample).round();
+            actions.push(Action::Slices(slices));
+        }
+        for (word, step) in [("Previous", -1.0), ("Next", 1.0)] {
+            let sign = if step < 0.0 { "‹" } else { "›" };
+            let button = ui.small_button(sign).on_hover_text(format!("{word} {}", name(kind).to_lowercase()));
+            if button.clicked() {
+                let mut slices = session.view.slices;
+                slices[axis] += step;
+                actions.push(Action::Slices(slices));
+            }
+        }
+    });
+}

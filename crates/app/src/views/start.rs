@@ -1,0 +1,151 @@
+//! The start page: go on, open, begin.
+
+use super::{notices, texture};
+use crate::state::{Action, Choice, Dialogue, Place, State};
+use crate::theme;
+use crate::work::folder::Presence;
+use eframe::egui::{
+    Align, Button, Color32, Context, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureHandle,
+    TextureOptions, Ui, Vec2, WidgetInfo, pos2,
+};
+use std::path::Path;
+
+/// Width of the column in the middle.
+const WIDTH: f32 = 660.0;
+/// Height of a button that begins something.
+const TALL: f32 = 42.0;
+/// Where the picture is parted until the pointer says otherwise, share of its width.
+const PARTED: f32 = 0.42;
+
+/// What the page is for, drawn by the program: the demonstration's block raw, and illustrated.
+const BLOCK: [&[u8]; 2] = [include_bytes!("start/raw.png"), include_bytes!("start/illustrated.png")];
+/// Points a pixel of these takes: they are drawn for dense displays.
+const PICTURE_SCALE: f32 = 0.6;
+
+/// The page, and what it keeps.
+#[derive(Default)]
+pub struct StartPage {
+    block: Option<[TextureHandle; 2]>,
+    present: Presence,
+}
+
+impl StartPage {
+    /// Shows the page.
+    pub fn show(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+        ScrollArea::vertical().show(ui, |ui| {
+            ui.vertical_centered(|ui| {
+                ui.set_max_width(WIDTH.min(ui.available_width()));
+                ui.with_layout(Layout::top_down(Align::Min), |ui| self.page(ui, state, is_busy, actions));
+            });
+        });
+    }
+
+    fn page(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+        ui.add_space((ui.ctx().content_rect().height() * 0.03).min(40.0));
+        ui.label(RichText::new("Petroglyph").size(40.0).color(theme::accent(ui.visuals())));
+        ui.label("From a seismic volume to a geological illustration");
+        ui.add_space(8.0);
+        self.picture(ui);
+        ui.add_space(8.0);
+        begin(ui, state, is_busy, actions);
+        ui.add_space(20.0);
+        self.recent(ui, state, is_busy, actions);
+    }
+
+    /// The block, raw on one side of a line and illustrated on the other; the line follows the pointer.
+    fn picture(&mut self, ui: &mut Ui) {
+        let block = self.block.get_or_insert_with(|| BLOCK.map(|png| decoded(ui.ctx(), png)));
+        let shape = block[0].size_vec2() * PICTURE_SCALE;
+        let size = shape * (ui.available_width() / shape.x).min(1.0);
+        let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "A block, raw and illustrated"));
+        let share = response.hover_pos().map_or(PARTED, |at| (at.x - rect.left()) / rect.width());
+        let share = ui.ctx().animate_value_with_time(response.id, share, 0.15);
+        let x = rect.left() + share * rect.width();
+        let uv = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
+        let (left, right) = rect.split_left_right_at_x(x);
+        for (texture, part) in block.iter().zip([left, right]) {
+            ui.painter_at(part).image(texture.id(), rect, uv, Color32::WHITE);
+        }
+        ui.painter().vline(x, rect.y_range(), Stroke::new(1.5, theme::accent(ui.visuals())));
+    }
+
+    fn recent(&mut self, ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+        let projects = &state.remembered.recent;
+        let present = self.present.of(ui.ctx(), projects);
+        ui.heading("Recent projects");
+        if projects.is_empty() {
+            ui.weak("Projects you open will be listed here.");
+        }
+        for (root, there) in projects.iter().zip(present) {
+            ui.horizontal(|ui| {
+                let title = RichText::new(name(root)).size(16.0);
+                let open = ui.add_enabled(there && !is_busy, Button::new(title).frame(false));
+                let open = open.on_hover_text("Open this project").on_disabled_hover_text("It is not there any more");
+                if open.clicked() {
+                    actions.push(Action::Open(root.clone()));
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    let forget = ui.small_button("Forget").on_hover_text(format!("Take {} off this list", name(root)));
+                    if forget.clicked() {
+                        actions.push(Action::Forget(root.clone()));
+                    }
+                    let folder = root.parent().map_or_else(String::new, |parent| parent.display().to_string());
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                        ui.add(Label::new(RichText::new(folder).weak()).truncate());
+                    });
+                });
+            });
+        }
+    }
+}
+
+/// A picture of ours, for the screen.
+fn decoded(ctx: &Context, png: &[u8]) -> TextureHandle {
+    let image = image::load_from_memory_with_format(png, image::ImageFormat::Png).unwrap_or_default().to_rgba8();
+    ctx.load_texture("start", texture::pixels(&image), TextureOptions::LINEAR)
+}
+
+fn begin(ui: &mut Ui, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+    notices::show(ui, state, Place::Start, actions);
+    if let Some(left) = &state.remembered.left {
+        recovery(ui, &left.root, is_busy, actions);
+    }
+    ui.add_enabled_ui(!is_busy, |ui| {
+        let width = (ui.available_width() - 2.0 * ui.spacing().item_spacing.x) / 3.0;
+        let begin = |ui: &mut Ui, name: &str, hint: &str, choice: Choice, actions: &mut Vec<Action>| {
+            let button = Button::new(RichText::new(name).size(16.0)).min_size(Vec2::new(width, TALL));
+            if ui.add(button).on_hover_text(hint).clicked() {
+                actions.push(Action::Ask(Box::new(Dialogue::Choose(choice))));
+            }
+        };
+        ui.horizontal(|ui| {
+            begin(ui, "New from SEG-Y…", "Read a seismic volume into a new project", Choice::NewSurvey, actions);
+            begin(ui, "Open project…", "Open a folder NAME.petro", Choice::Project, actions);
+            let hint = "Makes a synthetic survey with its interpretation, to try everything on";
+            begin(ui, "Try the demonstration…", hint, Choice::Demo, actions);
+        });
+    });
+}
+
+fn recovery(ui: &mut Ui, root: &Path, is_busy: bool, actions: &mut Vec<Action>) {
+    ui.group(|ui| {
+        ui.set_width(ui.available_width());
+        ui.strong(format!("{} was still open when Petroglyph ended", name(root)));
+        ui.label("Every change to it had been saved. Go on with the same view?");
+        ui.horizontal(|ui| {
+            if ui.add_enabled(!is_busy, Button::new("Go on")).clicked() {
+                actions.push(Action::Recover);
+            }
+            if ui.button("Not now").clicked() {
+                actions.push(Action::Abandon);
+            }
+        });
+    });
+    ui.add_space(10.0);
+}
+
+/// What a project is called.
+fn name(root: &Path) -> String {
+    root.file_stem().map_or_else(|| root.display().to_string(), |stem| stem.to_string_lossy().into_owned())
+}

@@ -1,0 +1,48 @@
+//! The line at the foot: what is under the cursor, and what is under way.
+
+use super::pointed::{self, Pointed};
+use crate::state::{Action, Place, State};
+use crate::work::RunningLine;
+use eframe::egui::{Align, Label, Layout, ProgressBar, Ui};
+
+/// Shows the line.
+pub fn show(
+    ui: &mut Ui,
+    state: &State,
+    pointed: Option<&Pointed>,
+    running: &[RunningLine],
+    device: &str,
+    actions: &mut Vec<Action>,
+) {
+    ui.horizontal(|ui| {
+        let session = state.session.as_ref();
+        if let (Some(session), Some(pointed)) = (session, pointed) {
+            ui.label(pointed::sentence(pointed, &session.document));
+        } else if let Some(session) = session {
+            ui.weak(session.root.display().to_string());
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            for line in running {
+                if ui.small_button("Stop").on_hover_text(format!("Stop: {}", line.title)).clicked() {
+                    line.progress.cancel();
+                }
+                let bar = match line.share() {
+                    Some(share) => ProgressBar::new(share).show_percentage(),
+                    None => ProgressBar::new(0.0),
+                };
+                ui.add(bar.desired_width(110.0));
+                let text =
+                    if line.stage.is_empty() { line.title.clone() } else { format!("{}: {}", line.title, line.stage) };
+                ui.label(text);
+            }
+            if let Some((index, notice)) = state.notices_at(Place::Foot).last() {
+                if ui.small_button("Dismiss").clicked() {
+                    actions.push(Action::Dismiss(index));
+                }
+                ui.add(Label::new(&notice.text).truncate());
+            } else if running.is_empty() && !device.is_empty() {
+                ui.weak(format!("drawn by {device}"));
+            }
+        });
+    });
+}

@@ -1,0 +1,181 @@
+//! What the window wishes from the workers, and what it makes of their answers.
+
+use super::Window;
+use crate::hold::{Hold, Taken};
+use crate::state::{Action, Dialogue, Look, Notice, Panel, Picking, Place, Session};
+use crate::work::{Event, Purpose, Seen, Wanted};
+use eframe::egui::Context;
+use project::command::Command;
+use std::path::Path;
+use ttf::{LayerStyle, RawColour};
+
+/// What decides over what is loaded.
+#[derive(PartialEq)]
+pub(super) struct Needs {
+    /// Of the open project's state.
+    revision: u64,
+    /// The style under the hand.
+    layer: Option<LayerStyle>,
+    /// The colours under the hand.
+    raw: Option<RawColour>,
+    exaggeration: f64,
+    /// What is seen through.
+    seen: Seen,
+    /// While interpreting, the extraction whose candidates are shown, if any are.
+    interpreting: Option<Option<String>>,
+}
+
+impl Window {
+    /// Takes the workers' answers in.
+    pub(super) fn receive(&mut self, ctx: &Context) {
+        while let Some(event) = self.work.next_event() {
+            match event {
+                Event::Opened(snapshot) => {
+                    self.forget();
+                    let taken = Hold::take(&snapshot.root);
+                    self.act(Action::Opened(snapshot));
+                    match taken {
+                        Taken::Here(hold) => self.hold = hold,
+                        Taken::Elsewhere(process) => {
+                            let process = process.map_or_else(String::new, |id| format!(" (process {id})"));
+                            let text = format!(
+                                "this project is open in another window too{process}; what is changed there shows here after the next change here"
+                            );
+                            self.act(Action::Tell(Notice::note(Place::Block, text)));
+                        }
+                    }
+                }
+                Event::Changed { snapshot, place } => {
+                    self.act(Action::Changed(snapshot));
+                    let waits = matches!(
+                        self.state.dialogue,
+                        Some(
+                            Dialogue::Survey { .. }
+                                | Dialogue::Interpretation { .. }
+                                | Dialogue::Well { .. }
+                                | Dialogue::Choose(_)
+                        )
+                    );
+                    // One that was opened since a change was asked for elsewhere stays.
+                    if waits && place == Place::Dialogue {
+                        self.act(Action::Answered);
+                    }
+                }
+                Event::Ready { root, rocks } => {
+                    if self.has_open(&root) {
+                        let number = self.rocks.as_ref().map_or(1, |(_, number)| number + 1);
+                        self.rocks = Some((rocks, number));
+                    }
+                }
+                Event::Drawn(drawn) => self.block.receive(ctx, drawn),
+                Event::Sliced(picture) => self.sections.receive(ctx, picture),
+                Event::Fenced(picture) => self.fence.receive(ctx, picture),
+                Event::Mapped(picture) => self.map.receive(ctx, picture),
+                Event::Interpreted(shown) => {
+                    if let Some(session) = self.state.session.as_ref().filter(|session| session.root == shown.root) {
+                        self.overlay.receive(session, shown);
+                    }
+                }
+                Event::Selected(shown) => {
+                    if let Some(session) = &self.state.session {
+                        self.overlay.select(session, shown);
+                    }
+                }
+                Event::Picking { root, step } if self.has_open(&root) => self.act(Action::Picking(step)),
+                Event::Erased { root, picks } if self.has_open(&root) => {
+                    self.act(Action::Apply(Box::new(Command::PickSeveral(project::command::PickNodes { picks }))));
+                }
+                // Of a project that was closed meanwhile.
+                Event::Picking { .. } | Event::Erased { .. } => {}
+                Event::Exported(path) => {
+                    self.act(Action::Answered);
+                    self.act(Action::Tell(Notice::note(Place::Foot, format!("Written: {}", path.display()))));
+                }
+                Event::Told(notice) => self.act(Action::Tell(notice)),
+            }
+        }
+    }
+
+    fn has_open(&self, root: &Path) -> bool {
+        self.state.session.as_ref().is_some_and(|session| session.root == root)
+    }
+
+    /// Loads what the open project needs when it has changed.
+    pub(super) fn keep_loaded(&mut self) {
+        let Some(session) = self.state.session.as_ref().filter(|session| session.is_drawable()) else { return };
+        let needs = self.needs_of(session);
+        if self.needs.as_ref() == Some(&needs) {
+            return;
+        }
+        self.swatches.follow(&session.root, &session.document);
+        // Neither named views nor the history change what is drawn from.
+        let mut document = project::document::Document { scenes: Vec::new(), step: 0, ..session.document.clone() };
+        self.layers.draft_of(&mut document);
+        self.functions.draft_of(&mut document);
+        let root = session.root.clone();
+        let wanted = if let Some(extraction) = needs.interpreting.clone() {
+            // Picks change horizons and faults; what they are made on stays.
+            document.horizons.clear();
+            document.faults.clear();
+            document.sticks.clear();
+            document.layer_names.clear();
+            Wanted { root, document, exaggeration: 1.0, purpose: Purpose::Interpret { extraction } }
+        } else {
+            Wanted {
+                root,
+                document,
+                exaggeration: needs.exaggeration,
+                purpose: Purpose::Illustrate(needs.seen.clone()),
+            }
+        };
+        self.needs = Some(needs);
+        if self.wanted.as_ref() != Some(&wanted) {
+            self.work.load(wanted.clone());
+            self.wanted = Some(wanted);
+        }
+    }
+
+    /// What decides over what is to be loaded: asked in every frame, so it copies no document.
+    fn needs_of(&self, session: &Session) -> Needs {
+        let picking = &session.view.picking;
+        let shows = picking.look == Look::SeeThrough || picking.show != render::FaceData::Rock;
+        let extraction = || self.overlay.interpreted().and_then(|shown| shown.key.clone()).filter(|_| shows);
+        Needs {
+            revision: session.revision,
+            layer: self.layers.draft().cloned(),
+            raw: self.functions.draft().cloned(),
+            exaggeration: session.view.scene.exaggeration,
+            seen: Seen::of(&session.view.scene.media),
+            interpreting: (session.view.panel == Panel::Interpret).then(extraction),
+        }
+    }
+
+    pub(super) fn is_interpreting(&self) -> bool {
+        self.state.session.as_ref().is_some_and(|session| session.view.panel == Panel::Interpret)
+    }
+
+    /// Has the interpretation read and the selection drawn when they have changed.
+    pub(super) fn keep_interpreted(&mut self) {
+        let Some(session) = self.state.session.as_ref().filter(|session| session.view.panel == Panel::Interpret) else {
+            return;
+        };
+        if session.document.geometry.is_none() {
+            return;
+        }
+        if self.followed != Some(session.revision) {
+            self.work.picks.follow(session.root.clone(), session.document.clone());
+            self.followed = Some(session.revision);
+        }
+        let Picking { pick, horizon, accepted, .. } = &session.view.picking;
+        // What was just accepted is shown until the project has it.
+        let wished = pick.clone().or_else(|| accepted.clone()).map(|pick| (pick, horizon.clone()));
+        let number = self.overlay.interpreted().map_or(0, |shown| shown.number);
+        let selected = Some((wished, number));
+        if self.selected != selected && number > 0 {
+            if let Some((wished, _)) = &selected {
+                self.work.picks.draw(wished.clone());
+            }
+            self.selected = selected;
+        }
+    }
+}

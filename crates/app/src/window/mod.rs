@@ -1,0 +1,346 @@
+//! The window: draws the state, hands actions to it and tasks to the workers.
+
+mod follow;
+mod frames;
+mod page;
+
+use super::error::WindowError;
+use super::hold::Hold;
+use super::state::picking::Pick;
+use super::state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, Task};
+use super::theme;
+use super::views::{
+    block::BlockView, chooser::Chooser, controls::Controls, data::Data, dropped, export, fence::FenceView,
+    functions::Functions, import::Import, interpretation::Interpretation, layers::Layers, map::MapView,
+    overlay::Overlay, patterns::Patterns, picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections,
+    shortcuts, start::StartPage, status, tiles::Tiles, well::WellDialogue,
+};
+use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
+use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
+use follow::Needs;
+use frames::FrameTimes;
+use project::command::Command;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// How often it is written down how the project is looked at.
+const MARK_EVERY: Duration = Duration::from_secs(5);
+/// Size of a first window, points.
+const SIZE: [f32; 2] = [1280.0, 800.0];
+/// Smallest window, points.
+const LEAST: [f32; 2] = [860.0, 560.0];
+
+/// Opens the window and returns when it is closed. With `frame_times`, frames follow one another without pause and how long each took is
+/// written there.
+///
+/// # Errors
+/// There is no display or no graphics driver, or that file cannot be written.
+pub fn run(project: Option<PathBuf>, frame_times: Option<&Path>) -> Result<(), WindowError> {
+    let frames = frame_times.map(FrameTimes::create).transpose()?;
+    // Winit's own words for it are an error chain of its backends.
+    #[cfg(all(unix, not(target_os = "macos")))]
+    if ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
+        .iter()
+        .all(|name| std::env::var_os(name).is_none_or(|v| v.is_empty()))
+    {
+        return Err(WindowError::NoDisplay { reason: "neither DISPLAY nor WAYLAND_DISPLAY is set".to_owned() });
+    }
+    let viewport = egui::ViewportBuilder::default()
+        .with_title("Petroglyph")
+        .with_app_id("petroglyph")
+        .with_inner_size(SIZE)
+        .with_min_inner_size(LEAST);
+    // Dithering is for gradients, which there are none of here, and a software driver pays for it at every pixel.
+    let options = eframe::NativeOptions { viewport, dithering: false, ..eframe::NativeOptions::default() };
+    eframe::run_native(
+        "Petroglyph",
+        options,
+        Box::new(|created| {
+            let window = Window::new(&created.egui_ctx, Remembered::path(), project);
+            Ok(Box::new(Window { frames, ..window }))
+        }),
+    )?;
+    Ok(())
+}
+
+/// A selection, the horizon it is for, and the interpretation it is to be seen in.
+type Wished = (Option<(Pick, Option<String>)>, u64);
+
+/// The window's content.
+pub struct Window {
+    ctx: Context,
+    state: State,
+    work: Work,
+    settings: Option<PathBuf>,
+    /// Keeps the open project from being offered for recovery by another window.
+    hold: Option<Hold>,
+    start: StartPage,
+    block: BlockView,
+    sections: Sections,
+    fence: FenceView,
+    map: MapView,
+    layers: Layers,
+    data: Data,
+    functions: Functions,
+    patterns: Patterns,
+    import: Import,
+    interpretation: Interpretation,
+    well: WellDialogue,
+    picking: PickingPanel,
+    overlay: Overlay,
+    /// State of the project that its interpretation was last asked for.
+    /// The revision whose interpretation was asked for.
+    followed: Option<u64>,
+    /// Selection that was last asked for, and the interpretation it was asked of.
+    selected: Option<Wished>,
+    tiles: Tiles,
+    swatches: Swatches,
+    chooser: Chooser,
+    controls: Controls,
+    pointed: Option<Pointed>,
+    rocks: Option<(Rocks, u64)>,
+    needs: Option<Needs>,
+    wanted: Option<Wanted>,
+    marked: Instant,
+    /// What was selected or drawn when the view was last written down.
+    unsaved: Option<(Option<Pick>, usize, usize)>,
+    /// Where frame times go, if they are wanted.
+    frames: Option<FrameTimes>,
+}
+
+impl Window {
+    /// Begins with the start page, or with a project; `settings` is the file that outlives the window.
+    pub fn new(ctx: &Context, settings: Option<PathBuf>, project: Option<PathBuf>) -> Self {
+        theme::install(ctx);
+        let mut remembered = settings.as_deref().map(Remembered::read).unwrap_or_default();
+        // What another window has open was not left.
+        remembered.left = remembered.left.filter(|left| !Hold::is_elsewhere(&left.root));
+        let waking = ctx.clone();
+        let wake: Wake = Arc::new(move || waking.request_repaint());
+        let mut window = Self {
+            ctx: ctx.clone(),
+            state: State::new(remembered),
+            work: Work::start(wake.clone()),
+            settings,
+            hold: None,
+            start: StartPage::default(),
+            block: BlockView::default(),
+            sections: Sections::default(),
+            fence: FenceView::default(),
+            map: MapView::default(),
+            layers: Layers::default(),
+            data: Data::default(),
+            functions: Functions::default(),
+            patterns: Patterns::default(),
+            import: Import::default(),
+            interpretation: Interpretation::default(),
+            well: WellDialogue::default(),
+            picking: PickingPanel::default(),
+            overlay: Overlay::default(),
+            followed: None,
+            selected: None,
+            tiles: Tiles::default(),
+            swatches: Swatches::start(wake),
+            chooser: Chooser::default(),
+            controls: Controls::default(),
+            pointed: None,
+            rocks: None,
+            needs: None,
+            wanted: None,
+            marked: Instant::now(),
+            unsaved: None,
+            frames: None,
+        };
+        window.appear(ctx);
+        if let Some(project) = project {
+            window.act(Action::Open(std::path::absolute(&project).unwrap_or(project)));
+        }
+        window
+    }
+
+    /// What it shows.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// Whether nothing is under way and the picture is the last word.
+    pub fn is_settled(&self) -> bool {
+        let drawable = self.state.session.as_ref().is_some_and(super::state::Session::is_drawable);
+        self.work.running.is_idle() && (!drawable || self.block.is_settled())
+    }
+
+    /// Takes an action and has its tasks done.
+    pub fn act(&mut self, action: Action) {
+        for task in self.state.apply(action) {
+            let place = self.place_of(&task);
+            if matches!(task, Task::Remember) {
+                self.remember();
+            }
+            if matches!(task, Task::Copy) {
+                self.block.copy(&self.ctx);
+            }
+            if matches!(task, Task::Release) {
+                self.forget();
+            }
+            if let Task::Export(form) = &task {
+                self.export(form.as_ref().clone());
+            }
+            self.work.run(task, place);
+        }
+    }
+
+    /// Draws what is on the screen to a file.
+    fn export(&self, form: ExportForm) {
+        let Some(session) = self.state.session.clone() else { return };
+        let (overlay, sections, mapped) = (self.overlay.clone(), self.sections.alike(), self.map.mapped(&session));
+        let page = Page { session, overlay, sections, mapped, form };
+        self.work.background("Drawing the picture", Place::Dialogue, move |progress, outbox| {
+            let path = page.form.path.clone().into();
+            page.write(progress).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
+            outbox.send(Event::Exported(path));
+            Ok(())
+        });
+    }
+
+    /// Lets go of what was made of a project.
+    fn forget(&mut self) {
+        (self.rocks, self.needs, self.wanted, self.pointed) = (None, None, None, None);
+        (self.followed, self.selected, self.hold) = (None, None, None);
+        self.block = BlockView::default();
+        self.overlay = Overlay::default();
+        self.picking = PickingPanel::default();
+    }
+
+    /// Where a failure of the task is shown.
+    fn place_of(&self, task: &Task) -> Place {
+        let Task::Apply(command) = task else { return Place::Block };
+        match command.as_ref() {
+            _ if self.state.dialogue.is_some() => Place::Dialogue,
+            Command::SetLayer(_) | Command::ResetLayer(_) | Command::SetContact(_) => Place::Layers,
+            Command::AddScene(_) | Command::RemoveScene(_) => Place::Scenes,
+            Command::Pick(_)
+            | Command::PickSeveral(_)
+            | Command::MovePick(_)
+            | Command::RemovePick(_)
+            | Command::ReplayPicks(_)
+            | Command::FillHorizon(_)
+            | Command::SetHorizonColour(_)
+            | Command::PickFault(_)
+            | Command::AcceptFault(_) => Place::Interpret,
+            _ if self.is_interpreting() => Place::Interpret,
+            _ => Place::Data,
+        }
+    }
+
+    fn remember(&mut self) {
+        let Some(path) = &self.settings else { return };
+        let mut remembered = self.state.remembered.clone();
+        if remembered.left.is_none() {
+            // Another window's project stays on record, should that one crash.
+            remembered.left = Remembered::read(path).left.filter(|left| Hold::is_elsewhere(&left.root));
+        }
+        if let Err(error) = remembered.write(path) {
+            let text = format!("recent projects cannot be remembered: {}: {error}", path.display());
+            self.state.apply(Action::Tell(Notice::note(Place::Start, text)));
+        }
+    }
+
+    fn appear(&self, ctx: &Context) {
+        ctx.set_theme(match self.state.remembered.appearance {
+            Appearance::System => ThemePreference::System,
+            Appearance::Light => ThemePreference::Light,
+            Appearance::Dark => ThemePreference::Dark,
+        });
+        ctx.set_zoom_factor(self.state.remembered.scale.unwrap_or(1.0));
+    }
+
+    /// Draws everything.
+    pub fn show(&mut self, ui: &mut Ui) {
+        let ctx = ui.ctx().clone();
+        self.receive(&ctx);
+        self.appear(&ctx);
+        self.keep_loaded();
+        self.keep_interpreted();
+        let mut actions = Vec::new();
+        shortcuts::obey(&ctx, &self.state, &mut actions);
+        let running = self.work.running.lines();
+        dropped::receive(&ctx, &self.state, !running.is_empty(), &mut actions);
+        Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
+            status::show(ui, &self.state, self.pointed.as_ref(), &running, self.block.device(), &mut actions);
+        });
+        if self.state.session.is_some() {
+            self.work_page(ui, &running, &mut actions);
+        } else {
+            CentralPanel::default().show(ui, |ui| self.start.show(ui, &self.state, !running.is_empty(), &mut actions));
+        }
+        self.dialogues(&ctx, &mut actions);
+        for action in actions {
+            self.act(action);
+        }
+        // What is selected or drawn and not yet part of the project is work: it is written down at once.
+        let unsaved = self.state.session.as_ref().map(|session| {
+            let picking = &session.view.picking;
+            (picking.pick.clone(), picking.stick.len(), picking.sticks.len())
+        });
+        let is_work = unsaved != self.unsaved;
+        self.unsaved = unsaved;
+        if self.state.session.is_some() && (is_work || self.marked.elapsed() > MARK_EVERY) {
+            self.marked = Instant::now();
+            let before = self.state.remembered.left.clone();
+            self.state.mark();
+            if self.state.remembered.left != before {
+                self.remember();
+            }
+            ctx.request_repaint_after(MARK_EVERY);
+        }
+    }
+
+    fn dialogues(&mut self, ctx: &Context, actions: &mut Vec<Action>) {
+        match &self.state.dialogue {
+            Some(Dialogue::Choose(choice)) => self.chooser.show(ctx, &self.state, *choice, actions),
+            Some(Dialogue::Shortcuts) => shortcuts::dialogue(ctx, actions),
+            Some(Dialogue::Survey { path, target }) => {
+                self.import.show(ctx, &self.state, &self.work, path, *target, actions);
+            }
+            Some(Dialogue::Interpretation { path, kind }) => {
+                if let Some(session) = &self.state.session {
+                    self.interpretation.show(ctx, &self.state, session, &self.work, path, *kind, actions);
+                }
+            }
+            Some(Dialogue::Dropped { path }) => dropped::dialogue(ctx, path, actions),
+            Some(Dialogue::Well { path }) => self.well.show(ctx, &self.state, &self.work, path, actions),
+            Some(Dialogue::Patterns { layer, interval }) => {
+                if let Some(session) = &self.state.session {
+                    let (swatches, tiles) = (&self.swatches, &mut self.tiles);
+                    self.patterns.show(ctx, &self.state, session, layer, *interval, swatches, tiles, actions);
+                }
+            }
+            Some(Dialogue::Export(form)) => {
+                if let Some(session) = &self.state.session {
+                    let is_drawing = self.work.running.lines().iter().any(|line| line.place == Place::Dialogue);
+                    export::show(ctx, &self.state, session, form, is_drawing, actions);
+                }
+            }
+            None => {}
+        }
+    }
+}
+
+impl eframe::App for Window {
+    fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
+        let start = Instant::now();
+        self.show(ui);
+        if let Some(frames) = &mut self.frames {
+            frames.record(start, &self.work.running.lines());
+            ui.ctx().request_repaint();
+        }
+    }
+
+    fn on_exit(&mut self) {
+        // Closed properly: there is nothing to recover.
+        self.state.remembered.left = None;
+        self.hold = None;
+        self.remember();
+    }
+}

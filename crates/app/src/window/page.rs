@@ -1,0 +1,109 @@
+//! The page of an open project: the bar, the panels at the sides, and what fills the middle.
+
+use super::Window;
+use crate::state::{Action, Panel as Side, Place, Session};
+use crate::views::parts::{Part, parts};
+use crate::views::{bar, notices, overlay::Overlay};
+use crate::work::map::MapSource;
+use crate::work::{Rocks, RunningLine};
+use eframe::egui::{self, CentralPanel, Frame, Panel, Ui};
+
+impl Window {
+    pub(super) fn work_page(&mut self, ui: &mut Ui, running: &[RunningLine], actions: &mut Vec<Action>) {
+        let Some(session) = &self.state.session else { return };
+        Panel::top("bar").exact_size(44.0).show(ui, |ui| {
+            ui.add_space(7.0);
+            bar::show(ui, &self.state, session, actions);
+        });
+        Panel::left("side")
+            .default_size(316.0)
+            .min_size(240.0)
+            .show(ui, |ui| within(ui, |ui| self.side(ui, running, actions)));
+        let Some(session) = &self.state.session else { return };
+        Panel::right("controls").default_size(300.0).min_size(240.0).show(ui, |ui| {
+            within(ui, |ui| self.controls.show(ui, &self.state, session, actions));
+        });
+        let frame = Frame::new().fill(ui.visuals().panel_fill);
+        CentralPanel::no_frame().frame(frame).show(ui, |ui| {
+            notices::show(ui, &self.state, Place::Block, actions);
+            if !session.is_drawable() {
+                Frame::new().inner_margin(40.0).show(ui, |ui| {
+                    ui.heading("Nothing to draw yet");
+                    ui.label("Add a volume or horizons: Project, at the top left.");
+                });
+                return;
+            }
+            let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+            let whole = ui.available_rect_before_wrap();
+            self.pointed = None;
+            for (part, rect) in parts(session.view.layout, whole) {
+                let found = ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| match part {
+                    Part::Block => self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions),
+                    Part::Section(kind) => {
+                        let (slices, overlay) = (&self.work.slices, &mut self.overlay);
+                        self.sections.show(ui, session, kind, rocks, slices, overlay, actions)
+                    }
+                    Part::Map => {
+                        let source = map_source(session, rocks, &self.overlay);
+                        self.map.show(ui, session, source, &self.work.maps, actions);
+                        None
+                    }
+                    Part::Fence => self.fence.show(ui, session, rocks, &self.work.slices, &mut self.overlay, actions),
+                });
+                self.pointed = self.pointed.take().or(found.inner);
+            }
+            ui.advance_cursor_after_rect(whole);
+        });
+    }
+
+    /// What stands on the left: tabs, and the panel that is chosen.
+    fn side(&mut self, ui: &mut Ui, running: &[RunningLine], actions: &mut Vec<Action>) {
+        let Some(session) = &self.state.session else { return };
+        ui.add_space(6.0);
+        ui.horizontal(|ui| {
+            for (side, name, hint) in [
+                (Side::Layers, "Layers", "The stratigraphic column (L)"),
+                (Side::Data, "Data", "Volumes, horizons, faults and wells (D)"),
+                (Side::Values, "Values", "Colours and textures by value (V)"),
+                (Side::Interpret, "Interpret", "Candidates, picks and faults (P)"),
+            ] {
+                if ui.selectable_label(session.view.panel == side, name).on_hover_text(hint).clicked() {
+                    actions.push(Action::Panel(side));
+                }
+            }
+        });
+        ui.separator();
+        match session.view.panel {
+            Side::Layers => {
+                self.layers.show(ui, &self.state, session, &self.swatches, &mut self.tiles, actions);
+            }
+            Side::Data => self.data.show(ui, &self.state, session, actions),
+            Side::Interpret => {
+                self.picking.show(ui, &self.state, session, &self.overlay, running, actions);
+            }
+            Side::Values => {
+                notices::show(ui, &self.state, Place::Data, actions);
+                let rocks = self.rocks.as_ref().map(|(rocks, number)| (rocks, *number));
+                egui::ScrollArea::vertical().show(ui, |ui| {
+                    self.functions.show(ui, session, rocks, &self.swatches, actions);
+                });
+            }
+        }
+    }
+}
+
+/// Shows something in the room there is. A panel whose content asked for more would widen, and the middle be drawn anew.
+fn within(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
+    let rect = ui.available_rect_before_wrap();
+    add(&mut ui.new_child(egui::UiBuilder::new().max_rect(rect)));
+    ui.advance_cursor_after_rect(rect);
+}
+
+/// What the map is made from: while interpreting there is no model.
+fn map_source(session: &Session, rocks: Option<(&Rocks, u64)>, overlay: &Overlay) -> Option<(MapSource, u64)> {
+    if session.view.panel != Side::Interpret {
+        return rocks.map(|(rocks, version)| (MapSource::Rocks(rocks.clone()), version));
+    }
+    let (shown, geometry) = (overlay.interpreted()?, session.document.geometry.as_ref()?);
+    Some((MapSource::Interpreted(shown.clone(), Box::new(geometry.clone())), shown.number))
+}

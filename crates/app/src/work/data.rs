@@ -1,0 +1,260 @@
+//! What pictures are drawn from, read and computed once and shared by those who draw and those who ask what is under the cursor.
+//!
+//! A change of style alone compiles the tables anew and leaves model, parameterization and volumes as they are.
+
+use super::running::Running;
+use super::wishes::{Wished, Wishes};
+use super::{Event, Outbox};
+use crate::state::{Notice, Place};
+use model::ModelSettings;
+use project::Project;
+use project::document::Document;
+use project::error::ProjectError;
+use project::picture::load::{self, Loaded};
+use project::{derived, styles};
+use render::media::{LayerOpacity, MediumColour, white_ramp};
+use render::{FaceData, Media, Medium, PickedHorizon, Scene};
+use std::path::PathBuf;
+use std::sync::{Arc, PoisonError, RwLock};
+use survey::Progress;
+use ttf::{Colour, TtfTables};
+
+/// Loaded data; whoever only looks must not wait for it (`try_read`).
+pub type Rocks = Arc<RwLock<Loaded>>;
+
+/// What is to be drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// The project.
+    pub root: PathBuf,
+    /// Its state.
+    pub document: Document,
+    /// Vertical exaggeration: patterns are sized for it.
+    pub exaggeration: f64,
+    /// What for.
+    pub purpose: Purpose,
+}
+
+/// What pictures are drawn for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Purpose {
+    /// To be looked at: with everything that the interpretation makes of the volume, and what is seen through.
+    Illustrate(Seen),
+    /// To be interpreted: the volume alone, whatever horizons there are, so that no pick has to wait for a model.
+    Interpret {
+        /// The extraction whose candidates are shown; absent where none are, for they take five bytes a voxel.
+        extraction: Option<String>,
+    },
+}
+
+/// What is seen through, by names in their order.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Seen {
+    /// Volumes.
+    pub volumes: Vec<String>,
+    /// Horizons.
+    pub horizons: Vec<String>,
+}
+
+impl Seen {
+    /// What a scene's media show.
+    pub fn of(media: &Media) -> Self {
+        let mut volumes: Vec<String> = media.all().map(|medium| medium.volume.clone()).collect();
+        let mut horizons: Vec<String> = media.horizons.iter().filter_map(|horizon| horizon.name.clone()).collect();
+        for names in [&mut volumes, &mut horizons] {
+            names.sort();
+            names.dedup();
+        }
+        Self { volumes, horizons }
+    }
+
+    /// A scene that shows this.
+    fn scene(&self, exaggeration: f64) -> Scene {
+        let medium = |volume: &String| Medium {
+            volume: volume.clone(),
+            function: white_ramp(1.0, 0.0),
+            layers: LayerOpacity::Ignored,
+            colour: MediumColour::Function,
+        };
+        let horizon =
+            |name: &String| PickedHorizon { name: Some(name.clone()), ..PickedHorizon::of(Vec::new(), Colour::WHITE) };
+        // Half-way needs everything that any blend needs.
+        let mut scene = Scene { blend: 0.5, exaggeration, ..Scene::default() };
+        scene.media.surroundings = self.volumes.iter().map(medium).collect();
+        scene.media.horizons = self.horizons.iter().map(horizon).collect();
+        scene
+    }
+}
+
+#[derive(Default)]
+struct Next {
+    wanted: Option<Wanted>,
+    progress: Option<Progress>,
+    forget: bool,
+}
+
+/// The thread that loads, and the wish it works on next.
+pub(super) struct Loader {
+    wishes: Wishes<Next>,
+}
+
+impl Loader {
+    pub(super) fn start(outbox: Outbox, running: Running) -> Self {
+        Self { wishes: Wishes::start("data", move |wished| work(wished, &outbox, &running)) }
+    }
+
+    /// Loads this next; what is being loaded for another state is given up.
+    pub(super) fn load(&self, wanted: Wanted) {
+        self.wishes.change(|next| {
+            next.wanted = Some(wanted);
+            next.progress.iter().for_each(Progress::cancel);
+        });
+    }
+
+    /// Lets go of everything.
+    pub(super) fn forget(&self) {
+        self.wishes.change(|next| {
+            next.wanted = None;
+            next.forget = true;
+            next.progress.iter().for_each(Progress::cancel);
+        });
+    }
+}
+
+impl Drop for Loader {
+    fn drop(&mut self) {
+        self.wishes.change(|next| next.progress.iter().for_each(Progress::cancel));
+    }
+}
+
+/// What was loaded last, and what for.
+struct Kept {
+    root: PathBuf,
+    key: String,
+    volumes: Vec<(String, String)>,
+    seen: Seen,
+    rocks: Rocks,
+}
+
+fn work(wished: &Wished<Next>, outbox: &Outbox, running: &Running) {
+    let mut kept: Option<Kept> = None;
+    loop {
+        let next = wished.next(|next| {
+            if std::mem::take(&mut next.forget) {
+                return Some(None);
+            }
+            let wanted = next.wanted.take()?;
+            let (guard, progress) = running.begin("Preparing the picture", Place::Block, outbox.wake.clone());
+            next.progress = Some(progress.clone());
+            Some(Some((wanted, guard, progress)))
+        });
+        let (wanted, guard, progress) = match next {
+            Some(Some(next)) => next,
+            Some(None) => {
+                kept = None;
+                continue;
+            }
+            None => return,
+        };
+        let loaded = load(&wanted, &mut kept, &progress);
+        drop(guard);
+        match loaded {
+            Ok(rocks) => outbox.send(Event::Ready { root: wanted.root, rocks }),
+            // However deep in a chain of causes it stands, what was cancelled has not failed.
+            Err(_) if progress.check().is_err() => {}
+            Err(error) => outbox.send(Event::Told(Notice::failure(Place::Block, &error))),
+        }
+        outbox.wake();
+    }
+}
+
+fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
+    let document = &wanted.document;
+    let Purpose::Illustrate(seen) = &wanted.purpose else {
+        return load_bare(wanted, kept, progress);
+    };
+    let key = derived::parameterization_key(document, &ModelSettings::default(), &load::param_settings(document));
+    let volumes = needed_volumes(document);
+    let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
+    if let Some(kept) = kept.as_mut().filter(|kept| same(&&**kept)) {
+        if kept.seen != *seen {
+            let project = Project::open(&wanted.root)?;
+            let scene = seen.scene(wanted.exaggeration);
+            let more = {
+                let loaded = kept.rocks.read().unwrap_or_else(PoisonError::into_inner);
+                super::compute(|| load::read_more(&project, &loaded, &scene, progress))?
+            };
+            more.add_to(&mut kept.rocks.write().unwrap_or_else(PoisonError::into_inner));
+            kept.seen = seen.clone();
+        }
+        restyle(&kept.rocks, wanted)?;
+        return Ok(kept.rocks.clone());
+    }
+    // Memory for one model and its volumes, not for two.
+    *kept = None;
+    let project = Project::open(&wanted.root)?;
+    let scene = seen.scene(wanted.exaggeration);
+    let loaded = super::compute(|| load::load(&project, &scene, progress))?;
+    let rocks = Arc::new(RwLock::new(loaded));
+    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: seen.clone(), rocks: rocks.clone() });
+    Ok(rocks)
+}
+
+/// What the interpretation is drawn from: the raw volume, the wells, candidates where they are shown.
+fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
+    let document = &wanted.document;
+    let raw = styles::transfer_functions(document).raw;
+    let entry = raw.as_ref().and_then(|raw| document.volumes.iter().find(|entry| entry.name == raw.volume));
+    let key = format!("bare {:?} {:?}", wanted.purpose, document.wells);
+    let volumes: Vec<(String, String)> = entry.iter().map(|entry| (entry.name.clone(), entry.hash.clone())).collect();
+    let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
+    if let Some(kept) = kept.as_ref().filter(same) {
+        let mut loaded = kept.rocks.write().unwrap_or_else(PoisonError::into_inner);
+        (loaded.raw, loaded.version) = (raw, load::new_version());
+        drop(loaded);
+        return Ok(kept.rocks.clone());
+    }
+    *kept = None;
+    let project = Project::open(&wanted.root)?;
+    let face_data = match &wanted.purpose {
+        Purpose::Interpret { extraction: Some(_) } => FaceData::Leaves,
+        _ => FaceData::Rock,
+    };
+    let scene = Scene { face_data, ..Scene::default() };
+    let loaded = super::compute(|| load::load_bare(&project, &scene, progress))?;
+    let rocks = Arc::new(RwLock::new(loaded));
+    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: Seen::default(), rocks: rocks.clone() });
+    Ok(rocks)
+}
+
+/// Names and hashes of the volumes that pictures of a project show.
+fn needed_volumes(document: &Document) -> Vec<(String, String)> {
+    let functions = styles::transfer_functions(document);
+    let scalars = functions.scalars.iter().map(|function| function.volume.clone());
+    let wanted: Vec<String> = scalars.chain(functions.raw.map(|raw| raw.volume)).collect();
+    let entries = document.volumes.iter().filter(|entry| wanted.contains(&entry.name));
+    entries.map(|entry| (entry.name.clone(), entry.hash.clone())).collect()
+}
+
+/// Compiles the styles of a project state into what is loaded.
+fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
+    let document = &wanted.document;
+    let functions = styles::transfer_functions(document);
+    let tables = {
+        let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
+        match &loaded.rock {
+            None => None,
+            Some(rock) => {
+                let library = styles::pattern_library(&wanted.root, document)?;
+                let names = document.stratigraphy().layer_names_bottom_up();
+                let block = load::block_extent(&loaded.geometry, rock, names, wanted.exaggeration);
+                Some(TtfTables::compile(&functions, &block, &library)?)
+            }
+        }
+    };
+    let mut loaded = rocks.write().unwrap_or_else(PoisonError::into_inner);
+    loaded.tables = tables;
+    loaded.raw = functions.raw;
+    loaded.version = load::new_version();
+    Ok(())
+}

@@ -1,0 +1,254 @@
+//! Everything that takes time, away from the window's thread.
+//!
+//! [`Work`] hands orders to threads and collects their [`Event`]s; [`Running`] lists what is under way, with progress and a way to stop it.
+//! Commands on the project go one after the other (`orders`); data are read and models built by [`data`]; pictures
+//! ([`picture`]) and sections ([`mod@slice`]) are drawn for the latest wish only.
+//!
+//! Invariant: no call from the window's thread waits.
+
+pub mod data;
+pub mod fence;
+pub mod folder;
+mod lasso;
+pub mod latest;
+pub mod map;
+mod orders;
+pub mod picks;
+pub mod picture;
+pub mod running;
+pub mod scan;
+pub mod slice;
+pub mod swatches;
+mod wishes;
+
+pub use data::{Purpose, Rocks, Seen, Wanted};
+pub use map::{MapPicture, Maps};
+pub use picks::{Interpreted, Picks, ShownFault, ShownHorizon, ShownPick};
+pub use picture::{Drawing, Drawn, PictureWish, Touch};
+pub use running::{Running, RunningLine};
+pub use slice::{SlicePicture, SliceWish, Slices};
+pub use swatches::Swatches;
+
+use super::state::{Notice, PickingStep, Place, Snapshot, Task};
+use project::command::PickNode;
+use std::path::PathBuf;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, OnceLock};
+use survey::Progress;
+
+/// An answer.
+pub enum Event {
+    /// A project was read.
+    Opened(Box<Snapshot>),
+    /// The open project changed.
+    Changed {
+        /// What it is now.
+        snapshot: Box<Snapshot>,
+        /// Where the change was asked for.
+        place: Place,
+    },
+    /// Data of this project state are ready to be drawn.
+    Ready {
+        /// The project.
+        root: PathBuf,
+        /// The data.
+        rocks: Rocks,
+    },
+    /// A picture of the block.
+    Drawn(Drawn),
+    /// A section.
+    Sliced(SlicePicture),
+    /// A section along a line.
+    Fenced(fence::FencePicture),
+    /// A map.
+    Mapped(MapPicture),
+    /// The interpretation was read.
+    Interpreted(Arc<Interpreted>),
+    /// The selected node, ready to be drawn; none where nothing is selected.
+    Selected(Option<Arc<ShownPick>>),
+    /// An answer while interpreting.
+    Picking {
+        /// The project it is for.
+        root: PathBuf,
+        /// The answer.
+        step: PickingStep,
+    },
+    /// What a lasso holds, to be taken out.
+    Erased {
+        /// Of which project.
+        root: PathBuf,
+        /// The picks that take it out.
+        picks: Vec<PickNode>,
+    },
+    /// A picture was written.
+    Exported(PathBuf),
+    /// Something is worth knowing.
+    Told(Notice),
+}
+
+/// Wakes the window up: something is there to be shown.
+pub type Wake = Arc<dyn Fn() + Send + Sync>;
+
+/// Where workers leave their answers.
+#[derive(Clone)]
+pub struct Outbox {
+    sender: Sender<Event>,
+    wake: Wake,
+}
+
+impl Outbox {
+    /// Leaves an answer; a window that has gone needs none.
+    pub fn send(&self, event: Event) {
+        let _ = self.sender.send(event);
+        (self.wake)();
+    }
+
+    /// Wakes the window without an answer.
+    pub fn wake(&self) {
+        (self.wake)();
+    }
+}
+
+/// The workers.
+pub struct Work {
+    events: Receiver<Event>,
+    /// Where answers go.
+    pub outbox: Outbox,
+    /// What is under way.
+    pub running: Running,
+    orders: Sender<orders::Order>,
+    data: data::Loader,
+    /// Pictures of the block.
+    pub drawing: Drawing,
+    /// Sections.
+    pub slices: Slices,
+    /// Maps.
+    pub maps: Maps,
+    /// The interpretation.
+    pub picks: Picks,
+    root: Option<PathBuf>,
+}
+
+impl Work {
+    /// Starts the workers.
+    pub fn start(wake: Wake) -> Self {
+        let (sender, events) = channel();
+        let outbox = Outbox { sender, wake };
+        let running = Running::default();
+        Self {
+            events,
+            orders: orders::start(outbox.clone(), running.clone()),
+            data: data::Loader::start(outbox.clone(), running.clone()),
+            drawing: Drawing::start(outbox.clone()),
+            slices: Slices::start(outbox.clone()),
+            maps: Maps::start(outbox.clone()),
+            picks: Picks::start(outbox.clone(), running.clone()),
+            outbox,
+            running,
+            root: None,
+        }
+    }
+
+    /// The next answer, if there is one.
+    pub fn next_event(&mut self) -> Option<Event> {
+        let event = self.events.try_recv().ok()?;
+        if let Event::Opened(snapshot) = &event {
+            self.root = Some(snapshot.root.clone());
+        }
+        Some(event)
+    }
+
+    /// Does what a state asks for; `place` is where a failure is shown.
+    pub fn run(&mut self, task: Task, place: Place) {
+        let root = || self.root.clone();
+        let order = match task {
+            Task::Open(root) => orders::Order::Open(root),
+            Task::Demo(folder) => orders::Order::Demo(folder),
+            Task::Create { command, root } => orders::Order::Create { command, root },
+            Task::Apply(command) => match root() {
+                Some(root) => orders::Order::Apply { root, command, place },
+                None => return,
+            },
+            Task::Undo => match root() {
+                Some(root) => orders::Order::Undo(root),
+                None => return,
+            },
+            Task::Redo => match root() {
+                Some(root) => orders::Order::Redo(root),
+                None => return,
+            },
+            Task::Picking(task) => {
+                if let Some(root) = root() {
+                    self.picks.run(task, root);
+                }
+                return;
+            }
+            Task::Release => {
+                self.root = None;
+                self.data.forget();
+                self.picks.forget();
+                return;
+            }
+            // These are the window's own.
+            Task::Remember | Task::Copy | Task::Export(_) => return,
+        };
+        // The thread lives as long as this value.
+        let _ = self.orders.send(order);
+    }
+
+    /// Reads and computes what pictures of the open project need.
+    pub fn load(&mut self, wanted: Wanted) {
+        self.data.load(wanted);
+    }
+
+    /// Does something of its own on a thread; what was stopped by the user has not failed.
+    pub fn background(
+        &self,
+        title: &str,
+        place: Place,
+        job: impl FnOnce(&Progress, &Outbox) -> Result<(), Notice> + Send + 'static,
+    ) {
+        let (outbox, running) = (self.outbox.clone(), self.running.clone());
+        let title = title.to_owned();
+        spawn("background", move || {
+            let (line, progress) = running.begin(&title, place, outbox.wake.clone());
+            match job(&progress, &outbox) {
+                Err(notice) if progress.check().is_ok() => outbox.send(Event::Told(notice)),
+                _ => {}
+            }
+            drop(line);
+            outbox.wake();
+        });
+    }
+}
+
+/// Computes on all processors but one: that one is the window's, so that it stays at hand while work goes on.
+///
+/// A job must take no lock on what is loaded: the thread that holds it may be waiting for these processors. Locks are
+/// taken before, by the caller.
+pub(super) fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
+    static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
+    on(&POOL, job)
+}
+
+/// The same, on threads that pictures are not drawn on: what takes minutes must not keep them waiting.
+fn compute_apart<T: Send>(job: impl FnOnce() -> T + Send) -> T {
+    static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
+    on(&POOL, job)
+}
+
+fn on<T: Send>(pool: &OnceLock<Option<rayon::ThreadPool>>, job: impl FnOnce() -> T + Send) -> T {
+    let pool = pool.get_or_init(|| {
+        let threads = std::thread::available_parallelism().map_or(1, |count| count.get().saturating_sub(1).max(1));
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()
+    });
+    match pool {
+        Some(pool) => pool.install(job),
+        None => job(),
+    }
+}
+
+/// A named thread; a system that has no thread left loses the job, not the window.
+fn spawn(name: &str, job: impl FnOnce() + Send + 'static) {
+    let _ = std::thread::Builder::new().name(name.to_owned()).spawn(job);
+}

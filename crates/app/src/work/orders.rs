@@ -1,0 +1,120 @@
+//! Orders on projects, one after the other: what changes a project must not overtake itself.
+
+use super::running::{Running, RunningGuard};
+use super::{Event, Outbox, spawn};
+use crate::state::{Notice, Place, Snapshot};
+use project::Project;
+use project::command::{Command, ImportVolume};
+use project::demo;
+use project::error::ProjectError;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Sender, channel};
+use survey::Progress;
+
+/// An order.
+pub(super) enum Order {
+    Open(PathBuf),
+    Demo(PathBuf),
+    Create { command: Box<ImportVolume>, root: PathBuf },
+    Apply { root: PathBuf, command: Box<Command>, place: Place },
+    Undo(PathBuf),
+    Redo(PathBuf),
+}
+
+/// Starts the thread; it ends when the sender is dropped.
+pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
+    let (sender, orders) = channel::<Order>();
+    spawn("project", move || {
+        for order in orders {
+            let place = order.place();
+            let (guard, progress) = running.begin(&order.title(), place, outbox.wake.clone());
+            match super::compute(|| order.carry_out(&progress)) {
+                Ok(event) => {
+                    tell_warnings(&guard, place, &outbox);
+                    outbox.send(event);
+                }
+                Err(error) => outbox.send(Event::Told(Notice::failure(place, &error))),
+            }
+            drop(guard);
+            outbox.wake();
+        }
+    });
+    sender
+}
+
+fn tell_warnings(guard: &RunningGuard, place: Place, outbox: &Outbox) {
+    for warning in guard.warnings() {
+        outbox.send(Event::Told(Notice::note(place, warning)));
+    }
+}
+
+impl Order {
+    fn title(&self) -> String {
+        match self {
+            Self::Open(_) => "Opening the project".to_owned(),
+            Self::Demo(_) => "Making the demonstration".to_owned(),
+            Self::Create { command, .. } => format!("Reading {}", file_name(&command.path)),
+            Self::Apply { command, .. } => match command.as_ref() {
+                Command::Import(import) => format!("Reading {}", file_name(&import.path)),
+                Command::AddHorizon(add) => format!("Reading {}", file_name(&add.path)),
+                Command::AddFault(add) => format!("Reading {}", file_name(&add.path)),
+                _ => "Saving".to_owned(),
+            },
+            Self::Undo(_) => "Undo".to_owned(),
+            Self::Redo(_) => "Redo".to_owned(),
+        }
+    }
+
+    fn place(&self) -> Place {
+        match self {
+            Self::Open(_) | Self::Demo(_) => Place::Start,
+            Self::Create { .. } => Place::Dialogue,
+            Self::Apply { place, .. } => *place,
+            Self::Undo(_) | Self::Redo(_) => Place::Block,
+        }
+    }
+
+    fn carry_out(self, progress: &Progress) -> Result<Event, ProjectError> {
+        Ok(match self {
+            Self::Open(root) => Event::Opened(Box::new(snapshot(&Project::open(&absolute(&root))?)?)),
+            Self::Demo(folder) => {
+                let done = demo::run(&folder, progress)?;
+                Event::Opened(Box::new(snapshot(&Project::open(&absolute(&done.project))?)?))
+            }
+            Self::Create { command, root } => {
+                let mut new = Project::create(&absolute(&root), None)?;
+                new.project().apply(&Command::Import(*command), progress)?;
+                Event::Opened(Box::new(snapshot(&new.publish()?)?))
+            }
+            Self::Apply { root, command, place } => {
+                let mut project = Project::open(&root)?;
+                project.apply(&command, progress)?;
+                Event::Changed { snapshot: Box::new(snapshot(&project)?), place }
+            }
+            Self::Undo(root) => {
+                let mut project = Project::open(&root)?;
+                project.undo()?;
+                Event::Changed { snapshot: Box::new(snapshot(&project)?), place: Place::Block }
+            }
+            Self::Redo(root) => {
+                let mut project = Project::open(&root)?;
+                project.redo()?;
+                Event::Changed { snapshot: Box::new(snapshot(&project)?), place: Place::Block }
+            }
+        })
+    }
+}
+
+/// The project as the window keeps it.
+pub(super) fn snapshot(project: &Project) -> Result<Snapshot, ProjectError> {
+    Ok(Snapshot { root: project.root().to_owned(), document: project.document().clone(), history: project.history() })
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}
+
+/// Recent projects must be found from any folder.
+fn absolute(path: &Path) -> PathBuf {
+    std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}

@@ -1,0 +1,409 @@
+//! What the interpretation needs: candidates in memory, the horizons' sheets, the leaf under a click, the selected node as sheets.
+//!
+//! One thread keeps the present extraction and what was made of it, so that a click takes milliseconds; it reads anew what has
+//! changed and nothing else. Orders are carried out in turn, but of several states to follow, or selections to draw, only the last. Extracting and
+//! looking for faults take long and run on threads of their own, on processors of their own. Places are voxels but where said otherwise.
+
+mod followed;
+
+use super::running::Running;
+use super::{Event, Outbox, compute_apart, spawn};
+use crate::state::picking::{Pick, voxel_of};
+use crate::state::{Notice, PickingStep, PickingTask, Place};
+use followed::Followed;
+use glam::DVec3;
+use interp::ExtractReport;
+use interp::assembly::{ClimbSettings, Overlap, highest_valid, selected_leaves};
+use interp::faults::{Proposal, ProposeSettings};
+use interp::holes::{Hole, find_holes};
+use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
+use project::Project;
+use project::content;
+use project::document::Document;
+use project::document::{Assembly, HorizonEntry};
+use project::error::ProjectError;
+use project::interpretation::assembly::{self, AssemblyReport, conflicts_of, overlap_in_lines, report_on, sentence};
+use project::interpretation::candidates::Candidates;
+use project::interpretation::{extraction, proposals};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use store::StoredCandidates;
+use survey::{Fault, Progress, SurveyGeometry};
+use ttf::Colour;
+
+/// A horizon of the project, to be drawn and described.
+pub struct ShownHorizon {
+    /// Its name.
+    pub name: String,
+    /// The colour it was given, if it was assembled.
+    pub colour: Option<Colour>,
+    /// Where it is.
+    pub sheets: Arc<Vec<VoxelSheet>>,
+    /// Its leaves.
+    pub leaves: Vec<u32>,
+    /// Coverage and overlap; places in line numbers.
+    pub report: AssemblyReport,
+    /// Its holes, largest first.
+    pub holes: Vec<Hole>,
+    /// What it contradicts, in words.
+    pub conflicts: Vec<String>,
+    /// Whether its picks are of another extraction than the present one.
+    pub outdated: bool,
+}
+
+/// A fault, to be drawn.
+pub struct ShownFault {
+    /// Its name.
+    pub name: String,
+    /// Its triangles.
+    pub triangles: Vec<[DVec3; 3]>,
+}
+
+/// The interpretation as it is.
+pub struct Interpreted {
+    /// The project.
+    pub root: PathBuf,
+    /// Its step.
+    pub step: u32,
+    /// Unlike that of any other.
+    pub number: u64,
+    /// Youngest first.
+    pub horizons: Vec<ShownHorizon>,
+    /// In the project's order.
+    pub faults: Vec<ShownFault>,
+    /// What the present extraction found; absent where there is none.
+    pub extraction: Option<ExtractReport>,
+    /// Identifies that extraction.
+    pub key: Option<String>,
+    /// Faults proposed for the horizons as they are.
+    pub proposals: Vec<(Proposal, ShownFault)>,
+    /// Unit of the throws of these.
+    pub unit: String,
+}
+
+/// The selected node, to be drawn.
+pub struct ShownPick {
+    /// What was selected.
+    pub pick: Pick,
+    /// Where it is.
+    pub sheets: Vec<VoxelSheet>,
+    /// Triangles of the node.
+    pub triangles: usize,
+    /// Its leaves.
+    pub leaves: Vec<u32>,
+    /// Where it would lie over the horizon or itself, in line numbers.
+    pub overlap: Option<Overlap>,
+    /// Whether that is more than noise makes.
+    pub is_wrong: bool,
+}
+
+enum Order {
+    Follow(PathBuf, Box<Document>),
+    Renew,
+    Draw(Option<(Pick, Option<String>)>),
+    Do(PickingTask, PathBuf),
+    Forget,
+}
+
+/// The thread.
+pub struct Picks {
+    orders: Sender<Order>,
+    outbox: Outbox,
+    running: Running,
+}
+
+impl Picks {
+    pub(super) fn start(outbox: Outbox, running: Running) -> Self {
+        let (orders, received) = channel();
+        let mut keeper = Keeper::new(outbox.clone(), running.clone());
+        spawn("picks", move || keeper.work(&received));
+        Self { orders, outbox, running }
+    }
+
+    /// Reads what this state of a project needs and has not been read.
+    pub fn follow(&self, root: PathBuf, document: Document) {
+        let _ = self.orders.send(Order::Follow(root, Box::new(document)));
+    }
+
+    /// Makes sheets of a selection for a horizon; of none, nothing is shown.
+    pub fn draw(&self, selection: Option<(Pick, Option<String>)>) {
+        let _ = self.orders.send(Order::Draw(selection));
+    }
+
+    /// Lets go of everything.
+    pub fn forget(&self) {
+        let _ = self.orders.send(Order::Forget);
+    }
+
+    /// Does what a state asks for.
+    pub(super) fn run(&self, task: PickingTask, root: PathBuf) {
+        let (outbox, running, orders) = (self.outbox.clone(), self.running.clone(), self.orders.clone());
+        match task {
+            PickingTask::Extract(volume, settings) => spawn("extraction", move || {
+                let (guard, progress) = running.begin("Extracting", Place::Interpret, outbox.wake.clone());
+                let done = compute_apart(|| {
+                    let project = Project::open(&root)?;
+                    extraction::extract(&project, volume.as_deref(), &settings, &progress)
+                });
+                let warnings = guard.warnings();
+                drop(guard);
+                for warning in warnings {
+                    outbox.send(Event::Told(Notice::note(Place::Interpret, warning)));
+                }
+                tell(done.map(drop), Some(&progress), &outbox);
+                let _ = orders.send(Order::Renew);
+            }),
+            PickingTask::ProposeFaults => spawn("proposals", move || {
+                let (guard, progress) = running.begin("Looking for faults", Place::Interpret, outbox.wake.clone());
+                let done = compute_apart(|| {
+                    let project = Project::open(&root)?;
+                    proposals::propose(&project, &ProposeSettings::default(), &progress)
+                });
+                drop(guard);
+                if let Some(text) = done.as_ref().ok().and_then(proposals::Proposals::nothing_new) {
+                    outbox.send(Event::Told(Notice::note(Place::Interpret, text)));
+                }
+                tell(done.map(drop), Some(&progress), &outbox);
+                let _ = orders.send(Order::Renew);
+            }),
+            task => drop(orders.send(Order::Do(task, root))),
+        }
+    }
+}
+
+/// Tells a failure; what was stopped by the user is none.
+fn tell(done: Result<(), ProjectError>, progress: Option<&Progress>, outbox: &Outbox) {
+    match done {
+        Ok(()) => outbox.wake(),
+        Err(_) if progress.is_some_and(|progress| progress.check().is_err()) => outbox.wake(),
+        Err(error) => outbox.send(Event::Told(Notice::failure(Place::Interpret, &error))),
+    }
+}
+
+struct Keeper {
+    outbox: Outbox,
+    running: Running,
+    followed: Option<Followed>,
+    /// Sheets by the horizon's hash and those of the faults.
+    sheets: HashMap<String, Arc<Vec<VoxelSheet>>>,
+    number: u64,
+}
+
+impl Keeper {
+    fn new(outbox: Outbox, running: Running) -> Self {
+        Self { outbox, running, followed: None, sheets: HashMap::new(), number: 0 }
+    }
+
+    fn work(&mut self, orders: &Receiver<Order>) {
+        while let Ok(first) = orders.recv() {
+            let mut queue: Vec<Order> = std::iter::once(first).chain(orders.try_iter()).collect();
+            // Only the last of its kind matters.
+            for is_kind in [
+                (|order| matches!(order, Order::Draw(_))) as fn(&Order) -> bool,
+                |order| matches!(order, Order::Follow(..)),
+                |order| matches!(order, Order::Renew),
+            ] {
+                if let Some(last) = queue.iter().rposition(is_kind) {
+                    let mut index = 0;
+                    queue.retain(|order| {
+                        index += 1;
+                        index - 1 == last || !is_kind(order)
+                    });
+                }
+            }
+            for order in queue {
+                if let Err(error) = self.carry_out(order) {
+                    tell(Err(error), None, &self.outbox);
+                }
+            }
+        }
+    }
+
+    fn carry_out(&mut self, order: Order) -> Result<(), ProjectError> {
+        match order {
+            Order::Forget => (self.followed, self.sheets) = (None, HashMap::new()),
+            Order::Follow(root, document) => self.follow(root, *document)?,
+            Order::Renew => {
+                let known = self.followed.as_ref().map(|known| (known.root.clone(), known.document.clone()));
+                if let Some((root, document)) = known {
+                    self.follow(root, document)?;
+                }
+            }
+            Order::Draw(None) => self.outbox.send(Event::Selected(None)),
+            Order::Draw(Some((pick, horizon))) => {
+                let followed = self.followed.as_ref().ok_or(ProjectError::NotExtracted)?;
+                if let Some(shown) = followed.show(pick, horizon.as_deref())? {
+                    self.outbox.send(Event::Selected(Some(Arc::new(shown))));
+                }
+            }
+            Order::Do(task, root) => self.answer(task, root)?,
+        }
+        Ok(())
+    }
+
+    /// Does a task on the project it was given for.
+    fn answer(&self, task: PickingTask, root: PathBuf) -> Result<(), ProjectError> {
+        let followed = self.followed.as_ref().filter(|followed| followed.root == root);
+        let followed = followed.ok_or(ProjectError::NotExtracted)?;
+        let candidates = followed.candidates()?;
+        let found = match task {
+            PickingTask::Find(at) => {
+                let hit = candidates.leaf_near(&followed.geometry, at)?;
+                Pick { at, leaf: hit.leaf, up: 0, levels: candidates.levels(hit.leaf) }
+            }
+            PickingTask::HighestValid(pick, horizon) => {
+                let chosen = followed.chosen(horizon.as_deref());
+                let (forest, blocks) = (&candidates.forest, &followed.blocks);
+                let up = highest_valid(forest, pick.leaf, &chosen, blocks, &ClimbSettings::default()).up;
+                Pick { up, ..pick }
+            }
+            PickingTask::Erase(lasso, horizon) => {
+                let chosen = followed.chosen(Some(&horizon));
+                let geometry = &followed.geometry;
+                let picks = super::lasso::nodes_inside(&lasso, &candidates.forest, &chosen, geometry, &horizon);
+                self.outbox.send(if picks.is_empty() {
+                    let text =
+                        format!("nothing of {horizon} lies mostly inside the lasso; draw it around whole leaves");
+                    Event::Told(Notice::note(Place::Interpret, text))
+                } else {
+                    Event::Erased { root, picks }
+                });
+                return Ok(());
+            }
+            // These have threads of their own.
+            PickingTask::Extract(..) | PickingTask::ProposeFaults => return Ok(()),
+        };
+        self.outbox.send(Event::Picking { root, step: PickingStep::Found(found) });
+        Ok(())
+    }
+
+    fn follow(&mut self, root: PathBuf, document: Document) -> Result<(), ProjectError> {
+        let geometry = document.frame()?.clone();
+        let former = self.followed.take().filter(|former| former.root == root);
+        let (guard, progress) =
+            self.running.begin("Reading the interpretation", Place::Interpret, self.outbox.wake.clone());
+        let path = extraction::candidates_path(&root);
+        let stored = path.exists().then(|| StoredCandidates::open(&path)).transpose()?;
+        let key = stored.as_ref().map(|stored| stored.info().key.clone());
+        let (former_candidates, former_blocks) = match former {
+            Some(former) => {
+                let same = hashes(&former.document) == hashes(&document);
+                (former.candidates, same.then_some(former.blocks))
+            }
+            None => (None, None),
+        };
+        let candidates = match former_candidates.filter(|kept| Some(&kept.key) == key.as_ref()) {
+            Some(kept) => Some(kept),
+            None if stored.is_some() => Some(Candidates::load(&root, &progress)?),
+            None => None,
+        };
+        let blocks = match former_blocks {
+            Some(kept) => kept,
+            None => assembly::blocks(&root, &document, &progress)?,
+        };
+        let report = stored.and_then(|stored| extraction::report(&stored));
+        let followed = Followed { root, document, geometry, candidates, blocks };
+        let shown = self.interpreted(&followed, report, &progress)?;
+        drop(guard);
+        self.followed = Some(followed);
+        self.outbox.send(Event::Interpreted(Arc::new(shown)));
+        Ok(())
+    }
+
+    fn interpreted(
+        &mut self,
+        followed: &Followed,
+        extraction: Option<ExtractReport>,
+        progress: &Progress,
+    ) -> Result<Interpreted, ProjectError> {
+        let Followed { root, document, geometry, candidates, blocks } = followed;
+        let candidates = candidates.as_deref();
+        let faults_key = hashes(document).join(" ");
+        let mut kept = HashMap::new();
+        for entry in &document.horizons {
+            let key = format!("{} {faults_key}", entry.hash);
+            let sheets = match self.sheets.remove(&key) {
+                Some(sheets) => sheets,
+                None => Arc::new(from_horizon(&content::read_horizon(root, entry, progress)?, geometry, blocks)),
+            };
+            kept.insert(key, sheets);
+        }
+        self.sheets = kept;
+        let sheets_of = |entry: &HorizonEntry| self.sheets[&format!("{} {faults_key}", entry.hash)].clone();
+        let all: Vec<Arc<Vec<VoxelSheet>>> = document.horizons.iter().map(sheets_of).collect();
+        let slices: Vec<&[VoxelSheet]> = all.iter().map(|sheets| sheets.as_slice()).collect();
+        let conflicts = conflicts_of(document, candidates, &slices)?;
+        let [nx, ny, _] = geometry.size();
+        let horizons = document.horizons.iter().zip(&all).map(|(entry, sheets)| {
+            let log = entry.assembly.as_ref();
+            let chosen = log.zip(candidates).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
+            let overlap = chosen.as_ref().zip(candidates).and_then(|(chosen, candidates)| {
+                let found = reassemble(&candidates.forest, chosen, &seeds(log, candidates), blocks).overlap;
+                overlap_in_lines(found, geometry)
+            });
+            let mine = conflicts.iter().filter(|conflict| conflict.horizons().contains(&entry.name));
+            ShownHorizon {
+                name: entry.name.clone(),
+                colour: log.map(|log| log.colour),
+                sheets: sheets.clone(),
+                leaves: chosen
+                    .as_ref()
+                    .zip(candidates)
+                    .map_or_else(Vec::new, |(chosen, candidates)| selected_leaves(&candidates.forest, chosen)),
+                report: AssemblyReport { overlap, ..report_on(sheets, geometry) },
+                holes: find_holes(sheets, [nx, ny]),
+                conflicts: mine.map(sentence).collect(),
+                outdated: log.is_some() && chosen.is_none(),
+            }
+        });
+        let horizons = horizons.collect();
+        let faults = document.faults.iter().map(|entry| Ok(shown(&content::read_fault(root, entry)?, geometry)));
+        let faults = faults.collect::<Result<_, ProjectError>>()?;
+        let (proposals, unit) = proposed(root, document, geometry);
+        self.number += 1;
+        let (root, step) = (root.clone(), document.step);
+        let key = candidates.map(|candidates| candidates.key.clone());
+        Ok(Interpreted { root, step, number: self.number, horizons, faults, extraction, key, proposals, unit })
+    }
+}
+
+/// Triangles that reassembling starts from.
+fn seeds(log: Option<&Assembly>, candidates: &Candidates) -> Vec<u32> {
+    let forest = &candidates.forest;
+    let picks = log.into_iter().flat_map(|log| &log.picks);
+    let leaf = |leaf: u32| forest.leaves.get((leaf as usize).wrapping_sub(1));
+    picks.filter_map(|pick| Some(forest.nodes[*leaf(pick.leaf)? as usize].triangles.start)).collect()
+}
+
+/// What the fault blocks are made of.
+fn hashes(document: &Document) -> Vec<String> {
+    document.faults.iter().map(|entry| format!("{} {:?}", entry.hash, entry.truncated_by)).collect()
+}
+
+fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {
+    let vertices: Vec<DVec3> = fault.mesh.vertices.iter().map(|vertex| geometry.voxel_from_world(*vertex)).collect();
+    let triangles = fault.mesh.triangles.iter().map(|corners| corners.map(|v| vertices[v as usize])).collect();
+    ShownFault { name: fault.name.clone(), triangles }
+}
+
+/// The proposals for the horizons as they are, but for those accepted.
+fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec<(Proposal, ShownFault)>, String) {
+    let Ok(kept) = proposals::kept(root, document) else { return (Vec::new(), String::new()) };
+    let accepted = |proposal: &Proposal| {
+        let hash = content::hash_fault(&proposal.fault(""));
+        document.faults.iter().any(|entry| entry.hash == hash)
+    };
+    let open = kept.proposals.into_iter().filter(|proposal| !accepted(proposal));
+    let open = open.map(|proposal| {
+        let fault = shown(&proposal.fault(&proposal.name), geometry);
+        (proposal, fault)
+    });
+    (open.collect(), kept.unit)
+}
+
+/// Voxel position of a place where an overlap is worst.
+pub fn voxel_of_overlap(geometry: &SurveyGeometry, overlap: &Overlap) -> DVec3 {
+    voxel_of(geometry, overlap.at.map(f64::from))
+}

@@ -1,0 +1,240 @@
+//! Pictures of the block for the screen: coarse at once, then full, then smooth, always for the latest wish.
+//!
+//! The time that one ray took last time decides how coarse the first picture is, so that it comes within `COARSE_S` on any machine. A
+//! coarse picture is always finished, or nothing would be seen while the camera moves; finer ones are given up for a newer wish.
+
+use super::wishes::{Wished, Wishes};
+use super::{Event, Outbox, Rocks};
+use crate::state::{How, Notice, PickingStep, Place};
+use glam::DVec2;
+use image::RgbaImage;
+use project::picture::{Device, Painter};
+use render::{Media, RenderError, Scene, Shading};
+use std::path::PathBuf;
+use std::sync::PoisonError;
+use std::time::Instant;
+use survey::Progress;
+
+/// Seconds a first picture may take: the hand notices more than a tenth.
+const COARSE_S: f64 = 0.09;
+/// Largest factor by which a first picture is coarser.
+const COARSEST: u32 = 8;
+/// Most cells of a slice of light in a coarse picture.
+const COARSE_CELLS: u32 = 96;
+/// Samples a pixel along each axis of the last picture.
+const SMOOTH_SAMPLES: u32 = 2;
+/// Weight of the latest measurement of the time a ray takes.
+const LATEST: f64 = 0.5;
+
+/// What is to be seen.
+#[derive(Clone)]
+pub struct PictureWish {
+    /// Unlike that of any other wish, and growing.
+    pub number: u64,
+    /// The pictures, each with its size on the screen.
+    pub scenes: Vec<Scene>,
+    /// What they are drawn from.
+    pub rocks: Rocks,
+    /// While the hand moves, coarse is enough.
+    pub is_moving: bool,
+    /// What is on the screen already tells more than a coarse picture would.
+    pub begins_fine: bool,
+}
+
+/// A click on a picture in which something may be seen behind its faces.
+#[derive(Clone)]
+pub struct Touch {
+    /// The project.
+    pub root: PathBuf,
+    /// The picture, with a size in points.
+    pub scene: Scene,
+    /// Where, points from its upper left corner.
+    pub at: DVec2,
+    /// What the click does.
+    pub how: How,
+    /// What the picture was drawn from.
+    pub rocks: Rocks,
+}
+
+/// A picture.
+pub struct Drawn {
+    /// Of which wish.
+    pub number: u64,
+    /// Which of its scenes.
+    pub pane: usize,
+    /// The pixels: fewer than the screen's where it is coarse.
+    pub image: RgbaImage,
+    /// Whether nothing better will come.
+    pub is_final: bool,
+    /// What drew it.
+    pub device: String,
+}
+
+#[derive(Default)]
+struct Wanted {
+    wish: Option<PictureWish>,
+    touch: Option<Touch>,
+    /// Of the picture being drawn, if it may be given up.
+    progress: Option<Progress>,
+}
+
+/// What is done next: a click waits for no picture.
+enum Next {
+    Touch(Box<Touch>),
+    Draw(PictureWish),
+}
+
+impl Wanted {
+    fn take(&mut self) -> Option<Next> {
+        self.progress = None;
+        self.touch.take().map(|touch| Next::Touch(Box::new(touch))).or_else(|| self.wish.take().map(Next::Draw))
+    }
+}
+
+/// The thread that draws, and the wish it works on next.
+pub struct Drawing {
+    wishes: Wishes<Wanted>,
+}
+
+impl Drawing {
+    /// Starts the thread.
+    pub fn start(outbox: Outbox) -> Self {
+        Self { wishes: Wishes::start("picture", move |wished| Artist::new(outbox).work(wished)) }
+    }
+
+    /// Draws this next, instead of what was wished before.
+    pub fn draw(&self, wish: PictureWish) {
+        self.wishes.change(|wanted| {
+            wanted.wish = Some(wish);
+            wanted.progress.iter().for_each(Progress::cancel);
+        });
+    }
+
+    /// Finds what is seen at a place of a picture, and picks it.
+    pub fn touch(&self, touch: Touch) {
+        self.wishes.change(|wanted| wanted.touch = Some(touch));
+    }
+}
+
+impl Drop for Drawing {
+    fn drop(&mut self) {
+        self.wishes.change(|wanted| wanted.progress.iter().for_each(Progress::cancel));
+    }
+}
+
+/// Media of a picture that is coarser by a factor: light and samples are coarser too, for they cost what pixels do not.
+fn media_for(media: &Media, divisor: u32) -> Media {
+    let mut media = media.clone();
+    if divisor > 1 {
+        media.samples_per_voxel *= 0.5;
+        if let Shading::Occlusion(occlusion) = &mut media.shading {
+            occlusion.slices_per_voxel *= 0.5;
+            occlusion.max_cells = occlusion.max_cells.min(COARSE_CELLS);
+        }
+    }
+    media
+}
+
+struct Artist {
+    outbox: Outbox,
+    painter: Option<Painter>,
+    /// Seconds a ray takes.
+    ray_s: f64,
+}
+
+impl Artist {
+    fn new(outbox: Outbox) -> Self {
+        // Until measured: a slow processor.
+        Self { outbox, painter: None, ray_s: 1.5e-6 }
+    }
+
+    fn work(mut self, wished: &Wished<Wanted>) {
+        while let Some(next) = wished.next(Wanted::take) {
+            match next {
+                Next::Touch(touch) => self.find(&touch),
+                Next::Draw(wish) => {
+                    if let Err(error) = self.satisfy(&wish, wished) {
+                        self.outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
+                    }
+                }
+            }
+        }
+    }
+
+    /// What is seen at a place becomes a click on it.
+    fn find(&self, touch: &Touch) {
+        let loaded = touch.rocks.read().unwrap_or_else(PoisonError::into_inner);
+        let scene = loaded.complete(&touch.scene);
+        let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
+        match render::pick::pick(&scene, &loaded.inputs(&volumes, &wells), touch.at) {
+            Ok(Some(seen)) => {
+                let step = PickingStep::At(seen.voxel.as_dvec3(), touch.how);
+                self.outbox.send(Event::Picking { root: touch.root.clone(), step });
+            }
+            Ok(None) => {}
+            Err(error) => self.outbox.send(Event::Told(Notice::failure(Place::Interpret, &error))),
+        }
+    }
+
+    /// Draws the wish ever finer until it is smooth or a newer one is there.
+    fn satisfy(&mut self, wish: &PictureWish, wished: &Wished<Wanted>) -> Result<(), RenderError> {
+        let rays: f64 = wish.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();
+        let divisor = ((rays * self.ray_s / COARSE_S).sqrt().ceil() as u32).clamp(1, COARSEST);
+        let mut passes = Vec::new();
+        if !wish.begins_fine {
+            passes.push((divisor, 1));
+        }
+        if !wish.is_moving {
+            if divisor > 1 || wish.begins_fine {
+                passes.push((1, 1));
+            }
+            passes.push((1, SMOOTH_SAMPLES));
+        }
+        for (index, (divisor, samples)) in passes.iter().copied().enumerate() {
+            let progress = Progress::silent();
+            if index > 0 || wish.begins_fine {
+                let may_go_on = wished.look(|wanted| {
+                    wanted.progress = Some(progress.clone());
+                    wanted.wish.is_none()
+                });
+                if may_go_on != Some(true) {
+                    return Ok(());
+                }
+            }
+            for pane in 0..wish.scenes.len() {
+                match self.draw(wish, pane, divisor, samples, index + 1 == passes.len(), &progress) {
+                    Err(RenderError::Cancelled(_)) => return Ok(()),
+                    other => other?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn draw(
+        &mut self,
+        wish: &PictureWish,
+        pane: usize,
+        divisor: u32,
+        samples: u32,
+        is_final: bool,
+        progress: &Progress,
+    ) -> Result<(), RenderError> {
+        let painter = match &mut self.painter {
+            Some(painter) => painter,
+            none => none.insert(Painter::new(Device::Auto, progress)?),
+        };
+        let scene = &wish.scenes[pane];
+        let size_px = scene.size_px.map(|side| side.div_ceil(divisor).max(1));
+        let scene = Scene { size_px, samples, media: media_for(&scene.media, divisor), ..scene.clone() };
+        let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
+        let start = Instant::now();
+        let (image, _) = super::compute(|| painter.draw(&scene, &loaded, progress))?;
+        drop(loaded);
+        let rays = f64::from(size_px[0]) * f64::from(size_px[1]) * f64::from(samples * samples);
+        self.ray_s += (start.elapsed().as_secs_f64() / rays - self.ray_s) * LATEST;
+        let device = painter.device().to_owned();
+        self.outbox.send(Event::Drawn(Drawn { number: wish.number, pane, image, is_final, device }));
+        Ok(())
+    }
+}

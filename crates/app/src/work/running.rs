@@ -1,0 +1,158 @@
+//! What is under way: titles, progress, a way to stop.
+
+use super::Wake;
+use crate::fields;
+use crate::state::Place;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
+use survey::progress::ProgressSink;
+use survey::{Note, Progress};
+
+/// How often progress wakes the window at most.
+const WAKE_EVERY: Duration = Duration::from_millis(100);
+
+/// A job under way.
+#[derive(Clone)]
+pub struct RunningLine {
+    /// Unlike any other.
+    pub id: u64,
+    /// What it does.
+    pub title: String,
+    /// Where its failure would be shown.
+    pub place: Place,
+    /// The stage it is in.
+    pub stage: String,
+    /// Steps done and in all; 0 in all: unknown.
+    pub steps: [u64; 2],
+    /// What it warned of.
+    pub warnings: Vec<String>,
+    /// Stops it.
+    pub progress: Progress,
+}
+
+impl RunningLine {
+    /// Share done of the present stage.
+    pub fn share(&self) -> Option<f32> {
+        let [done, total] = self.steps;
+        (total > 0).then(|| (done as f32 / total as f32).clamp(0.0, 1.0))
+    }
+}
+
+/// The list of jobs under way. Cheap to clone.
+#[derive(Clone, Default)]
+pub struct Running {
+    lines: Arc<Mutex<Vec<RunningLine>>>,
+    next: Arc<AtomicU64>,
+}
+
+impl Running {
+    /// Adds a job; it is listed as long as the guard lives.
+    pub fn begin(&self, title: &str, place: Place, wake: Wake) -> (RunningGuard, Progress) {
+        let id = self.next.fetch_add(1, Ordering::Relaxed);
+        let sink = Sink { id, running: self.clone(), wake, woke: Mutex::new(Instant::now()) };
+        let progress = Progress::new(Arc::new(sink));
+        let line = RunningLine {
+            id,
+            title: title.to_owned(),
+            place,
+            stage: String::new(),
+            steps: [0; 2],
+            warnings: Vec::new(),
+            progress: progress.clone(),
+        };
+        self.with(|lines| lines.push(line));
+        (RunningGuard { id, running: self.clone() }, progress)
+    }
+
+    /// What is under way now.
+    pub fn lines(&self) -> Vec<RunningLine> {
+        self.with(|lines| lines.clone())
+    }
+
+    /// Whether nothing is.
+    pub fn is_idle(&self) -> bool {
+        self.with(|lines| lines.is_empty())
+    }
+
+    fn with<T>(&self, change: impl FnOnce(&mut Vec<RunningLine>) -> T) -> T {
+        change(&mut self.lines.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn of(&self, id: u64, change: impl FnOnce(&mut RunningLine)) {
+        self.with(|lines| lines.iter_mut().find(|line| line.id == id).map(change));
+    }
+}
+
+/// Keeps a job on the list.
+pub struct RunningGuard {
+    id: u64,
+    running: Running,
+}
+
+impl RunningGuard {
+    /// What the job warned of.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        self.running.of(self.id, |line| warnings.clone_from(&line.warnings));
+        warnings
+    }
+}
+
+impl Drop for RunningGuard {
+    fn drop(&mut self) {
+        self.running.with(|lines| lines.retain(|line| line.id != self.id));
+    }
+}
+
+struct Sink {
+    id: u64,
+    running: Running,
+    wake: Wake,
+    woke: Mutex<Instant>,
+}
+
+impl ProgressSink for Sink {
+    fn begin(&self, stage: &str, total: u64) {
+        self.running.of(self.id, |line| {
+            stage.clone_into(&mut line.stage);
+            line.steps = [0, total];
+        });
+        (self.wake)();
+    }
+
+    fn advance(&self, done: u64) {
+        // Steps come by the thousand; the list is locked and the window woken now and then only.
+        let Ok(mut woke) = self.woke.try_lock() else { return };
+        if woke.elapsed() < WAKE_EVERY {
+            return;
+        }
+        *woke = Instant::now();
+        self.running.of(self.id, |line| line.steps[0] = done);
+        (self.wake)();
+    }
+
+    fn warn(&self, note: &Note) {
+        self.running.of(self.id, |line| line.warnings.push(fields::note(note)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_job_is_listed_while_it_lives_and_can_be_stopped() {
+        let running = Running::default();
+        let (guard, progress) = running.begin("count", Place::Data, Arc::new(|| {}));
+        progress.begin("ones", 10);
+        progress.warn("slowly");
+        let line = running.lines().remove(0);
+        assert_eq!((line.title.as_str(), line.stage.as_str(), line.share()), ("count", "ones", Some(0.0)));
+        line.progress.cancel();
+        assert!(progress.check().is_err());
+        assert_eq!(guard.warnings(), ["slowly"]);
+        drop(guard);
+        assert!(running.is_idle());
+    }
+}

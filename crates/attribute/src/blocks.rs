@@ -1,0 +1,217 @@
+//! Attributes of volumes of any size: computed block by block, each with as many lines around it as its answer depends
+//! on, so that the result is the same as that of the whole volume at once.
+//!
+//! Nothing is computed before a block is asked for, by whoever writes the volume.
+
+use super::dip::{self, DipSettings, DipVolumes};
+use super::envelope::envelope;
+use super::error::AttributeError;
+use super::semblance::{SemblanceSettings, semblance};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::borrow::Cow;
+use survey::geometry::SurveyGeometry;
+use survey::progress::Progress;
+use survey::sample::{SampleType, SamplesMut};
+use survey::source::{Block, BlockSource, BoxSource, SourceError};
+use survey::volume::Volume;
+
+/// Float32 volumes of a block's size that are held while it is computed.
+const VOLUMES_HELD: u64 = 7;
+
+/// Those of an angle: two dips, and what becomes of them.
+const ANGLE_VOLUMES_HELD: u64 = 6;
+
+type Fill<'a> = dyn Fn(&Block, &mut [f32], &Progress) -> Result<(), SourceError> + 'a;
+
+/// A volume that is computed from another one, block by block.
+pub struct AttributeBlocks<'a> {
+    size: [usize; 3],
+    live: Option<&'a [bool]>,
+    volumes_held: u64,
+    fill: Box<Fill<'a>>,
+}
+
+impl AttributeBlocks<'_> {
+    /// What a writer may use of `memory_bytes`, so that computing has the rest. Half of what the writer is given is its block.
+    pub fn writer_memory(&self, memory_bytes: u64) -> u64 {
+        memory_bytes * 2 / self.volumes_held
+    }
+}
+
+impl BlockSource for AttributeBlocks<'_> {
+    fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    fn live(&self) -> Option<Cow<'_, [bool]>> {
+        self.live.map(Cow::Borrowed)
+    }
+
+    fn sample_type(&self) -> SampleType {
+        SampleType::Float32
+    }
+
+    fn read_block(&mut self, block: &Block, out: SamplesMut<'_>, progress: &Progress) -> Result<(), SourceError> {
+        let SamplesMut::Float32(out) = out else { return Err("attributes are floats".into()) };
+        (self.fill)(block, out, progress)
+    }
+}
+
+/// The envelope of a volume.
+pub fn envelope_blocks(source: &dyn BoxSource) -> AttributeBlocks<'_> {
+    computed(source, 0, envelope)
+}
+
+/// The semblance of a volume along its own dips.
+pub fn semblance_blocks<'a>(
+    source: &'a dyn BoxSource,
+    steering: &'a DipSettings,
+    settings: &'a SemblanceSettings,
+) -> AttributeBlocks<'a> {
+    let reach = steering.reach().max(settings.half_width);
+    computed(source, reach, |volume, quiet| semblance(volume, &dip::dip(volume, steering, quiet)?, settings, quiet))
+}
+
+/// The dips of a volume along inlines and along crosslines, samples a line.
+///
+/// # Errors
+/// [`AttributeError::Setting`].
+pub fn dip_blocks<'a>(
+    source: &'a dyn BoxSource,
+    settings: &'a DipSettings,
+) -> Result<[AttributeBlocks<'a>; 2], AttributeError> {
+    settings.validate()?;
+    let reach = settings.reach();
+    let inline =
+        computed(source, reach, |volume, quiet| Ok(dip::like(volume, dip::along_inlines(volume, settings, quiet)?)));
+    let crossline =
+        computed(source, reach, |volume, quiet| Ok(dip::like(volume, dip::along_crosslines(volume, settings, quiet)?)));
+    Ok([inline, crossline])
+}
+
+/// The angle of the reflections from the horizontal in degrees, from the two volumes of [`dip_blocks`] (see [`dip_angle`]).
+pub fn dip_angle_blocks<'a>(
+    inline: &'a dyn BoxSource,
+    crossline: &'a dyn BoxSource,
+    geometry: &'a SurveyGeometry,
+) -> AttributeBlocks<'a> {
+    let size = geometry.size();
+    let fill = move |block: &Block, out: &mut [f32], progress: &Progress| -> Result<(), SourceError> {
+        progress.check()?;
+        let (start, part) = span(block, size);
+        let dips = DipVolumes { inline: inline.read_box(start, part)?, crossline: crossline.read_box(start, part)? };
+        out.copy_from_slice(dip_angle(&dips, geometry).samples());
+        Ok(())
+    };
+    AttributeBlocks { size, live: inline.live(), volumes_held: ANGLE_VOLUMES_HELD, fill: Box::new(fill) }
+}
+
+/// Angle of the reflections from the horizontal in degrees: atan |∇z|, where ∇z in metres a metre solves ∇z·a = p, ∇z·b = q for the metric
+/// vectors a, b of a bin. Time becomes depth through the geometry's velocity.
+pub fn dip_angle(dips: &DipVolumes, geometry: &SurveyGeometry) -> Volume<f32> {
+    let metric = geometry.metric_from_voxel();
+    let (a, b, sample_m) = (metric.x_axis, metric.y_axis, geometry.sample_m());
+    let area = a.x * b.y - a.y * b.x;
+    let angle = |p: f32, q: f32| {
+        let (p, q) = (f64::from(p) * sample_m, f64::from(q) * sample_m);
+        let gradient = DVec3::new((p * b.y - q * a.y) / area, (q * a.x - p * b.x) / area, 0.0);
+        gradient.length().atan().to_degrees() as f32
+    };
+    let angles = dips.inline.samples().par_iter().zip(dips.crossline.samples()).map(|(&p, &q)| angle(p, q)).collect();
+    dip::like(&dips.inline, angles)
+}
+
+/// First voxel and size of a block of a volume of `size`.
+fn span(block: &Block, size: [usize; 3]) -> ([usize; 3], [usize; 3]) {
+    let start = [block.inlines.start, block.crosslines.start, 0];
+    (start, [block.inlines.len(), block.crosslines.len(), size[2]])
+}
+
+/// What `compute` makes of a volume, with `reach` lines around each block.
+fn computed<'a>(
+    source: &'a dyn BoxSource,
+    reach: usize,
+    compute: impl Fn(&Volume<f32>, &Progress) -> Result<Volume<f32>, AttributeError> + 'a,
+) -> AttributeBlocks<'a> {
+    let size = source.size();
+    let fill = move |block: &Block, out: &mut [f32], progress: &Progress| -> Result<(), SourceError> {
+        let (start, part) = span(block, size);
+        let low = [start[0].saturating_sub(reach), start[1].saturating_sub(reach), 0];
+        let high = [0, 1, 2].map(|axis| (start[axis] + part[axis] + reach).min(size[axis]));
+        let around = source.read_box(low, [0, 1, 2].map(|axis| high[axis] - low[axis]))?;
+        // The bar counts what is written; cancelling reaches the computation all the same.
+        let found = compute(&around, &progress.muted())?;
+        let first = [start[0] - low[0], start[1] - low[1]];
+        let places = (0..part[0]).flat_map(|x| (0..part[1]).map(move |y| (first[0] + x, first[1] + y)));
+        for ((x, y), out) in places.zip(out.chunks_exact_mut(part[2])) {
+            out.copy_from_slice(found.trace(x, y));
+        }
+        Ok(())
+    };
+    AttributeBlocks { size, live: source.live(), volumes_held: VOLUMES_HELD, fill: Box::new(fill) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::geometry::VerticalUnit;
+
+    fn geometry(size: [usize; 3]) -> SurveyGeometry {
+        SurveyGeometry::regular(size, 20.0, 4.0, VerticalUnit::Milliseconds)
+    }
+
+    /// What the blocks add up to, in columns of at most 50 by 60 traces, with the mask of `volume`.
+    fn gathered(mut blocks: AttributeBlocks<'_>, volume: &Volume<f32>) -> Volume<f32> {
+        let [nx, ny, nz] = blocks.size();
+        let mut whole = Volume::filled([nx, ny, nz], f32::NAN);
+        for x in (0..nx).step_by(50) {
+            for y in (0..ny).step_by(60) {
+                let block = Block { inlines: x..(x + 50).min(nx), crosslines: y..(y + 60).min(ny) };
+                let mut out = vec![f32::NAN; block.inlines.len() * block.crosslines.len() * nz];
+                blocks.read_block(&block, SamplesMut::Float32(&mut out), &Progress::silent()).unwrap();
+                let places = block.inlines.flat_map(|x| block.crosslines.clone().map(move |y| (x, y)));
+                for ((x, y), trace) in places.zip(out.chunks_exact(nz)) {
+                    whole.trace_mut(x, y).copy_from_slice(trace);
+                }
+            }
+        }
+        whole.set_live(volume.live().map(<[bool]>::to_vec)).unwrap();
+        whole
+    }
+
+    #[test]
+    fn blocks_give_what_the_whole_volume_gives() {
+        let size = [135, 131, 24];
+        let count: usize = size.iter().product();
+        let samples: Vec<f32> =
+            (0..count).map(|n| ((n * 7919 % 1013) as f32 - 500.0) * 0.01 + (n as f32 * 0.3).sin() * 9.0).collect();
+        let mut volume = Volume::from_samples(size, samples).unwrap();
+        volume.set_live(Some((0..size[0] * size[1]).map(|n| n % 97 != 5).collect())).unwrap();
+        let quiet = Progress::silent();
+        let (steering, settings) = (DipSettings::default(), SemblanceSettings::default());
+        let dips = dip::dip(&volume, &steering, &quiet).unwrap();
+        let whole = semblance(&volume, &dips, &settings, &quiet).unwrap();
+        assert!(gathered(semblance_blocks(&volume, &steering, &settings), &volume) == whole);
+        assert!(gathered(envelope_blocks(&volume), &volume) == envelope(&volume, &quiet).unwrap());
+        let [inline, crossline] = dip_blocks(&volume, &steering).unwrap();
+        assert!(gathered(inline, &volume) == dips.inline);
+        assert!(gathered(crossline, &volume) == dips.crossline);
+        let geometry = geometry(size);
+        let angle = dip_angle_blocks(&dips.inline, &dips.crossline, &geometry);
+        assert!(gathered(angle, &volume) == dip_angle(&dips, &geometry));
+    }
+
+    #[test]
+    fn a_plane_dips_by_the_angle_of_its_normal() {
+        // 4 ms at 2000 m/s are 4 m; 5 samples over 20 m of an inline step: 45 degrees.
+        let geometry = geometry([2, 2, 3]);
+        let flat = |value: f32| Volume::filled([2, 2, 3], value);
+        let angle =
+            |p: f32, q: f32| dip_angle(&DipVolumes { inline: flat(p), crossline: flat(q) }, &geometry).at(0, 1, 2);
+        assert!((angle(5.0, 0.0) - 45.0).abs() < 1e-4);
+        assert!((angle(0.0, -5.0) - 45.0).abs() < 1e-4);
+        assert!((angle(3.0, 4.0) - 45.0).abs() < 1e-4);
+        assert_eq!(angle(0.0, 0.0), 0.0);
+    }
+}

@@ -1,0 +1,319 @@
+//! Which column of a table is what: by the names in its header, or by what fits the survey.
+
+use super::options::{ZPositive, ZUnit};
+use super::raw::ReadContext;
+use super::text::SourceFile;
+use super::{FormatError, SurfaceKind};
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+use survey::geometry::{SurveyGeometry, VerticalUnit};
+use survey::horizon::Quality;
+
+/// What a column of a table holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Column {
+    /// Inline number.
+    Inline,
+    /// Crossline number.
+    Crossline,
+    /// World X.
+    X,
+    /// World Y.
+    Y,
+    /// Vertical value.
+    Z,
+    /// Name of the surface.
+    Name,
+    /// Number of a fault stick.
+    Stick,
+    /// Number of a node along its stick.
+    Node,
+    /// Number of a sheet.
+    Sheet,
+    /// How the depth came about, in the words of [`survey::Quality`].
+    Quality,
+    /// Anything else; not read.
+    Other,
+}
+
+impl Column {
+    /// Reads a column list as an option has it, `inline,crossline,z`; `-` or `_` for a column that is not read.
+    ///
+    /// # Errors
+    /// The word that is no column.
+    ///
+    /// ```
+    /// # use formats::Column;
+    /// assert_eq!(Column::parse_list("x,y,-,twt"), Ok(vec![Column::X, Column::Y, Column::Other, Column::Z]));
+    /// assert_eq!(Column::parse_list("x,why"), Err("why".to_string()));
+    /// ```
+    pub fn parse_list(text: &str) -> Result<Vec<Self>, String> {
+        text.split(',')
+            .map(|word| match word.trim() {
+                "-" | "_" | "other" => Ok(Self::Other),
+                word => match of_name(word).column {
+                    Self::Other => Err(word.to_string()),
+                    column => Ok(column),
+                },
+            })
+            .collect()
+    }
+}
+
+/// What a column's name tells.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct NamedColumn {
+    pub column: Column,
+    pub unit: Option<ZUnit>,
+    pub domain: Option<Domain>,
+    pub positive: Option<ZPositive>,
+}
+
+/// Time or depth, when a column's name says no more.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Domain {
+    Time,
+    Depth,
+}
+
+impl Domain {
+    pub fn of(unit: VerticalUnit) -> Self {
+        match unit {
+            VerticalUnit::Milliseconds => Self::Time,
+            VerticalUnit::Metres => Self::Depth,
+        }
+    }
+}
+
+/// Reads a column's name: `Inline`, `XL`, `twt_ms`, `Depth (ft)`, `"X"`, `INT,Inline` …
+pub(super) fn of_name(name: &str) -> NamedColumn {
+    let mut name = name.trim().trim_matches('"').to_ascii_lowercase();
+    // Petrel writes the type before the name.
+    if let Some((_, after)) = name.split_once(',') {
+        name = after.trim().to_string();
+    }
+    let mut unit = None;
+    if let Some(open) = name.find(['(', '[']) {
+        unit = ZUnit::parse(name[open + 1..].trim_end_matches([')', ']']));
+        // "X (easting)" is still X.
+        name.truncate(open);
+    }
+    let mut word: String = name.trim().replace([' ', '-', '.', '#'], "_").trim_matches('_').to_string();
+    if let Some((stem, suffix)) = word.rsplit_once('_')
+        && let Some(found) = ZUnit::parse(suffix)
+    {
+        unit = unit.or(Some(found));
+        word = stem.to_string();
+    }
+    let (column, domain, positive) = match word.as_str() {
+        "inline" | "iline" | "il" | "inl" | "in_line" | "inline_number" | "inline_no" | "inlineno" | "iline_no"
+        | "inline_3d" | "inline3d" | "i_line" => (Column::Inline, None, None),
+        "crossline" | "xline" | "xl" | "crl" | "cross_line" | "x_line" | "crossline_number" | "crossline_no"
+        | "crosslineno" | "xline_no" | "crossline_3d" | "crossline3d" => (Column::Crossline, None, None),
+        "x" | "easting" | "east" | "utmx" | "utm_x" | "x_utm" | "cdp_x" | "cdpx" | "x_coord" | "xcoord" | "coord_x"
+        | "x_coordinate" | "xcoordinate" | "x_world" | "world_x" => (Column::X, None, None),
+        "y" | "northing" | "north" | "utmy" | "utm_y" | "y_utm" | "cdp_y" | "cdpy" | "y_coord" | "ycoord"
+        | "coord_y" | "y_coordinate" | "ycoordinate" | "y_world" | "world_y" => (Column::Y, None, None),
+        "z" | "z_value" | "zvalue" | "value" | "z_coordinate" => (Column::Z, None, None),
+        "twt" | "time" | "twt_auto" | "twtime" | "two_way_time" | "t" => (Column::Z, Some(Domain::Time), None),
+        "depth" | "tvd" | "tvdss" | "z_depth" => (Column::Z, Some(Domain::Depth), None),
+        "elevation" | "elev" | "altitude" => (Column::Z, Some(Domain::Depth), Some(ZPositive::Up)),
+        "name" | "horizon" | "surface" | "fault" | "horizon_name" | "fault_name" | "surface_name" => {
+            (Column::Name, None, None)
+        }
+        "stick" | "stick_id" | "stick_number" | "stick_no" | "sticknr" | "segment" | "seg_id" | "stick_index" => {
+            (Column::Stick, None, None)
+        }
+        "node" | "knot" | "node_id" | "node_number" | "knot_number" | "node_no" | "node_index" => {
+            (Column::Node, None, None)
+        }
+        "sheet" | "sheet_index" => (Column::Sheet, None, None),
+        "quality" => (Column::Quality, None, None),
+        _ => (Column::Other, None, None),
+    };
+    NamedColumn { column, unit, domain, positive }
+}
+
+/// The qualities and their words in a table.
+const QUALITIES: [(Quality, &str); 5] = [
+    (Quality::Hole, "hole"),
+    (Quality::Picked, "picked"),
+    (Quality::Tracked, "tracked"),
+    (Quality::Filled, "filled"),
+    (Quality::Extrapolated, "extrapolated"),
+];
+
+/// The word for a quality.
+pub(super) fn quality_word(quality: Quality) -> &'static str {
+    QUALITIES.iter().find(|(q, _)| *q == quality).map_or("picked", |(_, word)| word)
+}
+
+/// The quality of a word.
+pub(super) fn quality_of(word: &str) -> Option<Quality> {
+    QUALITIES.iter().find(|(_, w)| w.eq_ignore_ascii_case(word)).map(|(q, _)| *q)
+}
+
+/// Columns settled, with what their names say of the vertical.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ColumnLayout {
+    pub columns: Vec<Column>,
+    pub unit: Option<(ZUnit, String)>,
+    pub domain: Option<(Domain, String)>,
+    pub positive: Option<(ZPositive, String)>,
+    pub notes: Vec<String>,
+}
+
+impl ColumnLayout {
+    /// Columns without a word on the vertical.
+    pub fn plain(columns: Vec<Column>) -> Self {
+        Self { columns, unit: None, domain: None, positive: None, notes: Vec::new() }
+    }
+
+    /// Whether a point can be placed: Z, and lines or X, Y.
+    pub fn is_complete(&self) -> bool {
+        let has = |c| self.columns.contains(&c);
+        has(Column::Z) && ((has(Column::X) && has(Column::Y)) || (has(Column::Inline) && has(Column::Crossline)))
+    }
+}
+
+/// Columns by the names of a header. Of several vertical columns the first of the survey's domain is taken.
+pub(super) fn from_header(names: &[&str], domain: Option<Domain>) -> ColumnLayout {
+    let named: Vec<_> = names.iter().map(|n| of_name(n)).collect();
+    let fits = |n: &NamedColumn| {
+        let own = n.domain.or(n.unit.map(|u| match u {
+            ZUnit::Milliseconds | ZUnit::Seconds => Domain::Time,
+            ZUnit::Metres | ZUnit::Feet => Domain::Depth,
+        }));
+        own == domain && own.is_some()
+    };
+    let vertical: Vec<_> = (0..named.len()).filter(|&n| named[n].column == Column::Z).collect();
+    let z = vertical.iter().copied().find(|&n| fits(&named[n])).or(vertical.first().copied());
+    let mut layout = ColumnLayout::plain(Vec::with_capacity(named.len()));
+    for (n, name) in named.iter().enumerate() {
+        let again = layout.columns.contains(&name.column);
+        let other_z = name.column == Column::Z && Some(n) != z;
+        layout.columns.push(if again || other_z { Column::Other } else { name.column });
+    }
+    if let Some(z) = z {
+        let says = format!("column '{}'", names[z].trim());
+        layout.unit = named[z].unit.map(|u| (u, says.clone()));
+        layout.domain = named[z].domain.map(|d| (d, says.clone()));
+        layout.positive = named[z].positive.map(|p| (p, says.clone()));
+        if vertical.len() > 1 {
+            layout.notes.push(format!("of {} vertical columns {says} was read", vertical.len()));
+        }
+    }
+    layout
+}
+
+/// Columns of a table without a header: the one reading under which points fall into the survey.
+///
+/// `rows` are numbers in file order, `named` whether a name stands before them.
+pub(super) fn by_fit(
+    source: &SourceFile,
+    context: &ReadContext<'_>,
+    rows: &[Vec<f64>],
+    named: bool,
+) -> Result<ColumnLayout, FormatError> {
+    use Column::{Crossline as Xl, Inline as Il, Node, Stick, X, Y, Z};
+    let width = rows.iter().map(Vec::len).min().unwrap_or(0);
+    let unclear = |why: String| FormatError::Columns {
+        file: source.path.clone(),
+        why,
+        example: if width >= 5 { "inline,crossline,x,y,z" } else { "x,y,z" }.into(),
+    };
+    if width < 3 {
+        return Err(unclear(format!("there is no header and only {width} numbers a line")));
+    }
+    let tail: &[Column] = if context.kind == SurfaceKind::Fault { &[Stick, Node] } else { &[] };
+    let candidates: [&[Column]; 4] = [&[Il, Xl, X, Y, Z], &[X, Y, Il, Xl, Z], &[X, Y, Z], &[Il, Xl, Z]];
+    let fits: Vec<usize> = candidates
+        .iter()
+        .map(|c| match context.geometry {
+            Some(geometry) if c.len() <= width => rows.iter().filter(|row| fits_survey(c, row, geometry)).count(),
+            _ => 0,
+        })
+        .collect();
+    let integers = rows.iter().all(|r| r[0].fract() == 0.0 && r[1].fract() == 0.0 && r[0].abs() < 1e5);
+    let (chosen, note) = if fits[0] > 0 || fits[1] > 0 {
+        (if fits[0] >= fits[1] { 0 } else { 1 }, "its numbers agree with the survey in that order".to_string())
+    } else if fits[2] > 0 && fits[3] > 0 {
+        return Err(unclear("there is no header, and the first two numbers may be X, Y or inline, crossline".into()));
+    } else if fits[2] > 0 || fits[3] > 0 {
+        let chosen = if fits[2] > 0 { 2 } else { 3 };
+        (chosen, format!("{} of {} lines fall into the survey in that order", fits[chosen], rows.len()))
+    } else if context.geometry.is_none()
+        && integers
+        && width >= 5
+        && rows.iter().all(|r| r[2].abs() > 1e4 && r[3].abs() > 1e4)
+    {
+        (0, "their size: small whole numbers before large ones".to_string())
+    } else if context.geometry.is_none() && integers {
+        return Err(unclear("there is no header, and the first two numbers may be X, Y or inline, crossline".into()));
+    } else {
+        // Nothing fits: the checks against the survey will say so, with extents.
+        (if integers { 3 } else { 2 }, "their size".to_string())
+    };
+    let mut columns = if named { vec![Column::Name] } else { Vec::new() };
+    columns.extend(candidates[chosen]);
+    columns.extend(tail.iter().take(width - candidates[chosen].len()));
+    columns.resize(width + usize::from(named), Column::Other);
+    let words: Vec<_> = columns.iter().map(|c| format!("{c:?}").to_lowercase()).collect();
+    let mut layout = ColumnLayout::plain(columns);
+    layout.notes.push(format!("no header; columns taken as {} from {note}", words.join(", ")));
+    Ok(layout)
+}
+
+/// Whether a row read in this order lies over the survey; with lines and X, Y, also whether both agree to a bin.
+fn fits_survey(columns: &[Column], row: &[f64], geometry: &SurveyGeometry) -> bool {
+    let at = |c| columns.iter().position(|&k| k == c).map(|n| row[n]);
+    let voxel_of_lines = at(Column::Inline).zip(at(Column::Crossline)).map(|(i, x)| geometry.voxel_from_lines(i, x));
+    let voxel_of_xy =
+        at(Column::X).zip(at(Column::Y)).map(|(x, y)| geometry.voxel_from_world(DVec3::new(x, y, 0.0)).truncate());
+    match (voxel_of_lines, voxel_of_xy) {
+        (Some(a), Some(b)) => is_inside(a, geometry) && (a - b).abs().max_element() < 1.0,
+        (Some(a), None) | (None, Some(a)) => is_inside(a, geometry),
+        (None, None) => false,
+    }
+}
+
+/// Whether voxel x, y lies on the survey, half a bin of slack included.
+pub(super) fn is_inside(voxel: DVec2, geometry: &SurveyGeometry) -> bool {
+    let [nx, ny, _] = geometry.size();
+    voxel.x >= -0.5 && voxel.y >= -0.5 && voxel.x <= nx as f64 - 0.5 && voxel.y <= ny as f64 - 0.5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_many_programs() {
+        for (name, column) in [
+            ("Inline", Column::Inline),
+            ("XL", Column::Crossline),
+            ("\"X\"", Column::X),
+            ("INT,Crossline", Column::Crossline),
+            ("Y (NORTHING)", Column::Y),
+            ("twt_ms", Column::Z),
+            ("Depth (ft)", Column::Z),
+            ("stick#", Column::Stick),
+            ("Correlation", Column::Other),
+        ] {
+            assert_eq!(of_name(name).column, column, "{name}");
+        }
+        assert_eq!(of_name("twt_ms").unit, Some(ZUnit::Milliseconds));
+        assert_eq!(of_name("Depth (ft)").unit, Some(ZUnit::Feet));
+        assert_eq!(of_name("elevation").positive, Some(ZPositive::Up));
+    }
+
+    #[test]
+    fn the_vertical_column_of_the_surveys_domain_is_taken() {
+        let names = ["x", "y", "twt_ms", "depth_m"];
+        let depth = from_header(&names, Some(Domain::Depth));
+        assert_eq!(depth.columns, [Column::X, Column::Y, Column::Other, Column::Z]);
+        assert_eq!(depth.unit.unwrap().0, ZUnit::Metres);
+        assert_eq!(from_header(&names, Some(Domain::Time)).columns[2], Column::Z);
+    }
+}

@@ -1,0 +1,130 @@
+//! CSV and XYZ: a table with or without a header line.
+//!
+//! The header names the columns (`inline`, `crossline`, `x`, `y`, `z`, `twt_ms`, `depth (ft)` …, in any order and case);
+//! fields are cut by `;`, tab, comma or blanks. Without a header the columns are those under which the points fall
+//! into the survey; when two readings do, the user is asked. Lines beginning with `#`, `!`, `%`, `@` or `//` are
+//! comments; the last one before the data may be the header.
+//!
+//! Written: `inline,crossline,x,y,twt_ms,sheet,quality` (or `depth_m`), a row per node with a depth.
+
+use super::columns::{self, ColumnLayout};
+use super::raw::{RawSurface, ReadContext};
+use super::table::{self, Cut};
+use super::text::{self, Line, SourceFile};
+use super::write::{self, Placed};
+use super::{Codec, Format, FormatError};
+use std::io::Write;
+use survey::geometry::{SurveyGeometry, VerticalUnit};
+use survey::horizon::Horizon;
+
+pub(super) const CODEC: Codec = Codec {
+    format: Format::Csv,
+    name: "csv",
+    extension: "csv",
+    detect,
+    read_horizon: Some(read),
+    read_fault: Some(read),
+    write_horizon: Some(write_horizon),
+    write_fault: None,
+};
+
+fn detect(source: &SourceFile) -> Option<String> {
+    let text = source.text();
+    let mut rows = text::lines(&text).filter(|l| !table::is_comment(l.text));
+    let first = rows.next()?;
+    let second = rows.next().unwrap_or(first);
+    let cut = cut_of(first.text, second.text);
+    let numbers = cut.fields(second.text).iter().filter(|f| cut.number(f.text).is_some()).count();
+    if numbers < 3 {
+        return None;
+    }
+    Some(if is_header(first.text, cut) { "a table with a header line" } else { "a table of numbers" }.into())
+}
+
+/// How a table is cut: the delimiter shows in its first line, a decimal comma only in its numbers.
+fn cut_of(first: &str, second: &str) -> Cut {
+    let cut = Cut::of(first);
+    let comma = cut.delimiter != Some(',') && Cut { delimiter: cut.delimiter, ..Cut::of(second) }.decimal_comma;
+    Cut { decimal_comma: cut.decimal_comma || comma, ..cut }
+}
+
+/// A header has at least two fields that are no numbers; a row may have its name and words for "nothing".
+fn is_header(line: &str, cut: Cut) -> bool {
+    let fields = cut.fields(line);
+    let words = fields.iter().filter(|f| cut.number(f.text).is_none() && f.text.chars().any(char::is_alphabetic));
+    let known = words.clone().filter(|f| columns::of_name(f.text).column != columns::Column::Other).count();
+    known >= 2 || words.count() > fields.len() / 2
+}
+
+/// The header line, or the last comment when its words are columns.
+fn header_of(all: &[Line<'_>], rows: &[Line<'_>], cut: Cut, context: &ReadContext<'_>) -> Option<ColumnLayout> {
+    let first = rows.first()?;
+    if is_header(first.text, cut) {
+        let names = cut.fields(first.text);
+        return Some(columns::from_header(&names.iter().map(|f| f.text).collect::<Vec<_>>(), context.domain()));
+    }
+    let comment = all.iter().take_while(|l| l.number < first.number).last()?;
+    let words = comment.text.trim_start_matches(['#', '!', '%', '@', '/', ' ']);
+    let names = Cut::of(words).fields(words);
+    let layout = columns::from_header(&names.iter().map(|f| f.text).collect::<Vec<_>>(), context.domain());
+    (layout.is_complete() && names.len() <= cut.fields(first.text).len()).then_some(layout)
+}
+
+fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
+    let text = source.text();
+    let all: Vec<_> = text::lines(&text).collect();
+    let mut rows: Vec<_> = all.iter().copied().filter(|l| !table::is_comment(l.text)).collect();
+    let Some(first) = rows.first() else {
+        return Err(FormatError::Empty {
+            file: source.path.clone(),
+            kind: context.kind,
+            why: "there are no rows".into(),
+        });
+    };
+    let cut = cut_of(first.text, rows.get(1).map_or("", |l| l.text));
+    let header = header_of(&all, &rows, cut, context);
+    if is_header(first.text, cut) {
+        rows.remove(0);
+    }
+    if rows.is_empty() {
+        return Err(FormatError::Empty {
+            file: source.path.clone(),
+            kind: context.kind,
+            why: "there is a header but no rows".into(),
+        });
+    }
+    let layout = table::settle_columns(source, context, header, &rows, cut)?;
+    table::surfaces(source, &rows, cut, layout, context)
+}
+
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), write::Failure> {
+    let z = match geometry.vertical.unit {
+        VerticalUnit::Milliseconds => "twt_ms",
+        VerticalUnit::Metres => "depth_m",
+    };
+    writeln!(out, "inline,crossline,x,y,{z},sheet,quality")?;
+    for Placed { lines, xy, z, sheet, quality } in write::nodes(horizon, geometry) {
+        let quality = columns::quality_word(quality);
+        let [il, xl] = [lines.x, lines.y].map(write::line_number);
+        writeln!(out, "{il},{xl},{:.4},{:.4},{z},{sheet},{quality}", xy.x, xy.y)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_and_rows_are_told_apart() {
+        for (line, header) in [
+            ("X;Y;Z;Strati;Cutoff", true),
+            ("inline,crossline,x,y,twt_ms", true),
+            ("1 2 3", false),
+            ("\"green event\"\t1\t2\t3", false),
+            ("1,2,nan", false),
+        ] {
+            assert_eq!(is_header(line, Cut::of(line)), header, "{line}");
+        }
+    }
+}

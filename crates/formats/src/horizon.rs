@@ -1,0 +1,228 @@
+//! A surface as read to a [`Horizon`]: converted, placed on nodes, split into sheets, checked against the survey.
+
+use super::columns::is_inside;
+use super::lattice::{self, Lattice};
+use super::options::ImportOptions;
+use super::placement::{self, voxel_xy};
+use super::raster;
+use super::raw::{RawPoint, RawShape, RawSurface};
+use super::report::{Gridding, ImportReport, Settled};
+use super::scatter;
+use super::sheets::{self, NodeValues};
+use super::vertical::VerticalRule;
+use super::{Format, FormatError, SurfaceKind};
+use glam::DVec2;
+use std::path::Path;
+use survey::geometry::SurveyGeometry;
+use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
+use survey::mesh::TriangleMesh;
+use survey::remedy::Note;
+
+/// Depths at one node closer than this, in samples, are one depth given twice.
+const SAME_DEPTH: f64 = 0.05;
+
+/// Sheets, and how they came about.
+struct Nodes {
+    sheets: Vec<Sheet>,
+    gridding: Gridding,
+    outside: usize,
+    multivalued: usize,
+    notes: Vec<String>,
+    warnings: Vec<Note>,
+}
+
+/// Makes the horizon.
+pub(super) fn build(
+    file: &Path,
+    name: String,
+    format: Settled<Format>,
+    mut raw: RawSurface,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<(Horizon, ImportReport), FormatError> {
+    let rule = VerticalRule::settle(file, &raw.vertical, options, geometry.vertical.unit)?;
+    let counts = rule.apply(&mut raw.shape);
+    if counts.nulls == counts.values {
+        let why = format!("'{name}' has {} values, all null", counts.values);
+        return Err(FormatError::Empty { file: file.to_path_buf(), kind: SurfaceKind::Horizon, why });
+    }
+    if let RawShape::Points(points) = &mut raw.shape {
+        points.retain(|p| p.z.is_finite());
+    }
+    let tolerance = (SAME_DEPTH * geometry.vertical.interval) as f32;
+    let nodes = match &raw.shape {
+        RawShape::Grid { grid, z } => from_grid(file, &name, *grid, z, geometry)?,
+        RawShape::Points(points) => from_points(file, &name, points, geometry, options, tolerance)?,
+        RawShape::Mesh(mesh) => from_mesh(file, &name, mesh, geometry, tolerance)?,
+    };
+    let values: Vec<f64> = raw.shape.values().collect();
+    let outside_range = rule.check(file, &name, &values, &geometry.vertical, SurfaceKind::Horizon)?;
+    let mut notes = raw.notes;
+    notes.extend(nodes.notes);
+    let mut warnings = raw.warnings;
+    warnings.extend(nodes.warnings);
+    let report = ImportReport {
+        file: file.to_path_buf(),
+        kind: SurfaceKind::Horizon,
+        name: name.clone(),
+        format,
+        values: counts.values,
+        nulls: counts.nulls,
+        outside_survey: nodes.outside,
+        outside_range,
+        range_in_file: counts.range_in_file,
+        range: counts.range,
+        unit: geometry.vertical.unit,
+        z_unit: rule.unit,
+        z_positive: rule.positive,
+        z_factor: rule.factor,
+        gridding: nodes.gridding,
+        sheets: nodes.sheets.len(),
+        multivalued: nodes.multivalued,
+        notes,
+        warnings,
+    };
+    Ok((Horizon { name, sheets: nodes.sheets }, report))
+}
+
+fn from_grid(
+    file: &Path,
+    name: &str,
+    grid: NodeGrid,
+    z: &[f64],
+    geometry: &SurveyGeometry,
+) -> Result<Nodes, FormatError> {
+    let nv = grid.count[1];
+    let known = z.iter().enumerate().filter(|(_, z)| z.is_finite());
+    let worlds: Vec<DVec2> = known.map(|(n, _)| grid.world_at(DVec2::new((n / nv) as f64, (n % nv) as f64))).collect();
+    let outside = worlds.iter().filter(|w| !is_inside(voxel_xy(geometry, **w), geometry)).count();
+    if outside == worlds.len() {
+        return Err(placement::outside_by_world(file, name, worlds.into_iter(), geometry));
+    }
+    let depth = z.iter().map(|&z| z as f32).collect();
+    Ok(Nodes {
+        sheets: vec![Sheet::new(grid, depth, Quality::Picked)],
+        gridding: Gridding::NativeGrid { count: grid.count },
+        outside,
+        multivalued: 0,
+        notes: Vec::new(),
+        warnings: Vec::new(),
+    })
+}
+
+fn from_points(
+    file: &Path,
+    name: &str,
+    points: &[RawPoint],
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+    tolerance: f32,
+) -> Result<Nodes, FormatError> {
+    let placed = placement::place(file, name, points, geometry, options.place_by)?;
+    let mut notes: Vec<String> = placed.note.into_iter().collect();
+    let (lattice, gridding) = if let Some((lattice, step)) = lattice::of_survey(&placed.voxels, geometry) {
+        (lattice, Gridding::SurveyTraces { step })
+    } else {
+        let worlds: Vec<DVec2> = placed.voxels.iter().map(|v| placement::world_xy(geometry, *v)).collect();
+        let Some(lattice) = lattice::of_points(&worlds, geometry) else {
+            if points.len() < 3 {
+                notes.push("fewer than three points: nothing lies between them".into());
+            }
+            let pairs: Vec<_> = placed.voxels.iter().zip(points).map(|(v, p)| (*v, p.z as f32)).collect();
+            let gridded = scatter::grid(&pairs, geometry, options.gap_m, tolerance);
+            if gridded.repeated > 0 {
+                notes.push(format!(
+                    "{} points share their place with another of the same depth and were averaged with it",
+                    gridded.repeated
+                ));
+            }
+            let warnings = gridded.outliers.iter().map(|o| Note::from(o.sentence(geometry.vertical.unit))).collect();
+            let count = |q| gridded.sheets.iter().flat_map(|s| &s.quality).filter(|k| **k == q).count();
+            let (picked, filled) = (count(Quality::Picked), count(Quality::Filled));
+            return Ok(Nodes {
+                gridding: Gridding::Interpolated { gap_m: gridded.gap_m, picked, filled },
+                multivalued: gridded.multivalued,
+                sheets: gridded.sheets,
+                outside: placed.outside,
+                notes,
+                warnings,
+            });
+        };
+        let (u, v) = (lattice.grid.u_step, lattice.grid.v_step);
+        let gridding = Gridding::InferredLattice {
+            count: lattice.grid.count,
+            step_m: [u.length(), v.length()],
+            rotation_deg: u.to_angle().to_degrees(),
+        };
+        (lattice, gridding)
+    };
+    let (sheets, multivalued, twice) = on_lattice(&lattice, points, tolerance);
+    if twice > 0 {
+        notes.push(format!("{twice} points repeat the depth of another at the same node and were averaged with it"));
+    }
+    Ok(Nodes { sheets, gridding, outside: placed.outside, multivalued, notes, warnings: Vec::new() })
+}
+
+/// Points on their nodes; with several depths at a node, several sheets. Also counts such nodes, and repeated depths.
+fn on_lattice(lattice: &Lattice, points: &[RawPoint], tolerance: f32) -> (Vec<Sheet>, usize, usize) {
+    let [nu, nv] = lattice.grid.count;
+    let own: Vec<(usize, &RawPoint)> = lattice
+        .nodes
+        .iter()
+        .zip(points)
+        .filter(|([u, v], _)| *u >= 0 && *v >= 0 && (*u as usize) < nu && (*v as usize) < nv)
+        .map(|([u, v], p)| (*u as usize * nv + *v as usize, p))
+        .collect();
+    let pairs: Vec<(usize, f32)> = own.iter().map(|(n, p)| (*n, p.z as f32)).collect();
+    let (values, element) = NodeValues::group(nu * nv, &pairs, tolerance);
+    let told = own.iter().all(|(_, p)| p.sheet.is_some_and(|s| (0.0..1000.0).contains(&s)));
+    let sheet_of = if told { Vec::new() } else { sheets::split(&values, &sheets::grid_neighbours([nu, nv])) };
+    let mut sheets: Vec<Sheet> = Vec::new();
+    for ((node, point), &e) in own.iter().zip(&element) {
+        let sheet = if told { point.sheet.unwrap_or(0.0) as usize } else { usize::from(sheet_of[e as usize]) };
+        while sheets.len() <= sheet {
+            sheets.push(Sheet::new(lattice.grid, vec![f32::NAN; nu * nv], Quality::Picked));
+        }
+        sheets[sheet].depth[*node] = if told { point.z as f32 } else { values.z[e as usize] };
+        sheets[sheet].quality[*node] = point.quality.unwrap_or(Quality::Picked);
+    }
+    let twice = if told { 0 } else { pairs.len() - values.z.len() };
+    (sheets, values.multivalued(), twice)
+}
+
+fn from_mesh(
+    file: &Path,
+    name: &str,
+    mesh: &TriangleMesh,
+    geometry: &SurveyGeometry,
+    tolerance: f32,
+) -> Result<Nodes, FormatError> {
+    let grid = NodeGrid::of_survey(geometry);
+    let mut pairs = Vec::new();
+    for n in 0..mesh.triangles.len() {
+        let corners = mesh.corners(n).map(|p| voxel_xy(geometry, p.truncate()).extend(p.z));
+        raster::triangle(corners, grid.count, &mut |u, v, z| pairs.push((u * grid.count[1] + v, z as f32)));
+    }
+    let worlds = || mesh.vertices.iter().map(|v| v.truncate());
+    if pairs.is_empty() {
+        return Err(placement::outside_by_world(file, name, worlds(), geometry));
+    }
+    let outside = worlds().filter(|w| !is_inside(voxel_xy(geometry, *w), geometry)).count();
+    let (values, _) = NodeValues::group(grid.count[0] * grid.count[1], &pairs, tolerance);
+    let sheet_of = sheets::split(&values, &sheets::grid_neighbours(grid.count));
+    let count = sheet_of.iter().max().map_or(1, |&s| usize::from(s) + 1);
+    let nodes = grid.count[0] * grid.count[1];
+    let mut depths = vec![vec![f32::NAN; nodes]; count];
+    let values_of = |node: usize| values.offsets[node] as usize..values.offsets[node + 1] as usize;
+    for (node, e) in (0..nodes).flat_map(|node| values_of(node).map(move |e| (node, e))) {
+        depths[usize::from(sheet_of[e])][node] = values.z[e];
+    }
+    Ok(Nodes {
+        sheets: depths.into_iter().map(|d| Sheet::new(grid, d, Quality::Picked)).collect(),
+        gridding: Gridding::Rasterised { triangles: mesh.triangles.len() },
+        outside,
+        multivalued: values.multivalued(),
+        notes: Vec::new(),
+        warnings: Vec::new(),
+    })
+}

@@ -1,0 +1,443 @@
+//! Horizon and fault files, in and out.
+//!
+//! A file goes through the same steps whatever its format: its signature names the format ([`Format`], with the evidence in
+//! the report), its reader hands over numbers as they are, these are converted ([`ImportOptions`] states the order), placed on
+//! nodes, split into single-valued sheets, and checked against the survey. The [`ImportReport`] says what was read, assumed
+//! and left out. A surface beside the survey, above or below it, or with a unit or sign that cannot be right is an
+//! error, never a surprise; nothing is returned or written then.
+//!
+//! | format | horizon in | fault in | horizon out | fault out |
+//! |---|---|---|---|---|
+//! | CSV / XYZ with or without a header | ✓ | points, sticks | ✓ | |
+//! | Irap classic ASCII | ✓ | | ✓ | |
+//! | OpendTect ASCII | ✓ | sticks | ✓ | sticks |
+//! | GOCAD TSurf | ✓ | ✓ | ✓ | ✓ |
+//! | ZMAP+, CPS-3 (unrotated: others are resampled) | ✓ | | ✓ | |
+//! | Irap binary, PetroMod binary, IJXYZ, IESX, DUG | ✓ | | | |
+//! | EarthVision, Petrel points and well tops | ✓ | points | | |
+//! | Charisma | ✓ | sticks | | |
+//! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators) | ✓ | outlines, sticks | | |
+//!
+//! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
+
+mod bounds;
+mod charisma;
+mod columns;
+mod cps3;
+mod csv;
+mod describe;
+mod dug;
+mod earthvision;
+mod error;
+mod export;
+mod fault;
+mod horizon;
+mod iesx;
+mod ijxyz;
+mod irap;
+mod irap_binary;
+mod lattice;
+mod mesh_sticks;
+mod opendtect;
+mod options;
+mod outline;
+mod petrel;
+mod petromod;
+mod placement;
+mod plane_fit;
+mod raster;
+mod raw;
+mod report;
+mod scatter;
+mod sheets;
+mod sticks;
+mod table;
+mod text;
+mod tsurf;
+mod unrotated;
+mod vertical;
+pub mod well;
+mod write;
+mod zmap;
+mod zmap_points;
+
+pub use bounds::{Bounds, InterpretationFile, bounds_of, survey_from_points};
+pub use columns::Column;
+pub use describe::{FileDescription, SurfaceDescription, describe};
+pub use error::{Extent, FormatError};
+pub use export::{ExportOptions, ExportReport, WhenRotated};
+pub use options::{ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
+pub use report::{Gridding, ImportReport, Provenance, Settled};
+
+use glam::DVec3;
+use raw::{RawSurface, ReadContext};
+use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
+use std::fmt;
+use std::io::Write;
+use std::path::Path;
+use survey::fault::Fault;
+use survey::geometry::SurveyGeometry;
+use survey::horizon::{Horizon, Sheet};
+use text::SourceFile;
+
+#[cfg(test)]
+mod tests;
+
+/// A file format of horizons or faults.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// CSV or XYZ, with or without a header line.
+    Csv,
+    /// Irap classic ASCII grid.
+    Irap,
+    /// OpendTect ASCII horizons and fault sticks.
+    OpendTect,
+    /// GOCAD TSurf.
+    Tsurf,
+    /// Irap binary grid.
+    #[serde(rename = "irapbin")]
+    IrapBinary,
+    /// ZMAP+ grid.
+    Zmap,
+    /// CPS-3 ASCII grid.
+    Cps3,
+    /// EarthVision ASCII points.
+    EarthVision,
+    /// Petrel points with attributes.
+    Petrel,
+    /// Charisma horizon lines and fault sticks.
+    Charisma,
+    /// IJXYZ of OpenWorks.
+    Ijxyz,
+    /// PetroMod binary map.
+    PetroMod,
+    /// GeoFrame IESX (3d_ci7m).
+    Iesx,
+    /// DUG Insight points.
+    Dug,
+    /// ZMAP+ points and polygons.
+    ZmapPoints,
+}
+
+/// What a file holds, or is wanted to hold.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SurfaceKind {
+    /// A horizon.
+    Horizon,
+    /// A fault.
+    Fault,
+}
+
+impl fmt::Display for SurfaceKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Horizon => "horizon",
+            Self::Fault => "fault",
+        })
+    }
+}
+
+type Reader = fn(&SourceFile, &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError>;
+type HorizonWriter = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::Failure>;
+type FaultWriter = fn(&mut dyn Write, &Fault, &SurveyGeometry) -> Result<(), write::Failure>;
+
+/// What the program knows of a format.
+struct Codec {
+    format: Format,
+    /// The word of the `--format` option.
+    name: &'static str,
+    /// The usual extension.
+    extension: &'static str,
+    /// The evidence that a file is of this format.
+    detect: fn(&SourceFile) -> Option<String>,
+    read_horizon: Option<Reader>,
+    read_fault: Option<Reader>,
+    write_horizon: Option<HorizonWriter>,
+    write_fault: Option<FaultWriter>,
+}
+
+/// Every format, in the order in which signatures are tried: those that cannot be mistaken first.
+const CODECS: &[Codec] = &[
+    tsurf::CODEC,
+    irap_binary::CODEC,
+    petromod::CODEC,
+    irap::CODEC,
+    cps3::CODEC,
+    zmap::CODEC,
+    zmap_points::CODEC,
+    petrel::CODEC,
+    charisma::CODEC,
+    earthvision::CODEC,
+    iesx::CODEC,
+    dug::CODEC,
+    ijxyz::CODEC,
+    opendtect::CODEC,
+    csv::CODEC,
+];
+
+impl Format {
+    fn codec(self) -> &'static Codec {
+        // Every variant has its line in the table; a test makes sure.
+        CODECS.iter().find(|c| c.format == self).unwrap_or(&csv::CODEC)
+    }
+
+    /// Every format.
+    pub fn all() -> impl Iterator<Item = Self> {
+        CODECS.iter().map(|c| c.format)
+    }
+
+    /// The word for the format, as options and reports have it.
+    pub fn name(self) -> &'static str {
+        self.codec().name
+    }
+
+    /// The usual extension of its files, without the dot.
+    pub fn extension(self) -> &'static str {
+        self.codec().extension
+    }
+
+    /// The format of that word.
+    pub fn from_name(name: &str) -> Option<Self> {
+        CODECS.iter().find(|c| c.name.eq_ignore_ascii_case(name)).map(|c| c.format)
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+fn names(select: impl Fn(&Codec) -> bool) -> String {
+    CODECS.iter().filter(|c| select(c)).map(|c| c.name).collect::<Vec<_>>().join(", ")
+}
+
+/// Opens a file, settles its format and reads its surfaces as they are, of those asked for.
+fn read_raw(
+    path: &Path,
+    geometry: Option<&SurveyGeometry>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<(SourceFile, Settled<Format>, Vec<RawSurface>), FormatError> {
+    let source = SourceFile::open(path)?;
+    let (format, surfaces) = read_source(&source, geometry, options, kind)?;
+    Ok((source, format, surfaces))
+}
+
+/// Settles the format of a file in memory and reads its surfaces as they are, of those asked for.
+fn read_source(
+    source: &SourceFile,
+    geometry: Option<&SurveyGeometry>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<(Settled<Format>, Vec<RawSurface>), FormatError> {
+    let path = source.path.as_path();
+    let format = match options.format {
+        Some(format) => Settled { value: format, source: Provenance::Option },
+        None => {
+            let found = CODECS.iter().find_map(|c| Some((c.format, (c.detect)(source)?)));
+            let (value, evidence) = found.ok_or_else(|| {
+                let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(80)]);
+                if source.bytes.starts_with(b"\x93NUMPY") {
+                    let found = "it is a NumPy array, which has values but no places: write x, y, z as csv".into();
+                    return FormatError::UnknownFormat { file: path.to_path_buf(), found, known: names(|_| true) };
+                }
+                let found = text::lines(&start)
+                    .next()
+                    .map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)));
+                FormatError::UnknownFormat { file: path.to_path_buf(), found, known: names(|_| true) }
+            })?;
+            Settled { value, source: Provenance::File(evidence) }
+        }
+    };
+    let reader_of = |c: &Codec| if kind == SurfaceKind::Horizon { c.read_horizon } else { c.read_fault };
+    let Some(reader) = reader_of(format.value.codec()) else {
+        let instead = names(|c| reader_of(c).is_some());
+        return Err(FormatError::Unsupported { format: format.value, action: "read", kind, instead });
+    };
+    let mut surfaces = reader(source, &ReadContext { geometry, options, kind })?;
+    if kind == SurfaceKind::Fault {
+        surfaces = surfaces.into_iter().flat_map(outline::split).collect();
+    }
+    let surfaces = selected(source, surfaces, options, kind)?;
+    Ok((format, surfaces))
+}
+
+/// The surfaces asked for: of the name selected; of several, the one of the name given; else all.
+fn selected(
+    source: &SourceFile,
+    surfaces: Vec<RawSurface>,
+    options: &ImportOptions,
+    kind: SurfaceKind,
+) -> Result<Vec<RawSurface>, FormatError> {
+    let wanted = match (&options.select, &options.name) {
+        (Some(name), _) => name,
+        (None, Some(name)) if surfaces.len() > 1 => name,
+        _ => return Ok(surfaces),
+    };
+    let available = surfaces.iter().map(|s| s.name.clone().unwrap_or_else(|| "(no name)".into())).collect::<Vec<_>>();
+    let found: Vec<_> = surfaces.into_iter().filter(|s| s.name.as_deref() == Some(wanted)).collect();
+    if found.is_empty() {
+        return Err(FormatError::NoSuchName {
+            file: source.path.clone(),
+            kind,
+            wanted: wanted.clone(),
+            available: available.join(", "),
+        });
+    }
+    Ok(found)
+}
+
+/// The name of a surface: the one given, else its own, else the file's.
+fn name_of(raw: &RawSurface, source: &SourceFile, options: &ImportOptions) -> String {
+    let own = raw.name.as_deref().map(str::trim).filter(|n| !n.is_empty());
+    options.name.clone().or_else(|| own.map(String::from)).unwrap_or_else(|| source.stem())
+}
+
+/// Reads the horizons of a file onto nodes over the survey.
+///
+/// # Errors
+/// [`FormatError`] when the file cannot be read, does not fit the survey, or is unclear; the text says what to do.
+///
+/// # Cost
+/// O(n log n) in points or nodes; the file is held in memory.
+pub fn read_horizons(
+    path: &Path,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    horizons_of(&SourceFile::open(path)?, geometry, options)
+}
+
+/// As [`read_horizons`], of bytes in memory; `path` gives the extension and is named in errors.
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn parse_horizons(
+    path: &Path,
+    bytes: &[u8],
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    horizons_of(&SourceFile { path: path.to_path_buf(), bytes: bytes.to_vec() }, geometry, options)
+}
+
+fn horizons_of(
+    source: &SourceFile,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Horizon, ImportReport)>, FormatError> {
+    let (format, surfaces) = read_source(source, Some(geometry), options, SurfaceKind::Horizon)?;
+    surfaces
+        .into_iter()
+        .map(|raw| {
+            let name = name_of(&raw, source, options);
+            horizon::build(&source.path, name, format.clone(), raw, geometry, options)
+        })
+        .collect()
+}
+
+/// Writes a horizon; beside the target first, then renamed. A rotated grid is resampled for formats that hold none.
+///
+/// # Errors
+/// [`FormatError::NotRepresentable`] when the format cannot hold it, [`FormatError::Io`].
+pub fn write_horizon(
+    path: &Path,
+    horizon: &Horizon,
+    geometry: &SurveyGeometry,
+    format: Format,
+) -> Result<ExportReport, FormatError> {
+    write_horizon_as(path, horizon, geometry, format, &ExportOptions::default())
+}
+
+/// As [`write_horizon`], as told.
+///
+/// # Errors
+/// As [`write_horizon`].
+pub fn write_horizon_as(
+    path: &Path,
+    horizon: &Horizon,
+    geometry: &SurveyGeometry,
+    format: Format,
+    options: &ExportOptions,
+) -> Result<ExportReport, FormatError> {
+    let Some(writer) = format.codec().write_horizon else {
+        let instead = names(|c| c.write_horizon.is_some());
+        return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Horizon, instead });
+    };
+    let (horizon, notes) = match format {
+        Format::Zmap | Format::Cps3 => unrotated::of(horizon, format, options)?,
+        _ => (Cow::Borrowed(horizon), Vec::new()),
+    };
+    write::beside(path, &horizon.name, format, |out| writer(out, &horizon, geometry))?;
+    Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum(), notes })
+}
+
+/// Reads the faults of a file as triangulated surfaces: TSurf as it is, sticks joined by triangles, points fitted.
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn read_fault(
+    path: &Path,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    faults_of(&SourceFile::open(path)?, geometry, options)
+}
+
+/// As [`read_fault`], of bytes in memory; `path` gives the extension and is named in errors.
+///
+/// # Errors
+/// As [`read_horizons`].
+pub fn parse_fault(
+    path: &Path,
+    bytes: &[u8],
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    faults_of(&SourceFile { path: path.to_path_buf(), bytes: bytes.to_vec() }, geometry, options)
+}
+
+fn faults_of(
+    source: &SourceFile,
+    geometry: &SurveyGeometry,
+    options: &ImportOptions,
+) -> Result<Vec<(Fault, ImportReport)>, FormatError> {
+    let (format, surfaces) = read_source(source, Some(geometry), options, SurfaceKind::Fault)?;
+    surfaces
+        .into_iter()
+        .map(|raw| {
+            let name = name_of(&raw, source, options);
+            fault::build(&source.path, name, format.clone(), raw, geometry, options)
+        })
+        .collect()
+}
+
+/// The surface through sticks (world X, Y and vertical value) of at least two places each; `None` when they span no area.
+pub fn fault_of_sticks(name: &str, sticks: &[Vec<DVec3>], geometry: &SurveyGeometry) -> Option<Fault> {
+    if sticks.len() < 2 || sticks.iter().any(|stick| stick.len() < 2) {
+        return None;
+    }
+    let mesh = sticks::join(sticks, geometry.metres_per_vertical_unit());
+    let has_area = |t: usize| {
+        let [a, b, c] = mesh.corners(t);
+        (b - a).cross(c - a).length() > 0.0
+    };
+    let any = (0..mesh.triangles.len()).any(has_area);
+    any.then(|| Fault { name: name.to_owned(), mesh, truncated_by: None })
+}
+
+/// Writes a fault; beside the target first, then renamed.
+///
+/// # Errors
+/// As [`write_horizon`].
+pub fn write_fault(path: &Path, fault: &Fault, geometry: &SurveyGeometry, format: Format) -> Result<(), FormatError> {
+    let Some(writer) = format.codec().write_fault else {
+        let instead = names(|c| c.write_fault.is_some());
+        return Err(FormatError::Unsupported { format, action: "written", kind: SurfaceKind::Fault, instead });
+    };
+    write::beside(path, &fault.name, format, |out| writer(out, fault, geometry))
+}

@@ -1,0 +1,150 @@
+//! What the user says about a file: format, vertical unit, sign, factor, null, name and columns.
+//!
+//! A vertical value of the file becomes one of the survey in this order:
+//!
+//! 1. a value equal to `null` (or to the format's own null) is a hole;
+//! 2. `v ← v · z_factor`;
+//! 3. the sign is turned when the file is positive up;
+//! 4. `v` is converted from the file's unit to the survey's (s → ms, ft → m).
+//!
+//! Claudius, whose points hold Z = −3 × TWT in ms, is read with `z_factor = −1/3`, or with `z_positive = up`
+//! and `z_factor = 1/3`. Its TSurf says `ZPOSITIVE Elevation`, so there `z_factor = 1/3` is enough beside
+//! `z_unit = ms`.
+
+use super::Format;
+use super::columns::Column;
+use serde::{Deserialize, Serialize};
+
+/// Vertical unit of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum ZUnit {
+    /// Two-way time, milliseconds.
+    #[serde(rename = "ms")]
+    Milliseconds,
+    /// Two-way time, seconds.
+    #[serde(rename = "s")]
+    Seconds,
+    /// Depth, metres.
+    #[serde(rename = "m")]
+    Metres,
+    /// Depth, international feet.
+    #[serde(rename = "ft")]
+    Feet,
+}
+
+impl ZUnit {
+    /// The unit's symbol.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Milliseconds => "ms",
+            Self::Seconds => "s",
+            Self::Metres => "m",
+            Self::Feet => "ft",
+        }
+    }
+
+    /// Reads a unit's symbol or name; `None` when it is none of the four.
+    ///
+    /// ```
+    /// # use formats::ZUnit;
+    /// assert_eq!(ZUnit::parse("Milliseconds"), Some(ZUnit::Milliseconds));
+    /// assert_eq!(ZUnit::parse("ft"), Some(ZUnit::Feet));
+    /// assert_eq!(ZUnit::parse("furlong"), None);
+    /// ```
+    pub fn parse(text: &str) -> Option<Self> {
+        match text.trim().to_ascii_lowercase().as_str() {
+            "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => Some(Self::Milliseconds),
+            "s" | "sec" | "secs" | "second" | "seconds" => Some(Self::Seconds),
+            "m" | "meter" | "meters" | "metre" | "metres" => Some(Self::Metres),
+            "ft" | "feet" | "foot" => Some(Self::Feet),
+            _ => None,
+        }
+    }
+}
+
+/// Which way vertical values grow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ZPositive {
+    /// Larger values are deeper or later.
+    Down,
+    /// Larger values are higher: elevations, negative times.
+    Up,
+}
+
+impl ZPositive {
+    /// "down" or "up".
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Down => "down",
+            Self::Up => "up",
+        }
+    }
+}
+
+/// What places a point that has both line numbers and coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum PlaceBy {
+    /// Inline and crossline.
+    Lines,
+    /// X and Y.
+    #[serde(rename = "xy")]
+    World,
+}
+
+/// The order in which a grid's values stand in a file that does not say it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ValueOrder {
+    /// Columns from the west, each from the north down: what most programs write.
+    Columns,
+    /// Rows from the south, each from the west.
+    Rows,
+}
+
+/// What the user says about a file; everything has a default.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct ImportOptions {
+    /// The format; `None` = recognised by its signature, with the evidence in the report.
+    pub format: Option<Format>,
+    /// Vertical unit of the file; `None` = as the file says, else the survey's (reported as assumed).
+    pub z_unit: Option<ZUnit>,
+    /// Sign of the file; `None` = as the file says, else positive down (reported as assumed).
+    pub z_positive: Option<ZPositive>,
+    /// Factor on the file's values, before sign and unit; 1 by default.
+    pub z_factor: f64,
+    /// A value that marks nodes without data, as it is in the file.
+    pub null: Option<f64>,
+    /// Name of the surface; `None` = the file's own, else the file name without extension. When the file holds several, it chooses the one of this name.
+    pub name: Option<String>,
+    /// Name of the one to read when the file holds several; `None` = all.
+    pub select: Option<String>,
+    /// The columns of a table, in order, instead of what its header says; `None` = by the header or by what fits the survey.
+    pub columns: Option<Vec<Column>>,
+    /// What places points that have both line numbers and X, Y; `None` = lines, after a check that both agree.
+    pub place_by: Option<PlaceBy>,
+    /// Scattered points: where no circle smaller than this, m, reaches three of them, the surface has a hole; `None` = twice the typical distance of neighbouring points.
+    pub gap_m: Option<f64>,
+    /// CPS-3: the order of the values; `None` = the smoother of the two, with the evidence in the report.
+    pub value_order: Option<ValueOrder>,
+}
+
+impl Default for ImportOptions {
+    fn default() -> Self {
+        Self {
+            format: None,
+            z_unit: None,
+            z_positive: None,
+            z_factor: 1.0,
+            null: None,
+            name: None,
+            select: None,
+            columns: None,
+            place_by: None,
+            gap_m: None,
+            value_order: None,
+        }
+    }
+}

@@ -1,0 +1,314 @@
+//! Vertical values of a file to those of the survey: null, factor, sign, unit; and whether the result is plausible.
+//!
+//! `survey value = sign · unit · (file value · z_factor)`. Nothing is guessed: unit and sign come from the options,
+//! else from the file's own words, else they are assumed (survey's unit, positive down) and the report says so. A result
+//! outside the survey's range is refused, with the option that would make it fit when one would.
+
+use super::columns::Domain;
+use super::options::{ImportOptions, ZPositive, ZUnit};
+use super::raw::{RawShape, VerticalFacts};
+use super::report::{Provenance, Settled};
+use super::{FormatError, SurfaceKind};
+use std::path::Path;
+use survey::geometry::{VerticalAxis, VerticalUnit};
+use survey::remedy::{Note, Remedy, Setting};
+
+/// Metres in an international foot.
+const FOOT_M: f64 = 0.3048;
+
+/// How values are converted.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct VerticalRule {
+    pub unit: Settled<ZUnit>,
+    pub positive: Settled<ZPositive>,
+    pub factor: f64,
+    /// Everything in one: survey value = file value · scale.
+    scale: f64,
+    null: Option<f64>,
+}
+
+/// What a conversion met.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct VerticalCounts {
+    pub values: usize,
+    pub nulls: usize,
+    pub range_in_file: [f64; 2],
+    pub range: [f64; 2],
+}
+
+fn domain_of(unit: ZUnit) -> Domain {
+    match unit {
+        ZUnit::Milliseconds | ZUnit::Seconds => Domain::Time,
+        ZUnit::Metres | ZUnit::Feet => Domain::Depth,
+    }
+}
+
+impl VerticalRule {
+    /// Settles unit and sign.
+    ///
+    /// # Errors
+    /// [`FormatError::UnitMismatch`] when one is a time and the other a depth.
+    pub fn settle(
+        file: &Path,
+        facts: &VerticalFacts,
+        options: &ImportOptions,
+        survey: VerticalUnit,
+    ) -> Result<Self, FormatError> {
+        let own = match survey {
+            VerticalUnit::Milliseconds => ZUnit::Milliseconds,
+            VerticalUnit::Metres => ZUnit::Metres,
+        };
+        let mismatch = |found, evidence| FormatError::UnitMismatch {
+            file: file.to_path_buf(),
+            found,
+            evidence,
+            survey: survey.symbol(),
+        };
+        let unit = Settled::of(options.z_unit, facts.unit.clone(), own);
+        if domain_of(unit.value) != Domain::of(survey) {
+            let evidence = match &unit.source {
+                Provenance::File(words) => format!("says {words}"),
+                _ => "as told".into(),
+            };
+            return Err(mismatch(unit.value.symbol(), evidence));
+        }
+        if let (Provenance::Assumed, Some((domain, words))) = (&unit.source, &facts.domain)
+            && *domain != Domain::of(survey)
+        {
+            let found = if *domain == Domain::Time { "a time" } else { "a depth" };
+            return Err(mismatch(found, format!("says {words}")));
+        }
+        let positive = Settled::of(options.z_positive, facts.positive.clone(), ZPositive::Down);
+        let of_unit = match unit.value {
+            ZUnit::Milliseconds | ZUnit::Metres => 1.0,
+            ZUnit::Seconds => 1000.0,
+            ZUnit::Feet => FOOT_M,
+        };
+        let sign = if positive.value == ZPositive::Up { -1.0 } else { 1.0 };
+        Ok(Self {
+            unit,
+            positive,
+            factor: options.z_factor,
+            scale: options.z_factor * sign * of_unit,
+            null: options.null,
+        })
+    }
+
+    /// Converts in place; nulls become NaN.
+    pub fn apply(&self, shape: &mut RawShape) -> VerticalCounts {
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut counts = VerticalCounts { values: 0, nulls: 0, range_in_file: none, range: none };
+        let widen = |range: &mut [f64; 2], v: f64| *range = [range[0].min(v), range[1].max(v)];
+        for value in shape.values_mut() {
+            counts.values += 1;
+            let is_null = self.null.is_some_and(|null| (*value - null).abs() <= 1e-6 * null.abs().max(1e-6));
+            let converted = *value * self.scale;
+            if is_null || !converted.is_finite() || converted.abs() > 1e12 {
+                *value = f64::NAN;
+                counts.nulls += 1;
+                continue;
+            }
+            widen(&mut counts.range_in_file, *value);
+            widen(&mut counts.range, converted);
+            *value = converted;
+        }
+        counts
+    }
+
+    /// Refuses values that cannot belong to the survey; returns how many lie outside its range.
+    ///
+    /// # Errors
+    /// [`FormatError::LooksLikeNull`], [`FormatError::OutsideRange`].
+    pub fn check(
+        &self,
+        file: &Path,
+        name: &str,
+        values: &[f64],
+        axis: &VerticalAxis,
+        kind: SurfaceKind,
+    ) -> Result<usize, FormatError> {
+        let values: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+        let survey = [axis.first, axis.last()];
+        // A horizon may run along the first or last sample.
+        let slack = axis.interval;
+        let inside = |v: f64| v >= survey[0] - slack && v <= survey[1] + slack;
+        let outside = values.iter().filter(|&&v| !inside(v)).count();
+        let none = [f64::INFINITY, f64::NEG_INFINITY];
+        let found = values.iter().fold(none, |r, &v| [r[0].min(v), r[1].max(v)]);
+        for extreme in found {
+            let count = values.iter().filter(|&&v| v == extreme).count();
+            let spike = kind == SurfaceKind::Horizon && !inside(extreme);
+            if spike && count >= 5 && count < values.len() && count * 200 > values.len() {
+                let value = round_to_file(extreme / self.scale);
+                return Err(FormatError::LooksLikeNull { file: file.to_path_buf(), name: name.into(), value, count });
+            }
+        }
+        let fit = |factor: f64| values.iter().filter(|&&v| inside(v * factor)).count();
+        // A time in seconds read as milliseconds hides in the first sample of a survey that starts at 0.
+        let largest = found[0].abs().max(found[1].abs());
+        let flat = axis.unit == VerticalUnit::Milliseconds
+            && self.unit.source != Provenance::Option
+            && largest < 0.01 * survey[1]
+            && largest * 1000.0 > 2.0 * slack
+            && fit(1000.0) * 2 > values.len();
+        // Faults often reach far below a survey; it is enough that they reach into it.
+        let misses = match kind {
+            SurfaceKind::Horizon => outside * 2 > values.len(),
+            SurfaceKind::Fault => found[1] < survey[0] || found[0] > survey[1],
+        };
+        if !misses && !flat {
+            return Ok(outside);
+        }
+        let likely = [1000.0, -1.0, -1000.0, FOOT_M, -FOOT_M, 1.0 / FOOT_M, -1.0 / FOOT_M, 0.001, -0.001, 2.0, 0.5];
+        let best = likely
+            .iter()
+            .copied()
+            .filter(|&f| fit(f) * 10 > values.len() * 9 && (!flat || f.abs() > 1.0))
+            .min_by(|a, b| rank(*a).total_cmp(&rank(*b)));
+        let (hint, remedy) = match best {
+            Some(factor) => (format!("It would fit when multiplied by {factor:.5}"), self.remedy(factor)),
+            None => (
+                "No change of sign or of a common unit makes it fit: check these, and whether the file belongs to this survey"
+                    .to_owned(),
+                Remedy::any([Setting::ZUnit, Setting::ZPositive, Setting::ZFactor].map(Setting::stated)),
+            ),
+        };
+        Err(FormatError::OutsideRange {
+            file: file.to_path_buf(),
+            name: name.into(),
+            found: Box::new(found),
+            survey: Box::new(survey),
+            unit: axis.unit.symbol(),
+            outside,
+            total: values.len(),
+            hint: Box::new(Note::unless(hint, remedy)),
+        })
+    }
+
+    /// What multiplies the result by `factor` more.
+    fn remedy(&self, factor: f64) -> Remedy {
+        let mut parts = Vec::new();
+        let size = factor.abs();
+        let near = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-9;
+        let unit = match self.unit.value {
+            ZUnit::Milliseconds if near(size, 1000.0) => Some(ZUnit::Seconds),
+            ZUnit::Seconds if near(size, 0.001) => Some(ZUnit::Milliseconds),
+            ZUnit::Metres if near(size, FOOT_M) => Some(ZUnit::Feet),
+            ZUnit::Feet if near(size, 1.0 / FOOT_M) => Some(ZUnit::Metres),
+            _ => None,
+        };
+        match unit {
+            Some(unit) => parts.push(Setting::ZUnit.stated_as(unit.symbol())),
+            None if !near(size, 1.0) => parts.push(Setting::ZFactor.stated_as(self.factor * size)),
+            None => {}
+        }
+        if factor < 0.0 {
+            let turned = if self.positive.value == ZPositive::Down { ZPositive::Up } else { ZPositive::Down };
+            parts.push(Setting::ZPositive.stated_as(turned.word()));
+        }
+        Remedy::all(parts)
+    }
+}
+
+/// Sign alone first, then units, then odd factors.
+fn rank(factor: f64) -> f64 {
+    match factor.abs() {
+        1.0 => 0.0,
+        s if s == 1000.0 || s == FOOT_M => 1.0,
+        s if s == 0.001 || s == 1.0 / FOOT_M => 2.0,
+        _ => 3.0,
+    }
+}
+
+/// Undoes the last digits of a division, so that a null reads as it is in the file.
+fn round_to_file(value: f64) -> f64 {
+    let rounded = (value * 1e4).round() / 1e4;
+    if (rounded - value).abs() <= 1e-9 * value.abs() { rounded } else { value }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::raw::RawPoint;
+
+    fn points(values: &[f64]) -> RawShape {
+        RawShape::Points(values.iter().map(|&z| RawPoint { z, ..RawPoint::default() }).collect())
+    }
+
+    fn axis(first: f64, count: usize, unit: VerticalUnit) -> VerticalAxis {
+        VerticalAxis { first, interval: 4.0, count, unit }
+    }
+
+    fn read(values: &[f64], options: &ImportOptions, axis: &VerticalAxis) -> Result<Vec<f64>, FormatError> {
+        let rule = VerticalRule::settle(Path::new("f"), &VerticalFacts::default(), options, axis.unit)?;
+        let mut shape = points(values);
+        rule.apply(&mut shape);
+        let values: Vec<f64> = shape.values().collect();
+        rule.check(Path::new("f"), "A", &values, axis, SurfaceKind::Horizon)?;
+        Ok(values)
+    }
+
+    fn hint(values: &[f64], options: &ImportOptions, axis: &VerticalAxis) -> String {
+        match read(values, options, axis) {
+            Err(FormatError::OutsideRange { hint, .. }) => hint.to_string(),
+            other => panic!("expected OutsideRange, found {other:?}"),
+        }
+    }
+
+    #[test]
+    fn factor_then_sign_then_unit() {
+        let depth = axis(0.0, 500, VerticalUnit::Metres);
+        let options = ImportOptions {
+            z_unit: Some(ZUnit::Feet),
+            z_positive: Some(ZPositive::Up),
+            z_factor: 0.5,
+            null: Some(-999.25),
+            ..ImportOptions::default()
+        };
+        let read = read(&[-1000.0, -999.25, -2000.0], &options, &depth).unwrap();
+        assert!((read[0] - 152.4).abs() < 1e-9 && read[1].is_nan() && (read[2] - 304.8).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_wrong_unit_or_sign_names_the_option_that_fits() {
+        let time = axis(800.0, 100, VerticalUnit::Milliseconds);
+        let plain = ImportOptions::default();
+        assert!(hint(&[0.9, 1.0, 1.1], &plain, &time).contains("--z-unit s"));
+        assert!(hint(&[-900.0, -1000.0], &plain, &time).contains("--z-positive up"));
+        let both = hint(&[-0.9, -1.0], &plain, &time);
+        assert!(both.contains("--z-unit s") && both.contains("--z-positive up"), "{both}");
+        let depth = axis(1000.0, 100, VerticalUnit::Metres);
+        assert!(hint(&[3600.0, 3700.0], &plain, &depth).contains("--z-unit ft"));
+        assert!(hint(&[77.0, 78.0], &plain, &depth).contains("No change"));
+        let up = ImportOptions { z_positive: Some(ZPositive::Up), ..ImportOptions::default() };
+        assert!(hint(&[1100.0, 1200.0], &up, &depth).contains("--z-positive down"));
+    }
+
+    #[test]
+    fn seconds_do_not_hide_in_the_first_sample() {
+        let time = axis(0.0, 500, VerticalUnit::Milliseconds);
+        assert!(hint(&[0.9, 1.0, 1.1], &ImportOptions::default(), &time).contains("--z-unit s"));
+        let told = ImportOptions { z_unit: Some(ZUnit::Milliseconds), ..ImportOptions::default() };
+        assert!(read(&[0.9, 1.0, 1.1], &told, &time).is_ok());
+    }
+
+    #[test]
+    fn a_repeated_value_outside_is_taken_for_a_null_and_named() {
+        let time = axis(0.0, 500, VerticalUnit::Milliseconds);
+        let mut values = vec![-999.25; 20];
+        values.extend((0..80).map(|n| 900.0 + f64::from(n)));
+        match read(&values, &ImportOptions::default(), &time) {
+            Err(FormatError::LooksLikeNull { value, count, .. }) => assert_eq!((value, count), (-999.25, 20)),
+            other => panic!("{other:?}"),
+        }
+        let told = ImportOptions { null: Some(-999.25), ..ImportOptions::default() };
+        assert!(read(&values, &told, &time).is_ok());
+    }
+
+    #[test]
+    fn time_is_not_converted_to_depth() {
+        let depth = axis(0.0, 500, VerticalUnit::Metres);
+        let options = ImportOptions { z_unit: Some(ZUnit::Milliseconds), ..ImportOptions::default() };
+        assert!(matches!(read(&[100.0], &options, &depth), Err(FormatError::UnitMismatch { .. })));
+    }
+}

@@ -1,0 +1,127 @@
+//! What a well's file holds, before it is imported: for `petroglyph info`.
+
+use super::columns::WellColumn;
+use super::error::WellFileError;
+use super::las::parse_las;
+use super::table::Table;
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// What kind of a well's file it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum WellFileKind {
+    /// Where the well runs.
+    Deviation,
+    /// Named depths.
+    Tops,
+    /// Depths and times.
+    Checkshot,
+    /// Curves, LAS.
+    Las,
+}
+
+/// A column or curve of a well's file.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WellColumnDescription {
+    /// Its name there.
+    pub name: String,
+    /// Its unit there; empty when it states none.
+    pub unit: String,
+    /// What it is, as the file says.
+    pub description: String,
+    /// Count of numbers in it, nulls left out.
+    pub values: usize,
+    /// Lowest and highest number.
+    pub range: Option<[f64; 2]>,
+}
+
+/// What a well's file holds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WellFileDescription {
+    /// The file.
+    pub file: PathBuf,
+    /// What kind it is.
+    pub kind: WellFileKind,
+    /// How that is known.
+    pub evidence: String,
+    /// Facts in its header.
+    pub facts: Vec<String>,
+    /// Count of rows.
+    pub rows: usize,
+    /// Columns or curves.
+    pub columns: Vec<WellColumnDescription>,
+}
+
+fn column(name: &str, unit: &str, description: &str, values: impl Iterator<Item = f64>) -> WellColumnDescription {
+    let (mut count, mut range) = (0, [f64::INFINITY, f64::NEG_INFINITY]);
+    for value in values.filter(|v| v.is_finite()) {
+        count += 1;
+        range = [range[0].min(value), range[1].max(value)];
+    }
+    WellColumnDescription {
+        name: name.into(),
+        unit: unit.into(),
+        description: description.into(),
+        values: count,
+        range: (count > 0).then_some(range),
+    }
+}
+
+/// Describes a file when it is a well's: LAS, or a table whose columns are those of a deviation, of tops or of checkshots.
+/// None for anything else.
+///
+/// # Errors
+/// [`WellFileError`] for a LAS file that is broken.
+pub fn describe(file: &Path, text: &str) -> Result<Option<WellFileDescription>, WellFileError> {
+    let first = text.lines().map(str::trim).find(|l| !l.is_empty() && !l.starts_with('#')).unwrap_or("");
+    if first.len() >= 2 && first.starts_with('~') && first[1..].starts_with(['V', 'v']) {
+        let las = parse_las(file, text)?;
+        let mut facts = vec![format!("LAS {:.1}{}", las.version, if las.wrapped { ", wrapped" } else { "" })];
+        facts.extend(las.well.iter().filter(|i| !i.value.is_empty()).map(|i| {
+            let unit = if i.unit.is_empty() { String::new() } else { format!(" {}", i.unit) };
+            format!("{}: {}{unit}", i.mnemonic, i.value)
+        }));
+        let columns = las.curves.iter().zip(&las.data);
+        return Ok(Some(WellFileDescription {
+            file: file.to_owned(),
+            kind: WellFileKind::Las,
+            evidence: "it begins with a section ~V".into(),
+            facts,
+            rows: las.data.first().map_or(0, Vec::len),
+            columns: columns
+                .map(|(c, data)| column(&c.mnemonic, &c.unit, &c.description, data.iter().copied()))
+                .collect(),
+        }));
+    }
+    let table = Table::parse(file, text);
+    let has = |c: WellColumn| table.position(c).is_some();
+    let depth = [WellColumn::Tvdss, WellColumn::Tvd, WellColumn::Z].into_iter().any(has);
+    let angles = has(WellColumn::Md) && has(WellColumn::Inclination);
+    let places = (has(WellColumn::X) && has(WellColumn::Y)) || (has(WellColumn::Dx) && has(WellColumn::Dy));
+    let on_lines = table.names.iter().any(|n| {
+        let name = n.to_ascii_lowercase();
+        ["inline", "crossline", "iline", "xline"].iter().any(|w| name.contains(w))
+    });
+    let (kind, evidence) = if angles || (has(WellColumn::Md) && places && depth) || (has(WellColumn::Dx) && depth) {
+        (WellFileKind::Deviation, "its columns are those of a deviation")
+    } else if has(WellColumn::Surface) && (has(WellColumn::Well) || has(WellColumn::Md)) && !on_lines {
+        (WellFileKind::Tops, "its columns are a surface's name and a depth along a well")
+    } else if !on_lines && !places && depth && (has(WellColumn::Twt) || has(WellColumn::Owt)) {
+        (WellFileKind::Checkshot, "its columns are depth and time")
+    } else {
+        return Ok(None);
+    };
+    let columns = table.names.iter().enumerate().map(|(n, name)| {
+        let unit = table.units[n].map_or("", |u| u.symbol());
+        column(name, unit, "", table.rows.iter().filter_map(|row| table.optional(row, n)))
+    });
+    Ok(Some(WellFileDescription {
+        file: file.to_owned(),
+        kind,
+        evidence: evidence.into(),
+        facts: table.facts.iter().map(|(key, value)| format!("{key}: {value}")).collect(),
+        rows: table.rows.len(),
+        columns: columns.collect(),
+    }))
+}

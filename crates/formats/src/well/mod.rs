@@ -1,0 +1,24 @@
+//! Files of wells: deviation (with head and datum), tops, checkshots and logs become a [`Well`](survey::Well).
+//!
+//! Lengths in feet are converted when read, with the international foot. What a file does not say is assumed and reported, or stated by
+//! [`WellOptions`].
+
+mod checkshot;
+mod columns;
+mod describe;
+mod deviation;
+mod error;
+mod las;
+mod read;
+mod table;
+#[cfg(test)]
+mod tests;
+mod tops;
+
+pub use checkshot::parse_checkshot;
+pub use describe::{WellColumnDescription, WellFileDescription, WellFileKind, describe};
+pub use deviation::{Deviation, parse_deviation};
+pub use error::WellFileError;
+pub use las::{Las, LasItem, parse_las};
+pub use read::{WellFiles, WellOptions, WellReport, read_well};
+pub use tops::{TopRow, parse_tops};

@@ -1,0 +1,244 @@
+//! A well's text tables: facts in comments (`# WELL DATUM: 25.0 (m)`), named columns, rows.
+//!
+//! The columns are named by a header line, by the last comment before the rows, or one a line between `BEGIN HEADER` and
+//! `END HEADER` (Petrel). Fields are cut by `;`, tab, comma or blanks; quotes hold one together.
+
+use super::columns::{self, WellColumn};
+use super::error::WellFileError;
+use crate::options::ZUnit;
+use crate::table::{Cut, is_comment};
+use crate::text::{self, Field, Line, excerpt};
+use std::path::{Path, PathBuf};
+use survey::remedy::{Note, Setting};
+
+/// Metres in an international foot.
+pub(super) const FOOT_M: f64 = 0.3048;
+
+/// A row and where it stands.
+pub(super) struct Row<'a> {
+    pub line: Line<'a>,
+    pub fields: Vec<Field<'a>>,
+}
+
+/// A table as it stands in the file.
+pub(super) struct Table<'a> {
+    file: PathBuf,
+    /// Comments and lines `KEY: value`: lower-case key and value.
+    pub facts: Vec<(String, String)>,
+    /// The columns' names, as they stand there.
+    pub names: Vec<String>,
+    /// What the columns hold; empty when nothing names them.
+    pub columns: Vec<WellColumn>,
+    /// The unit each column's name states.
+    pub units: Vec<Option<ZUnit>>,
+    pub rows: Vec<Row<'a>>,
+    cut: Cut,
+}
+
+/// A line `KEY: value` or `KEY = value`, comment marks left out.
+fn fact(line: &str) -> Option<(String, String)> {
+    let bare = line.trim_start_matches(['#', '!', '%', '/', ' ', '\t']);
+    let (key, value) = bare.split_once(':').or_else(|| bare.split_once('='))?;
+    let (key, value) = (key.trim(), value.trim());
+    // A row of numbers or a time of day is no fact.
+    (!key.is_empty() && !value.is_empty() && key.chars().next().is_some_and(char::is_alphabetic))
+        .then(|| (key.to_ascii_lowercase(), value.to_string()))
+}
+
+fn names_of(words: &str) -> Vec<String> {
+    let cut = Cut::of(words);
+    // "MD (ft)" is one name although blanks cut it.
+    let mut names: Vec<String> = Vec::new();
+    for field in cut.fields(words) {
+        match names.last_mut() {
+            Some(last) if field.text.starts_with(['(', '[']) && cut.delimiter.is_none() => {
+                last.push(' ');
+                last.push_str(field.text);
+            }
+            _ => names.push(field.text.to_string()),
+        }
+    }
+    names
+}
+
+fn known(names: &[String]) -> usize {
+    names.iter().filter(|n| columns::of_name(n).0 != WellColumn::Other).count()
+}
+
+impl<'a> Table<'a> {
+    /// Reads a table.
+    pub fn parse(file: &Path, text: &'a str) -> Self {
+        let lines: Vec<Line<'a>> = text::lines(text).collect();
+        let mut table = Self {
+            file: file.to_owned(),
+            facts: Vec::new(),
+            names: Vec::new(),
+            columns: Vec::new(),
+            units: Vec::new(),
+            rows: Vec::new(),
+            cut: Cut { delimiter: None, decimal_comma: false },
+        };
+        let begin = lines.iter().position(|l| l.text == "BEGIN HEADER");
+        let end = lines.iter().position(|l| l.text == "END HEADER");
+        let mut names: Vec<String> = Vec::new();
+        let mut body = lines.as_slice();
+        if let (Some(begin), Some(end)) = (begin, end)
+            && begin < end
+        {
+            names = lines[begin + 1..end].iter().map(|l| l.text.to_string()).collect();
+            table.facts = lines[..begin].iter().filter_map(|l| fact(l.text)).collect();
+            body = &lines[end + 1..];
+        }
+        let mut data: Vec<Line<'a>> = Vec::new();
+        for line in body {
+            let words = line.text.trim_start_matches(['#', '!', '%', '/', ' ']);
+            let comment = is_comment(line.text);
+            if comment && words.chars().all(|c| "=-*_ ".contains(c)) {
+                continue;
+            }
+            if data.is_empty() && begin.is_none() {
+                let found = names_of(words);
+                let numbers = found.iter().filter(|w| text::number(w).is_some()).count();
+                let is_header = found.len() >= 2 && numbers == 0 && known(&found) >= 2;
+                if is_header {
+                    names = found;
+                    continue;
+                }
+                if let Some(fact) = fact(line.text)
+                    && (comment || numbers == 0 || text::number(&fact.1).is_some())
+                {
+                    table.facts.push(fact);
+                    continue;
+                }
+            }
+            if !comment {
+                data.push(*line);
+            }
+        }
+        let first = data.first().map_or("", |l| l.text);
+        table.cut = Cut::of(first);
+        let cut = table.cut;
+        table.rows = data.into_iter().map(|line| Row { line, fields: cut.fields(line.text) }).collect();
+        for name in &names {
+            let (column, unit) = columns::of_name(name);
+            // The first of a kind is the one meant.
+            let again = table.columns.contains(&column);
+            table.columns.push(if again { WellColumn::Other } else { column });
+            table.units.push(unit);
+        }
+        table.names = names;
+        table
+    }
+
+    /// Names the columns of a table that names none.
+    pub fn assume(&mut self, columns: &[WellColumn]) {
+        self.columns = columns.to_vec();
+        self.units = vec![None; columns.len()];
+    }
+
+    /// Where a column stands.
+    pub fn position(&self, column: WellColumn) -> Option<usize> {
+        self.columns.iter().position(|c| *c == column)
+    }
+
+    /// A fact by words its key must contain.
+    pub fn fact(&self, words: &[&str]) -> Option<&str> {
+        let found = self.facts.iter().find(|(key, _)| words.iter().all(|w| key.contains(w)));
+        found.map(|(_, value)| value.as_str())
+    }
+
+    /// A length among the facts, in m; `(ft)` or `ft` after the number converts.
+    pub fn length_fact(&self, words: &[&str]) -> Option<f64> {
+        let value = self.fact(words)?;
+        let number = text::number(value.split([' ', '\t', '(', ',', ';']).find(|w| !w.is_empty())?)?;
+        let feet = value.to_ascii_lowercase().split(|c: char| !c.is_alphabetic()).any(|w| w == "ft" || w == "feet");
+        Some(if feet { number * FOOT_M } else { number })
+    }
+
+    /// The text of a field.
+    pub fn text(&self, row: &Row<'a>, at: usize) -> Result<&'a str, WellFileError> {
+        let field = row.fields.get(at).map(|f| f.text).filter(|t| !t.is_empty());
+        field.ok_or_else(|| self.syntax(row, &format!("{} fields", self.columns.len())))
+    }
+
+    /// The number in a field.
+    pub fn number(&self, row: &Row<'a>, at: usize) -> Result<f64, WellFileError> {
+        let text = self.text(row, at)?;
+        let number = self.cut.number(text).filter(|v| v.is_finite() && v.abs() < 1e12);
+        number.ok_or_else(|| self.syntax(row, &format!("a number for column {}", at + 1)))
+    }
+
+    /// The number in a field; None where it is empty or a null of Petrel's or LAS' kind.
+    pub fn optional(&self, row: &Row<'a>, at: usize) -> Option<f64> {
+        let number = self.cut.number(row.fields.get(at)?.text)?;
+        (number.is_finite() && number.abs() < 1e12 && ![-999.0, -999.25, -9999.0, -99999.0].contains(&number))
+            .then_some(number)
+    }
+
+    /// An error at a row.
+    pub fn syntax(&self, row: &Row<'a>, expected: &str) -> WellFileError {
+        WellFileError::Syntax {
+            file: self.file.clone(),
+            line: row.line.number,
+            expected: expected.to_string(),
+            found: excerpt(row.line.text),
+        }
+    }
+
+    /// Metres in one unit of a length column: as its name says, else as told, else metres, said so in `notes`.
+    pub fn length_to_m(&self, at: usize, told: Option<ZUnit>, notes: &mut Vec<Note>) -> Result<f64, WellFileError> {
+        let unit = self.units[at].or(told);
+        if unit.is_none() {
+            let fact = format!("{}: lengths are taken as metres", self.stem());
+            let note = Note::unless(fact, Setting::MdUnit.stated_as("ft"));
+            if !notes.contains(&note) {
+                notes.push(note);
+            }
+        }
+        match unit {
+            None | Some(ZUnit::Metres) => Ok(1.0),
+            Some(ZUnit::Feet) => Ok(FOOT_M),
+            Some(ZUnit::Milliseconds | ZUnit::Seconds) => Err(WellFileError::UnclearUnit {
+                file: self.file.clone(),
+                what: "a depth column named as a time".into(),
+                candidates: "m or ft",
+                header: "md_m",
+            }),
+        }
+    }
+
+    fn stem(&self) -> String {
+        self.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
+    }
+
+    /// Keeps the rows of one well when a column names wells: the one told, else one of `names`, else the only one.
+    ///
+    /// # Errors
+    /// [`WellFileError::NoSuchWell`] when it is not there or several are.
+    pub fn keep_well(&mut self, told: &Option<String>, names: &[&str]) -> Result<(), WellFileError> {
+        let Some(at) = self.position(WellColumn::Well) else { return Ok(()) };
+        let plain = |name: &str| name.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
+        let of = |row: &Row<'a>| row.fields.get(at).map_or("", |f| f.text);
+        let mut available: Vec<&str> = self.rows.iter().map(of).collect();
+        available.sort_unstable();
+        available.dedup();
+        let candidates: Vec<String> =
+            told.iter().map(|t| plain(t)).chain(names.iter().map(|n| plain(n))).filter(|n| !n.is_empty()).collect();
+        let wanted = candidates.iter().take(if told.is_some() { 1 } else { usize::MAX });
+        let found = wanted.into_iter().find(|w| available.iter().any(|a| plain(a) == **w)).cloned();
+        let kept = match (found, available.as_slice()) {
+            (Some(found), _) => found,
+            (None, [only]) if told.is_none() => plain(only),
+            _ => {
+                let wanted = told.clone().or_else(|| names.first().map(|n| (*n).to_string())).unwrap_or_default();
+                return Err(WellFileError::NoSuchWell {
+                    file: self.file.clone(),
+                    wanted,
+                    available: available.join(", "),
+                });
+            }
+        };
+        self.rows.retain(|row| plain(row.fields.get(at).map_or("", |f| f.text)) == kept);
+        Ok(())
+    }
+}

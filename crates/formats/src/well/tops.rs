@@ -1,0 +1,127 @@
+//! Tops: the name of a surface and where the well met it, by MD, TVD, TVDSS or Z.
+//!
+//! CSV or blanks with a header, Petrel well tops (`BEGIN HEADER` … `END HEADER`), or two columns without a header, depth and name
+//! (taken as measured depth). Vertical depths are brought onto the path at its first crossing of that depth.
+
+use super::columns::WellColumn;
+use super::error::WellFileError;
+use super::read::WellOptions;
+use super::table::Table;
+use crate::text;
+use std::path::Path;
+use survey::remedy::Note;
+use survey::well::{Top, WellPath};
+
+/// A top as it stands in a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TopRow {
+    /// Name of the surface.
+    pub name: String,
+    /// Measured depth, m, where the file has it or the path gives it.
+    pub md_m: Option<f64>,
+    /// Line of the file.
+    pub line: usize,
+}
+
+/// Reads tops and puts them on the path. Also says what was read and left out.
+///
+/// # Errors
+/// [`WellFileError`] with the line or the columns that are missing.
+pub fn parse_tops(
+    file: &Path,
+    text: &str,
+    path: &WellPath,
+    options: &WellOptions,
+    notes: &mut Vec<Note>,
+) -> Result<Vec<TopRow>, WellFileError> {
+    let mut table = Table::parse(file, text);
+    if table.rows.is_empty() {
+        return Err(WellFileError::Empty { file: file.to_owned(), what: "tops" });
+    }
+    if table.columns.is_empty() {
+        let number_first = table.rows[0].fields.first().is_some_and(|f| text::number(f.text).is_some());
+        let columns = [WellColumn::Md, WellColumn::Surface];
+        table.assume(&if number_first { columns } else { [columns[1], columns[0]] });
+        notes.push("tops: no header; columns taken as measured depth and name".into());
+    }
+    let names: Vec<&str> = options.name.as_deref().into_iter().collect();
+    table.keep_well(&options.well_in_file, &names)?;
+    let depth = [WellColumn::Md, WellColumn::Tvdss, WellColumn::Z, WellColumn::Tvd]
+        .into_iter()
+        .filter_map(|c| Some((c, table.position(c)?)))
+        .collect::<Vec<_>>();
+    let (Some(name_at), false) = (table.position(WellColumn::Surface), depth.is_empty()) else {
+        return Err(WellFileError::Columns {
+            file: file.to_owned(),
+            why: "a name and a depth are needed".into(),
+            example: "surface,md_m",
+        });
+    };
+    let to_m: Vec<f64> =
+        depth.iter().map(|(_, at)| table.length_to_m(*at, options.md_unit, notes)).collect::<Result<_, _>>()?;
+    let mut tops = Vec::with_capacity(table.rows.len());
+    let (mut twice, mut negative) = (Vec::new(), 0usize);
+    for row in &table.rows {
+        let name = table.text(row, name_at)?.to_string();
+        // Petrel leaves MD empty where only a place was picked: the first depth that is there counts.
+        let known = depth.iter().zip(&to_m).find_map(|((c, at), f)| Some((*c, table.optional(row, *at)? * f)));
+        let md_m = match known {
+            None => return Err(table.syntax(row, "a depth")),
+            Some((WellColumn::Md, md)) => Some(md),
+            Some((column, depth)) => {
+                let tvdss = match column {
+                    WellColumn::Tvd => depth - path.datum_m(),
+                    _ if depth < 0.0 && path.mds_at_tvdss(depth).is_empty() => {
+                        negative += 1;
+                        -depth
+                    }
+                    _ => depth,
+                };
+                let crossings = path.mds_at_tvdss(tvdss);
+                if crossings.len() > 1 {
+                    twice.push(name.clone());
+                }
+                crossings.first().copied()
+            }
+        };
+        tops.push(TopRow { name, md_m, line: row.line.number });
+    }
+    if negative > 0 {
+        notes.push(format!("tops: {negative} negative depths were turned positive down (elevations)").into());
+    }
+    if !twice.is_empty() {
+        notes.push(
+            format!("tops: the hole crosses the depth of {} more than once; the first is taken", twice.join(", "))
+                .into(),
+        );
+    }
+    Ok(tops)
+}
+
+/// The tops on the path, in order; notes name those that are not on it.
+pub(super) fn on_path(rows: Vec<TopRow>, path: &WellPath, warnings: &mut Vec<Note>) -> Vec<Top> {
+    let [first, last] = path.md_range_m();
+    let mut tops = Vec::with_capacity(rows.len());
+    let mut off = Vec::new();
+    for row in rows {
+        match row.md_m.filter(|md| (first..=last).contains(md)) {
+            Some(md_m) => tops.push(Top { name: row.name, md_m }),
+            None => off.push(match row.md_m {
+                Some(md) => format!("{} (MD {md:.1} m)", row.name),
+                None => format!("{} (line {})", row.name, row.line),
+            }),
+        }
+    }
+    if !off.is_empty() {
+        warnings.push(
+            format!(
+                "{} tops lie beyond the path, which runs from MD {first:.1} to {last:.1} m, and were left out: {}",
+                off.len(),
+                off.join(", ")
+            )
+            .into(),
+        );
+    }
+    tops.sort_by(|a, b| a.md_m.total_cmp(&b.md_m));
+    tops
+}

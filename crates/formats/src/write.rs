@@ -1,0 +1,80 @@
+//! Writing: beside the target, then renamed, so that a full disk or a crash leaves the old file as it was.
+
+use super::{Format, FormatError};
+use glam::DVec2;
+use std::fs;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+use survey::geometry::SurveyGeometry;
+use survey::horizon::{Horizon, Quality};
+
+/// Why a surface was not written.
+pub(super) enum Failure {
+    Io(std::io::Error),
+    /// What does not fit, and what to do.
+    NotRepresentable(String, &'static str),
+}
+
+impl From<std::io::Error> for Failure {
+    fn from(error: std::io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+/// Writes through `fill` to a file beside `path` and renames it when all is on disk.
+pub(super) fn beside(
+    path: &Path,
+    name: &str,
+    format: Format,
+    fill: impl FnOnce(&mut dyn Write) -> Result<(), Failure>,
+) -> Result<(), FormatError> {
+    let io = |source| FormatError::Io { action: "write", file: path.to_path_buf(), source };
+    let mut part = path.as_os_str().to_owned();
+    part.push(format!(".{}.part", std::process::id()));
+    let part = std::path::PathBuf::from(part);
+    let written = fs::File::create(&part).map_err(Failure::Io).and_then(|file| {
+        let mut out = BufWriter::new(file);
+        fill(&mut out)?;
+        let file = out.into_inner().map_err(std::io::IntoInnerError::into_error)?;
+        file.sync_all()?;
+        fs::rename(&part, path)?;
+        Ok(())
+    });
+    written.map_err(|failure| {
+        // Nothing may be left behind; that it cannot be removed either is no news to the user.
+        let _ = fs::remove_file(&part);
+        match failure {
+            Failure::Io(source) => io(source),
+            Failure::NotRepresentable(why, instead) => {
+                FormatError::NotRepresentable { name: name.into(), format, why, instead }
+            }
+        }
+    })
+}
+
+/// A node of a horizon, with all that a table may say of it.
+pub(super) struct Placed {
+    pub lines: DVec2,
+    pub xy: DVec2,
+    pub z: f32,
+    pub sheet: usize,
+    pub quality: Quality,
+}
+
+/// Every node with a depth, sheet by sheet.
+pub(super) fn nodes<'a>(horizon: &'a Horizon, geometry: &'a SurveyGeometry) -> impl Iterator<Item = Placed> + 'a {
+    horizon.sheets.iter().enumerate().flat_map(move |(sheet, s)| {
+        let nv = s.grid.count[1];
+        s.depth.iter().enumerate().filter(|(_, z)| z.is_finite()).map(move |(n, &z)| {
+            let xy = s.grid.world_at(DVec2::new((n / nv) as f64, (n % nv) as f64));
+            let voxel = super::placement::voxel_xy(geometry, xy);
+            Placed { lines: geometry.lines_from_voxel(voxel), xy, z, sheet, quality: s.quality[n] }
+        })
+    })
+}
+
+/// A line number: whole where it is one.
+pub(super) fn line_number(number: f64) -> String {
+    let whole = number.round();
+    if (number - whole).abs() < 1e-4 { format!("{whole:.0}") } else { format!("{number:.4}") }
+}

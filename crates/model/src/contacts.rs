@@ -1,0 +1,170 @@
+//! Which horizon ends at which: contact rules applied to sheets that are themselves never cut.
+//!
+//! Every rule is a boolean function of one bit per horizon, "this place is below the sheet of h":
+//!
+//! - erosional h: an older horizon rising above h ends there, z_g = max(z_g, z_h);
+//! - conformable or onlap h: ends where it meets an older horizon, z_h = min(z_h, z_g). Between conformable horizons this
+//!   happens only within the crossing tolerance, or where sheets are extrapolated; against an older erosional or onlap surface it is
+//!   the lap of the younger layers;
+//! - intrusive h: what is below it belongs to its layer, whatever else is there; every other horizon ends where it meets it. List an
+//!   intrusion below all the horizons it cuts, so that the layer it closes is its own.
+//!
+//! Because the bits suffice, a section is cut by the smooth, unclipped sheets, and junctions are exact intersections of two of them.
+
+use survey::stratigraphy::{Contact, Stratigraphy};
+
+/// The contacts of a stratigraphy, youngest first, ready to be applied.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ContactRules {
+    contacts: Vec<Contact>,
+}
+
+impl ContactRules {
+    /// The rules of `stratigraphy` (at most 64 horizons: one bit each).
+    pub fn new(stratigraphy: &Stratigraphy) -> Self {
+        Self { contacts: stratigraphy.horizons.iter().map(|h| h.contact).collect() }
+    }
+
+    /// Contacts, youngest first.
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// The layer of a place, whose bit h of `below` says that it lies at or below the sheet of horizon h.
+    pub fn layer(&self, below: u64) -> u16 {
+        let n = self.contacts.len();
+        let is_below = |h: usize| below >> h & 1 == 1;
+        // The youngest intrusion that holds the place has it.
+        let intrusion = (0..n).find(|&h| self.contacts[h] == Contact::Intrusive && is_below(h));
+        if let Some(h) = intrusion {
+            return (n - 1 - h) as u16;
+        }
+        // In the order of deposition: the oldest horizon that the place is still below.
+        let mut deepest = None;
+        for h in (0..n).rev() {
+            match self.contacts[h] {
+                Contact::Intrusive => {}
+                Contact::Erosional if !is_below(h) => deepest = None,
+                _ if is_below(h) => deepest = deepest.or(Some(h)),
+                _ => {}
+            }
+        }
+        deepest.map_or(n, |h| n - 1 - h) as u16
+    }
+
+    /// Cuts the heights of all sheets at one place, youngest first, in place: a horizon that has ended lies on the one it ended at.
+    pub fn clip(&self, z: &mut [f32]) {
+        let n = self.contacts.len();
+        let mut older: Option<usize> = None;
+        for h in (0..n).rev() {
+            match self.contacts[h] {
+                Contact::Intrusive => continue,
+                Contact::Erosional => {
+                    for g in h + 1..n {
+                        if self.contacts[g] != Contact::Intrusive {
+                            z[g] = z[g].max(z[h]);
+                        }
+                    }
+                }
+                Contact::Conformable | Contact::Onlap => {
+                    if let Some(g) = older {
+                        z[h] = z[h].min(z[g]);
+                    }
+                }
+            }
+            older = Some(h);
+        }
+        for i in 0..n {
+            if self.contacts[i] == Contact::Intrusive {
+                for h in 0..n {
+                    // Between two intrusions the younger one wins.
+                    if h != i && (self.contacts[h] != Contact::Intrusive || h > i) {
+                        z[h] = z[h].min(z[i]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Whether younger horizon `h` and older horizon `g` may cross: one of them, or one between them, ends the other.
+    pub fn may_cross(&self, h: usize, g: usize) -> bool {
+        self.contacts[h] == Contact::Erosional
+            || self.contacts[h] == Contact::Intrusive
+            || self.contacts[h + 1..=g].iter().any(|&c| c != Contact::Conformable)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::stratigraphy::StratigraphicHorizon;
+
+    fn rules(contacts: &[Contact]) -> ContactRules {
+        let horizons = contacts
+            .iter()
+            .enumerate()
+            .map(|(h, &contact)| StratigraphicHorizon { name: format!("H{h}"), contact })
+            .collect();
+        ContactRules::new(&Stratigraphy { horizons, layer_names: Vec::new() })
+    }
+
+    fn bits(z: f32, sheets: &[f32]) -> u64 {
+        sheets.iter().enumerate().map(|(h, &s)| u64::from(z >= s) << h).sum()
+    }
+
+    #[test]
+    fn an_erosion_surface_cuts_what_is_older() {
+        let r = rules(&[Contact::Conformable, Contact::Erosional, Contact::Conformable, Contact::Conformable]);
+        // The third horizon rises above the unconformity at 50; the place between them is already eroded.
+        let sheets = [20.0, 50.0, 40.0, 80.0];
+        assert_eq!(r.layer(bits(45.0, &sheets)), 3);
+        assert_eq!(r.layer(bits(60.0, &sheets)), 1);
+        let mut z = sheets;
+        r.clip(&mut z);
+        assert_eq!(z, [20.0, 50.0, 50.0, 80.0]);
+    }
+
+    #[test]
+    fn a_younger_horizon_laps_onto_an_onlap_surface() {
+        let r = rules(&[Contact::Conformable, Contact::Onlap, Contact::Conformable]);
+        let sheets = [60.0, 50.0, 70.0];
+        assert_eq!(r.layer(bits(55.0, &sheets)), 1);
+        let mut z = sheets;
+        r.clip(&mut z);
+        assert_eq!(z, [50.0, 50.0, 70.0]);
+    }
+
+    #[test]
+    fn salt_replaces_everything_below_its_top() {
+        let r = rules(&[Contact::Conformable, Contact::Conformable, Contact::Intrusive]);
+        let sheets = [20.0, 40.0, 10.0];
+        assert_eq!(r.layer(bits(30.0, &sheets)), 0);
+        assert_eq!(r.layer(bits(5.0, &sheets)), 3);
+        let mut z = sheets;
+        r.clip(&mut z);
+        assert_eq!(z, [10.0, 10.0, 10.0]);
+    }
+
+    #[test]
+    fn layers_and_clipped_sheets_tell_the_same_story() {
+        let all = [Contact::Conformable, Contact::Erosional, Contact::Onlap];
+        let mut state = 1u32;
+        let mut next = move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) as f32 / 65536.0
+        };
+        for _ in 0..4000 {
+            let contacts: Vec<Contact> = (0..5)
+                .map(|h| if h == 4 && next() < 0.3 { Contact::Intrusive } else { all[(next() * 3.0) as usize % 3] })
+                .collect();
+            let r = rules(&contacts);
+            let sheets: Vec<f32> = (0..5).map(|h| 20.0 * h as f32 + 60.0 * next()).collect();
+            let z = 160.0 * next();
+            let mut cut = sheets.clone();
+            r.clip(&mut cut);
+            assert!(cut.windows(2).all(|w| w[0] <= w[1]), "{contacts:?} {cut:?}");
+            let passed = cut.iter().filter(|&&s| z >= s).count();
+            assert_eq!(usize::from(r.layer(bits(z, &sheets))), 5 - passed, "{contacts:?} {sheets:?} {z}");
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! Faults as surfaces that reach through the whole volume, and the blocks they cut it into.
+//!
+//! A fault exists everywhere, unless it is truncated by another: then it exists only on the side of the other on which most of its
+//! vertices lie (and only where that other exists). A block is a combination of sides that occurs in the volume; faults that do
+//! not exist at a place have no say there. A combination that no voxel has (it can occur in a sliver between voxels) is given to the known
+//! block with the fewest differing sides.
+//!
+//! Any number of faults up to 64 may cross (X), end at one another (Y) or both; a circle of truncations is an error.
+
+mod blocks;
+mod build;
+mod outline;
+mod surface;
+
+pub use surface::FaultSurface;
+
+use crate::report::ModelError;
+use crate::settings::ModelSettings;
+use build::Built;
+use glam::{DVec3, Vec3};
+use outline::{Reach, Target};
+use survey::fault::Fault;
+use survey::geometry::SurveyGeometry;
+use survey::height_field::HeightField;
+use survey::progress::Progress;
+
+/// Most faults: one bit each.
+const MOST_FAULTS: usize = 64;
+/// Most blocks; each needs sheets of its own.
+const MOST_BLOCKS: usize = 4096;
+/// Up to so many faults the block is read from a table of all combinations, 2 bytes each.
+const TABLE_FAULTS: usize = 14;
+
+/// Where a fault ends at another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Truncation {
+    /// Index of the fault it ends at.
+    pub by: usize,
+    /// Whether it lies on the positive side of that one.
+    pub positive: bool,
+}
+
+/// The sides of the faults a block lies on: it holds every place whose side bits agree with `bits` where `care` is set.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BlockSignature {
+    /// Bit f set: on the positive side of fault f.
+    pub bits: u64,
+    /// Bit f set: fault f exists there, so that its bit matters.
+    pub care: u64,
+}
+
+/// All faults of a model and the blocks between them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaultNetwork {
+    surfaces: Vec<FaultSurface>,
+    truncation: Vec<Option<Truncation>>,
+    /// Fault indices such that a fault comes after the one it ends at.
+    order: Vec<usize>,
+    signatures: Vec<BlockSignature>,
+    /// Block of every combination of side bits, when there are few faults.
+    table: Vec<u16>,
+}
+
+impl FaultNetwork {
+    /// No faults: one block.
+    pub fn none() -> Self {
+        Self {
+            surfaces: Vec::new(),
+            truncation: Vec::new(),
+            order: Vec::new(),
+            signatures: vec![BlockSignature { bits: 0, care: 0 }],
+            table: vec![0],
+        }
+    }
+
+    /// Continues `faults` through the volume of `geometry` and finds the blocks.
+    ///
+    /// # Errors
+    /// [`ModelError`] for a fault without area, one that folds over itself, bad truncations, too many faults or blocks.
+    pub fn build(
+        geometry: &SurveyGeometry,
+        faults: &[Fault],
+        settings: &ModelSettings,
+        progress: &Progress,
+    ) -> Result<Self, ModelError> {
+        if faults.is_empty() {
+            return Ok(Self::none());
+        }
+        if faults.len() > MOST_FAULTS {
+            return Err(ModelError::TooMany { what: "faults", found: faults.len(), limit: MOST_FAULTS });
+        }
+        for (i, fault) in faults.iter().enumerate() {
+            if faults[..i].iter().any(|f| f.name == fault.name) {
+                return Err(ModelError::DuplicateName { what: "faults", name: fault.name.clone() });
+            }
+        }
+        let order = truncation_order(faults)?;
+        progress.begin("faults", faults.len() as u64);
+        let mut built = Vec::with_capacity(faults.len());
+        for fault in faults {
+            built.push(build::build(geometry, fault)?);
+            progress.step(1)?;
+        }
+        let truncation: Vec<Option<Truncation>> = faults
+            .iter()
+            .zip(&built)
+            .map(|(fault, own)| {
+                let by = faults.iter().position(|f| Some(&f.name) == fault.truncated_by.as_ref())?;
+                let positive = own.vertices.iter().filter(|&&v| built[by].surface.side(v) >= 0.0).count();
+                Some(Truncation { by, positive: 2 * positive >= own.vertices.len() })
+            })
+            .collect();
+        for f in 0..built.len() {
+            let z = extent(geometry, &built, f, truncation[f], settings);
+            built[f].surface.extent.z = z;
+        }
+        let surfaces: Vec<FaultSurface> = built.into_iter().map(|b| b.surface).collect();
+        let signatures =
+            blocks::occurring(&surfaces, &truncation, &order, geometry.size(), geometry.metric_from_voxel(), progress)?;
+        if signatures.len() > MOST_BLOCKS {
+            return Err(ModelError::TooMany { what: "fault blocks", found: signatures.len(), limit: MOST_BLOCKS });
+        }
+        Ok(Self { surfaces, truncation, order, signatures, table: Vec::new() }.with_table())
+    }
+
+    /// The network that [`Self::surfaces`], [`Self::truncation`] and [`Self::signatures`] are of; `None` where they do not go together.
+    pub fn of_parts(
+        surfaces: Vec<FaultSurface>,
+        truncation: Vec<Option<Truncation>>,
+        signatures: Vec<BlockSignature>,
+    ) -> Option<Self> {
+        let whole = |field: &HeightField| {
+            field.size.iter().all(|&n| n >= 2) && field.size[0].checked_mul(field.size[1]) == Some(field.z.len())
+        };
+        let fields = surfaces.iter().all(|fault| whole(&fault.surface) && whole(&fault.extent));
+        let faults = surfaces.len();
+        if !fields || faults > MOST_FAULTS || truncation.len() != faults || signatures.is_empty() {
+            return None;
+        }
+        let by: Vec<Option<usize>> = truncation.iter().map(|truncation| truncation.map(|t| t.by)).collect();
+        if by.iter().flatten().any(|&by| by >= faults) {
+            return None;
+        }
+        let order = ordered(&by).ok()?;
+        Some(Self { surfaces, truncation, order, signatures, table: Vec::new() }.with_table())
+    }
+
+    /// With the table of combinations, where there are few faults.
+    fn with_table(mut self) -> Self {
+        let faults = self.surfaces.len();
+        if faults <= TABLE_FAULTS {
+            self.table = (0..1u64 << faults).map(|bits| self.nearest_block(bits)).collect();
+        }
+        self
+    }
+
+    /// Count of blocks, at least 1.
+    pub fn block_count(&self) -> usize {
+        self.signatures.len()
+    }
+
+    /// The fault surfaces, in the order the faults were given.
+    pub fn surfaces(&self) -> &[FaultSurface] {
+        &self.surfaces
+    }
+
+    /// Where each fault ends at another, if it does.
+    pub fn truncation(&self) -> &[Option<Truncation>] {
+        &self.truncation
+    }
+
+    /// The signature of each block; index = block id. A place is in the block with the fewest bits set in
+    /// `(bits ^ signature.bits) & signature.care`, the first of them; for voxels of the volume that count is 0 for exactly one block.
+    pub fn signatures(&self) -> &[BlockSignature] {
+        &self.signatures
+    }
+
+    /// The block of every combination of side bits, 2^faults entries; `None` when there are too many faults for a table.
+    pub fn table(&self) -> Option<&[u16]> {
+        (!self.table.is_empty()).then_some(&self.table)
+    }
+
+    /// Signed metric offset of voxel position `p` from the extended surface of `fault`, along the normal of its plane, m.
+    pub fn side(&self, fault: usize, p: Vec3) -> f32 {
+        self.surfaces[fault].side(p.as_dvec3()) as f32
+    }
+
+    /// Side bits at voxel position `p`: bit f set on the positive side of fault f (or on it).
+    pub fn bits_at(&self, p: Vec3) -> u64 {
+        let p = p.as_dvec3();
+        self.surfaces.iter().enumerate().map(|(f, s)| u64::from(s.side(p) >= 0.0) << f).sum()
+    }
+
+    /// The faults that exist where the side bits are `bits`, one bit each.
+    pub fn existing(&self, bits: u64) -> u64 {
+        blocks::existing(&self.truncation, &self.order, bits)
+    }
+
+    /// Whether the place of `fault` nearest to voxel position `p` (along the normal of its plane) was interpreted, and is drawn.
+    pub fn is_real(&self, fault: usize, p: Vec3) -> bool {
+        self.surfaces[fault].extent_at(p.as_dvec3()) >= 0.0
+            && (self.truncation[fault].is_none() || self.existing(self.bits_at(p)) >> fault & 1 == 1)
+    }
+
+    /// The block that voxel position `p` lies in.
+    pub fn block_at(&self, p: Vec3) -> u16 {
+        self.block_of(self.bits_at(p))
+    }
+
+    /// Whether voxel position `p` is on the sides of all faults that bound `block`; stops at the first one that says no.
+    pub fn holds(&self, block: u16, p: Vec3) -> bool {
+        let (p, BlockSignature { bits, care }) = (p.as_dvec3(), self.signatures[usize::from(block)]);
+        self.surfaces.iter().enumerate().all(|(f, s)| care >> f & 1 == 0 || (s.side(p) >= 0.0) == (bits >> f & 1 == 1))
+    }
+
+    /// The block of a set of side bits.
+    pub fn block_of(&self, bits: u64) -> u16 {
+        match self.table.get(bits as usize) {
+            Some(&block) => block,
+            None => self.nearest_block(bits),
+        }
+    }
+
+    fn nearest_block(&self, bits: u64) -> u16 {
+        let difference = |s: &BlockSignature| ((s.bits ^ bits) & s.care).count_ones();
+        (0..self.signatures.len()).min_by_key(|&b| difference(&self.signatures[b])).unwrap_or(0) as u16
+    }
+}
+
+/// Fault indices such that each comes after the one it is truncated by.
+fn truncation_order(faults: &[Fault]) -> Result<Vec<usize>, ModelError> {
+    let mut by = Vec::with_capacity(faults.len());
+    for fault in faults {
+        by.push(match &fault.truncated_by {
+            None => None,
+            Some(name) => Some(
+                faults
+                    .iter()
+                    .position(|f| &f.name == name)
+                    .ok_or_else(|| ModelError::UnknownTruncation { name: fault.name.clone(), by: name.clone() })?,
+            ),
+        });
+    }
+    ordered(&by).map_err(|circle| ModelError::CyclicTruncation {
+        names: circle.into_iter().map(|f| faults[f].name.clone()).collect(),
+    })
+}
+
+/// Indices such that each comes after the one it ends at, or else a circle.
+fn ordered(by: &[Option<usize>]) -> Result<Vec<usize>, Vec<usize>> {
+    let mut order = Vec::with_capacity(by.len());
+    for start in 0..by.len() {
+        let mut path: Vec<usize> = Vec::new();
+        let mut next = Some(start);
+        while let Some(f) = next.filter(|f| !order.contains(f)) {
+            if let Some(at) = path.iter().position(|&g| g == f) {
+                return Err(path[at..].iter().copied().chain([f]).collect());
+            }
+            path.push(f);
+            next = by[f];
+        }
+        order.extend(path.into_iter().rev());
+    }
+    Ok(order)
+}
+
+/// Signed distance of fault `f` to the rim of its extent at its grid nodes, m, after its rim was pushed on to what it nearly reaches.
+fn extent(
+    geometry: &SurveyGeometry,
+    built: &[Built],
+    f: usize,
+    truncation: Option<Truncation>,
+    settings: &ModelSettings,
+) -> Vec<f32> {
+    let Built { surface, patch, edge_m, .. } = &built[f];
+    let spacing = surface.spacing_m;
+    let tolerance = settings.rim_tolerance_m.unwrap_or(*edge_m) / spacing;
+    let voxel_from_frame = surface.frame_from_voxel.inverse();
+    let voxel = move |q: DVec3| voxel_from_frame * (q - surface.frame_offset);
+    // In-plane direction (cells) along which `value`, 0 on the target and positive before it, falls, and the cells to go.
+    let towards = move |value: f64, gradient_voxel: DVec3| {
+        let gradient = (voxel_from_frame.transpose() * gradient_voxel).truncate();
+        let steep = gradient.length();
+        (steep > 1e-9).then(|| (-gradient / steep, value / steep)).filter(|&(_, cells)| cells <= tolerance)
+    };
+    let mut walls: Vec<Box<dyn Fn(DVec3) -> Target>> = Vec::new();
+    for axis in 0..3 {
+        let last = geometry.size()[axis] as f64 - 1.0;
+        walls.push(Box::new(move |q| towards(voxel(q)[axis], DVec3::AXES[axis])));
+        walls.push(Box::new(move |q| towards(last - voxel(q)[axis], -DVec3::AXES[axis])));
+    }
+    // Past a wall the strip goes on to the end of the grid, past a fault by half the tolerance.
+    let [nu, nv] = surface.surface.size;
+    let mut reaches: Vec<(Reach, f64)> = walls.iter().map(|w| (&**w as Reach, (nu + nv) as f64)).collect();
+    let by = truncation.map(|t| (&built[t.by].surface, if t.positive { 1.0 } else { -1.0 }));
+    let to_fault = by.map(|(other, sign)| {
+        move |q: DVec3| {
+            let p = voxel(q);
+            towards(sign * other.side(p), sign * other.side_gradient(p))
+        }
+    });
+    if let Some(to_fault) = &to_fault {
+        reaches.push((to_fault, 0.5 * tolerance));
+    }
+    let mut reached = patch.clone();
+    reached.reach(&reaches);
+    let cells = reached.signed_distance(surface.surface.origin, surface.surface.size);
+    cells.into_iter().map(|d| (f64::from(d) * spacing) as f32).collect()
+}
+
+#[cfg(test)]
+mod tests;

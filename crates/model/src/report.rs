@@ -1,0 +1,254 @@
+//! What can go wrong when a model is built, and what was decided on the way.
+
+use std::fmt;
+use survey::geometry::GeometryError;
+use survey::progress::Cancelled;
+
+/// Why no model could be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// The survey geometry cannot be used.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// The user cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// The stratigraphy names a horizon that was not given.
+    #[error(
+        "the stratigraphy names horizon \"{name}\", but no such horizon was given; add it or take it out of the stratigraphy"
+    )]
+    MissingHorizon {
+        /// Name in the stratigraphy.
+        name: String,
+    },
+    /// Two horizons or two faults have one name.
+    #[error("two {what} are named \"{name}\"; rename one of them")]
+    DuplicateName {
+        /// "horizons" or "faults".
+        what: &'static str,
+        /// The name.
+        name: String,
+    },
+    /// A horizon has no usable node.
+    #[error(
+        "horizon \"{name}\" has no node inside the survey ({outside} outside, {holes} holes); check its coordinates, vertical unit, sign and null value"
+    )]
+    EmptyHorizon {
+        /// Name of the horizon.
+        name: String,
+        /// Nodes with a depth, outside the survey.
+        outside: usize,
+        /// Nodes without a depth.
+        holes: usize,
+    },
+    /// More horizons or faults than can be told apart.
+    #[error("{found} {what} were given, at most {limit} can be used")]
+    TooMany {
+        /// "horizons" or "faults".
+        what: &'static str,
+        /// How many there are.
+        found: usize,
+        /// How many there may be.
+        limit: usize,
+    },
+    /// A fault has no area.
+    #[error(
+        "fault \"{name}\" has no triangle with an area and finite corners; check its coordinates and vertical unit"
+    )]
+    EmptyFault {
+        /// Name of the fault.
+        name: String,
+    },
+    /// A fault passes twice over one place of its own best-fit plane.
+    #[error(
+        "fault \"{name}\" folds back over itself by up to {offset_m:.0} m near X {:.0}, Y {:.0}, vertical {:.0}; split it into two faults there and let one be truncated by the other",
+        world[0], world[1], world[2]
+    )]
+    FoldedFault {
+        /// Name of the fault.
+        name: String,
+        /// World position of the worst place.
+        world: [f64; 3],
+        /// Distance between the two branches there, m.
+        offset_m: f64,
+    },
+    /// A fault is truncated by one that is not there.
+    #[error(
+        "fault \"{name}\" is truncated by \"{by}\", which is not among the faults; add it or remove the truncation"
+    )]
+    UnknownTruncation {
+        /// The truncated fault.
+        name: String,
+        /// The name it refers to.
+        by: String,
+    },
+    /// Faults truncate one another in a circle.
+    #[error("faults truncate one another in a circle: {}; remove one of these truncations", names.join(" → "))]
+    CyclicTruncation {
+        /// The faults along the circle.
+        names: Vec<String>,
+    },
+    /// The picks of two horizons are in the wrong order.
+    #[error(
+        "horizon \"{younger}\" lies below \"{older}\" at {nodes} nodes of fault block {block}, by up to {worst:.1} samples near inline {:.0}, crossline {:.0}; \
+         correct their order in the stratigraphy, edit the picks there, or make one of them an erosional, onlap or intrusive contact",
+        lines[0], lines[1]
+    )]
+    CrossingHorizons {
+        /// The horizon that should be above.
+        younger: String,
+        /// The horizon that should be below.
+        older: String,
+        /// Fault block.
+        block: u16,
+        /// Nodes that cross by more than the tolerance.
+        nodes: usize,
+        /// The largest crossing, samples.
+        worst: f32,
+        /// Inline and crossline number of the worst place.
+        lines: [f64; 2],
+    },
+}
+
+/// How a horizon came into a block where nothing of it was picked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Placement {
+    /// By its thickness, or its share of the interval, between its neighbours in another block.
+    Thickness {
+        /// The block the thickness was taken from.
+        donor: u16,
+    },
+    /// As the surface through the picks of all other blocks.
+    OtherBlocks,
+}
+
+/// One decision that the user should know of.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ModelNote {
+    /// A horizon is not in the stratigraphy and was left out.
+    Ignored {
+        /// Name of the horizon.
+        horizon: String,
+    },
+    /// Depths of a horizon lie outside the survey and its margin.
+    Outside {
+        /// Name of the horizon.
+        horizon: String,
+        /// How many.
+        nodes: usize,
+    },
+    /// A sheet carries the number of a block that it does not lie in.
+    Reassigned {
+        /// Name of the horizon.
+        horizon: String,
+        /// Block it was given for.
+        given: u16,
+        /// Block its nodes lie in.
+        used: u16,
+    },
+    /// Nodes close to a fault were dropped.
+    SetBack {
+        /// Name of the horizon.
+        horizon: String,
+        /// How many.
+        nodes: usize,
+    },
+    /// Nodes were picked on the wrong side of a fault and left out.
+    Strays {
+        /// Name of the horizon.
+        horizon: String,
+        /// How many.
+        nodes: usize,
+    },
+    /// Two sheets of one block lie over one another; the better one was used.
+    Overlap {
+        /// Name of the horizon.
+        horizon: String,
+        /// Traces with two depths.
+        nodes: usize,
+        /// Their largest difference, samples.
+        worst: f32,
+    },
+    /// A sheet was continued where it has no data inside the volume.
+    Extended {
+        /// Name of the horizon.
+        horizon: String,
+        /// Fault block.
+        block: u16,
+        /// Traces of the block's part of the horizon that have no data.
+        traces: usize,
+    },
+    /// A horizon with no or too few nodes in a block was placed there.
+    Placed {
+        /// Name of the horizon.
+        horizon: String,
+        /// Fault block.
+        block: u16,
+        /// How.
+        by: Placement,
+    },
+    /// Continued parts of two horizons crossed and were pulled together.
+    Clamped {
+        /// The horizon that should be above.
+        younger: String,
+        /// The horizon that should be below.
+        older: String,
+        /// Fault block.
+        block: u16,
+        /// Traces inside the block where they did.
+        nodes: usize,
+        /// The largest crossing, samples.
+        worst: f32,
+    },
+}
+
+impl fmt::Display for ModelNote {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Ignored { horizon } => {
+                write!(f, "horizon \"{horizon}\" is not in the stratigraphy and was left out")
+            }
+            Self::Outside { horizon, nodes } => {
+                write!(f, "{nodes} depths of horizon \"{horizon}\" lie outside the survey and were left out")
+            }
+            Self::Reassigned { horizon, given, used } => {
+                write!(
+                    f,
+                    "a sheet of horizon \"{horizon}\" for fault block {given} lies in block {used} and was used there"
+                )
+            }
+            Self::SetBack { horizon, nodes } => {
+                write!(f, "{nodes} nodes of horizon \"{horizon}\" close to a fault were dropped")
+            }
+            Self::Strays { horizon, nodes } => {
+                write!(f, "{nodes} nodes of horizon \"{horizon}\" lie on the wrong side of a fault and were left out")
+            }
+            Self::Overlap { horizon, nodes, worst } => write!(
+                f,
+                "horizon \"{horizon}\" has two depths in one fault block at {nodes} traces, up to {worst:.1} samples apart"
+            ),
+            Self::Extended { horizon, block, traces } => {
+                write!(f, "horizon \"{horizon}\" was continued over {traces} traces of fault block {block}")
+            }
+            Self::Placed { horizon, block, by: Placement::Thickness { donor } } => write!(
+                f,
+                "horizon \"{horizon}\" has no or too few picks in fault block {block} and was placed by the thickness it has in block {donor}"
+            ),
+            Self::Placed { horizon, block, by: Placement::OtherBlocks } => write!(
+                f,
+                "horizon \"{horizon}\" has no or too few picks in fault block {block} and was continued from the other blocks"
+            ),
+            Self::Clamped { younger, older, block, nodes, worst } => write!(
+                f,
+                "horizons \"{younger}\" and \"{older}\", continued without data, crossed by up to {worst:.1} samples at {nodes} traces of fault block {block} and were pulled together"
+            ),
+        }
+    }
+}
+
+/// What was filled, extended, placed and clamped.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ModelReport {
+    /// In the order of the build.
+    pub notes: Vec<ModelNote>,
+}

@@ -1,0 +1,222 @@
+//! The extended sheets: one height field for each horizon and fault block, defined everywhere.
+//!
+//! A block's data are its own nodes and, where the fault between them is virtual (beyond its tip), those of its neighbours: there
+//! both sheets are the same surface, so nothing shows. Beside the real part the other side is ignored. The rest is continued
+//! ([`super::extension`]). A horizon without data in a block is placed by the thickness or proportion it has elsewhere.
+
+use super::extension::{Extension, Plane};
+use super::network::FaultNetwork;
+use super::nodes::{Lattice, Node, Nodes};
+use super::report::{ModelNote, Placement};
+use super::settings::ModelSettings;
+use rayon::prelude::*;
+use survey::height_field::HeightField;
+use survey::horizon::Quality;
+use survey::progress::{Cancelled, Progress};
+
+/// A deviation from the local fit below this is never an outlier, voxels.
+const NOISE: f32 = 0.25;
+/// Up to so many nodes beyond its data a sheet is as good as the data beside it: it meets faults there.
+const SOLID_NODES: usize = 4;
+
+/// One extended sheet and where it comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct ExtendedSheet {
+    pub field: HeightField,
+    /// Quality per node.
+    pub quality: Vec<Quality>,
+    /// Which nodes are data, its own or shared.
+    pub known: Vec<bool>,
+    /// Count of its own nodes.
+    pub own: usize,
+}
+
+impl ExtendedSheet {
+    /// Which nodes are data or within a few nodes of it.
+    pub fn near_data(&self, lattice: Lattice) -> Vec<bool> {
+        let mut near = self.known.clone();
+        for _ in 0..SOLID_NODES {
+            let before = near.clone();
+            for n in (0..near.len()).filter(|&n| !before[n]) {
+                near[n] = beside(lattice.size, n).any(|m| before[m]);
+            }
+        }
+        near
+    }
+}
+
+/// The four neighbours of node `n`.
+fn beside(size: [usize; 2], n: usize) -> impl Iterator<Item = usize> {
+    let [nx, ny] = size;
+    let (x, y) = (n / ny, n % ny);
+    [(x > 0, n.wrapping_sub(ny)), (x + 1 < nx, n + ny), (y > 0, n.wrapping_sub(1)), (y + 1 < ny, n + 1)]
+        .into_iter()
+        .filter_map(|(inside, m)| inside.then_some(m))
+}
+
+/// The sheets of all horizons, `[horizon][block]`.
+pub(super) fn extend_all(
+    lattice: Lattice,
+    names: &[&str],
+    nodes: &[Nodes],
+    faults: &FaultNetwork,
+    settings: &ModelSettings,
+    progress: &Progress,
+) -> Result<(Vec<Vec<ExtendedSheet>>, Vec<ModelNote>), Cancelled> {
+    let blocks = faults.block_count();
+    progress.begin("sheets", (nodes.len() * blocks) as u64);
+    // A horizon as if there were no faults: its mean slope, and the last resort for a block without any data.
+    let wholes: Vec<(Vec<f32>, Extension)> = nodes
+        .iter()
+        .map(|n| {
+            let whole = average(lattice, &n.nodes);
+            let slope = Plane::through(lattice.size, &whole, [0.0; 2]).map_or([0.0; 2], |p| p.slope());
+            (whole, Extension { radius: settings.slope_radius, noise: NOISE, slope })
+        })
+        .collect();
+    let jobs: Vec<(usize, usize)> = (0..nodes.len()).flat_map(|h| (0..blocks).map(move |b| (h, b))).collect();
+    let made: Vec<Option<ExtendedSheet>> = jobs
+        .par_iter()
+        .map(|&(h, b)| {
+            let fewest = if blocks == 1 { 1 } else { settings.fewest_nodes.max(1) };
+            let sheet = extend_one(lattice, &nodes[h].nodes, faults, b, &wholes[h].1, fewest);
+            progress.step(1).map(|()| sheet)
+        })
+        .collect::<Result<_, _>>()?;
+    let mut sheets: Vec<Vec<Option<ExtendedSheet>>> =
+        made.chunks(blocks.max(1)).map(<[Option<ExtendedSheet>]>::to_vec).collect();
+    let mut notes = Vec::new();
+    for b in 0..blocks {
+        let present: Vec<bool> = sheets.iter().map(|of_block| of_block[b].is_some()).collect();
+        for h in (0..sheets.len()).filter(|&h| !present[h]) {
+            progress.check()?;
+            let (field, by) = place(lattice, &sheets, &present, h, b, &wholes[h]);
+            let quality = vec![Quality::Extrapolated; lattice.len()];
+            sheets[h][b] = Some(ExtendedSheet { field, quality, known: vec![false; lattice.len()], own: 0 });
+            notes.push(ModelNote::Placed { horizon: names[h].to_owned(), block: b as u16, by });
+        }
+    }
+    Ok((sheets.into_iter().map(|s| s.into_iter().flatten().collect()).collect(), notes))
+}
+
+/// The mean height of all blocks' nodes, NaN without any.
+fn average(lattice: Lattice, nodes: &[Node]) -> Vec<f32> {
+    let mut sum = vec![(0.0f32, 0.0f32); lattice.len()];
+    for node in nodes {
+        let (z, n) = &mut sum[node.at as usize];
+        *z += node.z;
+        *n += 1.0;
+    }
+    sum.into_iter().map(|(z, n)| if n > 0.0 { z / n } else { f32::NAN }).collect()
+}
+
+/// The sheet of `block` from the nodes that count for it; `None` with fewer than `fewest`.
+fn extend_one(
+    lattice: Lattice,
+    nodes: &[Node],
+    faults: &FaultNetwork,
+    block: usize,
+    extension: &Extension,
+    fewest: usize,
+) -> Option<ExtendedSheet> {
+    let mut z = vec![f32::NAN; lattice.len()];
+    let mut quality = vec![Quality::Hole; lattice.len()];
+    let signature = faults.signatures()[block];
+    let mut own = 0;
+    for node in nodes.iter().filter(|n| usize::from(n.block) == block) {
+        z[node.at as usize] = node.z;
+        quality[node.at as usize] = node.quality;
+        own += 1;
+    }
+    for node in nodes.iter().filter(|n| usize::from(n.block) != block) {
+        let between = (node.bits ^ signature.bits) & signature.care;
+        if between != 0 && between & !node.beyond == 0 && z[node.at as usize].is_nan() {
+            z[node.at as usize] = node.z;
+            quality[node.at as usize] = node.quality;
+        }
+    }
+    let known: Vec<bool> = z.iter().map(|z| z.is_finite()).collect();
+    if known.iter().filter(|&&k| k).count() < fewest {
+        return None;
+    }
+    extension.extend(lattice.size, &mut z)?;
+    grade(lattice.size, &mut quality);
+    Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })
+}
+
+/// Gives the nodes without data a quality: as their neighbours close to data, filled in enclosed holes, extrapolated elsewhere. Nodes
+/// filled between close picks count as picked.
+fn grade(size: [usize; 2], quality: &mut [Quality]) {
+    let [nx, ny] = size;
+    let rank = |q: Quality| if q == Quality::Hole { u8::MAX } else { q as u8 };
+    for _ in 0..SOLID_NODES {
+        let before = quality.to_vec();
+        for n in 0..quality.len() {
+            if rank(before[n]) > Quality::Tracked as u8 {
+                let best = beside(size, n).map(|m| before[m]).chain([before[n]]).min_by_key(|&q| rank(q));
+                quality[n] = best.unwrap_or(Quality::Hole);
+            }
+        }
+    }
+    let mut stack: Vec<usize> = (0..quality.len())
+        .filter(|&n| n / ny == 0 || n / ny == nx - 1 || n % ny == 0 || n % ny == ny - 1)
+        .filter(|&n| quality[n] == Quality::Hole)
+        .collect();
+    stack.iter().for_each(|&n| quality[n] = Quality::Extrapolated);
+    while let Some(n) = stack.pop() {
+        for m in beside(size, n) {
+            if quality[m] == Quality::Hole {
+                quality[m] = Quality::Extrapolated;
+                stack.push(m);
+            }
+        }
+    }
+    for q in quality.iter_mut().filter(|q| **q == Quality::Hole) {
+        *q = Quality::Filled;
+    }
+}
+
+/// A sheet for horizon `h` in block `b`, where it has no data.
+fn place(
+    lattice: Lattice,
+    sheets: &[Vec<Option<ExtendedSheet>>],
+    present: &[bool],
+    h: usize,
+    b: usize,
+    whole: &(Vec<f32>, Extension),
+) -> (HeightField, Placement) {
+    let z_of = |h: usize, b: usize| sheets[h][b].as_ref().map(|s| &s.field.z);
+    let own = |h: usize, b: usize| sheets[h][b].as_ref().map_or(0, |s| s.own);
+    let above = (0..h).rev().find(|&a| present[a]);
+    let below = (h + 1..sheets.len()).find(|&c| present[c]);
+    // The other block that knows this horizon best, among those that know its neighbours too.
+    let donor = (0..sheets[h].len())
+        .filter(|&d| d != b && own(h, d) > 0)
+        .filter(|&d| above.is_none_or(|a| own(a, d) > 0) && below.is_none_or(|c| own(c, d) > 0))
+        .max_by_key(|&d| (own(h, d), usize::MAX - d));
+    let field = |z: Vec<f32>| HeightField { origin: lattice.origin, size: lattice.size, z };
+    if let (Some(d), true) = (donor, above.is_some() || below.is_some()) {
+        let at_donor = z_of(h, d);
+        let pair = |k: Option<usize>| k.and_then(|k| Some((z_of(k, b)?, z_of(k, d)?)));
+        let (over, under) = (pair(above), pair(below));
+        let z = (0..lattice.len())
+            .map(|n| {
+                let own = at_donor.map_or(0.0, |z| z[n]);
+                match (over, under) {
+                    (Some((top, top_d)), Some((base, base_d))) => {
+                        let thick = base_d[n] - top_d[n];
+                        let share = if thick > 1e-3 { ((own - top_d[n]) / thick).clamp(0.0, 1.0) } else { 0.5 };
+                        top[n] + share * (base[n] - top[n])
+                    }
+                    (Some((top, top_d)), None) => top[n] + (own - top_d[n]).max(0.0),
+                    (None, Some((base, base_d))) => base[n] - (base_d[n] - own).max(0.0),
+                    (None, None) => own,
+                }
+            })
+            .collect();
+        return (field(z), Placement::Thickness { donor: d as u16 });
+    }
+    let mut z = whole.0.clone();
+    whole.1.extend(lattice.size, &mut z);
+    (field(z), Placement::OtherBlocks)
+}

@@ -1,0 +1,274 @@
+//! The structural model: sheets, faults and contact rules together.
+
+use super::contacts::ContactRules;
+use super::network::FaultNetwork;
+use super::nodes::{Lattice, Nodes, gather};
+use super::order::keep_order;
+use super::report::{ModelError, ModelNote, ModelReport};
+use super::settings::ModelSettings;
+use super::sheets::{ExtendedSheet, extend_all};
+use glam::{DMat3, Vec3};
+use rayon::prelude::*;
+use survey::fault::Fault;
+use survey::geometry::SurveyGeometry;
+use survey::height_field::HeightField;
+use survey::horizon::{Horizon, Quality};
+use survey::progress::Progress;
+use survey::stratigraphy::Stratigraphy;
+
+/// Most horizons: one bit each.
+const MOST_HORIZONS: usize = 64;
+
+/// A layer inside a fault block.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Region {
+    /// Layer, 0 = deepest.
+    pub layer: u16,
+    /// Fault block.
+    pub block: u16,
+}
+
+/// Sheets, faults and contact rules: what is where, exactly.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StructuralModel {
+    size: [usize; 3],
+    metric: DMat3,
+    stratigraphy: Stratigraphy,
+    rules: ContactRules,
+    faults: FaultNetwork,
+    /// `[horizon][block]`.
+    sheets: Vec<Vec<ExtendedSheet>>,
+    report: ModelReport,
+}
+
+impl StructuralModel {
+    /// Builds the model of an interpretation. Horizons are looked up by the names in the stratigraphy.
+    ///
+    /// # Errors
+    /// [`ModelError`] says what to change.
+    pub fn build(
+        geometry: &SurveyGeometry,
+        stratigraphy: &Stratigraphy,
+        horizons: &[Horizon],
+        faults: &[Fault],
+        settings: &ModelSettings,
+        progress: &Progress,
+    ) -> Result<Self, ModelError> {
+        geometry.validate()?;
+        let ordered = in_order(stratigraphy, horizons)?;
+        let mut report = ModelReport::default();
+        for horizon in horizons.iter().filter(|h| !ordered.iter().any(|o| o.name == h.name)) {
+            report.notes.push(ModelNote::Ignored { horizon: horizon.name.clone() });
+        }
+        let faults = FaultNetwork::build(geometry, faults, settings, progress)?;
+        let size = geometry.size();
+        let lattice = Lattice::with_margin(size, settings.margin_for(size));
+        progress.begin("nodes", ordered.len() as u64);
+        let mut nodes = Vec::with_capacity(ordered.len());
+        for horizon in &ordered {
+            let found = gather(geometry, lattice, horizon, &faults, settings, &mut report);
+            if found.nodes.is_empty() {
+                let Nodes { outside, holes, .. } = found;
+                return Err(ModelError::EmptyHorizon { name: horizon.name.clone(), outside, holes });
+            }
+            if found.outside > 0 {
+                report.notes.push(ModelNote::Outside { horizon: horizon.name.clone(), nodes: found.outside });
+            }
+            nodes.push(found);
+            progress.step(1)?;
+        }
+        let names: Vec<&str> = ordered.iter().map(|h| h.name.as_str()).collect();
+        let rules = ContactRules::new(stratigraphy);
+        let (mut sheets, placed) = extend_all(lattice, &names, &nodes, &faults, settings, progress)?;
+        report.notes.extend(placed);
+        report.notes.extend(extended(lattice, &names, &sheets, &faults));
+        report.notes.extend(keep_order(geometry, lattice, &rules, &names, &mut sheets, settings, &faults)?);
+        Ok(Self {
+            size,
+            metric: geometry.metric_from_voxel(),
+            stratigraphy: stratigraphy.clone(),
+            rules,
+            faults,
+            sheets,
+            report,
+        })
+    }
+
+    /// Voxels of the volume, `[inlines, crosslines, samples]`.
+    pub fn size(&self) -> [usize; 3] {
+        self.size
+    }
+
+    /// The linear map voxel → metric, m per voxel.
+    pub fn metric(&self) -> DMat3 {
+        self.metric
+    }
+
+    /// Count of layers: one more than horizons.
+    pub fn layer_count(&self) -> usize {
+        self.stratigraphy.layer_count()
+    }
+
+    /// Count of fault blocks, at least 1.
+    pub fn block_count(&self) -> usize {
+        self.faults.block_count()
+    }
+
+    /// The horizons' order and contacts.
+    pub fn stratigraphy(&self) -> &Stratigraphy {
+        &self.stratigraphy
+    }
+
+    /// The contact rules in a form that can be applied.
+    pub fn rules(&self) -> &ContactRules {
+        &self.rules
+    }
+
+    /// The faults and the blocks between them.
+    pub fn faults(&self) -> &FaultNetwork {
+        &self.faults
+    }
+
+    /// The extended, unclipped sheet of `horizon` (0 = youngest) in `block`.
+    pub fn sheet(&self, horizon: usize, block: u16) -> &HeightField {
+        &self.sheets[horizon][usize::from(block)].field
+    }
+
+    /// How the sheet of `horizon` in `block` came about at voxel (x, y).
+    pub fn quality_at(&self, horizon: usize, block: u16, x: f32, y: f32) -> Quality {
+        let sheet = &self.sheets[horizon][usize::from(block)];
+        let HeightField { origin, size, .. } = sheet.field;
+        let node = |c: f32, axis: usize| (c.round() as i32 - origin[axis]).clamp(0, size[axis] as i32 - 1) as usize;
+        sheet.quality[node(x, 0) * size[1] + node(y, 1)]
+    }
+
+    /// Count of interpreted nodes that `horizon` has in `block`; 0 when it was placed there.
+    pub fn own_nodes(&self, horizon: usize, block: u16) -> usize {
+        self.sheets[horizon][usize::from(block)].own
+    }
+
+    /// The block at voxel position `p`.
+    pub fn block_at(&self, p: Vec3) -> u16 {
+        self.faults.block_at(p)
+    }
+
+    /// The layer at voxel position `p` by the sheets of `block`, contact rules applied.
+    pub fn layer_at(&self, p: Vec3, block: u16) -> u16 {
+        self.rules.layer(self.below_at(p, block))
+    }
+
+    /// Bit h set: voxel position `p` lies at or below the unclipped sheet of horizon h in `block`.
+    pub fn below_at(&self, p: Vec3, block: u16) -> u64 {
+        (0..self.sheets.len()).map(|h| u64::from(p.z >= self.sheet(h, block).z_at(p.x, p.y)) << h).sum()
+    }
+
+    /// Layer and block at voxel position `p`.
+    pub fn region_at(&self, p: Vec3) -> Region {
+        let block = self.block_at(p);
+        Region { layer: self.layer_at(p, block), block }
+    }
+
+    /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n, region)` for `depths[n]`. The sheets are
+    /// evaluated once a block instead of once a depth.
+    pub fn regions_down(&self, x: f32, y: f32, depths: &[f32], mut found: impl FnMut(usize, Region)) {
+        let mut sheets_z: Vec<Option<Vec<f32>>> = vec![None; self.block_count()];
+        for (n, &z) in depths.iter().enumerate() {
+            let block = self.block_at(Vec3::new(x, y, z));
+            let sheets_z = sheets_z[usize::from(block)]
+                .get_or_insert_with(|| (0..self.sheets.len()).map(|h| self.sheet(h, block).z_at(x, y)).collect());
+            let below = sheets_z.iter().enumerate().map(|(h, &sheet_z)| u64::from(z >= sheet_z) << h).sum();
+            found(n, Region { layer: self.rules.layer(below), block });
+        }
+    }
+
+    /// Height of `horizon` in `block` as it is drawn, voxel z: cut by the contact rules, so that a horizon which has ended lies on
+    /// the one it ended at.
+    pub fn horizon_z(&self, horizon: usize, block: u16, x: f32, y: f32) -> f32 {
+        let mut z: Vec<f32> = (0..self.sheets.len()).map(|h| self.sheet(h, block).z_at(x, y)).collect();
+        self.rules.clip(&mut z);
+        z[horizon]
+    }
+
+    /// What was filled, extended, placed and clamped.
+    pub fn report(&self) -> &ModelReport {
+        &self.report
+    }
+}
+
+/// The horizons of the stratigraphy, youngest first.
+fn in_order<'a>(stratigraphy: &Stratigraphy, horizons: &'a [Horizon]) -> Result<Vec<&'a Horizon>, ModelError> {
+    let found = stratigraphy.horizons.len();
+    if found > MOST_HORIZONS {
+        return Err(ModelError::TooMany { what: "horizons", found, limit: MOST_HORIZONS });
+    }
+    for (i, named) in stratigraphy.horizons.iter().enumerate() {
+        let given = horizons.iter().filter(|h| h.name == named.name).count();
+        if given > 1 || stratigraphy.horizons[..i].iter().any(|h| h.name == named.name) {
+            return Err(ModelError::DuplicateName { what: "horizons", name: named.name.clone() });
+        }
+    }
+    stratigraphy
+        .horizons
+        .iter()
+        .map(|named| {
+            let horizon = horizons.iter().find(|h| h.name == named.name);
+            horizon.ok_or_else(|| ModelError::MissingHorizon { name: named.name.clone() })
+        })
+        .collect()
+}
+
+/// A note for each sheet that was continued by more than a few nodes inside its own block and the volume.
+fn extended(lattice: Lattice, names: &[&str], sheets: &[Vec<ExtendedSheet>], faults: &FaultNetwork) -> Vec<ModelNote> {
+    let jobs: Vec<(usize, usize)> = (0..sheets.len()).flat_map(|h| (0..sheets[h].len()).map(move |b| (h, b))).collect();
+    let count = |&(h, b): &(usize, usize)| {
+        let sheet = &sheets[h][b];
+        if sheet.own == 0 {
+            return 0;
+        }
+        let near = sheet.near_data(lattice);
+        let bare = |&n: &usize| !near[n] && lattice.is_inside(n);
+        let own = |&n: &usize| faults.holds(b as u16, lattice.place(n, sheet.field.z[n]));
+        (0..lattice.len()).filter(bare).filter(own).count()
+    };
+    let traces: Vec<usize> = jobs.par_iter().map(count).collect();
+    let note = |(&(h, b), traces): (&(usize, usize), usize)| {
+        (traces > 0).then(|| ModelNote::Extended { horizon: names[h].to_owned(), block: b as u16, traces })
+    };
+    jobs.iter().zip(traces).filter_map(note).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::geometry::VerticalUnit;
+    use survey::horizon::{NodeGrid, Quality, Sheet};
+    use survey::stratigraphy::{Contact, StratigraphicHorizon};
+
+    #[test]
+    fn two_flat_horizons_make_three_layers() {
+        let g = SurveyGeometry::regular([10, 12, 40], 25.0, 4.0, VerticalUnit::Milliseconds);
+        let flat = |name: &str, ms: f32| Horizon {
+            name: name.into(),
+            sheets: vec![Sheet::new(NodeGrid::of_survey(&g), vec![ms; 120], Quality::Picked)],
+        };
+        let stratigraphy = Stratigraphy {
+            horizons: ["A", "B"]
+                .map(|name| StratigraphicHorizon { name: name.into(), contact: Contact::Conformable })
+                .into(),
+            layer_names: Vec::new(),
+        };
+        let model = StructuralModel::build(
+            &g,
+            &stratigraphy,
+            &[flat("B", 80.0), flat("A", 40.0)],
+            &[],
+            &ModelSettings::default(),
+            &Progress::silent(),
+        )
+        .unwrap();
+        assert_eq!((model.layer_count(), model.block_count()), (3, 1));
+        let layer = |z: f32| model.region_at(Vec3::new(4.3, 5.1, z)).layer;
+        assert_eq!((layer(5.0), layer(15.0), layer(25.0)), (2, 1, 0));
+        assert_eq!(model.horizon_z(1, 0, 3.5, 14.0), 20.0);
+    }
+}

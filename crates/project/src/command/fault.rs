@@ -1,0 +1,118 @@
+//! Bringing faults in, saying where they end, taking them out.
+
+use super::{Effect, Noun, ProjectError};
+use crate::content;
+use crate::document::FaultEntry;
+use crate::folder::Draft;
+use crate::interpretation::assembly::rebuild_all;
+use formats::{ImportOptions, ImportReport};
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use survey::Progress;
+
+/// Reads a fault into the project.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AddFault {
+    /// The file.
+    pub path: PathBuf,
+    /// Name of the fault.
+    pub name: String,
+    /// The fault it ends at.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truncated_by: Option<String>,
+    /// What the user states about the file.
+    #[serde(default)]
+    pub options: ImportOptions,
+}
+
+/// Says where a fault ends.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct SetTruncation {
+    /// Name of the fault.
+    pub fault: String,
+    /// The fault it ends at; absent: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub by: Option<String>,
+}
+
+/// Takes a fault away.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RemoveFault {
+    /// Its name.
+    pub name: String,
+}
+
+impl AddFault {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        draft.document.check_new_name(Noun::Fault, &self.name)?;
+        if let Some(by) = &self.truncated_by {
+            draft.document.position(Noun::Fault, by)?;
+        }
+        let geometry = draft.document.frame()?.clone();
+        let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
+        let options = ImportOptions { name, ..self.options.clone() };
+        let mut found = formats::read_fault(&self.path, &geometry, &options)?;
+        let (mut fault, report) = match found.len() {
+            1 => found.remove(0),
+            _ => {
+                let names = found.iter().map(|(fault, _)| fault.name.clone()).collect();
+                return Err(ProjectError::SeveralInFile { path: self.path.clone(), names });
+            }
+        };
+        progress.check()?;
+        fault.name.clone_from(&self.name);
+        fault.truncated_by.clone_from(&self.truncated_by);
+        let hash = content::hash_fault(&fault);
+        let (file, new) = draft.generation("faults", &self.name, "json")?;
+        store::write_fault(&new, &fault)?;
+        draft.document.faults.push(FaultEntry {
+            name: self.name.clone(),
+            truncated_by: self.truncated_by.clone(),
+            file,
+            hash,
+            source: super::source_of(&self.path, super::horizon::reading(&report))?,
+        });
+        rebuild_all(draft, progress)?;
+        Ok(Effect::FaultAdded(Box::new(FaultAdded { triangles: fault.mesh.triangles.len(), report })))
+    }
+}
+
+/// What adding a fault did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FaultAdded {
+    /// Triangles of its surface.
+    pub triangles: usize,
+    /// What was read, assumed and left out.
+    #[serde(flatten)]
+    pub report: ImportReport,
+}
+
+impl SetTruncation {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Fault, &self.fault)?;
+        if let Some(by) = &self.by {
+            draft.document.position(Noun::Fault, by)?;
+        }
+        draft.document.faults[index].truncated_by.clone_from(&self.by);
+        draft.document.check_truncation()?;
+        rebuild_all(draft, progress)?;
+        let summary = match &self.by {
+            Some(by) => format!("fault {} ends at {by}", self.fault),
+            None => format!("fault {} ends at none", self.fault),
+        };
+        Ok(Effect::Changed { summary })
+    }
+}
+
+impl RemoveFault {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Fault, &self.name)?;
+        draft.document.faults.remove(index);
+        draft.document.sticks.retain(|drawn| drawn.fault != self.name);
+        for fault in &mut draft.document.faults {
+            fault.truncated_by = fault.truncated_by.take().filter(|by| *by != self.name);
+        }
+        rebuild_all(draft, progress)?;
+        Ok(Effect::Changed { summary: format!("no fault {}", self.name) })
+    }
+}

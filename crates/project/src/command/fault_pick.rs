@@ -1,0 +1,118 @@
+//! Faults drawn by hand as sticks, and proposed ones accepted.
+
+use super::{Effect, Noun, ProjectError};
+use crate::content;
+use crate::document::{FaultEntry, FaultSticks, Source};
+use crate::folder::Draft;
+use crate::interpretation::assembly::rebuild_all;
+use crate::interpretation::proposals;
+use formats::fault_of_sticks;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use survey::{Fault, Progress};
+
+/// Adds sticks to a fault that is being drawn; its surface is made from two sticks on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PickFault {
+    /// Name of the fault.
+    pub name: String,
+    /// Sticks, each of at least two places: inline, crossline, vertical value.
+    pub sticks: Vec<Vec<[f64; 3]>>,
+}
+
+/// Makes a proposed fault one of the project's.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct AcceptFault {
+    /// Number of the proposal.
+    pub id: u32,
+    /// Name of the fault.
+    pub name: String,
+}
+
+impl PickFault {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let geometry = draft.document.frame()?.clone();
+        if let Some(stick) = self.sticks.iter().position(|stick| stick.len() < 2) {
+            return Err(ProjectError::ShortStick { stick: stick + 1 });
+        }
+        for place in self.sticks.iter().flatten() {
+            let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
+            let size = geometry.size();
+            // A stick may end a little outside; farther off, a number was mistyped.
+            let near = (0..3).all(|axis| {
+                let n = size[axis] as f64;
+                voxel[axis] >= -0.25 * n && voxel[axis] <= 1.25 * n
+            });
+            if !near {
+                return Err(ProjectError::PickOutside {
+                    at: *place,
+                    inlines: [geometry.inlines.first, geometry.inlines.last()],
+                    crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
+                    vertical: [geometry.vertical.first, geometry.vertical.last()],
+                });
+            }
+        }
+        let drawn = draft.document.sticks.iter().position(|drawn| drawn.fault == self.name);
+        let present = draft.document.faults.iter().position(|entry| entry.name == self.name);
+        let drawn = match (drawn, present) {
+            (Some(drawn), _) => drawn,
+            (None, Some(_)) => return Err(ProjectError::NotDrawn { fault: self.name.clone() }),
+            (None, None) => {
+                draft.document.check_new_name(Noun::Fault, &self.name)?;
+                draft.document.sticks.push(FaultSticks { fault: self.name.clone(), sticks: Vec::new() });
+                draft.document.sticks.len() - 1
+            }
+        };
+        draft.document.sticks[drawn].sticks.extend(self.sticks.iter().cloned());
+        let sticks = draft.document.sticks[drawn].sticks.clone();
+        if sticks.len() < 2 {
+            return Ok(Effect::Changed {
+                summary: format!("fault {}: one stick; a second one makes its surface", self.name),
+            });
+        }
+        let world = |place: &[f64; 3]| -> DVec3 {
+            let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
+            geometry.world_from_voxel(voxel)
+        };
+        let lines: Vec<Vec<DVec3>> = sticks.iter().map(|stick| stick.iter().map(world).collect()).collect();
+        let fault = fault_of_sticks(&self.name, &lines, &geometry)
+            .ok_or_else(|| ProjectError::FlatSticks { fault: self.name.clone() })?;
+        let source =
+            Source { path: PathBuf::from("picks"), bytes: 0, reading: format!("drawn with {} sticks", sticks.len()) };
+        put(draft, &fault, source)?;
+        rebuild_all(draft, progress)?;
+        Ok(Effect::Changed {
+            summary: format!("fault {}: {} sticks, {} triangles", self.name, sticks.len(), fault.mesh.triangles.len()),
+        })
+    }
+}
+
+impl AcceptFault {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        draft.document.check_new_name(Noun::Fault, &self.name)?;
+        let proposal = proposals::find(draft.root(), &draft.document, self.id)?;
+        let source = Source {
+            path: PathBuf::from("proposal"),
+            bytes: 0,
+            reading: format!("proposed from the offsets of {}", proposal.horizons.join(", ")),
+        };
+        put(draft, &proposal.fault(&self.name), source)?;
+        rebuild_all(draft, progress)?;
+        Ok(Effect::Changed { summary: format!("fault {}: proposal {} accepted", self.name, self.id) })
+    }
+}
+
+/// Writes a fault and its entry; one of that name is replaced.
+fn put(draft: &mut Draft, fault: &Fault, source: Source) -> Result<(), ProjectError> {
+    let old = draft.document.faults.iter().position(|entry| entry.name == fault.name);
+    let truncated_by = old.and_then(|old| draft.document.faults[old].truncated_by.clone());
+    let (file, new) = draft.generation("faults", &fault.name, "json")?;
+    store::write_fault(&new, fault)?;
+    let entry = FaultEntry { name: fault.name.clone(), truncated_by, file, hash: content::hash_fault(fault), source };
+    match old {
+        Some(old) => draft.document.faults[old] = entry,
+        None => draft.document.faults.push(entry),
+    }
+    Ok(())
+}

@@ -1,0 +1,174 @@
+//! Bringing horizons in, naming them, taking them out.
+//!
+//! A horizon takes its place in the stratigraphy by its depth, or where the user puts it. One that runs through another is refused unless a
+//! contact rule lets one cut the other: the layer between them would be inside out.
+
+use super::{Effect, Noun, ProjectError};
+use crate::content;
+use crate::document::HorizonEntry;
+use crate::folder::Draft;
+use crate::interpretation::order;
+use formats::{ImportOptions, ImportReport};
+use model::ContactRules;
+use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
+use survey::{Contact, Horizon, Progress};
+
+/// Where a horizon goes in the stratigraphy.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Age {
+    /// By its depth.
+    #[default]
+    ByDepth,
+    /// Just above (younger than) the horizon of that name.
+    Above(String),
+    /// Just below (older than) the horizon of that name.
+    Below(String),
+}
+
+/// Reads a horizon into the project.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AddHorizon {
+    /// The file.
+    pub path: PathBuf,
+    /// Name of the horizon.
+    pub name: String,
+    /// What it does to its neighbours.
+    #[serde(default)]
+    pub contact: Contact,
+    /// Where it goes.
+    #[serde(default)]
+    pub age: Age,
+    /// What the user states about the file.
+    #[serde(default)]
+    pub options: ImportOptions,
+}
+
+/// Gives a horizon another name.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RenameHorizon {
+    /// Its name.
+    pub from: String,
+    /// Its new name.
+    pub to: String,
+}
+
+/// Takes a horizon away; the two layers it parts become one.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RemoveHorizon {
+    /// Its name.
+    pub name: String,
+}
+
+impl AddHorizon {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        draft.document.check_new_name(Noun::Horizon, &self.name)?;
+        let geometry = draft.document.frame()?.clone();
+        let mut found = formats::read_horizons(&self.path, &geometry, &self.named())?;
+        let (mut horizon, report) = match found.len() {
+            1 => found.remove(0),
+            _ => {
+                let names = found.iter().map(|(horizon, _)| horizon.name.clone()).collect();
+                return Err(ProjectError::SeveralInFile { path: self.path.clone(), names });
+            }
+        };
+        horizon.name.clone_from(&self.name);
+        progress.check()?;
+        let others = load_all(draft, progress)?;
+        let position = self.position(draft, &horizon, &others)?;
+        let hash = content::hash_horizon(&horizon);
+        let (file, new) = draft.generation("horizons", &self.name, "zarr")?;
+        store::write_horizon(&new, &horizon, progress)?;
+        let entry = HorizonEntry {
+            name: self.name.clone(),
+            contact: self.contact,
+            file,
+            hash,
+            source: super::source_of(&self.path, reading(&report))?,
+            assembly: None,
+        };
+        draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
+        let rules = ContactRules::new(&draft.document.stratigraphy());
+        for (index, other) in others.iter().enumerate() {
+            let index = if index < position { index } else { index + 1 };
+            let (young, old) = (index.min(position), index.max(position));
+            if !rules.may_cross(young, old) {
+                let (younger, older) = if index < position { (other, &horizon) } else { (&horizon, other) };
+                order::check(younger, older, &geometry)?;
+            }
+        }
+        Ok(Effect::HorizonAdded(Box::new(HorizonAdded { position, report })))
+    }
+
+    /// The name chooses among several horizons of a file, unless one is selected by the name it has there.
+    fn named(&self) -> ImportOptions {
+        let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
+        ImportOptions { name, ..self.options.clone() }
+    }
+
+    /// The place in the list, 0 = youngest.
+    fn position(&self, draft: &Draft, horizon: &Horizon, others: &[Horizon]) -> Result<usize, ProjectError> {
+        match &self.age {
+            Age::Above(name) => draft.document.position(Noun::Horizon, name),
+            Age::Below(name) => Ok(draft.document.position(Noun::Horizon, name)? + 1),
+            Age::ByDepth => {
+                let geometry = draft.document.frame()?;
+                let deeper = |other: &Horizon| order::is_above(horizon, other, geometry);
+                Ok(others.iter().position(deeper).unwrap_or(others.len()))
+            }
+        }
+    }
+}
+
+/// What adding a horizon did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct HorizonAdded {
+    /// Place in the stratigraphy, 0 = youngest.
+    pub position: usize,
+    /// What was read, assumed and left out.
+    #[serde(flatten)]
+    pub report: ImportReport,
+}
+
+/// The facts of the reading in one line, for the record.
+pub(super) fn reading(report: &ImportReport) -> String {
+    let mut line = format!(
+        "{}, vertical in {}, positive {}",
+        report.format.value,
+        report.z_unit.value.symbol(),
+        report.z_positive.value.word()
+    );
+    if report.z_factor != 1.0 {
+        line += &format!(", factor {}", report.z_factor);
+    }
+    line
+}
+
+fn load_all(draft: &Draft, progress: &Progress) -> Result<Vec<Horizon>, ProjectError> {
+    let load = |entry: &HorizonEntry| content::read_horizon(draft.root(), entry, progress);
+    draft.document.horizons.iter().map(load).collect()
+}
+
+impl RenameHorizon {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Horizon, &self.from)?;
+        // Its own name in another case is no duplicate.
+        if self.from.to_lowercase() != self.to.to_lowercase() {
+            draft.document.check_new_name(Noun::Horizon, &self.to)?;
+        }
+        draft.document.keep_styles(|document| {
+            document.horizons[index].name.clone_from(&self.to);
+            Ok::<(), ProjectError>(())
+        })?;
+        Ok(Effect::Changed { summary: format!("horizon {} is now {}", self.from, self.to) })
+    }
+}
+
+impl RemoveHorizon {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Horizon, &self.name)?;
+        draft.document.join_layers(index, |document| drop(document.horizons.remove(index)));
+        Ok(Effect::Changed { summary: format!("no horizon {}", self.name) })
+    }
+}

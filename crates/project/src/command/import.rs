@@ -1,0 +1,244 @@
+//! Bringing volumes in, and taking them out again.
+
+use super::{Effect, Noun, ProjectError};
+use crate::content::volume_facts::{self, Facts};
+use crate::document::Polarity;
+use crate::folder::{Draft, IMPORTING};
+use crate::memory_budget;
+use crate::placement;
+use segy::{SegyFile, SegyOptions};
+use serde::{Deserialize, Serialize};
+use std::fs;
+use std::path::{Path, PathBuf};
+use store::{Ingested, StoreError, VolumeInfo, resume_blocks};
+use survey::{Note, Progress, SurveyGeometry};
+
+/// Reads a SEG-Y volume into the project. The first one gives the survey frame; others must lie in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ImportVolume {
+    /// The file.
+    pub path: PathBuf,
+    /// Name of the volume; absent: "seismic" for the first one, else the file's name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// What a positive amplitude means.
+    #[serde(default)]
+    pub polarity: Polarity,
+    /// What the user states about the file.
+    #[serde(default)]
+    pub options: SegyOptions,
+    /// Memory to use, bytes; absent: half of what is available. Not remembered: the result does not depend on it.
+    #[serde(skip)]
+    pub memory_bytes: Option<u64>,
+}
+
+/// What an import did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VolumeImported {
+    /// Name of the volume.
+    pub volume: String,
+    /// Counts of inlines, crosslines and samples.
+    pub size: [usize; 3],
+    /// Traces there are.
+    pub traces: usize,
+    /// Places of the lattice without a trace.
+    pub missing_traces: usize,
+    /// Type that the samples are stored in.
+    pub sample_type: String,
+    /// Files of the volume that an interrupted import of the same file had written.
+    pub kept_files: usize,
+    /// What a positive amplitude means.
+    pub polarity: Polarity,
+    /// Value at which colours are clipped.
+    pub clip: f32,
+    /// How geometry and units were found.
+    pub evidence: Vec<Note>,
+    /// What had to be assumed.
+    pub assumptions: Vec<Note>,
+}
+
+/// Takes a volume away.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RemoveVolume {
+    /// Its name.
+    pub name: String,
+}
+
+impl ImportVolume {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let name = self.name_in(draft);
+        draft.document.check_new_name(Noun::Volume, &name)?;
+        let file = SegyFile::open(&self.path, &self.options, progress)?;
+        let geometry = file.geometry()?;
+        if let Some(frame) = &draft.document.geometry {
+            placement::covers(frame, &geometry)
+                .map_err(|source| ProjectError::Placement { name: name.clone(), source })?;
+        }
+        file.release();
+        file.info().warnings.iter().for_each(|warning| progress.warn(warning.clone()));
+        let (stored_as, new) = draft.generation("volumes", &name, "zarr")?;
+        let folder = draft.root().join(IMPORTING);
+        let ingested = self.ingest(&file, &geometry, &folder, &new, progress);
+        if ingested.is_err() {
+            // Only a killed program leaves something to go on with; who cancels, or has no room, wants none of it.
+            let _ = fs::remove_dir_all(&folder);
+        }
+        let ingested = ingested?;
+        let own = match &draft.document.geometry {
+            None => {
+                draft.document.geometry = Some(geometry);
+                None
+            }
+            // The velocity is the project's to state, wherever the lattice is from.
+            Some(frame) if is_same_lattice(frame, &geometry) => None,
+            Some(_) => Some(geometry),
+        };
+        let info = file.info();
+        let facts = Facts {
+            name: name.clone(),
+            file: stored_as,
+            polarity: self.polarity,
+            source: super::source_of(&self.path, reading(info))?,
+            geometry: own,
+        };
+        let entry = volume_facts::entry(&new, facts, progress)?;
+        let clip = entry.clip;
+        draft.document.volumes.push(entry);
+        Ok(Effect::VolumeImported(VolumeImported {
+            volume: name,
+            size: file.size(),
+            traces: info.traces,
+            missing_traces: info.missing_traces,
+            sample_type: file.sample_type().name().to_owned(),
+            kept_files: ingested.kept,
+            polarity: self.polarity,
+            clip,
+            evidence: info.evidence.clone(),
+            assumptions: info.assumptions.clone(),
+        }))
+    }
+
+    /// Writes the file's samples to the store at `new`, by way of `folder`.
+    fn ingest(
+        &self,
+        file: &SegyFile,
+        geometry: &SurveyGeometry,
+        folder: &Path,
+        new: &Path,
+        progress: &Progress,
+    ) -> Result<Ingested, ProjectError> {
+        let partial = folder.join(new.file_name().unwrap_or_default());
+        keep_only(folder, &partial);
+        let done = self.ingest_into(file, geometry, &partial, progress)?;
+        fs::rename(&partial, new).map_err(|source| ProjectError::io("written", new, source))?;
+        // Empty now; an empty folder left behind is no harm.
+        let _ = fs::remove_dir(folder);
+        Ok(done)
+    }
+
+    fn ingest_into(
+        &self,
+        file: &SegyFile,
+        geometry: &SurveyGeometry,
+        partial: &Path,
+        progress: &Progress,
+    ) -> Result<Ingested, ProjectError> {
+        let info = VolumeInfo {
+            polarity: Some(self.polarity.to_string()),
+            source: Some(self.path.display().to_string()),
+            ..VolumeInfo::of(geometry.clone())
+        };
+        let memory_bytes = self.memory_bytes.unwrap_or_else(memory_budget::half_of_available);
+        let fingerprint = self.fingerprint(file)?;
+        let mut blocks = file.blocks();
+        let done = resume_blocks(partial, &fingerprint, &mut blocks, &info, memory_bytes, progress)
+            .map_err(cancelled_within)?;
+        let non_finite = blocks.non_finite();
+        if done.kept > 0 {
+            progress.warn(format!(
+                "an interrupted import of this file went on: {} of {} files were there and whole",
+                done.kept, done.files
+            ));
+        }
+        if non_finite > 0 {
+            progress.warn(format!("{non_finite} samples are no numbers (NaN or infinite) and are read as 0"));
+        }
+        Ok(done)
+    }
+
+    /// Stands for the file as it is now, and for what was said about it.
+    fn fingerprint(&self, file: &SegyFile) -> Result<String, ProjectError> {
+        let fail = |source| ProjectError::io("read", &self.path, source);
+        let facts = fs::metadata(&self.path).map_err(fail)?;
+        let modified = facts.modified().ok().and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
+        let path = fs::canonicalize(&self.path).map_err(fail)?;
+        Ok(serde_json::json!({
+            "path": path,
+            "bytes": facts.len(),
+            "modified_ns": modified.map(|time| time.as_nanos().to_string()),
+            "options": self.options,
+            "polarity": self.polarity,
+            "size": file.size(),
+            "type": file.sample_type().name(),
+        })
+        .to_string())
+    }
+
+    fn name_in(&self, draft: &Draft) -> String {
+        match &self.name {
+            Some(name) => name.clone(),
+            None if draft.document.volumes.is_empty() => "seismic".to_owned(),
+            None => self.path.file_stem().map_or_else(String::new, |stem| stem.to_string_lossy().into_owned()),
+        }
+    }
+}
+
+/// Whether two lattices are one but for the velocity.
+fn is_same_lattice(a: &SurveyGeometry, b: &SurveyGeometry) -> bool {
+    let velocity_m_s = a.velocity_m_s;
+    *a == (SurveyGeometry { velocity_m_s, ..b.clone() })
+}
+
+/// Byte positions and units in one line, for the record.
+fn reading(info: &segy::SegyInfo) -> String {
+    let bytes = &info.byte_positions;
+    let place = match (bytes.x, bytes.y) {
+        (Some(x), Some(y)) => format!("X at {x}, Y at {y}"),
+        _ => "no coordinates".to_owned(),
+    };
+    let lines = match (bytes.inline, bytes.crossline) {
+        (Some(inline), Some(crossline)) => format!("inline at {inline}, crossline at {crossline}"),
+        _ => "lines numbered by X and Y".to_owned(),
+    };
+    format!("SEG-Y format code {}, {lines}, {place}, vertical in {}", info.format_code, info.vertical_unit.symbol())
+}
+
+/// Removes what other imports left in the folder.
+fn keep_only(folder: &Path, wanted: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten().filter(|entry| entry.path() != wanted) {
+        // What cannot be removed is garbage that nothing refers to.
+        let _ = fs::remove_dir_all(entry.path());
+    }
+}
+
+/// A cancel that the reader noticed is a cancel, not a failure of the source.
+fn cancelled_within(error: StoreError) -> ProjectError {
+    match error {
+        StoreError::Source { path, source } => match source.downcast::<segy::SegyError>() {
+            Ok(segy) => (*segy).into(),
+            Err(source) => StoreError::Source { path, source }.into(),
+        },
+        other => other.into(),
+    }
+}
+
+impl RemoveVolume {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Volume, &self.name)?;
+        let style = &mut draft.document.style;
+        style.scalars.retain(|function| function.volume != self.name);
+        style.raw = style.raw.take().filter(|raw| raw.volume != self.name);
+        draft.document.volumes.remove(index);
+        Ok(Effect::Changed { summary: format!("no volume {}", self.name) })
+    }
+}

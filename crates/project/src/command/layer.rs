@@ -1,0 +1,105 @@
+//! How layers look: name, colour, patterns by depth, frequency, opacity (P-illus 4.1).
+
+use super::{Effect, Noun, ProjectError};
+use crate::folder::Draft;
+use crate::styles;
+use param::KDefinition;
+use serde::{Deserialize, Serialize};
+use ttf::{Colour, DepthInterval, Frequency, LayerStyle, LayerTtf};
+
+/// Changes a layer's style; what is absent stays as it is.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct SetLayer {
+    /// The layer's present name.
+    pub layer: String,
+    /// A new name.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+    /// Colour under the pattern.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
+    /// Colour of the pattern's lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ink: Option<Colour>,
+    /// One texture from bottom to top; its usual colour comes along unless `colour` is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pattern: Option<String>,
+    /// Textures by depth in the layer, instead of those there are.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub intervals: Vec<DepthInterval>,
+    /// Repeats of the tile along i and along k.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<Frequency>,
+    /// Opacity inside a cut-out, 0 to 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub opacity: Option<f32>,
+    /// What k means inside the layer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub k: Option<KDefinition>,
+    /// All of its style at once, before anything else is changed: so that ink and frequency can be taken away, too.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub style: Option<LayerStyle>,
+}
+
+/// Takes a layer's style away: it gets the default one again.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ResetLayer {
+    /// The layer's name.
+    pub layer: String,
+}
+
+impl SetLayer {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        let position = draft.document.position(Noun::Layer, &self.layer)?;
+        let library = styles::pattern_library(draft.root(), &draft.document)?;
+        let document = &mut draft.document;
+        if let Some(name) = &self.name {
+            document.name_layer(position, name)?;
+        }
+        let names = document.layers();
+        let layer = &names[position];
+        if let Some(k) = self.k {
+            document.k.insert(layer.clone(), k);
+        }
+        let untouched = Self { layer: self.layer.clone(), name: self.name.clone(), k: self.k, ..Self::default() };
+        if *self != untouched {
+            let present = document.style.layers.style(layer).cloned();
+            let from_bottom = names.len() - 1 - position;
+            let mut style = present.unwrap_or_else(|| LayerTtf::default_style(layer, from_bottom, &library));
+            self.change(&mut style, &library)?;
+            style.validate(&library)?;
+            document.style.layers.set(style);
+        }
+        Ok(Effect::Changed { summary: format!("style of layer {layer}") })
+    }
+
+    fn change(&self, style: &mut LayerStyle, library: &ttf::TextureLibrary) -> Result<(), ProjectError> {
+        if let Some(whole) = &self.style {
+            *style = LayerStyle { layer: style.layer.clone(), ..whole.clone() };
+        }
+        if let Some(pattern) = &self.pattern {
+            let index = library.index_of(pattern, &format!("layer `{}`", style.layer))?;
+            let textured = LayerStyle::textured(&style.layer, library.pattern(index).colour, pattern);
+            style.colour = textured.colour;
+            style.intervals = textured.intervals;
+        }
+        if !self.intervals.is_empty() {
+            style.intervals.clone_from(&self.intervals);
+        }
+        style.colour = self.colour.unwrap_or(style.colour);
+        style.ink = self.ink.or(style.ink);
+        style.frequency = self.frequency.or(style.frequency);
+        style.opacity = self.opacity.unwrap_or(style.opacity);
+        Ok(())
+    }
+}
+
+impl ResetLayer {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        draft.document.position(Noun::Layer, &self.layer)?;
+        draft.document.style.layers.styles.retain(|style| style.layer != self.layer);
+        draft.document.k.remove(&self.layer);
+        Ok(Effect::Changed { summary: format!("default style of layer {}", self.layer) })
+    }
+}

@@ -1,0 +1,430 @@
+//! Picking: a place becomes a leaf, a leaf a node, a node part of a horizon; and moving a pick later.
+
+use super::{Effect, Noun, ProjectError};
+use crate::document::{Assembly, PickEntry};
+use crate::folder::Draft;
+use crate::interpretation::assembly::{self, AssemblyReport, rebuild};
+use crate::interpretation::candidates::Candidates;
+use interp::assembly::{ClimbSettings, Fingerprint, Fit, Operation, Overlap, Selection, highest_valid, node_above};
+use model::FaultNetwork;
+use serde::{Deserialize, Serialize};
+use survey::{Progress, SurveyGeometry};
+use ttf::Colour;
+
+/// How far to climb above a leaf.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Climb {
+    /// So many levels.
+    Levels(u32),
+    /// To the highest node that does not lie twice over a trace.
+    HighestValid,
+}
+
+/// Picks a node of a surface tree and adds it to a horizon, or takes it out.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PickNode {
+    /// Inline, crossline and vertical value.
+    pub at: [f64; 3],
+    /// The horizon; made when it is not there.
+    pub horizon: String,
+    /// Add or take out.
+    #[serde(default)]
+    pub operation: Operation,
+    /// Colour of the horizon; absent: as it was, or the next of a list.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub colour: Option<Colour>,
+    /// How far to climb.
+    pub climb: Climb,
+}
+
+/// Moves a pick up or down its tree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct MovePick {
+    /// Its number.
+    pub id: u32,
+    /// Where to.
+    pub to: Move,
+}
+
+/// Where a pick moves to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Move {
+    /// So many levels up.
+    Up(u32),
+    /// So many levels down.
+    Down(u32),
+    /// To the highest node without overlap.
+    HighestValid,
+}
+
+/// Makes picks again on the present extraction.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ReplayPicks {
+    /// The horizon; absent: all that were assembled.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub horizon: Option<String>,
+    /// What to do with picks that no longer fit.
+    #[serde(default)]
+    pub unfit: Unfit,
+}
+
+/// What becomes of picks that no longer fit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unfit {
+    /// Nothing is changed; they are named.
+    #[default]
+    Refuse,
+    /// They are taken out of the log.
+    Drop,
+}
+
+/// What a pick did.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Picked {
+    /// Number of the pick.
+    pub pick: u32,
+    /// The horizon.
+    pub horizon: String,
+    /// What it did to it.
+    pub operation: Operation,
+    /// Leaf at the place.
+    pub leaf: u32,
+    /// Levels above the leaf.
+    pub up: u32,
+    /// Levels from the leaf to the root.
+    pub levels: u32,
+    /// Triangles of the node.
+    pub triangles: u32,
+    /// Overlap of the next higher node, that ended the climb.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stopped_by: Option<Overlap>,
+    /// The horizon now.
+    pub result: AssemblyReport,
+}
+
+impl std::fmt::Display for Picked {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let verb = if self.operation == Operation::Add { "added to" } else { "taken out of" };
+        write!(
+            f,
+            "pick {}: leaf {}, {} of {} levels up, {} triangles, {verb} \"{}\"",
+            self.pick, self.leaf, self.up, self.levels, self.triangles, self.horizon
+        )?;
+        if let Some(overlap) = &self.stopped_by {
+            write!(f, "; one level higher {} traces would have two nodes", overlap.traces)?;
+        }
+        write!(f, "\n  {}", self.result)
+    }
+}
+
+/// What a replay found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Replayed {
+    /// Picks by how they fit.
+    pub picks: Vec<ReplayedPick>,
+    /// The horizons now.
+    pub horizons: Vec<(String, AssemblyReport)>,
+}
+
+/// A pick that was made again.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ReplayedPick {
+    /// Its number.
+    pub pick: u32,
+    /// How its node compares with what it was.
+    pub fit: Fit,
+    /// Triangles it had and has.
+    pub triangles: [u32; 2],
+}
+
+impl std::fmt::Display for Replayed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let count = |fit| self.picks.iter().filter(|pick| pick.fit == fit).count();
+        write!(f, "{} picks are what they were, {} nearly", count(Fit::Same), count(Fit::Similar))?;
+        let dropped: Vec<String> =
+            self.picks.iter().filter(|p| p.fit == Fit::Different).map(|p| p.pick.to_string()).collect();
+        if !dropped.is_empty() {
+            write!(f, "; no longer fit and are gone: {}", dropped.join(", "))?;
+        }
+        self.horizons.iter().try_for_each(|(name, report)| write!(f, "\n{name}: {report}"))
+    }
+}
+
+/// Node, levels and what ended the climb.
+fn climbed(
+    candidates: &Candidates,
+    leaf: u32,
+    climb: Climb,
+    chosen: &Selection,
+    blocks: &FaultNetwork,
+) -> Result<(u32, u32, Option<Overlap>), ProjectError> {
+    Ok(match climb {
+        Climb::Levels(up) => (node_above(&candidates.forest, leaf, up)?, up, None),
+        Climb::HighestValid => {
+            let found = highest_valid(&candidates.forest, leaf, chosen, blocks, &ClimbSettings::default());
+            (found.node, found.up, found.stopped_by)
+        }
+    })
+}
+
+impl PickNode {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let mut log = self.log(draft)?;
+        let candidates = Candidates::load(draft.root(), progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let id = next_id(draft);
+        let stopped_by = self.enter(&mut log, id, draft.document.frame()?, &candidates, &blocks)?;
+        let PickEntry { leaf, up, node, .. } = log.picks[log.picks.len() - 1];
+        let result = rebuild(draft, &candidates, &blocks, &self.horizon, log, progress)?;
+        Ok(Effect::Picked(Box::new(Picked {
+            pick: id,
+            horizon: self.horizon.clone(),
+            operation: self.operation,
+            leaf,
+            up,
+            levels: candidates.levels(leaf),
+            triangles: node.triangles,
+            stopped_by,
+            result,
+        })))
+    }
+
+    /// The log of its horizon, or an empty one for a new horizon.
+    fn log(&self, draft: &Draft) -> Result<Assembly, ProjectError> {
+        let known = draft.document.horizons.iter().any(|entry| entry.name == self.horizon);
+        if known {
+            return assembly::log_of(draft, &self.horizon);
+        }
+        draft.document.check_new_name(Noun::Horizon, &self.horizon)?;
+        Ok(Assembly { colour: assembly::next_colour(&draft.document), fill: None, picks: Vec::new() })
+    }
+
+    /// Puts it at the end of a log; answers what ended the climb.
+    fn enter(
+        &self,
+        log: &mut Assembly,
+        id: u32,
+        geometry: &SurveyGeometry,
+        candidates: &Candidates,
+        blocks: &FaultNetwork,
+    ) -> Result<Option<Overlap>, ProjectError> {
+        let chosen = assembly::selection(&self.horizon, log, candidates)?;
+        let hit = candidates.leaf_near(geometry, self.at)?;
+        // What is taken out may overlap with what stays.
+        let beside = if self.operation == Operation::Add { chosen.clone() } else { Selection::default() };
+        let (node, up, stopped_by) = climbed(candidates, hit.leaf, self.climb, &beside, blocks)?;
+        let mut own = Selection::default();
+        own.insert(candidates.forest.nodes[node as usize].triangles.clone());
+        let common = own.intersection(&chosen).len();
+        match self.operation {
+            Operation::Add if common == own.len() => {
+                return Err(ProjectError::AlreadyPicked { horizon: self.horizon.clone(), leaf: hit.leaf });
+            }
+            Operation::Remove if common == 0 => {
+                return Err(ProjectError::NotPicked { horizon: self.horizon.clone(), leaf: hit.leaf });
+            }
+            _ => {}
+        }
+        if let Some(colour) = self.colour {
+            log.colour = colour;
+        }
+        log.picks.push(PickEntry {
+            id,
+            at: self.at,
+            operation: self.operation,
+            leaf: hit.leaf,
+            up,
+            extraction: candidates.key.clone(),
+            node: Fingerprint::of(&candidates.forest, node),
+        });
+        Ok(stopped_by)
+    }
+}
+
+/// Makes several picks of one horizon at once, as a lasso does: one step of the history.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PickNodes {
+    /// The picks, first to last; all of the same horizon.
+    pub picks: Vec<PickNode>,
+}
+
+impl PickNodes {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let Some(first) = self.picks.first() else {
+            return Ok(Effect::Changed { summary: "no picks".to_owned() });
+        };
+        if let Some(other) = self.picks.iter().find(|pick| pick.horizon != first.horizon) {
+            return Err(ProjectError::SeveralHorizons { horizons: [first.horizon.clone(), other.horizon.clone()] });
+        }
+        let mut log = first.log(draft)?;
+        let candidates = Candidates::load(draft.root(), progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let id = next_id(draft);
+        for (n, pick) in self.picks.iter().enumerate() {
+            pick.enter(&mut log, id + n as u32, draft.document.frame()?, &candidates, &blocks)?;
+        }
+        rebuild(draft, &candidates, &blocks, &first.horizon, log, progress)?;
+        Ok(Effect::Changed { summary: format!("{} picks of {}", self.picks.len(), first.horizon) })
+    }
+}
+
+/// Takes a pick out of its horizon's log, as if it had never been made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RemovePick {
+    /// Its number.
+    pub id: u32,
+}
+
+impl RemovePick {
+    pub(super) fn execute(self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let (name, mut log, place) = find(draft, self.id)?;
+        log.picks.remove(place);
+        let candidates = Candidates::load(draft.root(), progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+        Ok(Effect::Changed { summary: format!("pick {} taken back", self.id) })
+    }
+}
+
+/// A pick by its number: its horizon, that horizon's log, its place there.
+fn find(draft: &Draft, id: u32) -> Result<(String, Assembly, usize), ProjectError> {
+    let logs = || draft.document.horizons.iter().filter_map(|entry| Some((entry, entry.assembly.as_ref()?)));
+    let found = logs().find_map(|(entry, log)| {
+        let place = log.picks.iter().position(|pick| pick.id == id)?;
+        Some((entry.name.clone(), log.clone(), place))
+    });
+    found.ok_or_else(|| ProjectError::UnknownPick {
+        pick: id,
+        known: logs().flat_map(|(_, log)| &log.picks).map(|pick| pick.id).collect(),
+    })
+}
+
+/// Gives an assembled horizon another colour.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SetHorizonColour {
+    /// The horizon.
+    pub horizon: String,
+    /// Its colour.
+    pub colour: Colour,
+}
+
+impl SetHorizonColour {
+    pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Horizon, &self.horizon)?;
+        let Some(log) = &mut draft.document.horizons[index].assembly else {
+            return Err(ProjectError::NotAssembled { horizon: self.horizon.clone() });
+        };
+        log.colour = self.colour;
+        Ok(Effect::Changed { summary: format!("colour of {}", self.horizon) })
+    }
+}
+
+/// A number that no pick has.
+fn next_id(draft: &Draft) -> u32 {
+    let logs = draft.document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
+    logs.flat_map(|log| &log.picks).map(|pick| pick.id).max().unwrap_or(0) + 1
+}
+
+impl MovePick {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let (name, mut log, place) = find(draft, self.id)?;
+        let candidates = Candidates::load(draft.root(), progress)?;
+        // Refuses a log of another extraction.
+        assembly::selection(&name, &log, &candidates)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let PickEntry { leaf, up, operation, .. } = log.picks[place];
+        let climb = match self.to {
+            Move::Up(by) => Climb::Levels(up.saturating_add(by)),
+            Move::Down(by) if by > up => return Err(ProjectError::AtLeaf { pick: self.id, up }),
+            Move::Down(by) => Climb::Levels(up - by),
+            Move::HighestValid => Climb::HighestValid,
+        };
+        let mut rest = log.clone();
+        rest.picks.remove(place);
+        let beside = assembly::selection(&name, &rest, &candidates)?;
+        let (node, up, stopped_by) = climbed(&candidates, leaf, climb, &beside, &blocks)?;
+        let node = Fingerprint::of(&candidates.forest, node);
+        (log.picks[place].up, log.picks[place].node) = (up, node);
+        let result = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+        Ok(Effect::Picked(Box::new(Picked {
+            pick: self.id,
+            horizon: name,
+            operation,
+            leaf,
+            up,
+            levels: candidates.levels(leaf),
+            triangles: node.triangles,
+            stopped_by,
+            result,
+        })))
+    }
+}
+
+impl ReplayPicks {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let geometry = draft.document.frame()?.clone();
+        if let Some(name) = &self.horizon {
+            assembly::log_of(draft, name)?;
+        }
+        let wanted = |name: &str| self.horizon.as_deref().is_none_or(|only| only == name);
+        let logs: Vec<(String, Assembly)> = draft
+            .document
+            .horizons
+            .iter()
+            .filter(|entry| wanted(&entry.name))
+            .filter_map(|entry| Some((entry.name.clone(), entry.assembly.clone()?)))
+            .collect();
+        let candidates = Candidates::load(draft.root(), progress)?;
+        let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
+        let mut done = Replayed { picks: Vec::new(), horizons: Vec::new() };
+        for (name, mut log) in logs {
+            let mut unfit = Vec::new();
+            log.picks.retain_mut(|pick| {
+                let before = pick.node.triangles;
+                let fit = again(pick, &candidates, &geometry);
+                done.picks.push(ReplayedPick { pick: pick.id, fit, triangles: [before, pick.node.triangles] });
+                if fit == Fit::Different {
+                    unfit.push(pick.id);
+                }
+                fit != Fit::Different
+            });
+            if !unfit.is_empty() && (self.unfit == Unfit::Refuse || log.picks.is_empty()) {
+                return Err(ProjectError::UnfitPicks { horizon: name, picks: unfit });
+            }
+            let report = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
+            done.horizons.push((name, report));
+        }
+        Ok(Effect::Replayed(Box::new(done)))
+    }
+}
+
+/// Makes one pick again: at its place, at the level whose node is most like what it was.
+fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> Fit {
+    let Ok(hit) = candidates.leaf_near(geometry, pick.at) else { return Fit::Different };
+    let rank = |fit: Fit| match fit {
+        Fit::Same => 0,
+        Fit::Similar => 1,
+        Fit::Different => 2,
+    };
+    let mut best: Option<(Fit, u32, Fingerprint)> = None;
+    for up in 0..=candidates.levels(hit.leaf) {
+        let Ok(node) = node_above(&candidates.forest, hit.leaf, up) else { break };
+        let now = Fingerprint::of(&candidates.forest, node);
+        let fit = pick.node.compare(&now);
+        if best.as_ref().is_none_or(|(least, ..)| rank(fit) < rank(*least)) {
+            best = Some((fit, up, now));
+        }
+        if now.triangles > 2 * pick.node.triangles {
+            break;
+        }
+    }
+    let Some((fit, up, node)) = best else { return Fit::Different };
+    if fit != Fit::Different {
+        (pick.leaf, pick.up, pick.node) = (hit.leaf, up, node);
+        pick.extraction.clone_from(&candidates.key);
+    }
+    fit
+}

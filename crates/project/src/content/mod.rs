@@ -1,0 +1,8 @@
+//! The bulk data of a project: volumes, horizons, faults and wells, read by the project's entries, and the hashes that identify them.
+
+mod hash;
+mod read;
+pub(crate) mod volume_facts;
+
+pub use hash::{hash_fault, hash_horizon, hash_stored, hash_well};
+pub use read::{read_fault, read_horizon, read_volume, read_volume_within, read_well};

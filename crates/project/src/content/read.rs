@@ -1,0 +1,59 @@
+//! Reading bulk data under the name the project gives it.
+
+use crate::document::{FaultEntry, HorizonEntry, VolumeEntry, WellEntry};
+use crate::error::ProjectError;
+use crate::folder::at_hand;
+use std::path::Path;
+use store::{self, StoredVolume};
+use survey::{Fault, Horizon, Progress, Volume, Well};
+
+/// Reads a well of the project in `root`.
+///
+/// # Errors
+/// Missing or damaged data.
+pub fn read_well(root: &Path, entry: &WellEntry) -> Result<Well, ProjectError> {
+    let well = store::read_well(&at_hand(root, &entry.file))?;
+    Ok(Well { name: entry.name.clone(), ..well })
+}
+
+/// Reads a volume of the project in `root`.
+///
+/// # Errors
+/// Missing or damaged data, or cancelled.
+pub fn read_volume(root: &Path, entry: &VolumeEntry, progress: &Progress) -> Result<Volume<f32>, ProjectError> {
+    Ok(StoredVolume::open(&at_hand(root, &entry.file))?.read_f32(0, progress)?)
+}
+
+/// Reads a volume of the project in `root` at the finest level of its pyramid that fits into so many bytes, the coarsest where none does; answers the level too.
+///
+/// # Errors
+/// Missing or damaged data, or cancelled.
+pub fn read_volume_within(
+    root: &Path,
+    entry: &VolumeEntry,
+    bytes: u64,
+    progress: &Progress,
+) -> Result<(Volume<f32>, usize), ProjectError> {
+    let stored = StoredVolume::open(&at_hand(root, &entry.file))?;
+    let fits = |level: &usize| stored.size(*level).iter().map(|&n| n as u64).product::<u64>() * 4 <= bytes;
+    let level = (0..stored.level_count()).find(fits).unwrap_or(stored.level_count() - 1);
+    Ok((stored.read_f32(level, progress)?, level))
+}
+
+/// Reads a horizon of the project in `root`.
+///
+/// # Errors
+/// Missing or damaged data, or cancelled.
+pub fn read_horizon(root: &Path, entry: &HorizonEntry, progress: &Progress) -> Result<Horizon, ProjectError> {
+    let horizon = store::read_horizon(&at_hand(root, &entry.file), progress)?;
+    Ok(Horizon { name: entry.name.clone(), ..horizon })
+}
+
+/// Reads a fault of the project in `root`.
+///
+/// # Errors
+/// Missing or damaged data.
+pub fn read_fault(root: &Path, entry: &FaultEntry) -> Result<Fault, ProjectError> {
+    let fault = store::read_fault(&at_hand(root, &entry.file))?;
+    Ok(Fault { name: entry.name.clone(), truncated_by: entry.truncated_by.clone(), ..fault })
+}

@@ -1,0 +1,58 @@
+//! What the project keeps about a stored volume, found by reading as little of it as serves.
+
+use crate::content;
+use crate::document::{Polarity, Source, VolumeEntry};
+use crate::error::ProjectError;
+use std::path::Path;
+use store::StoredVolume;
+use survey::{Progress, SurveyGeometry};
+
+/// Share of the samples that a colour map shows unclipped.
+const SHOWN_SHARE: f32 = 0.99;
+
+/// So many samples give a percentile to three digits; more would only take longer.
+const SAMPLES_ENOUGH: usize = 1 << 20;
+
+/// The facts of a new volume that are found elsewhere than in its samples.
+pub(crate) struct Facts {
+    pub(crate) name: String,
+    /// Relative to the project's folder.
+    pub(crate) file: String,
+    pub(crate) polarity: Polarity,
+    pub(crate) source: Source,
+    /// Its own lattice, where that is not the project's.
+    pub(crate) geometry: Option<SurveyGeometry>,
+}
+
+/// The entry of the volume stored at `path`.
+pub(crate) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<VolumeEntry, ProjectError> {
+    let stored = StoredVolume::open(path)?;
+    let (_, ranges) = stored.brick_ranges(0)?;
+    let lowest = ranges.iter().map(|range| range[0]).filter(|low| !low.is_nan()).fold(f32::INFINITY, f32::min);
+    Ok(VolumeEntry {
+        hash: content::hash_stored(&stored)?,
+        clip: clip_of(&stored, progress)?,
+        lowest: if lowest.is_finite() { lowest } else { 0.0 },
+        name: facts.name,
+        file: facts.file,
+        polarity: facts.polarity,
+        source: facts.source,
+        geometry: facts.geometry,
+    })
+}
+
+/// The value that most samples of live traces do not exceed in size, found on evenly spread traces; 1 where all are zero.
+fn clip_of(stored: &StoredVolume, progress: &Progress) -> Result<f32, ProjectError> {
+    let [_, crosslines, samples] = stored.size(0);
+    let live: Vec<usize> =
+        stored.live().iter().enumerate().filter(|(_, live)| **live).map(|(place, _)| place).collect();
+    let traces = (SAMPLES_ENOUGH / samples.max(1)).max(1);
+    let step = live.len().div_ceil(traces).max(1);
+    let mut values = Vec::new();
+    for place in live.into_iter().step_by(step) {
+        progress.check()?;
+        let trace = stored.read_box_f32(0, [place / crosslines, place % crosslines, 0], [1, 1, samples])?;
+        values.extend(trace.samples().iter().filter(|value| value.is_finite()));
+    }
+    Ok(ttf::symmetric_clip(&values, SHOWN_SHARE).unwrap_or(1.0))
+}

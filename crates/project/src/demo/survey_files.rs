@@ -1,0 +1,236 @@
+//! A synthetic survey on disk, as a survey comes from others, with its truth beside it and what an interpreter would say about its files.
+//!
+//! ```text
+//! survey.sgy  attribute.sgy   seismic; acoustic impedance of another size and a smaller extent
+//! horizons/NAME.csv           all sheets: two depths at one trace across the reverse fault
+//! horizons/NAME-N.irap        sheet N alone, since the format holds one depth at a node
+//! faults/NAME.ts              triangles up to the tip
+//! faults/NAME.dat             the same as sticks (OpendTect)
+//! truth.json                  the closed form, the age order and where the attribute lies
+//! ```
+
+use crate::error::ProjectError;
+use formats::Format;
+use segy::WriteOptions;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::{fmt, fs};
+use store::{StoreError, replace_file};
+use survey::{Contact, Horizon, Progress};
+use synth::{SynthSettings, SynthTruth, Synthetic};
+
+/// Files of a synthetic survey.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SynthSurvey {
+    /// Seismic, SEG-Y.
+    pub survey: PathBuf,
+    /// Acoustic impedance of another size and a smaller extent, SEG-Y.
+    pub attribute: PathBuf,
+    /// Horizons, youngest first.
+    pub horizons: Vec<SynthHorizon>,
+    /// Faults.
+    pub faults: Vec<SynthFault>,
+    /// Names of the layers, youngest first.
+    pub layer_names: Vec<String>,
+    /// The closed form behind it all.
+    pub truth: PathBuf,
+}
+
+/// A horizon file and what is known of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SynthHorizon {
+    /// Name.
+    pub name: String,
+    /// What it does to its neighbours.
+    pub contact: Contact,
+    /// All its sheets, CSV.
+    pub file: PathBuf,
+}
+
+/// A fault file and what is known of it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SynthFault {
+    /// Name.
+    pub name: String,
+    /// The fault it ends at.
+    pub truncated_by: Option<String>,
+    /// Its triangles, TSurf.
+    pub file: PathBuf,
+}
+
+impl fmt::Display for SynthSurvey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}", self.survey.display())?;
+        writeln!(f, "{}", self.attribute.display())?;
+        for horizon in &self.horizons {
+            let contact = format!("{:?}", horizon.contact).to_lowercase();
+            writeln!(f, "{}: horizon {}, {contact}", horizon.file.display(), horizon.name)?;
+        }
+        self.faults.iter().try_for_each(|fault| writeln!(f, "{}: fault {}", fault.file.display(), fault.name))?;
+        writeln!(f, "{}: the truth", self.truth.display())
+    }
+}
+
+/// Makes a survey and writes it to the folder `out`.
+///
+/// # Errors
+/// A size too small for its folds and faults, files that could not be written, or cancelled.
+pub fn write(out: &Path, settings: &SynthSettings, progress: &Progress) -> Result<SynthSurvey, ProjectError> {
+    let made = Synthetic::generate(settings, progress)?;
+    let files = write_files(&made, out, progress)?;
+    let horizons = made.stratigraphy.horizons.iter().zip(files.horizons);
+    let faults = made.faults.iter().zip(files.faults);
+    Ok(SynthSurvey {
+        survey: files.survey,
+        attribute: files.attribute,
+        horizons: horizons
+            .map(|(place, file)| SynthHorizon { name: place.name.clone(), contact: place.contact, file })
+            .collect(),
+        faults: faults
+            .map(|(fault, file)| SynthFault {
+                name: fault.name.clone(),
+                truncated_by: fault.truncated_by.clone(),
+                file,
+            })
+            .collect(),
+        layer_names: made.stratigraphy.layer_names.clone(),
+        truth: files.truth,
+    })
+}
+
+/// Where the parts of a synthetic survey were written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SynthFiles {
+    /// The seismic, SEG-Y.
+    pub survey: PathBuf,
+    /// The acoustic impedance, SEG-Y.
+    pub attribute: PathBuf,
+    /// A CSV file for each horizon, in the order of [`Synthetic::horizons`].
+    pub horizons: Vec<PathBuf>,
+    /// A TSurf file for each fault, in the order of [`Synthetic::faults`].
+    pub faults: Vec<PathBuf>,
+    /// The closed form, JSON.
+    pub truth: PathBuf,
+}
+
+/// Writes a survey and its interpretation into the folder `out`, which is made if need be.
+///
+/// # Errors
+/// When a file cannot be written or the user cancelled; files written before that stay.
+pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<SynthFiles, ProjectError> {
+    let folder = |name: &str| {
+        let path = out.join(name);
+        fs::create_dir_all(&path).map_err(|source| StoreError::io("written", &path, source)).map(|()| path)
+    };
+    let (horizons, faults) = (folder("horizons")?, folder("faults")?);
+    let options = WriteOptions::default();
+    let survey = out.join("survey.sgy");
+    segy::write(&survey, &made.geometry, &made.seismic, &options, progress)?;
+    let attribute = out.join("attribute.sgy");
+    segy::write(&attribute, &made.attribute.geometry, &made.attribute.volume, &options, progress)?;
+
+    let mut files =
+        SynthFiles { survey, attribute, horizons: Vec::new(), faults: Vec::new(), truth: out.join("truth.json") };
+    for horizon in &made.horizons {
+        progress.check()?;
+        let stem = &horizon.name;
+        let csv = horizons.join(format!("{stem}.csv"));
+        formats::write_horizon(&csv, horizon, &made.geometry, Format::Csv)?;
+        for (n, sheet) in horizon.sheets.iter().enumerate() {
+            let alone = Horizon { name: horizon.name.clone(), sheets: vec![sheet.clone()] };
+            let irap = horizons.join(format!("{stem}-{n}.irap"));
+            formats::write_horizon(&irap, &alone, &made.geometry, Format::Irap)?;
+        }
+        files.horizons.push(csv);
+    }
+    for fault in &made.faults {
+        progress.check()?;
+        let stem = &fault.name;
+        let tsurf = faults.join(format!("{stem}.ts"));
+        formats::write_fault(&tsurf, fault, &made.geometry, Format::Tsurf)?;
+        formats::write_fault(&faults.join(format!("{stem}.dat")), fault, &made.geometry, Format::OpendTect)?;
+        files.faults.push(tsurf);
+    }
+    let truth = json!({
+        "geometry": made.geometry,
+        "stratigraphy": made.stratigraphy,
+        "attribute": { "origin": made.attribute.origin, "extent": made.attribute.extent },
+        "truth": made.truth,
+    });
+    replace_file(&files.truth, format!("{truth:#}\n").as_bytes())?;
+    Ok(files)
+}
+
+/// Reads the truth that [`write_files`] left in a folder (or its `truth.json` itself).
+///
+/// # Errors
+/// [`ProjectError::NotATruth`] when there is none or it is not one.
+pub fn read_truth(path: &Path) -> Result<SynthTruth, ProjectError> {
+    #[derive(Deserialize)]
+    struct File {
+        truth: SynthTruth,
+    }
+    let path = if path.is_dir() { path.join("truth.json") } else { path.to_owned() };
+    let unusable = |fact: String| ProjectError::NotATruth { path: path.clone(), fact };
+    let text = fs::read_to_string(&path).map_err(|error| unusable(error.to_string()))?;
+    let File { truth } = serde_json::from_str(&text).map_err(|error| unusable(error.to_string()))?;
+    Ok(truth)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    #[test]
+    fn the_written_survey_reads_back_as_it_was_made() {
+        let dir = tempfile::tempdir().unwrap();
+        let settings = SynthSettings { size: [72, 64, 96], seed: 1, ..SynthSettings::default() };
+        let survey = Synthetic::generate(&settings, &Progress::silent()).unwrap();
+        let files = write_files(&survey, &dir.path().join("new"), &Progress::silent()).unwrap();
+        for (path, geometry, volume) in [
+            (&files.survey, &survey.geometry, &survey.seismic),
+            (&files.attribute, &survey.attribute.geometry, &survey.attribute.volume),
+        ] {
+            let read = segy::read(path, &segy::SegyOptions::default(), &Progress::silent()).unwrap();
+            assert!(read.volume.samples() == volume.samples(), "{}", path.display());
+            let (place, there) = (DVec3::new(3.0, 5.0, 7.0), &read.geometry);
+            assert!((there.world_from_voxel(place) - geometry.world_from_voxel(place)).length() < 0.02);
+        }
+        let options = formats::ImportOptions::default();
+        for (path, horizon) in files.horizons.iter().zip(&survey.horizons) {
+            let (read, _) = &formats::read_horizons(path, &survey.geometry, &options).unwrap()[0];
+            assert_eq!(read.name, horizon.name);
+            let depths = |h: &Horizon| {
+                let mut all: Vec<f32> = h.sheets.iter().flat_map(|s| s.depth.iter().copied()).collect();
+                all.retain(|depth| depth.is_finite());
+                all.sort_by(f32::total_cmp);
+                all
+            };
+            let (a, b) = (depths(read), depths(horizon));
+            assert_eq!(a.len(), b.len(), "{}", horizon.name);
+            assert!(a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 0.01));
+        }
+        for (path, fault) in files.faults.iter().zip(&survey.faults) {
+            let index = survey.faults.iter().position(|f| f.name == fault.name).unwrap();
+            for path in [path.clone(), path.with_extension("dat")] {
+                let (read, _) = &formats::read_fault(&path, &survey.geometry, &options).unwrap()[0];
+                assert!(!read.mesh.triangles.is_empty(), "{}", path.display());
+                for &vertex in &read.mesh.vertices {
+                    let voxel = survey.geometry.voxel_from_world(vertex);
+                    assert!(survey.truth.fault_side_m(index, voxel).abs() < 0.15, "{}", path.display());
+                }
+            }
+            let (triangles, _) = &formats::read_fault(path, &survey.geometry, &options).unwrap()[0];
+            assert_eq!((&triangles.name, &triangles.mesh.triangles), (&fault.name, &fault.mesh.triangles));
+        }
+        let truth = read_truth(&files.truth).unwrap();
+        let places = (0..72 * 64 * 4 * truth.horizons.len()).step_by(101);
+        for (h, b, x, y) in
+            places.map(|n| (n / 4 / 72 / 64, (n % 4) as u16, (n / 4 / 64 % 72) as f64, (n / 4 % 64) as f64))
+        {
+            assert!((truth.sheet_z(h, b, x, y) - survey.truth.sheet_z(h, b, x, y)).abs() < 1e-9);
+        }
+    }
+}

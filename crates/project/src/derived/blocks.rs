@@ -1,0 +1,178 @@
+//! Fault blocks, kept: `blocks-KEY.bin`. Making them takes longer than all else that one pick needs.
+
+use super::kept::{Kind, damaged, read_array, read_header, write_header};
+use super::key_of;
+use crate::document::Document;
+use glam::{DMat3, DVec3};
+use model::{BlockSignature, FaultNetwork, FaultSurface, ModelSettings, Truncation};
+use serde::{Deserialize, Serialize};
+use std::io::{self, Read, Write};
+use std::path::Path;
+use survey::{HeightField, Progress};
+
+const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x01", what: "the fault blocks" };
+
+/// Numbers of a fault's frame: a matrix, an offset, the distance of its nodes.
+const FRAME: usize = 13;
+
+/// Identifies the fault blocks of a project by what they are made of.
+pub fn blocks_key(document: &Document, model: &ModelSettings) -> String {
+    #[derive(Serialize)]
+    struct Inputs<'a> {
+        program: &'static str,
+        geometry: &'a Option<survey::SurveyGeometry>,
+        faults: Vec<(&'a str, &'a str, Option<&'a str>)>,
+        model: &'a ModelSettings,
+    }
+    key_of(&Inputs {
+        program: env!("CARGO_PKG_VERSION"),
+        geometry: &document.geometry,
+        faults: document
+            .faults
+            .iter()
+            .map(|entry| (entry.name.as_str(), entry.hash.as_str(), entry.truncated_by.as_deref()))
+            .collect(),
+        model,
+    })
+}
+
+/// The fault blocks kept under `key`, if there are some that are whole.
+pub fn load_blocks(root: &Path, key: &str) -> Option<FaultNetwork> {
+    BLOCKS.load(root, key, read)
+}
+
+/// Keeps fault blocks under `key`; warns when it cannot.
+pub fn keep_blocks(root: &Path, key: &str, blocks: &FaultNetwork, progress: &Progress) {
+    BLOCKS.keep(root, key, progress, |out| write(out, blocks));
+}
+
+#[derive(Serialize, Deserialize)]
+struct Header {
+    faults: Vec<FaultHeader>,
+    /// Bits and care of each block.
+    signatures: Vec<(u64, u64)>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FaultHeader {
+    name: String,
+    /// Fault it ends at, and whether on the positive side of that.
+    truncation: Option<(usize, bool)>,
+    origin: [i32; 2],
+    size: [usize; 2],
+}
+
+/// The header, then frame, surface and extent of each fault.
+fn write(out: &mut dyn Write, blocks: &FaultNetwork) -> io::Result<()> {
+    let faults = blocks.surfaces().iter().zip(blocks.truncation()).map(|(fault, truncation)| FaultHeader {
+        name: fault.name.clone(),
+        truncation: truncation.map(|truncation| (truncation.by, truncation.positive)),
+        origin: fault.surface.origin,
+        size: fault.surface.size,
+    });
+    let signatures = blocks.signatures().iter().map(|block| (block.bits, block.care)).collect();
+    write_header(out, &Header { faults: faults.collect(), signatures })?;
+    for fault in blocks.surfaces() {
+        let mut frame = [fault.spacing_m; FRAME];
+        frame[..9].copy_from_slice(&fault.frame_from_voxel.to_cols_array());
+        frame[9..12].copy_from_slice(&fault.frame_offset.to_array());
+        out.write_all(bytemuck::cast_slice(&frame))?;
+        out.write_all(bytemuck::cast_slice(&fault.surface.z))?;
+        out.write_all(bytemuck::cast_slice(&fault.extent.z))?;
+    }
+    Ok(())
+}
+
+fn read(input: &mut dyn Read, length: u64) -> io::Result<FaultNetwork> {
+    let header: Header = read_header(input, length)?;
+    let mut surfaces = Vec::with_capacity(header.faults.len());
+    let mut truncation = Vec::with_capacity(header.faults.len());
+    for FaultHeader { name, truncation: ends, origin, size } in header.faults {
+        let frame: Vec<f64> = read_array(input, FRAME, length)?;
+        let nodes = size[0].checked_mul(size[1]).ok_or_else(damaged)?;
+        let mut field = || Ok::<_, io::Error>(HeightField { origin, size, z: read_array(input, nodes, length)? });
+        surfaces.push(FaultSurface {
+            name,
+            frame_from_voxel: DMat3::from_cols_slice(&frame[..9]),
+            frame_offset: DVec3::from_slice(&frame[9..12]),
+            spacing_m: frame[12],
+            surface: field()?,
+            extent: field()?,
+        });
+        truncation.push(ends.map(|(by, positive)| Truncation { by, positive }));
+    }
+    let signatures = header.signatures.into_iter().map(|(bits, care)| BlockSignature { bits, care });
+    FaultNetwork::of_parts(surfaces, truncation, signatures.collect()).ok_or_else(damaged)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use formats::fault_of_sticks;
+    use survey::{Fault, SurveyGeometry, VerticalUnit};
+
+    fn geometry() -> SurveyGeometry {
+        SurveyGeometry::regular([40, 30, 50], 25.0, 10.0, VerticalUnit::Metres)
+    }
+
+    /// A fault along the crosslines, dipping to higher inlines; a second one across that ends at it.
+    fn blocks() -> FaultNetwork {
+        let geometry = geometry();
+        let fault = |name: &str, sticks: [[[f64; 3]; 2]; 2]| {
+            let sticks = sticks.map(|stick| stick.map(|p| geometry.world_from_voxel(DVec3::from_array(p))).to_vec());
+            fault_of_sticks(name, &sticks, &geometry).unwrap()
+        };
+        let first = fault("first", [[[15.0, 2.0, 5.0], [25.0, 2.0, 45.0]], [[15.0, 27.0, 5.0], [25.0, 27.0, 45.0]]]);
+        let second =
+            fault("second", [[[22.0, 14.0, 5.0], [30.0, 14.0, 45.0]], [[38.0, 16.0, 5.0], [38.0, 16.0, 45.0]]]);
+        let second = Fault { truncated_by: Some("first".into()), ..second };
+        let settings = ModelSettings::default();
+        FaultNetwork::build(&geometry, &[first, second], &settings, &Progress::silent()).unwrap()
+    }
+
+    #[test]
+    fn blocks_come_back_as_they_were_and_damaged_ones_do_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let (root, wanted) = (folder.path(), blocks());
+        assert_eq!(wanted.block_count(), 3);
+        keep_blocks(root, "aa", &wanted, &Progress::silent());
+        assert_eq!(load_blocks(root, "aa").as_ref(), Some(&wanted));
+        assert!(load_blocks(root, "bb").is_none());
+        let path = BLOCKS.path(root, "aa");
+        let mut damaged = std::fs::read(&path).unwrap();
+        let middle = damaged.len() / 2;
+        damaged[middle] ^= 1;
+        std::fs::write(&path, &damaged).unwrap();
+        assert!(load_blocks(root, "aa").is_none());
+    }
+
+    #[test]
+    fn parts_that_do_not_go_together_are_no_blocks() {
+        let whole = blocks();
+        let parts = |surfaces: &[FaultSurface], truncation: &[Option<Truncation>], signatures: &[BlockSignature]| {
+            FaultNetwork::of_parts(surfaces.to_vec(), truncation.to_vec(), signatures.to_vec())
+        };
+        let (surfaces, truncation, signatures) = (whole.surfaces(), whole.truncation(), whole.signatures());
+        assert_eq!(parts(surfaces, truncation, signatures), Some(whole.clone()));
+        assert!(parts(&surfaces[..1], truncation, signatures).is_none());
+        assert!(parts(surfaces, truncation, &[]).is_none());
+        let circle = [Some(Truncation { by: 1, positive: true }), Some(Truncation { by: 0, positive: true })];
+        assert!(parts(surfaces, &circle, signatures).is_none());
+        let mut cut = surfaces.to_vec();
+        cut[0].surface.z.pop();
+        assert!(parts(&cut, truncation, signatures).is_none());
+    }
+
+    #[test]
+    fn the_key_sees_faults_and_frame_and_no_horizons() {
+        let geometry = geometry();
+        let document = Document::empty(Some(geometry));
+        let key = |document: &Document| blocks_key(document, &ModelSettings::default());
+        let mut faster = document.clone();
+        faster.geometry.as_mut().unwrap().velocity_m_s = 3000.0;
+        assert_ne!(key(&document), key(&faster));
+        let mut named = document.clone();
+        named.layer_names = vec!["Rock".into()];
+        assert_eq!(key(&document), key(&named));
+    }
+}

@@ -1,0 +1,239 @@
+//! The parameterization, kept: `grids-KEY.bin` and `parameterization.zarr`.
+
+use super::kept::{Kind, read_array, read_header, write_header};
+use super::{Scratch, folder, key_of};
+use crate::document::Document;
+use crate::error::ProjectError;
+use model::ModelSettings;
+use param::{ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, VoxelParameterization};
+use serde::{Deserialize, Serialize};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use store::{ParameterizationVolumes, StoredParameterization};
+use survey::Progress;
+
+/// Grid files.
+const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x01", what: "the parameterization" };
+
+/// Identifies a parameterization by what it is computed from.
+pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
+    #[derive(Serialize)]
+    struct Inputs<'a> {
+        program: &'static str,
+        geometry: &'a Option<survey::SurveyGeometry>,
+        horizons: Vec<(&'a str, survey::Contact)>,
+        faults: Vec<(&'a str, Option<usize>)>,
+        model: &'a ModelSettings,
+        settings: &'a ParamSettings,
+    }
+    let ends_at = |name: &str| document.faults.iter().position(|fault| fault.name == name);
+    let inputs = Inputs {
+        program: env!("CARGO_PKG_VERSION"),
+        geometry: &document.geometry,
+        horizons: document.horizons.iter().map(|entry| (entry.hash.as_str(), entry.contact)).collect(),
+        faults: document
+            .faults
+            .iter()
+            .map(|entry| (entry.hash.as_str(), entry.truncated_by.as_deref().and_then(ends_at)))
+            .collect(),
+        model,
+        settings,
+    };
+    key_of(&inputs)
+}
+
+/// The parameterization kept under `key`, if there is one that is whole.
+pub fn load_grids(root: &Path, key: &str) -> Option<Parameterization> {
+    GRIDS.load(root, key, read_grids)
+}
+
+/// Keeps a parameterization under `key`; warns when it cannot.
+pub fn keep_grids(root: &Path, key: &str, parameterization: &Parameterization, progress: &Progress) {
+    GRIDS.keep(root, key, progress, |out| write_grids(out, parameterization));
+}
+
+/// The fixed part of a grid file.
+#[derive(Serialize, Deserialize)]
+struct Header {
+    size: [usize; 3],
+    layers: usize,
+    blocks: usize,
+    grids: Vec<GridHeader>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct GridHeader {
+    layer: u16,
+    block: u16,
+    origin: [i32; 2],
+    size: [usize; 2],
+    levels: usize,
+    bottom: (Option<usize>, f32),
+    top: (Option<usize>, f32),
+    thickness_m: Option<f64>,
+    nodes: usize,
+    words: usize,
+}
+
+/// The header, then offsets and creases of each grid.
+fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::Result<()> {
+    let grid = |grid: &RegionGrid| GridHeader {
+        layer: grid.region.layer,
+        block: grid.region.block,
+        origin: grid.origin,
+        size: grid.size,
+        levels: grid.levels,
+        bottom: (grid.bottom.horizon, grid.bottom.shift),
+        top: (grid.top.horizon, grid.top.shift),
+        thickness_m: grid.thickness_m,
+        nodes: grid.offsets.len(),
+        words: grid.creases.len(),
+    };
+    let header = Header {
+        size: parameterization.size,
+        layers: parameterization.layers,
+        blocks: parameterization.blocks,
+        grids: parameterization.grids.iter().map(grid).collect(),
+    };
+    write_header(out, &header)?;
+    for grid in &parameterization.grids {
+        out.write_all(bytemuck::cast_slice(&grid.offsets))?;
+        out.write_all(bytemuck::cast_slice(&grid.creases))?;
+    }
+    Ok(())
+}
+
+fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization> {
+    let header: Header = read_header(input, length)?;
+    let mut grids = Vec::with_capacity(header.grids.len());
+    for head in header.grids {
+        grids.push(RegionGrid {
+            region: Region { layer: head.layer, block: head.block },
+            origin: head.origin,
+            size: head.size,
+            levels: head.levels,
+            bottom: SheetRef { horizon: head.bottom.0, shift: head.bottom.1 },
+            top: SheetRef { horizon: head.top.0, shift: head.top.1 },
+            thickness_m: head.thickness_m,
+            offsets: read_array(input, head.nodes, length)?,
+            creases: read_array(input, head.words, length)?,
+        });
+    }
+    Ok(Parameterization {
+        size: header.size,
+        layers: header.layers,
+        blocks: header.blocks,
+        grids,
+        cost: ComputeCost::default(),
+    })
+}
+
+/// The sampled parameterization, in `derived/`.
+const VOLUMES: &str = "parameterization.zarr";
+
+/// Where the sampled parameterization is.
+pub fn volumes_path(root: &Path) -> PathBuf {
+    folder(root).join(VOLUMES)
+}
+
+/// Writes the sampled parameterization for other programs.
+///
+/// # Errors
+/// It could not be written; what was there before is still there.
+pub fn write_volumes(
+    root: &Path,
+    key: &str,
+    voxels: VoxelParameterization,
+    progress: &Progress,
+) -> Result<VoxelParameterization, ProjectError> {
+    let VoxelParameterization { size, i, j, k, layer, block } = voxels;
+    let volumes = ParameterizationVolumes { i, j, k, layer, block };
+    let scratch = Scratch::begin(root)?;
+    store::write_parameterization(&scratch.path(VOLUMES), &volumes, key, progress)?;
+    scratch.publish(VOLUMES)?;
+    let ParameterizationVolumes { i, j, k, layer, block } = volumes;
+    Ok(VoxelParameterization { size, i, j, k, layer, block })
+}
+
+/// The sampled parameterization, if the one kept was computed from the same input; `size` absent takes any size.
+pub fn load_volumes(
+    root: &Path,
+    key: &str,
+    size: Option<[usize; 3]>,
+    progress: &Progress,
+) -> Option<VoxelParameterization> {
+    let stored = StoredParameterization::open(&volumes_path(root)).ok()?;
+    if stored.key() != key || size.is_some_and(|size| size != stored.size()) {
+        return None;
+    }
+    let ParameterizationVolumes { i, j, k, layer, block } = stored.read(progress).ok()?;
+    Some(VoxelParameterization { size: stored.size(), i, j, k, layer, block })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::kept::KEPT;
+    use super::*;
+    use std::fs;
+
+    fn parameterization() -> Parameterization {
+        let grid = RegionGrid {
+            region: Region { layer: 1, block: 2 },
+            origin: [-3, 4],
+            size: [2, 2],
+            levels: 3,
+            bottom: SheetRef { horizon: Some(0), shift: 0.0 },
+            top: SheetRef { horizon: None, shift: -12.5 },
+            thickness_m: Some(1.0 / 3.0),
+            offsets: (0..12).map(|n| [n as f32, -1.5, f32::MIN_POSITIVE]).collect(),
+            creases: vec![5],
+        };
+        Parameterization { size: [4, 5, 6], layers: 2, blocks: 3, grids: vec![grid], cost: ComputeCost::default() }
+    }
+
+    #[test]
+    fn what_is_kept_comes_back_and_what_is_damaged_does_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let (root, wanted) = (folder.path(), parameterization());
+        keep_grids(root, "aa", &wanted, &Progress::silent());
+        let kept = load_grids(root, "aa").unwrap();
+        assert_eq!((kept.size, kept.layers, kept.blocks), (wanted.size, wanted.layers, wanted.blocks));
+        assert_eq!(kept.grids, wanted.grids);
+        assert!(load_grids(root, "bb").is_none());
+        let path = GRIDS.path(root, "aa");
+        let whole = fs::read(&path).unwrap();
+        for at in [0, 9, 40, whole.len() / 2, whole.len() - 1] {
+            let mut damaged = whole.clone();
+            damaged[at] ^= 1;
+            fs::write(&path, &damaged).unwrap();
+            assert!(load_grids(root, "aa").is_none(), "byte {at}");
+            fs::write(&path, &whole[..at]).unwrap();
+            assert!(load_grids(root, "aa").is_none(), "cut at {at}");
+        }
+    }
+
+    #[test]
+    fn only_the_last_few_are_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        for n in 0..KEPT + 3 {
+            keep_grids(folder.path(), &format!("{n}"), &parameterization(), &Progress::silent());
+        }
+        assert_eq!(fs::read_dir(super::super::folder(folder.path())).unwrap().count(), KEPT);
+    }
+
+    #[test]
+    fn the_key_sees_what_matters_and_no_names() {
+        let geometry = survey::SurveyGeometry::regular([4, 5, 6], 25.0, 4.0, survey::VerticalUnit::Milliseconds);
+        let document = Document::empty(Some(geometry));
+        let key =
+            |document: &Document| parameterization_key(document, &ModelSettings::default(), &ParamSettings::default());
+        let mut faster = document.clone();
+        faster.geometry.as_mut().unwrap().velocity_m_s = 3000.0;
+        assert_ne!(key(&document), key(&faster));
+        let mut named = document.clone();
+        named.layer_names = vec!["Rock".into()];
+        assert_eq!(key(&document), key(&named));
+        let settings = ParamSettings { level_spacing: 7.0, ..ParamSettings::default() };
+        assert_ne!(key(&document), parameterization_key(&document, &ModelSettings::default(), &settings));
+    }
+}

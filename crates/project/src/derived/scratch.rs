@@ -1,0 +1,133 @@
+//! Where derived data are written until they are complete: `derived/unfinished/`, a folder for each writer.
+//!
+//! What is derived is kept without the project's lock, by several programs at once. Each writer therefore has a folder of its
+//! own, beside a lock file that the system releases however the program ends; whoever writes next removes the folders whose lock is free.
+
+use super::folder;
+use crate::error::ProjectError;
+use crate::folder::storage;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Folder of all writers, relative to the project.
+const UNFINISHED: &str = "derived/unfinished";
+
+/// A writer's folder. Dropped, it takes along what was not published.
+#[derive(Debug)]
+pub(crate) struct Scratch {
+    root: PathBuf,
+    name: String,
+    _lock: File,
+}
+
+impl Scratch {
+    /// A new folder, after what killed programs left is gone.
+    ///
+    /// # Errors
+    /// The project holds a link, or cannot be written.
+    pub(crate) fn begin(root: &Path) -> Result<Self, ProjectError> {
+        static COUNT: AtomicU64 = AtomicU64::new(0);
+        storage::refuse_links(root)?;
+        let all = root.join(UNFINISHED);
+        let fail = |source| ProjectError::io("written", &all, source);
+        remove_leftovers(root);
+        let name = format!("{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
+        let made = || fs::create_dir_all(&all).and_then(|()| File::create(all.join(lock_of(&name))));
+        // Another writer that is done may remove the folder just now.
+        let lock = made().or_else(|_| made()).map_err(fail)?;
+        lock.lock().map_err(fail)?;
+        fs::create_dir_all(all.join(&name)).map_err(fail)?;
+        Ok(Self { root: root.to_owned(), name, _lock: lock })
+    }
+
+    /// Where to write what will be `derived/FILE`.
+    pub(crate) fn path(&self, file: &str) -> PathBuf {
+        self.root.join(UNFINISHED).join(&self.name).join(file)
+    }
+
+    /// Puts what was written into its place; what was there before is gone.
+    ///
+    /// # Errors
+    /// It cannot be renamed.
+    pub(crate) fn publish(&self, file: &str) -> Result<(), ProjectError> {
+        let target = folder(&self.root).join(file);
+        if target.is_dir() {
+            storage::rename(&target, &self.path("replaced"))?;
+        }
+        storage::rename(&self.path(file), &target)
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        storage::remove(&self.root, &format!("{UNFINISHED}/{}", self.name));
+        storage::remove(&self.root, &format!("{UNFINISHED}/{}", lock_of(&self.name)));
+        // Only when no other writer is at work.
+        let _ = fs::remove_dir(self.root.join(UNFINISHED));
+    }
+}
+
+fn lock_of(name: &str) -> String {
+    format!("{name}.lock")
+}
+
+/// Removes the folders of writers that no longer run.
+pub(crate) fn remove_leftovers(root: &Path) {
+    let all = root.join(UNFINISHED);
+    for entry in storage::names_in(&all) {
+        let (writer, lock) = match entry.strip_suffix(".lock") {
+            Some(writer) => (writer.to_owned(), entry.clone()),
+            None => (entry.clone(), lock_of(&entry)),
+        };
+        // Of a folder without a lock the writer is gone, too: the lock is made first and removed last.
+        let is_free = File::open(all.join(&lock)).map_or(true, |file| file.try_lock().is_ok());
+        if is_free {
+            storage::remove(root, &format!("{UNFINISHED}/{writer}"));
+            storage::remove(root, &format!("{UNFINISHED}/{lock}"));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(root: &Path) -> Vec<String> {
+        storage::names_in(&root.join(UNFINISHED))
+    }
+
+    #[test]
+    fn what_is_published_stays_and_the_rest_goes() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        for text in ["one", "two"] {
+            let scratch = Scratch::begin(root).unwrap();
+            fs::create_dir(scratch.path("a.zarr")).unwrap();
+            fs::write(scratch.path("a.zarr").join("0"), text).unwrap();
+            fs::write(scratch.path("other"), text).unwrap();
+            scratch.publish("a.zarr").unwrap();
+        }
+        assert_eq!(fs::read_to_string(root.join("derived/a.zarr/0")).unwrap(), "two");
+        assert_eq!(names(root), Vec::<String>::new());
+        assert!(!root.join("derived/other").exists());
+    }
+
+    #[test]
+    fn leftovers_go_and_the_work_of_others_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        let all = root.join(UNFINISHED);
+        fs::create_dir_all(all.join("7-0/a.zarr")).unwrap();
+        fs::create_dir_all(all.join("8-0")).unwrap();
+        fs::write(all.join("8-0.lock"), "").unwrap();
+        fs::create_dir_all(all.join("9-0")).unwrap();
+        let held = File::create(all.join("9-0.lock")).unwrap();
+        held.lock().unwrap();
+        drop(Scratch::begin(root).unwrap());
+        assert_eq!(names(root), ["9-0", "9-0.lock"]);
+        drop(held);
+        drop(Scratch::begin(root).unwrap());
+        assert_eq!(names(root), Vec::<String>::new());
+    }
+}

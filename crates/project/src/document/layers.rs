@@ -1,0 +1,154 @@
+//! Layers of a project: their names, and how their styles survive a change of the horizons.
+//!
+//! Styles belong to layers by name. A horizon put into a layer splits it: the part that keeps the old base keeps name and style, the part
+//! above the new horizon starts without. Taking a horizon away joins two layers into one that keeps those of the lower.
+
+use super::Document;
+use crate::error::{Noun, ProjectError};
+use param::KDefinition;
+
+impl Document {
+    /// The layer names, youngest first.
+    pub fn layers(&self) -> Vec<String> {
+        self.stratigraphy().layer_names_bottom_up().into_iter().rev().collect()
+    }
+
+    /// The definition of k of each layer, deepest first: the one stated, or the one its contacts ask for.
+    pub fn k_definitions(&self) -> Vec<KDefinition> {
+        let stratigraphy = self.stratigraphy();
+        let names = stratigraphy.layer_names_bottom_up();
+        let by_contact = KDefinition::for_contacts(&stratigraphy);
+        names.iter().zip(by_contact).map(|(name, usual)| self.k.get(name).copied().unwrap_or(usual)).collect()
+    }
+
+    /// Runs a change that keeps the number of layers, and takes styles along when their layers' names change.
+    pub fn keep_styles<E>(&mut self, change: impl FnOnce(&mut Self) -> Result<(), E>) -> Result<(), E> {
+        let before = self.layers();
+        change(self)?;
+        let after = self.layers();
+        self.rename_styles(before.iter().map(String::as_str).zip(after.iter().map(|name| Some(name.as_str()))));
+        Ok(())
+    }
+
+    /// Puts a horizon's layer boundary at `position` (0 = youngest); `insert` adds the horizon itself.
+    pub fn split_layer(&mut self, position: usize, insert: impl FnOnce(&mut Self)) {
+        let before = self.layers();
+        insert(self);
+        if !self.layer_names.is_empty() {
+            self.layer_names.insert(position, String::new());
+        }
+        let after = self.layers();
+        let now = |index: usize| Some(after[if index < position { index } else { index + 1 }].as_str());
+        self.rename_styles(before.iter().enumerate().map(|(index, name)| (name.as_str(), now(index))));
+    }
+
+    /// Takes the layer boundary at `position` away; `remove` takes away the horizon itself.
+    pub fn join_layers(&mut self, position: usize, remove: impl FnOnce(&mut Self)) {
+        let before = self.layers();
+        remove(self);
+        if !self.layer_names.is_empty() {
+            self.layer_names.remove(position);
+        }
+        let after = self.layers();
+        let now = |index: usize| match index.cmp(&position) {
+            std::cmp::Ordering::Less => Some(after[index].as_str()),
+            std::cmp::Ordering::Equal => None,
+            std::cmp::Ordering::Greater => Some(after[index - 1].as_str()),
+        };
+        self.rename_styles(before.iter().enumerate().map(|(index, name)| (name.as_str(), now(index))));
+    }
+
+    /// Gives a layer a name of its own.
+    ///
+    /// # Errors
+    /// The name cannot be used or is taken by another layer.
+    pub fn name_layer(&mut self, position: usize, name: &str) -> Result<(), ProjectError> {
+        let before = self.layers();
+        if before[position] == name {
+            return Ok(());
+        }
+        self.check_new_name(Noun::Layer, name)?;
+        self.keep_styles(|document| {
+            document.layer_names.resize(before.len(), String::new());
+            document.layer_names[position] = name.to_owned();
+            Ok(())
+        })
+    }
+
+    /// Moves styles and definitions of k from old to new layer names at once; those without a new name are dropped.
+    fn rename_styles<'a>(&mut self, names: impl Iterator<Item = (&'a str, Option<&'a str>)>) {
+        let names: Vec<_> = names.collect();
+        let styles = std::mem::take(&mut self.style.layers.styles);
+        self.style.layers.styles = styles
+            .into_iter()
+            .filter_map(|mut style| {
+                let now = names.iter().find(|(before, _)| *before == style.layer).map(|(_, now)| *now)?;
+                style.layer = now?.to_owned();
+                Some(style)
+            })
+            .collect();
+        let k = std::mem::take(&mut self.k);
+        let now = |before: &str| names.iter().find(|(name, _)| *name == before)?.1.map(str::to_owned);
+        self.k = k.into_iter().filter_map(|(name, k)| Some((now(&name)?, k))).collect();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{HorizonEntry, Source};
+    use survey::Contact;
+    use ttf::{Colour, LayerStyle};
+
+    fn horizon(name: &str) -> HorizonEntry {
+        HorizonEntry {
+            name: name.into(),
+            contact: Contact::default(),
+            file: format!("horizons/{name}.zarr"),
+            hash: String::new(),
+            source: Source { path: "x".into(), bytes: 0, reading: String::new() },
+            assembly: None,
+        }
+    }
+
+    fn styled() -> Document {
+        let mut document = Document::empty(None);
+        document.horizons = vec![horizon("A"), horizon("B")];
+        for (index, layer) in document.layers().iter().enumerate() {
+            document.style.layers.set(LayerStyle::plain(layer, Colour::new(index as u8, 0, 0)));
+        }
+        document
+    }
+
+    fn reds(document: &Document) -> Vec<Option<u8>> {
+        document.layers().iter().map(|name| Some(document.style.layers.style(name)?.colour.rgb[0])).collect()
+    }
+
+    #[test]
+    fn the_part_with_the_old_base_keeps_the_style_and_joining_undoes_it() {
+        let mut document = styled();
+        let before = document.clone();
+        document.split_layer(1, |document| document.horizons.insert(1, horizon("N")));
+        assert_eq!(document.layers(), ["above A", "A - N", "N - B", "below B"]);
+        assert_eq!(reds(&document), [Some(0), None, Some(1), Some(2)]);
+        document.join_layers(1, |document| drop(document.horizons.remove(1)));
+        assert_eq!(document, before);
+    }
+
+    #[test]
+    fn names_and_styles_follow_a_renamed_horizon() {
+        let mut document = styled();
+        document.name_layer(1, "Chalk").unwrap();
+        document
+            .keep_styles(|document| {
+                document.horizons[0].name = "Top".into();
+                Ok::<(), ProjectError>(())
+            })
+            .unwrap();
+        assert_eq!(document.layers(), ["above Top", "Chalk", "below B"]);
+        assert_eq!(reds(&document), [Some(0), Some(1), Some(2)]);
+        assert!(document.name_layer(2, "chalk").is_err());
+        document.split_layer(0, |document| document.horizons.insert(0, horizon("Sea floor")));
+        assert_eq!(document.layers(), ["above Sea floor", "Sea floor - Top", "Chalk", "below B"]);
+    }
+}

@@ -1,0 +1,314 @@
+//! What `project.toml` says: the whole state of a project but for the bulk data, which it refers to by file.
+//!
+//! The text is made for people: it can be read, compared and edited. Every command rewrites it in one fixed order, so that two
+//! states differ only where the project does.
+
+pub(crate) mod data_file;
+mod entries;
+mod layers;
+mod picks;
+
+use crate::error::{Noun, ProjectError};
+pub use entries::{
+    FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry,
+};
+use param::KDefinition;
+pub use picks::{Assembly, FaultSticks, PickEntry};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+use survey::{StratigraphicHorizon, Stratigraphy, SurveyGeometry};
+
+/// The version this program writes, and the newest it reads.
+pub const VERSION: u32 = 1;
+
+/// The state of a project.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Document {
+    /// Version of this format.
+    pub version: u32,
+    /// Position in the history: the number of the command that led here.
+    pub step: u32,
+    /// The lattice that everything is placed in; absent until a volume is imported or bounds are given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub geometry: Option<SurveyGeometry>,
+    /// Names of the layers, youngest first; empty = named after the horizons.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub layer_names: Vec<String>,
+    /// Volumes in order of import; the first is the one shown as raw data.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub volumes: Vec<VolumeEntry>,
+    /// Horizons in age order, youngest first.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub horizons: Vec<HorizonEntry>,
+    /// Faults in order of import.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<FaultEntry>,
+    /// Wells in order of import.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub wells: Vec<WellEntry>,
+    /// Sticks of the faults that were drawn here.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sticks: Vec<FaultSticks>,
+    /// The user's own tiles.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub textures: Vec<TextureEntry>,
+    /// Textures of layers and volumes, colours of raw data.
+    #[serde(default)]
+    pub style: Style,
+    /// Definitions of k by layer name; others have the usual one.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub k: BTreeMap<String, KDefinition>,
+    /// Named views.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scenes: Vec<SceneEntry>,
+}
+
+/// Says at the top of the file what it is.
+const HEADER: &str = "# A Petroglyph project. Commands change this file and remember its former states in history/; `petroglyph undo` goes back.\n\n";
+
+impl Document {
+    /// A project with nothing in it.
+    pub fn empty(geometry: Option<SurveyGeometry>) -> Self {
+        Self {
+            version: VERSION,
+            step: 0,
+            geometry,
+            layer_names: Vec::new(),
+            volumes: Vec::new(),
+            horizons: Vec::new(),
+            faults: Vec::new(),
+            wells: Vec::new(),
+            sticks: Vec::new(),
+            textures: Vec::new(),
+            style: Style::default(),
+            k: BTreeMap::new(),
+            scenes: Vec::new(),
+        }
+    }
+
+    /// The text of `project.toml`.
+    pub fn to_text(&self, path: &Path) -> Result<String, ProjectError> {
+        let body = toml::to_string_pretty(self)
+            .map_err(|error| ProjectError::Malformed { path: path.to_owned(), detail: error.to_string() })?;
+        Ok(format!("{HEADER}{body}"))
+    }
+
+    /// Reads the text of `project.toml`; `path` is named in errors.
+    ///
+    /// # Errors
+    /// [`ProjectError::Newer`] before anything else is looked at; [`ProjectError::Malformed`] otherwise.
+    pub fn from_text(text: &str, path: &Path) -> Result<Self, ProjectError> {
+        let malformed = |detail: String| ProjectError::Malformed { path: path.to_owned(), detail };
+        #[derive(Deserialize)]
+        struct Version {
+            version: u32,
+        }
+        let Version { version } = toml::from_str(text).map_err(|error| malformed(error.to_string()))?;
+        if version > VERSION {
+            return Err(ProjectError::Newer { path: path.to_owned(), found: version, supported: VERSION });
+        }
+        let document: Self = toml::from_str(text).map_err(|error| malformed(error.to_string()))?;
+        document.check().map_err(malformed)?;
+        Ok(document)
+    }
+
+    /// What the types cannot say.
+    fn check(&self) -> Result<(), String> {
+        if let Some(geometry) = &self.geometry {
+            geometry.validate().map_err(|error| error.to_string())?;
+        } else if !(self.volumes.is_empty()
+            && self.horizons.is_empty()
+            && self.faults.is_empty()
+            && self.wells.is_empty())
+        {
+            return Err("it has data but no geometry".to_owned());
+        }
+        if !self.layer_names.is_empty() && self.layer_names.len() != self.horizons.len() + 1 {
+            return Err(format!(
+                "{} horizons make {} layers, but layer_names has {}",
+                self.horizons.len(),
+                self.horizons.len() + 1,
+                self.layer_names.len()
+            ));
+        }
+        for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Well, Noun::Layer, Noun::Texture, Noun::Scene] {
+            let names = self.names(noun);
+            if let Some(twice) = names.iter().enumerate().find(|(index, name)| names[..*index].contains(name)) {
+                return Err(format!("two {noun}s are named \"{}\"", twice.1));
+            }
+        }
+        self.check_truncation().map_err(|error| error.to_string())?;
+        // Whatever else a name says would let a project read, and a later command delete, what is not its own.
+        for (kind, file) in self.files_by_kind() {
+            if !data_file::is_data_file(kind, file) {
+                return Err(format!("the file \"{file}\" is not of the form {kind}/NAME"));
+            }
+        }
+        Ok(())
+    }
+
+    /// The names of one kind, in the project's order.
+    pub fn names(&self, noun: Noun) -> Vec<String> {
+        match noun {
+            Noun::Volume => self.volumes.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Horizon => self.horizons.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Fault => self.faults.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Well => self.wells.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Layer => self.layers(),
+            Noun::Texture => self.textures.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Scene => self.scenes.iter().map(|entry| entry.name.clone()).collect(),
+        }
+    }
+
+    /// All data files, relative to the project's folder.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        self.files_by_kind().map(|(_, file)| file)
+    }
+
+    /// All data files with the folder each must lie in.
+    fn files_by_kind(&self) -> impl Iterator<Item = (&'static str, &str)> {
+        let volumes = self.volumes.iter().map(|entry| ("volumes", entry.file.as_str()));
+        let horizons = self.horizons.iter().map(|entry| ("horizons", entry.file.as_str()));
+        let faults = self.faults.iter().map(|entry| ("faults", entry.file.as_str()));
+        let wells = self.wells.iter().map(|entry| ("wells", entry.file.as_str()));
+        let textures = self.textures.iter().map(|entry| ("textures", entry.file.as_str()));
+        volumes.chain(horizons).chain(faults).chain(wells).chain(textures)
+    }
+
+    /// The horizons' order, contacts and the layers between them.
+    pub fn stratigraphy(&self) -> Stratigraphy {
+        let horizon = |entry: &HorizonEntry| StratigraphicHorizon { name: entry.name.clone(), contact: entry.contact };
+        Stratigraphy { horizons: self.horizons.iter().map(horizon).collect(), layer_names: self.layer_names.clone() }
+    }
+
+    /// The survey frame.
+    ///
+    /// # Errors
+    /// [`ProjectError::NoGeometry`] while there is none.
+    pub fn frame(&self) -> Result<&SurveyGeometry, ProjectError> {
+        self.geometry.as_ref().ok_or(ProjectError::NoGeometry)
+    }
+
+    /// Refuses faults that end at one another in a circle, and at faults there are not.
+    ///
+    /// # Errors
+    /// [`ProjectError::Unknown`] or [`ProjectError::CircularTruncation`].
+    pub fn check_truncation(&self) -> Result<(), ProjectError> {
+        for fault in &self.faults {
+            let mut path = vec![fault.name.clone()];
+            let mut next = fault.truncated_by.as_deref();
+            while let Some(name) = next {
+                let index = self.position(Noun::Fault, name)?;
+                path.push(name.to_owned());
+                if path.len() > self.faults.len() + 1 || name == fault.name {
+                    return Err(ProjectError::CircularTruncation { path });
+                }
+                next = self.faults[index].truncated_by.as_deref();
+            }
+        }
+        Ok(())
+    }
+
+    /// The position of a named thing.
+    ///
+    /// # Errors
+    /// [`ProjectError::Unknown`] with the names there are.
+    pub fn position(&self, noun: Noun, name: &str) -> Result<usize, ProjectError> {
+        let names = self.names(noun);
+        names.iter().position(|present| present == name).ok_or_else(|| ProjectError::Unknown {
+            noun,
+            name: name.to_owned(),
+            known: names,
+        })
+    }
+
+    /// Checks that a name may be given to something new.
+    ///
+    /// # Errors
+    /// [`ProjectError::BadName`]; [`ProjectError::Duplicate`], also when only the case differs, because file systems and people
+    /// do not tell such names apart.
+    pub fn check_new_name(&self, noun: Noun, name: &str) -> Result<(), ProjectError> {
+        let bad = |fact| Err(ProjectError::BadName { noun, name: name.to_owned(), fact });
+        if name.trim().is_empty() {
+            return bad("it is empty");
+        }
+        if name.trim() != name {
+            return bad("it begins or ends with a blank");
+        }
+        if name.chars().any(char::is_control) {
+            return bad("it contains control characters");
+        }
+        if name.chars().count() > 80 {
+            return bad("it is longer than 80 characters");
+        }
+        let lower = name.to_lowercase();
+        if self.names(noun).iter().any(|present| present.to_lowercase() == lower) {
+            return Err(ProjectError::Duplicate { noun, name: name.to_owned() });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::{Contact, VerticalUnit};
+
+    fn horizon(name: &str) -> HorizonEntry {
+        HorizonEntry {
+            name: name.into(),
+            contact: Contact::Erosional,
+            file: format!("horizons/{name}.zarr"),
+            hash: "00".into(),
+            source: Source { path: "a b.csv".into(), bytes: 10, reading: "csv".into() },
+            assembly: None,
+        }
+    }
+
+    fn document() -> Document {
+        let geometry = SurveyGeometry::regular([11, 21, 31], 25.0, 4.0, VerticalUnit::Milliseconds);
+        let mut document = Document::empty(Some(geometry));
+        document.horizons = vec![horizon("A"), horizon("B")];
+        document
+    }
+
+    #[test]
+    fn text_and_state_invert() {
+        let document = document();
+        let path = Path::new("project.toml");
+        let text = document.to_text(path).unwrap();
+        let read = Document::from_text(&text, path).unwrap();
+        assert_eq!(read, document);
+        assert_eq!(read.to_text(path).unwrap(), text);
+    }
+
+    #[test]
+    fn a_newer_version_is_told_from_a_broken_file() {
+        let path = Path::new("project.toml");
+        let newer = "version = 99\nsomething_else = true\n";
+        assert!(matches!(Document::from_text(newer, path), Err(ProjectError::Newer { found: 99, .. })));
+        assert!(matches!(Document::from_text("version = 1\nnonsense = 1", path), Err(ProjectError::Malformed { .. })));
+    }
+
+    #[test]
+    fn only_data_of_its_own_kind_is_accepted() {
+        for file in
+            ["/etc/passwd", "../other.petro/horizons/A.zarr", "horizons/../../x", "", "horizons", "volumes/A.zarr"]
+        {
+            let mut document = document();
+            document.horizons[0].file = file.into();
+            assert!(document.check().is_err(), "{file}");
+        }
+    }
+
+    #[test]
+    fn names_that_differ_in_case_only_are_duplicates() {
+        let document = document();
+        assert!(matches!(document.check_new_name(Noun::Horizon, "a"), Err(ProjectError::Duplicate { .. })));
+        assert!(matches!(document.check_new_name(Noun::Horizon, " "), Err(ProjectError::BadName { .. })));
+        document.check_new_name(Noun::Fault, "A").unwrap();
+        assert!(matches!(document.position(Noun::Horizon, "C"), Err(ProjectError::Unknown { .. })));
+    }
+}

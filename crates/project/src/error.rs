@@ -1,0 +1,452 @@
+//! What can go wrong with a project, with the facts as fields and a hint for what to do next.
+
+use crate::placement::PlacementError;
+use formats::FormatError;
+use formats::well::WellFileError;
+use segy::SegyError;
+use std::io;
+use std::path::{Path, PathBuf};
+use store::StoreError;
+use survey::Remedy;
+
+/// Kinds of named things in a project.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Noun {
+    /// A seismic or attribute volume.
+    Volume,
+    /// An interpreted horizon.
+    Horizon,
+    /// An interpreted fault.
+    Fault,
+    /// A well.
+    Well,
+    /// A layer between two horizons.
+    Layer,
+    /// A picture to tile a layer with.
+    Texture,
+    /// A named view.
+    Scene,
+}
+
+impl std::fmt::Display for Noun {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Volume => "volume",
+            Self::Horizon => "horizon",
+            Self::Fault => "fault",
+            Self::Well => "well",
+            Self::Layer => "layer",
+            Self::Texture => "texture",
+            Self::Scene => "scene",
+        })
+    }
+}
+
+/// Why something could not be done with a project. The project is as it was before.
+#[derive(Debug, thiserror::Error)]
+pub enum ProjectError {
+    /// Nothing is there.
+    #[error("there is no project at {}", path.display())]
+    NotFound {
+        /// Where it was looked for.
+        path: PathBuf,
+    },
+    /// Something else is there.
+    #[error("{} is not a Petroglyph project: {fact}", path.display())]
+    NotAProject {
+        /// What was opened.
+        path: PathBuf,
+        /// What it is or lacks.
+        fact: &'static str,
+    },
+    /// Something is there already.
+    #[error("{} exists already", path.display())]
+    Exists {
+        /// Where the project was to be created.
+        path: PathBuf,
+    },
+    /// Written by a later version of the program.
+    #[error(
+        "{} was written by a newer Petroglyph (project version {found}; this program knows up to {supported})", path.display()
+    )]
+    Newer {
+        /// The project's file.
+        path: PathBuf,
+        /// Its version.
+        found: u32,
+        /// The latest version known here.
+        supported: u32,
+    },
+    /// `project.toml` or a history step cannot be understood.
+    #[error("{} cannot be understood: {detail}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// Where and why.
+        detail: String,
+    },
+    /// Another process is changing the project.
+    #[error("{} is being changed by another Petroglyph process", path.display())]
+    Locked {
+        /// The project.
+        path: PathBuf,
+    },
+    /// A link where a project keeps a file or folder of its own.
+    #[error("{} is a link, and a project holds none: what it points to could be changed or deleted", path.display())]
+    Link {
+        /// The link.
+        path: PathBuf,
+    },
+    /// The folder cannot be written.
+    #[error("{} cannot be written: it is read-only or belongs to someone else", path.display())]
+    ReadOnly {
+        /// The file or folder.
+        path: PathBuf,
+    },
+    /// No space left.
+    #[error("the disk is full: {} could not be written", path.display())]
+    DiskFull {
+        /// The file or folder.
+        path: PathBuf,
+    },
+    /// Any other failure of the file system.
+    #[error("{} could not be {action}", path.display())]
+    Io {
+        /// "read", "written", ...
+        action: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// A name is taken.
+    #[error("the project already has a {noun} named \"{name}\"")]
+    Duplicate {
+        /// What it is.
+        noun: Noun,
+        /// The name wanted.
+        name: String,
+    },
+    /// A name does not exist.
+    #[error("the project has no {noun} named \"{name}\" ({})", listed(.known))]
+    Unknown {
+        /// What was looked for.
+        noun: Noun,
+        /// The name given.
+        name: String,
+        /// The names there are.
+        known: Vec<String>,
+    },
+    /// A name that cannot be used.
+    #[error("\"{name}\" cannot be the name of a {noun}: {fact}")]
+    BadName {
+        /// What was to be named.
+        noun: Noun,
+        /// The name given.
+        name: String,
+        /// What is wrong with it.
+        fact: &'static str,
+    },
+    /// A survey frame that conversions cannot work with.
+    #[error("the survey geometry cannot be used: {0}")]
+    Geometry(#[from] survey::geometry::GeometryError),
+    /// A volume that does not lie in the project's survey.
+    #[error("volume \"{name}\" does not fit the project: {source}")]
+    Placement {
+        /// Name of the volume.
+        name: String,
+        /// What does not fit.
+        source: PlacementError,
+    },
+    /// A file that holds more than was asked for.
+    #[error("{} holds several: {}", path.display(), names.join(", "))]
+    SeveralInFile {
+        /// The file.
+        path: PathBuf,
+        /// What it holds.
+        names: Vec<String>,
+    },
+    /// Horizons in the wrong order.
+    #[error(
+        "horizon \"{younger}\" runs below \"{older}\" at {:.0} % of their common traces, by up to {worst:.1} {unit} at inline {:.0}, crossline {:.0}",
+        share * 100.0, lines[0], lines[1]
+    )]
+    Crossing {
+        /// The horizon that should be above.
+        younger: String,
+        /// The horizon that should be below.
+        older: String,
+        /// Share of the common traces that cross, 0 to 1.
+        share: f64,
+        /// Largest crossing.
+        worst: f32,
+        /// Its unit.
+        unit: &'static str,
+        /// Inline and crossline of the worst place.
+        lines: [f64; 2],
+    },
+    /// Faults that end at one another.
+    #[error("faults end at one another in a circle: {}", path.join(" ends at "))]
+    CircularTruncation {
+        /// The faults along the circle.
+        path: Vec<String>,
+    },
+    /// A SEG-Y file that could not be read.
+    #[error(transparent)]
+    Segy(#[from] SegyError),
+    /// A horizon or fault file that could not be read or written.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// A well's file that could not be read.
+    #[error(transparent)]
+    Well(#[from] WellFileError),
+    /// Data of the project that could not be read or written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// An attribute could not be computed.
+    #[error(transparent)]
+    Attribute(#[from] attribute::AttributeError),
+    /// The interpretation does not make a solid model.
+    #[error(transparent)]
+    Model(#[from] model::ModelError),
+    /// The layers could not be parameterized.
+    #[error(transparent)]
+    Param(#[from] param::ParamError),
+    /// A transfer function or texture that cannot be drawn.
+    #[error(transparent)]
+    Style(#[from] ttf::Error),
+    /// A view that shows nothing.
+    #[error(transparent)]
+    Scene(#[from] render::SceneError),
+    /// No picture could be made.
+    #[error(transparent)]
+    Render(#[from] render::RenderError),
+    /// A synthetic survey could not be made.
+    #[error(transparent)]
+    Synth(#[from] synth::SynthError),
+    /// A folder without the truth of a synthetic survey.
+    #[error("{} is not the truth of a synthetic survey ({fact})", path.display())]
+    NotATruth {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        fact: String,
+    },
+    /// Horizon candidates could not be extracted or read.
+    #[error(transparent)]
+    Interp(interp::Error),
+    /// No candidates yet.
+    #[error("the project has no horizon candidates yet")]
+    NotExtracted,
+    /// Nothing to compute from.
+    #[error("the project has no volume on its own lattice")]
+    NoVolume,
+    /// A volume whose voxels are not the project's.
+    #[error("volume \"{volume}\" lies on another lattice than the project")]
+    OtherLattice {
+        /// Its name.
+        volume: String,
+    },
+    /// A place outside the survey.
+    #[error(
+        "inline {}, crossline {}, {} lies outside the survey: inlines {} to {}, crosslines {} to {}, {} to {} down",
+        at[0], at[1], at[2], inlines[0], inlines[1], crosslines[0], crosslines[1], vertical[0], vertical[1]
+    )]
+    PickOutside {
+        /// Inline, crossline, vertical value.
+        at: [f64; 3],
+        /// First and last inline.
+        inlines: [i32; 2],
+        /// First and last crossline.
+        crosslines: [i32; 2],
+        /// First and last vertical value.
+        vertical: [f64; 2],
+    },
+    /// A place with no candidate near it.
+    #[error(
+        "no candidate lies within {max_distance} voxels of inline {}, crossline {}, {}: the nearest is {distance:.1} voxels away, at inline {:.1}, crossline {:.1}, {:.1}",
+        at[0], at[1], at[2], nearest[0], nearest[1], nearest[2]
+    )]
+    NoCandidate {
+        /// Inline, crossline, vertical value.
+        at: [f64; 3],
+        /// The nearest candidate, likewise.
+        nearest: [f64; 3],
+        /// Its distance, voxels.
+        distance: f32,
+        /// How far the extraction reaches, voxels.
+        max_distance: f32,
+    },
+    /// A node could not be found.
+    #[error(transparent)]
+    Assembly(#[from] interp::assembly::AssemblyError),
+    /// A horizon that was imported.
+    #[error("horizon \"{horizon}\" was imported, not assembled by picks")]
+    NotAssembled {
+        /// Its name.
+        horizon: String,
+    },
+    /// Nothing of a horizon is left.
+    #[error("nothing of horizon \"{horizon}\" would be left")]
+    NothingLeft {
+        /// Its name.
+        horizon: String,
+    },
+    /// The node is part of the horizon already.
+    #[error("horizon \"{horizon}\" has all of the node at leaf {leaf} already")]
+    AlreadyPicked {
+        /// The horizon.
+        horizon: String,
+        /// The leaf.
+        leaf: u32,
+    },
+    /// The node is no part of the horizon.
+    #[error("horizon \"{horizon}\" has nothing of the node at leaf {leaf}")]
+    NotPicked {
+        /// The horizon.
+        horizon: String,
+        /// The leaf.
+        leaf: u32,
+    },
+    /// Picks of several horizons at once.
+    #[error("picks of \"{}\" and \"{}\" cannot be made in one step", horizons[0], horizons[1])]
+    SeveralHorizons {
+        /// Two of them.
+        horizons: [String; 2],
+    },
+    /// A pick that is not there.
+    #[error("there is no pick {pick}; {}", if known.is_empty() { "nothing was picked yet".to_owned() } else { format!("there are: {known:?}") })]
+    UnknownPick {
+        /// Its number.
+        pick: u32,
+        /// Those there are.
+        known: Vec<u32>,
+    },
+    /// A pick that cannot go down so far.
+    #[error("pick {pick} is {up} levels above its leaf and cannot descend further than that")]
+    AtLeaf {
+        /// Its number.
+        pick: u32,
+        /// Levels above its leaf.
+        up: u32,
+    },
+    /// Picks of another extraction.
+    #[error("the extraction has changed since picks {picks:?} of horizon \"{horizon}\" were made")]
+    OutdatedPicks {
+        /// The horizon.
+        horizon: String,
+        /// Their numbers.
+        picks: Vec<u32>,
+    },
+    /// Picks that mean something else now.
+    #[error("picks {picks:?} of horizon \"{horizon}\" no longer fit: their nodes are different ones, or gone")]
+    UnfitPicks {
+        /// The horizon.
+        horizon: String,
+        /// Their numbers.
+        picks: Vec<u32>,
+    },
+    /// A stick of one place.
+    #[error("stick {stick} has one place; a stick is a line of at least two")]
+    ShortStick {
+        /// Which one, from 1.
+        stick: usize,
+    },
+    /// Sticks that make no surface.
+    #[error("the sticks of fault \"{fault}\" span no surface")]
+    FlatSticks {
+        /// The fault.
+        fault: String,
+    },
+    /// A fault that was not drawn here.
+    #[error("fault \"{fault}\" was not drawn by sticks")]
+    NotDrawn {
+        /// Its name.
+        fault: String,
+    },
+    /// No horizons to find faults in.
+    #[error("the project has no horizons whose offsets could speak for faults")]
+    NoEvidence,
+    /// Nothing was proposed.
+    #[error("no faults were proposed yet")]
+    NoProposals,
+    /// Proposals of another state.
+    #[error("the horizons have changed since faults were proposed")]
+    OutdatedProposals,
+    /// A proposal that is not there.
+    #[error("there is no proposal {proposal}; they are numbered from 1 to {known}")]
+    UnknownProposal {
+        /// Its number.
+        proposal: u32,
+        /// How many there are.
+        known: u32,
+    },
+    /// The user stopped it.
+    #[error("cancelled")]
+    Cancelled(#[from] survey::Cancelled),
+    /// Interpretation without a frame to place it in.
+    #[error("the project has no survey frame yet")]
+    NoGeometry,
+    /// At the first step.
+    #[error("there is nothing to undo")]
+    NothingToUndo,
+    /// At the last step.
+    #[error("there is nothing to redo")]
+    NothingToRedo,
+}
+
+impl From<interp::Error> for ProjectError {
+    fn from(error: interp::Error) -> Self {
+        match error {
+            interp::Error::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            interp::Error::Sink(error) => match error.downcast::<StoreError>() {
+                Ok(error) => Self::Store(*error),
+                Err(error) => Self::Interp(interp::Error::Sink(error)),
+            },
+            other => Self::Interp(other),
+        }
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    if names.is_empty() { "it has none".to_owned() } else { format!("it has: {}", names.join(", ")) }
+}
+
+impl ProjectError {
+    /// Sorts a failure of the file system into what the user can act on.
+    pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::DiskFull { path },
+            io::ErrorKind::ReadOnlyFilesystem | io::ErrorKind::PermissionDenied if action != "read" => {
+                Self::ReadOnly { path }
+            }
+            _ => Self::Io { action, path, source },
+        }
+    }
+
+    /// What can be stated about a file so that this does not happen again, where that is known.
+    pub fn remedy(&self) -> Option<Remedy> {
+        match self {
+            Self::Segy(error) => error.remedy(),
+            Self::Format(error) => error.remedy(),
+            Self::Well(error) => error.remedy(),
+            _ => None,
+        }
+    }
+}
+
+/// What can be stated about a file against an error, wherever in its chain of causes that is known.
+pub fn remedy_of(error: &(dyn std::error::Error + 'static)) -> Option<Remedy> {
+    std::iter::successors(Some(error), |error| error.source()).find_map(|error| {
+        if let Some(error) = error.downcast_ref::<ProjectError>() {
+            error.remedy()
+        } else if let Some(error) = error.downcast_ref::<SegyError>() {
+            error.remedy()
+        } else if let Some(error) = error.downcast_ref::<FormatError>() {
+            error.remedy()
+        } else {
+            error.downcast_ref::<WellFileError>()?.remedy()
+        }
+    })
+}

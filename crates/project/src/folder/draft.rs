@@ -1,0 +1,72 @@
+//! A state of a project in the making: what a command works on.
+
+use super::{history, storage};
+use crate::document::Document;
+use crate::error::ProjectError;
+use std::path::{Path, PathBuf};
+
+/// A copy of the state to change, and a place to write new data to. Dropped without being kept, it removes what was written.
+#[derive(Debug)]
+pub struct Draft {
+    root: PathBuf,
+    /// The state the command is to leave behind.
+    pub document: Document,
+    written: Vec<String>,
+    kept: bool,
+}
+
+impl Draft {
+    pub(crate) fn new(root: &Path, document: Document) -> Self {
+        Self { root: root.to_owned(), document, written: Vec::new(), kept: false }
+    }
+
+    /// The project's folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// A new place for data of a kind (`volumes`, `horizons` …): the file to put into the document, and the path to write to now.
+    ///
+    /// The file is named after `name` as far as file systems allow, with a number where an older generation of that name is still remembered.
+    ///
+    /// # Errors
+    /// The folder to write to cannot be made.
+    pub fn generation(
+        &mut self,
+        kind: &'static str,
+        name: &str,
+        extension: &str,
+    ) -> Result<(String, PathBuf), ProjectError> {
+        let slug: String =
+            name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+        let slug = slug.trim_start_matches('.');
+        let slug = if slug.is_empty() { "_" } else { slug };
+        let taken = |file: &String| self.root.join(file).exists() || self.written.contains(file);
+        let numbered = (2..).map(|number| format!("{kind}/{slug}-{number}.{extension}"));
+        let mut files = std::iter::once(format!("{kind}/{slug}.{extension}")).chain(numbered);
+        let file = files.find(|file| !taken(file)).expect("there are more numbers than files");
+        let path = storage::begin(&self.root, &file)?;
+        self.written.push(file.clone());
+        Ok((file, path))
+    }
+
+    /// Flushes the data and gives it its names.
+    pub(crate) fn publish(&self) -> Result<(), ProjectError> {
+        self.written.iter().try_for_each(|file| storage::publish(&self.root, file))
+    }
+
+    /// The state was saved: the data stays.
+    pub(crate) fn keep(mut self) {
+        self.kept = true;
+    }
+}
+
+impl Drop for Draft {
+    fn drop(&mut self) {
+        if !self.kept {
+            // What was published before the save failed; a state that was saved after all keeps its data.
+            let _ = history::release(&self.root, self.written.iter().cloned().collect());
+        }
+        storage::remove(&self.root, storage::UNFINISHED);
+    }
+}

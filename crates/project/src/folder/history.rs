@@ -1,0 +1,162 @@
+//! The commands of a project, each with the state it led to: what undo and redo walk along.
+//!
+//! `history/0007.toml` holds command 7 and the text of `project.toml` after it. Undo writes the text of step 6 back, redo that of
+//! step 8, so both restore it byte for byte, from any process. Data files that a remembered state refers to stay where they are until the last
+//! such state is forgotten: by a command given after an undo, by the limit on the length, or by [`super::Project::prune`].
+//!
+//! A step waits in `unfinished/` while `project.toml` is replaced and gets its place after it; a writer that finds one there
+//! can tell by `project.toml` whether the command was completed ([`recover`]). A step that is to be forgotten moves there, too, and is
+//! deleted after the data that only it refers to, so that a kill in between leaves nothing behind.
+//!
+//! A step that cannot be read any more is told as such and is no reason to refuse work; whatever it may refer to is kept.
+
+use super::storage;
+use crate::document::{Document, data_file};
+use crate::error::ProjectError;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Remembered steps; the oldest are forgotten first. Long enough for a day's work, short enough that removed volumes do not fill the disk for ever.
+pub const HISTORY_LIMIT: u32 = 200;
+
+/// One remembered command.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Step {
+    /// What happened, in a few words.
+    pub summary: String,
+    /// The text of `project.toml` after it.
+    pub project: String,
+    /// The command as data; absent for an edit by hand.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub command: Option<toml::Value>,
+}
+
+/// Where a step is, relative to the project.
+fn file_of(number: u32) -> String {
+    format!("history/{number:04}.toml")
+}
+
+/// Where a step waits to be forgotten, relative to the project.
+fn forgotten_file_of(number: u32) -> String {
+    format!("{}/forgotten/{number:04}.toml", storage::UNFINISHED)
+}
+
+/// The numbers of the steps in a folder, ascending.
+fn numbers_in(folder: &Path) -> Vec<u32> {
+    let number = |name: &String| name.strip_suffix(".toml")?.parse().ok();
+    let mut numbers: Vec<u32> = storage::names_in(folder).iter().filter_map(number).collect();
+    numbers.sort_unstable();
+    numbers
+}
+
+/// Numbers of the remembered steps, ascending.
+pub(crate) fn numbers(root: &Path) -> Vec<u32> {
+    numbers_in(&root.join("history"))
+}
+
+/// Reads step `number`; `None` when it is not remembered.
+pub(crate) fn read(root: &Path, number: u32) -> Result<Option<Step>, ProjectError> {
+    let path = root.join(file_of(number));
+    if path.exists() { read_step(&path).map(Some) } else { Ok(None) }
+}
+
+fn read_step(path: &Path) -> Result<Step, ProjectError> {
+    toml::from_str(&storage::read_text(path)?)
+        .map_err(|error| ProjectError::Malformed { path: path.to_owned(), detail: error.to_string() })
+}
+
+/// Writes step `number` so that [`complete`] or [`recover`] can finish it.
+pub(crate) fn prepare(root: &Path, number: u32, step: &Step) -> Result<(), ProjectError> {
+    let text = toml::to_string_pretty(step)
+        .map_err(|error| ProjectError::Malformed { path: root.join(file_of(number)), detail: error.to_string() })?;
+    storage::write_unfinished(root, &file_of(number), text.as_bytes())
+}
+
+/// Makes a prepared step the last one: what was undone before it is forgotten, and so are steps beyond the limit, with their data.
+pub(crate) fn complete(root: &Path, number: u32) -> Result<(), ProjectError> {
+    forget(root, |old| old >= number || old.saturating_add(HISTORY_LIMIT) <= number)?;
+    storage::rename(&storage::unfinished(root, &file_of(number)), &root.join(file_of(number)))?;
+    release_forgotten(root)
+}
+
+/// Forgets everything but step `number`, and the data only that kept.
+pub(crate) fn forget_all_but(root: &Path, number: u32) -> Result<(), ProjectError> {
+    forget(root, |old| old != number)?;
+    release_forgotten(root)?;
+    storage::remove(root, storage::UNFINISHED);
+    Ok(())
+}
+
+/// Takes steps out of the history; their data stay until [`release_forgotten`].
+fn forget(root: &Path, which: impl Fn(u32) -> bool) -> Result<(), ProjectError> {
+    for old in numbers(root).into_iter().filter(|&old| which(old)) {
+        storage::rename(&root.join(file_of(old)), &root.join(forgotten_file_of(old)))?;
+    }
+    Ok(())
+}
+
+/// Deletes the forgotten steps, after the data that only they refer to.
+fn release_forgotten(root: &Path) -> Result<(), ProjectError> {
+    for number in numbers_in(&storage::unfinished(root, "forgotten")) {
+        let file = forgotten_file_of(number);
+        release(root, files_of(read_step(&root.join(&file)).ok().as_ref()))?;
+        storage::remove(root, &file);
+    }
+    Ok(())
+}
+
+/// Cleans up after a writer that did not come to its end: a completed command gets its step, an incomplete one leaves nothing.
+pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectError> {
+    if !root.join(storage::UNFINISHED).exists() {
+        return Ok(());
+    }
+    for number in numbers_in(&storage::unfinished(root, "history")) {
+        match read_step(&storage::unfinished(root, &file_of(number))) {
+            Ok(step) if step.project == project_text => complete(root, number)?,
+            Ok(step) => release(root, files_of(Some(&step)))?,
+            // Written in part: nothing of it was published yet.
+            Err(_) => {}
+        }
+    }
+    release_forgotten(root)?;
+    storage::remove(root, storage::UNFINISHED);
+    Ok(())
+}
+
+/// Data files of a step's state.
+fn files_of(step: Option<&Step>) -> BTreeSet<String> {
+    let document = step.and_then(|step| Document::from_text(&step.project, Path::new(storage::STATE)).ok());
+    document.iter().flat_map(|document| document.files().map(str::to_owned)).collect()
+}
+
+/// Deletes those of `files` that neither the present nor any remembered state refers to. What is not `KIND/NAME` is no data of a
+/// project and stays. While the present state cannot be read, everything stays.
+pub(crate) fn release(root: &Path, mut files: BTreeSet<String>) -> Result<(), ProjectError> {
+    files.retain(|file| data_file::is_any_data_file(file));
+    if files.is_empty() {
+        return Ok(());
+    }
+    let path = root.join(storage::STATE);
+    let present = Document::from_text(&storage::read_text(&path)?, &path)?;
+    let mut kept: BTreeSet<String> = present.files().map(str::to_owned).collect();
+    for number in numbers(root) {
+        match read_step(&root.join(file_of(number))) {
+            Ok(step) => kept.append(&mut files_of(Some(&step))),
+            Err(_) => keep_what_is_named_in(&root.join(file_of(number)), &mut files),
+        }
+    }
+    files.difference(&kept).for_each(|file| storage::remove(root, file));
+    Ok(())
+}
+
+/// Takes out of `files` what a damaged step may still refer to: everything it names, or everything when it cannot be read at all.
+fn keep_what_is_named_in(step: &Path, files: &mut BTreeSet<String>) {
+    match std::fs::read(step) {
+        Ok(bytes) => {
+            let text = String::from_utf8_lossy(&bytes);
+            files.retain(|file| !text.contains(file.as_str()));
+        }
+        Err(_) => files.clear(),
+    }
+}

@@ -1,0 +1,13 @@
+//! A project as a folder on disk: the files of a state, the history of states, and drafts of new ones.
+//!
+//! Every read and write of a project's own files goes through here, and so does every deletion.
+
+mod draft;
+pub(crate) mod history;
+pub(crate) mod storage;
+
+pub use draft::Draft;
+pub use history::{HISTORY_LIMIT, Step};
+pub use storage::{at_hand, open_own};
+
+pub(crate) use storage::{IMPORTING, Lock};

@@ -1,0 +1,267 @@
+//! Files of a project on disk: where each may lie, how it is replaced, and the one place that deletes.
+//!
+//! A file of a project is named by its path relative to the project's folder, with `/` between the parts. Data that a state
+//! refers to is exactly `KIND/NAME` ([`crate::document::data_file`]), a real file or folder and not a link.
+//!
+//! Nothing that a saved state refers to is ever overwritten. What is being written lies in the folder `unfinished/` under the
+//! same relative path, and is renamed to its place when it is complete ([`publish`], [`replace`]). What a killed program leaves
+//! there was never part of a project; the next writer removes the folder. Names of data therefore never decide what is
+//! a leftover.
+//!
+//! [`remove`] deletes single files of the project's own making and works through a handle on the folder, which cannot be led
+//! outside by a link. Data files go through [`super::history::release`] instead, which first asks every remembered state.
+
+use crate::document::data_file::KINDS;
+use crate::error::ProjectError;
+use cap_fs_ext::{DirExt, FollowSymlinks, OpenOptionsFollowExt};
+use cap_std::ambient_authority;
+use cap_std::fs::{Dir, OpenOptions};
+use std::fs::{self, File, TryLockError};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+/// The state.
+pub(crate) const STATE: &str = "project.toml";
+
+/// Folder of what is not complete; only the holder of the project's lock writes here.
+pub(crate) const UNFINISHED: &str = "unfinished";
+
+/// Folder of what was computed; may be deleted.
+pub(crate) const DERIVED: &str = "derived";
+
+/// Folder of an import that is not complete. A killed one leaves it, the next goes on there.
+pub(crate) const IMPORTING: &str = "importing";
+
+/// Everything a project has at its top: folders first, then files.
+const FOLDERS: [&str; 4] = ["history", DERIVED, UNFINISHED, IMPORTING];
+const FILES: [&str; 4] = [STATE, "lock", "creating", "window.lock"];
+
+/// Refuses a project in which a link could lead a writer outside: every folder and file that commands write to, and
+/// everything in it, must be what it seems. Nothing is written before this has passed.
+///
+/// # Errors
+/// [`ProjectError::Link`] with the first link found, or a folder that cannot be read.
+pub(crate) fn refuse_links(root: &Path) -> Result<(), ProjectError> {
+    FILES.iter().chain(&FOLDERS).chain(&KINDS).try_for_each(|name| refuse_links_in(root, Path::new(name)))
+}
+
+fn refuse_links_in(root: &Path, relative: &Path) -> Result<(), ProjectError> {
+    let path = root.join(relative);
+    let facts = match fs::symlink_metadata(&path) {
+        Ok(facts) => facts,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(source) => return Err(ProjectError::io("read", &path, source)),
+    };
+    if facts.is_symlink() {
+        return Err(ProjectError::Link { path });
+    }
+    if facts.is_dir() {
+        let entries = match fs::read_dir(&path) {
+            Ok(entries) => entries,
+            // Another process has just removed its unfinished work.
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+            Err(source) => return Err(ProjectError::io("read", &path, source)),
+        };
+        for entry in entries {
+            let entry = entry.map_err(|source| ProjectError::io("read", &path, source))?;
+            refuse_links_in(root, &relative.join(entry.file_name()))?;
+        }
+    }
+    Ok(())
+}
+
+/// Where `file` is written until it is complete.
+pub(crate) fn unfinished(root: &Path, file: &str) -> PathBuf {
+    root.join(UNFINISHED).join(file)
+}
+
+/// The same, with its folder made.
+///
+/// # Errors
+/// The folder cannot be made.
+pub(crate) fn begin(root: &Path, file: &str) -> Result<PathBuf, ProjectError> {
+    let path = unfinished(root, file);
+    let folder = path.parent().unwrap_or(root);
+    fs::create_dir_all(folder).map_err(|source| ProjectError::io("written", folder, source))?;
+    Ok(path)
+}
+
+/// Where `file` can be read now: what a command under way has written and not yet published lies in `unfinished/`.
+pub fn at_hand(root: &Path, file: &str) -> PathBuf {
+    let (path, unfinished) = (root.join(file), unfinished(root, file));
+    if !path.exists() && unfinished.exists() { unfinished } else { path }
+}
+
+/// Flushes what was written for `file` and gives it its place.
+pub(crate) fn publish(root: &Path, file: &str) -> Result<(), ProjectError> {
+    let from = unfinished(root, file);
+    sync_tree(&from)?;
+    rename(&from, &root.join(file))
+}
+
+/// Writes `bytes` to where `file` waits for being published.
+pub(crate) fn write_unfinished(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
+    let path = begin(root, file)?;
+    write_durably(&path, bytes)
+}
+
+/// Replaces `file` by `bytes`: either the old or the new content is there, whatever happens.
+pub(crate) fn replace(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
+    write_unfinished(root, file, bytes)?;
+    rename(&unfinished(root, file), &root.join(file))
+}
+
+/// Writes `bytes` to `path` and flushes them to the disk.
+fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
+    let fail = |source| ProjectError::io("written", path, source);
+    let mut file = File::create(path).map_err(fail)?;
+    file.write_all(bytes).and_then(|()| file.sync_all()).map_err(fail)
+}
+
+/// Renames and flushes the entries of both folders.
+pub(crate) fn rename(from: &Path, to: &Path) -> Result<(), ProjectError> {
+    let fail = |source| ProjectError::io("written", to, source);
+    if let Some(parent) = to.parent() {
+        fs::create_dir_all(parent).map_err(fail)?;
+    }
+    fs::rename(from, to).map_err(fail)?;
+    for folder in [to.parent(), from.parent()].into_iter().flatten() {
+        sync_folder(folder);
+    }
+    Ok(())
+}
+
+/// Flushes a folder's entries. Some file systems cannot; the rename itself is still atomic there.
+fn sync_folder(folder: &Path) {
+    if let Ok(handle) = File::open(folder) {
+        let _ = handle.sync_all();
+    }
+}
+
+/// Flushes a file or everything in a folder to the disk.
+fn sync_tree(path: &Path) -> Result<(), ProjectError> {
+    let fail = |source| ProjectError::io("written", path, source);
+    if path.is_dir() {
+        for entry in fs::read_dir(path).map_err(fail)? {
+            sync_tree(&entry.map_err(fail)?.path())?;
+        }
+        sync_folder(path);
+        Ok(())
+    } else {
+        File::open(path).and_then(|file| file.sync_all()).map_err(fail)
+    }
+}
+
+/// Removes a file or folder of the project, if it is there: the one place where something in a project is deleted.
+///
+/// `file` must lie inside the project; of a link the link itself goes, never what it points to. What cannot be removed stays
+/// behind as something that no state refers to.
+pub(crate) fn remove(root: &Path, file: &str) {
+    let plain =
+        !file.is_empty() && Path::new(file).components().all(|part| matches!(part, std::path::Component::Normal(_)));
+    assert!(plain, "\"{file}\" names nothing inside a project");
+    let _ = remove_inside(root, file);
+}
+
+fn remove_inside(root: &Path, file: &str) -> io::Result<()> {
+    let mut folder = Dir::open_ambient_dir(root, ambient_authority())?;
+    let mut parts = file.split('/').peekable();
+    while let Some(part) = parts.next() {
+        if parts.peek().is_some() {
+            folder = folder.open_dir_nofollow(part)?;
+        } else if folder.symlink_metadata(part)?.is_dir() {
+            folder.remove_dir_all(part)?;
+        } else {
+            folder.remove_file(part)?;
+        }
+    }
+    Ok(())
+}
+
+/// Opens a file at the top of the project for reading and writing, made if it is not there; a link is not followed.
+///
+/// # Errors
+/// It is a link, or cannot be opened.
+pub fn open_own(root: &Path, name: &str) -> io::Result<File> {
+    let folder = Dir::open_ambient_dir(root, ambient_authority())?;
+    let mut options = OpenOptions::new();
+    options.create(true).truncate(false).read(true).write(true).follow(FollowSymlinks::No);
+    Ok(folder.open_with(name, &options)?.into_std())
+}
+
+/// Reads a text file.
+pub(crate) fn read_text(path: &Path) -> Result<String, ProjectError> {
+    fs::read_to_string(path).map_err(|source| ProjectError::io("read", path, source))
+}
+
+/// Names of a folder's entries, in order; none when it is missing.
+pub(crate) fn names_in(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut found: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    found.sort();
+    found
+}
+
+/// Keeps other writers out for as long as it lives. The system releases it when the process ends, however it ends.
+#[derive(Debug)]
+pub(crate) struct Lock {
+    _file: File,
+}
+
+impl Lock {
+    /// Takes the lock of the project at `root`.
+    pub(crate) fn take(root: &Path) -> Result<Self, ProjectError> {
+        Self::take_named(root, "lock")
+    }
+
+    /// Takes the lock in the file `name` of the folder `root`.
+    pub(crate) fn take_named(root: &Path, name: &str) -> Result<Self, ProjectError> {
+        let path = root.join(name);
+        let file = open_own(root, name).map_err(|source| ProjectError::io("written", &path, source))?;
+        match file.try_lock() {
+            Ok(()) => Ok(Self { _file: file }),
+            Err(TryLockError::WouldBlock) => Err(ProjectError::Locked { path: root.to_owned() }),
+            Err(TryLockError::Error(source)) => Err(ProjectError::io("locked", &path, source)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_second_writer_is_kept_out_until_the_first_is_done() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = Lock::take(folder.path()).unwrap();
+        assert!(matches!(Lock::take(folder.path()), Err(ProjectError::Locked { .. })));
+        drop(first);
+        Lock::take(folder.path()).unwrap();
+    }
+
+    #[test]
+    fn replacing_leaves_no_second_file() {
+        let folder = tempfile::tempdir().unwrap();
+        replace(folder.path(), "a.toml", b"one").unwrap();
+        replace(folder.path(), "a.toml", b"two").unwrap();
+        assert_eq!(read_text(&folder.path().join("a.toml")).unwrap(), "two");
+        remove(folder.path(), UNFINISHED);
+        assert_eq!(names_in(folder.path()), ["a.toml"]);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn removing_does_not_leave_the_project_by_a_link() {
+        let folder = tempfile::tempdir().unwrap();
+        let (root, outside) = (folder.path().join("p"), folder.path().join("outside"));
+        fs::create_dir_all(root.join("volumes")).unwrap();
+        fs::create_dir_all(outside.join("kept")).unwrap();
+        fs::write(outside.join("kept/a"), "a").unwrap();
+        std::os::unix::fs::symlink(&outside, root.join("textures")).unwrap();
+        std::os::unix::fs::symlink(&outside, root.join("volumes/v")).unwrap();
+        remove(&root, "textures/kept");
+        remove(&root, "volumes/v");
+        assert!(outside.join("kept/a").exists());
+        assert!(fs::symlink_metadata(root.join("volumes/v")).is_err());
+    }
+}

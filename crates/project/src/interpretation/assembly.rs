@@ -1,0 +1,386 @@
+//! From a horizon's log of picks to its sheets: what every command on picks ends with.
+
+use super::order;
+use crate::content;
+use crate::derived;
+use crate::document::Document;
+use crate::document::{Assembly, HorizonEntry, Source};
+use crate::error::{Noun, ProjectError};
+use crate::folder::Draft;
+use crate::interpretation::candidates::Candidates;
+use crate::weak_cache::WeakCache;
+use interp::Forest;
+use interp::assembly::{
+    AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,
+};
+use interp::holes::{Filled, Hole, fill_holes, find_holes};
+use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
+use model::{ContactRules, FaultNetwork, ModelSettings};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use survey::{Contact, Horizon, Progress, SurveyGeometry};
+use ttf::Colour;
+
+/// Colours that horizons get in turn.
+pub const HORIZON_COLOURS: [[u8; 3]; 8] = [
+    [0xd5, 0x5e, 0x00],
+    [0x00, 0x72, 0xb2],
+    [0x00, 0x9e, 0x73],
+    [0xcc, 0x79, 0xa7],
+    [0xe6, 0x9f, 0x00],
+    [0x56, 0xb4, 0xe9],
+    [0x8c, 0x51, 0x0a],
+    [0x54, 0x27, 0x88],
+];
+
+/// What a horizon is after its picks.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct AssemblyReport {
+    /// Its sheets; more than one in a fault block overlap.
+    pub sheets: usize,
+    /// Nodes with a depth.
+    pub nodes: usize,
+    /// Share of the survey's traces that have a node.
+    pub share: f64,
+    /// Where sheets of one fault block lie over one another; places are inline, crossline, vertical value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub overlap: Option<Overlap>,
+    /// Nodes left out because they were tracked past a fault, where the sheet of the other side runs.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub past_faults: usize,
+    /// What is missing inside it.
+    pub holes: HoleReport,
+    /// What was filled.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub filled: Option<Filled>,
+    /// Contradictions with other horizons.
+    pub conflicts: Vec<Conflict>,
+}
+
+fn is_zero(count: &usize) -> bool {
+    *count == 0
+}
+
+/// The holes that a horizon's nodes enclose.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct HoleReport {
+    /// Holes.
+    pub count: usize,
+    /// Traces without a node in all of them.
+    pub traces: usize,
+    /// Traces of the largest.
+    pub largest: usize,
+    /// Inline and crossline of its middle.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub at: Option<[f64; 2]>,
+}
+
+impl std::fmt::Display for AssemblyReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let plural = |count: usize| if count == 1 { "" } else { "s" };
+        write!(f, "{} nodes on {:.1} % of the traces", self.nodes, 100.0 * self.share)?;
+        write!(f, ", {} sheet{}", self.sheets, plural(self.sheets))?;
+        if let Some(overlap) = &self.overlap {
+            let [inline, crossline, z] = overlap.at;
+            write!(
+                f,
+                "\n  overlaps itself at {} traces, by up to {:.1} samples at inline {inline:.0}, crossline {crossline:.0}, {z:.1}: \
+                 descend a pick, or draw the fault between its two parts",
+                overlap.traces, overlap.apart
+            )?;
+        }
+        if self.past_faults > 0 {
+            write!(f, "\n  {} nodes tracked past faults left out", self.past_faults)?;
+        }
+        if let Some(filled) = &self.filled {
+            write!(f, "\n  filled {} hole{} with {} nodes", filled.holes, plural(filled.holes), filled.nodes)?;
+            if filled.across_faults > 0 {
+                write!(f, "; {} traces across a fault stay empty", filled.across_faults)?;
+            }
+        }
+        if let HoleReport { count, traces, largest, at: Some([inline, crossline]) } = self.holes {
+            write!(
+                f,
+                "\n  {count} hole{} with {traces} traces, the largest with {largest} at inline {inline:.0}, crossline {crossline:.0}",
+                plural(count)
+            )?;
+        }
+        self.conflicts.iter().try_for_each(|conflict| write!(f, "\n  conflict: {}", sentence(conflict)))
+    }
+}
+
+/// A conflict in words.
+pub fn sentence(conflict: &Conflict) -> String {
+    match conflict {
+        Conflict::SharedLeaves { horizons: [a, b], leaves, triangles } => {
+            format!("\"{a}\" and \"{b}\" share {triangles} triangles of {} leaves", leaves.len())
+        }
+        Conflict::Crossing { horizons: [a, b], above, below, worst, at } => format!(
+            "\"{a}\" lies above \"{b}\" at {above} traces and below it at {below}, by up to {worst:.1} samples at inline {}, crossline {}",
+            at[0], at[1]
+        ),
+        Conflict::Swapped { horizons: [a, b], traces } => {
+            format!("\"{a}\" is younger than \"{b}\" but lies below it at {traces} traces")
+        }
+    }
+}
+
+/// The faults of the project as blocks; they take longer to make than all else that a pick needs, so they are kept beside the project, and whoever
+/// makes several picks holds them.
+pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
+    static HELD: WeakCache<(SurveyGeometry, Vec<String>), FaultNetwork> = WeakCache::nothing();
+    let geometry = document.frame()?;
+    let key = document.faults.iter().map(|entry| format!("{} {} {:?}", entry.name, entry.hash, entry.truncated_by));
+    HELD.get_or_make((geometry.clone(), key.collect()), || {
+        if document.faults.is_empty() {
+            return Ok(FaultNetwork::none());
+        }
+        let settings = ModelSettings::default();
+        let key = derived::blocks_key(document, &settings);
+        if let Some(kept) = derived::load_blocks(root, &key) {
+            return Ok(kept);
+        }
+        let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
+        let faults = faults.collect::<Result<Vec<_>, _>>()?;
+        let made = FaultNetwork::build(geometry, &faults, &settings, progress)?;
+        derived::keep_blocks(root, &key, &made, progress);
+        Ok(made)
+    })
+}
+
+/// The nodes of a log on the extraction at hand.
+///
+/// # Errors
+/// [`ProjectError::OutdatedPicks`] when some of them are of another extraction.
+pub fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<Selection, ProjectError> {
+    let outdated: Vec<u32> =
+        log.picks.iter().filter(|pick| pick.extraction != candidates.key).map(|pick| pick.id).collect();
+    if !outdated.is_empty() {
+        return Err(ProjectError::OutdatedPicks { horizon: name.to_owned(), picks: outdated });
+    }
+    Ok(picked_selection(log, &candidates.forest)?)
+}
+
+/// The nodes of a log whose picks are all of the extraction that the trees are of.
+///
+/// # Errors
+/// A pick above its tree.
+pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, AssemblyError> {
+    let mut nodes = Vec::with_capacity(log.picks.len());
+    for pick in &log.picks {
+        nodes.push((node_above(forest, pick.leaf, pick.up)?, pick.operation));
+    }
+    Ok(assemble(forest, nodes))
+}
+
+/// A colour for the next horizon.
+pub fn next_colour(document: &Document) -> Colour {
+    let assembled = document.horizons.iter().filter(|entry| entry.assembly.is_some()).count();
+    let [red, green, blue] = HORIZON_COLOURS[assembled % HORIZON_COLOURS.len()];
+    Colour::new(red, green, blue)
+}
+
+/// Makes the sheets of horizon `name` from `log` and puts both into the draft, the horizon at its place by depth.
+pub(crate) fn rebuild(
+    draft: &mut Draft,
+    candidates: &Candidates,
+    blocks: &FaultNetwork,
+    name: &str,
+    log: Assembly,
+    progress: &Progress,
+) -> Result<AssemblyReport, ProjectError> {
+    let geometry = draft.document.frame()?.clone();
+    let [nx, ny, _] = geometry.size();
+    let forest = &candidates.forest;
+    let chosen = selection(name, &log, candidates)?;
+    if chosen.is_empty() {
+        return Err(ProjectError::NothingLeft { horizon: name.to_owned() });
+    }
+    let seeds: Vec<u32> = log
+        .picks
+        .iter()
+        .filter_map(|pick| Some(forest.nodes[*forest.leaves.get(pick.leaf as usize - 1)? as usize].triangles.start))
+        .collect();
+    let mut assembled = reassemble(forest, &chosen, &seeds, blocks);
+    let filled = match &log.fill {
+        Some(settings) => Some(fill_holes(&mut assembled.sheets, [nx, ny], blocks, settings, progress)?),
+        None => None,
+    };
+    let mut report = report_on(&assembled.sheets, &geometry);
+    report.filled = filled;
+    report.past_faults = assembled.left_out;
+    report.overlap = overlap_in_lines(assembled.overlap, &geometry);
+    let horizon = to_horizon(name, &assembled.sheets, &geometry);
+    put(draft, &horizon, Some(log), progress)?;
+    report.conflicts = conflicts_with(draft, candidates, blocks, name, &assembled.sheets, progress)?;
+    Ok(report)
+}
+
+/// An overlap, if there is one, at its place in line numbers.
+pub fn overlap_in_lines(overlap: Overlap, geometry: &SurveyGeometry) -> Option<Overlap> {
+    let at = geometry.lines_from_voxel(glam::DVec2::new(f64::from(overlap.at[0]), f64::from(overlap.at[1])));
+    let z = geometry.vertical.value_at(f64::from(overlap.at[2]));
+    (overlap.traces > 0).then_some(Overlap { at: [at.x as f32, at.y as f32, z as f32], ..overlap })
+}
+
+/// Counts and holes of sheets.
+pub fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyReport {
+    let [nx, ny, _] = geometry.size();
+    let traces = (0..nx * ny).filter(|&n| sheets.iter().any(|sheet| sheet.z[n].is_finite())).count();
+    let holes = find_holes(sheets, [nx, ny]);
+    let place =
+        |hole: &Hole| geometry.lines_from_voxel(glam::DVec2::new(hole.at[0] as f64, hole.at[1] as f64)).to_array();
+    AssemblyReport {
+        sheets: sheets.len(),
+        nodes: sheets.iter().map(VoxelSheet::nodes).sum(),
+        share: traces as f64 / (nx * ny) as f64,
+        holes: HoleReport {
+            count: holes.len(),
+            traces: holes.iter().map(|hole| hole.traces).sum(),
+            largest: holes.first().map_or(0, |hole| hole.traces),
+            at: holes.first().map(place),
+        },
+        ..AssemblyReport::default()
+    }
+}
+
+/// Writes a horizon and its entry. One that is there keeps its contact; its place follows its depth.
+pub(crate) fn put(
+    draft: &mut Draft,
+    horizon: &Horizon,
+    log: Option<Assembly>,
+    progress: &Progress,
+) -> Result<(), ProjectError> {
+    let geometry = draft.document.frame()?.clone();
+    let name = &horizon.name;
+    let old = draft.document.horizons.iter().position(|entry| entry.name == *name);
+    let others = draft.document.horizons.iter().filter(|entry| entry.name != *name);
+    let others = others.map(|entry| content::read_horizon(draft.root(), entry, progress));
+    let others = others.collect::<Result<Vec<_>, _>>()?;
+    let deeper = others.iter().position(|other| order::is_above(horizon, other, &geometry));
+    let position = deeper.unwrap_or(others.len());
+    let (file, new) = draft.generation("horizons", name, "zarr")?;
+    store::write_horizon(&new, horizon, progress)?;
+    let hash = content::hash_horizon(horizon);
+    let document = &mut draft.document;
+    let source = match (&log, old) {
+        (Some(log), _) => {
+            let count = log.picks.len();
+            let reading = format!("assembled by {count} pick{}", if count == 1 { "" } else { "s" });
+            Source { path: PathBuf::from("picks"), bytes: 0, reading }
+        }
+        (None, Some(old)) => {
+            let Source { path, bytes, reading } = document.horizons[old].source.clone();
+            let reading = if reading.ends_with(FILLED) { reading } else { reading + FILLED };
+            Source { path, bytes, reading }
+        }
+        (None, None) => return Err(ProjectError::NothingLeft { horizon: name.clone() }),
+    };
+    let contact = old.map_or(Contact::default(), |old| document.horizons[old].contact);
+    let entry = HorizonEntry { name: name.clone(), contact, file, hash, source, assembly: log };
+    match old {
+        Some(old) if old == position => document.horizons[old] = entry,
+        Some(old) => {
+            document.join_layers(old, |document| drop(document.horizons.remove(old)));
+            document.split_layer(position, |document| document.horizons.insert(position, entry));
+        }
+        None => document.split_layer(position, |document| document.horizons.insert(position, entry)),
+    }
+    Ok(())
+}
+
+/// Ends the record of a horizon whose holes were filled.
+const FILLED: &str = "; holes filled";
+
+/// Conflicts that involve horizon `name`, in line numbers.
+fn conflicts_with(
+    draft: &Draft,
+    candidates: &Candidates,
+    blocks: &FaultNetwork,
+    name: &str,
+    sheets: &[VoxelSheet],
+    progress: &Progress,
+) -> Result<Vec<Conflict>, ProjectError> {
+    let geometry = draft.document.frame()?;
+    let mut all = Vec::new();
+    for entry in &draft.document.horizons {
+        all.push(if entry.name == name {
+            sheets.to_vec()
+        } else {
+            from_horizon(&content::read_horizon(draft.root(), entry, progress)?, geometry, blocks)
+        });
+    }
+    let all: Vec<&[VoxelSheet]> = all.iter().map(Vec::as_slice).collect();
+    let found = conflicts_of(&draft.document, Some(candidates), &all)?;
+    Ok(found.into_iter().filter(|conflict| conflict.horizons().iter().any(|n| n == name)).collect())
+}
+
+/// Conflicts between all horizons of a project, given by their sheets, in line numbers.
+pub fn conflicts_of(
+    document: &Document,
+    candidates: Option<&Candidates>,
+    sheets: &[&[VoxelSheet]],
+) -> Result<Vec<Conflict>, ProjectError> {
+    let geometry = document.frame()?;
+    let chosen: Vec<Option<Selection>> = document
+        .horizons
+        .iter()
+        .map(|entry| selection(&entry.name, entry.assembly.as_ref()?, candidates?).ok())
+        .collect();
+    let each = document.horizons.iter().zip(sheets).zip(&chosen);
+    let named: Vec<NamedSheets> = each
+        .map(|((entry, sheets), chosen)| NamedSheets { name: &entry.name, sheets, selection: chosen.as_ref() })
+        .collect();
+    let rules = ContactRules::new(&document.stratigraphy());
+    let [nx, ny, _] = geometry.size();
+    let may_cross = |young: usize, old: usize| rules.may_cross(young, old);
+    let forest = candidates.map(|candidates| &candidates.forest);
+    let found = conflicts(forest, [nx, ny], &named, may_cross, &ConflictSettings::default());
+    let in_lines = |conflict: Conflict| match conflict {
+        Conflict::Crossing { horizons, above, below, worst, at: [x, y] } => {
+            let lines = geometry.lines_from_voxel(glam::DVec2::new(x as f64, y as f64));
+            let at = [lines.x.round().max(0.0) as usize, lines.y.round().max(0.0) as usize];
+            Conflict::Crossing { horizons, above, below, worst, at }
+        }
+        other => other,
+    };
+    Ok(found.into_iter().map(in_lines).collect())
+}
+
+/// Makes all assembled horizons anew, after the faults have changed. Those whose picks are of another extraction stay as they are; a warning says so.
+pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectError> {
+    let logs: Vec<(String, Assembly)> = draft
+        .document
+        .horizons
+        .iter()
+        .filter_map(|entry| Some((entry.name.clone(), entry.assembly.clone()?)))
+        .collect();
+    if logs.is_empty() {
+        return Ok(());
+    }
+    let Ok(candidates) = Candidates::load(draft.root(), progress) else {
+        progress.warn("the assembled horizons are as they were: there is no extraction to assemble them from");
+        return Ok(());
+    };
+    let blocks = blocks(draft.root(), &draft.document, progress)?;
+    for (name, log) in logs {
+        match rebuild(draft, &candidates, &blocks, &name, log, progress) {
+            Ok(_) => {}
+            Err(ProjectError::OutdatedPicks { .. }) => progress.warn(format!(
+                "horizon \"{name}\" is as it was: its picks are of another extraction and have to be made again"
+            )),
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
+/// The log of an assembled horizon.
+///
+/// # Errors
+/// There is no such horizon, or it was imported.
+pub(crate) fn log_of(draft: &Draft, name: &str) -> Result<Assembly, ProjectError> {
+    let entry = &draft.document.horizons[draft.document.position(Noun::Horizon, name)?];
+    entry.assembly.clone().ok_or_else(|| ProjectError::NotAssembled { horizon: name.to_owned() })
+}

@@ -1,0 +1,132 @@
+//! The present extraction as picks see it: the trees, and what identifies them.
+//!
+//! Whoever makes several picks holds what [`Candidates::load`] gave: while that lives, those who ask for the same extraction get it without
+//! reading anything but its facts.
+
+use super::extraction;
+use crate::error::ProjectError;
+use crate::weak_cache::WeakCache;
+use glam::DVec2;
+use interp::Forest;
+use interp::assembly::{AssemblyError, Hit, leaf_at};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use store::StoredCandidates;
+use survey::{Progress, SurveyGeometry};
+
+/// By place and key.
+static HELD: WeakCache<(PathBuf, String), Candidates> = WeakCache::nothing();
+
+/// Candidates to pick from.
+#[derive(Debug)]
+pub struct Candidates {
+    /// Surfaces and trees.
+    pub forest: Forest,
+    /// Identifies volume and settings.
+    pub key: String,
+    /// Distance within which a place belongs to a leaf, voxels.
+    pub max_distance: f32,
+}
+
+impl Candidates {
+    /// Those of the project in `root`: the ones that someone holds, where they are the present extraction, or else read.
+    ///
+    /// # Errors
+    /// [`ProjectError::NotExtracted`] when there are none; damaged data, or cancelled.
+    pub fn load(root: &Path, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
+        let path = extraction::candidates_path(root);
+        if !path.exists() {
+            return Err(ProjectError::NotExtracted);
+        }
+        let stored = StoredCandidates::open(&path)?;
+        let (key, max_distance) = (stored.info().key.clone(), stored.info().max_distance);
+        HELD.get_or_make((path, key.clone()), || {
+            Ok(Self { forest: extraction::forest(&stored, progress)?, key, max_distance })
+        })
+    }
+
+    /// The leaf at a place in line numbers and the vertical unit, within the reach of the extraction.
+    ///
+    /// # Errors
+    /// The place lies outside the survey, or no candidate is near.
+    pub fn leaf_near(&self, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<Hit, ProjectError> {
+        let place = geometry.voxel_from_lines(at[0], at[1]);
+        let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
+        leaf_at(&self.forest, voxel, self.max_distance).map_err(|error| match error {
+            AssemblyError::Outside { .. } => ProjectError::PickOutside {
+                at,
+                inlines: [geometry.inlines.first, geometry.inlines.last()],
+                crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
+                vertical: [geometry.vertical.first, geometry.vertical.last()],
+            },
+            AssemblyError::NothingNear { distance, nearest, max_distance, .. } => {
+                let lines = geometry.lines_from_voxel(DVec2::new(f64::from(nearest.x), f64::from(nearest.y)));
+                let z = geometry.vertical.value_at(f64::from(nearest.z));
+                ProjectError::NoCandidate { at, nearest: [lines.x, lines.y, z], distance, max_distance }
+            }
+            other => ProjectError::Assembly(other),
+        })
+    }
+
+    /// Levels from a leaf to the root of its tree.
+    pub fn levels(&self, leaf: u32) -> u32 {
+        let mut node = self.forest.leaves[leaf as usize - 1];
+        let mut levels = 0;
+        while let Some(parent) = self.forest.nodes[node as usize].parent {
+            (node, levels) = (parent, levels + 1);
+        }
+        levels
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Project;
+    use crate::command::{Command, ImportVolume};
+    use crate::document::Polarity;
+    use interp::ExtractSettings;
+    use segy::{SegyOptions, WriteOptions};
+    use survey::{VerticalUnit, Volume};
+
+    /// A project with a small volume.
+    fn imported(folder: &Path) -> PathBuf {
+        let geometry = SurveyGeometry::regular([24, 20, 32], 25.0, 4.0, VerticalUnit::Milliseconds);
+        let samples = (0..24 * 20 * 32).map(|n| ((n % 32) as f32 * 0.7).sin()).collect();
+        let volume = Volume::from_samples([24, 20, 32], samples).unwrap();
+        let path = folder.join("north.sgy");
+        segy::write(&path, &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+        let mut new = Project::create(&folder.join("north.petro"), None).unwrap();
+        let import = ImportVolume {
+            path,
+            name: None,
+            polarity: Polarity::default(),
+            options: SegyOptions::default(),
+            memory_bytes: None,
+        };
+        new.project().apply(&Command::Import(import), &Progress::silent()).unwrap();
+        new.publish().unwrap().root().to_owned()
+    }
+
+    #[test]
+    fn what_is_held_is_not_read_again_until_another_extraction_is_there() {
+        let folder = tempfile::tempdir().unwrap();
+        let quiet = Progress::silent();
+        let root = imported(folder.path());
+        let project = Project::open(&root).unwrap();
+        let mut settings = ExtractSettings::default();
+        extraction::extract(&project, None, &settings, &quiet).unwrap();
+        let first = Candidates::load(&root, &quiet).unwrap();
+        assert!(Arc::ptr_eq(&first, &Candidates::load(&root, &quiet).unwrap()));
+        settings.forest.min_leaf_triangles = 80;
+        extraction::extract(&project, None, &settings, &quiet).unwrap();
+        let second = Candidates::load(&root, &quiet).unwrap();
+        assert_ne!(first.key, second.key);
+        assert!(second.forest.leaf_count() > first.forest.leaf_count());
+        // Of another project nothing is taken, whatever its key.
+        let elsewhere = tempfile::tempdir().unwrap();
+        let other = imported(elsewhere.path());
+        extraction::extract(&Project::open(&other).unwrap(), None, &settings, &quiet).unwrap();
+        assert!(!Arc::ptr_eq(&second, &Candidates::load(&other, &quiet).unwrap()));
+    }
+}

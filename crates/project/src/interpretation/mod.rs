@@ -1,0 +1,9 @@
+//! The interpretation service: from a volume to horizon candidates, from picks to a horizon, from horizons to proposed faults.
+//!
+//! Commands, the window and the demonstration make horizons of picks through [`assembly`]; nobody else does.
+
+pub mod assembly;
+pub mod candidates;
+pub mod extraction;
+pub(crate) mod order;
+pub mod proposals;

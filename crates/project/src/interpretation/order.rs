@@ -1,0 +1,141 @@
+//! Which of two horizons is above the other, and whether they cross.
+//!
+//! Compared at the traces of the survey. A horizon may have several depths at one trace (a reverse fault); the shallowest are compared
+//! with the shallowest and the deepest with the deepest, because the order holds in each fault block though not between them. Blocks are
+//! not known here, so next to a fault two horizons may seem to cross when they do not; a small share of such traces is let
+//! pass, and the structural model, which knows the blocks, has the last word.
+
+use crate::error::ProjectError;
+use survey::{Horizon, NodeGrid, SurveyGeometry};
+
+/// Share of the common traces that may seem to cross.
+const TOLERATED_SHARE: f64 = 0.02;
+/// Depth by which traces cross before they are counted, samples.
+const TOLERANCE_SAMPLES: f32 = 1.0;
+/// Traces compared along each axis at most.
+const TRACES_ENOUGH: usize = 256;
+
+/// Shallowest and deepest value of a horizon at a trace, and the trace.
+struct Depths {
+    trace: [usize; 2],
+    shallow: f32,
+    deep: f32,
+}
+
+/// Whether `a` is on the whole above `b`; horizons without a common trace are compared by their mean depth.
+pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
+    let (mut difference, mut common) = (0.0f64, 0usize);
+    for (a, b) in common_traces(a, b, geometry) {
+        difference += f64::from(a.shallow + a.deep - b.shallow - b.deep);
+        common += 1;
+    }
+    if common > 0 { difference < 0.0 } else { mean(a) < mean(b) }
+}
+
+fn mean(horizon: &Horizon) -> f64 {
+    let depths = || horizon.sheets.iter().flat_map(|sheet| &sheet.depth).filter(|depth| depth.is_finite());
+    depths().map(|depth| f64::from(*depth)).sum::<f64>() / depths().count().max(1) as f64
+}
+
+/// Refuses two horizons of which the younger runs below the older.
+///
+/// # Errors
+/// [`ProjectError::Crossing`] with where and by how much.
+pub(crate) fn check(younger: &Horizon, older: &Horizon, geometry: &SurveyGeometry) -> Result<(), ProjectError> {
+    let tolerance = TOLERANCE_SAMPLES * geometry.vertical.interval as f32;
+    let (mut common, mut crossing) = (0usize, 0usize);
+    let (mut worst, mut place) = (0.0f32, [0usize; 2]);
+    for (young, old) in common_traces(younger, older, geometry) {
+        common += 1;
+        let by = (young.shallow - old.shallow).min(young.deep - old.deep);
+        if by > tolerance {
+            crossing += 1;
+            if by > worst {
+                (worst, place) = (by, young.trace);
+            }
+        }
+    }
+    if crossing as f64 <= TOLERATED_SHARE * common as f64 {
+        return Ok(());
+    }
+    let lines = geometry.lines_from_voxel(glam::DVec2::new(place[0] as f64, place[1] as f64));
+    Err(ProjectError::Crossing {
+        younger: younger.name.clone(),
+        older: older.name.clone(),
+        share: crossing as f64 / common as f64,
+        worst,
+        unit: geometry.vertical.unit.symbol(),
+        lines: lines.to_array(),
+    })
+}
+
+/// Depths of both at the traces where both have some.
+fn common_traces<'a>(
+    a: &'a Horizon,
+    b: &'a Horizon,
+    geometry: &'a SurveyGeometry,
+) -> impl Iterator<Item = (Depths, Depths)> + 'a {
+    let grid = NodeGrid::of_survey(geometry);
+    let steps = grid.count.map(|count| count.div_ceil(TRACES_ENOUGH).max(1));
+    let traces = (0..grid.count[0]).step_by(steps[0]);
+    let traces = traces.flat_map(move |x| (0..grid.count[1]).step_by(steps[1]).map(move |y| [x, y]));
+    traces.filter_map(move |trace| Some((depths(a, &grid, trace)?, depths(b, &grid, trace)?)))
+}
+
+fn depths(horizon: &Horizon, grid: &NodeGrid, trace: [usize; 2]) -> Option<Depths> {
+    let world = grid.world_at(glam::DVec2::new(trace[0] as f64, trace[1] as f64));
+    let values = horizon.sheets.iter().map(|sheet| sheet.depth_at_node(sheet.grid.node_at(world)));
+    let (shallow, deep) = values
+        .filter(|depth| depth.is_finite())
+        .fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), depth| (low.min(depth), high.max(depth)));
+    (shallow <= deep).then_some(Depths { trace, shallow, deep })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::{Quality, Sheet, VerticalUnit};
+
+    fn geometry() -> SurveyGeometry {
+        SurveyGeometry::regular([20, 20, 50], 25.0, 4.0, VerticalUnit::Milliseconds)
+    }
+
+    fn horizon(name: &str, sheets: &[fn(f32, f32) -> f32]) -> Horizon {
+        let grid = NodeGrid::of_survey(&geometry());
+        let sheet = |depth: &fn(f32, f32) -> f32| {
+            let depths = (0..400).map(|n| depth((n / 20) as f32, (n % 20) as f32)).collect();
+            Sheet::new(grid, depths, Quality::Picked)
+        };
+        Horizon { name: name.into(), sheets: sheets.iter().map(sheet).collect() }
+    }
+
+    #[test]
+    fn a_horizon_below_another_is_in_order_and_the_reverse_crosses_everywhere() {
+        let (a, b) = (horizon("a", &[|x, _| 50.0 + x]), horizon("b", &[|x, _| 70.0 + x]));
+        assert!(is_above(&a, &b, &geometry()) && !is_above(&b, &a, &geometry()));
+        check(&a, &b, &geometry()).unwrap();
+        let Err(ProjectError::Crossing { share, worst, .. }) = check(&b, &a, &geometry()) else {
+            panic!("not refused");
+        };
+        assert_eq!((share, worst), (1.0, 20.0));
+    }
+
+    #[test]
+    fn a_dipping_horizon_through_a_flat_one_crosses_where_it_is_deepest() {
+        let (flat, dipping) = (horizon("flat", &[|_, _| 80.0]), horizon("dipping", &[|x, _| 40.0 + 4.0 * x]));
+        let Err(ProjectError::Crossing { lines, worst, .. }) = check(&dipping, &flat, &geometry()) else {
+            panic!("not refused");
+        };
+        assert_eq!((lines[0], worst), (20.0, 36.0));
+    }
+
+    /// Two depths across a reverse fault: the lower sheet of the younger lies below the upper one of the older.
+    #[test]
+    fn a_reverse_fault_is_no_crossing() {
+        let young: [fn(f32, f32) -> f32; 2] =
+            [|x, _| if x < 12.0 { 100.0 } else { f32::NAN }, |x, _| if x >= 8.0 { 40.0 } else { f32::NAN }];
+        let old: [fn(f32, f32) -> f32; 2] =
+            [|x, _| if x < 14.0 { 130.0 } else { f32::NAN }, |x, _| if x >= 10.0 { 70.0 } else { f32::NAN }];
+        check(&horizon("young", &young), &horizon("old", &old), &geometry()).unwrap();
+    }
+}

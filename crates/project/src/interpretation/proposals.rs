@@ -1,0 +1,185 @@
+//! Proposed faults, kept until one of them is accepted.
+//!
+//! `derived/fault-proposals.json` holds the last proposals with a key of what they were made from: horizons and faults. Proposals of another
+//! state are not accepted, but for the faults that were accepted from them. What is a fault of the project already is not proposed; it is told.
+
+use crate::Project;
+use crate::content;
+use crate::derived::Scratch;
+use crate::document::Document;
+use crate::error::ProjectError;
+use crate::interpretation::assembly;
+use attribute::{DipSettings, SemblanceSettings, dip, semblance};
+use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
+use interp::reassembly::from_horizon;
+use model::FaultNetwork;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::path::{Path, PathBuf};
+use survey::Progress;
+
+/// What was proposed, and for which state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Proposals {
+    /// Hashes of the horizons.
+    pub horizons: Vec<String>,
+    /// The faults, the largest first, minor ones last.
+    pub proposals: Vec<Proposal>,
+    /// Faults of the project that were found again, and are not proposed.
+    #[serde(default)]
+    pub repeats: Vec<Repeat>,
+    /// Unit of vertical values.
+    pub unit: String,
+}
+
+impl Proposals {
+    /// What to say where there are none.
+    pub fn nothing_new(&self) -> Option<&'static str> {
+        match (self.proposals.is_empty(), self.repeats.is_empty()) {
+            (true, true) => Some("the horizons are offset nowhere: no fault is proposed"),
+            (true, false) => Some("the horizons are offset where the project has faults already: no fault is proposed"),
+            _ => None,
+        }
+    }
+
+    fn line(&self, f: &mut fmt::Formatter<'_>, p: &Proposal) -> fmt::Result {
+        let unit = &self.unit;
+        let kind = if p.reverse { "reverse" } else { "normal" };
+        let [a, b] = p.ends;
+        write!(
+            f,
+            "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline {:.0}, crossline {:.0} to inline {:.0}, \
+             crossline {:.0}, {:.0} to {:.0} {unit}; throw by length {:.0} m2, {} pairs on {}, {:.0} m off",
+            p.id,
+            p.strike_deg,
+            p.dip_deg,
+            p.throw[0],
+            p.throw[1],
+            a[0],
+            a[1],
+            b[0],
+            b[1],
+            p.depth[0],
+            p.depth[1],
+            p.offset_m2,
+            p.support,
+            p.horizons.join(", "),
+            p.misfit_m
+        )?;
+        if let Some([on, beside]) = p.semblance {
+            write!(f, "; semblance {on:.2} on it, {beside:.2} beside")?;
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for Proposals {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut is_minor = false;
+        for (n, proposal) in self.proposals.iter().enumerate() {
+            if n > 0 {
+                writeln!(f)?;
+            }
+            if proposal.is_minor && !is_minor {
+                is_minor = true;
+                writeln!(f, "minor ones, small, scattered or without a break in the data:")?;
+            }
+            self.line(f, proposal)?;
+        }
+        if let Some(nothing) = self.nothing_new() {
+            write!(f, "{nothing}")?;
+        }
+        self.repeats.iter().try_for_each(|repeat| {
+            let Repeat { fault, support, along, off_traces, throw, .. } = repeat;
+            write!(
+                f,
+                "\nnot proposed: \"{fault}\" again, by {support} pairs along {:.0} % of it, {off_traces:.1} traces off, throw {throw:.0} {}",
+                100.0 * along,
+                self.unit
+            )
+        })
+    }
+}
+
+/// The proposals, in `derived/`.
+const FILE: &str = "fault-proposals.json";
+
+fn path(root: &Path) -> PathBuf {
+    root.join("derived").join(FILE)
+}
+
+fn hashes(document: &Document) -> Vec<String> {
+    document.horizons.iter().map(|entry| entry.hash.clone()).collect()
+}
+
+/// Looks for faults in the project's horizons and keeps what is found.
+///
+/// # Errors
+/// No horizons, data that cannot be read, or cancelled.
+pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progress) -> Result<Proposals, ProjectError> {
+    let document = project.document();
+    let geometry = document.frame()?;
+    if document.horizons.is_empty() {
+        return Err(ProjectError::NoEvidence);
+    }
+    let none = FaultNetwork::none();
+    let mut sheets = Vec::new();
+    for entry in &document.horizons {
+        let horizon = content::read_horizon(project.root(), entry, progress)?;
+        sheets.push(from_horizon(&horizon, geometry, &none));
+    }
+    let horizons: Vec<Evidence> =
+        document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
+    let likeness = match document.volumes.iter().find(|entry| entry.geometry.is_none()) {
+        Some(entry) => {
+            let seismic = content::read_volume(project.root(), entry, progress)?;
+            let dips = dip(&seismic, &DipSettings::default(), progress);
+            dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
+        }
+        None => None,
+    };
+    let known = assembly::blocks(project.root(), document, progress)?;
+    let found = propose_faults(&horizons, geometry, &known, likeness.as_ref(), settings, progress)?;
+    let proposals = Proposals {
+        horizons: hashes(document),
+        proposals: found.proposals,
+        repeats: found.repeats,
+        unit: geometry.vertical.unit.symbol().to_owned(),
+    };
+    let scratch = Scratch::begin(project.root())?;
+    let path = scratch.path(FILE);
+    let text = serde_json::to_string_pretty(&proposals)
+        .map_err(|error| ProjectError::Malformed { path: path.clone(), detail: error.to_string() })?;
+    store::replace_file(&path, text.as_bytes())?;
+    scratch.publish(FILE)?;
+    Ok(proposals)
+}
+
+/// The proposal with a number, if it was made for these horizons, up to what accepting others of them has changed.
+///
+/// # Errors
+/// There is none, or it is of another state.
+pub fn find(root: &Path, document: &Document, id: u32) -> Result<Proposal, ProjectError> {
+    let kept = kept(root, document)?;
+    let known = kept.proposals.len() as u32;
+    kept.proposals
+        .into_iter()
+        .find(|proposal| proposal.id == id)
+        .ok_or(ProjectError::UnknownProposal { proposal: id, known })
+}
+
+/// The proposals that were made for these horizons, up to what accepting some of them has changed.
+///
+/// # Errors
+/// There are none, or they are of another state.
+pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError> {
+    let path = path(root);
+    let text = std::fs::read_to_string(&path).map_err(|_| ProjectError::NoProposals)?;
+    let kept: Proposals = serde_json::from_str(&text).map_err(|_| ProjectError::NoProposals)?;
+    // Accepting one proposal makes the sheets anew; the others were made from the same picks.
+    let accepted = document.faults.iter().any(|fault| fault.source.path == Path::new("proposal"));
+    if !accepted && kept.horizons != hashes(document) {
+        return Err(ProjectError::OutdatedProposals);
+    }
+    Ok(kept)
+}

@@ -1,0 +1,43 @@
+//! A project: what was imported and interpreted, how it is drawn, and everything that changes it.
+//!
+//! The command line, the window and scripts share this crate. A [`Project`] is a folder on disk; every change to it is a
+//! [`Command`], so that each can be undone, also by another process later. What is computed from a project is kept beside it,
+//! identified by what it was computed from.
+//!
+//! The modules build on one another in this order:
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`error`], [`placement`] | what can go wrong; where a volume of another size lies |
+//! | [`document`] | the state: what `project.toml` says |
+//! | [`folder`] | how a state, its history and its data lie on disk, and the one place that deletes |
+//! | [`content`], [`styles`] | volumes, horizons, faults, wells and patterns read by the names of a project |
+//! | [`derived`] | what was computed, kept by key |
+//! | [`interpretation`] | from a volume to candidates, from picks to a horizon, from horizons to proposed faults |
+//! | [`picture`] | what a scene needs, loaded once for every renderer, and drawn |
+//! | [`command`] | every change, as data |
+//! | [`Project`] | applies commands; undo and redo |
+//! | [`demo`], [`segy_export`] | the demonstration; a volume written as SEG-Y |
+//!
+//! Deliberately absent: words of a command line or a window. An error says what is wrong and what helps; how an option or a
+//! field is called is known to whoever shows it.
+
+pub mod command;
+pub mod content;
+pub mod demo;
+pub mod derived;
+pub mod document;
+pub mod error;
+pub mod folder;
+pub mod interpretation;
+pub mod memory_budget;
+pub mod picture;
+pub mod placement;
+mod project;
+pub mod segy_export;
+pub mod styles;
+mod weak_cache;
+
+pub use command::{Command, Effect};
+pub use error::ProjectError;
+pub use project::{HistoryLine, NewProject, Project};

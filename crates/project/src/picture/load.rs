@@ -1,0 +1,423 @@
+//! From a project to what renderers take: data read, model built, layers parameterized, styles compiled. Each step is asked for what it
+//! needs and nothing more, and what was computed before is taken from `derived/`.
+
+use crate::Project;
+use crate::document::Document;
+use crate::error::ProjectError;
+use crate::picture::shown_candidates::ShownCandidates;
+use crate::placement;
+use crate::{content, derived, memory_budget, styles};
+use glam::{DVec3, Vec3};
+use model::{ModelSettings, StructuralModel};
+use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
+use render::{Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox, WellPath};
+use std::path::Path;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+use survey::{Progress, SurveyGeometry, Volume};
+use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
+
+/// Printed length of the block's longer side that patterns are sized for, mm: a picture across a page.
+const PRINTED_MM: f64 = 150.0;
+/// Samples along each axis at which mean thicknesses are measured.
+const THICKNESS_SAMPLES: usize = 48;
+
+/// How long something took.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct Stage {
+    /// What.
+    pub stage: &'static str,
+    /// Seconds.
+    pub seconds: f64,
+}
+
+impl Stage {
+    /// A stage by its name.
+    pub fn new(stage: &'static str, took: Duration) -> Self {
+        Self { stage, seconds: took.as_secs_f64() }
+    }
+}
+
+/// The interpretation made solid, with its map to flat space.
+pub struct Rock {
+    /// Regions of every point.
+    pub model: StructuralModel,
+    /// i, j, k.
+    pub parameterization: Parameterization,
+    /// Identifies what it was computed from.
+    pub key: String,
+    /// What was done, and how long it took; nothing for what was kept from before.
+    pub stages: Vec<Stage>,
+}
+
+/// The settings that a project is parameterized with.
+pub fn param_settings(document: &Document) -> ParamSettings {
+    ParamSettings { definitions: document.k_definitions(), ..ParamSettings::default() }
+}
+
+/// Builds the model and its parameterization; `None` for a project without horizons.
+///
+/// # Errors
+/// Damaged data, an interpretation that makes no solid model, or cancelled.
+pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, ProjectError> {
+    let document = project.document();
+    if document.horizons.is_empty() {
+        return Ok(None);
+    }
+    let geometry = document.frame()?;
+    let mut stages = Vec::new();
+    let start = Instant::now();
+    let horizons = document.horizons.iter().map(|entry| content::read_horizon(project.root(), entry, progress));
+    let horizons = horizons.collect::<Result<Vec<_>, _>>()?;
+    let faults = document.faults.iter().map(|entry| content::read_fault(project.root(), entry));
+    let faults = faults.collect::<Result<Vec<_>, _>>()?;
+    let settings = ModelSettings::default();
+    let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
+    stages.push(Stage::new("model", start.elapsed()));
+    let param_settings = param_settings(document);
+    let key = derived::parameterization_key(document, &settings, &param_settings);
+    let parameterization = match derived::load_grids(project.root(), &key) {
+        Some(kept) => kept,
+        None => {
+            let start = Instant::now();
+            let computed = Parameterization::compute(&model, &param_settings, progress)?;
+            stages.push(Stage::new("parameterization", start.elapsed()));
+            derived::keep_grids(project.root(), &key, &computed, progress);
+            computed
+        }
+    };
+    Ok(Some(Rock { model, parameterization, key, stages }))
+}
+
+impl Rock {
+    /// The parameterization sampled on a lattice: the one kept, or sampled now.
+    ///
+    /// # Errors
+    /// A size without samples, or cancelled.
+    pub fn voxels(
+        &self,
+        project: &Project,
+        size: [usize; 3],
+        progress: &Progress,
+    ) -> Result<VoxelParameterization, ProjectError> {
+        match derived::load_volumes(project.root(), &self.key, Some(size), progress) {
+            Some(kept) => Ok(kept),
+            None => Ok(self.parameterization.voxel_volumes(&self.model, size, progress)?),
+        }
+    }
+
+    /// Metres that k = 0 … 1 stands for in each layer, bottom to top: the mean thickness where the layer is there, or the reference
+    /// thickness of an open one.
+    fn thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
+        let size = self.model.size();
+        let counts = size.map(|n| n.min(THICKNESS_SAMPLES));
+        let at = |axis: usize, n: usize| param::corner_aligned(n, counts[axis], size[axis]);
+        let layers = self.model.layer_count();
+        let (mut voxels, mut columns) = (vec![0usize; layers], vec![0usize; layers]);
+        for x in 0..counts[0] {
+            for y in 0..counts[1] {
+                let mut here = vec![0usize; layers];
+                for z in 0..counts[2] {
+                    let region = self.model.region_at(Vec3::new(at(0, x), at(1, y), at(2, z)));
+                    here[usize::from(region.layer)] += 1;
+                }
+                for layer in 0..layers {
+                    voxels[layer] += here[layer];
+                    columns[layer] += usize::from(here[layer] > 0);
+                }
+            }
+        }
+        let step_m = geometry.sample_m() * (size[2] as f64 / counts[2] as f64);
+        let thickness = |layer: usize| {
+            let reference = self.parameterization.grids.iter().filter(|grid| usize::from(grid.region.layer) == layer);
+            let reference = reference.filter_map(|grid| grid.thickness_m).fold(f64::NAN, f64::max);
+            let mean = voxels[layer] as f64 / columns[layer].max(1) as f64 * step_m;
+            (if reference.is_finite() { reference } else { mean }).max(step_m) as f32
+        };
+        (0..layers).map(thickness).collect()
+    }
+}
+
+/// A volume of the project and where it lies.
+pub struct LoadedVolume {
+    /// Its name.
+    pub name: String,
+    /// Its samples.
+    pub volume: Volume<f32>,
+    /// Voxel positions of its first and last sample.
+    pub covers: VoxelBox,
+}
+
+/// A well of the project in voxels.
+pub struct LoadedWell {
+    /// Its name.
+    pub name: String,
+    /// Its path from the head down.
+    pub path: Vec<DVec3>,
+    /// Its tops.
+    pub tops: Vec<DVec3>,
+}
+
+/// Everything a scene of a project is drawn from.
+pub struct Loaded {
+    /// The frame.
+    pub geometry: SurveyGeometry,
+    /// The interpretation, if there is one and the scene shows it.
+    pub rock: Option<Rock>,
+    /// Volumes the scene shows.
+    pub volumes: Vec<LoadedVolume>,
+    /// The packed volume, for that lookup.
+    pub packed: Option<PackedVolume>,
+    /// The volume shown as raw data and its colours.
+    pub raw: Option<RawColour>,
+    /// Wells, in voxels.
+    pub wells: Vec<LoadedWell>,
+    /// Horizon candidates, where the scene shows them or horizons in volumes.
+    pub candidates: Option<ShownCandidates>,
+    /// Compiled styles.
+    pub tables: Option<TtfTables>,
+    /// Unlike that of anything else loaded by this process: renderers keep what they uploaded while it stays the same.
+    pub version: u64,
+}
+
+/// A number not given before.
+pub fn new_version() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(1);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// Reads and computes what `scene` needs.
+///
+/// # Errors
+/// Damaged data, an interpretation that makes no solid model, styles that cannot be drawn, or cancelled.
+pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
+    load_within(project, scene, memory_budget::half_of_available(), progress)
+}
+
+/// The same with at most so many bytes for the samples of each volume; larger ones come from a coarser level of their pyramid, and a warning says so.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_within(
+    project: &Project,
+    scene: &Scene,
+    volume_bytes: u64,
+    progress: &Progress,
+) -> Result<Loaded, ProjectError> {
+    let document = project.document();
+    let geometry = document.frame()?.clone();
+    // Raw data alone needs no interpretation, but outlines and ground do.
+    let rock = rock(project, progress)?;
+    let mut functions = styles::transfer_functions(document);
+    if let Some(raw) = &scene.raw {
+        functions.raw = Some(raw.clone());
+    }
+    let packed = match (&rock, scene.lookup) {
+        (Some(rock), Lookup::Packed) => {
+            let voxels = rock.voxels(project, geometry.size(), progress)?;
+            let model = &rock.model;
+            Some(PackedVolume::from_voxels(&voxels, geometry.size(), model.layer_count(), model.block_count()))
+        }
+        _ => None,
+    };
+    let tables = match &rock {
+        None => None,
+        Some(rock) => {
+            let library = styles::pattern_library(project.root(), document)?;
+            let block =
+                block_extent(&geometry, rock, document.stratigraphy().layer_names_bottom_up(), scene.exaggeration);
+            Some(TtfTables::compile(&functions, &block, &library)?)
+        }
+    };
+    let mut wanted: Vec<&str> = functions.scalars.iter().map(|function| function.volume.as_str()).collect();
+    if let Some(raw) = &functions.raw
+        && (scene.blend > 0.0 || rock.is_none())
+    {
+        wanted.push(&raw.volume);
+    }
+    wanted.extend(scene.media.all().map(|medium| medium.volume.as_str()));
+    wanted.extend(scene.media.isosurface_volumes().map(String::as_str));
+    wanted.extend(scene.media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str())));
+    let volumes = read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?;
+    let candidates = ShownCandidates::load(project, scene, rock.as_ref().map(|rock| &rock.model), progress)?;
+    let wells = read_wells(project.root(), document, &geometry)?;
+    Ok(Loaded {
+        wells,
+        candidates,
+        geometry,
+        rock,
+        volumes,
+        packed,
+        raw: functions.raw,
+        tables,
+        version: new_version(),
+    })
+}
+
+/// What a scene shows beyond what was loaded.
+pub struct More {
+    volumes: Vec<LoadedVolume>,
+    candidates: Option<ShownCandidates>,
+}
+
+/// Reads the volumes and horizons that `scene` sees through and that are not loaded yet; the model stays.
+///
+/// # Errors
+/// Damaged data, or cancelled.
+pub fn read_more(project: &Project, loaded: &Loaded, scene: &Scene, progress: &Progress) -> Result<More, ProjectError> {
+    let document = project.document();
+    let missing: Vec<&str> =
+        scene.media.all().map(|medium| medium.volume.as_str()).filter(|name| !loaded.has_volume(name)).collect();
+    let limit = memory_budget::half_of_available();
+    let volumes = read_volumes(project.root(), document, &loaded.geometry, &missing, limit, progress)?;
+    let candidates = ShownCandidates::load(project, scene, loaded.rock.as_ref().map(|rock| &rock.model), progress)?;
+    Ok(More { volumes, candidates })
+}
+
+impl More {
+    /// Puts it to what is loaded.
+    pub fn add_to(self, loaded: &mut Loaded) {
+        loaded.volumes.extend(self.volumes);
+        loaded.candidates = self.candidates;
+        loaded.version = new_version();
+    }
+}
+
+/// Reads what interpreting needs: the raw volume, the wells, and of the extraction what `scene` shows; no model, whatever horizons there are.
+///
+/// # Errors
+/// Damaged data, or cancelled.
+pub fn load_bare(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
+    let document = project.document();
+    let geometry = document.frame()?.clone();
+    let raw = styles::transfer_functions(document).raw;
+    let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).collect();
+    Ok(Loaded {
+        rock: None,
+        volumes: read_volumes(
+            project.root(),
+            document,
+            &geometry,
+            &wanted,
+            memory_budget::half_of_available(),
+            progress,
+        )?,
+        packed: None,
+        wells: read_wells(project.root(), document, &geometry)?,
+        candidates: ShownCandidates::load(project, scene, None, progress)?,
+        tables: None,
+        version: new_version(),
+        raw,
+        geometry,
+    })
+}
+
+fn read_volumes(
+    root: &Path,
+    document: &Document,
+    geometry: &SurveyGeometry,
+    wanted: &[&str],
+    volume_bytes: u64,
+    progress: &Progress,
+) -> Result<Vec<LoadedVolume>, ProjectError> {
+    let mut volumes = Vec::new();
+    for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
+        let covers = placement::covers(geometry, entry.geometry.as_ref().unwrap_or(geometry))
+            .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
+        let (volume, level) = content::read_volume_within(root, entry, volume_bytes, progress)?;
+        if level > 0 {
+            let apart = 1 << level;
+            progress.warn(format!(
+                "volume {} is shown by one sample in {apart} along each axis, to fit into memory",
+                entry.name
+            ));
+        }
+        let full = entry.geometry.as_ref().unwrap_or(geometry).size();
+        let covers = at_level(covers, full, volume.size(), level);
+        volumes.push(LoadedVolume { name: entry.name.clone(), volume, covers });
+    }
+    Ok(volumes)
+}
+
+fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Result<Vec<LoadedWell>, ProjectError> {
+    let mut wells = Vec::new();
+    for entry in &document.wells {
+        let well = content::read_well(root, entry)?;
+        let tops = well.tops.iter().filter_map(|top| well.voxel_at_md(top.md_m, geometry)).collect();
+        wells.push(LoadedWell { name: entry.name.clone(), path: well.path_in_voxels(geometry), tops });
+    }
+    Ok(wells)
+}
+
+/// Voxel positions of the first and last sample of a level of a pyramid, whose sample m lies at m·2^level of the full volume.
+fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) -> VoxelBox {
+    let max = |axis: usize| {
+        let share = ((size[axis].saturating_sub(1)) << level) as f64 / full[axis].saturating_sub(1).max(1) as f64;
+        covers.min[axis] + (covers.max[axis] - covers.min[axis]) * if level == 0 { 1.0 } else { share }
+    };
+    VoxelBox { min: covers.min, max: [max(0), max(1), max(2)] }
+}
+
+/// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so
+/// that tiles print in their own shape.
+pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
+    let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
+    let extent = [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny];
+    let layer =
+        |(name, thickness_m): (String, f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
+    BlockExtent {
+        extent_i_m: extent[0] as f32,
+        extent_j_m: extent[1] as f32,
+        layers: names.into_iter().zip(rock.thicknesses_m(geometry)).map(layer).collect(),
+        metres_per_mm: (extent[0].max(extent[1]) / PRINTED_MM) as f32,
+    }
+}
+
+impl Loaded {
+    /// Whether all is here that a scene sees through.
+    pub fn holds_media(&self, media: &Media) -> bool {
+        let knows = |name: &str| self.candidates.as_ref().is_some_and(|known| !known.leaves_of(name).is_empty());
+        media.all().all(|medium| self.has_volume(&medium.volume))
+            && media.horizons.iter().filter_map(|horizon| horizon.name.as_deref()).all(knows)
+    }
+
+    fn has_volume(&self, name: &str) -> bool {
+        self.volumes.iter().any(|volume| volume.name == name)
+    }
+
+    /// A scene with all that only the project knows: colours of raw data where it states none, and the leaves of horizons it names.
+    pub fn complete(&self, scene: &Scene) -> Scene {
+        let mut scene = Scene { raw: scene.raw.clone().or_else(|| self.raw.clone()), ..scene.clone() };
+        match &self.candidates {
+            Some(candidates) => candidates.complete(&mut scene),
+            None => scene.media.horizons.retain(|horizon| horizon.name.is_none()),
+        }
+        scene
+    }
+
+    /// The volumes as renderers take them.
+    pub fn named_volumes(&self) -> Vec<NamedVolume<'_>> {
+        let named = self.volumes.iter();
+        named.map(|loaded| NamedVolume { name: &loaded.name, volume: &loaded.volume, covers: loaded.covers }).collect()
+    }
+
+    /// The wells as renderers take them.
+    pub fn well_paths(&self) -> Vec<WellPath<'_>> {
+        self.wells.iter().map(|well| WellPath { name: &well.name, path: &well.path, tops: &well.tops }).collect()
+    }
+
+    /// Everything as renderers take it.
+    pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>], wells: &'a [WellPath<'a>]) -> Inputs<'a> {
+        Inputs {
+            geometry: &self.geometry,
+            model: self.rock.as_ref().map(|rock| &rock.model),
+            param: self.rock.as_ref().map(|rock| &rock.parameterization),
+            packed: self.packed.as_ref(),
+            tables: self.tables.as_ref(),
+            volumes,
+            candidates: self.candidates.as_ref().map(ShownCandidates::candidates),
+            wells,
+            version: self.version,
+        }
+    }
+}

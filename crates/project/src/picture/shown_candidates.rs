@@ -1,0 +1,211 @@
+//! Horizon candidates as pictures show them: the project's extraction with the horizons picked from it, and sheets where there are no picks.
+//!
+//! | a scene shows | drawn from |
+//! |---|---|
+//! | a horizon whose picks are of the extraction at hand | the leaves under the nodes picked |
+//! | any other horizon by its name | distances to its sheets, added to the extraction's under ids above the last leaf |
+//! | leaves, distances | the extraction; without one the sheets of all horizons |
+//!
+//! In memory: five bytes a voxel, and the trees without their triangles.
+
+use crate::Project;
+use crate::document::Document;
+use crate::document::PickEntry;
+use crate::error::{Noun, ProjectError};
+use crate::interpretation::assembly::picked_selection;
+use crate::interpretation::extraction;
+use crate::picture::horizon_distance::{self, FARTHEST};
+use interp::Forest;
+use interp::assembly::selected_leaves;
+use model::StructuralModel;
+use render::media::Colouring;
+use render::{Candidates, FaceData, Scene};
+use std::collections::BTreeMap;
+use store::StoredCandidates;
+use survey::CandidateBox;
+use survey::Progress;
+
+/// The code of the greatest distance.
+const STEPS: f32 = 254.0;
+
+/// What a scene shows of candidates and horizons.
+pub struct ShownCandidates {
+    voxels: CandidateBox,
+    voxels_per_step: f32,
+    /// Identifies the extraction; absent where sheets stand for it.
+    key: Option<String>,
+    trees: Forest,
+    level: u32,
+    groups: Option<Vec<u32>>,
+    /// Ids by the horizon's name.
+    picked: BTreeMap<String, Vec<u32>>,
+    sheets: BTreeMap<String, u32>,
+}
+
+/// Whether a scene shows anything of this.
+pub fn is_shown(scene: &Scene) -> bool {
+    !scene.media.horizons.is_empty() || scene.face_data != FaceData::Rock
+}
+
+impl ShownCandidates {
+    /// Reads what `scene` shows; `None` where that is nothing.
+    ///
+    /// # Errors
+    /// [`ProjectError::NotExtracted`] where there is neither an extraction nor a horizon to show in its place; an unknown horizon, damaged data, or
+    /// cancelled.
+    pub fn load(
+        project: &Project,
+        scene: &Scene,
+        model: Option<&StructuralModel>,
+        progress: &Progress,
+    ) -> Result<Option<Self>, ProjectError> {
+        if !is_shown(scene) {
+            return Ok(None);
+        }
+        let document = project.document();
+        let size = document.frame()?.size();
+        let horizons = &scene.media.horizons;
+        let mut named = Vec::new();
+        for name in horizons.iter().filter_map(|horizon| horizon.name.as_deref()) {
+            named.push(document.position(Noun::Horizon, name)?);
+        }
+        let asks_leaves = scene.face_data != FaceData::Rock || horizons.iter().any(|horizon| horizon.name.is_none());
+        let by_level = scene.tree_level > 0
+            && (scene.face_data == FaceData::Leaves || horizons.iter().any(|h| h.colouring == Colouring::ByLeaf));
+        let stored = stored(project, size, progress)?;
+        if stored.is_none() && (by_level || asks_leaves && model.is_none()) {
+            return Err(ProjectError::NotExtracted);
+        }
+        let mut shown = Self {
+            voxels: CandidateBox { size, distance: Vec::new(), leaf: Vec::new() },
+            voxels_per_step: FARTHEST / STEPS,
+            key: None,
+            trees: Forest::default(),
+            level: 0,
+            groups: None,
+            picked: BTreeMap::new(),
+            sheets: BTreeMap::new(),
+        };
+        if let Some(stored) = &stored {
+            shown.trees = Forest::of_nodes(stored.read_nodes(progress)?)?;
+            shown.key = Some(stored.info().key.clone());
+            shown.take_picks(document);
+        }
+        let is_picked = |index: &usize| shown.picked.contains_key(&document.horizons[*index].name);
+        let mut unpicked: Vec<usize> = named.iter().copied().filter(|index| !is_picked(index)).collect();
+        let wanted = stored.filter(|_| asks_leaves || unpicked.len() < named.len());
+        shown.voxels = match &wanted {
+            Some(stored) => {
+                shown.voxels_per_step = stored.info().max_distance / STEPS;
+                stored.read(0, progress)?
+            }
+            None => {
+                if asks_leaves {
+                    progress.warn(
+                        "no horizon candidates have been extracted; the horizons of the interpretation are shown in their place",
+                    );
+                    unpicked = (0..document.horizons.len()).collect();
+                }
+                horizon_distance::nothing_near(size)
+            }
+        };
+        if let (Some(model), false) = (model, unpicked.is_empty()) {
+            let first_id = shown.trees.leaf_count() as u32 + 1;
+            let farthest = shown.voxels_per_step * STEPS;
+            horizon_distance::add_horizons(model, &unpicked, first_id, farthest, &mut shown.voxels, progress)?;
+            let id = |index: usize| (document.horizons[index].name.clone(), first_id + index as u32);
+            shown.sheets = unpicked.into_iter().map(id).collect();
+        }
+        shown.show_level(scene.tree_level);
+        Ok(Some(shown))
+    }
+
+    /// Identifies the extraction that leaves are of; `None` where sheets stand for it.
+    pub fn key(&self) -> Option<&str> {
+        self.key.as_deref()
+    }
+
+    /// Takes the picks of a project's state: voxels stay as they are. Picks of another extraction are not taken.
+    pub fn take_picks(&mut self, document: &Document) {
+        self.picked.clear();
+        let Some(key) = &self.key else { return };
+        for entry in &document.horizons {
+            let Some(log) = &entry.assembly else { continue };
+            let of_this = |pick: &PickEntry| {
+                pick.extraction == *key && (1..=self.trees.leaf_count()).contains(&(pick.leaf as usize))
+            };
+            if !log.picks.iter().all(of_this) {
+                continue;
+            }
+            let Ok(selection) = picked_selection(log, &self.trees) else { continue };
+            let leaves = selected_leaves(&self.trees, &selection);
+            if !leaves.is_empty() {
+                self.picked.insert(entry.name.clone(), leaves);
+            }
+        }
+    }
+
+    /// Tells leaves apart by the nodes at a level of their trees; 0 = by themselves.
+    pub fn show_level(&mut self, level: u32) {
+        self.level = level;
+        self.groups = (level > 0 && self.trees.leaf_count() > 0).then(|| {
+            let mut groups = self.trees.nodes_at_level(level);
+            // Sheets, which have no tree, follow the nodes.
+            let last = self.sheets.values().copied().max().unwrap_or(0) as usize;
+            let nodes = self.trees.nodes.len() as u32;
+            groups.extend((groups.len()..=last).map(|id| nodes + id as u32));
+            groups
+        });
+    }
+
+    /// The level shown.
+    pub fn level(&self) -> u32 {
+        self.level
+    }
+
+    /// The trees without vertices and triangles; empty where sheets stand for an extraction.
+    pub fn trees(&self) -> &Forest {
+        &self.trees
+    }
+
+    /// Ids of a horizon's leaves, or of its sheets; empty for one that was not asked for.
+    pub fn leaves_of(&self, horizon: &str) -> Vec<u32> {
+        let picked = self.picked.get(horizon).cloned();
+        picked.unwrap_or_else(|| self.sheets.get(horizon).copied().into_iter().collect())
+    }
+
+    /// As renderers take them.
+    pub fn candidates(&self) -> Candidates<'_> {
+        Candidates {
+            size: self.voxels.size,
+            distance: &self.voxels.distance,
+            leaf: &self.voxels.leaf,
+            voxels_per_step: self.voxels_per_step,
+            groups: self.groups.as_deref(),
+        }
+    }
+
+    /// Puts leaves to the names of a scene's horizons, and takes out those that there is nothing of.
+    pub fn complete(&self, scene: &mut Scene) {
+        for horizon in &mut scene.media.horizons {
+            if let Some(name) = &horizon.name {
+                horizon.leaves = self.leaves_of(name);
+            }
+        }
+        scene.media.horizons.retain(|horizon| horizon.name.is_none() || !horizon.leaves.is_empty());
+    }
+}
+
+/// The project's extraction, if there is one on its lattice.
+fn stored(project: &Project, size: [usize; 3], progress: &Progress) -> Result<Option<StoredCandidates>, ProjectError> {
+    let stored = match extraction::open(project) {
+        Ok(stored) => stored,
+        Err(ProjectError::NotExtracted) => return Ok(None),
+        Err(error) => return Err(error),
+    };
+    if stored.info().size != size {
+        progress.warn("the horizon candidates are of another lattice and are not shown; extract them again");
+        return Ok(None);
+    }
+    Ok(Some(stored))
+}

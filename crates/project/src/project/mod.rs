@@ -1,0 +1,310 @@
+//! A project: a folder `NAME.petro` with what was imported, how it is to be drawn, and how that came about.
+//!
+//! ```text
+//! project.toml        the state (see [`crate::document`]); replaced as a whole, never changed in place
+//! history/NNNN.toml   each command with the state it led to (see [`crate::folder`])
+//! volumes/ horizons/ faults/ wells/ textures/   data, one new file or folder for each generation
+//! derived/            what was computed; may be deleted
+//! unfinished/         what a command under way is writing; removed by the next writer after a crash
+//! importing/          an import that was killed, to go on with
+//! lock                held while a command runs
+//! ```
+//!
+//! [`Project::apply`] is the only way to change one. It takes the lock, reads the state again if another process has
+//! changed it, lets the [`Command`] write new data and a new state, and then replaces `project.toml` by a rename: before that moment the old
+//! state is valid, after it the new one. When anything fails, what was written is removed. A project may come from a stranger: before
+//! anything is written or deleted, no part of it may be a link, and every data file that a state names must be `KIND/NAME`.
+//!
+//! Deliberately absent: no state is kept in memory that is not on disk, and nothing that is saved is edited in place.
+
+use crate::command::{Command, Effect};
+use crate::derived;
+use crate::document::{Document, data_file};
+use crate::error::ProjectError;
+use crate::folder::{Draft, IMPORTING, Lock, Step, history, storage};
+use std::fs;
+use std::path::{Path, PathBuf};
+use survey::{Progress, SurveyGeometry};
+
+/// An open project.
+#[derive(Debug)]
+pub struct Project {
+    root: PathBuf,
+    text: String,
+    document: Document,
+}
+
+/// A line of the history.
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+pub struct HistoryLine {
+    /// Number of the step.
+    pub step: u32,
+    /// What happened.
+    pub summary: String,
+    /// Whether it is in effect (false: undone, can be redone).
+    pub in_effect: bool,
+}
+
+impl Project {
+    /// Opens the project in the folder `root`.
+    ///
+    /// # Errors
+    /// Missing, not a project, written by a newer version, or unreadable.
+    pub fn open(root: &Path) -> Result<Self, ProjectError> {
+        let not_a_project = |fact| Err(ProjectError::NotAProject { path: root.to_owned(), fact });
+        if !root.exists() {
+            return Err(ProjectError::NotFound { path: root.to_owned() });
+        }
+        if !root.is_dir() {
+            return not_a_project("it is a file, a project is a folder");
+        }
+        let path = root.join(storage::STATE);
+        if !path.exists() {
+            return not_a_project("it has no project.toml");
+        }
+        let text = storage::read_text(&path)?;
+        let document = Document::from_text(&text, &path)?;
+        Ok(Self { root: root.to_owned(), text, document })
+    }
+
+    /// Begins a new project that will be at `root`; nothing is there before [`NewProject::publish`].
+    ///
+    /// # Errors
+    /// Something is at `root`, or the folder it would be in cannot be written.
+    pub fn create(root: &Path, geometry: Option<SurveyGeometry>) -> Result<NewProject, ProjectError> {
+        NewProject::begin(root, geometry)
+    }
+
+    /// The folder.
+    pub fn root(&self) -> &Path {
+        &self.root
+    }
+
+    /// The state.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// Carries out a command and saves the project.
+    ///
+    /// # Errors
+    /// Whatever stands against it; the project is then as it was before, on disk and here.
+    pub fn apply(&mut self, command: &Command, progress: &Progress) -> Result<Effect, ProjectError> {
+        let _lock = self.lock()?;
+        let mut draft = Draft::new(&self.root, self.document.clone());
+        let effect = command.execute(&mut draft, progress)?;
+        progress.check()?;
+        self.commit(draft, effect.summary(), Some(command))?;
+        Ok(effect)
+    }
+
+    /// Goes back by one command; answers what was undone.
+    ///
+    /// # Errors
+    /// [`ProjectError::NothingToUndo`] at the beginning of what is remembered.
+    pub fn undo(&mut self) -> Result<String, ProjectError> {
+        let _lock = self.lock()?;
+        let step = self.document.step;
+        let undone = history::read(&self.root, step)?.ok_or(ProjectError::NothingToUndo)?;
+        let before = step.checked_sub(1).map(|number| history::read(&self.root, number)).transpose()?.flatten();
+        self.restore(before.ok_or(ProjectError::NothingToUndo)?)?;
+        Ok(undone.summary)
+    }
+
+    /// Goes forward by one undone command; answers what was done again.
+    ///
+    /// # Errors
+    /// [`ProjectError::NothingToRedo`] when nothing was undone.
+    pub fn redo(&mut self) -> Result<String, ProjectError> {
+        let _lock = self.lock()?;
+        let after = history::read(&self.root, self.document.step + 1)?.ok_or(ProjectError::NothingToRedo)?;
+        let summary = after.summary.clone();
+        self.restore(after)?;
+        Ok(summary)
+    }
+
+    /// Forgets the history and frees the data only it refers to.
+    ///
+    /// # Errors
+    /// The lock is taken or the folder cannot be read.
+    pub fn prune(&mut self) -> Result<(), ProjectError> {
+        let _lock = self.lock()?;
+        history::forget_all_but(&self.root, self.document.step)
+    }
+
+    /// What is remembered, oldest first; a step that cannot be read says so.
+    pub fn history(&self) -> Vec<HistoryLine> {
+        let mut lines = Vec::new();
+        for step in history::numbers(&self.root) {
+            let summary = match history::read(&self.root, step) {
+                Ok(Some(step)) => step.summary,
+                Ok(None) => continue,
+                Err(_) => "cannot be read any more; undo and redo stop here".to_owned(),
+            };
+            lines.push(HistoryLine { step, summary, in_effect: step <= self.document.step });
+        }
+        lines
+    }
+
+    fn lock(&mut self) -> Result<Lock, ProjectError> {
+        storage::refuse_links(&self.root)?;
+        let lock = Lock::take(&self.root)?;
+        let path = self.root.join(storage::STATE);
+        let text = storage::read_text(&path)?;
+        history::recover(&self.root, &text)?;
+        derived::remove_leftovers(&self.root);
+        if text != self.text {
+            self.document = Document::from_text(&text, &path)?;
+            self.text = text;
+        }
+        self.adopt_edit()?;
+        Ok(lock)
+    }
+
+    /// An edit of `project.toml` by hand becomes a step of its own, so that undoing a later command does not lose it.
+    fn adopt_edit(&mut self) -> Result<(), ProjectError> {
+        // A step that cannot be read says nothing about an edit.
+        let known = history::read(&self.root, self.document.step).ok().flatten();
+        if known.is_none_or(|step| step.project == self.text) {
+            return Ok(());
+        }
+        let draft = Draft::new(&self.root, self.document.clone());
+        self.commit(draft, "edited by hand".to_owned(), None)
+    }
+
+    fn commit(&mut self, mut draft: Draft, summary: String, command: Option<&Command>) -> Result<(), ProjectError> {
+        let path = self.root.join(storage::STATE);
+        let number = self.document.step + 1;
+        draft.document.step = number;
+        let text = draft.document.to_text(&path)?;
+        // A state that could not be read back must never be saved.
+        let document = Document::from_text(&text, &path)?;
+        let step = Step { summary, command: command.map(recorded).transpose()?, project: text.clone() };
+        history::prepare(&self.root, number, &step)?;
+        draft.publish()?;
+        storage::replace(&self.root, storage::STATE, text.as_bytes())?;
+        self.text = text;
+        self.document = document;
+        // The new state is saved; if tidying up fails, the next writer does it.
+        let _ = history::complete(&self.root, number);
+        draft.keep();
+        Ok(())
+    }
+
+    fn restore(&mut self, step: Step) -> Result<(), ProjectError> {
+        let path = self.root.join(storage::STATE);
+        let document = Document::from_text(&step.project, &path)?;
+        storage::replace(&self.root, storage::STATE, step.project.as_bytes())?;
+        storage::remove(&self.root, storage::UNFINISHED);
+        self.document = document;
+        self.text = step.project;
+        Ok(())
+    }
+}
+
+/// A command as the history keeps it.
+fn recorded(command: &Command) -> Result<toml::Value, ProjectError> {
+    toml::Value::try_from(command)
+        .map_err(|error| ProjectError::Malformed { path: PathBuf::from("history"), detail: error.to_string() })
+}
+
+/// Marks the folder of a project in the making; locked by whoever makes it.
+const CREATING: &str = "creating";
+
+/// Where the project for `destination` is made: `.NAME.new` beside it.
+fn in_the_making(destination: &Path) -> Result<PathBuf, ProjectError> {
+    let name = destination.file_name().ok_or(ProjectError::NotFound { path: destination.to_owned() })?;
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(".new");
+    Ok(destination.with_file_name(hidden))
+}
+
+/// A project in the making, in a hidden folder beside its destination. Dropped without [`NewProject::publish`], it leaves nothing.
+#[derive(Debug)]
+pub struct NewProject {
+    project: Project,
+    destination: PathBuf,
+    published: bool,
+    _lock: Lock,
+}
+
+impl NewProject {
+    fn begin(destination: &Path, geometry: Option<SurveyGeometry>) -> Result<Self, ProjectError> {
+        if destination.exists() {
+            return Err(ProjectError::Exists { path: destination.to_owned() });
+        }
+        let root = in_the_making(destination)?;
+        let fail = |source| ProjectError::io("written", destination, source);
+        let is_ours = root.join(CREATING).exists() || storage::names_in(&root).is_empty();
+        if root.exists() && !is_ours {
+            return Err(ProjectError::Exists { path: root });
+        }
+        fs::create_dir_all(&root).map_err(fail)?;
+        storage::refuse_links(&root)?;
+        // Two processes may want to create the same project; the one in the making is locked under another name than its own commands use.
+        let lock = Lock::take_named(&root, CREATING)?;
+        let path = root.join(storage::STATE);
+        let document = Document::empty(geometry);
+        let text = document.to_text(&path)?;
+        // From here on, whatever fails removes the folder.
+        let begun = Self {
+            project: Project { root, text: text.clone(), document: document.clone() },
+            destination: destination.to_owned(),
+            published: false,
+            _lock: lock,
+        };
+        let root = &begun.project.root;
+        // What a killed creation left; what it had imported is kept to go on with.
+        for folder in [storage::UNFINISHED, storage::DERIVED] {
+            storage::remove(root, folder);
+        }
+        for folder in ["history"].iter().chain(&data_file::KINDS) {
+            storage::remove(root, folder);
+            fs::create_dir(root.join(folder)).map_err(fail)?;
+        }
+        let step = Step {
+            summary: "create".to_owned(),
+            command: Some(recorded(&Command::Create { geometry: document.geometry })?),
+            project: text.clone(),
+        };
+        history::prepare(root, 0, &step)?;
+        storage::replace(root, storage::STATE, text.as_bytes())?;
+        history::complete(root, 0)?;
+        storage::remove(root, storage::UNFINISHED);
+        Ok(begun)
+    }
+
+    /// The project, to apply commands to before it is seen.
+    pub fn project(&mut self) -> &mut Project {
+        &mut self.project
+    }
+
+    /// Gives the project its name.
+    ///
+    /// # Errors
+    /// Something has come to be there in the meantime, or the folder cannot be renamed.
+    pub fn publish(mut self) -> Result<Project, ProjectError> {
+        if self.destination.exists() {
+            return Err(ProjectError::Exists { path: self.destination.clone() });
+        }
+        storage::remove(&self.project.root, CREATING);
+        // What an import that was killed had written to a project of this name.
+        storage::remove(&self.project.root, IMPORTING);
+        storage::rename(&self.project.root, &self.destination)?;
+        self.published = true;
+        Project::open(&self.destination)
+    }
+}
+
+impl Drop for NewProject {
+    fn drop(&mut self) {
+        if !self.published {
+            // A folder that cannot be removed is found by its marker when a project of this name is created again.
+            let _ = fs::remove_dir_all(&self.project.root);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,105 @@
+//! A volume of a project as a SEG-Y file: streamed, a shard's worth of inlines at a time, so that its size does not matter.
+
+use crate::Project;
+use crate::error::{Noun, ProjectError};
+use segy::{WriteFormat, WriteOptions};
+use serde::Serialize;
+use std::borrow::Cow;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+use store::StoredVolume;
+use survey::{Progress, SurveyGeometry};
+
+/// Memory that the samples on their way may take, bytes.
+const SLAB_BYTES: usize = 512 << 20;
+
+/// What was written.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VolumeWritten {
+    /// The file.
+    pub file: PathBuf,
+    /// The volume.
+    pub volume: String,
+    /// Traces; those that were not recorded are left out.
+    pub traces: usize,
+    /// Length of the file.
+    pub bytes: u64,
+    /// Code of the sample format.
+    pub format_code: u16,
+    /// Samples beyond the range of an integer format, written as its limit; and samples that are no numbers, as 0.
+    pub clipped: u64,
+}
+
+impl std::fmt::Display for VolumeWritten {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "{}: volume '{}', {} traces, {} bytes, SEG-Y format code {}",
+            self.file.display(),
+            self.volume,
+            self.traces,
+            self.bytes,
+            self.format_code
+        )?;
+        if self.clipped > 0 {
+            write!(f, "\n  {} samples do not fit the format and were clipped", self.clipped)?;
+        }
+        Ok(())
+    }
+}
+
+/// Writes the volume `name` of a project; `format` is by default the one its samples are stored in.
+///
+/// # Errors
+/// No such volume, damaged data, what SEG-Y cannot hold, a full disk, or cancelled; `out` is then what it was before.
+pub fn write(
+    project: &Project,
+    out: &Path,
+    name: &str,
+    format: Option<WriteFormat>,
+    progress: &Progress,
+) -> Result<VolumeWritten, ProjectError> {
+    let document = project.document();
+    let entry = &document.volumes[document.position(Noun::Volume, name)?];
+    let stored = StoredVolume::open(&project.root().join(&entry.file))?;
+    let geometry = stored.info().geometry.clone();
+    let format = format.unwrap_or(match stored.type_name().as_str() {
+        "int8" => WriteFormat::Int8,
+        "int16" => WriteFormat::Int16,
+        "uint8" => WriteFormat::Uint8,
+        "uint16" => WriteFormat::Uint16,
+        _ => WriteFormat::Ieee32,
+    });
+    let origin =
+        format!("VOLUME {} OF {}, FROM {}", entry.name, file_name(project.root()), file_name(&entry.source.path));
+    let options = WriteOptions { format, origin: Some(origin), ..WriteOptions::default() };
+    let report = stream(&stored, &geometry, out, &options, progress)?;
+    Ok(VolumeWritten {
+        file: out.to_owned(),
+        volume: entry.name.clone(),
+        traces: report.traces,
+        bytes: report.bytes,
+        format_code: format.sample_format().code(),
+        clipped: report.clipped,
+    })
+}
+
+fn stream(
+    stored: &StoredVolume,
+    geometry: &SurveyGeometry,
+    out: &Path,
+    options: &WriteOptions,
+    progress: &Progress,
+) -> Result<segy::WriteReport, ProjectError> {
+    let [_, crosslines, samples] = stored.size(0);
+    let together = (SLAB_BYTES / (crosslines * samples * size_of::<f32>()).max(1)).clamp(1, store::BRICK);
+    let mut source = |lines: Range<usize>| {
+        let slab = stored.read_box_f32(0, [lines.start, 0, 0], [lines.len(), crosslines, samples])?;
+        Ok(Cow::Owned(slab.into_samples()))
+    };
+    Ok(segy::write_lines(out, geometry, Some(stored.live()), options, together, &mut source, progress)?)
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
+}

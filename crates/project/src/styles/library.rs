@@ -1,0 +1,19 @@
+//! The patterns a project can use: the built-in ones and its own tiles.
+
+use crate::document::Document;
+use crate::error::ProjectError;
+use std::path::Path;
+use ttf::TextureLibrary;
+
+/// The built-in patterns and the tiles of the project in `root`.
+///
+/// # Errors
+/// A tile of the project cannot be read any more.
+pub fn pattern_library(root: &Path, document: &Document) -> Result<TextureLibrary, ProjectError> {
+    let mut library = TextureLibrary::builtin()?;
+    for entry in &document.textures {
+        let index = library.add_user(&root.join(&entry.file))?;
+        library.set_tile_mm(index, entry.tile_mm);
+    }
+    Ok(library)
+}

@@ -1,0 +1,48 @@
+//! Values that several callers share without knowing of one another: the one made last is found again for as long as someone holds it.
+
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+/// A value and what it was made of.
+pub(crate) struct WeakCache<K, V>(Mutex<Option<(K, Weak<V>)>>);
+
+impl<K: PartialEq, V> WeakCache<K, V> {
+    /// Nothing yet.
+    pub(crate) const fn nothing() -> Self {
+        Self(Mutex::new(None))
+    }
+
+    /// The value made of `key` that someone holds, or else a new one. While it is being made nothing is locked: of two who ask at once, both make it.
+    pub(crate) fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
+        let last = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = last().as_ref().filter(|(of, _)| *of == key).and_then(|(_, known)| known.upgrade());
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let made = Arc::new(make()?);
+        *last() = Some((key, Arc::downgrade(&made)));
+        Ok(made)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_made_again_when_it_is_another_or_nobody_holds_it() {
+        let held = WeakCache::nothing();
+        let made = std::cell::Cell::new(0);
+        let get = |key: &'static str| {
+            let make = || {
+                made.set(made.get() + 1);
+                Ok::<_, ()>(made.get())
+            };
+            held.get_or_make(key, make).unwrap()
+        };
+        let first = get("a");
+        assert_eq!((*first, *get("a")), (1, 1));
+        assert_eq!(*get("b"), 2);
+        assert_eq!(*get("b"), 3, "nobody held it");
+        assert!(held.get_or_make("c", || Err::<i32, _>("broken")).is_err());
+    }
+}

@@ -1,0 +1,362 @@
+//! X and Y of the traces: where they are in the trace headers, how they are stored, and the place they give the survey.
+
+use glam::DVec2;
+
+use super::SegyOptions;
+use super::columns::{Column, Columns};
+use super::error::SegyProblem;
+use super::header::{Field, NumberType, at};
+use super::info::{Findings, GeometrySummary, LengthUnit};
+use super::lines::Lattice;
+use super::place::{MAX_RESIDUAL_BINS, Placement};
+use super::sample::f32_from_ibm;
+use super::vertical::scaled;
+use survey::remedy::{Note, Remedy, Setting};
+
+/// Known homes of X and Y: CDP (the standard's), source, receiver.
+const HOMES: [[u16; 2]; 3] = [[at::CDP_X, at::CDP_Y], [73, 77], [81, 85]];
+
+/// Bin size where a file has no coordinates, m.
+const ASSUMED_BIN_M: f64 = 25.0;
+
+/// Projected coordinates stay below this, in m or ft.
+const MAX_COORDINATE: f64 = 1e8;
+
+/// The cosine of the angle between the axes from which they are called skewed.
+const MAX_SKEW: f64 = 1e-3;
+
+/// What integers are multiplied by.
+#[derive(Debug, Clone, Copy)]
+enum Scalar<'a> {
+    /// The field of each trace.
+    OfTrace(&'a Column),
+    Stated(i16),
+}
+
+impl Scalar<'_> {
+    fn at(self, trace: usize) -> i32 {
+        match self {
+            Self::OfTrace(column) => column.at(trace),
+            Self::Stated(scalar) => i32::from(scalar),
+        }
+    }
+
+    fn range(self) -> [i32; 2] {
+        match self {
+            Self::OfTrace(column) => column.range,
+            Self::Stated(scalar) => [i32::from(scalar); 2],
+        }
+    }
+}
+
+/// X and Y of every trace. Integers are scaled; floats are not, by usage and by revision 2.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Coordinates<'a> {
+    pub bytes: [u16; 2],
+    pub number_type: NumberType,
+    columns: &'a Columns,
+    x: &'a Column,
+    y: &'a Column,
+    scalar: Scalar<'a>,
+}
+
+/// X and Y at two bytes; the type if it is known.
+type Home = ([u16; 2], Option<NumberType>);
+
+impl<'a> Coordinates<'a> {
+    fn new(columns: &'a Columns, (bytes, number_type): Home, options: &SegyOptions) -> Self {
+        let [x, y] = bytes.map(|byte| columns.get(Field::I32(byte)));
+        let scalar = match options.coordinate_scalar {
+            Some(scalar) => Scalar::Stated(scalar),
+            None => Scalar::OfTrace(columns.get(Field::I16(scalar_byte(options)))),
+        };
+        let mut coordinates = Self { bytes, number_type: number_type.unwrap_or_default(), columns, x, y, scalar };
+        if number_type.is_none() && coordinates.look_like_floats() {
+            coordinates.number_type = NumberType::F32;
+        }
+        coordinates
+    }
+
+    /// X and Y of a trace; none if both are 0.
+    #[inline]
+    pub fn of(&self, trace: usize) -> Option<DVec2> {
+        let (x, y) = (self.x.at(trace), self.y.at(trace));
+        let world = match self.number_type {
+            NumberType::F64 => {
+                let [x, y] = self.bytes.map(|byte| self.columns.double(byte, trace));
+                DVec2::new(x, y)
+            }
+            NumberType::F32 | NumberType::Ibm32 => {
+                let float = |field: i32| {
+                    let bits = field.cast_unsigned();
+                    f64::from(if self.number_type == NumberType::F32 {
+                        f32::from_bits(bits)
+                    } else {
+                        f32_from_ibm(bits)
+                    })
+                };
+                DVec2::new(float(x), float(y))
+            }
+            NumberType::I32 | NumberType::I16 | NumberType::U16 => {
+                let scalar = self.scalar.at(trace);
+                let [x, y] = [x, y].map(|field| scaled(self.columns.reinterpret(field, self.number_type), scalar));
+                DVec2::new(x, y)
+            }
+        };
+        (world.is_finite() && world != DVec2::ZERO).then_some(world)
+    }
+
+    /// Whether the integers are too large for places on Earth, and would be reasonable as floats. A fit cannot tell:
+    /// between two powers of two the bits of floats are evenly spaced integers.
+    fn look_like_floats(&self) -> bool {
+        [self.x, self.y].iter().flat_map(|column| column.range).all(|bits| {
+            let float = f32::from_bits(bits.cast_unsigned()).abs();
+            (1.0..MAX_COORDINATE as f32).contains(&float) && scaled(bits, self.scalar.at(0)).abs() > MAX_COORDINATE
+        })
+    }
+
+    /// Whether X or Y varies.
+    fn vary(&self) -> bool {
+        self.x.constant().is_none() || self.y.constant().is_none() || self.number_type == NumberType::F64
+    }
+
+    /// How they are stored, for a list of evidence.
+    fn storage(&self) -> String {
+        match (self.number_type, self.scalar) {
+            (NumberType::F32 | NumberType::F64 | NumberType::Ibm32, _) => {
+                format!("floats ({})", self.number_type.name())
+            }
+            (_, Scalar::Stated(scalar)) => format!("scalar {scalar}, as stated"),
+            (_, Scalar::OfTrace(column)) if column.range[0] == column.range[1] => format!("scalar {}", column.range[0]),
+            (_, Scalar::OfTrace(column)) => format!("scalar {} to {}", column.range[0], column.range[1]),
+        }
+    }
+}
+
+/// Byte of the coordinate scalar.
+fn scalar_byte(options: &SegyOptions) -> u16 {
+    options.scalar_byte.unwrap_or(at::COORDINATE_SCALAR)
+}
+
+/// Fields that X and Y may need.
+pub(super) fn coordinate_fields(options: &SegyOptions, header_bytes: usize) -> Vec<Field> {
+    let mut fields = vec![Field::I16(scalar_byte(options))];
+    for (bytes, number_type) in homes(options, header_bytes) {
+        for byte in bytes {
+            fields.push(Field::I32(byte));
+            if number_type == Some(NumberType::F64) {
+                fields.push(Field::I32(byte + 4));
+            }
+        }
+    }
+    fields
+}
+
+/// The first X and Y that vary, whatever they make.
+pub(super) fn varying<'a>(columns: &'a Columns, options: &SegyOptions) -> Option<Coordinates<'a>> {
+    homes(options, columns.header_bytes())
+        .into_iter()
+        .map(|home| Coordinates::new(columns, home, options))
+        .find(|coordinates| coordinates.vary() && (0..columns.count()).any(|trace| coordinates.of(trace).is_some()))
+}
+
+/// The first home and storage whose X and Y are affine in the lattice; failing that, the first that spans an area.
+/// `lines` are the bytes of the line numbers, which are no coordinates.
+pub(super) fn locate<'a>(
+    lattice: &Lattice,
+    lines: [u16; 2],
+    columns: &'a Columns,
+    options: &SegyOptions,
+) -> Option<(Coordinates<'a>, Placement)> {
+    let homes = homes(options, columns.header_bytes());
+    let mut fits = homes
+        .into_iter()
+        .filter(|(bytes, _)| !bytes.iter().any(|byte| lines.contains(byte)))
+        .map(|home| Coordinates::new(columns, home, options))
+        .filter(Coordinates::vary)
+        .filter_map(|coordinates| Some((coordinates, Placement::fit(lattice, |trace| coordinates.of(trace))?)));
+    let first = fits.next()?;
+    if first.1.agrees() {
+        return Some(first);
+    }
+    Some(fits.find(|(_, placement)| placement.agrees()).unwrap_or(first))
+}
+
+/// Bytes at which X and Y are looked for.
+fn homes(options: &SegyOptions, header_bytes: usize) -> Vec<Home> {
+    let stated = options.coordinate_type;
+    match (options.bin_m, options.x_byte, options.y_byte) {
+        (Some(_), ..) => Vec::new(),
+        (None, None, None) => {
+            let [_, extended_y] = at::EXTENDED_CDP;
+            let has_extension = header_bytes >= usize::from(extended_y) + 7 && stated.is_none();
+            let extended = has_extension.then_some((at::EXTENDED_CDP, Some(NumberType::F64)));
+            let usual = HOMES.into_iter().map(|bytes| (bytes, stated));
+            // The standard's two places first.
+            let (mut homes, rest): (Vec<Home>, Vec<Home>) = usual.partition(|(bytes, _)| bytes[0] == at::CDP_X);
+            homes.extend(extended);
+            homes.extend(rest);
+            homes
+        }
+        (None, x, y) => vec![([x.unwrap_or(at::CDP_X), y.unwrap_or(at::CDP_Y)], stated)],
+    }
+}
+
+/// Where the lattice is, and the bytes that say so.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    pub bytes: Option<[u16; 2]>,
+    /// In the unit of the coordinates.
+    pub summary: GeometrySummary,
+}
+
+impl Place {
+    /// From X and Y; assumed where there are none, or as stated.
+    pub fn find(
+        lattice: &Lattice,
+        lines: [u16; 2],
+        columns: &Columns,
+        unit: LengthUnit,
+        options: &SegyOptions,
+        findings: &mut Findings,
+    ) -> Result<Self, SegyProblem> {
+        let Some((coordinates, fit)) = locate(lattice, lines, columns, options) else {
+            return Ok(Self::assumed(lattice, columns, unit, options, findings));
+        };
+        let units = columns.get(Field::I16(at::COORDINATE_UNIT));
+        match units.constant() {
+            Some(unit) => refuse_angles(unit)?,
+            None => units.iter().try_for_each(refuse_angles)?,
+        }
+        note_unknown_units(units, findings);
+        note_fit(&coordinates, &fit, unit, options, findings);
+        Ok(Self {
+            bytes: Some(coordinates.bytes),
+            summary: GeometrySummary {
+                origin: fit.origin.to_array(),
+                inline_vector: fit.inline_vector.to_array(),
+                crossline_vector: fit.crossline_vector.to_array(),
+                residual_rms_bins: Some(fit.rms_bins),
+                residual_max_bins: Some(fit.max_bins),
+            },
+        })
+    }
+
+    fn assumed(
+        lattice: &Lattice,
+        columns: &Columns,
+        unit: LengthUnit,
+        options: &SegyOptions,
+        findings: &mut Findings,
+    ) -> Self {
+        let bin = options.bin_m.unwrap_or(ASSUMED_BIN_M) / unit.metres();
+        let homes = homes(options, columns.header_bytes());
+        let mut place = Self {
+            bytes: None,
+            summary: GeometrySummary {
+                origin: [0.0; 2],
+                inline_vector: [bin, 0.0],
+                crossline_vector: [0.0, bin],
+                residual_rms_bins: None,
+                residual_max_bins: None,
+            },
+        };
+        if let Some(bin_m) = options.bin_m {
+            findings.evidence(format!("place: square bins of {bin_m} m at 0, 0, as stated"));
+        } else if lattice.places() == 1
+            && let Some((bytes, world)) =
+                homes.iter().find_map(|&home| Some((home.0, Coordinates::new(columns, home, options).of(0)?)))
+        {
+            place.bytes = Some(bytes);
+            place.summary.origin = world.to_array();
+        } else {
+            let places = homes.iter().map(|([x, y], _)| format!("{x} and {y}")).collect::<Vec<_>>().join(", ");
+            let bytes = Remedy::all([Setting::XByte.stated(), Setting::YByte.stated()]);
+            findings.assumption(Note::unless(
+                format!(
+                    "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y that span an area were found at bytes {places}"
+                ),
+                Remedy::any([bytes, Setting::Bin.stated()]),
+            ));
+        }
+        place
+    }
+}
+
+fn refuse_angles(code: i32) -> Result<(), SegyProblem> {
+    let unit = match code {
+        2 => "seconds of arc",
+        3 => "decimal degrees",
+        4 => "degrees, minutes and seconds",
+        _ => return Ok(()),
+    };
+    Err(SegyProblem::AngularCoordinates { code: code as i16, unit })
+}
+
+/// Codes that the standard does not have.
+fn note_unknown_units(codes: &Column, findings: &mut Findings) {
+    if let Some(code) = codes.iter().find(|code| !(0..=1).contains(code)) {
+        findings.warning(format!(
+            "byte 89 holds {code}, which is no unit of coordinates (1 is length); X and Y are taken as lengths"
+        ));
+    }
+}
+
+fn note_fit(
+    coordinates: &Coordinates<'_>,
+    fit: &Placement,
+    unit: LengthUnit,
+    options: &SegyOptions,
+    findings: &mut Findings,
+) {
+    let is_found = options.coordinate_type.is_none();
+    let [low, high] = coordinates.scalar.range();
+    let scalar = coordinates.storage();
+    findings.evidence(format!(
+        "place: X at byte {} and Y at byte {}, {scalar}; bins of {:.2} by {:.2} {}; X and Y of {} traces lie within {:.3} bin of the lattice (root mean square)",
+        coordinates.bytes[0],
+        coordinates.bytes[1],
+        fit.inline_vector.length(),
+        fit.crossline_vector.length(),
+        unit.symbol(),
+        fit.traces,
+        fit.rms_bins
+    ));
+    let is_float = matches!(coordinates.number_type, NumberType::F32 | NumberType::F64 | NumberType::Ibm32);
+    if is_float && is_found {
+        let why = match coordinates.number_type {
+            NumberType::F32 => ": as the integers that the standard has, they are no places on Earth",
+            _ => ", in the trace header extension of revision 2",
+        };
+        findings.assumption(Note::unless(
+            format!("X and Y are IEEE floats without a scalar{why}"),
+            Setting::CoordinateType.stated_as("i32, f32, f64 or ibm32"),
+        ));
+    } else if !is_float && low != high {
+        findings.warning(format!(
+            "the coordinate scalar (byte 71) differs between traces, {low} to {high}; each trace's own is used"
+        ));
+    } else if !is_float && !matches!(low.abs(), 0 | 1 | 10 | 100 | 1000 | 10_000) {
+        findings.warning(format!("the coordinate scalar (byte 71) is {low}, which is no power of ten; it is applied"));
+    }
+    if fit.outliers > 0 {
+        findings.warning(format!(
+            "X and Y of {} traces lie more than {MAX_RESIDUAL_BINS} bin off the lattice, trace {} by {:.1} bins: check the line and coordinate bytes",
+            fit.outliers,
+            fit.worst_trace + 1,
+            fit.max_bins
+        ));
+    }
+    if fit.skew() > MAX_SKEW {
+        findings.warning(format!(
+            "inlines and crosslines are not perpendicular (the cosine of their angle is {:.4})",
+            fit.skew()
+        ));
+    }
+    if fit.without > 0 {
+        findings.evidence(format!(
+            "{} traces have no X and Y (both 0); they are placed by their line numbers",
+            fit.without
+        ));
+    }
+}

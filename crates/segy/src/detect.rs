@@ -1,0 +1,529 @@
+//! Which trace header bytes hold the inline and crossline numbers.
+//!
+//! A pair of fields is a reading when its numbers make a lattice: both vary, (nearly) no place is held twice, and not
+//! too many places are empty; X and Y, where there are any, must then be affine in them. The standard's pair wins when
+//! it is a reading. Another known convention is taken when it is the only one, or when X and Y settle it. What is left
+//! is an error that lists the readings. Which of two axes is called inline cannot be seen in a file: the convention of
+//! the pair decides, and the swapped reading is shown beside it.
+
+use std::borrow::Cow;
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::SegyOptions;
+use super::bins::{self, Bins};
+use super::columns::{Column, Columns};
+use super::coordinates::{coordinate_fields, locate};
+use super::error::SegyProblem;
+use super::header::{Field, NO_INTEGER, NumberType, at};
+use super::info::{Findings, LineSummary};
+use super::lines::{Flaw, Lattice};
+use super::options::LineSource;
+use super::refuse;
+use survey::remedy::{Note, Remedy, Setting};
+
+/// Known homes of inline and crossline numbers.
+const CONVENTIONS: [(u16, u16, &str); 5] = [
+    (at::INLINE, at::CROSSLINE, "SEG-Y revision 1"),
+    (at::FIELD_RECORD, at::CDP, "OpendTect, Seisworks"),
+    (at::TRACE_IN_FILE, at::CDP, "Petrel"),
+    (17, at::TRACE_IN_CDP, "Kingdom"),
+    (221, 225, "header extension"),
+];
+
+/// What a pair of bytes is called that the user stated.
+const STATED: &str = "stated";
+
+/// Fields that may hold line numbers outside the conventions. Not among them: trace counters (1, 5, 13), which make a
+/// lattice of any regular file, and coordinates.
+const OTHER_LINE_FIELDS: [u16; 15] = [9, 17, 21, 25, 189, 193, 197, 205, 209, 213, 217, 221, 225, 229, 233];
+
+/// Other types of number that writers use, and pairs of 2-byte fields.
+const OTHER_TYPES: [NumberType; 4] = [NumberType::I16, NumberType::U16, NumberType::F32, NumberType::Ibm32];
+const NARROW_PAIRS: [(u16, u16); 2] = [(189, 191), (181, 183)];
+
+/// No survey counts so far; the bits of floats, read as integers, do.
+const MAX_LINE_NUMBER: u32 = 100_000_000;
+
+/// Repeated places beyond this share mean that the file is no post-stack volume, or the bytes no line numbers.
+const MAX_DUPLICATES: f64 = 0.1;
+/// Least share of filled places for a known convention, and for a pair that no convention knows.
+const MIN_FILL: f64 = 0.05;
+const MIN_FILL_UNKNOWN: f64 = 0.25;
+
+/// What a pair of fields turned out to be.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// A lattice of lines.
+    Fits,
+    /// A lattice, but X and Y are not affine in it.
+    ContradictsCoordinates,
+    /// Both are 0 throughout.
+    AllZero,
+    /// The inline number is constant.
+    ConstantInline(i32),
+    /// The crossline number is constant.
+    ConstantCrossline(i32),
+    /// The numbers are too large for lines.
+    TooLarge,
+    /// Too many places are empty.
+    Scattered,
+    /// Many traces repeat the numbers of another one.
+    Repeated,
+    /// Every trace has an inline and a crossline number of its own.
+    Diagonal,
+    /// One of the numbers is different in every trace: it counts traces.
+    Counter,
+}
+
+/// A pair of trace header bytes that was looked at, and what was found there.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Candidate {
+    /// Byte of the inline number.
+    pub inline_byte: u16,
+    /// Byte of the crossline number.
+    pub crossline_byte: u16,
+    /// How both are stored.
+    pub number_type: NumberType,
+    /// Who writes it so; empty if no convention known here does.
+    pub convention: &'static str,
+    /// What it is.
+    pub verdict: Verdict,
+    /// The inlines it would make.
+    pub inlines: Option<LineSummary>,
+    /// The crosslines it would make.
+    pub crosslines: Option<LineSummary>,
+    /// Share of the lattice's places that hold a trace.
+    pub filled: f64,
+    /// Share of the traces that repeat a place.
+    pub repeated: f64,
+    /// Root mean square distance of X and Y from an affine map of the numbers, in bins.
+    pub residual_bins: Option<f64>,
+    /// 0 to 1: filled × not repeated × agreement with X and Y.
+    pub score: f64,
+}
+
+impl Candidate {
+    /// One clause for a list: `bytes 9 and 21: all zero`.
+    pub fn as_sentence(&self) -> String {
+        let found = match (self.verdict, &self.inlines, &self.crosslines) {
+            (Verdict::AllZero, ..) => "all zero".to_owned(),
+            (Verdict::ConstantInline(number), ..) => format!("the inline number is {number} throughout"),
+            (Verdict::ConstantCrossline(number), ..) => format!("the crossline number is {number} throughout"),
+            (Verdict::TooLarge, ..) => "numbers too large for lines".to_owned(),
+            (Verdict::Scattered, ..) => "numbers too scattered for lines".to_owned(),
+            (Verdict::Diagonal, ..) => "both numbers are different in every trace".to_owned(),
+            (Verdict::Counter, ..) => "one number is different in every trace, and counts traces".to_owned(),
+            (Verdict::Repeated, ..) => format!("{:.0} % of the traces repeat a place", 100.0 * self.repeated),
+            (verdict, Some(inlines), Some(crosslines)) => {
+                let contradiction =
+                    if verdict == Verdict::Fits { "" } else { ", but X and Y do not lie on such a lattice" };
+                format!(
+                    "{} inlines {inlines} by {} crosslines {crosslines}, {:.1} % filled{contradiction}",
+                    inlines.count,
+                    crosslines.count,
+                    100.0 * self.filled
+                )
+            }
+            _ => "nothing".to_owned(),
+        };
+        format!("bytes {} and {}{}: {found}", self.inline_byte, self.crossline_byte, self.in_type(" as "))
+    }
+
+    /// The type of the numbers behind `words`; nothing for the standard's.
+    fn in_type(&self, words: &str) -> String {
+        if self.number_type == NumberType::I32 { String::new() } else { format!("{words}{}", self.number_type.name()) }
+    }
+
+    /// What it gives, in a few words.
+    pub fn as_choice(&self) -> String {
+        let size = |lines: &Option<LineSummary>| lines.map_or_else(String::new, |l| format!("{} ({l})", l.count));
+        format!(
+            "bytes {} and {}{} for {} inlines and {} crosslines",
+            self.inline_byte,
+            self.crossline_byte,
+            self.in_type(" as "),
+            size(&self.inlines),
+            size(&self.crosslines)
+        )
+    }
+
+    /// What chooses it.
+    pub fn remedy(&self) -> Remedy {
+        let bytes =
+            [Setting::InlineByte.stated_as(self.inline_byte), Setting::CrosslineByte.stated_as(self.crossline_byte)];
+        let own_type =
+            (self.number_type != NumberType::I32).then(|| Setting::LineType.stated_as(self.number_type.name()));
+        Remedy::all(bytes.into_iter().chain(own_type))
+    }
+
+    fn fits(&self) -> bool {
+        self.verdict == Verdict::Fits
+    }
+
+    fn swapped(&self) -> Self {
+        Self {
+            inline_byte: self.crossline_byte,
+            crossline_byte: self.inline_byte,
+            convention: "",
+            inlines: self.crosslines,
+            crosslines: self.inlines,
+            ..self.clone()
+        }
+    }
+}
+
+/// The reading that was chosen.
+#[derive(Debug)]
+pub(super) struct Detected {
+    /// Bytes of the line numbers; none if X and Y number the lines.
+    pub bytes: Option<[u16; 2]>,
+    pub lattice: Lattice,
+    pub candidates: Vec<Candidate>,
+}
+
+/// Fields that detection looks at.
+pub(super) fn fields(options: &SegyOptions, header_bytes: usize) -> Vec<Field> {
+    let conventions = CONVENTIONS.iter().flat_map(|&(inline, crossline, _)| [inline, crossline]);
+    let narrow = NARROW_PAIRS.into_iter().flat_map(|(inline, crossline)| [inline, crossline]);
+    let mut bytes: Vec<u16> = conventions.chain(narrow).chain(OTHER_LINE_FIELDS).collect();
+    let stated = [options.inline_byte, options.crossline_byte].into_iter().flatten();
+    let mut fields = coordinate_fields(options, header_bytes);
+    match options.line_type {
+        Some(NumberType::F64) => fields.extend(stated.map(Field::F64)),
+        Some(NumberType::I16) => fields.extend(stated.map(Field::I16)),
+        Some(NumberType::U16) => fields.extend(stated.map(Field::U16)),
+        _ => bytes.extend(stated),
+    }
+    bytes.sort_unstable();
+    bytes.dedup();
+    fields.extend(bytes.into_iter().map(Field::I32));
+    let mut once: Vec<Field> = Vec::with_capacity(fields.len());
+    for field in fields {
+        if !once.contains(&field) {
+            once.push(field);
+        }
+    }
+    once
+}
+
+/// Finds the line numbers.
+pub(super) fn detect(
+    columns: &Columns,
+    options: &SegyOptions,
+    findings: &mut Findings,
+) -> Result<Detected, SegyProblem> {
+    let search = Search { columns, options };
+    if options.line_source != LineSource::Headers {
+        return match bins::find(columns, options, bins::MIN_FILL_STATED) {
+            Ok(bins) => search.by_coordinates(&bins, Vec::new(), findings),
+            Err(reason) => Err(SegyProblem::NoLattice { reason, tried: Vec::new() }),
+        };
+    }
+    if let (Some(inline), Some(crossline)) = (options.inline_byte, options.crossline_byte) {
+        return search.stated(inline, crossline, findings);
+    }
+    let is_open = |stated: Option<u16>, byte: u16| stated.is_none_or(|stated| stated == byte);
+    let number_type = options.line_type.unwrap_or_default();
+    let candidates: Vec<Candidate> = CONVENTIONS
+        .par_iter()
+        .filter(|(i, x, _)| is_open(options.inline_byte, *i) && is_open(options.crossline_byte, *x))
+        .map(|&(inline, crossline, convention)| search.evaluate([inline, crossline], number_type, convention, MIN_FILL))
+        .collect();
+    refuse::pre_stack(columns, options, &candidates)?;
+    let standard = candidates.iter().find(|c| c.inline_byte == at::INLINE && c.crossline_byte == at::CROSSLINE);
+    if let Some(standard) = standard.filter(|c| c.fits()) {
+        let chosen = standard.clone();
+        return search.choose(&chosen, candidates, findings);
+    }
+    let readings = search.distinct(candidates.iter().filter(|c| c.fits()));
+    match readings.as_slice() {
+        [only] => {
+            let chosen = only.clone();
+            if candidates.iter().any(|c| c.verdict == Verdict::ContradictsCoordinates) {
+                findings.evidence(format!(
+                    "X and Y settle the line numbers: they lie on the lattice of bytes {} and {} alone",
+                    chosen.inline_byte, chosen.crossline_byte
+                ));
+            }
+            search.choose(&chosen, candidates, findings)
+        }
+        [] => search.elsewhere(candidates, findings),
+        _ => Err(SegyProblem::AmbiguousLines { readings }),
+    }
+}
+
+struct Search<'a> {
+    columns: &'a Columns,
+    options: &'a SegyOptions,
+}
+
+impl Search<'_> {
+    fn column(&self, byte: u16) -> &Column {
+        self.columns.get(Field::I32(byte))
+    }
+
+    /// Inline and crossline numbers of a candidate.
+    fn numbers(&self, candidate: &Candidate) -> [Cow<'_, Column>; 2] {
+        [candidate.inline_byte, candidate.crossline_byte].map(|byte| self.columns.numbers(byte, candidate.number_type))
+    }
+
+    fn are_same(&self, a: &Candidate, b: &Candidate) -> bool {
+        let ([a_inline, a_crossline], [b_inline, b_crossline]) = (self.numbers(a), self.numbers(b));
+        a_inline.same_as(&b_inline) && a_crossline.same_as(&b_crossline)
+    }
+
+    fn evaluate(
+        &self,
+        [inline_byte, crossline_byte]: [u16; 2],
+        number_type: NumberType,
+        convention: &'static str,
+        min_fill: f64,
+    ) -> Candidate {
+        let mut candidate = Candidate {
+            inline_byte,
+            crossline_byte,
+            number_type,
+            convention,
+            verdict: Verdict::Scattered,
+            inlines: None,
+            crosslines: None,
+            filled: 0.0,
+            repeated: 0.0,
+            residual_bins: None,
+            score: 0.0,
+        };
+        let [inline, crossline] = self.numbers(&candidate);
+        let lattice = match Lattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default()) {
+            Ok(lattice) => lattice,
+            Err(flaw) => {
+                candidate.verdict = match flaw {
+                    Flaw::AllZero => Verdict::AllZero,
+                    Flaw::OneInline(number) => Verdict::ConstantInline(number),
+                    Flaw::OneCrossline(number) => Verdict::ConstantCrossline(number),
+                    Flaw::Scattered(_) => Verdict::Scattered,
+                };
+                return candidate;
+            }
+        };
+        let filled = lattice.filled();
+        let traces = filled + lattice.duplicates + lattice.unnumbered;
+        candidate.inlines = Some(lattice.inlines.into());
+        candidate.crosslines = Some(lattice.crosslines.into());
+        candidate.filled = filled as f64 / lattice.places() as f64;
+        candidate.repeated = lattice.duplicates as f64 / traces as f64;
+        let placement = locate(&lattice, [inline_byte, crossline_byte], self.columns, self.options);
+        candidate.residual_bins = placement.map(|(_, placement)| placement.rms_bins);
+        let agreement = match placement {
+            Some((_, placement)) if placement.agrees() => 1.0,
+            Some(_) => 0.25,
+            None => 0.9,
+        };
+        candidate.score = candidate.filled * (1.0 - candidate.repeated) * agreement;
+        let [inlines, crosslines] = lattice.occupied_lines();
+        let is_large = |column: &Column| column.range.iter().all(|number| number.unsigned_abs() > MAX_LINE_NUMBER);
+        candidate.verdict = if convention != STATED && (is_large(&inline) || is_large(&crossline)) {
+            Verdict::TooLarge
+        } else if candidate.repeated > MAX_DUPLICATES && self.options.duplicates.is_none() {
+            Verdict::Repeated
+        } else if inlines.min(crosslines) == filled {
+            Verdict::Diagonal
+        } else if inlines.max(crosslines) == filled {
+            Verdict::Counter
+        } else if candidate.filled < min_fill {
+            Verdict::Scattered
+        } else if agreement < 0.5 {
+            Verdict::ContradictsCoordinates
+        } else {
+            Verdict::Fits
+        };
+        candidate
+    }
+
+    fn stated(&self, inline: u16, crossline: u16, findings: &mut Findings) -> Result<Detected, SegyProblem> {
+        let number_type = self.options.line_type.unwrap_or_default();
+        let chosen = self.evaluate([inline, crossline], number_type, STATED, 0.0);
+        let others = || {
+            CONVENTIONS
+                .iter()
+                .filter(|(i, x, _)| (*i, *x) != (inline, crossline))
+                .map(|&(i, x, convention)| self.evaluate([i, x], NumberType::I32, convention, MIN_FILL))
+        };
+        refuse::pre_stack(self.columns, self.options, std::slice::from_ref(&chosen))?;
+        match chosen.verdict {
+            Verdict::Fits | Verdict::ContradictsCoordinates => {
+                let candidates = std::iter::once(chosen.clone()).chain(others()).collect();
+                self.choose(&chosen, candidates, findings)
+            }
+            _ => {
+                let others: Vec<Candidate> = others().collect();
+                refuse::two_dimensional(self.columns, std::slice::from_ref(&chosen))?;
+                Err(SegyProblem::StatedBytes { stated: Box::new(chosen), others })
+            }
+        }
+    }
+
+    fn choose(
+        &self,
+        chosen: &Candidate,
+        mut candidates: Vec<Candidate>,
+        findings: &mut Findings,
+    ) -> Result<Detected, SegyProblem> {
+        let [inline, crossline] = self.numbers(chosen);
+        let lattice = Lattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default())
+            .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
+        findings.evidence(format!("line numbers: {} ({})", chosen.as_sentence(), chosen.convention));
+        let swapped = chosen.swapped();
+        findings.evidence(Note::unless(
+            format!(
+                "the file counts {} first; no file says which axis is called inline: the swapped reading is {}",
+                if lattice.inline_sorted { "crosslines" } else { "inlines" },
+                swapped.as_choice()
+            ),
+            swapped.remedy(),
+        ));
+        for other in candidates.iter().filter(|c| c.fits() && *c != chosen) {
+            findings.evidence(if self.are_same(other, chosen) {
+                Note::from(format!("bytes {} and {} hold the same numbers", other.inline_byte, other.crossline_byte))
+            } else {
+                Note::unless(format!("another reading fits too: {}", other.as_choice()), other.remedy())
+            });
+        }
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        Ok(Detected { bytes: Some([chosen.inline_byte, chosen.crossline_byte]), lattice, candidates })
+    }
+
+    /// The lattice of X and Y, where no header numbers lines or the user wants it.
+    fn by_coordinates(
+        &self,
+        bins: &Bins,
+        mut candidates: Vec<Candidate>,
+        findings: &mut Findings,
+    ) -> Result<Detected, SegyProblem> {
+        let [inline, crossline] = match self.options.line_source {
+            LineSource::CoordinatesSwapped => [&bins.along_crossline, &bins.along_inline],
+            _ => [&bins.along_inline, &bins.along_crossline],
+        };
+        let kept = self.options.duplicates.unwrap_or_default();
+        let lattice = Lattice::place(inline, crossline, Some((NO_INTEGER, NO_INTEGER)), kept)
+            .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
+        let repeated = lattice.duplicates as f64 / (lattice.duplicates + lattice.filled()) as f64;
+        if repeated > MAX_DUPLICATES && self.options.duplicates.is_none() {
+            return Err(refuse::repeated_places(self.columns, &lattice));
+        }
+        let why = match self.options.line_source {
+            LineSource::Headers => "no trace header bytes hold line numbers: ",
+            _ => "as stated, ",
+        };
+        let fact = format!(
+            "{why}lines are numbered from 1 along the lattice of X and Y (bytes {} and {}), which {}; {}",
+            bins.bytes[0],
+            bins.bytes[1],
+            bins.fit,
+            if bins.is_in_order {
+                "traces follow one another along inlines"
+            } else {
+                "the order of the traces does not tell which axis is the inline"
+            },
+        );
+        let bytes = Remedy::all([Setting::InlineByte.stated(), Setting::CrosslineByte.stated()]);
+        let note = Note::unless(fact, Remedy::any([Setting::LineNumbers.stated_as("coordinates-swapped"), bytes]));
+        if self.options.line_source == LineSource::Headers {
+            findings.assumption(note);
+        } else {
+            findings.evidence(note);
+        }
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        Ok(Detected { bytes: None, lattice, candidates })
+    }
+
+    /// One of each set of candidates that hold the same numbers.
+    fn distinct<'c>(&self, candidates: impl Iterator<Item = &'c Candidate>) -> Vec<Candidate> {
+        let mut distinct: Vec<Candidate> = Vec::new();
+        for candidate in candidates {
+            if !distinct.iter().any(|known| self.are_same(known, candidate)) {
+                distinct.push(candidate.clone());
+            }
+        }
+        distinct
+    }
+
+    /// No convention fits: other fields, or the reason why the file is no volume.
+    fn elsewhere(&self, candidates: Vec<Candidate>, findings: &mut Findings) -> Result<Detected, SegyProblem> {
+        refuse::shot_gathers(self.columns)?;
+        let varying: Vec<u16> =
+            OTHER_LINE_FIELDS.into_iter().filter(|&byte| self.column(byte).constant().is_none()).collect();
+        let inline = self.options.inline_byte;
+        let crossline = self.options.crossline_byte;
+        let others = |byte: u16| varying.iter().copied().filter(move |&other| other != byte);
+        let pairs: Vec<(u16, u16)> = match (inline, crossline) {
+            (Some(inline), _) => others(inline).map(|other| (inline, other)).collect(),
+            (None, Some(crossline)) => others(crossline).map(|other| (other, crossline)).collect(),
+            (None, None) => {
+                varying.iter().flat_map(|&a| others(a).filter(move |&b| a < b).map(move |b| (a, b))).collect()
+            }
+        };
+        let fitting: Vec<Candidate> = pairs
+            .into_iter()
+            .map(|(inline, crossline)| {
+                self.evaluate([inline, crossline], self.options.line_type.unwrap_or_default(), "", MIN_FILL_UNKNOWN)
+            })
+            .filter(Candidate::fits)
+            .collect();
+        let fitting = if fitting.is_empty() { self.in_other_types() } else { fitting };
+        let mut readings = self.distinct(fitting.iter());
+        if inline.is_none() && crossline.is_none() {
+            let both = |reading: &Candidate| match reading.convention {
+                "" => vec![reading.clone(), reading.swapped()],
+                _ => vec![reading.clone()],
+            };
+            readings = readings.iter().flat_map(both).collect();
+        }
+        // Lines that X and Y contradict are still lines, if nothing else is there: coordinates may be wrong.
+        let contradicted = candidates.iter().find(|c| c.verdict == Verdict::ContradictsCoordinates).cloned();
+        readings.splice(0..0, contradicted);
+        match readings.as_slice() {
+            [] => match bins::find(self.columns, self.options, MIN_FILL_UNKNOWN) {
+                Ok(bins) => self.by_coordinates(&bins, candidates, findings),
+                Err(reason) => {
+                    refuse::two_dimensional(self.columns, &candidates)?;
+                    Err(if reason.is_empty() {
+                        SegyProblem::NoLineNumbers { tried: candidates }
+                    } else {
+                        SegyProblem::NoLattice { reason, tried: candidates }
+                    })
+                }
+            },
+            [only] => {
+                let chosen = only.clone();
+                let is_usual = !chosen.convention.is_empty() && chosen.number_type == NumberType::I32;
+                let candidates = if is_usual { candidates } else { readings };
+                self.choose(&chosen, candidates, findings)
+            }
+            _ => Err(SegyProblem::AmbiguousLines { readings }),
+        }
+    }
+
+    /// The conventions' fields read as 2-byte integers and floats.
+    fn in_other_types(&self) -> Vec<Candidate> {
+        if self.options.line_type.is_some() {
+            return Vec::new();
+        }
+        let is_open = |stated: Option<u16>, byte: u16| stated.is_none_or(|stated| stated == byte);
+        let pairs = CONVENTIONS.iter().copied().chain(NARROW_PAIRS.map(|(i, x)| (i, x, "2-byte fields")));
+        let open: Vec<(u16, u16, &'static str)> = pairs
+            .filter(|(i, x, _)| is_open(self.options.inline_byte, *i) && is_open(self.options.crossline_byte, *x))
+            .collect();
+        let candidates = OTHER_TYPES.into_iter().flat_map(|number_type| {
+            open.iter().map(move |&(inline, crossline, convention)| (inline, crossline, number_type, convention))
+        });
+        candidates
+            .map(|(inline, crossline, number_type, convention)| {
+                self.evaluate([inline, crossline], number_type, convention, MIN_FILL)
+            })
+            .filter(Candidate::fits)
+            .collect()
+    }
+}

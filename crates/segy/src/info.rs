@@ -1,0 +1,247 @@
+//! What a SEG-Y file holds, for people and for `--json`.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use serde::{Deserialize, Serialize};
+
+use super::detect::Candidate;
+use super::sample::{ByteOrder, SampleFormat};
+use super::text::TextEncoding;
+use survey::geometry::LineAxis;
+use survey::remedy::Note;
+
+/// Unit of the vertical axis in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FileUnit {
+    /// Two-way travel time in ms.
+    #[serde(rename = "ms")]
+    Milliseconds,
+    /// Depth in metres.
+    #[serde(rename = "m")]
+    Metres,
+    /// Depth in international feet (0.3048 m).
+    #[serde(rename = "ft")]
+    Feet,
+}
+
+impl FileUnit {
+    /// `ms`, `m` or `ft`.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Milliseconds => "ms",
+            Self::Metres => "m",
+            Self::Feet => "ft",
+        }
+    }
+
+    pub(super) fn description(self) -> &'static str {
+        match self {
+            Self::Milliseconds => "two-way time in ms",
+            Self::Metres => "depth in metres",
+            Self::Feet => "depth in feet",
+        }
+    }
+}
+
+/// Unit of X and Y in a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LengthUnit {
+    /// Metres.
+    #[serde(rename = "m")]
+    Metres,
+    /// International feet (0.3048 m).
+    #[serde(rename = "ft")]
+    Feet,
+}
+
+impl LengthUnit {
+    /// `m` or `ft`.
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Metres => "m",
+            Self::Feet => "ft",
+        }
+    }
+
+    /// Metres in one of it.
+    pub fn metres(self) -> f64 {
+        match self {
+            Self::Metres => 1.0,
+            Self::Feet => super::vertical::METRES_PER_FOOT,
+        }
+    }
+}
+
+/// Numbered lines, as shown.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct LineSummary {
+    /// Number of the first line.
+    pub first: i32,
+    /// Number of the last line.
+    pub last: i32,
+    /// Difference between neighbours; negative if the file counts down.
+    pub step: i32,
+    /// Count of lines, missing ones among them.
+    pub count: usize,
+}
+
+impl From<LineAxis> for LineSummary {
+    fn from(axis: LineAxis) -> Self {
+        Self { first: axis.first, last: axis.last(), step: axis.step, count: axis.count }
+    }
+}
+
+impl fmt::Display for LineSummary {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}..{}", self.first, self.last)?;
+        if self.step != 1 && self.count > 1 {
+            write!(f, " step {}", self.step)?;
+        }
+        Ok(())
+    }
+}
+
+/// Where the trace header fields are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct BytePositions {
+    /// Inline number; none if X and Y number the lines.
+    pub inline: Option<u16>,
+    /// Crossline number; none if X and Y number the lines.
+    pub crossline: Option<u16>,
+    /// X; none if the file has no coordinates.
+    pub x: Option<u16>,
+    /// Y; none if the file has no coordinates.
+    pub y: Option<u16>,
+}
+
+/// The place of the lattice in the world, in the file's own length unit.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct GeometrySummary {
+    /// X and Y of the first inline and crossline.
+    pub origin: [f64; 2],
+    /// Step from one inline to the next.
+    pub inline_vector: [f64; 2],
+    /// Step from one crossline to the next.
+    pub crossline_vector: [f64; 2],
+    /// Root mean square distance of the traces from their place, in bins; none if the place is assumed.
+    pub residual_rms_bins: Option<f64>,
+    /// Largest such distance.
+    pub residual_max_bins: Option<f64>,
+}
+
+/// A corner of the lattice.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Corner {
+    /// Inline number.
+    pub inline: i32,
+    /// Crossline number.
+    pub crossline: i32,
+    /// X in the file's own length unit.
+    pub x: f64,
+    /// Y in the file's own length unit.
+    pub y: f64,
+}
+
+/// The corners in order around the lattice, from the first inline and crossline along the first inline.
+pub(super) fn corners(inlines: &LineAxis, crosslines: &LineAxis, place: &GeometrySummary) -> [Corner; 4] {
+    let [last_inline, last_crossline] = [inlines.count.max(1) - 1, crosslines.count.max(1) - 1];
+    [(0, 0), (0, last_crossline), (last_inline, last_crossline), (last_inline, 0)].map(|(i, x)| {
+        let along = |axis: usize| {
+            place.origin[axis] + i as f64 * place.inline_vector[axis] + x as f64 * place.crossline_vector[axis]
+        };
+        Corner {
+            inline: if i == 0 { inlines.first } else { inlines.last() },
+            crossline: if x == 0 { crosslines.first } else { crosslines.last() },
+            x: along(0),
+            y: along(1),
+        }
+    })
+}
+
+/// What a SEG-Y file holds, how that was found, and what had to be assumed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SegyInfo {
+    /// The file.
+    pub file: PathBuf,
+    /// Its length.
+    pub bytes: u64,
+    /// Inline numbers.
+    pub inlines: LineSummary,
+    /// Crossline numbers.
+    pub crosslines: LineSummary,
+    /// Samples along the vertical axis.
+    pub samples: usize,
+    /// Sample interval in `vertical_unit`.
+    pub interval: f64,
+    /// Value of the first sample in `vertical_unit`.
+    pub start: f64,
+    /// Unit of the vertical axis in the file.
+    pub vertical_unit: FileUnit,
+    /// Format of the samples.
+    pub sample_format: SampleFormat,
+    /// Its code at byte 3225.
+    pub format_code: u16,
+    /// Traces in the file.
+    pub traces: usize,
+    /// Places of the lattice without a trace.
+    pub missing_traces: usize,
+    /// Traces flagged dead (byte 29 is 2).
+    pub dead_traces: usize,
+    /// Traces that repeat the place of an earlier one; the first is kept.
+    pub duplicate_traces: usize,
+    /// Order of the traces: `inline` if crosslines count fastest.
+    pub sorted_by: &'static str,
+    /// Where the line numbers and coordinates are.
+    pub byte_positions: BytePositions,
+    /// Unit of X and Y in the file.
+    pub coordinate_unit: LengthUnit,
+    /// Smallest and largest coordinate scalar at byte 71.
+    pub coordinate_scalar: [i32; 2],
+    /// The lattice in the world, in `coordinate_unit`.
+    pub geometry: GeometrySummary,
+    /// Its corners, in order around it.
+    pub corners: [Corner; 4],
+    /// `0`, `1.0`, `2.0` or `2.1`.
+    pub revision: String,
+    /// Byte order of the numbers.
+    pub byte_order: ByteOrder,
+    /// Impulse polarity code at byte 3257 (0 if the writer left it out); shown, not interpreted.
+    pub polarity_code: u16,
+    /// Encoding of the textual header.
+    pub text_encoding: TextEncoding,
+    /// Lines of the textual header.
+    pub text: Vec<String>,
+    /// Lines of the extended textual headers.
+    pub extended_text: Vec<String>,
+    /// Readings of the line numbers that were looked at, the best first.
+    pub candidates: Vec<Candidate>,
+    /// How things were found.
+    pub evidence: Vec<Note>,
+    /// What the file does not say and was taken as usual; each with what states otherwise.
+    pub assumptions: Vec<Note>,
+    /// What does not fit together.
+    pub warnings: Vec<Note>,
+}
+
+/// Notes taken while a file is read.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Findings {
+    pub evidence: Vec<Note>,
+    pub assumptions: Vec<Note>,
+    pub warnings: Vec<Note>,
+}
+
+impl Findings {
+    pub fn evidence(&mut self, note: impl Into<Note>) {
+        self.evidence.push(note.into());
+    }
+
+    pub fn assumption(&mut self, note: impl Into<Note>) {
+        self.assumptions.push(note.into());
+    }
+
+    pub fn warning(&mut self, note: impl Into<Note>) {
+        self.warnings.push(note.into());
+    }
+}

@@ -1,0 +1,156 @@
+//! What the amplitudes of a file are like, from traces spread evenly over the survey: range, percentiles, histogram, and
+//! the signs of trouble (clipped, zero and missing numbers).
+
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::error::{SegyError, SegyProblem};
+use super::file::SegyFile;
+use survey::progress::{Cancelled, Progress};
+
+/// So many samples are looked at: percentiles to three digits, in a fraction of a second.
+const SAMPLES: usize = 1 << 22;
+
+/// Columns of the histogram; odd, so that one of them holds zero.
+const COLUMNS: usize = 61;
+
+/// Percentages of [`Statistics::percentiles`].
+const PERCENT: [f64; 9] = [0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9];
+
+/// Counts of samples over equal intervals.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Histogram {
+    /// Where the first column begins; samples below are counted in it.
+    pub low: f64,
+    /// Where the last column ends; samples above are counted in it.
+    pub high: f64,
+    /// Samples by column.
+    pub counts: Vec<u64>,
+}
+
+/// Amplitudes of the live traces that were looked at.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Live traces that were looked at.
+    pub traces: usize,
+    /// Live traces in the file.
+    pub live_traces: usize,
+    /// Samples that were looked at.
+    pub samples: u64,
+    /// Smallest.
+    pub min: f32,
+    /// Largest.
+    pub max: f32,
+    /// Mean.
+    pub mean: f64,
+    /// Root mean square.
+    pub rms: f64,
+    /// Percentage, and the amplitude that so many samples do not exceed.
+    pub percentiles: Vec<[f64; 2]>,
+    /// Samples that are exactly 0.
+    pub zero: u64,
+    /// Traces that are 0 throughout, though they are not flagged dead.
+    pub zero_traces: usize,
+    /// Samples that are no numbers; they are read as 0.
+    pub non_finite: u64,
+    /// Samples that equal the smallest or largest one. Many of them: the data are clipped.
+    pub at_limits: u64,
+    /// Histogram between the outer percentiles, symmetric about 0 if there are both signs.
+    pub histogram: Histogram,
+}
+
+impl SegyFile {
+    /// Looks at the amplitudes of up to four million samples.
+    ///
+    /// # Errors
+    /// [`SegyProblem::Cancelled`].
+    pub fn statistics(&self, progress: &Progress) -> Result<Statistics, SegyError> {
+        let [_, crosslines, samples] = self.size();
+        let live: Vec<usize> =
+            (0..self.places()).filter(|&place| self.is_live(place / crosslines, place % crosslines)).collect();
+        let wanted = (SAMPLES / samples.max(1)).clamp(1, live.len().max(1));
+        let step = live.len().div_ceil(wanted).max(1);
+        let chosen: Vec<usize> = live.iter().copied().step_by(step).collect();
+        progress.begin("reading amplitudes", chosen.len() as u64);
+        let mut values = vec![0.0_f32; chosen.len() * samples];
+        let faults: Vec<(usize, bool)> = values
+            .par_chunks_mut(samples.max(1))
+            .zip(&chosen)
+            .map(|(trace, &place)| {
+                let non_finite = self.read_trace(place / crosslines, place % crosslines, trace);
+                progress.step(1)?;
+                Ok((non_finite, trace.iter().all(|&value| value == 0.0)))
+            })
+            .collect::<Result<_, Cancelled>>()
+            .map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
+        let mut statistics = describe(values);
+        statistics.traces = chosen.len();
+        statistics.live_traces = live.len();
+        statistics.non_finite = faults.iter().map(|fault| fault.0 as u64).sum();
+        statistics.zero_traces = faults.iter().filter(|fault| fault.1).count();
+        Ok(statistics)
+    }
+}
+
+fn describe(mut values: Vec<f32>) -> Statistics {
+    let count = values.len();
+    let sum = |of: fn(f64) -> f64| values.iter().map(|&v| of(f64::from(v))).sum::<f64>() / count.max(1) as f64;
+    let (mean, rms) = (sum(|v| v), sum(|v| v * v).sqrt());
+    let zero = values.iter().filter(|&&v| v == 0.0).count() as u64;
+    values.sort_unstable_by(f32::total_cmp);
+    let (min, max) = (values.first().copied().unwrap_or(0.0), values.last().copied().unwrap_or(0.0));
+    let at_limits =
+        values.iter().take_while(|&&v| v == min).count() + values.iter().rev().take_while(|&&v| v == max).count();
+    let at = |percent: f64| values.get((percent / 100.0 * count as f64) as usize).map_or(0.0, |&v| f64::from(v));
+    let (low, high) = match [at(PERCENT[0]), at(PERCENT[PERCENT.len() - 1])] {
+        [low, high] if low < 0.0 && high > 0.0 => (-high.max(-low), high.max(-low)),
+        [low, high] if low < high => (low, high),
+        [low, _] => (low - 0.5, low + 0.5),
+    };
+    let mut counts = vec![0; COLUMNS];
+    let scale = COLUMNS as f64 / (high - low);
+    for &value in &values {
+        let column = ((f64::from(value) - low) * scale).clamp(0.0, COLUMNS as f64 - 1.0) as usize;
+        counts[column] += 1;
+    }
+    Statistics {
+        traces: 0,
+        live_traces: 0,
+        samples: count as u64,
+        min,
+        max,
+        mean,
+        rms,
+        percentiles: PERCENT.iter().map(|&percent| [percent, at(percent)]).collect(),
+        zero,
+        zero_traces: 0,
+        non_finite: 0,
+        at_limits: at_limits as u64,
+        histogram: Histogram { low, high, counts },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ramp_has_its_closed_form() {
+        let found = describe((0..=1000).rev().map(|k| k as f32 - 500.0).collect());
+        assert_eq!((found.min, found.max, found.mean, found.zero, found.at_limits), (-500.0, 500.0, 0.0, 1, 2));
+        assert!((found.rms - (500.0_f64 * 501.0 / 3.0).sqrt()).abs() < 1e-9);
+        assert_eq!(found.percentiles[4], [50.0, 0.0]);
+        assert_eq!(found.percentiles[7], [99.0, 490.0]);
+        assert_eq!((found.histogram.low, found.histogram.high), (-499.0, 499.0));
+        assert_eq!(found.histogram.counts.iter().sum::<u64>(), 1001);
+        let inner = &found.histogram.counts[1..COLUMNS - 1];
+        assert!(inner.iter().all(|&c| (16..=17).contains(&c)), "{inner:?}");
+    }
+
+    #[test]
+    fn one_value_and_no_value_are_described_too() {
+        let one = describe(vec![7.0; 9]);
+        assert_eq!((one.at_limits, one.histogram.counts[COLUMNS / 2]), (18, 9));
+        assert_eq!(describe(Vec::new()).samples, 0);
+    }
+}

@@ -1,0 +1,343 @@
+//! The vertical axis: sample interval, start, and whether it is time or depth.
+//!
+//! SEG-Y stores the interval in µs, and by usage in mm (or thousandths of a foot) for depth; it has no field that says
+//! which. The textual header usually does.
+
+use super::SegyOptions;
+use super::columns::{Column, Columns};
+use super::error::SegyProblem;
+use super::frame::Frame;
+use super::header::{Field, at};
+use super::info::{FileUnit, Findings, LengthUnit};
+use survey::geometry::{VerticalAxis, VerticalUnit};
+use survey::remedy::{Note, Setting};
+
+/// Traces that start later than the earliest one may lengthen the volume to this many times their own length.
+const MAX_LENGTHENING: usize = 4;
+
+/// Metres in an international foot.
+pub(super) const METRES_PER_FOOT: f64 = 0.3048;
+
+/// The vertical axis in the file's unit.
+#[derive(Debug, Clone)]
+pub(super) struct Vertical {
+    pub first: f64,
+    pub interval: f64,
+    pub unit: FileUnit,
+    /// Samples of the volume: those of a trace, and what later starts add.
+    pub samples: usize,
+    /// Samples by which each trace starts later than `first`; none if all start together.
+    pub shifts: Option<Vec<u32>>,
+}
+
+impl Vertical {
+    pub fn find(
+        frame: &Frame,
+        columns: &Columns,
+        dead: &[bool],
+        options: &SegyOptions,
+        findings: &mut Findings,
+    ) -> Result<Self, SegyProblem> {
+        let micro = match options.interval {
+            Some(interval) if interval.is_finite() && interval > 0.0 => interval * 1000.0,
+            Some(interval) => {
+                return Err(SegyProblem::BadSetting {
+                    setting: Setting::Interval,
+                    found: interval.to_string(),
+                    expected: "a positive number".to_owned(),
+                });
+            }
+            None => interval_field(frame, columns, findings)?,
+        };
+        let unit = unit(frame, micro / 1000.0, options, findings);
+        let mut interval = micro / 1000.0;
+        if options.interval.is_none() && unit != FileUnit::Milliseconds && micro < 100.0 {
+            interval = micro;
+            findings.assumption(Note::unless(
+                format!(
+                    "the interval field holds {micro}, too little for thousandths of a {0}: taken as {micro} {0}",
+                    unit.symbol()
+                ),
+                Setting::Interval.stated(),
+            ));
+        }
+        let (first, shifts) = starts(columns, dead, interval, unit, options, findings)?;
+        let longest = shifts.iter().flatten().max().copied().unwrap_or(0) as usize;
+        if longest > frame.samples.saturating_mul(MAX_LENGTHENING - 1) {
+            let trace = shifts.iter().flatten().position(|&s| s as usize == longest).unwrap_or(0);
+            return Err(SegyProblem::UnevenStart {
+                trace: trace as u64 + 1,
+                start: first + longest as f64 * interval,
+                base: first,
+            });
+        }
+        Ok(Self { first, interval, unit, samples: frame.samples + longest, shifts })
+    }
+
+    /// The same axis in ms or m.
+    pub fn axis(&self) -> VerticalAxis {
+        let (factor, unit) = match self.unit {
+            FileUnit::Milliseconds => (1.0, VerticalUnit::Milliseconds),
+            FileUnit::Metres => (1.0, VerticalUnit::Metres),
+            FileUnit::Feet => (METRES_PER_FOOT, VerticalUnit::Metres),
+        };
+        VerticalAxis { first: self.first * factor, interval: self.interval * factor, count: self.samples, unit }
+    }
+}
+
+/// The interval in µs, mm or thousandths of a foot.
+fn interval_field(frame: &Frame, columns: &Columns, findings: &mut Findings) -> Result<f64, SegyProblem> {
+    let binary = &frame.binary;
+    if binary.has_revision_2() && binary.extended_interval.is_finite() && binary.extended_interval > 0.0 {
+        findings.evidence(format!("sample interval: {} at byte 3273 (revision 2)", binary.extended_interval));
+        return Ok(binary.extended_interval);
+    }
+    let in_file = binary.interval;
+    let column = columns.get(Field::U16(at::INTERVAL));
+    let in_trace = column.at(0) as u16;
+    if column.constant().is_none() {
+        findings.warning(format!(
+            "trace headers hold sample intervals from {} to {} (byte 117); all traces are taken to have the same",
+            column.range[0], column.range[1]
+        ));
+    }
+    // A negative i16 reads as more than 32767, which a large depth interval also does.
+    let is_doubtful = |value: u16| value > i16::MAX.unsigned_abs();
+    let (chosen, source) = match (in_file, in_trace) {
+        (0, 0) => return Err(SegyProblem::NoInterval),
+        (0, trace) => (trace, "byte 117"),
+        (file, 0) => (file, "byte 3217"),
+        (file, trace) if file == trace => (file, "bytes 3217 and 117"),
+        (file, trace) if is_doubtful(file) && !is_doubtful(trace) => (trace, "byte 117"),
+        (file, _) => (file, "byte 3217"),
+    };
+    findings.evidence(format!("sample interval: {chosen} at {source}"));
+    if in_file != in_trace && in_trace != 0 && in_file != 0 {
+        findings.warning(Note::unless(
+            format!(
+                "the binary header gives a sample interval of {in_file} (byte 3217), the first trace {in_trace} (byte 117); {chosen} is used"
+            ),
+            Setting::Interval.stated(),
+        ));
+    } else if is_doubtful(chosen) {
+        findings.warning(Note::unless(
+            format!(
+                "the sample interval field holds {chosen}, or {} if it is meant to be signed; {chosen} is used",
+                chosen.cast_signed()
+            ),
+            Setting::Interval.stated(),
+        ));
+    }
+    Ok(f64::from(chosen))
+}
+
+/// The unit of the axis: stated; or written in the text next to the interval; or by words that mean time or depth.
+fn unit(frame: &Frame, interval: f64, options: &SegyOptions, findings: &mut Findings) -> FileUnit {
+    if let Some(unit) = options.vertical_unit {
+        findings.evidence(format!("vertical axis: {}, as stated", unit.description()));
+        return unit;
+    }
+    let in_depth = match frame.binary.measurement {
+        2 => FileUnit::Feet,
+        _ => FileUnit::Metres,
+    };
+    let words = TextWords::find(frame, interval);
+    let said = |quote: &str| format!("text header: \"{quote}\"");
+    let unit = match (&words.interval, &words.time, &words.depth) {
+        (Some((unit, quote)), _, _) => {
+            findings.evidence(format!("vertical axis: {}, {}", unit.description(), said(quote)));
+            *unit
+        }
+        (None, Some(quote), None) => {
+            findings.evidence(format!("vertical axis: two-way time, {}", said(quote)));
+            FileUnit::Milliseconds
+        }
+        (None, None, Some(quote)) => {
+            findings.evidence(format!("vertical axis: depth, {}", said(quote)));
+            in_depth
+        }
+        (None, Some(time), Some(depth)) => {
+            findings.warning(Note::unless(
+                format!(
+                    "the text header speaks of time (\"{time}\") and of depth (\"{depth}\"); the axis is taken as two-way time"
+                ),
+                Setting::VerticalUnit.stated_as("m or ft"),
+            ));
+            FileUnit::Milliseconds
+        }
+        (None, None, None) => {
+            findings.assumption(Note::unless(
+                "the vertical axis is two-way time in ms: the file does not say",
+                Setting::VerticalUnit.stated_as("m or ft"),
+            ));
+            FileUnit::Milliseconds
+        }
+    };
+    if unit != FileUnit::Milliseconds && unit != in_depth && frame.binary.measurement != 0 {
+        findings.warning(Note::unless(
+            format!(
+                "the text header gives the interval in {} and byte 3255 says {}; the text is followed",
+                unit.symbol(),
+                in_depth.symbol()
+            ),
+            Setting::VerticalUnit.stated(),
+        ));
+    }
+    unit
+}
+
+/// What the textual header says about the vertical axis, with the line it says it in.
+#[derive(Debug, Default)]
+struct TextWords {
+    interval: Option<(FileUnit, String)>,
+    time: Option<String>,
+    depth: Option<String>,
+}
+
+impl TextWords {
+    fn find(frame: &Frame, interval: f64) -> Self {
+        let mut found = Self::default();
+        let mut contradicted = false;
+        for line in frame.text.iter().chain(&frame.extended_text) {
+            let upper = line.to_ascii_uppercase();
+            let words: Vec<&str> = upper
+                .split(|c: char| !c.is_ascii_alphanumeric() && c != '.')
+                .map(|word| word.trim_matches('.'))
+                .filter(|word| !word.is_empty())
+                .collect();
+            for (index, word) in words.iter().enumerate() {
+                let next = words.get(index + 1).copied().unwrap_or("");
+                let previous = if index > 0 { words[index - 1] } else { "" };
+                if let (Ok(number), Some(unit)) = (word.parse::<f64>(), unit_word(next))
+                    && (number - interval).abs() < 1e-6 * interval
+                {
+                    contradicted |= found.interval.as_ref().is_some_and(|(other, _)| *other != unit);
+                    found.interval.get_or_insert((unit, line.clone()));
+                }
+                let is_time = matches!(*word, "TWT" | "TWTT" | "PSTM")
+                    // A form that was not filled in has units without numbers.
+                    || (unit_word(word) == Some(FileUnit::Milliseconds) && previous.parse::<f64>().is_ok())
+                    || (*word == "TIME" && (next.starts_with("MIGRAT") || next == "DOMAIN" || previous == "WAY"));
+                // Depths of the acquisition say nothing about the axis.
+                let of_gear = ["WATER", "SOURCE", "GUN", "CABLE", "STREAMER", "RECEIVER", "TOW", "TOWING", "SHOT"];
+                let is_depth =
+                    matches!(*word, "TVD" | "TVDSS" | "PSDM") || (*word == "DEPTH" && !of_gear.contains(&previous));
+                if is_time {
+                    found.time.get_or_insert_with(|| line.clone());
+                }
+                if is_depth {
+                    found.depth.get_or_insert_with(|| line.clone());
+                }
+            }
+        }
+        if contradicted {
+            found.interval = None;
+        }
+        found
+    }
+}
+
+fn unit_word(word: &str) -> Option<FileUnit> {
+    match word {
+        "MS" | "MSEC" | "MSECS" | "MILLISECONDS" => Some(FileUnit::Milliseconds),
+        "M" | "METER" | "METERS" | "METRE" | "METRES" => Some(FileUnit::Metres),
+        "FT" | "FEET" | "FOOT" => Some(FileUnit::Feet),
+        _ => None,
+    }
+}
+
+/// The earliest start, and by how many samples each trace starts later.
+fn starts(
+    columns: &Columns,
+    dead: &[bool],
+    interval: f64,
+    unit: FileUnit,
+    options: &SegyOptions,
+    findings: &mut Findings,
+) -> Result<(f64, Option<Vec<u32>>), SegyProblem> {
+    let scalar = columns.get(Field::I16(at::TIME_SCALAR));
+    let delay = columns.get(Field::I16(at::DELAY));
+    let lag = columns.get(Field::I16(at::LAG_A));
+    let from_lag = delay.constant() == Some(0) && lag.constant().is_some_and(|lag| lag != 0);
+    if from_lag && options.start.is_none() {
+        findings.assumption(Note::unless(
+            format!(
+                "the start comes from lag time A (byte 105 holds {}, negated), as the delay at byte 109 is 0",
+                lag.at(0)
+            ),
+            Setting::Start.stated(),
+        ));
+    }
+    let start_of = |trace: usize| {
+        let field = if from_lag { -lag.at(trace) } else { delay.at(trace) };
+        scaled(field, scalar.at(trace))
+    };
+    let first_live = dead.iter().position(|dead| !dead).unwrap_or(0);
+    let constant = |column: &Column| column.constant().is_some();
+    let (base, shifts) = if constant(delay) && constant(scalar) && constant(lag) {
+        (start_of(first_live), None)
+    } else {
+        let live = || (0..dead.len()).filter(|&trace| !dead[trace]);
+        let base = live().map(start_of).fold(f64::INFINITY, f64::min);
+        let mut shifts = vec![0; dead.len()];
+        for trace in live() {
+            let samples = (start_of(trace) - base) / interval;
+            if (samples - samples.round()).abs() > 0.01 {
+                return Err(SegyProblem::UnevenStart { trace: trace as u64 + 1, start: start_of(trace), base });
+            }
+            shifts[trace] = samples.round() as u32;
+        }
+        let shifts = shifts.iter().any(|&s| s > 0).then_some(shifts);
+        (if base.is_finite() { base } else { 0.0 }, shifts)
+    };
+    if shifts.is_some() {
+        findings.warning(format!(
+            "traces start at different {}: the volume begins at the earliest, {base} {}, and later traces are padded with zeros",
+            if unit == FileUnit::Milliseconds { "times" } else { "depths" },
+            unit.symbol()
+        ));
+    }
+    if scalar.range != [0, 0] && scalar.range != [1, 1] {
+        findings.evidence(format!(
+            "start: {base} {}, from {} at byte 109 with scalar {} at byte 215",
+            unit.symbol(),
+            delay.at(first_live),
+            scalar.at(first_live)
+        ));
+    }
+    Ok((options.start.unwrap_or(base), shifts))
+}
+
+/// A field multiplied by its scalar, or divided if the scalar is negative; 0 stands for 1.
+pub(super) fn scaled(field: i32, scalar: i32) -> f64 {
+    match scalar {
+        0 => f64::from(field),
+        1.. => f64::from(field) * f64::from(scalar),
+        _ => f64::from(field) / -f64::from(scalar),
+    }
+}
+
+/// The unit of X and Y: stated, or byte 3255.
+pub(super) fn coordinate_unit(frame: &Frame, options: &SegyOptions) -> LengthUnit {
+    match (options.coordinate_unit, frame.binary.measurement) {
+        (Some(unit), _) => unit,
+        (None, 2) => LengthUnit::Feet,
+        (None, _) => LengthUnit::Metres,
+    }
+}
+
+/// Says why X and Y are in that unit.
+pub(super) fn note_coordinate_unit(frame: &Frame, options: &SegyOptions, findings: &mut Findings) {
+    match (options.coordinate_unit, frame.binary.measurement) {
+        (Some(unit), _) => findings.evidence(format!("X and Y in {}, as stated", unit.symbol())),
+        (None, 1) => {}
+        (None, 2) => findings.assumption(Note::unless(
+            "X and Y are in feet, as byte 3255 is 2; the project converts them to metres",
+            Setting::CoordinateUnit.stated_as("m"),
+        )),
+        (None, other) => findings.assumption(Note::unless(
+            format!("X and Y are in metres: byte 3255 holds {other}, neither 1 (metres) nor 2 (feet)"),
+            Setting::CoordinateUnit.stated(),
+        )),
+    }
+}

@@ -1,0 +1,378 @@
+//! Zarr v3 arrays: the only place that knows the array library.
+//!
+//! An array is cut into chunks (what is compressed, zstd with a checksum; chunks of volumes are not, see `shard`), and chunks are bundled
+//! into shards (what is a file), so that a large volume is neither millions of files nor one. Order is C: the last axis is fastest. Every shard is written, also
+//! where it holds nothing but the fill value, so that a missing file is noticed and not read as "nothing there".
+
+use super::error::StoreError;
+use super::layout::{Layout, gather, grid_index};
+use super::sample::StoredSample;
+use super::shard::{ShardGrid, Shards};
+use rayon::prelude::*;
+use serde_json::{Map, Value};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use survey::progress::Progress;
+use zarrs::array::codec::{Crc32cCodec, ZstdCodec};
+use zarrs::array::{
+    Array, ArrayBuilder, ArrayCreateError, ArrayError, ArraySubset, BytesToBytesCodecTraits, CodecError, CodecOptions,
+};
+use zarrs::filesystem::FilesystemStore;
+use zarrs::group::{Group, GroupBuilder, GroupCreateError};
+use zarrs::storage::StorageError;
+
+/// Compression level: the fast end, which on seismic samples loses 1 or 2 % of the size to the slow end.
+const ZSTD_LEVEL: i32 = 1;
+
+/// Attribute that says that every shard was written.
+const COMPLETE: &str = "complete";
+
+/// A failure of the library, sorted out.
+fn explain(error: &ArrayError, action: &'static str, group: &Path, array: &str) -> StoreError {
+    let storage = match error {
+        ArrayError::StorageError(storage) | ArrayError::CodecError(CodecError::StorageError(storage)) => storage,
+        ArrayError::CodecError(CodecError::IOError(source)) => return io_error(source, action, group, array),
+        ArrayError::CodecError(codec) if action == "read" => {
+            return StoreError::Damaged { path: group.to_owned(), array: array.to_owned(), reason: codec.to_string() };
+        }
+        other => {
+            return StoreError::Array { path: group.to_owned(), action, reason: other.to_string() };
+        }
+    };
+    explain_storage(storage, action, group, array)
+}
+
+/// A failure of the library's file store, sorted out.
+fn explain_storage(error: &StorageError, action: &'static str, group: &Path, array: &str) -> StoreError {
+    match error {
+        StorageError::IOError(source) => io_error(source, action, group, array),
+        StorageError::MissingMetadata(_) => {
+            StoreError::MissingArray { path: group.to_owned(), array: array.to_owned() }
+        }
+        other if action == "read" => {
+            StoreError::Damaged { path: group.to_owned(), array: array.to_owned(), reason: other.to_string() }
+        }
+        other => StoreError::Array { path: group.to_owned(), action, reason: other.to_string() },
+    }
+}
+
+/// A shared system error as our own. What has no system code while reading comes from a decoder: the data do not fit.
+fn io_error(source: &std::io::Error, action: &'static str, path: &Path, array: &str) -> StoreError {
+    if let Some(code) = source.raw_os_error() {
+        return StoreError::io(action, path, std::io::Error::from_raw_os_error(code));
+    }
+    if action == "read" {
+        let reason = source.to_string();
+        return StoreError::Damaged { path: path.to_owned(), array: array.to_owned(), reason };
+    }
+    StoreError::io(action, path, std::io::Error::new(source.kind(), source.to_string()))
+}
+
+/// The library's view of a folder.
+fn file_store(group: &Path, action: &'static str) -> Result<Arc<FilesystemStore>, StoreError> {
+    FilesystemStore::new(group).map(Arc::new).map_err(|error| StoreError::Array {
+        path: group.to_owned(),
+        action,
+        reason: error.to_string(),
+    })
+}
+
+/// Writes a group's metadata; `name` is empty for the folder itself.
+pub fn write_group(group: &Path, name: &str, attributes: Map<String, Value>) -> Result<(), StoreError> {
+    let store = file_store(group, "written")?;
+    let built = GroupBuilder::new().attributes(attributes).build(store, &format!("/{name}"));
+    let fail = |reason: String| StoreError::Array { path: group.to_owned(), action: "written", reason };
+    let built = built.map_err(|error| fail(error.to_string()))?;
+    built.store_metadata().map_err(|error| explain_storage(&error, "written", group, name))
+}
+
+/// Reads a group's attributes.
+pub fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError> {
+    if !group.is_dir() {
+        return Err(StoreError::Missing { path: group.to_owned() });
+    }
+    let opened = Group::open(file_store(group, "read")?, "/");
+    match opened {
+        Ok(opened) => Ok(opened.attributes().clone()),
+        Err(GroupCreateError::StorageError(StorageError::IOError(source))) => Err(io_error(&source, "read", group, "")),
+        Err(error) => Err(StoreError::WrongKind {
+            path: group.to_owned(),
+            expected: "a Zarr v3 group",
+            reason: error.to_string(),
+        }),
+    }
+}
+
+/// Writes the metadata of an array whose chunks are coded by `codec`.
+fn create<T: StoredSample>(
+    group: &Path,
+    name: &str,
+    layout: &Layout,
+    fill: T,
+    codec: Arc<dyn BytesToBytesCodecTraits>,
+) -> Result<Array<FilesystemStore>, StoreError> {
+    let wide = |shape: &[usize]| shape.iter().map(|&n| n as u64).collect::<Vec<u64>>();
+    let mut builder = ArrayBuilder::new(wide(&layout.shape), wide(layout.file_shape()), T::data_type(), T::fill(fill));
+    if layout.shard.is_some() {
+        builder.subchunk_shape(wide(&layout.chunk));
+    }
+    builder.bytes_to_bytes_codecs(vec![codec]);
+    builder.dimension_names(Some(layout.axes.iter().copied()));
+    builder.attributes(Map::from_iter([(COMPLETE.to_owned(), Value::Bool(true))]));
+    let array = builder.build(file_store(group, "written")?, &format!("/{name}"));
+    let array = array.map_err(|error| StoreError::Array {
+        path: group.to_owned(),
+        action: "written",
+        reason: error.to_string(),
+    })?;
+    array.store_metadata().map_err(|error| explain_storage(&error, "written", group, name))?;
+    Ok(array)
+}
+
+/// Writes the metadata of a volume whose shards are then written one by one (see `shard`): fill value 0.
+pub(super) fn create_volume<T: StoredSample>(
+    group: &Path,
+    name: &str,
+    size: [usize; 3],
+) -> Result<ShardGrid, StoreError> {
+    let layout = Layout::volume(size);
+    create(group, name, &layout, T::from_f32(0.0), Arc::new(Crc32cCodec::new()))?;
+    let three = |shape: &[usize]| [shape[0], shape[1], shape[2]];
+    Ok(ShardGrid {
+        folder: group.join(name),
+        shape: size,
+        chunk: three(&layout.chunk),
+        shard: three(layout.file_shape()),
+    })
+}
+
+/// How the array `name` is cut into shards, if its chunks are stored as [`create_volume`] says.
+fn plain_shards(group: &Path, name: &str, shape: &[usize]) -> Option<ShardGrid> {
+    let metadata: Value = serde_json::from_slice(&std::fs::read(group.join(name).join("zarr.json")).ok()?).ok()?;
+    let edges = |value: &Value| -> Option<[usize; 3]> {
+        let edges: Option<Vec<usize>> = value.as_array()?.iter().map(|n| Some(n.as_u64()? as usize)).collect();
+        edges?.try_into().ok()
+    };
+    let names = |codecs: &Value| -> Option<Vec<String>> {
+        codecs.as_array()?.iter().map(|codec| Some(codec["name"].as_str()?.to_owned())).collect()
+    };
+    let codecs = metadata["codecs"].as_array()?;
+    let sharding = &codecs[0]["configuration"];
+    let is_plain = codecs.len() == 1
+        && codecs[0]["name"] == "sharding_indexed"
+        && names(&sharding["codecs"])? == ["bytes", "crc32c"]
+        && names(&sharding["index_codecs"])? == ["bytes", "crc32c"]
+        && sharding["index_location"].as_str().is_none_or(|place| place == "end")
+        && sharding["codecs"][0]["configuration"]["endian"].as_str().is_none_or(|endian| endian == "little");
+    let shape: [usize; 3] = shape.try_into().ok()?;
+    let shard = edges(&metadata["chunk_grid"]["configuration"]["chunk_shape"])?;
+    let chunk = edges(&sharding["chunk_shape"])?;
+    let is_cut = (0..3).all(|axis| chunk[axis] > 0 && shard[axis].is_multiple_of(chunk[axis]) && shard[axis] > 0);
+    let folder = group.join(name);
+    (is_plain && is_cut).then_some(ShardGrid { folder, shape, chunk, shard })
+}
+
+/// An array that is being written, shard by shard, from any thread.
+pub struct ArrayWriter<T> {
+    group: PathBuf,
+    name: String,
+    layout: Layout,
+    array: Array<FilesystemStore>,
+    of: std::marker::PhantomData<T>,
+}
+
+impl<T: StoredSample> ArrayWriter<T> {
+    /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is what a reader finds where nothing
+    /// was written.
+    pub fn create(group: &Path, name: &str, layout: Layout, fill: T) -> Result<Self, StoreError> {
+        let array = create(group, name, &layout, fill, Arc::new(ZstdCodec::new(ZSTD_LEVEL, true)))?;
+        Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, of: std::marker::PhantomData })
+    }
+
+    /// How it is cut up.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Writes the shard at `index`, `[…]` of the file shape, filled up where it reaches beyond the array.
+    pub fn write_shard(&self, index: &[usize], values: Vec<T>) -> Result<(), StoreError> {
+        let index: Vec<u64> = index.iter().map(|&n| n as u64).collect();
+        // On one thread: the library puts a shard's chunks in the order in which its threads finish them, and the same input has to
+        // make the same bytes. Shards are written in parallel instead.
+        let options = CodecOptions::default().with_store_empty_chunks(true).with_concurrent_target(1);
+        self.array
+            .store_chunk_opt(&index, values, &options)
+            .map_err(|error| explain(&error, "written", &self.group, &self.name))
+    }
+}
+
+/// Writes a whole array, one file at a time on each thread. Memory: one file's elements a thread beside `values`.
+pub fn write_array<T: StoredSample>(
+    group: &Path,
+    name: &str,
+    layout: Layout,
+    fill: T,
+    values: &[T],
+    progress: &Progress,
+) -> Result<(), StoreError> {
+    let expected = layout.shape.iter().product();
+    if values.len() != expected {
+        return Err(StoreError::SizeMismatch { what: "the array", expected, found: values.len() });
+    }
+    let writer = ArrayWriter::create(group, name, layout, fill)?;
+    let (counts, edge) = (writer.layout.file_counts(), writer.layout.file_shape());
+    let count: usize = counts.iter().product();
+    progress.begin(&format!("writing {name}"), count as u64);
+    (0..count).into_par_iter().try_for_each(|n| {
+        let index = grid_index(n, &counts);
+        let start: Vec<usize> = index.iter().zip(edge).map(|(&i, &e)| i * e).collect();
+        writer.write_shard(&index, gather(values, &writer.layout.shape, &start, edge))?;
+        Ok(progress.step(1)?)
+    })
+}
+
+/// An array that can be read, whole or by box.
+pub struct StoredArray {
+    group: PathBuf,
+    name: String,
+    shape: Vec<usize>,
+    array: Array<FilesystemStore>,
+    /// Its files, where they can be read without the library.
+    shards: Option<Shards>,
+}
+
+impl StoredArray {
+    /// Opens the array `name` of the folder `group`.
+    pub fn open(group: &Path, name: &str) -> Result<Self, StoreError> {
+        let missing = || StoreError::MissingArray { path: group.to_owned(), array: name.to_owned() };
+        let array = match Array::open(file_store(group, "read")?, &format!("/{name}")) {
+            Ok(array) => array,
+            Err(ArrayCreateError::MissingMetadata) => return Err(missing()),
+            Err(ArrayCreateError::StorageError(error)) => return Err(explain_storage(&error, "read", group, name)),
+            Err(error) => {
+                return Err(StoreError::Damaged {
+                    path: group.to_owned(),
+                    array: name.to_owned(),
+                    reason: error.to_string(),
+                });
+            }
+        };
+        let shape: Vec<usize> = array.shape().iter().map(|&n| n as usize).collect();
+        let shards = plain_shards(group, name, &shape).map(|grid| Shards::new(grid, group, name));
+        Ok(Self { group: group.to_owned(), name: name.to_owned(), shape, array, shards })
+    }
+
+    /// Elements along each axis.
+    pub fn shape(&self) -> &[usize] {
+        &self.shape
+    }
+
+    /// Its files, where they are those of a volume.
+    pub(super) fn shards(&self) -> Option<&Shards> {
+        self.shards.as_ref()
+    }
+
+    /// Gives back the memory of files that were read.
+    pub(super) fn release(&mut self) {
+        if let Some(shards) = &mut self.shards {
+            shards.release();
+        }
+    }
+
+    /// Name of the element type as Zarr spells it.
+    pub fn type_name(&self) -> String {
+        use zarrs::plugin::{ExtensionName, ZarrVersion};
+        self.array
+            .data_type()
+            .name(ZarrVersion::V3)
+            .map_or_else(|| "an unknown type".to_owned(), |name| name.into_owned())
+    }
+
+    /// Whether its elements are `T`s.
+    pub fn holds<T: StoredSample>(&self) -> bool {
+        *self.array.data_type() == T::data_type()
+    }
+
+    /// Elements of a file along each axis.
+    fn file_shape(&self) -> Result<Vec<usize>, StoreError> {
+        let first = vec![0; self.shape.len()];
+        let shape = self.array.chunk_shape(&first).map_err(|error| explain(&error, "read", &self.group, &self.name))?;
+        Ok(shape.iter().map(|n| n.get() as usize).collect())
+    }
+
+    /// Fails when a file that the box needs is missing, where every one was written.
+    fn check_files(&self, start: &[usize], size: &[usize]) -> Result<(), StoreError> {
+        if self.array.attributes().get(COMPLETE) != Some(&Value::Bool(true)) {
+            return Ok(());
+        }
+        let edge = self.file_shape()?;
+        let first: Vec<usize> = start.iter().zip(&edge).map(|(&s, &e)| s / e).collect();
+        let counts: Vec<usize> =
+            (0..edge.len()).map(|axis| (start[axis] + size[axis]).div_ceil(edge[axis]) - first[axis]).collect();
+        for n in 0..counts.iter().product() {
+            let index = grid_index(n, &counts);
+            let key = index.iter().zip(&first).map(|(&i, &f)| (i + f).to_string()).collect::<Vec<_>>().join("/");
+            if !self.group.join(&self.name).join("c").join(&key).is_file() {
+                return Err(StoreError::Damaged {
+                    path: self.group.clone(),
+                    array: self.name.clone(),
+                    reason: format!("the file c/{key} is missing"),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// The elements of a box, row-major. Files are decoded in parallel. Memory: the box twice.
+    pub fn read_box<T: StoredSample>(&self, start: &[usize], size: &[usize]) -> Result<Vec<T>, StoreError> {
+        if !self.holds::<T>() {
+            return Err(StoreError::WrongType {
+                path: self.group.clone(),
+                array: self.name.clone(),
+                expected: T::TYPE.name(),
+                found: self.type_name(),
+            });
+        }
+        let dimensions = self.shape.len();
+        let inside = start.len() == dimensions
+            && size.len() == dimensions
+            && (0..dimensions)
+                .all(|axis| start[axis].checked_add(size[axis]).is_some_and(|end| end <= self.shape[axis]));
+        if !inside {
+            return Err(StoreError::OutOfBounds {
+                path: self.group.clone(),
+                array: self.name.clone(),
+                start: start.into(),
+                size: size.into(),
+                shape: self.shape.clone(),
+            });
+        }
+        if size.contains(&0) {
+            return Ok(Vec::new());
+        }
+        if let (Some(shards), [x, y, z], [nx, ny, nz]) = (&self.shards, start, size) {
+            return shards.read_box([*x, *y, *z], [*nx, *ny, *nz]);
+        }
+        self.check_files(start, size)?;
+        let ranges: Vec<_> = start.iter().zip(size).map(|(&s, &n)| s as u64..(s + n) as u64).collect();
+        self.array
+            .retrieve_array_subset(&ArraySubset::new_with_ranges(&ranges))
+            .map_err(|error| explain(&error, "read", &self.group, &self.name))
+    }
+
+    /// All elements, row-major, a layer of files at a time. Memory: the array, and one layer of files.
+    pub fn read<T: StoredSample>(&self, progress: &Progress) -> Result<Vec<T>, StoreError> {
+        let edge = self.file_shape()?[0];
+        let rows = self.shape[0];
+        let mut values = Vec::with_capacity(self.shape.iter().product());
+        progress.begin(&format!("reading {}", self.name), rows.div_ceil(edge) as u64);
+        for first in (0..rows).step_by(edge) {
+            let (mut start, mut size) = (vec![0; self.shape.len()], self.shape.clone());
+            start[0] = first;
+            size[0] = edge.min(rows - first);
+            values.append(&mut self.read_box(&start, &size)?);
+            progress.step(1)?;
+        }
+        Ok(values)
+    }
+}

@@ -1,0 +1,153 @@
+//! What can go wrong with files of the store, with the path and what to do about it.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use survey::progress::Cancelled;
+
+/// Why something could not be stored or read back.
+#[derive(Debug, thiserror::Error)]
+pub enum StoreError {
+    /// No space left, or a quota is used up.
+    #[error("the disk is full: {} could not be written; free some space or choose another disk (what was there before is unchanged)", path.display())]
+    DiskFull {
+        /// What was being written.
+        path: PathBuf,
+    },
+    /// The folder or file cannot be written to.
+    #[error("{} cannot be written: the folder is read-only or belongs to someone else; choose another folder or change its permissions", path.display())]
+    ReadOnly {
+        /// What was being written.
+        path: PathBuf,
+    },
+    /// There is nothing at the path.
+    #[error("{} does not exist; check the name, or import the data again", path.display())]
+    Missing {
+        /// What was looked for.
+        path: PathBuf,
+    },
+    /// A volume whose writing was interrupted.
+    #[error("{} was not written to its end; run the same import again to finish it", path.display())]
+    Unfinished {
+        /// The folder.
+        path: PathBuf,
+    },
+    /// A Zarr group lacks an array.
+    #[error("{} has no array {array:?}; it was not written by this program or is incomplete: import the data again", path.display())]
+    MissingArray {
+        /// The group.
+        path: PathBuf,
+        /// The array looked for.
+        array: String,
+    },
+    /// What is there is of another kind.
+    #[error("{} is not {expected}: {reason}", path.display())]
+    WrongKind {
+        /// The group or file.
+        path: PathBuf,
+        /// What was expected, with its article.
+        expected: &'static str,
+        /// What was found.
+        reason: String,
+    },
+    /// Written by a newer version.
+    #[error("{} has format version {found}, this program knows up to {known}; use a newer program", path.display())]
+    NewerVersion {
+        /// The group or file.
+        path: PathBuf,
+        /// Its version.
+        found: u64,
+        /// The newest known one.
+        known: u64,
+    },
+    /// Numbers of another type than asked for.
+    #[error("array {array:?} of {} holds {found}, not {expected}", path.display())]
+    WrongType {
+        /// The group.
+        path: PathBuf,
+        /// The array.
+        array: String,
+        /// Type asked for.
+        expected: &'static str,
+        /// Type found.
+        found: String,
+    },
+    /// Data that is cut off, altered or missing.
+    #[error("array {array:?} of {} is damaged ({reason}); import the data again, or delete it if it is derived", path.display())]
+    Damaged {
+        /// The group.
+        path: PathBuf,
+        /// The array.
+        array: String,
+        /// What does not fit.
+        reason: String,
+    },
+    /// A box that is not inside the array.
+    #[error("the box from {start:?} of size {size:?} is not inside the array {array:?} of {}, which has {shape:?}", path.display())]
+    OutOfBounds {
+        /// The group.
+        path: PathBuf,
+        /// The array.
+        array: String,
+        /// First element asked for.
+        start: Vec<usize>,
+        /// Elements asked for.
+        size: Vec<usize>,
+        /// Elements there are.
+        shape: Vec<usize>,
+    },
+    /// Parts that do not fit together.
+    #[error("{what} has {found} values where {expected} are needed")]
+    SizeMismatch {
+        /// Which part.
+        what: &'static str,
+        /// Values needed.
+        expected: usize,
+        /// Values given.
+        found: usize,
+    },
+    /// Any other failure of the file system.
+    #[error("{} could not be {action}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// "read", "written", …
+        action: &'static str,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// The array library refused what it was asked to do.
+    #[error("{} could not be {action}: {reason}", path.display())]
+    Array {
+        /// The group.
+        path: PathBuf,
+        /// "read" or "written".
+        action: &'static str,
+        /// The library's reason.
+        reason: String,
+    },
+    /// Whoever supplies the samples failed.
+    #[error("the samples for {} could not be supplied", path.display())]
+    Source {
+        /// What was being written.
+        path: PathBuf,
+        /// The supplier's reason.
+        source: Box<dyn std::error::Error + Send + Sync>,
+    },
+    /// Stopped by the user.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl StoreError {
+    /// A failure of the file system while `path` was being `action` ("read", "written", …).
+    pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        match source.kind() {
+            io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => Self::DiskFull { path },
+            io::ErrorKind::ReadOnlyFilesystem => Self::ReadOnly { path },
+            io::ErrorKind::PermissionDenied if action == "written" => Self::ReadOnly { path },
+            io::ErrorKind::NotFound if action == "read" => Self::Missing { path },
+            _ => Self::Io { path, action, source },
+        }
+    }
+}

@@ -1,0 +1,88 @@
+//! Faults on disk: `NAME.json`, made to be read and compared: a line for each vertex (world X, Y in m and the vertical value) and a
+//! line for each triangle (indices of vertices from 0).
+
+use super::error::StoreError;
+use super::header::VERSION;
+use super::replacement::{replace_file, settle};
+use glam::DVec3;
+use serde::Deserialize;
+use std::fmt::Write;
+use std::path::Path;
+use survey::fault::Fault;
+use survey::mesh::TriangleMesh;
+
+/// Kind of the file.
+const KIND: &str = "fault";
+
+/// The file's content.
+#[derive(Deserialize)]
+struct Document {
+    kind: String,
+    version: u64,
+    name: String,
+    #[serde(default)]
+    truncated_by: Option<String>,
+    vertices: Vec<[f64; 3]>,
+    triangles: Vec<[u32; 3]>,
+}
+
+/// Stores a fault.
+///
+/// # Errors
+/// [`StoreError`]; `path` is then what it was before. A coordinate that is not a number is refused.
+pub fn write_fault(path: &Path, fault: &Fault) -> Result<(), StoreError> {
+    if let Some(vertex) = fault.mesh.vertices.iter().find(|vertex| !vertex.is_finite()) {
+        return Err(StoreError::WrongKind {
+            path: path.to_owned(),
+            expected: "a fault",
+            reason: format!("the vertex {vertex} is not a place"),
+        });
+    }
+    let quoted = |text: &str| serde_json::Value::from(text).to_string();
+    let mut text = format!("{{\n\"kind\": \"{KIND}\",\n\"version\": {VERSION},\n\"name\": {},\n", quoted(&fault.name));
+    if let Some(other) = &fault.truncated_by {
+        text += &format!("\"truncated_by\": {},\n", quoted(other));
+    }
+    let vertices = fault.mesh.vertices.iter().map(|v| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z));
+    list(&mut text, "vertices", vertices);
+    text += ",\n";
+    list(&mut text, "triangles", fault.mesh.triangles.iter().map(|[a, b, c]| format!("[{a}, {b}, {c}]")));
+    text += "\n}\n";
+    replace_file(path, text.as_bytes())
+}
+
+/// Appends a list with a line for each entry.
+fn list(text: &mut String, name: &str, entries: impl Iterator<Item = String>) {
+    let lines = entries.collect::<Vec<_>>().join(",\n");
+    // Writing to a string cannot fail.
+    let _ = write!(text, "\"{name}\": [\n{lines}\n]");
+}
+
+/// Reads a fault back.
+///
+/// # Errors
+/// [`StoreError`] when it is missing, of another kind, newer than this program or damaged.
+pub fn read_fault(path: &Path) -> Result<Fault, StoreError> {
+    settle(path);
+    let text = std::fs::read_to_string(path).map_err(|source| StoreError::io("read", path, source))?;
+    let wrong = |reason| StoreError::WrongKind { path: path.to_owned(), expected: "a fault", reason };
+    let document: Document = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    if document.kind != KIND {
+        return Err(wrong(format!("it says that it is {:?}", document.kind)));
+    }
+    if document.version > VERSION {
+        return Err(StoreError::NewerVersion { path: path.to_owned(), found: document.version, known: VERSION });
+    }
+    let count = document.vertices.len();
+    if let Some(triangle) = document.triangles.iter().find(|t| t.iter().any(|&v| v as usize >= count)) {
+        return Err(wrong(format!("triangle {triangle:?} names a vertex beyond the last, {count}")));
+    }
+    Ok(Fault {
+        name: document.name,
+        mesh: TriangleMesh {
+            vertices: document.vertices.into_iter().map(DVec3::from_array).collect(),
+            triangles: document.triangles,
+        },
+        truncated_by: document.truncated_by,
+    })
+}

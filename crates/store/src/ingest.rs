@@ -1,0 +1,454 @@
+//! Writing volumes: level 0 block by block, then level after level, in memory that is bounded whatever the volume's size.
+//!
+//! A block is a range of inlines and of crosslines with all their samples, whole shards of them, as many as half the memory holds; its shards
+//! are written by all threads. Each further level is made shard by shard from the level before. [`resume_blocks`] keeps the shards that an
+//! earlier call, ended by a kill or a power cut, left whole: shards get their names only when they are complete, and their
+//! checksums are verified before they are kept.
+
+use super::array::{create_volume, write_array, write_group};
+use super::error::StoreError;
+use super::header::write_header;
+use super::layout::{BRICK, Layout};
+use super::pyramid::{Halving, LevelBox, halved, needed};
+use super::ranges::{BrickRanges, IndexedRanges, Samples};
+use super::replacement::Replacement;
+use super::sample::StoredSample;
+use super::shard::{ShardGrid, Shards};
+use super::volume::{KIND, VolumeInfo};
+use rayon::prelude::*;
+use std::borrow::Cow;
+use std::fs;
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Mutex;
+use survey::progress::Progress;
+use survey::sample::SampleType;
+use survey::source::{Block, BlockSource, LineOrder, SourceError};
+use survey::volume::Volume;
+
+/// Says in a folder what is being written to it; gone when the volume is complete.
+const MARKER: &str = "unfinished";
+
+/// Bytes that making one shard of a further level takes at most: the mapped files of 262³ samples, and what they become.
+const LEVEL_BYTES: u64 = 160 << 20;
+
+/// Shards of a further level that a thread makes, at most, before files are unmapped.
+const SHARDS_TOGETHER: u64 = 4;
+
+/// Memory that a volume is written in where nobody says otherwise, bytes.
+pub const MEMORY_BYTES: u64 = 2 << 30;
+
+/// How a volume is written.
+#[derive(Debug, Clone, Copy)]
+struct WriteSettings {
+    /// Memory to use, bytes; what one column of shards needs (128 × 128 traces, twice) is used in any case.
+    memory_bytes: u64,
+    /// How the source is ordered.
+    order: LineOrder,
+}
+
+/// What writing a volume did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ingested {
+    /// Shards of all levels.
+    pub files: usize,
+    /// Those of them that an earlier call had written.
+    pub kept: usize,
+}
+
+/// Stores a volume that is in memory.
+///
+/// # Errors
+/// [`StoreError`]; `path` is then what it was before.
+pub fn write_volume<T: StoredSample>(
+    path: &Path,
+    volume: &Volume<T>,
+    info: &VolumeInfo,
+    progress: &Progress,
+) -> Result<(), StoreError> {
+    let size = volume.size();
+    let [_, ny, nz] = size;
+    let mask = mask_of(size, volume.live(), info)?;
+    // Blocks of whole inlines are borrowed as they are.
+    let settings = WriteSettings { memory_bytes: u64::MAX, order: LineOrder::Inlines };
+    let block = |block: &Block, _| {
+        Ok(Cow::Borrowed(&volume.samples()[block.inlines.start * ny * nz..block.inlines.end * ny * nz]))
+    };
+    let replacement = Replacement::of(path)?;
+    Ingest { group: replacement.path(), path, mask, settings, progress }.run(size, info, block)?;
+    replacement.commit()
+}
+
+/// Stores what a source hands over block by block, in its own order and type, in at most `memory_bytes` (where a column of shards needs no
+/// more).
+///
+/// # Errors
+/// [`StoreError`], [`StoreError::Source`] for what the source answers; `path` is then what it was before.
+pub fn write_blocks(
+    path: &Path,
+    source: &mut dyn BlockSource,
+    info: &VolumeInfo,
+    memory_bytes: u64,
+    progress: &Progress,
+) -> Result<Ingested, StoreError> {
+    let replacement = Replacement::of(path)?;
+    let done = ingest_blocks(replacement.path(), path, source, info, memory_bytes, progress)?;
+    replacement.commit()?;
+    Ok(done)
+}
+
+/// Stores what a source hands over as [`write_blocks`] does, but into `path` itself, and goes on where an earlier call with the same
+/// `fingerprint` was interrupted; what is there under another fingerprint is removed first. The fingerprint stands for the source and everything
+/// that was said about it.
+///
+/// # Errors
+/// [`StoreError`]; what was written then stays for the next call, and is no volume that [`super::StoredVolume::open`] opens.
+pub fn resume_blocks(
+    path: &Path,
+    fingerprint: &str,
+    source: &mut dyn BlockSource,
+    info: &VolumeInfo,
+    memory_bytes: u64,
+    progress: &Progress,
+) -> Result<Ingested, StoreError> {
+    resume(path, fingerprint, progress, || ingest_blocks(path, path, source, info, memory_bytes, progress))
+}
+
+/// Writes a source's blocks to the folder `group`, which is to become `path`.
+fn ingest_blocks(
+    group: &Path,
+    path: &Path,
+    source: &mut dyn BlockSource,
+    info: &VolumeInfo,
+    memory_bytes: u64,
+    progress: &Progress,
+) -> Result<Ingested, StoreError> {
+    // The type is chosen here, so that what is made for it is compiled with this crate's optimisations whoever calls.
+    let ingest = match source.sample_type() {
+        SampleType::Int8 => ingest_as::<i8>,
+        SampleType::Uint8 => ingest_as::<u8>,
+        SampleType::Int16 => ingest_as::<i16>,
+        SampleType::Uint16 => ingest_as::<u16>,
+        SampleType::Int32 => ingest_as::<i32>,
+        SampleType::Uint32 => ingest_as::<u32>,
+        SampleType::Float32 => ingest_as::<f32>,
+    };
+    ingest(group, path, source, info, memory_bytes, progress)
+}
+
+fn ingest_as<T: StoredSample>(
+    group: &Path,
+    path: &Path,
+    source: &mut dyn BlockSource,
+    info: &VolumeInfo,
+    memory_bytes: u64,
+    progress: &Progress,
+) -> Result<Ingested, StoreError> {
+    let size = source.size();
+    let mask = mask_of(size, source.live().as_deref(), info)?;
+    let settings = WriteSettings { memory_bytes, order: source.order() };
+    let supply = |block: &Block, mut room: Vec<T>| {
+        room.resize(block.inlines.len() * block.crosslines.len() * size[2], T::from_f32(0.0));
+        source.read_block(block, T::slots(&mut room), progress)?;
+        Ok(Cow::Owned(room))
+    };
+    Ingest { group, path, mask, settings, progress }.run(size, info, supply)
+}
+
+/// Writes into `path` itself by `write`, between the marks that say that it is being written.
+fn resume(
+    path: &Path,
+    fingerprint: &str,
+    progress: &Progress,
+    write: impl FnOnce() -> Result<Ingested, StoreError>,
+) -> Result<Ingested, StoreError> {
+    let fail = |source| StoreError::io("written", path, source);
+    let marker = path.join(MARKER);
+    if path.exists() && fs::read_to_string(&marker).ok().as_deref() != Some(fingerprint) {
+        fs::remove_dir_all(path).map_err(fail)?;
+        progress.warn("an interrupted import of another file, or with other options, was found: starting anew");
+    }
+    fs::create_dir_all(path).map_err(fail)?;
+    fs::write(&marker, fingerprint).map_err(fail)?;
+    let done = write()?;
+    fs::remove_file(&marker).map_err(fail)?;
+    Ok(done)
+}
+
+/// Whether the folder holds a volume that was not written to its end.
+pub(super) fn is_unfinished(group: &Path) -> bool {
+    group.join(MARKER).exists()
+}
+
+fn mask_of(size: [usize; 3], live: Option<&[bool]>, info: &VolumeInfo) -> Result<Vec<bool>, StoreError> {
+    let fits = |what, expected: usize, found: usize| {
+        if expected == found { Ok(()) } else { Err(StoreError::SizeMismatch { what, expected, found }) }
+    };
+    fits("the lattice", size.iter().product(), info.geometry.size().iter().product())?;
+    let Some(live) = live else { return Ok(vec![true; size[0] * size[1]]) };
+    fits("the live-trace mask", size[0] * size[1], live.len())?;
+    Ok(live.to_vec())
+}
+
+/// Every second entry along both axes.
+fn every_second(mask: &[bool], [nx, ny]: [usize; 2]) -> Vec<bool> {
+    (0..nx).step_by(2).flat_map(|x| (0..ny).step_by(2).map(move |y| mask[x * ny + y])).collect()
+}
+
+/// A volume that is being written.
+struct Ingest<'a> {
+    /// The folder to write into.
+    group: &'a Path,
+    /// The folder that the volume will be in, for errors.
+    path: &'a Path,
+    mask: Vec<bool>,
+    settings: WriteSettings,
+    progress: &'a Progress,
+}
+
+impl Ingest<'_> {
+    fn run<'b, T: StoredSample>(
+        &self,
+        size: [usize; 3],
+        info: &VolumeInfo,
+        supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'b, [T]>, SourceError>,
+    ) -> Result<Ingested, StoreError> {
+        write_header(self.group, KIND, info)?;
+        write_group(self.group, "minmax", serde_json::Map::new())?;
+        let bytes: Vec<u8> = self.mask.iter().map(|&live| u8::from(live)).collect();
+        let layout = Layout::map([size[0], size[1]], ["inline", "crossline"]);
+        write_array(self.group, "live", layout, 0, &bytes, self.progress)?;
+        let (mut done, mut grid) = self.write_full(size, supply)?;
+        let (mut fine, mut fine_mask, mut level) = (size, Cow::Borrowed(&self.mask), 0);
+        while fine.iter().any(|&n| n > BRICK) {
+            level += 1;
+            let mask = every_second(&fine_mask, [fine[0], fine[1]]);
+            let (added, coarse) = self.write_level::<T>(level, grid, &fine_mask, &mask)?;
+            grid = coarse;
+            done = Ingested { files: done.files + added.files, kept: done.kept + added.kept };
+            (fine, fine_mask) = (halved(fine), Cow::Owned(mask));
+        }
+        Ok(done)
+    }
+
+    /// Writes level 0.
+    fn write_full<'b, T: StoredSample>(
+        &self,
+        size: [usize; 3],
+        mut supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'b, [T]>, SourceError>,
+    ) -> Result<(Ingested, ShardGrid), StoreError> {
+        let grid = create_volume::<T>(self.group, "0", size)?;
+        let counts = grid.counts();
+        let mut shards = Shards::new(grid.clone(), self.group, "0");
+        let mut done = Ingested { files: counts.iter().product(), kept: 0 };
+        let mut ranges = BrickRanges::of(size);
+        let rooms = Rooms::<Vec<u8>>::default();
+        let mut spare = Vec::new();
+        self.progress.begin("storing the volume", done.files as u64);
+        for [columns_x, columns_y] in column_blocks::<T>(&grid, &self.settings) {
+            let places: Vec<[usize; 3]> = columns_x
+                .clone()
+                .flat_map(|x| columns_y.clone().flat_map(move |y| (0..counts[2]).map(move |z| [x, y, z])))
+                .collect();
+            if places.par_iter().all(|&place| shards.is_whole::<T>(place)) {
+                for &place in &places {
+                    let (start, extent) = grid.extent(place);
+                    let values = shards.read_box::<T>(start, extent)?;
+                    ranges.take(
+                        Samples { values: &values, first: start, size: extent }.ranges(start, extent, &self.mask, size),
+                    );
+                    self.progress.step(1)?;
+                }
+                done.kept += places.len();
+                shards.release();
+                continue;
+            }
+            shards.release();
+            let span = |columns: &Range<usize>, axis: usize| {
+                columns.start * grid.shard[axis]..(columns.end * grid.shard[axis]).min(size[axis])
+            };
+            let block = Block { inlines: span(&columns_x, 0), crosslines: span(&columns_y, 1) };
+            let supplied = supply(&block, std::mem::take(&mut spare));
+            let values = supplied.map_err(|source| StoreError::Source { path: self.path.to_owned(), source })?;
+            let first = [block.inlines.start, block.crosslines.start, 0];
+            let block_size = [block.inlines.len(), block.crosslines.len(), size[2]];
+            let expected = block_size.iter().product();
+            if values.len() != expected {
+                return Err(StoreError::SizeMismatch { what: "a block of samples", expected, found: values.len() });
+            }
+            let samples = Samples { values: &values, first, size: block_size };
+            let found: Vec<IndexedRanges> = places
+                .par_iter()
+                .map(|&place| {
+                    let found = rooms.with(|bytes| self.write_shard(&grid, place, &samples, &self.mask, bytes))?;
+                    self.progress.step(1)?;
+                    Ok(found)
+                })
+                .collect::<Result<_, StoreError>>()?;
+            found.into_iter().for_each(|found| ranges.take(found));
+            if let Cow::Owned(values) = values {
+                spare = values;
+            }
+        }
+        ranges.write(self.group, 0)?;
+        Ok((done, grid))
+    }
+
+    /// Writes a shard from samples that hold all of it, and finds the ranges of its bricks.
+    fn write_shard<T: StoredSample>(
+        &self,
+        grid: &ShardGrid,
+        place: [usize; 3],
+        samples: &Samples<'_, T>,
+        mask: &[bool],
+        bytes: &mut Vec<u8>,
+    ) -> Result<IndexedRanges, StoreError> {
+        let mut found = Vec::new();
+        grid.write(place, samples.values, samples.first, samples.size, bytes, |from, inside| {
+            found.extend(samples.ranges(from, inside, mask, grid.shape));
+        })?;
+        Ok(found)
+    }
+
+    /// Writes level `level` from the level before, whose files are `fine`.
+    fn write_level<T: StoredSample>(
+        &self,
+        level: usize,
+        fine: ShardGrid,
+        fine_mask: &[bool],
+        mask: &[bool],
+    ) -> Result<(Ingested, ShardGrid), StoreError> {
+        let size = halved(fine.shape);
+        let name = level.to_string();
+        let fine_size = fine.shape;
+        let mut source = Shards::new(fine, self.group, &(level - 1).to_string());
+        let grid = create_volume::<T>(self.group, &name, size)?;
+        let shards = Shards::new(grid.clone(), self.group, &name);
+        let counts = grid.counts();
+        let mut done = Ingested { files: counts.iter().product(), kept: 0 };
+        let mut ranges = BrickRanges::of(size);
+        let rooms = Rooms::<LevelRoom<T>>::default();
+        self.progress.begin(&format!("storing level {level}"), done.files as u64);
+        let places: Vec<[usize; 3]> =
+            (0..done.files).map(|n| [n / (counts[1] * counts[2]), n / counts[2] % counts[1], n % counts[2]]).collect();
+        let most = SHARDS_TOGETHER * rayon::current_num_threads() as u64;
+        let together = (self.settings.memory_bytes / LEVEL_BYTES).clamp(1, most) as usize;
+        for group in places.chunks(together) {
+            let found: Vec<(bool, IndexedRanges)> = group
+                .par_iter()
+                .map(|&place| {
+                    self.progress.check()?;
+                    let (start, part) = grid.extent(place);
+                    if shards.is_whole::<T>(place) {
+                        let values = shards.read_box::<T>(start, part)?;
+                        let samples = Samples { values: &values, first: start, size: part };
+                        return Ok((true, samples.ranges(start, part, mask, size)));
+                    }
+                    let found = rooms.with(|room| {
+                        room.fill(&source, [fine_size, size], [start, part], [fine_mask, mask])?;
+                        let samples = Samples { values: &room.coarse, first: start, size: part };
+                        self.write_shard(&grid, place, &samples, mask, &mut room.bytes)
+                    });
+                    Ok((false, found?))
+                })
+                .collect::<Result<_, StoreError>>()?;
+            for (is_kept, found) in found {
+                done.kept += usize::from(is_kept);
+                ranges.take(found);
+                self.progress.step(1)?;
+            }
+            source.release();
+        }
+        ranges.write(self.group, level)?;
+        Ok((done, grid))
+    }
+}
+
+/// Memory that threads use in turn: fresh memory costs more than what is done in it.
+struct Rooms<R>(Mutex<Vec<R>>);
+
+impl<R> Default for Rooms<R> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<R: Default> Rooms<R> {
+    fn with<T>(&self, work: impl FnOnce(&mut R) -> T) -> T {
+        // The lock is held for a push or a pop, which cannot panic half way.
+        let locked = || self.0.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let mut room = locked().pop().unwrap_or_default();
+        let result = work(&mut room);
+        locked().push(room);
+        result
+    }
+}
+
+/// What making a shard of a further level needs.
+struct LevelRoom<T> {
+    halving: Halving,
+    coarse: Vec<T>,
+    bytes: Vec<u8>,
+}
+
+impl<T> Default for LevelRoom<T> {
+    fn default() -> Self {
+        Self { halving: Halving::default(), coarse: Vec::new(), bytes: Vec::new() }
+    }
+}
+
+impl<T: StoredSample> LevelRoom<T> {
+    /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, the masks likewise.
+    fn fill(
+        &mut self,
+        source: &Shards,
+        [fine, size]: [[usize; 3]; 2],
+        [start, part]: [[usize; 3]; 2],
+        [fine_mask, mask]: [&[bool]; 2],
+    ) -> Result<(), StoreError> {
+        let need = [0, 1, 2].map(|axis| needed(start[axis], part[axis], fine[axis]));
+        let (first, box_size) = (need.map(|n| n.0), need.map(|n| n.1));
+        let view = source.view::<T>(first, box_size)?;
+        let coarse = &mut self.coarse;
+        coarse.resize(part.iter().product(), T::from_f32(0.0));
+        let is_live = |x: usize, y: usize| fine_mask[(first[0] + x) * fine[1] + first[1] + y];
+        self.halving.run(
+            LevelBox { first, size: box_size },
+            LevelBox { first: start, size: part },
+            |x, y, trace| {
+                let live = is_live(x, y);
+                if live {
+                    view.read_trace(x, y, trace);
+                }
+                live
+            },
+            |x, slab| {
+                let out = coarse[x * slab.len()..(x + 1) * slab.len()].chunks_exact_mut(part[2]);
+                for (y, (out, halves)) in out.zip(slab.chunks_exact(part[2])).enumerate() {
+                    if mask[(start[0] + x) * size[1] + start[1] + y] {
+                        out.iter_mut().zip(halves).for_each(|(out, &half)| *out = T::from_f32(half));
+                    } else {
+                        out.fill(T::from_f32(0.0));
+                    }
+                }
+            },
+        );
+        Ok(())
+    }
+}
+
+/// Columns of shards that are written together, `[along x, along y]`.
+fn column_blocks<T>(grid: &ShardGrid, settings: &WriteSettings) -> Vec<[Range<usize>; 2]> {
+    let [nx, ny, _] = grid.counts();
+    let column = (grid.shard[0] * grid.shard[1] * grid.shape[2] * size_of::<T>()).max(1) as u64;
+    let fit = usize::try_from((settings.memory_bytes / 2 / column).max(1)).unwrap_or(usize::MAX);
+    let parts = |count: usize| {
+        let parts = count.div_ceil(fit.min(count.max(1)));
+        let each = count.div_ceil(parts.max(1)).max(1);
+        (0..count).step_by(each).map(move |first| first..(first + each).min(count))
+    };
+    match settings.order {
+        LineOrder::Inlines => (0..nx).flat_map(|x| parts(ny).map(move |part| [x..x + 1, part])).collect(),
+        LineOrder::Crosslines => (0..ny).flat_map(|y| parts(nx).map(move |part| [part, y..y + 1])).collect(),
+    }
+}

@@ -1,0 +1,44 @@
+//! The numbers that arrays are made of.
+
+use survey::sample::Sample;
+use zarrs::array::{DataType, FillValue, data_type};
+
+mod sealed {
+    /// What the array library must know of a number.
+    pub trait Element: zarrs::array::ElementOwned {
+        /// The library's name of the type.
+        fn data_type() -> super::DataType;
+        /// The value of what was never written.
+        fn fill(value: Self) -> super::FillValue;
+    }
+}
+
+/// A number that arrays are made of.
+pub trait StoredSample: Sample + sealed::Element + bytemuck::Pod {
+    /// Value of what was never written: NaN, or 0 for integers.
+    const FILL: Self;
+}
+
+macro_rules! stored {
+    ($type:ident, $name:ident, $fill:expr) => {
+        impl sealed::Element for $type {
+            fn data_type() -> DataType {
+                data_type::$name()
+            }
+            fn fill(value: Self) -> FillValue {
+                value.into()
+            }
+        }
+        impl StoredSample for $type {
+            const FILL: Self = $fill;
+        }
+    };
+}
+
+stored!(i8, int8, 0);
+stored!(u8, uint8, 0);
+stored!(i16, int16, 0);
+stored!(u16, uint16, 0);
+stored!(i32, int32, 0);
+stored!(u32, uint32, 0);
+stored!(f32, float32, f32::NAN);

@@ -1,0 +1,117 @@
+//! The numbers that volumes are made of.
+
+/// A type of samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SampleType {
+    /// Integers of one byte.
+    Int8,
+    /// Integers of one byte, unsigned.
+    Uint8,
+    /// Integers of two bytes.
+    Int16,
+    /// Integers of two bytes, unsigned.
+    Uint16,
+    /// Integers of four bytes.
+    Int32,
+    /// Integers of four bytes, unsigned.
+    Uint32,
+    /// IEEE floats of four bytes.
+    Float32,
+}
+
+impl SampleType {
+    /// Its name as Zarr spells it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Int8 => "int8",
+            Self::Uint8 => "uint8",
+            Self::Int16 => "int16",
+            Self::Uint16 => "uint16",
+            Self::Int32 => "int32",
+            Self::Uint32 => "uint32",
+            Self::Float32 => "float32",
+        }
+    }
+}
+
+/// Memory for samples of one of the types.
+#[derive(Debug, PartialEq)]
+pub enum SamplesMut<'a> {
+    /// Of [`SampleType::Int8`].
+    Int8(&'a mut [i8]),
+    /// Of [`SampleType::Uint8`].
+    Uint8(&'a mut [u8]),
+    /// Of [`SampleType::Int16`].
+    Int16(&'a mut [i16]),
+    /// Of [`SampleType::Uint16`].
+    Uint16(&'a mut [u16]),
+    /// Of [`SampleType::Int32`].
+    Int32(&'a mut [i32]),
+    /// Of [`SampleType::Uint32`].
+    Uint32(&'a mut [u32]),
+    /// Of [`SampleType::Float32`].
+    Float32(&'a mut [f32]),
+}
+
+/// A number that volumes are made of.
+pub trait Sample: Copy + Send + Sync + PartialEq + 'static {
+    /// Its type.
+    const TYPE: SampleType;
+    /// The value as float.
+    fn to_f32(self) -> f32;
+    /// The nearest value to a float; NaN becomes 0 where there is none.
+    fn from_f32(value: f32) -> Self;
+    /// Memory for such samples, with its type.
+    fn slots(slots: &mut [Self]) -> SamplesMut<'_>;
+}
+
+macro_rules! integer_sample {
+    ($type:ident, $variant:ident) => {
+        impl Sample for $type {
+            const TYPE: SampleType = SampleType::$variant;
+            fn to_f32(self) -> f32 {
+                self as f32
+            }
+            fn from_f32(value: f32) -> Self {
+                // The cast saturates and sends NaN to 0.
+                value.round() as Self
+            }
+            fn slots(slots: &mut [Self]) -> SamplesMut<'_> {
+                SamplesMut::$variant(slots)
+            }
+        }
+    };
+}
+
+integer_sample!(i8, Int8);
+integer_sample!(u8, Uint8);
+integer_sample!(i16, Int16);
+integer_sample!(u16, Uint16);
+integer_sample!(i32, Int32);
+integer_sample!(u32, Uint32);
+
+impl Sample for f32 {
+    const TYPE: SampleType = SampleType::Float32;
+    fn to_f32(self) -> f32 {
+        self
+    }
+    fn from_f32(value: f32) -> Self {
+        value
+    }
+    fn slots(slots: &mut [Self]) -> SamplesMut<'_> {
+        SamplesMut::Float32(slots)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn floats_become_the_nearest_integer_without_wrapping() {
+        assert_eq!(i8::from_f32(1000.0), 127);
+        assert_eq!(i8::from_f32(-2.5), -3);
+        assert_eq!(u16::from_f32(f32::NAN), 0);
+        assert_eq!(f32::from_f32(0.25), 0.25);
+    }
+}

@@ -1,0 +1,220 @@
+//! A synthetic survey with exact truth: folds, an angular unconformity, a normal, a reverse and a dying-out fault, seismic
+//! with noise, and an acoustic impedance volume of another size and a smaller extent (P-illus 5.1).
+//!
+//! | part | where |
+//! |---|---|
+//! | closed form of beds, faults, blocks | [`SynthTruth`], [`FoldedBeds`], [`TruthFault`] |
+//! | parameters for a size and a seed | `design` |
+//! | convolutional seismic, noise, impedance | `seismic` |
+//! | horizons and faults an exact interpreter would pick | `interpretation` |
+//! | small models with exact k for tests | [`closed_form`] |
+//!
+//! Everything depends on the settings alone: the same bytes at any number of threads.
+//!
+//! Deliberately absent: files; a survey is made in memory, in the nouns of [`survey`].
+
+pub mod closed_form;
+mod column;
+mod design;
+mod events;
+mod faulting;
+mod fold;
+mod interpretation;
+mod random;
+mod seismic;
+#[cfg(test)]
+mod tests;
+mod truth;
+
+pub use column::Column;
+pub use events::{Event, Reflector};
+pub use faulting::{Tip, TruthFault};
+pub use fold::{FoldedBeds, Undulation, Wave};
+pub use seismic::AMPLITUDE;
+pub use truth::{Sequence, SynthTruth, TruthHorizon};
+
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+use survey::fault::Fault;
+use survey::geometry::{DEFAULT_VELOCITY_M_S, GeometryError, LineAxis, SurveyGeometry, VerticalUnit};
+use survey::horizon::Horizon;
+use survey::progress::{Cancelled, Progress};
+use survey::stratigraphy::Stratigraphy;
+use survey::volume::Volume;
+
+/// What to make.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct SynthSettings {
+    /// `[inlines, crosslines, samples]`; default 128 × 128 × 128, at least 24 × 24 × 48.
+    pub size: [usize; 3],
+    /// Changes directions, phases, beds and noise; default 1.
+    pub seed: u64,
+    /// RMS signal / RMS noise; `None` for no noise. Default 4.
+    pub snr: Option<f64>,
+    /// Distance between lines, m; default 25.
+    pub bin_m: f64,
+    /// Unit of the vertical axis; default metres: a block diagram then needs no velocity.
+    pub vertical: VerticalUnit,
+    /// Distance between samples in that unit; default 10, for a volume 2.5 times as wide as deep.
+    pub interval: f64,
+    /// 1/f of the wavelet's peak frequency, samples; default 8. It is shortened where the depth holds less than twelve.
+    pub wavelength_samples: f64,
+}
+
+impl Default for SynthSettings {
+    fn default() -> Self {
+        Self {
+            size: [128; 3],
+            seed: 1,
+            snr: Some(4.0),
+            bin_m: 25.0,
+            vertical: VerticalUnit::Metres,
+            interval: 10.0,
+            wavelength_samples: 8.0,
+        }
+    }
+}
+
+impl SynthSettings {
+    /// Metres between samples.
+    fn sample_m(&self) -> f64 {
+        match self.vertical {
+            VerticalUnit::Metres => self.interval,
+            VerticalUnit::Milliseconds => self.interval * DEFAULT_VELOCITY_M_S / 2000.0,
+        }
+    }
+}
+
+/// Why no survey could be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SynthError {
+    /// Too few lines or samples.
+    #[error("a synthetic survey of {size:?} is too small for its folds and faults; ask for at least {least:?}")]
+    TooSmall {
+        /// Asked for.
+        size: [usize; 3],
+        /// The least possible.
+        least: [usize; 3],
+    },
+    /// A setting is not a positive number.
+    #[error("{what} must be a positive number, found {found}")]
+    NotPositive {
+        /// Which setting.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+    },
+    /// The lattice cannot be used.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// Stopped by the user.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// A volume on a lattice of its own inside the survey.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Attribute {
+    /// Acoustic impedance, kg/(m²·s).
+    pub volume: Volume<f32>,
+    /// Its lattice in the world.
+    pub geometry: SurveyGeometry,
+    /// Seismic voxel of its first sample.
+    pub origin: DVec3,
+    /// Seismic voxels from its first to its last sample along each axis.
+    pub extent: DVec3,
+}
+
+/// A synthetic survey. Memory: 4 bytes a voxel of the seismic (8 while it is made), 4 a voxel of the attribute.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Synthetic {
+    /// The lattice of the seismic.
+    pub geometry: SurveyGeometry,
+    /// Seismic amplitudes; SEG normal polarity: more impedance below is a positive peak.
+    pub seismic: Volume<f32>,
+    /// Acoustic impedance in a part of the survey, at half the density of lines.
+    pub attribute: Attribute,
+    /// Age order and contacts.
+    pub stratigraphy: Stratigraphy,
+    /// Horizons, youngest first, a sheet for each block that has it.
+    pub horizons: Vec<Horizon>,
+    /// Faults up to their tips.
+    pub faults: Vec<Fault>,
+    /// The closed form behind it all.
+    pub truth: SynthTruth,
+}
+
+impl Synthetic {
+    /// Makes the survey.
+    ///
+    /// # Errors
+    /// [`SynthError`] when the size is too small, a setting makes no sense or the user cancelled.
+    pub fn generate(settings: &SynthSettings, progress: &Progress) -> Result<Self, SynthError> {
+        let positive = [
+            ("the distance between lines", settings.bin_m),
+            ("the sample interval", settings.interval),
+            ("the wavelength in samples", settings.wavelength_samples),
+            ("the signal-to-noise ratio", settings.snr.unwrap_or(1.0)),
+        ];
+        for (what, found) in positive {
+            if !(found > 0.0 && found.is_finite()) {
+                return Err(SynthError::NotPositive { what, found });
+            }
+        }
+        let geometry = lattice(settings);
+        geometry.validate()?;
+        let truth = design::design(settings)?;
+        let mut seismic = seismic::signal(&truth, progress)?;
+        if let Some(snr) = settings.snr {
+            let wavelength = truth.wavelength_m / truth.step_m.z;
+            seismic::add_noise(&mut seismic, wavelength, snr, settings.seed, progress)?;
+        }
+        Ok(Self {
+            attribute: attribute(&truth, &geometry, progress)?,
+            stratigraphy: interpretation::stratigraphy(&truth),
+            horizons: (0..truth.horizons.len()).map(|h| interpretation::horizon(&truth, &geometry, h)).collect(),
+            faults: interpretation::faults(&truth, &geometry),
+            geometry,
+            seismic,
+            truth,
+        })
+    }
+}
+
+/// The survey's lattice: unrotated, away from the world's origin, lines numbered from 101 and 501.
+fn lattice(settings: &SynthSettings) -> SurveyGeometry {
+    let mut geometry = SurveyGeometry::regular(settings.size, settings.bin_m, settings.interval, settings.vertical);
+    geometry.origin = DVec2::new(430_000.0, 6_780_000.0);
+    geometry.inlines.first = 101;
+    geometry.crosslines.first = 501;
+    geometry
+}
+
+/// Impedance on every second line, at three quarters of the sample interval, over the middle of the survey.
+fn attribute(truth: &SynthTruth, survey: &SurveyGeometry, progress: &Progress) -> Result<Attribute, Cancelled> {
+    let origin = DVec3::from_array([0, 1, 2].map(|axis| ([0.2, 0.15, 0.1][axis] * truth.size[axis] as f64).floor()));
+    let step = DVec3::new(2.0, 2.0, 0.75);
+    let size = [0, 1, 2].map(|axis| {
+        let span = [0.65, 0.6, 0.7][axis] * truth.size[axis] as f64;
+        (span / step[axis]).floor() as usize
+    });
+    let volume = seismic::impedance(truth, size, step.z, |p| origin + p * step, progress)?;
+    let extent = DVec3::from_array(size.map(|count| count as f64 - 1.0)) * step;
+    let first = survey.world_from_voxel(origin);
+    let lines = |axis: LineAxis, at: f64, every: f64, count: usize| LineAxis {
+        first: axis.number_at(at).round() as i32,
+        step: axis.step * every as i32,
+        count,
+    };
+    let mut geometry = survey.clone();
+    geometry.inlines = lines(survey.inlines, origin.x, step.x, size[0]);
+    geometry.crosslines = lines(survey.crosslines, origin.y, step.y, size[1]);
+    geometry.origin = first.truncate();
+    geometry.inline_vector *= step.x;
+    geometry.crossline_vector *= step.y;
+    geometry.vertical.first = first.z;
+    geometry.vertical.interval *= step.z;
+    geometry.vertical.count = size[2];
+    Ok(Attribute { volume, geometry, origin, extent })
+}
