@@ -256,7 +256,7 @@ impl<'a> Maker<'a> {
                 horizons: self.inputs.horizons,
                 faults: self.inputs.faults,
                 interpretation: shown.zip(cut.as_ref()).map(|(shown, cut)| (shown, cut, panel.on)),
-                marks: &panel.marks,
+                marks: panel.marks,
             },
             axes: panel.axes,
             zoom: panel.zoom,

@@ -17,7 +17,7 @@ pub(in crate::cli) struct FigureArgs {
     #[arg(long, value_name = "Z", allow_hyphen_values = true)]
     pub(in crate::cli) slice: Vec<f64>,
     /// Section along a line with these corners, two or more
-    #[arg(long, value_name = "INLINE,CROSSLINE", num_args = 2.., allow_hyphen_values = true)]
+    #[arg(long, value_name = "INLINE,CROSSLINE", num_args = 2..)]
     pub(in crate::cli) fence: Vec<String>,
     /// Map of a horizon: its depth or time in colours and contours
     #[arg(long, value_name = "HORIZON")]

@@ -7,7 +7,7 @@ use crate::map::{self, HorizonMap, Mapped, Room};
 use crate::style::{ACCENT, FRAME_PT, INK, NUMBER_PT, QUIET_INK, RULE_INK, TEXT_PT, TITLE_PT};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
-use survey::SurveyGeometry;
+use survey::{SurveyGeometry, VerticalUnit};
 use ttf::{Colour, ColourMap, RgbaFunction};
 
 /// Height of the row with the title, points.
@@ -35,10 +35,8 @@ pub struct MapFrame {
 impl MapFrame {
     /// The whole survey within a body, `zoom` times larger and shifted.
     pub fn new(geometry: &SurveyGeometry, body: Rect, zoom: f64, shift: DVec2) -> Self {
-        let corners = corners(geometry).map(|at| geometry.inline_vector * at.x + geometry.crossline_vector * at.y);
-        let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
-        let high = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
-        let fit = (body.size() / (high - low).max(DVec2::splat(1e-6))).min_element();
+        let [low, high] = bounds_m(geometry);
+        let fit = (body.size() / extent_m(geometry)).min_element();
         Self {
             geometry: geometry.clone(),
             middle: (low + high) * 0.5,
@@ -76,6 +74,19 @@ impl MapFrame {
         let world = self.middle + DVec2::new(off.x, -off.y) / self.scale;
         self.geometry.voxel_from_world((world + self.geometry.origin).extend(0.0)).truncate()
     }
+}
+
+/// The smallest and largest place of the survey, metres east and north of its origin.
+fn bounds_m(geometry: &SurveyGeometry) -> [DVec2; 2] {
+    let corners = corners(geometry).map(|at| geometry.inline_vector * at.x + geometry.crossline_vector * at.y);
+    let low = corners.into_iter().fold(DVec2::INFINITY, DVec2::min);
+    [low, corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max)]
+}
+
+/// The survey's extent to the east and to the north, metres; never 0.
+fn extent_m(geometry: &SurveyGeometry) -> DVec2 {
+    let [low, high] = bounds_m(geometry);
+    (high - low).max(DVec2::splat(1e-6))
 }
 
 /// Voxel x, y of the survey's corners, around it.
@@ -136,6 +147,8 @@ impl MapPanel<'_> {
         if !body.is_proper() {
             return group;
         }
+        // At the upper left, under its title; what explains it stands close by.
+        let body = Rect::sized(body.min, body.fitted(extent_m(self.geometry)).size());
         let frame = MapFrame::new(self.geometry, body, 1.0, DVec2::ZERO);
         group.push(contents(self.map, &frame, body.grown(-2.0)));
         let outline = corners(self.geometry).map(|corner| frame.page(corner));
@@ -147,26 +160,27 @@ impl MapPanel<'_> {
         let title = Text::new(DVec2::new(room.min.x + 2.0, room.min.y + TITLE_PT), &self.title).sized(TITLE_PT);
         group.push(title.fitted(room.width() - 2.0));
         let column =
-            Rect::new(DVec2::new(room.max.x - COLUMN_PT + 12.0, body.min.y), DVec2::new(room.max.x, body.max.y));
-        group.push(north(column.min + DVec2::new(0.5 * BAR_PT[0], 0.0)));
-        group.push(bar(self.map, self.geometry, column.inside([0.0, NORTH_PT + 12.0, 0.0, 0.0])));
+            Rect::sized(DVec2::new(body.max.x + 14.0, body.min.y), DVec2::new(COLUMN_PT - 14.0, body.height()));
+        explained(self.map, self.geometry, column).into_iter().for_each(|part| group.push(part));
         let strip = Rect::new(DVec2::new(room.min.x + 2.0, body.max.y + 6.0), room.max);
         let scale = self.has_scale_bar.then(|| frame.points_per_m());
-        group.push(scale::drawn(strip, scale, &self.caption()));
+        group.push(scale::drawn(strip, scale, &caption(self.map, self.geometry)));
         group
     }
+}
 
-    fn caption(&self) -> String {
-        let unit = self.geometry.vertical.unit.symbol();
-        let mut text = String::new();
-        if !self.map.contours.is_empty() {
-            text = format!("contours every {} {unit}", self.map.interval);
-        }
-        if !self.map.hatching.is_empty() {
-            text += if text.is_empty() { "hatched: not picked" } else { "; hatched: not picked" };
-        }
-        text
-    }
+/// North arrow and colour bar in a column beside a map.
+pub fn explained(shown: &HorizonMap, geometry: &SurveyGeometry, column: Rect) -> [Group; 2] {
+    let arrow = north(column.min + DVec2::new(0.5 * BAR_PT[0], 0.0));
+    [arrow, bar(shown, geometry, column.inside([0.0, NORTH_PT + 12.0, 0.0, 0.0]))]
+}
+
+/// What the lines on a map mean.
+pub fn caption(shown: &HorizonMap, geometry: &SurveyGeometry) -> String {
+    let unit = geometry.vertical.unit.symbol();
+    let contours = (!shown.contours.is_empty()).then(|| format!("contours every {} {unit}", shown.interval));
+    let hatching = (!shown.hatching.is_empty()).then(|| "hatched: not picked".to_owned());
+    contours.into_iter().chain(hatching).collect::<Vec<_>>().join("; ")
 }
 
 /// An arrow to the north, its tip below `top`.
@@ -228,8 +242,12 @@ fn bar_numbers(shown: &HorizonMap, rect: Rect) -> Vec<Item> {
 /// The name of a map.
 pub fn title(mapped: Mapped, name: impl Fn(usize) -> String, geometry: &SurveyGeometry) -> String {
     let unit = geometry.vertical.unit.symbol();
+    let measured = match geometry.vertical.unit {
+        VerticalUnit::Milliseconds => "Two-way time",
+        VerticalUnit::Metres => "Depth",
+    };
     match mapped {
-        Mapped::Structure(horizon) => format!("{} ({unit})", name(horizon)),
+        Mapped::Structure(horizon) => format!("{measured} of {} ({unit})", name(horizon)),
         Mapped::Thickness(upper, lower) => {
             format!("Thickness from {} down to {} ({unit})", name(upper), name(lower))
         }
@@ -239,7 +257,6 @@ pub fn title(mapped: Mapped, name: impl Fn(usize) -> String, geometry: &SurveyGe
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::VerticalUnit;
 
     #[test]
     fn north_is_up_and_places_come_back_on_turned_and_mirrored_surveys() {

@@ -36,7 +36,7 @@ pub struct SectionContents<'a> {
     /// What an interpreter sees over it.
     pub interpretation: Option<(&'a Interpretation<'a>, &'a OverlayLines, SeenOn<'a>)>,
     /// Where other sections run.
-    pub marks: &'a Marks,
+    pub marks: Marks,
 }
 
 /// Where other sections and the fence run on a section, (s, t).
