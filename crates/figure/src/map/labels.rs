@@ -143,7 +143,7 @@ fn off(p: DVec2, [a, b]: [DVec2; 2]) -> f64 {
 pub(crate) fn drawn(contours: &[Contour], page: impl Fn(DVec2) -> DVec2, room: &Room) -> Group {
     let stroke = |is_index: bool| {
         let n = usize::from(!is_index);
-        Stroke::new(WIDTH[n], Ink::glass(Colour::BLACK, OPACITY[n])).round()
+        Stroke::new(WIDTH[n], Ink::glass(Colour::BLACK, OPACITY[n]))
     };
     let mut taken = Vec::new();
     let (mut plain, mut index) = (Path::default(), Path::default());
