@@ -8,10 +8,10 @@ use crate::bench;
 use anyhow::Context;
 use formats::{ExportOptions, Format};
 use project::Project;
-use project::command::{AddScene, Command, ImportVolume, SetRaw};
+use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetRaw};
 use project::demo::{self, survey_files};
 use project::error::Noun;
-use project::interpretation::{extraction, proposals};
+use project::interpretation::extraction;
 use project::picture::load::Stage;
 use project::picture::{self, load, scene};
 use project::{content, derived, segy_export, styles};
@@ -67,7 +67,11 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             export(&project, &out, &horizon, format, &options, &progress)?
         }
         Request::Extract { project, volume, settings } => {
-            told(extraction::extract(&Project::open(&project)?, volume.as_deref(), &settings, &progress)?)
+            let extract = Command::Extract(Extract { volume, settings });
+            match Project::open(&project)?.apply(&extract, &progress)? {
+                Effect::Extracted(done) => told(done),
+                other => told(other),
+            }
         }
         Request::ExportCandidates { project, out } => {
             let count = extraction::export_points(&Project::open(&project)?, &out, &progress)?;
@@ -92,7 +96,11 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
         Request::Change { project, command } => change(Project::open(&project)?, &command, &progress)?,
         Request::Evaluate { project, truth } => assembly::evaluate(&project, &truth, &progress)?,
         Request::ProposeFaults { project, settings } => {
-            told(proposals::propose(&Project::open(&project)?, &settings, &progress)?)
+            let propose = Command::ProposeFaults(ProposeFaults { settings });
+            match Project::open(&project)?.apply(&propose, &progress)? {
+                Effect::FaultsProposed(done) => told(done),
+                other => told(other),
+            }
         }
         Request::AddScene { project, name, from, view } => {
             let project = Project::open(&project)?;

@@ -2,6 +2,7 @@
 
 use crate::program::{bytes, project, run_in};
 use std::fs;
+use std::path::Path;
 
 #[test]
 fn candidates_are_extracted_once_and_exported_as_points() {
@@ -48,4 +49,54 @@ fn what_cannot_be_extracted_is_a_sentence() {
     assert!(nothing.stdout.contains("no surface at least 47 traces wide"), "{}", nothing.stdout);
     run_in(at, "create q.petro --bounds 0,100,0,100,0,100 --size 5x5x5").done();
     run_in(at, "extract q.petro").failed(&["no volume on its own lattice"]);
+}
+
+#[test]
+fn an_extraction_is_undone_and_its_picks_come_back() {
+    let folder = project();
+    let at = folder.path();
+    let key = |at: &Path| -> String {
+        let text = fs::read_to_string(at.join("p.petro/project.toml")).unwrap();
+        let from = text.find("[extraction]").map(|at| text[at..].find("key = \"").unwrap() + at + 7);
+        from.map_or_else(String::new, |from| text[from..from + 32].to_owned())
+    };
+    let present = |at: &Path| at.join("p.petro/derived/candidates.zarr").exists();
+    run_in(at, "extract p.petro --min-leaf-triangles 60").done();
+    let first = key(at);
+    let points = |at: &Path| {
+        run_in(at, "export p.petro points.csv --candidates").done();
+        fs::read_to_string(at.join("points.csv")).unwrap()
+    };
+    let before = points(at);
+    let place: Vec<String> =
+        before.lines().nth(before.lines().count() / 2).unwrap().split(',').map(str::to_owned).collect();
+    let pick = format!("pick p.petro --at {},{},{} --horizon Picked", place[0], place[1], place[2]);
+    run_in(at, &pick).done();
+    // Extracting again as it was is no step.
+    let steps = run_in(at, "info p.petro --json").done().json()["history"].as_array().unwrap().len();
+    run_in(at, "extract p.petro --min-leaf-triangles 60").done();
+    assert_eq!(run_in(at, "info p.petro --json").done().json()["history"].as_array().unwrap().len(), steps);
+    // Another extraction outdates the picks; undo brings back theirs.
+    run_in(at, "extract p.petro --min-leaf-triangles 200").done();
+    assert_ne!(key(at), first);
+    assert_ne!(points(at), before);
+    run_in(at, "climb p.petro 1").failed(&["the extraction has changed"]);
+    run_in(at, "undo p.petro").done();
+    assert_eq!(key(at), first);
+    assert_eq!(points(at), before);
+    run_in(at, "horizon replay p.petro").done();
+    // Back before the first there is none; forward again nothing is computed anew.
+    for _ in 0..3 {
+        run_in(at, "undo p.petro").done();
+    }
+    assert!(key(at).is_empty() && !present(at));
+    run_in(at, "export p.petro points.csv --candidates").failed(&["no horizon candidates"]);
+    run_in(at, "redo p.petro").done();
+    assert_eq!(points(at), before);
+    let again = run_in(at, "extract p.petro --min-leaf-triangles 200 --json").done().json();
+    assert_eq!(again["computed"], true, "the undone extraction was forgotten with its step");
+    run_in(at, "prune p.petro").done();
+    let left = fs::read_dir(at.join("p.petro/derived")).unwrap().flatten();
+    let extractions = left.filter(|entry| entry.file_name().to_string_lossy().starts_with("candidates")).count();
+    assert_eq!(extractions, 1, "what no state names is gone");
 }

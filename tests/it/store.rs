@@ -109,7 +109,7 @@ fn a_killed_import_shows_nothing_and_goes_on() {
             .spawn()
             .unwrap();
         // The second column of shards is begun: the first is there to go on with.
-        let shard = at.join(".p.petro.new/importing/seismic.zarr.new/0/c/0/1/0");
+        let shard = at.join(".p.petro.new/importing/seismic.zarr/0/c/0/1/0");
         let begun = Instant::now();
         while !shard.exists() && child.try_wait().unwrap().is_none() && begun.elapsed() < Duration::from_secs(60) {
             std::thread::sleep(Duration::from_millis(1));

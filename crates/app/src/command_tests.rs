@@ -5,10 +5,10 @@ use super::tests::{Driven, click, document, open, state, wait};
 use eframe::egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
-use interp::faults::Proposal;
+use interp::faults::{Proposal, ProposeSettings};
 use project::Project;
-use project::command::{Command, PickFault};
-use project::interpretation::proposals::Proposals;
+use project::command::{Command, PickFault, ProposeFaults};
+use project::interpretation::proposals::{self, Proposals};
 use survey::{Contact, Progress, TriangleMesh};
 
 pub(super) fn act(harness: &mut Driven, action: Action) {
@@ -46,7 +46,7 @@ fn fault() -> Command {
 }
 
 /// Two proposals and a minor one for the horizons as they are, as looking for faults leaves them.
-fn proposed(project: &Project) {
+fn proposed(project: &mut Project) {
     let mesh = |x: f64| {
         let corner = |y: f64, z: f64| DVec3::new(x + z, y, z);
         let vertices = vec![corner(-50.0, 0.0), corner(550.0, 0.0), corner(550.0, 124.0), corner(-50.0, 124.0)];
@@ -70,18 +70,20 @@ fn proposed(project: &Project) {
         semblance: None,
     };
     let horizons = project.document().horizons.iter().map(|entry| entry.hash.clone()).collect();
-    let found = vec![proposal(1, 150.0), proposal(2, 350.0), proposal(3, 450.0)];
-    let proposals = Proposals { horizons, proposals: found, repeats: Vec::new(), unit: "ms".into() };
-    let folder = project.root().join("derived");
-    std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("fault-proposals.json"), serde_json::to_string(&proposals).unwrap()).unwrap();
+    let listed = vec![proposal(1, 150.0), proposal(2, 350.0), proposal(3, 450.0)];
+    let found = Proposals { horizons, proposals: listed, repeats: Vec::new(), unit: "ms".into() };
+    std::fs::create_dir_all(project.root().join("derived")).unwrap();
+    // What was found before is not looked for again.
+    let path = proposals::path(project.root(), project.document(), &ProposeSettings::default());
+    std::fs::write(path, serde_json::to_string(&found).unwrap()).unwrap();
+    project.apply(&Command::ProposeFaults(ProposeFaults::default()), &Progress::silent()).unwrap();
 }
 
 #[test]
 fn proposed_faults_are_accepted_and_dismissed() {
     let folder = tempfile::tempdir().unwrap();
     let root = super::tests::project(folder.path());
-    proposed(&Project::open(&root).unwrap());
+    proposed(&mut Project::open(&root).unwrap());
     let mut harness = super::tests::driven(folder.path(), Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
     click(&mut harness, "Interpret");

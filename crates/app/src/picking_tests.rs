@@ -8,20 +8,24 @@ use glam::DVec3;
 use interp::ExtractSettings;
 use interp::assembly::Operation;
 use project::Project;
-use project::command::{Climb, Command, PickNode};
+use project::command::{Climb, Command, Extract, PickNode};
 use std::path::Path;
 use survey::Progress;
 
 /// Leaves small enough that surfaces of 24 × 20 traces have several.
 const LEAF: u32 = 80;
 
+fn extract(project: &mut Project, settings: &ExtractSettings) {
+    let extract = Extract { volume: None, settings: settings.clone() };
+    project.apply(&Command::Extract(extract), &Progress::silent()).unwrap();
+}
+
 /// A window on a project with candidates, its interpretation read.
 pub(super) fn interpreting(folder: &Path) -> Driven {
     let root = project(folder);
     let mut settings = ExtractSettings::default();
     settings.forest.min_leaf_triangles = LEAF;
-    let quiet = Progress::silent();
-    project::interpretation::extraction::extract(&Project::open(&root).unwrap(), None, &settings, &quiet).unwrap();
+    extract(&mut Project::open(&root).unwrap(), &settings);
     let mut harness = driven(folder, Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
     click(&mut harness, "Interpret");
@@ -79,7 +83,7 @@ fn candidates_are_extracted_from_the_panel() {
     }
     click(&mut harness, "Extract");
     wait(&mut harness, "the surfaces are counted", |harness| harness.query_by_label_contains("surfaces,").is_some());
-    assert!(project::interpretation::extraction::candidates_path(&root).exists());
+    assert!(project::interpretation::extraction::present_path(&root).exists());
     harness.get_by_label("Extract again");
 }
 
@@ -117,7 +121,7 @@ fn a_click_on_a_section_selects_climbs_and_becomes_a_horizon_as_the_command_make
     settings.forest.min_leaf_triangles = LEAF;
     let quiet = Progress::silent();
     let mut by_command = Project::open(&root).unwrap();
-    project::interpretation::extraction::extract(&by_command, None, &settings, &quiet).unwrap();
+    extract(&mut by_command, &settings);
     let command = PickNode {
         at: pick.at,
         horizon: "Horizon 1".into(),
@@ -139,8 +143,7 @@ fn a_click_where_nothing_is_near_says_so() {
     let root = project(folder.path());
     let distance = interp::DistanceSettings { max_distance: 1.0 };
     let settings = ExtractSettings { distance, ..ExtractSettings::default() };
-    project::interpretation::extraction::extract(&Project::open(&root).unwrap(), None, &settings, &Progress::silent())
-        .unwrap();
+    extract(&mut Project::open(&root).unwrap(), &settings);
     let mut harness = driven(folder.path(), Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
     click(&mut harness, "Interpret");

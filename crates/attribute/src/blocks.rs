@@ -33,7 +33,8 @@ pub struct AttributeBlocks<'a> {
 }
 
 impl AttributeBlocks<'_> {
-    /// What a writer may use of `memory_bytes`, so that computing has the rest. Half of what the writer is given is its block.
+    /// What a writer may use of `memory_bytes`, so that computing has the rest. Half of what the writer is given is its
+    /// block.
     pub fn writer_memory(&self, memory_bytes: u64) -> u64 {
         memory_bytes * 2 / self.volumes_held
     }
@@ -90,7 +91,8 @@ pub fn dip_blocks<'a>(
     Ok([inline, crossline])
 }
 
-/// The angle of the reflections from the horizontal in degrees, from the two volumes of [`dip_blocks`] (see [`dip_angle`]).
+/// The angle of the reflections from the horizontal in degrees, from the two volumes of [`dip_blocks`] (see
+/// [`dip_angle`]).
 pub fn dip_angle_blocks<'a>(
     inline: &'a dyn BoxSource,
     crossline: &'a dyn BoxSource,
@@ -107,8 +109,8 @@ pub fn dip_angle_blocks<'a>(
     AttributeBlocks { size, live: inline.live(), volumes_held: ANGLE_VOLUMES_HELD, fill: Box::new(fill) }
 }
 
-/// Angle of the reflections from the horizontal in degrees: atan |∇z|, where ∇z in metres a metre solves ∇z·a = p, ∇z·b = q for the metric
-/// vectors a, b of a bin. Time becomes depth through the geometry's velocity.
+/// Angle of the reflections from the horizontal in degrees: atan |∇z|, where ∇z in metres a metre solves ∇z·a = p, ∇z·b
+/// = q for the metric vectors a, b of a bin. Time becomes depth through the geometry's velocity.
 pub fn dip_angle(dips: &DipVolumes, geometry: &SurveyGeometry) -> Volume<f32> {
     let metric = geometry.metric_from_voxel();
     let (a, b, sample_m) = (metric.x_axis, metric.y_axis, geometry.sample_m());

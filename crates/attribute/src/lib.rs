@@ -6,8 +6,8 @@
 //! | [`semblance()`] | how alike neighbouring traces are along the reflections: low at faults |
 //! | [`envelope()`] | how strong the reflections are, whatever their phase |
 //!
-//! These work on a volume in memory; [`blocks`] does the same to a volume of any size, part by part, wherever its parts come from and
-//! go to.
+//! These work on a volume in memory; [`blocks`] does the same to a volume of any size, part by part, wherever its parts
+//! come from and go to.
 //!
 //! Deliberately absent: files, the store, what an attribute is used for. No other crate knows the Fourier transform.
 

@@ -1,139 +1,13 @@
 //! Which column of a table is what: by the names in its header, or by what fits the survey.
 
-use super::options::{ZPositive, ZUnit};
+use super::column::{Column, NamedColumn, of_name};
 use super::raw::ReadContext;
 use super::text::SourceFile;
+use super::unit::{Domain, ZPositive, ZUnit};
 use super::{FormatError, SurfaceKind};
 use glam::{DVec2, DVec3};
-use serde::{Deserialize, Serialize};
-use survey::geometry::{SurveyGeometry, VerticalUnit};
+use survey::geometry::SurveyGeometry;
 use survey::horizon::Quality;
-
-/// What a column of a table holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Column {
-    /// Inline number.
-    Inline,
-    /// Crossline number.
-    Crossline,
-    /// World X.
-    X,
-    /// World Y.
-    Y,
-    /// Vertical value.
-    Z,
-    /// Name of the surface.
-    Name,
-    /// Number of a fault stick.
-    Stick,
-    /// Number of a node along its stick.
-    Node,
-    /// Number of a sheet.
-    Sheet,
-    /// How the depth came about, in the words of [`survey::Quality`].
-    Quality,
-    /// Anything else; not read.
-    Other,
-}
-
-impl Column {
-    /// Reads a column list as an option has it, `inline,crossline,z`; `-` or `_` for a column that is not read.
-    ///
-    /// # Errors
-    /// The word that is no column.
-    ///
-    /// ```
-    /// # use formats::Column;
-    /// assert_eq!(Column::parse_list("x,y,-,twt"), Ok(vec![Column::X, Column::Y, Column::Other, Column::Z]));
-    /// assert_eq!(Column::parse_list("x,why"), Err("why".to_string()));
-    /// ```
-    pub fn parse_list(text: &str) -> Result<Vec<Self>, String> {
-        text.split(',')
-            .map(|word| match word.trim() {
-                "-" | "_" | "other" => Ok(Self::Other),
-                word => match of_name(word).column {
-                    Self::Other => Err(word.to_string()),
-                    column => Ok(column),
-                },
-            })
-            .collect()
-    }
-}
-
-/// What a column's name tells.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct NamedColumn {
-    pub column: Column,
-    pub unit: Option<ZUnit>,
-    pub domain: Option<Domain>,
-    pub positive: Option<ZPositive>,
-}
-
-/// Time or depth, when a column's name says no more.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Domain {
-    Time,
-    Depth,
-}
-
-impl Domain {
-    pub fn of(unit: VerticalUnit) -> Self {
-        match unit {
-            VerticalUnit::Milliseconds => Self::Time,
-            VerticalUnit::Metres => Self::Depth,
-        }
-    }
-}
-
-/// Reads a column's name: `Inline`, `XL`, `twt_ms`, `Depth (ft)`, `"X"`, `INT,Inline` …
-pub(super) fn of_name(name: &str) -> NamedColumn {
-    let mut name = name.trim().trim_matches('"').to_ascii_lowercase();
-    // Petrel writes the type before the name.
-    if let Some((_, after)) = name.split_once(',') {
-        name = after.trim().to_string();
-    }
-    let mut unit = None;
-    if let Some(open) = name.find(['(', '[']) {
-        unit = ZUnit::parse(name[open + 1..].trim_end_matches([')', ']']));
-        // "X (easting)" is still X.
-        name.truncate(open);
-    }
-    let mut word: String = name.trim().replace([' ', '-', '.', '#'], "_").trim_matches('_').to_string();
-    if let Some((stem, suffix)) = word.rsplit_once('_')
-        && let Some(found) = ZUnit::parse(suffix)
-    {
-        unit = unit.or(Some(found));
-        word = stem.to_string();
-    }
-    let (column, domain, positive) = match word.as_str() {
-        "inline" | "iline" | "il" | "inl" | "in_line" | "inline_number" | "inline_no" | "inlineno" | "iline_no"
-        | "inline_3d" | "inline3d" | "i_line" => (Column::Inline, None, None),
-        "crossline" | "xline" | "xl" | "crl" | "cross_line" | "x_line" | "crossline_number" | "crossline_no"
-        | "crosslineno" | "xline_no" | "crossline_3d" | "crossline3d" => (Column::Crossline, None, None),
-        "x" | "easting" | "east" | "utmx" | "utm_x" | "x_utm" | "cdp_x" | "cdpx" | "x_coord" | "xcoord" | "coord_x"
-        | "x_coordinate" | "xcoordinate" | "x_world" | "world_x" => (Column::X, None, None),
-        "y" | "northing" | "north" | "utmy" | "utm_y" | "y_utm" | "cdp_y" | "cdpy" | "y_coord" | "ycoord"
-        | "coord_y" | "y_coordinate" | "ycoordinate" | "y_world" | "world_y" => (Column::Y, None, None),
-        "z" | "z_value" | "zvalue" | "value" | "z_coordinate" => (Column::Z, None, None),
-        "twt" | "time" | "twt_auto" | "twtime" | "two_way_time" | "t" => (Column::Z, Some(Domain::Time), None),
-        "depth" | "tvd" | "tvdss" | "z_depth" => (Column::Z, Some(Domain::Depth), None),
-        "elevation" | "elev" | "altitude" => (Column::Z, Some(Domain::Depth), Some(ZPositive::Up)),
-        "name" | "horizon" | "surface" | "fault" | "horizon_name" | "fault_name" | "surface_name" => {
-            (Column::Name, None, None)
-        }
-        "stick" | "stick_id" | "stick_number" | "stick_no" | "sticknr" | "segment" | "seg_id" | "stick_index" => {
-            (Column::Stick, None, None)
-        }
-        "node" | "knot" | "node_id" | "node_number" | "knot_number" | "node_no" | "node_index" => {
-            (Column::Node, None, None)
-        }
-        "sheet" | "sheet_index" => (Column::Sheet, None, None),
-        "quality" => (Column::Quality, None, None),
-        _ => (Column::Other, None, None),
-    };
-    NamedColumn { column, unit, domain, positive }
-}
 
 /// The qualities and their words in a table.
 const QUALITIES: [(Quality, &str); 5] = [
@@ -287,26 +161,6 @@ pub(super) fn is_inside(voxel: DVec2, geometry: &SurveyGeometry) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn names_of_many_programs() {
-        for (name, column) in [
-            ("Inline", Column::Inline),
-            ("XL", Column::Crossline),
-            ("\"X\"", Column::X),
-            ("INT,Crossline", Column::Crossline),
-            ("Y (NORTHING)", Column::Y),
-            ("twt_ms", Column::Z),
-            ("Depth (ft)", Column::Z),
-            ("stick#", Column::Stick),
-            ("Correlation", Column::Other),
-        ] {
-            assert_eq!(of_name(name).column, column, "{name}");
-        }
-        assert_eq!(of_name("twt_ms").unit, Some(ZUnit::Milliseconds));
-        assert_eq!(of_name("Depth (ft)").unit, Some(ZUnit::Feet));
-        assert_eq!(of_name("elevation").positive, Some(ZPositive::Up));
-    }
 
     #[test]
     fn the_vertical_column_of_the_surveys_domain_is_taken() {

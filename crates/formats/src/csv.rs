@@ -7,6 +7,7 @@
 //!
 //! Written: `inline,crossline,x,y,twt_ms,sheet,quality` (or `depth_m`), a row per node with a depth.
 
+use super::column::{Column, of_name};
 use super::columns::{self, ColumnLayout};
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
@@ -52,7 +53,7 @@ fn cut_of(first: &str, second: &str) -> Cut {
 fn is_header(line: &str, cut: Cut) -> bool {
     let fields = cut.fields(line);
     let words = fields.iter().filter(|f| cut.number(f.text).is_none() && f.text.chars().any(char::is_alphabetic));
-    let known = words.clone().filter(|f| columns::of_name(f.text).column != columns::Column::Other).count();
+    let known = words.clone().filter(|f| of_name(f.text).column != Column::Other).count();
     known >= 2 || words.count() > fields.len() / 2
 }
 

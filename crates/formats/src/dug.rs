@@ -4,10 +4,12 @@
 //! names the columns (`.ilclt`, `.ilclz`, `.xyt`, `.xyz`). Under another name they are inline and crossline when all rows are whole numbers within the
 //! subgrid, else those that fit the survey.
 
-use super::columns::{Column, ColumnLayout, Domain};
+use super::column::Column;
+use super::columns::ColumnLayout;
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
 use super::text::{self, Line, SourceFile};
+use super::unit::Domain;
 use super::{Codec, Format, FormatError};
 
 pub(super) const CODEC: Codec = Codec {

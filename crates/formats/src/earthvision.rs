@@ -2,11 +2,12 @@
 //!
 //! `# Field: n name unit` lines list the columns, `# Null_value:` the null, `# Z_units:` the unit; `# End:` ends the header.
 
-use super::columns::{self, Column, ColumnLayout};
-use super::options::ZUnit;
+use super::column::{self, Column};
+use super::columns::ColumnLayout;
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
 use super::text::{self, SourceFile};
+use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 
 pub(super) const CODEC: Codec = Codec {
@@ -39,7 +40,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         match key.trim() {
             "Field" => {
                 let mut words = value.split_whitespace().skip(1);
-                let column = words.next().map_or(Column::Other, |name| columns::of_name(name).column);
+                let column = words.next().map_or(Column::Other, |name| column::of_name(name).column);
                 names.push(column);
                 let unit = words.next().and_then(ZUnit::parse).filter(|_| column == Column::Z);
                 layout.unit = unit.map(|u| (u, format!("Field: {value}"))).or(layout.unit);

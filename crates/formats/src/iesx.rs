@@ -4,10 +4,10 @@
 //! is passed over; `EOD` ends it. Rows have fixed columns `X Y (16 each) 3 3 Z (9) 10 10 crossline (5) value (14)`, then ` I` and the
 //! inline; fields of full width touch. Magnitudes from 1e29 on are undefined.
 
-use super::options::ZUnit;
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::table::UNDEFINED;
 use super::text::{self, Line, SourceFile};
+use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 use glam::DVec2;
 

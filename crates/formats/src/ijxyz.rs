@@ -2,11 +2,12 @@
 //!
 //! `#Horizon_name___-> name` and `#Export_Z_Unit___-> unit` state name and unit.
 
-use super::columns::{Column, ColumnLayout};
-use super::options::ZUnit;
+use super::column::Column;
+use super::columns::ColumnLayout;
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
 use super::text::{self, SourceFile};
+use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 
 pub(super) const CODEC: Codec = Codec {

@@ -1,4 +1,9 @@
-//! Horizon and fault files, in and out.
+//! Files of horizons and faults, in and out, and of wells ([`well`]).
+//!
+//! SEG-Y is read by the crate `segy`: the two share nothing but the nouns of [`survey`] and what can be stated about a
+//! file ([`survey::remedy`]).
+//!
+//! Deliberately absent: volumes, the store, projects.
 //!
 //! A file goes through the same steps whatever its format: its signature names the format ([`Format`], with the evidence in
 //! the report), its reader hands over numbers as they are, these are converted ([`ImportOptions`] states the order), placed on
@@ -22,6 +27,7 @@
 
 mod bounds;
 mod charisma;
+mod column;
 mod columns;
 mod cps3;
 mod csv;
@@ -54,6 +60,7 @@ mod sticks;
 mod table;
 mod text;
 mod tsurf;
+mod unit;
 mod unrotated;
 mod vertical;
 pub mod well;
@@ -62,12 +69,13 @@ mod zmap;
 mod zmap_points;
 
 pub use bounds::{Bounds, InterpretationFile, bounds_of, survey_from_points};
-pub use columns::Column;
+pub use column::Column;
 pub use describe::{FileDescription, SurfaceDescription, describe};
 pub use error::{Extent, FormatError};
 pub use export::{ExportOptions, ExportReport, WhenRotated};
-pub use options::{ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUnit};
+pub use options::{ImportOptions, PlaceBy, ValueOrder};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
+pub use unit::{ZPositive, ZUnit};
 
 use glam::DVec3;
 use raw::{RawSurface, ReadContext};

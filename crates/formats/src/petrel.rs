@@ -4,10 +4,10 @@
 //! Petrel usually writes Z negative downwards, which the file does not state: the sign is an option. −999 is its null.
 
 use super::columns;
-use super::options::ZUnit;
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
 use super::text::{self, SourceFile};
+use super::unit::ZUnit;
 use super::{Codec, Format, FormatError};
 
 pub(super) const CODEC: Codec = Codec {

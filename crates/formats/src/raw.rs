@@ -1,8 +1,8 @@
 //! What a format's reader hands over: names and numbers as they are in the file, before any conversion.
 
 use super::SurfaceKind;
-use super::columns::Domain;
-use super::options::{ImportOptions, ZPositive, ZUnit};
+use super::options::ImportOptions;
+use super::unit::{Domain, ZPositive, ZUnit};
 use glam::DVec2;
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{NodeGrid, Quality};

@@ -1,6 +1,6 @@
 //! What was read, what was assumed and what was left out: shown to the user after every import.
 
-use super::options::{ZPositive, ZUnit};
+use super::unit::{ZPositive, ZUnit};
 use super::{Format, SurfaceKind};
 use serde::Serialize;
 use std::fmt;

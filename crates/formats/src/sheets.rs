@@ -116,6 +116,9 @@ impl PartialEq for Claim {
     }
 }
 
+/// The label of a value that no group has reached.
+const NO_GROUP: u32 = u32::MAX;
+
 impl Eq for Claim {}
 
 /// The sheet of every value, from 0. `neighbours(n)` are the nodes next to n. O(n log n).
@@ -152,7 +155,7 @@ pub(super) fn split(values: &NodeValues, neighbours: &dyn Fn(usize) -> Vec<usize
     edges.iter().for_each(|&(_, a, b)| groups.join(a, b));
 
     // (b) Every other value goes to the group it is reached from most smoothly.
-    let none = u32::MAX;
+    let none = NO_GROUP;
     let mut label = vec![none; values.z.len()];
     let mut heap = BinaryHeap::new();
     for (n, &(_, e)) in members.iter().enumerate() {
@@ -200,9 +203,15 @@ pub(super) fn split(values: &NodeValues, neighbours: &dyn Fn(usize) -> Vec<usize
     contacts.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
     contacts.iter().for_each(|&(_, (a, b))| groups.join(a, b));
 
-    // (d) Pack into sheets, the largest first; values no group reaches go to the first sheet.
+    // (d) Pack what is left into sheets.
+    pack(&mut groups, &mut label)
+}
+
+/// Packs groups into sheets, the largest first, and answers the sheet of every value; values no group reaches go to the
+/// first sheet.
+fn pack(groups: &mut Groups, label: &mut [u32]) -> Vec<u16> {
     let mut sizes: HashMap<u32, usize> = HashMap::new();
-    for l in label.iter_mut().filter(|l| **l != none) {
+    for l in label.iter_mut().filter(|l| **l != NO_GROUP) {
         *l = groups.root(*l);
         *sizes.entry(*l).or_default() += 1;
     }

@@ -1,7 +1,8 @@
 //! Rows of a text table to points, once its columns are known.
 
 use super::FormatError;
-use super::columns::{self, Column, ColumnLayout};
+use super::column::Column;
+use super::columns::{self, ColumnLayout};
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Field, Line, SourceFile};
 use glam::DVec2;

@@ -7,10 +7,9 @@
 //!
 //! Written with ZPOSITIVE Depth, a TFACE per sheet, and CNXYZ at each vertex, which strict readers ask for.
 
-use super::columns;
-use super::options::{ZPositive, ZUnit};
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
+use super::unit::{Domain, ZPositive, ZUnit};
 use super::write::Failure;
 use super::{Codec, Format, FormatError};
 use glam::{DVec2, DVec3};
@@ -187,8 +186,8 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
 
 fn write_head(out: &mut dyn Write, name: &str, geometry: &SurveyGeometry) -> std::io::Result<()> {
     let unit = geometry.vertical.unit.symbol();
-    let domain = columns::Domain::of(geometry.vertical.unit);
-    let axis = if domain == columns::Domain::Time { "TWT" } else { "Z" };
+    let domain = Domain::of(geometry.vertical.unit);
+    let axis = if domain == Domain::Time { "TWT" } else { "Z" };
     writeln!(out, "GOCAD TSurf 1\nHEADER {{\nname:{}\n}}", name.replace(['\n', '\r', '{', '}'], " "))?;
     writeln!(out, "GOCAD_ORIGINAL_COORDINATE_SYSTEM\nNAME Default\nAXIS_NAME \"X\" \"Y\" \"{axis}\"")?;
     writeln!(out, "AXIS_UNIT \"m\" \"m\" \"{unit}\"\nZPOSITIVE Depth\nEND_ORIGINAL_COORDINATE_SYSTEM")

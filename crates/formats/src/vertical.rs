@@ -4,10 +4,11 @@
 //! else from the file's own words, else they are assumed (survey's unit, positive down) and the report says so. A result
 //! outside the survey's range is refused, with the option that would make it fit when one would.
 
-use super::columns::Domain;
-use super::options::{ImportOptions, ZPositive, ZUnit};
+use super::options::ImportOptions;
 use super::raw::{RawShape, VerticalFacts};
 use super::report::{Provenance, Settled};
+use super::unit::Domain;
+use super::unit::{ZPositive, ZUnit};
 use super::{FormatError, SurfaceKind};
 use std::path::Path;
 use survey::geometry::{VerticalAxis, VerticalUnit};

@@ -1,7 +1,8 @@
 //! From a volume to horizon candidates: surfaces, their trees, and for every voxel the closest leaf.
 //!
-//! [`extract`] keeps the result in memory; [`extract_into`] hands it over slab by slab, for volumes larger than memory too: growing reads
-//! slabs ([`SlabSource`]), and of distances one slab is in memory at a time. Both give the same candidates. Space: voxels.
+//! [`extract`] keeps the result in memory; [`extract_into`] hands it over slab by slab, for volumes larger than memory
+//! too: growing reads slabs ([`SlabSource`]), and of distances one slab is in memory at a time. Both give the same
+//! candidates. Space: voxels.
 
 #[cfg(test)]
 mod tests;
@@ -150,8 +151,8 @@ where
     Ok(Extraction { forest, candidates, report })
 }
 
-/// Extracts the candidates of a volume slab by slab into a sink, which `begin` makes for a size and a count of leaves; `key` identifies
-/// source and settings.
+/// Extracts the candidates of a volume slab by slab into a sink, which `begin` makes for a size and a count of leaves;
+/// `key` identifies source and settings.
 ///
 /// # Errors
 /// As [`extract`], and [`Error::Sink`]; the sink is then dropped before its end.

@@ -1,8 +1,10 @@
 //! Rapid interpretation: from a raw volume to interpreted horizons (P-horiz 4 and 5.3).
 //!
-//! Everything here is in voxel space: x = inline index, y = crossline index, z = sample index, z down; distances are in voxels.
+//! Everything here is in voxel space: x = inline index, y = crossline index, z = sample index, z down; distances are in
+//! voxels.
 //!
-//! A volume comes from any [`survey::source::SlabSource`], candidates go into any [`survey::candidates::CandidateSink`].
+//! A volume comes from any [`survey::source::SlabSource`], candidates go into any
+//! [`survey::candidates::CandidateSink`].
 //!
 //! Deliberately absent: files, the store, projects, pictures.
 

@@ -34,6 +34,7 @@
 pub(crate) mod closed_form;
 mod contacts;
 mod extension;
+mod lattice;
 mod network;
 mod nodes;
 mod order;

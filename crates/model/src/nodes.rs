@@ -3,63 +3,14 @@
 //! Sheets on other grids are resampled by the Catmull–Rom bicubic of their own nodes; a cell takes part only when its four corners are of one
 //! block, so that nothing is interpolated across a fault. Nodes too close to a fault, or picked on the wrong side of it, are left out.
 
+use super::lattice::{Lattice, Node};
 use super::network::FaultNetwork;
 use super::report::{ModelNote, ModelReport};
 use super::settings::ModelSettings;
 use super::strays;
-use glam::{DMat2, DVec2, Vec3};
+use glam::{DMat2, DVec2};
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, Quality, Sheet};
-
-/// The survey lattice and its margin: node n is voxel (origin + (n / size[1], n % size[1])).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Lattice {
-    pub origin: [i32; 2],
-    pub size: [usize; 2],
-}
-
-impl Lattice {
-    pub fn with_margin(size: [usize; 3], margin: usize) -> Self {
-        Self { origin: [-(margin as i32); 2], size: [size[0] + 2 * margin, size[1] + 2 * margin] }
-    }
-
-    pub fn len(&self) -> usize {
-        self.size[0] * self.size[1]
-    }
-
-    /// Voxel (x, y) of node `n`.
-    pub fn voxel(&self, n: usize) -> [i32; 2] {
-        [self.origin[0] + (n / self.size[1]) as i32, self.origin[1] + (n % self.size[1]) as i32]
-    }
-
-    /// Whether node `n` lies over the volume, not in the margin.
-    pub fn is_inside(&self, n: usize) -> bool {
-        self.voxel(n).iter().zip(self.size).zip(self.origin).all(|((&c, n), o)| c >= 0 && c < n as i32 + 2 * o)
-    }
-
-    /// Position at height `z` over node `n`.
-    pub fn place(&self, n: usize, z: f32) -> Vec3 {
-        let [x, y] = self.voxel(n);
-        Vec3::new(x as f32, y as f32, z)
-    }
-}
-
-/// One interpreted node.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Node {
-    /// Lattice node.
-    pub at: u32,
-    /// Height, voxel z.
-    pub z: f32,
-    pub quality: Quality,
-    pub block: u16,
-    /// Side of every fault.
-    pub bits: u64,
-    /// Faults that are virtual beside it: it lies beyond their tip.
-    pub beyond: u64,
-    /// Close enough to a real fault that it may have been picked on its other side.
-    pub doubtful: bool,
-}
 
 /// Nodes within this many voxels of a real fault are doubtful when the interpretation does not say which block they belong to.
 const DOUBTFUL_VOXELS: f64 = 4.0;

@@ -5,8 +5,8 @@
 //! sheets and resolved by the contact rules (the younger horizon ends at the older).
 
 use super::contacts::ContactRules;
+use super::lattice::Lattice;
 use super::network::FaultNetwork;
-use super::nodes::Lattice;
 use super::report::{ModelError, ModelNote};
 use super::settings::ModelSettings;
 use super::sheets::ExtendedSheet;

@@ -5,8 +5,9 @@
 //! ([`super::extension`]). A horizon without data in a block is placed by the thickness or proportion it has elsewhere.
 
 use super::extension::{Extension, Plane};
+use super::lattice::{Lattice, Node};
 use super::network::FaultNetwork;
-use super::nodes::{Lattice, Node, Nodes};
+use super::nodes::Nodes;
 use super::report::{ModelNote, Placement};
 use super::settings::ModelSettings;
 use rayon::prelude::*;

@@ -5,7 +5,7 @@
 //! nodes by more than 1.5 voxels, and that of another block fits it at least four times as well.
 
 use super::extension::LocalFits;
-use super::nodes::{Lattice, Node};
+use super::lattice::{Lattice, Node};
 
 /// Undoubted nodes are looked for within this many nodes.
 const REACH: i32 = 8;

@@ -1,8 +1,9 @@
 //! The structural model: sheets, faults and contact rules together.
 
 use super::contacts::ContactRules;
+use super::lattice::Lattice;
 use super::network::FaultNetwork;
-use super::nodes::{Lattice, Nodes, gather};
+use super::nodes::{Nodes, gather};
 use super::order::keep_order;
 use super::report::{ModelError, ModelNote, ModelReport};
 use super::settings::ModelSettings;

@@ -1,16 +1,16 @@
 //! How much memory there is.
 
-use std::fs;
+use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-/// Used where the system does not say what is available.
-const UNKNOWN: u64 = 2 << 30;
+/// Enough for a section of any survey, where a system of a kind that cannot be asked runs the program.
+const UNKNOWN: u64 = 1 << 30;
 
-/// Half of the memory that is available now, bytes.
+/// Half of the memory that is available now, bytes; of a control group's limit where one is set.
 pub fn half_of_available() -> u64 {
-    let text = fs::read_to_string("/proc/meminfo").unwrap_or_default();
-    let line = text.lines().find_map(|line| line.strip_prefix("MemAvailable:"));
-    let kilobytes = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
-    kilobytes.map_or(UNKNOWN, |kilobytes| kilobytes * 1024 / 2)
+    let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
+    let Ok(system) = System::new_with_specifics(memory) else { return UNKNOWN };
+    let limit = system.cgroup_limits().map_or(u64::MAX, |limits| limits.free_memory);
+    system.available_memory().min(limit) / 2
 }
 
 /// Bytes of `2G`, `512M`, `800K` or a plain number.

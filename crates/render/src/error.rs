@@ -174,3 +174,14 @@ pub enum RenderError {
         reason: String,
     },
 }
+
+/// A scene that shows surfaces of k' without an interpretation.
+pub(crate) const NO_DEPTHS: RenderError = RenderError::Missing {
+    what: "horizons for surfaces of k'",
+    remedy: "add horizons and parameterize the project, or name a volume",
+};
+/// A scene that shows candidates which are not there.
+pub(crate) const NO_CANDIDATES: RenderError = RenderError::Missing {
+    what: "horizon candidates",
+    remedy: "extract them first, or leave leaves and distances out of the scene",
+};

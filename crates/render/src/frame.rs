@@ -1,7 +1,7 @@
 //! A scene and its inputs, checked and resolved: what both renderers start from.
 
 use crate::camera::View;
-use crate::error::RenderError;
+use crate::error::{NO_CANDIDATES, RenderError};
 use crate::ground::Relief;
 use crate::inputs::{Candidates, Inputs, NamedVolume};
 use crate::leaves::FaceData;
@@ -23,17 +23,6 @@ use ttf::{RawColour, TtfTables};
 pub const MAX_VOLUMES: usize = 6;
 /// Colour under raw data where there is nothing else.
 const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
-
-/// A scene that shows surfaces of k' without an interpretation.
-pub(crate) const NO_DEPTHS: RenderError = RenderError::Missing {
-    what: "horizons for surfaces of k'",
-    remedy: "add horizons and parameterize the project, or name a volume",
-};
-/// A scene that shows candidates which are not there.
-pub(crate) const NO_CANDIDATES: RenderError = RenderError::Missing {
-    what: "horizon candidates",
-    remedy: "extract them first, or leave leaves and distances out of the scene",
-};
 
 /// Everything a picture needs, with names resolved.
 pub(crate) struct Frame<'a> {

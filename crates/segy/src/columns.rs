@@ -9,7 +9,8 @@ use std::borrow::Cow;
 
 use rayon::prelude::*;
 
-use super::header::{Field, NumberType, Traces, reinterpret};
+use super::header::{Field, Traces, reinterpret};
+use super::number_type::NumberType;
 use super::sample::ByteOrder;
 use survey::progress::{Cancelled, Progress};
 

@@ -9,16 +9,17 @@
 use std::borrow::Cow;
 
 use rayon::prelude::*;
-use serde::Serialize;
 
 use super::SegyOptions;
 use super::bins::{self, Bins};
+use super::candidate::{Candidate, Verdict};
 use super::columns::{Column, Columns};
 use super::coordinates::{coordinate_fields, locate};
 use super::error::SegyProblem;
-use super::header::{Field, NO_INTEGER, NumberType, at};
-use super::info::{Findings, LineSummary};
+use super::header::{Field, NO_INTEGER, at};
+use super::info::Findings;
 use super::lines::{Flaw, Lattice};
+use super::number_type::NumberType;
 use super::options::LineSource;
 use super::refuse;
 use survey::remedy::{Note, Remedy, Setting};
@@ -51,129 +52,6 @@ const MAX_DUPLICATES: f64 = 0.1;
 /// Least share of filled places for a known convention, and for a pair that no convention knows.
 const MIN_FILL: f64 = 0.05;
 const MIN_FILL_UNKNOWN: f64 = 0.25;
-
-/// What a pair of fields turned out to be.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// A lattice of lines.
-    Fits,
-    /// A lattice, but X and Y are not affine in it.
-    ContradictsCoordinates,
-    /// Both are 0 throughout.
-    AllZero,
-    /// The inline number is constant.
-    ConstantInline(i32),
-    /// The crossline number is constant.
-    ConstantCrossline(i32),
-    /// The numbers are too large for lines.
-    TooLarge,
-    /// Too many places are empty.
-    Scattered,
-    /// Many traces repeat the numbers of another one.
-    Repeated,
-    /// Every trace has an inline and a crossline number of its own.
-    Diagonal,
-    /// One of the numbers is different in every trace: it counts traces.
-    Counter,
-}
-
-/// A pair of trace header bytes that was looked at, and what was found there.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Candidate {
-    /// Byte of the inline number.
-    pub inline_byte: u16,
-    /// Byte of the crossline number.
-    pub crossline_byte: u16,
-    /// How both are stored.
-    pub number_type: NumberType,
-    /// Who writes it so; empty if no convention known here does.
-    pub convention: &'static str,
-    /// What it is.
-    pub verdict: Verdict,
-    /// The inlines it would make.
-    pub inlines: Option<LineSummary>,
-    /// The crosslines it would make.
-    pub crosslines: Option<LineSummary>,
-    /// Share of the lattice's places that hold a trace.
-    pub filled: f64,
-    /// Share of the traces that repeat a place.
-    pub repeated: f64,
-    /// Root mean square distance of X and Y from an affine map of the numbers, in bins.
-    pub residual_bins: Option<f64>,
-    /// 0 to 1: filled × not repeated × agreement with X and Y.
-    pub score: f64,
-}
-
-impl Candidate {
-    /// One clause for a list: `bytes 9 and 21: all zero`.
-    pub fn as_sentence(&self) -> String {
-        let found = match (self.verdict, &self.inlines, &self.crosslines) {
-            (Verdict::AllZero, ..) => "all zero".to_owned(),
-            (Verdict::ConstantInline(number), ..) => format!("the inline number is {number} throughout"),
-            (Verdict::ConstantCrossline(number), ..) => format!("the crossline number is {number} throughout"),
-            (Verdict::TooLarge, ..) => "numbers too large for lines".to_owned(),
-            (Verdict::Scattered, ..) => "numbers too scattered for lines".to_owned(),
-            (Verdict::Diagonal, ..) => "both numbers are different in every trace".to_owned(),
-            (Verdict::Counter, ..) => "one number is different in every trace, and counts traces".to_owned(),
-            (Verdict::Repeated, ..) => format!("{:.0} % of the traces repeat a place", 100.0 * self.repeated),
-            (verdict, Some(inlines), Some(crosslines)) => {
-                let contradiction =
-                    if verdict == Verdict::Fits { "" } else { ", but X and Y do not lie on such a lattice" };
-                format!(
-                    "{} inlines {inlines} by {} crosslines {crosslines}, {:.1} % filled{contradiction}",
-                    inlines.count,
-                    crosslines.count,
-                    100.0 * self.filled
-                )
-            }
-            _ => "nothing".to_owned(),
-        };
-        format!("bytes {} and {}{}: {found}", self.inline_byte, self.crossline_byte, self.in_type(" as "))
-    }
-
-    /// The type of the numbers behind `words`; nothing for the standard's.
-    fn in_type(&self, words: &str) -> String {
-        if self.number_type == NumberType::I32 { String::new() } else { format!("{words}{}", self.number_type.name()) }
-    }
-
-    /// What it gives, in a few words.
-    pub fn as_choice(&self) -> String {
-        let size = |lines: &Option<LineSummary>| lines.map_or_else(String::new, |l| format!("{} ({l})", l.count));
-        format!(
-            "bytes {} and {}{} for {} inlines and {} crosslines",
-            self.inline_byte,
-            self.crossline_byte,
-            self.in_type(" as "),
-            size(&self.inlines),
-            size(&self.crosslines)
-        )
-    }
-
-    /// What chooses it.
-    pub fn remedy(&self) -> Remedy {
-        let bytes =
-            [Setting::InlineByte.stated_as(self.inline_byte), Setting::CrosslineByte.stated_as(self.crossline_byte)];
-        let own_type =
-            (self.number_type != NumberType::I32).then(|| Setting::LineType.stated_as(self.number_type.name()));
-        Remedy::all(bytes.into_iter().chain(own_type))
-    }
-
-    fn fits(&self) -> bool {
-        self.verdict == Verdict::Fits
-    }
-
-    fn swapped(&self) -> Self {
-        Self {
-            inline_byte: self.crossline_byte,
-            crossline_byte: self.inline_byte,
-            convention: "",
-            inlines: self.crosslines,
-            crosslines: self.inlines,
-            ..self.clone()
-        }
-    }
-}
 
 /// The reading that was chosen.
 #[derive(Debug)]

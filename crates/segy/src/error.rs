@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::detect::Candidate;
+use super::candidate::Candidate;
 use survey::geometry::GeometryError;
 use survey::progress::Cancelled;
 use survey::remedy::{Remedy, Setting};

@@ -1,15 +1,17 @@
 //! What a SEG-Y file holds, for people and for `--json`.
 
-use std::fmt;
 use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::detect::Candidate;
+use super::candidate::{Candidate, LineSummary};
 use super::sample::{ByteOrder, SampleFormat};
 use super::text::TextEncoding;
 use survey::geometry::LineAxis;
 use survey::remedy::Note;
+
+/// Metres in an international foot.
+pub(super) const METRES_PER_FOOT: f64 = 0.3048;
 
 /// Unit of the vertical axis in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -68,37 +70,8 @@ impl LengthUnit {
     pub fn metres(self) -> f64 {
         match self {
             Self::Metres => 1.0,
-            Self::Feet => super::vertical::METRES_PER_FOOT,
+            Self::Feet => METRES_PER_FOOT,
         }
-    }
-}
-
-/// Numbered lines, as shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct LineSummary {
-    /// Number of the first line.
-    pub first: i32,
-    /// Number of the last line.
-    pub last: i32,
-    /// Difference between neighbours; negative if the file counts down.
-    pub step: i32,
-    /// Count of lines, missing ones among them.
-    pub count: usize,
-}
-
-impl From<LineAxis> for LineSummary {
-    fn from(axis: LineAxis) -> Self {
-        Self { first: axis.first, last: axis.last(), step: axis.step, count: axis.count }
-    }
-}
-
-impl fmt::Display for LineSummary {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}..{}", self.first, self.last)?;
-        if self.step != 1 && self.count > 1 {
-            write!(f, " step {}", self.step)?;
-        }
-        Ok(())
     }
 }
 

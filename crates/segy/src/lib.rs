@@ -5,6 +5,12 @@
 //! be assumed, and what does not fit together. [`SegyOptions`] states what the file does not say. What is not a
 //! post-stack volume is refused by a [`SegyProblem`] that says what it is.
 //!
+//! Traces and samples are read here; horizons, faults and wells by the crate `formats`. The two share nothing but the
+//! nouns of [`survey`] and what can be stated about a file ([`survey::remedy`]), so they are two crates. A volume that
+//! does not fit into memory is handed over block by block ([`SegyFile::blocks`], a [`survey::source::BlockSource`]).
+//!
+//! Deliberately absent: the store, projects, pre-stack data and single lines.
+//!
 //! Our own reader, since the crates at hand read neither little-endian files nor several of the formats, and leave
 //! detection to the caller.
 //!
@@ -28,6 +34,7 @@
 
 mod bins;
 mod block;
+mod candidate;
 mod columns;
 mod coordinates;
 mod detect;
@@ -39,6 +46,7 @@ mod info;
 mod lines;
 mod map;
 mod neighbours;
+mod number_type;
 mod options;
 mod page;
 mod place;
@@ -56,11 +64,11 @@ mod tests;
 use std::path::Path;
 
 pub use block::SegyBlocks;
-pub use detect::{Candidate, Verdict};
+pub use candidate::{Candidate, LineSummary, Verdict};
 pub use error::{SegyError, SegyProblem};
 pub use file::SegyFile;
-pub use header::NumberType;
-pub use info::{BytePositions, Corner, FileUnit, GeometrySummary, LengthUnit, LineSummary, SegyInfo};
+pub use info::{BytePositions, Corner, FileUnit, GeometrySummary, LengthUnit, SegyInfo};
+pub use number_type::NumberType;
 pub use options::{KeptDuplicate, LineSource, SegyOptions, TraceWeight};
 pub use read::{Amplitudes, SegyVolume};
 pub use sample::{ByteOrder, SampleFormat, f32_from_ibm, ibm_from_f32};
@@ -73,7 +81,8 @@ use survey::progress::Progress;
 /// Reads all headers of a file: what it holds, without its samples.
 ///
 /// # Errors
-/// [`SegyError`] when the file is not a post-stack 3D volume. A single trace is described here, and refused by [`read`].
+/// [`SegyError`] when the file is not a post-stack 3D volume. A single trace is described here, and refused by
+/// [`read`].
 pub fn scan(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyInfo, SegyError> {
     Ok(SegyFile::open(path, options, progress)?.info().clone())
 }

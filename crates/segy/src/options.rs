@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::header::NumberType;
 use super::info::{FileUnit, LengthUnit};
+use super::number_type::NumberType;
 use super::sample::{ByteOrder, SampleFormat};
 
 /// What the trace weighting factor N at byte 169 does. The standard (revisions 1 and 2) calls it 2^−N volts for the

@@ -1,8 +1,8 @@
 //! What is not a post-stack 3D volume, told by its trace headers.
 
 use super::SegyOptions;
+use super::candidate::{Candidate, Verdict};
 use super::columns::Columns;
-use super::detect::{Candidate, Verdict};
 use super::error::SegyProblem;
 use super::header::{Field, at};
 use super::lines::Lattice;

@@ -8,15 +8,12 @@ use super::columns::{Column, Columns};
 use super::error::SegyProblem;
 use super::frame::Frame;
 use super::header::{Field, at};
-use super::info::{FileUnit, Findings, LengthUnit};
+use super::info::{FileUnit, Findings, LengthUnit, METRES_PER_FOOT};
 use survey::geometry::{VerticalAxis, VerticalUnit};
 use survey::remedy::{Note, Setting};
 
 /// Traces that start later than the earliest one may lengthen the volume to this many times their own length.
 const MAX_LENGTHENING: usize = 4;
-
-/// Metres in an international foot.
-pub(super) const METRES_PER_FOOT: f64 = 0.3048;
 
 /// The vertical axis in the file's unit.
 #[derive(Debug, Clone)]

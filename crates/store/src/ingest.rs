@@ -1,9 +1,10 @@
-//! Writing volumes: level 0 block by block, then level after level, in memory that is bounded whatever the volume's size.
+//! Writing volumes: level 0 block by block, then level after level, in memory that is bounded whatever the volume's
+//! size.
 //!
-//! A block is a range of inlines and of crosslines with all their samples, whole shards of them, as many as half the memory holds; its shards
-//! are written by all threads. Each further level is made shard by shard from the level before. [`resume_blocks`] keeps the shards that an
-//! earlier call, ended by a kill or a power cut, left whole: shards get their names only when they are complete, and their
-//! checksums are verified before they are kept.
+//! A block is a range of inlines and of crosslines with all their samples, whole shards of them, as many as half the
+//! memory holds; its shards are written by all threads. Each further level is made shard by shard from the level
+//! before. [`resume_blocks`] keeps the shards that an earlier call, ended by a kill or a power cut, left whole: shards
+//! get their names only when they are complete, and their checksums are verified before they are kept.
 
 use super::array::{create_volume, write_array, write_group};
 use super::error::StoreError;
@@ -14,7 +15,7 @@ use super::ranges::{BrickRanges, IndexedRanges, Samples};
 use super::replacement::Replacement;
 use super::sample::StoredSample;
 use super::shard::{ShardGrid, Shards};
-use super::volume::{KIND, VolumeInfo};
+use super::volume_info::{KIND, VolumeInfo};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::fs;
@@ -29,7 +30,8 @@ use survey::volume::Volume;
 /// Says in a folder what is being written to it; gone when the volume is complete.
 const MARKER: &str = "unfinished";
 
-/// Bytes that making one shard of a further level takes at most: the mapped files of 262³ samples, and what they become.
+/// Bytes that making one shard of a further level takes at most: the mapped files of 262³ samples, and what they
+/// become.
 const LEVEL_BYTES: u64 = 160 << 20;
 
 /// Shards of a further level that a thread makes, at most, before files are unmapped.
@@ -79,8 +81,8 @@ pub fn write_volume<T: StoredSample>(
     replacement.commit()
 }
 
-/// Stores what a source hands over block by block, in its own order and type, in at most `memory_bytes` (where a column of shards needs no
-/// more).
+/// Stores what a source hands over block by block, in its own order and type, in at most `memory_bytes` (where a column
+/// of shards needs no more).
 ///
 /// # Errors
 /// [`StoreError`], [`StoreError::Source`] for what the source answers; `path` is then what it was before.
@@ -97,12 +99,14 @@ pub fn write_blocks(
     Ok(done)
 }
 
-/// Stores what a source hands over as [`write_blocks`] does, but into `path` itself, and goes on where an earlier call with the same
+/// Stores what a source hands over as [`write_blocks`] does, but into `path` itself, and goes on where an earlier call
+/// with the same
 /// `fingerprint` was interrupted; what is there under another fingerprint is removed first. The fingerprint stands for the source and everything
 /// that was said about it.
 ///
 /// # Errors
-/// [`StoreError`]; what was written then stays for the next call, and is no volume that [`super::StoredVolume::open`] opens.
+/// [`StoreError`]; what was written then stays for the next call, and is no volume that [`super::StoredVolume::open`]
+/// opens.
 pub fn resume_blocks(
     path: &Path,
     fingerprint: &str,

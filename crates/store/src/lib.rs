@@ -9,14 +9,15 @@
 //! derived/candidates.zarr         CandidateWriter, StoredCandidates
 //! ```
 //!
-//! Everything is written under another name beside its place, synced and renamed at the very end ([`Replacement`]): a crash, a
-//! cancelled write or a full disk leaves what was there before.
+//! Everything is written under another name beside its place, synced and renamed at the very end ([`Replacement`]): a
+//! crash, a cancelled write or a full disk leaves what was there before.
 //!
 //! Volumes that do not fit into memory come from whoever implements [`survey::source::BlockSource`], candidates through
-//! [`survey::candidates::CandidateSink`]; neither is known here by name. The array library (zarrs) is known to `array` and `sample` alone,
-//! and to no other crate.
+//! [`survey::candidates::CandidateSink`]; neither is known here by name. The array library (zarrs) is known to `array`
+//! and `sample` alone, and to no other crate.
 //!
-//! Deliberately absent: files of other programs, what a project is, any computation on what is stored but pyramids and their ranges.
+//! Deliberately absent: files of other programs, what a project is, any computation on what is stored but pyramids and
+//! their ranges.
 
 mod array;
 mod candidates;
@@ -35,6 +36,7 @@ mod shard;
 #[cfg(test)]
 mod tests;
 mod volume;
+mod volume_info;
 mod well;
 
 pub use array::{ArrayWriter, StoredArray, read_group, write_array, write_group};
@@ -48,5 +50,6 @@ pub use layout::{BRICK, Layout};
 pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
 pub use replacement::{Replacement, replace_file};
 pub use sample::StoredSample;
-pub use volume::{StoredVolume, VolumeInfo};
+pub use volume::StoredVolume;
+pub use volume_info::VolumeInfo;
 pub use well::{read_well, write_well};

@@ -19,43 +19,14 @@ use super::ingest::is_unfinished;
 use super::layout::BRICK;
 use super::pyramid::halved;
 use super::sample::StoredSample;
+use super::volume_info::{KIND, VolumeInfo};
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use survey::geometry::SurveyGeometry;
 use survey::progress::Progress;
 use survey::source::{BoxSource, SlabSource, SourceError};
 use survey::volume::Volume;
-
-/// Kind of the group.
-pub(super) const KIND: &str = "volume";
-
-/// What is known of a volume beside its samples.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct VolumeInfo {
-    /// Its lattice.
-    pub geometry: SurveyGeometry,
-    /// What was measured: "amplitude", "acoustic impedance", …
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub quantity: Option<String>,
-    /// Unit of the samples.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unit: Option<String>,
-    /// "normal" (SEG: more impedance below is positive) or "reverse".
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub polarity: Option<String>,
-    /// Where it came from.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub source: Option<String>,
-}
-
-impl VolumeInfo {
-    /// Nothing known but the lattice.
-    pub fn of(geometry: SurveyGeometry) -> Self {
-        Self { geometry, quantity: None, unit: None, polarity: None, source: None }
-    }
-}
 
 /// A volume on disk.
 pub struct StoredVolume {

@@ -1,5 +1,5 @@
-//! Horizon candidates as whoever finds them and whoever keeps them hand them to one another: for every voxel the distance to the closest
-//! surface and its leaf, and the surfaces and their trees as tables.
+//! Horizon candidates as whoever finds them and whoever keeps them hand them to one another: for every voxel the
+//! distance to the closest surface and its leaf, and the surfaces and their trees as tables.
 
 use crate::progress::Progress;
 use crate::source::SourceError;

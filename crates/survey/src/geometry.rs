@@ -30,11 +30,13 @@ impl LineAxis {
     }
 
     /// Fractional index of a (fractional) line number.
+    #[inline]
     pub fn index_of(&self, number: f64) -> f64 {
         (number - f64::from(self.first)) / f64::from(self.step)
     }
 
     /// Line number at a fractional index.
+    #[inline]
     pub fn number_at(&self, index: f64) -> f64 {
         f64::from(self.first) + index * f64::from(self.step)
     }
@@ -81,11 +83,13 @@ impl VerticalAxis {
     }
 
     /// Fractional sample index of a vertical value.
+    #[inline]
     pub fn index_of(&self, value: f64) -> f64 {
         (value - self.first) / self.interval
     }
 
     /// Vertical value at a fractional sample index.
+    #[inline]
     pub fn value_at(&self, index: f64) -> f64 {
         self.first + index * self.interval
     }
@@ -200,28 +204,33 @@ impl SurveyGeometry {
     }
 
     /// Counts `[inlines, crosslines, samples]`.
+    #[inline]
     pub fn size(&self) -> [usize; 3] {
         [self.inlines.count, self.crosslines.count, self.vertical.count]
     }
 
     /// World X, Y (m) and vertical value of a voxel position.
+    #[inline]
     pub fn world_from_voxel(&self, voxel: DVec3) -> DVec3 {
         let xy = self.origin + self.inline_vector * voxel.x + self.crossline_vector * voxel.y;
         xy.extend(self.vertical.value_at(voxel.z))
     }
 
     /// Voxel position of world X, Y (m) and a vertical value.
+    #[inline]
     pub fn voxel_from_world(&self, world: DVec3) -> DVec3 {
         let map = DMat2::from_cols(self.inline_vector, self.crossline_vector).inverse();
         (map * (world.truncate() - self.origin)).extend(self.vertical.index_of(world.z))
     }
 
     /// Voxel x, y of a pair of line numbers.
+    #[inline]
     pub fn voxel_from_lines(&self, inline: f64, crossline: f64) -> DVec2 {
         DVec2::new(self.inlines.index_of(inline), self.crosslines.index_of(crossline))
     }
 
     /// Inline and crossline number (fractional) of voxel x, y.
+    #[inline]
     pub fn lines_from_voxel(&self, voxel: DVec2) -> DVec2 {
         DVec2::new(self.inlines.number_at(voxel.x), self.crosslines.number_at(voxel.y))
     }

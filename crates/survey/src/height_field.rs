@@ -29,6 +29,7 @@ pub struct HeightSample {
 }
 
 /// Catmull–Rom weights of the four nodes around a cell, with first and second derivatives, at fraction t.
+#[inline]
 fn cubic(t: f32) -> [[f32; 4]; 3] {
     let (t2, t3) = (t * t, t * t * t);
     [
@@ -64,6 +65,7 @@ impl HeightField {
     }
 
     /// Height of the node at integer voxel (x, y), continued linearly outside the grid.
+    #[inline]
     pub fn node(&self, x: i32, y: i32) -> f32 {
         let (u, v) = (x - self.origin[0], y - self.origin[1]);
         let (nu, nv) = (self.size[0] as i32, self.size[1] as i32);
@@ -93,6 +95,7 @@ impl HeightField {
     }
 
     /// The 4 × 4 nodes around voxel (x, y) and the fractions inside the cell.
+    #[inline]
     fn patch(&self, x: f32, y: f32) -> ([[f32; 4]; 4], f32, f32) {
         let (x0, y0) = (x.floor(), y.floor());
         let (fx, fy) = (x - x0, y - y0);
@@ -115,6 +118,7 @@ impl HeightField {
     }
 
     /// Height at voxel (x, y), voxel z.
+    #[inline]
     pub fn z_at(&self, x: f32, y: f32) -> f32 {
         let (patch, fx, fy) = self.patch(x, y);
         let (wx, wy) = (cubic(fx)[0], cubic(fy)[0]);
@@ -123,6 +127,7 @@ impl HeightField {
     }
 
     /// Height and its first and second derivatives at voxel (x, y).
+    #[inline]
     pub fn sample(&self, x: f32, y: f32) -> HeightSample {
         let (patch, fx, fy) = self.patch(x, y);
         let (wx, wy) = (cubic(fx), cubic(fy));

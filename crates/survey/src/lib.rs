@@ -2,9 +2,9 @@
 //!
 //! Everything the other crates share lives here: where a sample is ([`geometry`]), what was measured
 //! ([`volume`], [`well`]), what was interpreted ([`horizon`], [`fault`], [`stratigraphy`]), the surfaces they are
-//! evaluated on ([`height_field`], [`mesh`]), what was found in a volume ([`candidates`]), how long work reports and is cancelled
-//! ([`progress`]), what can be stated about a file ([`remedy`]), and how samples are handed on when they do not all fit into memory
-//! ([`source`]).
+//! evaluated on ([`height_field`], [`mesh`]), what was found in a volume ([`candidates`]), how long work reports and is
+//! cancelled ([`progress`]), what can be stated about a file ([`remedy`]), and how samples are handed on when they do
+//! not all fit into memory ([`source`]).
 //!
 //! Deliberately absent: files and formats, the store, any algorithm on more than one of these nouns.
 //!

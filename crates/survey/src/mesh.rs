@@ -14,6 +14,7 @@ pub struct TriangleMesh {
 
 impl TriangleMesh {
     /// The corners of triangle `index`.
+    #[inline]
     pub fn corners(&self, index: usize) -> [DVec3; 3] {
         self.triangles[index].map(|v| self.vertices[v as usize])
     }

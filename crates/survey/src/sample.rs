@@ -69,13 +69,16 @@ macro_rules! integer_sample {
     ($type:ident, $variant:ident) => {
         impl Sample for $type {
             const TYPE: SampleType = SampleType::$variant;
+            #[inline]
             fn to_f32(self) -> f32 {
                 self as f32
             }
+            #[inline]
             fn from_f32(value: f32) -> Self {
                 // The cast saturates and sends NaN to 0.
                 value.round() as Self
             }
+            #[inline]
             fn slots(slots: &mut [Self]) -> SamplesMut<'_> {
                 SamplesMut::$variant(slots)
             }
@@ -92,12 +95,15 @@ integer_sample!(u32, Uint32);
 
 impl Sample for f32 {
     const TYPE: SampleType = SampleType::Float32;
+    #[inline]
     fn to_f32(self) -> f32 {
         self
     }
+    #[inline]
     fn from_f32(value: f32) -> Self {
         value
     }
+    #[inline]
     fn slots(slots: &mut [Self]) -> SamplesMut<'_> {
         SamplesMut::Float32(slots)
     }

@@ -121,8 +121,8 @@ pub trait BlockSource {
     /// The type of the samples.
     fn sample_type(&self) -> SampleType;
 
-    /// Fills `out` with the samples of a block, `[inline][crossline][sample]`. What `out` holds before is anything, its type is
-    /// [`BlockSource::sample_type`].
+    /// Fills `out` with the samples of a block, `[inline][crossline][sample]`. What `out` holds before is anything, its
+    /// type is [`BlockSource::sample_type`].
     ///
     /// # Errors
     /// What the source says, or cancelled.

@@ -1,5 +1,5 @@
-//! A synthetic survey with exact truth: folds, an angular unconformity, a normal, a reverse and a dying-out fault, seismic
-//! with noise, and an acoustic impedance volume of another size and a smaller extent (P-illus 5.1).
+//! A synthetic survey with exact truth: folds, an angular unconformity, a normal, a reverse and a dying-out fault,
+//! seismic with noise, and an acoustic impedance volume of another size and a smaller extent (P-illus 5.1).
 //!
 //! | part | where |
 //! |---|---|

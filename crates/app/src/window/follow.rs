@@ -145,7 +145,7 @@ impl Window {
             layer: self.layers.draft().cloned(),
             raw: self.functions.draft().cloned(),
             exaggeration: session.view.scene.exaggeration,
-            seen: Seen::of(&session.view.scene.media),
+            seen: Seen::of(&session.view.scene),
             interpreting: (session.view.panel == Panel::Interpret).then(extraction),
         }
     }

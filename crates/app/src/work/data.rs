@@ -13,7 +13,7 @@ use project::error::ProjectError;
 use project::picture::load::{self, Loaded};
 use project::{derived, styles};
 use render::media::{LayerOpacity, MediumColour, white_ramp};
-use render::{FaceData, Media, Medium, PickedHorizon, Scene};
+use render::{FaceData, Medium, PickedHorizon, Scene};
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError, RwLock};
 use survey::Progress;
@@ -57,10 +57,11 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What a scene's media show.
-    pub fn of(media: &Media) -> Self {
-        let mut volumes: Vec<String> = media.all().map(|medium| medium.volume.clone()).collect();
-        let mut horizons: Vec<String> = media.horizons.iter().filter_map(|horizon| horizon.name.clone()).collect();
+    /// What a scene shows within the block.
+    pub fn of(scene: &Scene) -> Self {
+        let mut volumes: Vec<String> = load::volumes_within(scene).map(str::to_owned).collect();
+        let mut horizons: Vec<String> =
+            scene.media.horizons.iter().filter_map(|horizon| horizon.name.clone()).collect();
         for names in [&mut volumes, &mut horizons] {
             names.sort();
             names.dedup();
@@ -257,4 +258,36 @@ fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
     loaded.raw = functions.raw;
     loaded.version = load::new_version();
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use render::{Isosurface, Scalar};
+    use ttf::RgbaFunction;
+
+    #[test]
+    fn a_view_lists_every_volume_it_shows() {
+        let mut scene = Scene::default();
+        assert_eq!(Seen::of(&scene), Seen::default());
+        let of = Scalar::Volume("impedance".into());
+        scene.media.isosurfaces.push(Isosurface {
+            of,
+            value: 1.0,
+            colour: Colour::WHITE,
+            opacity: 1.0,
+            thickness: 1.0,
+        });
+        let paint = render::media::Paint {
+            volume: "dip".into(),
+            function: RgbaFunction::over(ttf::ColourMap::Grey, [0.0, 1.0]),
+        };
+        let horizon = PickedHorizon { name: Some("Top".into()), ..PickedHorizon::of(Vec::new(), Colour::WHITE) };
+        scene.media.horizons.push(PickedHorizon { paint: Some(paint), ..horizon });
+        let seen = Seen::of(&scene);
+        assert_eq!(
+            (seen.volumes, seen.horizons),
+            (vec!["dip".to_owned(), "impedance".to_owned()], vec!["Top".to_owned()])
+        );
+    }
 }

@@ -184,11 +184,8 @@ fn measure(case: &Case, folder: &Path, truth: &Truth) -> Measured {
 
 #[test]
 fn every_file_of_horizon_b_reproduces_the_truth_and_the_table_says_so() {
-    let Ok(dir) = std::env::var("PETROGLYPH_DATA") else {
-        eprintln!("skipped: PETROGLYPH_DATA is not set");
-        return;
-    };
-    let folder = PathBuf::from(dir).join("interpretation/penobscot_horizon_B");
+    let Some(data) = testdata::folder() else { return };
+    let folder = data.join("interpretation/penobscot_horizon_B");
     let truth = Truth::open(&folder);
     let mut text = String::from(
         "# One horizon in thirteen files\n\n\

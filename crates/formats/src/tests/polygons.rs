@@ -5,11 +5,7 @@ use std::collections::BTreeSet;
 use survey::geometry::VerticalUnit;
 
 fn folder() -> Option<PathBuf> {
-    let Ok(dir) = std::env::var("PETROGLYPH_DATA") else {
-        eprintln!("skipped: PETROGLYPH_DATA is not set");
-        return None;
-    };
-    Some(PathBuf::from(dir).join("interpretation/xtgeo"))
+    Some(testdata::folder()?.join("interpretation/xtgeo"))
 }
 
 const NAMES: [&str; 2] =

@@ -7,11 +7,7 @@ use survey::remedy::Setting;
 
 /// The folder of interpretations; None, said so, without `PETROGLYPH_DATA`.
 fn interpretation() -> Option<PathBuf> {
-    let Ok(dir) = std::env::var("PETROGLYPH_DATA") else {
-        eprintln!("skipped: PETROGLYPH_DATA is not set");
-        return None;
-    };
-    Some(PathBuf::from(dir).join("interpretation"))
+    Some(testdata::folder()?.join("interpretation"))
 }
 
 /// Penobscot: IL 1207–1456, XL 1253–1402, and the time of horizon B per trace, `[inline][crossline]`.

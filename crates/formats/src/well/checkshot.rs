@@ -5,9 +5,9 @@
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
-use super::read::WellOptions;
+use super::options::WellOptions;
 use super::table::Table;
-use crate::options::ZUnit;
+use crate::unit::ZUnit;
 use std::path::Path;
 use survey::remedy::Note;
 use survey::well::{Checkshot, WellPath};

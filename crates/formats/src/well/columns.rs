@@ -1,6 +1,6 @@
 //! What the columns of well tables hold, by their names.
 
-use crate::options::ZUnit;
+use crate::unit::ZUnit;
 
 /// A column of a deviation, tops or checkshot table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

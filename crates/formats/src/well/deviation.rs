@@ -12,7 +12,7 @@
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
-use super::read::WellOptions;
+use super::options::WellOptions;
 use super::table::Table;
 use glam::{DVec2, DVec3};
 use std::path::Path;
@@ -194,7 +194,7 @@ impl Reading<'_> {
         let Some(at) = self.table.position(column) else { return Ok(None) };
         // X, Y are in the survey's metres unless their name says otherwise, whatever the unit of depths.
         let told = match column {
-            WellColumn::X | WellColumn::Y => self.table.units[at].or(Some(crate::options::ZUnit::Metres)),
+            WellColumn::X | WellColumn::Y => self.table.units[at].or(Some(crate::unit::ZUnit::Metres)),
             _ => self.options.md_unit,
         };
         let to_m = self.table.length_to_m(at, told, &mut self.notes)?;

@@ -9,6 +9,7 @@ mod describe;
 mod deviation;
 mod error;
 mod las;
+mod options;
 mod read;
 mod table;
 #[cfg(test)]
@@ -20,5 +21,6 @@ pub use describe::{WellColumnDescription, WellFileDescription, WellFileKind, des
 pub use deviation::{Deviation, parse_deviation};
 pub use error::WellFileError;
 pub use las::{Las, LasItem, parse_las};
-pub use read::{WellFiles, WellOptions, WellReport, read_well};
+pub use options::WellOptions;
+pub use read::{WellFiles, WellReport, read_well};
 pub use tops::{TopRow, parse_tops};

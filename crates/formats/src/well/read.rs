@@ -4,9 +4,9 @@ use super::checkshot::parse_checkshot;
 use super::deviation::parse_deviation;
 use super::error::WellFileError;
 use super::las::{Las, parse_las};
+use super::options::WellOptions;
 use super::table::FOOT_M;
 use super::tops::{on_path, parse_tops};
-use crate::options::ZUnit;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use survey::remedy::Note;
@@ -27,22 +27,6 @@ pub struct WellFiles {
     /// Time–depth table.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checkshot: Option<PathBuf>,
-}
-
-/// What the user says about a well's files; everything has a default.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[serde(default)]
-pub struct WellOptions {
-    /// Name of the well; it also chooses rows of files that hold several wells.
-    pub name: Option<String>,
-    /// Name of the well in such files, when it is another.
-    pub well_in_file: Option<String>,
-    /// X, Y of the head, m; `None` = as the deviation file says.
-    pub head: Option<[f64; 2]>,
-    /// Height of the datum above mean sea level, m; `None` = as the file says, else 0, with a warning.
-    pub datum_m: Option<f64>,
-    /// Unit of lengths along the well where columns do not say; `None` = metres, reported.
-    pub md_unit: Option<ZUnit>,
 }
 
 /// What was read and assumed.
@@ -126,52 +110,7 @@ fn log_set(
     checkshot: Option<&Checkshot>,
     report: &mut WellReport,
 ) -> Result<LogSet, WellFileError> {
-    let index = &las.curves[0];
-    let unusable = |instead, needs_checkshot| WellFileError::LasIndex {
-        file: file.to_owned(),
-        mnemonic: index.mnemonic.clone(),
-        unit: index.unit.clone(),
-        instead,
-        needs_checkshot,
-    };
-    let word = index.mnemonic.to_ascii_uppercase();
-    let vertical = ["TVD", "TVDSS"].iter().any(|w| word == *w);
-    let unit = index.unit.to_ascii_uppercase();
-    let to_m = match unit.as_str() {
-        "M" | "METER" | "METERS" | "METRE" | "METRES" => Some(1.0),
-        "F" | "FT" | "FEET" | "FOOT" => Some(FOOT_M),
-        ".1IN" | "0.1IN" => Some(0.00254),
-        "CM" => Some(0.01),
-        _ => None,
-    };
-    let to_ms = match unit.as_str() {
-        "MS" | "MSEC" => Some(1.0),
-        "S" | "SEC" => Some(1000.0),
-        _ => None,
-    };
-    let axis = &las.data[0];
-    let mut md_m: Vec<f64> = if let Some(to_m) = to_m {
-        let lengths = axis.iter().map(|v| v * to_m);
-        if vertical {
-            report.notes.push(format!("{word} of the log was laid onto the path").into());
-            let datum = if word == "TVD" { path.datum_m() } else { 0.0 };
-            lengths.map(|v| path.mds_at_tvdss(v - datum).first().copied().unwrap_or(f64::NAN)).collect()
-        } else {
-            lengths.collect()
-        }
-    } else if let Some(to_ms) = to_ms {
-        if !word.contains("TWT") && word != "TIME" {
-            return Err(unusable("only depths and two-way times can be laid along a well", false));
-        }
-        let Some(checkshot) = checkshot else {
-            return Err(unusable("a log in two-way time needs the well's checkshots", true));
-        };
-        report.notes.push("the log's two-way times were laid onto the path through the checkshots".into());
-        let md = |t: f64| path.mds_at_tvdss(checkshot.tvdss_at_twt(t * to_ms)).first().copied().unwrap_or(f64::NAN);
-        axis.iter().map(|t| md(*t)).collect()
-    } else {
-        return Err(unusable("an index in M, FT, MS or S is expected: export the log again", false));
-    };
+    let mut md_m = index_md(file, las, path, checkshot, report)?;
     let falling = md_m.iter().rev().find(|v| v.is_finite()) < md_m.iter().find(|v| v.is_finite());
     let mut order: Vec<usize> = (0..md_m.len()).filter(|&n| md_m[n].is_finite()).collect();
     if falling {
@@ -219,6 +158,62 @@ fn log_set(
     md_m = order.iter().map(|&n| md_m[n]).collect();
     let source = file.file_name().map_or_else(|| "log".into(), |n| n.to_string_lossy().into_owned());
     Ok(LogSet { source, md_m, curves })
+}
+
+/// Measured depth of every sample of a log, m; NaN where the index does not meet the well.
+fn index_md(
+    file: &Path,
+    las: &Las,
+    path: &WellPath,
+    checkshot: Option<&Checkshot>,
+    report: &mut WellReport,
+) -> Result<Vec<f64>, WellFileError> {
+    let index = &las.curves[0];
+    let unusable = |instead, needs_checkshot| WellFileError::LasIndex {
+        file: file.to_owned(),
+        mnemonic: index.mnemonic.clone(),
+        unit: index.unit.clone(),
+        instead,
+        needs_checkshot,
+    };
+    let word = index.mnemonic.to_ascii_uppercase();
+    let vertical = ["TVD", "TVDSS"].iter().any(|w| word == *w);
+    let unit = index.unit.to_ascii_uppercase();
+    let to_m = match unit.as_str() {
+        "M" | "METER" | "METERS" | "METRE" | "METRES" => Some(1.0),
+        "F" | "FT" | "FEET" | "FOOT" => Some(FOOT_M),
+        ".1IN" | "0.1IN" => Some(0.00254),
+        "CM" => Some(0.01),
+        _ => None,
+    };
+    let to_ms = match unit.as_str() {
+        "MS" | "MSEC" => Some(1.0),
+        "S" | "SEC" => Some(1000.0),
+        _ => None,
+    };
+    let axis = &las.data[0];
+    Ok(if let Some(to_m) = to_m {
+        let lengths = axis.iter().map(|v| v * to_m);
+        if vertical {
+            report.notes.push(format!("{word} of the log was laid onto the path").into());
+            let datum = if word == "TVD" { path.datum_m() } else { 0.0 };
+            lengths.map(|v| path.mds_at_tvdss(v - datum).first().copied().unwrap_or(f64::NAN)).collect()
+        } else {
+            lengths.collect()
+        }
+    } else if let Some(to_ms) = to_ms {
+        if !word.contains("TWT") && word != "TIME" {
+            return Err(unusable("only depths and two-way times can be laid along a well", false));
+        }
+        let Some(checkshot) = checkshot else {
+            return Err(unusable("a log in two-way time needs the well's checkshots", true));
+        };
+        report.notes.push("the log's two-way times were laid onto the path through the checkshots".into());
+        let md = |t: f64| path.mds_at_tvdss(checkshot.tvdss_at_twt(t * to_ms)).first().copied().unwrap_or(f64::NAN);
+        axis.iter().map(|t| md(*t)).collect()
+    } else {
+        return Err(unusable("an index in M, FT, MS or S is expected: export the log again", false));
+    })
 }
 
 /// Whether STRT and STOP are those of the data.

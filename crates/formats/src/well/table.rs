@@ -5,9 +5,9 @@
 
 use super::columns::{self, WellColumn};
 use super::error::WellFileError;
-use crate::options::ZUnit;
 use crate::table::{Cut, is_comment};
 use crate::text::{self, Field, Line, excerpt};
+use crate::unit::ZUnit;
 use std::path::{Path, PathBuf};
 use survey::remedy::{Note, Setting};
 

@@ -5,7 +5,7 @@
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
-use super::read::WellOptions;
+use super::options::WellOptions;
 use super::table::Table;
 use crate::text;
 use std::path::Path;

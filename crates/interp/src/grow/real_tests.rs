@@ -4,17 +4,8 @@ use super::{GrowSettings, grow_surfaces};
 use crate::surfaces::{Surface, Surfaces};
 use segy::SegyOptions;
 use std::collections::HashMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use survey::{Progress, Volume};
-
-/// The folder of the real data, if it is known.
-fn data() -> Option<PathBuf> {
-    let folder = std::env::var_os("PETROGLYPH_DATA").map(PathBuf::from);
-    if folder.is_none() {
-        eprintln!("skipped: PETROGLYPH_DATA is not set");
-    }
-    folder
-}
 
 fn grown(file: &Path) -> (Volume<f32>, Surfaces) {
     let volume = segy::read(file, &SegyOptions::default(), &Progress::silent()).unwrap().volume;
@@ -32,7 +23,7 @@ fn layers(surfaces: &Surfaces, surface: &Surface) -> f64 {
 
 #[test]
 fn surfaces_around_a_salt_dome_follow_strong_reflectors_and_not_one_another() {
-    let Some(data) = data() else { return };
+    let Some(data) = testdata::folder() else { return };
     let (volume, surfaces) = grown(&data.join("volumes/f3_depth_il300-427_xl720-975_int16.sgy"));
     let (mut layered, mut strong) = (0, 0);
     for surface in &surfaces.surfaces {
@@ -51,7 +42,7 @@ fn surfaces_around_a_salt_dome_follow_strong_reflectors_and_not_one_another() {
 
 #[test]
 fn few_surfaces_cover_a_faulted_horizon() {
-    let Some(data) = data() else { return };
+    let Some(data) = testdata::folder() else { return };
     let (_, surfaces) = grown(&data.join("volumes/penobscot_il1207-1456_xl1253-1402_t876-1032_int16.sgy"));
     let truth =
         std::fs::read_to_string(data.join("interpretation/penobscot_horizon_B/truth_il_xl_x_y_twt.csv")).unwrap();

@@ -41,7 +41,7 @@ impl FillHorizon {
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let result = match draft.document.horizons[index].assembly.clone() {
             Some(mut log) => {
-                let candidates = Candidates::load(draft.root(), progress)?;
+                let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
                 log.fill = Some(self.settings);
                 rebuild(draft, &candidates, &blocks, &self.name, log, progress)?
             }

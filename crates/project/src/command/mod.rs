@@ -6,6 +6,7 @@
 
 mod attribute;
 mod contact;
+mod extract;
 mod fault;
 mod fault_pick;
 mod fill;
@@ -21,6 +22,7 @@ mod well;
 
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
+pub use extract::{Extract, ProposeFaults};
 pub use fault::{AddFault, FaultAdded, RemoveFault, SetTruncation};
 pub use fault_pick::{AcceptFault, PickFault};
 pub use fill::{FillHorizon, HorizonFilled};
@@ -37,9 +39,11 @@ pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
 pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
 
-use crate::document::Source;
+use crate::document::{Document, Source};
 use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
+use crate::interpretation::extraction::Extracted;
+use crate::interpretation::proposals::Proposals;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use survey::{Progress, SurveyGeometry};
@@ -59,6 +63,10 @@ pub enum Command {
     Import(ImportVolume),
     /// Compute a volume from a volume.
     Attribute(ComputeAttribute),
+    /// Extract horizon candidates from a volume.
+    Extract(Extract),
+    /// Look for faults in the horizons.
+    ProposeFaults(ProposeFaults),
     /// Take a volume away.
     RemoveVolume(RemoveVolume),
     /// Read a horizon.
@@ -129,6 +137,10 @@ pub enum Effect {
     VolumeImported(VolumeImported),
     /// Volumes were computed.
     AttributeComputed(AttributeComputed),
+    /// There are candidates to pick from.
+    Extracted(Box<Extracted>),
+    /// Faults were looked for.
+    FaultsProposed(Box<Proposals>),
     /// A horizon is in the project.
     HorizonAdded(Box<HorizonAdded>),
     /// A node was added to a horizon or taken out, or a pick was moved.
@@ -149,12 +161,24 @@ pub enum Effect {
 }
 
 impl Command {
+    /// Computes what takes long and needs no lock, and keeps it where [`Command::execute`] finds it; answers whether there was
+    /// anything to compute.
+    pub(crate) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
+        match self {
+            Self::Extract(change) => change.prepare(root, document, progress),
+            Self::ProposeFaults(change) => change.prepare(root, document, progress),
+            _ => Ok(false),
+        }
+    }
+
     /// Does what it says to the draft.
     pub(crate) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         match self {
             Self::Create { .. } => Err(ProjectError::Exists { path: draft.root().to_owned() }),
             Self::Import(change) => change.execute(draft, progress),
             Self::Attribute(change) => change.execute(draft, progress),
+            Self::Extract(change) => change.execute(draft, progress),
+            Self::ProposeFaults(change) => change.execute(draft, progress),
             Self::RemoveVolume(change) => change.execute(draft),
             Self::AddHorizon(change) => change.execute(draft, progress),
             Self::RenameHorizon(change) => change.execute(draft),
@@ -189,12 +213,27 @@ impl Command {
 }
 
 impl Effect {
+    /// Whether the command may have found everything as it wants it; such a command is no step of the history.
+    pub(crate) fn is_nothing_new(&self) -> bool {
+        matches!(self, Self::Extracted(_) | Self::FaultsProposed(_))
+    }
+
+    /// Tells that something was computed before the command was carried out.
+    pub(crate) fn after_computing(mut self, computed: bool) -> Self {
+        if let Self::Extracted(extracted) = &mut self {
+            extracted.computed |= computed;
+        }
+        self
+    }
+
     /// What happened, in a few words for the history.
     pub fn summary(&self) -> String {
         match self {
             Self::Created => "create".to_owned(),
             Self::VolumeImported(done) => format!("import volume {}", done.volume),
             Self::AttributeComputed(done) => format!("{} of {}", done.attribute, done.of),
+            Self::Extracted(done) => format!("candidates of {}", done.volume),
+            Self::FaultsProposed(done) => format!("{} faults proposed", done.proposals.len()),
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
             Self::Picked(done) => format!("pick {} of {}", done.pick, done.horizon),
             Self::Replayed(done) => format!("{} picks made again", done.picks.len()),
@@ -227,6 +266,8 @@ impl std::fmt::Display for Effect {
                 done.assumptions.iter().try_for_each(|line| writeln!(f, "  assumed: {line}"))
             }
             Self::AttributeComputed(done) => write!(f, "{done}"),
+            Self::Extracted(done) => write!(f, "{done}"),
+            Self::FaultsProposed(done) => write!(f, "{done}"),
             Self::HorizonAdded(done) => write!(f, "{}", done.report),
             Self::Picked(done) => write!(f, "{done}"),
             Self::Replayed(done) => write!(f, "{done}"),

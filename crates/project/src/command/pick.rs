@@ -173,7 +173,7 @@ fn climbed(
 impl PickNode {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let mut log = self.log(draft)?;
-        let candidates = Candidates::load(draft.root(), progress)?;
+        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let id = next_id(draft);
         let stopped_by = self.enter(&mut log, id, draft.document.frame()?, &candidates, &blocks)?;
@@ -260,7 +260,7 @@ impl PickNodes {
             return Err(ProjectError::SeveralHorizons { horizons: [first.horizon.clone(), other.horizon.clone()] });
         }
         let mut log = first.log(draft)?;
-        let candidates = Candidates::load(draft.root(), progress)?;
+        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let id = next_id(draft);
         for (n, pick) in self.picks.iter().enumerate() {
@@ -282,7 +282,7 @@ impl RemovePick {
     pub(super) fn execute(self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let (name, mut log, place) = find(draft, self.id)?;
         log.picks.remove(place);
-        let candidates = Candidates::load(draft.root(), progress)?;
+        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         rebuild(draft, &candidates, &blocks, &name, log, progress)?;
         Ok(Effect::Changed { summary: format!("pick {} taken back", self.id) })
@@ -331,7 +331,7 @@ fn next_id(draft: &Draft) -> u32 {
 impl MovePick {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let (name, mut log, place) = find(draft, self.id)?;
-        let candidates = Candidates::load(draft.root(), progress)?;
+        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         // Refuses a log of another extraction.
         assembly::selection(&name, &log, &candidates)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
@@ -377,7 +377,7 @@ impl ReplayPicks {
             .filter(|entry| wanted(&entry.name))
             .filter_map(|entry| Some((entry.name.clone(), entry.assembly.clone()?)))
             .collect();
-        let candidates = Candidates::load(draft.root(), progress)?;
+        let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let mut done = Replayed { picks: Vec::new(), horizons: Vec::new() };
         for (name, mut log) in logs {

@@ -8,14 +8,13 @@ pub mod survey_files;
 
 use crate::Project;
 use crate::command::{
-    AddFault, AddScene, Climb, Command, Effect, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
+    AddFault, AddScene, Climb, Command, Effect, Extract, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
 };
 use crate::content;
 use crate::document::Polarity;
 use crate::error::{Noun, ProjectError};
 use crate::interpretation::assembly::blocks;
 use crate::interpretation::candidates::Candidates;
-use crate::interpretation::extraction;
 use crate::picture::load::{self, Stage};
 use crate::picture::{self, Device, Painter};
 use ::synth::SynthSettings;
@@ -100,8 +99,10 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
     done.steps.push(format!("imported volumes and faults into {}", done.project.display()));
     done.stages.push(stage.lap("import"));
 
-    let extracted = extraction::extract(&project, None, &ExtractSettings::default(), progress)?;
-    done.steps.push(format!("found {} candidates with {} leaves", extracted.report.surfaces, extracted.report.leaves));
+    let extract = Extract { volume: None, settings: ExtractSettings::default() };
+    if let Effect::Extracted(found) = project.apply(&Command::Extract(extract), progress)? {
+        done.steps.push(format!("found {} candidates with {} leaves", found.report.surfaces, found.report.leaves));
+    }
     done.stages.push(stage.lap("candidates"));
     let picks = assemble(&mut project, &files, progress)?;
     done.steps.push(format!("assembled {} horizons by {picks} picks", files.horizons.len()));
@@ -176,7 +177,7 @@ fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> 
     let truth = survey_files::read_truth(&files.truth)?;
     let frame = project.document().frame()?.clone();
     // Held for all picks, so that none has to make them anew.
-    let _candidates = Candidates::load(project.root(), progress)?;
+    let _candidates = Candidates::load(project.root(), project.document(), progress)?;
     let _blocks = blocks(project.root(), project.document(), progress)?;
     let mut picks = 0;
     for (h, horizon) in files.horizons.iter().enumerate() {

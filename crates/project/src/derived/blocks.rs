@@ -1,7 +1,7 @@
 //! Fault blocks, kept: `blocks-KEY.bin`. Making them takes longer than all else that one pick needs.
 
 use super::kept::{Kind, damaged, read_array, read_header, write_header};
-use super::key_of;
+use super::{key_of, revision};
 use crate::document::Document;
 use glam::{DMat3, DVec3};
 use model::{BlockSignature, FaultNetwork, FaultSurface, ModelSettings, Truncation};
@@ -19,13 +19,13 @@ const FRAME: usize = 13;
 pub fn blocks_key(document: &Document, model: &ModelSettings) -> String {
     #[derive(Serialize)]
     struct Inputs<'a> {
-        program: &'static str,
+        revision: u32,
         geometry: &'a Option<survey::SurveyGeometry>,
         faults: Vec<(&'a str, &'a str, Option<&'a str>)>,
         model: &'a ModelSettings,
     }
     key_of(&Inputs {
-        program: env!("CARGO_PKG_VERSION"),
+        revision: revision::MODEL,
         geometry: &document.geometry,
         faults: document
             .faults

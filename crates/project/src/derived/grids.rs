@@ -1,7 +1,7 @@
 //! The parameterization, kept: `grids-KEY.bin` and `parameterization.zarr`.
 
 use super::kept::{Kind, read_array, read_header, write_header};
-use super::{Scratch, folder, key_of};
+use super::{Scratch, folder, key_of, revision};
 use crate::document::Document;
 use crate::error::ProjectError;
 use model::ModelSettings;
@@ -19,7 +19,7 @@ const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x01", what: "the pa
 pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
     #[derive(Serialize)]
     struct Inputs<'a> {
-        program: &'static str,
+        revision: [u32; 2],
         geometry: &'a Option<survey::SurveyGeometry>,
         horizons: Vec<(&'a str, survey::Contact)>,
         faults: Vec<(&'a str, Option<usize>)>,
@@ -28,7 +28,7 @@ pub fn parameterization_key(document: &Document, model: &ModelSettings, settings
     }
     let ends_at = |name: &str| document.faults.iter().position(|fault| fault.name == name);
     let inputs = Inputs {
-        program: env!("CARGO_PKG_VERSION"),
+        revision: [revision::MODEL, revision::PARAMETERIZATION],
         geometry: &document.geometry,
         horizons: document.horizons.iter().map(|entry| (entry.hash.as_str(), entry.contact)).collect(),
         faults: document

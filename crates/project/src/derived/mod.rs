@@ -6,7 +6,7 @@
 //! derived/parameterization.zarr   the same sampled on a lattice: i, j, k, layer, block, for other programs; its key inside
 //! ```
 //!
-//! A key is the BLAKE3 hash of everything the result depends on: the version of the program, the frame, the hashes of faults, for the
+//! A key is the BLAKE3 hash of everything the result depends on: the revision of the method ([`revision`]), the frame, the hashes of faults, for the
 //! parameterization those of horizons and their contacts, and the settings. What has another key is not looked at; undoing a change
 //! therefore finds the earlier result again, as long as it is among the last few kept. Everything here may be deleted, and a result
 //! that cannot be kept (a full disk, a read-only project) is still used.
@@ -14,6 +14,7 @@
 mod blocks;
 mod grids;
 mod kept;
+pub mod revision;
 mod scratch;
 
 pub use blocks::{blocks_key, keep_blocks, load_blocks};
@@ -24,12 +25,12 @@ pub(crate) use scratch::{Scratch, remove_leftovers};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-fn folder(root: &Path) -> PathBuf {
+pub(crate) fn folder(root: &Path) -> PathBuf {
     root.join("derived")
 }
 
 /// The key of what is computed from `inputs`, which hold numbers and strings only: these always serialise.
-fn key_of(inputs: &impl Serialize) -> String {
+pub(crate) fn key_of(inputs: &impl Serialize) -> String {
     let text = serde_json::to_vec(inputs).unwrap_or_default();
     blake3::hash(&text).to_hex()[..32].to_owned()
 }

@@ -53,7 +53,9 @@ fn name_of(entry: &Table) -> Option<String> {
 
 /// Takes over what holds a comment; blank space stays as it is written.
 fn keep_decor(old: &Decor, new: &mut Decor) {
-    let comment = |text: Option<&toml_edit::RawString>| text.and_then(|text| text.as_str()).filter(|text| text.contains('#')).map(str::to_owned);
+    let comment = |text: Option<&toml_edit::RawString>| {
+        text.and_then(|text| text.as_str()).filter(|text| text.contains('#')).map(str::to_owned)
+    };
     if let Some(prefix) = comment(old.prefix()) {
         new.set_prefix(prefix);
     }

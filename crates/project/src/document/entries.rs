@@ -64,6 +64,24 @@ pub struct VolumeEntry {
     pub geometry: Option<SurveyGeometry>,
 }
 
+/// An extraction of horizon candidates; what was found lies in `derived/` under its key.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ExtractionEntry {
+    /// Identifies volume, settings and method.
+    pub key: String,
+    /// Name that the volume had.
+    pub volume: String,
+}
+
+/// Faults that were proposed; they lie in `derived/` under their key.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ProposalsEntry {
+    /// Identifies horizons, faults, settings and method.
+    pub key: String,
+}
+
 /// A horizon of the project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

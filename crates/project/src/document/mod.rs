@@ -3,6 +3,7 @@
 //! The text is made for people: it can be read, compared and edited. Every command rewrites it in one fixed order, so that two
 //! states differ only where the project does.
 
+mod comments;
 pub(crate) mod data_file;
 mod entries;
 mod layers;
@@ -10,7 +11,8 @@ mod picks;
 
 use crate::error::{Noun, ProjectError};
 pub use entries::{
-    FaultEntry, HorizonEntry, Polarity, SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry,
+    ExtractionEntry, FaultEntry, HorizonEntry, Polarity, ProposalsEntry, SceneEntry, Source, Style, TextureEntry,
+    VolumeEntry, WellEntry,
 };
 use param::KDefinition;
 pub use picks::{Assembly, FaultSticks, PickEntry};
@@ -39,6 +41,12 @@ pub struct Document {
     /// Volumes in order of import; the first is the one shown as raw data.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub volumes: Vec<VolumeEntry>,
+    /// The extraction that picks are made from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub extraction: Option<ExtractionEntry>,
+    /// The faults that were proposed last.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fault_proposals: Option<ProposalsEntry>,
     /// Horizons in age order, youngest first.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub horizons: Vec<HorizonEntry>,
@@ -77,6 +85,8 @@ impl Document {
             geometry,
             layer_names: Vec::new(),
             volumes: Vec::new(),
+            extraction: None,
+            fault_proposals: None,
             horizons: Vec::new(),
             faults: Vec::new(),
             wells: Vec::new(),
@@ -86,6 +96,11 @@ impl Document {
             k: BTreeMap::new(),
             scenes: Vec::new(),
         }
+    }
+
+    /// The text of `project.toml`, with the comments that its former text `old` has.
+    pub(crate) fn to_text_after(&self, old: &str, path: &Path) -> Result<String, ProjectError> {
+        Ok(comments::keep_comments(old, self.to_text(path)?))
     }
 
     /// The text of `project.toml`.

@@ -124,6 +124,13 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
     Ok(())
 }
 
+/// Whether the present or any remembered state has this text somewhere: keys of derived data are looked for so.
+pub(crate) fn is_named(root: &Path, text: &str) -> bool {
+    let states = numbers(root).into_iter().map(|number| root.join(file_of(number))).chain([root.join(storage::STATE)]);
+    // A state that cannot be read may name anything.
+    states.map(std::fs::read).any(|bytes| bytes.map_or(true, |bytes| String::from_utf8_lossy(&bytes).contains(text)))
+}
+
 /// Data files of a step's state.
 fn files_of(step: Option<&Step>) -> BTreeSet<String> {
     let document = step.and_then(|step| Document::from_text(&step.project, Path::new(storage::STATE)).ok());

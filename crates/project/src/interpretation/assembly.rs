@@ -359,7 +359,7 @@ pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
     if logs.is_empty() {
         return Ok(());
     }
-    let Ok(candidates) = Candidates::load(draft.root(), progress) else {
+    let Ok(candidates) = Candidates::load(draft.root(), &draft.document, progress) else {
         progress.warn("the assembled horizons are as they were: there is no extraction to assemble them from");
         return Ok(());
     };

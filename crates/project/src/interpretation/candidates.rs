@@ -4,6 +4,7 @@
 //! reading anything but its facts.
 
 use super::extraction;
+use crate::document::Document;
 use crate::error::ProjectError;
 use crate::weak_cache::WeakCache;
 use glam::DVec2;
@@ -33,11 +34,8 @@ impl Candidates {
     ///
     /// # Errors
     /// [`ProjectError::NotExtracted`] when there are none; damaged data, or cancelled.
-    pub fn load(root: &Path, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
-        let path = extraction::candidates_path(root);
-        if !path.exists() {
-            return Err(ProjectError::NotExtracted);
-        }
+    pub fn load(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
+        let path = extraction::candidates_path(root, document)?;
         let stored = StoredCandidates::open(&path)?;
         let (key, max_distance) = (stored.info().key.clone(), stored.info().max_distance);
         HELD.get_or_make((path, key.clone()), || {
@@ -83,7 +81,7 @@ impl Candidates {
 mod tests {
     use super::*;
     use crate::Project;
-    use crate::command::{Command, ImportVolume};
+    use crate::command::{Command, Extract, ImportVolume};
     use crate::document::Polarity;
     use interp::ExtractSettings;
     use segy::{SegyOptions, WriteOptions};
@@ -108,25 +106,31 @@ mod tests {
         new.publish().unwrap().root().to_owned()
     }
 
+    fn extract(project: &mut Project, settings: &ExtractSettings) {
+        let extract = Extract { volume: None, settings: settings.clone() };
+        project.apply(&Command::Extract(extract), &Progress::silent()).unwrap();
+    }
+
     #[test]
     fn what_is_held_is_not_read_again_until_another_extraction_is_there() {
         let folder = tempfile::tempdir().unwrap();
         let quiet = Progress::silent();
         let root = imported(folder.path());
-        let project = Project::open(&root).unwrap();
+        let mut project = Project::open(&root).unwrap();
         let mut settings = ExtractSettings::default();
-        extraction::extract(&project, None, &settings, &quiet).unwrap();
-        let first = Candidates::load(&root, &quiet).unwrap();
-        assert!(Arc::ptr_eq(&first, &Candidates::load(&root, &quiet).unwrap()));
+        extract(&mut project, &settings);
+        let first = Candidates::load(&root, project.document(), &quiet).unwrap();
+        assert!(Arc::ptr_eq(&first, &Candidates::load(&root, project.document(), &quiet).unwrap()));
         settings.forest.min_leaf_triangles = 80;
-        extraction::extract(&project, None, &settings, &quiet).unwrap();
-        let second = Candidates::load(&root, &quiet).unwrap();
+        extract(&mut project, &settings);
+        let second = Candidates::load(&root, project.document(), &quiet).unwrap();
         assert_ne!(first.key, second.key);
         assert!(second.forest.leaf_count() > first.forest.leaf_count());
         // Of another project nothing is taken, whatever its key.
         let elsewhere = tempfile::tempdir().unwrap();
         let other = imported(elsewhere.path());
-        extraction::extract(&Project::open(&other).unwrap(), None, &settings, &quiet).unwrap();
-        assert!(!Arc::ptr_eq(&second, &Candidates::load(&other, &quiet).unwrap()));
+        let mut elsewhere = Project::open(&other).unwrap();
+        extract(&mut elsewhere, &settings);
+        assert!(!Arc::ptr_eq(&second, &Candidates::load(&other, elsewhere.document(), &quiet).unwrap()));
     }
 }

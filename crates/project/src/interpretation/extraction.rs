@@ -1,13 +1,15 @@
-//! Horizon candidates of a project: `derived/candidates.zarr`, extracted once for a volume and settings.
+//! Horizon candidates of a project, extracted once for a volume and settings and kept in `derived/` for as long as a remembered state
+//! names them: `candidates.zarr` is the present extraction, `candidates-KEY.zarr` those that undo and redo lead to.
 //!
-//! The key is the BLAKE3 hash of all the result depends on: the version of the program, the volume's samples, the settings; how many lines are read at a
-//! time is not among them. What has another key is not used. Candidates lie on the project's own lattice, so that a
-//! voxel of theirs is one of the project's.
+//! The key is the BLAKE3 hash of all the result depends on: the revision of the method, the volume's samples, the settings. How many
+//! inlines are read at a time is not among them. Candidates lie on the project's own lattice, so that a voxel of theirs is one of the
+//! project's.
 
 use crate::Project;
-use crate::derived::Scratch;
-use crate::document::VolumeEntry;
+use crate::derived::{Scratch, folder, key_of, revision};
+use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
+use crate::folder::{at_hand, history, storage};
 use interp::{ExtractReport, ExtractSettings, Forest, extract_into};
 use serde::Serialize;
 use std::fmt;
@@ -21,7 +23,7 @@ use survey::Progress;
 const SLAB_INLINES: usize = 64;
 
 /// What an extraction did.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Extracted {
     /// Where the candidates are.
     pub file: PathBuf,
@@ -47,24 +49,82 @@ impl fmt::Display for Extracted {
     }
 }
 
-/// The candidates, in `derived/`.
-const CANDIDATES: &str = "candidates.zarr";
+/// The extraction that the present state names, in `derived/`.
+const PRESENT: &str = "candidates.zarr";
 
-/// Where a project's candidates are.
-pub fn candidates_path(root: &Path) -> PathBuf {
-    root.join("derived").join(CANDIDATES)
+/// Another extraction that a remembered state names, in `derived/`.
+fn parked(key: &str) -> String {
+    format!("candidates-{key}.zarr")
 }
 
-/// The candidates of a project.
+/// The key of the candidates stored at a place; none where there are none that can be read.
+fn key_at(path: &Path) -> Option<String> {
+    StoredCandidates::open(path).ok().map(|stored| stored.info().key.clone())
+}
+
+/// Where the extraction lies that a state names: the present one, or one that waits for an undo. A project of before extractions
+/// were part of the history names none and has the one that is there.
+///
+/// # Errors
+/// [`ProjectError::NotExtracted`] when the state names none or it is gone, [`ProjectError::Store`] when it is there and damaged.
+pub fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, ProjectError> {
+    let present = folder(root).join(PRESENT);
+    let Some(entry) = &document.extraction else {
+        return if present.exists() { Ok(present) } else { Err(ProjectError::NotExtracted) };
+    };
+    let waiting = folder(root).join(parked(&entry.key));
+    if waiting.exists() {
+        return Ok(waiting);
+    }
+    if !present.exists() {
+        return Err(ProjectError::NotExtracted);
+    }
+    // Candidates that cannot be opened are damaged, not absent.
+    let stored = StoredCandidates::open(&present)?;
+    if stored.info().key == entry.key { Ok(present) } else { Err(ProjectError::NotExtracted) }
+}
+
+/// Gives the extraction that the state names the place of the present one; what was there waits under its key. Called by whoever
+/// holds the project's lock. Where it fails, the extraction is still found by its key.
+pub(crate) fn make_present(root: &Path, document: &Document) {
+    let present = folder(root).join(PRESENT);
+    let wanted = document.extraction.as_ref().map(|entry| entry.key.as_str());
+    let now = key_at(&present);
+    if now.as_deref() == wanted {
+        return;
+    }
+    if let Some(now) = now {
+        let _ = storage::rename(&present, &folder(root).join(parked(&now)));
+    }
+    if let Some(wanted) = wanted {
+        let waiting = folder(root).join(parked(wanted));
+        if waiting.exists() && !present.exists() {
+            let _ = storage::rename(&waiting, &present);
+        }
+    }
+}
+
+/// Removes extractions that no remembered state names any more.
+pub(crate) fn forget_unnamed(root: &Path) {
+    for file in storage::names_in(&folder(root)) {
+        let key = file.strip_prefix("candidates-").and_then(|rest| rest.strip_suffix(".zarr"));
+        if let Some(key) = key.filter(|key| !history::is_named(root, key)) {
+            storage::remove(root, &format!("{}/{}", storage::DERIVED, parked(key)));
+        }
+    }
+}
+
+/// Where the present extraction lies.
+pub fn present_path(root: &Path) -> PathBuf {
+    folder(root).join(PRESENT)
+}
+
+/// The candidates that a state names.
 ///
 /// # Errors
 /// [`ProjectError::NotExtracted`] when there are none, or damaged data.
-pub fn open(project: &Project) -> Result<StoredCandidates, ProjectError> {
-    let path = candidates_path(project.root());
-    if !path.exists() {
-        return Err(ProjectError::NotExtracted);
-    }
-    Ok(StoredCandidates::open(&path)?)
+pub fn open(root: &Path, document: &Document) -> Result<StoredCandidates, ProjectError> {
+    Ok(StoredCandidates::open(&candidates_path(root, document)?)?)
 }
 
 /// What the extraction that made these candidates reported; none where that cannot be read.
@@ -81,8 +141,7 @@ pub fn forest(candidates: &StoredCandidates, progress: &Progress) -> Result<Fore
 }
 
 /// The volume to extract from: the one that was named, else the first on the project's lattice.
-fn choose<'a>(project: &'a Project, volume: Option<&str>) -> Result<&'a VolumeEntry, ProjectError> {
-    let document = project.document();
+fn choose<'a>(document: &'a Document, volume: Option<&str>) -> Result<&'a VolumeEntry, ProjectError> {
     let entry = match volume {
         Some(name) => &document.volumes[document.position(crate::error::Noun::Volume, name)?],
         None => {
@@ -98,47 +157,50 @@ fn choose<'a>(project: &'a Project, volume: Option<&str>) -> Result<&'a VolumeEn
 
 /// Identifies candidates by what they are extracted from.
 fn key(entry: &VolumeEntry, settings: &ExtractSettings) -> String {
-    // These types hold numbers and strings only, which always serialise.
-    let text = serde_json::to_vec(&(env!("CARGO_PKG_VERSION"), &entry.hash, settings)).unwrap_or_default();
-    blake3::hash(&text).to_hex()[..32].to_owned()
+    key_of(&(revision::EXTRACTION, &entry.hash, settings))
 }
 
-/// Extracts the candidates of a volume of the project, unless they are there.
+/// Extracts the candidates of a volume, unless they are there, and keeps them under their key; the state that names them comes with
+/// [`crate::command::Extract`]. Needs no lock.
 ///
 /// # Errors
 /// No such volume, settings that make no sense, damaged data, a full disk, or cancelled; former candidates are then still there.
-pub fn extract(
-    project: &Project,
+pub(crate) fn compute(
+    root: &Path,
+    document: &Document,
     volume: Option<&str>,
     settings: &ExtractSettings,
     progress: &Progress,
 ) -> Result<Extracted, ProjectError> {
-    let entry = choose(project, volume)?;
+    let entry = choose(document, volume)?;
     let mut settings = settings.clone();
     settings.grow.slab_inlines = SLAB_INLINES;
-    let (file, key) = (candidates_path(project.root()), key(entry, &settings));
-    let answer = |report, computed| Extracted {
-        file: file.clone(),
+    let key = key(entry, &settings);
+    let answer = |file: PathBuf, report, computed| Extracted {
+        file,
         volume: entry.name.clone(),
         key: key.clone(),
         computed,
         report,
     };
-    if let Ok(stored) = StoredCandidates::open(&file)
-        && stored.info().key == key
-        && let Some(report) = report(&stored)
-    {
-        return Ok(answer(report, false));
+    for file in [parked(&key), PRESENT.to_owned()].map(|file| folder(root).join(file)) {
+        if let Ok(stored) = StoredCandidates::open(&file)
+            && stored.info().key == key
+            && let Some(report) = report(&stored)
+        {
+            return Ok(answer(file, report, false));
+        }
     }
-    let source = StoredVolume::open(&project.root().join(&entry.file))?;
-    let scratch = Scratch::begin(project.root())?;
-    let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(CANDIDATES), size, leaves)?);
+    let source = StoredVolume::open(&at_hand(root, &entry.file))?;
+    let scratch = Scratch::begin(root)?;
+    let file = parked(&key);
+    let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(&file), size, leaves)?);
     let report = extract_into(begin, &key, &source, &settings, progress)?;
-    scratch.publish(CANDIDATES)?;
+    scratch.publish(&file)?;
     if let Some(sentence) = report.nothing_found() {
         progress.warn(&sentence);
     }
-    Ok(answer(report, true))
+    Ok(answer(folder(root).join(file), report, true))
 }
 
 /// Writes all candidates as points: inline, crossline, z in the vertical unit, leaf and surface, both numbered from 1. A point on the border of
@@ -147,7 +209,7 @@ pub fn extract(
 /// # Errors
 /// No candidates, damaged data, a file that cannot be written, or cancelled.
 pub fn export_points(project: &Project, out: &Path, progress: &Progress) -> Result<usize, ProjectError> {
-    let forest = forest(&open(project)?, progress)?;
+    let forest = forest(&open(project.root(), project.document())?, progress)?;
     let frame = project.document().frame()?;
     let mut leaf_of = vec![0u32; forest.surfaces.vertices.len()];
     for (n, &node) in forest.leaves.iter().enumerate() {

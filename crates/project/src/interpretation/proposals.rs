@@ -1,13 +1,14 @@
 //! Proposed faults, kept until one of them is accepted.
 //!
-//! `derived/fault-proposals.json` holds the last proposals with a key of what they were made from: horizons and faults. Proposals of another
-//! state are not accepted, but for the faults that were accepted from them. What is a fault of the project already is not proposed; it is told.
+//! `derived/fault-proposals-KEY.json` holds what was found, for as long as a remembered state names it; the key stands for horizons,
+//! faults, volume and settings. Proposals of another state are not accepted, but for the faults that were accepted from them. What
+//! is a fault of the project already is not proposed; it is told.
 
-use crate::Project;
 use crate::content;
-use crate::derived::Scratch;
+use crate::derived::{Scratch, folder, key_of, revision};
 use crate::document::Document;
 use crate::error::ProjectError;
+use crate::folder::{history, storage};
 use crate::interpretation::assembly;
 use attribute::{DipSettings, SemblanceSettings, dip, semblance};
 use interp::faults::{Evidence, Proposal, ProposeSettings, Repeat, propose_faults};
@@ -101,44 +102,64 @@ impl fmt::Display for Proposals {
     }
 }
 
-/// The proposals, in `derived/`.
-const FILE: &str = "fault-proposals.json";
+/// Where the proposals of a key are, in `derived/`.
+fn file_of(key: &str) -> String {
+    format!("fault-proposals-{key}.json")
+}
 
-fn path(root: &Path) -> PathBuf {
-    root.join("derived").join(FILE)
+/// Where proposals of a state and settings are kept.
+pub fn path(root: &Path, document: &Document, settings: &ProposeSettings) -> PathBuf {
+    folder(root).join(file_of(&key(document, settings)))
+}
+
+/// Identifies proposals by what they are made from.
+fn key(document: &Document, settings: &ProposeSettings) -> String {
+    let faults: Vec<_> = document.faults.iter().map(|entry| (&entry.name, &entry.hash, &entry.truncated_by)).collect();
+    let volume = document.volumes.iter().find(|entry| entry.geometry.is_none()).map(|entry| &entry.hash);
+    let revisions = [revision::PROPOSALS, revision::MODEL];
+    key_of(&(revisions, &document.geometry, hashes(document), faults, volume, settings))
 }
 
 fn hashes(document: &Document) -> Vec<String> {
     document.horizons.iter().map(|entry| entry.hash.clone()).collect()
 }
 
-/// Looks for faults in the project's horizons and keeps what is found.
+/// Looks for faults in the project's horizons, unless that was done, and keeps what is found under its key; the state that names it
+/// comes with [`crate::command::ProposeFaults`]. Needs no lock.
 ///
 /// # Errors
 /// No horizons, data that cannot be read, or cancelled.
-pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progress) -> Result<Proposals, ProjectError> {
-    let document = project.document();
+pub(crate) fn compute(
+    root: &Path,
+    document: &Document,
+    settings: &ProposeSettings,
+    progress: &Progress,
+) -> Result<(String, Proposals), ProjectError> {
     let geometry = document.frame()?;
     if document.horizons.is_empty() {
         return Err(ProjectError::NoEvidence);
     }
+    let key = key(document, settings);
+    if let Some(known) = read(root, &key) {
+        return Ok((key, known));
+    }
     let none = FaultNetwork::none();
     let mut sheets = Vec::new();
     for entry in &document.horizons {
-        let horizon = content::read_horizon(project.root(), entry, progress)?;
+        let horizon = content::read_horizon(root, entry, progress)?;
         sheets.push(from_horizon(&horizon, geometry, &none));
     }
     let horizons: Vec<Evidence> =
         document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
     let likeness = match document.volumes.iter().find(|entry| entry.geometry.is_none()) {
         Some(entry) => {
-            let seismic = content::read_volume(project.root(), entry, progress)?;
+            let seismic = content::read_volume(root, entry, progress)?;
             let dips = dip(&seismic, &DipSettings::default(), progress);
             dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
         }
         None => None,
     };
-    let known = assembly::blocks(project.root(), document, progress)?;
+    let known = assembly::blocks(root, document, progress)?;
     let found = propose_faults(&horizons, geometry, &known, likeness.as_ref(), settings, progress)?;
     let proposals = Proposals {
         horizons: hashes(document),
@@ -146,13 +167,29 @@ pub fn propose(project: &Project, settings: &ProposeSettings, progress: &Progres
         repeats: found.repeats,
         unit: geometry.vertical.unit.symbol().to_owned(),
     };
-    let scratch = Scratch::begin(project.root())?;
-    let path = scratch.path(FILE);
+    let (scratch, file) = (Scratch::begin(root)?, file_of(&key));
+    let path = scratch.path(&file);
     let text = serde_json::to_string_pretty(&proposals)
         .map_err(|error| ProjectError::Malformed { path: path.clone(), detail: error.to_string() })?;
     store::replace_file(&path, text.as_bytes())?;
-    scratch.publish(FILE)?;
-    Ok(proposals)
+    scratch.publish(&file)?;
+    Ok((key, proposals))
+}
+
+/// The proposals kept under a key, if they are there and whole.
+fn read(root: &Path, key: &str) -> Option<Proposals> {
+    let text = std::fs::read_to_string(folder(root).join(file_of(key))).ok()?;
+    serde_json::from_str(&text).ok()
+}
+
+/// Removes proposals that no remembered state names any more.
+pub(crate) fn forget_unnamed(root: &Path) {
+    for file in storage::names_in(&folder(root)) {
+        let key = file.strip_prefix("fault-proposals-").and_then(|rest| rest.strip_suffix(".json"));
+        if let Some(key) = key.filter(|key| !history::is_named(root, key)) {
+            storage::remove(root, &format!("{}/{}", storage::DERIVED, file_of(key)));
+        }
+    }
 }
 
 /// The proposal with a number, if it was made for these horizons, up to what accepting others of them has changed.
@@ -173,9 +210,8 @@ pub fn find(root: &Path, document: &Document, id: u32) -> Result<Proposal, Proje
 /// # Errors
 /// There are none, or they are of another state.
 pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError> {
-    let path = path(root);
-    let text = std::fs::read_to_string(&path).map_err(|_| ProjectError::NoProposals)?;
-    let kept: Proposals = serde_json::from_str(&text).map_err(|_| ProjectError::NoProposals)?;
+    let entry = document.fault_proposals.as_ref().ok_or(ProjectError::NoProposals)?;
+    let kept = read(root, &entry.key).ok_or(ProjectError::NoProposals)?;
     // Accepting one proposal makes the sheets anew; the others were made from the same picks.
     let accepted = document.faults.iter().any(|fault| fault.source.path == Path::new("proposal"));
     if !accepted && kept.horizons != hashes(document) {

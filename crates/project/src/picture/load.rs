@@ -246,9 +246,7 @@ pub fn load_within(
     {
         wanted.push(&raw.volume);
     }
-    wanted.extend(scene.media.all().map(|medium| medium.volume.as_str()));
-    wanted.extend(scene.media.isosurface_volumes().map(String::as_str));
-    wanted.extend(scene.media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str())));
+    wanted.extend(volumes_within(scene));
     let volumes = read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?;
     let candidates = ShownCandidates::load(project, scene, rock.as_ref().map(|rock| &rock.model), progress)?;
     let wells = read_wells(project.root(), document, &geometry)?;
@@ -265,6 +263,18 @@ pub fn load_within(
     })
 }
 
+/// The volumes that a scene shows within the block: media, isosurfaces, and those that horizons are painted with. Whoever loads for a
+/// scene asks here.
+pub fn volumes_within(scene: &Scene) -> impl Iterator<Item = &str> {
+    let media = &scene.media;
+    let painted = media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str()));
+    media
+        .all()
+        .map(|medium| medium.volume.as_str())
+        .chain(media.isosurface_volumes().map(String::as_str))
+        .chain(painted)
+}
+
 /// What a scene shows beyond what was loaded.
 pub struct More {
     volumes: Vec<LoadedVolume>,
@@ -277,8 +287,7 @@ pub struct More {
 /// Damaged data, or cancelled.
 pub fn read_more(project: &Project, loaded: &Loaded, scene: &Scene, progress: &Progress) -> Result<More, ProjectError> {
     let document = project.document();
-    let missing: Vec<&str> =
-        scene.media.all().map(|medium| medium.volume.as_str()).filter(|name| !loaded.has_volume(name)).collect();
+    let missing: Vec<&str> = volumes_within(scene).filter(|name| !loaded.has_volume(name)).collect();
     let limit = memory_budget::half_of_available();
     let volumes = read_volumes(project.root(), document, &loaded.geometry, &missing, limit, progress)?;
     let candidates = ShownCandidates::load(project, scene, loaded.rock.as_ref().map(|rock| &rock.model), progress)?;

@@ -198,7 +198,7 @@ impl ShownCandidates {
 
 /// The project's extraction, if there is one on its lattice.
 fn stored(project: &Project, size: [usize; 3], progress: &Progress) -> Result<Option<StoredCandidates>, ProjectError> {
-    let stored = match extraction::open(project) {
+    let stored = match extraction::open(project.root(), project.document()) {
         Ok(stored) => stored,
         Err(ProjectError::NotExtracted) => return Ok(None),
         Err(error) => return Err(error),

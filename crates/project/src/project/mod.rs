@@ -22,6 +22,7 @@ use crate::derived;
 use crate::document::{Document, data_file};
 use crate::error::ProjectError;
 use crate::folder::{Draft, IMPORTING, Lock, Step, history, storage};
+use crate::interpretation::{extraction, proposals};
 use std::fs;
 use std::path::{Path, PathBuf};
 use survey::{Progress, SurveyGeometry};
@@ -90,10 +91,14 @@ impl Project {
     /// # Errors
     /// Whatever stands against it; the project is then as it was before, on disk and here.
     pub fn apply(&mut self, command: &Command, progress: &Progress) -> Result<Effect, ProjectError> {
+        let computed = command.prepare(&self.root, &self.document, progress)?;
         let _lock = self.lock()?;
         let mut draft = Draft::new(&self.root, self.document.clone());
-        let effect = command.execute(&mut draft, progress)?;
+        let effect = command.execute(&mut draft, progress)?.after_computing(computed);
         progress.check()?;
+        if effect.is_nothing_new() && draft.document == self.document {
+            return Ok(effect);
+        }
         self.commit(draft, effect.summary(), Some(command))?;
         Ok(effect)
     }
@@ -129,7 +134,9 @@ impl Project {
     /// The lock is taken or the folder cannot be read.
     pub fn prune(&mut self) -> Result<(), ProjectError> {
         let _lock = self.lock()?;
-        history::forget_all_but(&self.root, self.document.step)
+        history::forget_all_but(&self.root, self.document.step)?;
+        self.settle_derived();
+        Ok(())
     }
 
     /// What is remembered, oldest first; a step that cannot be read says so.
@@ -176,7 +183,7 @@ impl Project {
         let path = self.root.join(storage::STATE);
         let number = self.document.step + 1;
         draft.document.step = number;
-        let text = draft.document.to_text(&path)?;
+        let text = draft.document.to_text_after(&self.text, &path)?;
         // A state that could not be read back must never be saved.
         let document = Document::from_text(&text, &path)?;
         let step = Step { summary, command: command.map(recorded).transpose()?, project: text.clone() };
@@ -188,7 +195,15 @@ impl Project {
         // The new state is saved; if tidying up fails, the next writer does it.
         let _ = history::complete(&self.root, number);
         draft.keep();
+        self.settle_derived();
         Ok(())
+    }
+
+    /// Puts the extraction that the state names into its place, and lets go of what no remembered state names.
+    fn settle_derived(&self) {
+        extraction::make_present(&self.root, &self.document);
+        extraction::forget_unnamed(&self.root);
+        proposals::forget_unnamed(&self.root);
     }
 
     fn restore(&mut self, step: Step) -> Result<(), ProjectError> {
@@ -198,6 +213,7 @@ impl Project {
         storage::remove(&self.root, storage::UNFINISHED);
         self.document = document;
         self.text = step.project;
+        self.settle_derived();
         Ok(())
     }
 }

@@ -87,6 +87,19 @@ fn an_edit_by_hand_is_a_step_of_its_own() {
 }
 
 #[test]
+fn comments_stay_when_a_command_writes_the_state() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut project = begun(folder.path());
+    let path = project.root().join("project.toml");
+    let text = bytes(&project).replace("velocity_m_s", "# from the checkshots of W1\nvelocity_m_s");
+    fs::write(&path, &text).unwrap();
+    project.apply(&velocity(2600.0), &Progress::silent()).unwrap();
+    assert!(bytes(&project).contains("# from the checkshots of W1\nvelocity_m_s = 2600.0"), "{}", bytes(&project));
+    project.undo().unwrap();
+    assert_eq!(bytes(&project), text.replace("step = 0", "step = 1"));
+}
+
+#[test]
 fn a_crash_before_the_rename_leaves_the_old_state_and_one_after_it_the_new() {
     let folder = tempfile::tempdir().unwrap();
     let mut project = begun(folder.path());

@@ -4,7 +4,7 @@ use super::WORKGROUP;
 use super::media::texture;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
-use crate::media::light::LightGrid;
+use crate::media::light_grid::LightGrid;
 use bytemuck::{Pod, Zeroable};
 use survey::Progress;
 

@@ -30,7 +30,7 @@ struct MediaParams {
     light: vec4<f32>,
     // Ambient, diffuse, specular; w unused.
     phong: vec4<f32>,
-    // Columns and shift of voxel → cell and slice, see `light::cells_from_voxel`; shift.w = 1 in a perspective.
+    // Columns and shift of voxel → cell and slice, see `light_grid::cells_from_voxel`; shift.w = 1 in a perspective.
     cells_x: vec4<f32>,
     cells_y: vec4<f32>,
     cells_z: vec4<f32>,

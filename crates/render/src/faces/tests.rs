@@ -131,7 +131,7 @@ fn constants_are_the_same() {
         ("NO_DATA", f64::from(table::NO_DATA)),
         ("NO_DATA_BELOW", f64::from(table::NO_DATA_BELOW)),
         ("SPENT", f64::from(march::SPENT)),
-        ("SOFT", f64::from(crate::media::field::SOFT)),
+        ("SOFT", f64::from(crate::media::medium::SOFT)),
         ("BRICK", crate::media::prepared::BRICK as f64),
         ("MIXED", f64::from(crate::media::bricks::MIXED)),
         ("HORIZON_WORDS", HORIZON_WORDS as f64),

@@ -16,11 +16,13 @@
 use super::Faces;
 use super::Shading;
 use super::bricks::{Bricks, Line};
-use super::field::{Field, FieldMedium, Place};
+use super::field::Field;
 use super::light::LightVolume;
 use super::lit::{Surfaces, half_way};
-use super::march::{Gathered, SPENT, gather, stretches};
+use super::march::{Gathered, SPENT, gather};
+use super::medium::{FieldMedium, Place};
 use super::samples::{BATCH, Places, Samples};
+use super::stretches::stretches;
 use super::table::{NO_DATA_BELOW, absorbed};
 use super::wide::{Loops, widest};
 use crate::visible::{Ray, Solid};

@@ -10,7 +10,7 @@
 //! Jacobian's. Gradients are per voxel, distances in voxels.
 
 use super::bricks::MIXED;
-use super::field::{FieldMedium, SOFT};
+use super::medium::{FieldMedium, SOFT};
 use super::table::{NO_DATA_BELOW, extinction};
 use super::{MAX_ISOSURFACES, Media};
 use crate::error::SceneError;

@@ -12,6 +12,7 @@
 //! shows; places outside are missing, and a difference whose either end is missing counts as zero.
 
 use super::table::{NO_DATA, NO_DATA_BELOW};
+use super::wide::whole;
 use crate::inputs::SLACK;
 use glam::{Vec2, Vec3, Vec4};
 
@@ -163,17 +164,6 @@ impl<'s> Samples<'s> {
     fn contains(&self, index: Vec3) -> bool {
         index.cmpge(Vec3::splat(-SLACK)).all() && index.cmple(self.last + SLACK).all()
     }
-}
-
-/// A number from 0 to 2²² rounded down, and the same as an integer: without a conversion, of which there is none that keeps to a few lanes' width and
-/// is defined for every number.
-#[inline(always)]
-pub fn whole(number: f32) -> (f32, u32) {
-    // From 2²³ on, floats are integers: adding that rounds, and what it rounds to is in the last bits.
-    const INTEGERS: f32 = 8_388_608.0;
-    let nearest = (number + INTEGERS) - INTEGERS;
-    let below = if nearest > number { nearest - 1.0 } else { nearest };
-    (below, (below + INTEGERS).to_bits() & 0x7f_ffff)
 }
 
 /// The mix of eight numbers: the four of the near side, those of one row side by side, and of the far.

@@ -8,10 +8,11 @@
 
 use super::Faces;
 use super::bricks::Line;
-use super::field::{Field, FieldMedium, Matter, Place};
-use super::light::{Asked, LightGrid};
-use super::march::stretches;
+use super::field::{Field, Matter};
+use super::light_grid::{Asked, LightGrid};
+use super::medium::{FieldMedium, Place};
 use super::samples::{BATCH, Places, Samples};
+use super::stretches::stretches;
 use super::table::{NO_DATA_BELOW, absorbed};
 use super::wide::{Loops, widest};
 use super::windows::{Window, windows};

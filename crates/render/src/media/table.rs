@@ -2,7 +2,7 @@
 //!
 //! The nearest of [`ENTRIES`] entries is taken, so that a lookup is one load on the GPU; the value's error is 1/4096 of the domain.
 
-use super::samples::whole;
+use super::wide::whole;
 use ttf::{RgbaFunction, linear_from_srgb};
 
 /// Entries of a table.

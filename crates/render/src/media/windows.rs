@@ -3,7 +3,7 @@
 //! Light spreads by one cell a slice, so of the grid only a *window* is computed: cells that rays through the block read there, and cells from which light still gets to
 //! such by a later slice, as far as any light has come. Cells outside are never read or are zero: nothing is left out.
 
-use super::light::{Asked, LightGrid};
+use super::light_grid::{Asked, LightGrid};
 use crate::camera::View;
 use crate::voxel_box::VoxelBox;
 use glam::{DVec2, DVec3};

@@ -10,6 +10,7 @@ mod draw;
 mod hidden;
 mod relief;
 mod solid;
+mod stroke;
 mod underlay;
 
 pub(crate) use draw::draw;

@@ -2,7 +2,7 @@
 //!
 //! The picture is made without a background; background and back edges are put under it afterwards, in linear light as the media are.
 
-use super::draw::stroke_lines;
+use super::stroke::stroke_lines;
 use crate::frame::Frame;
 use crate::media::Faces;
 use crate::scene::Scene;

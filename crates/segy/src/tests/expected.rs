@@ -40,14 +40,6 @@ impl Row {
     }
 }
 
-fn data() -> Option<PathBuf> {
-    let Ok(dir) = std::env::var("PETROGLYPH_DATA") else {
-        eprintln!("skipped: PETROGLYPH_DATA is not set");
-        return None;
-    };
-    Some(PathBuf::from(dir))
-}
-
 fn rows(dir: &Path) -> Vec<Row> {
     let table = std::fs::read_to_string(dir.join("segy-expected.tsv")).unwrap();
     let mut lines = table.lines().map(|line| line.split('\t').map(str::to_owned).collect::<Vec<_>>());
@@ -61,7 +53,7 @@ const REFUSED: [(&str, &str); 3] =
 
 #[test]
 fn every_file_reads_as_expected_or_is_refused_with_its_sentence() {
-    let Some(dir) = data() else { return };
+    let Some(dir) = testdata::folder() else { return };
     let rows = rows(&dir);
     assert!(rows.len() > 30);
     for row in &rows {
@@ -128,7 +120,7 @@ fn check_samples(file: &SegyFile, row: &Row) {
 
 #[test]
 fn the_variants_of_one_window_hold_the_same_volume() {
-    let Some(dir) = data() else { return };
+    let Some(dir) = testdata::folder() else { return };
     let read = |name: &str| {
         read(&dir.join("segy/penobscot_variants").join(name), &SegyOptions::default(), &Progress::silent()).unwrap()
     };
@@ -151,7 +143,7 @@ fn the_variants_of_one_window_hold_the_same_volume() {
 
 #[test]
 fn domains_units_and_places_of_real_files() {
-    let Some(dir) = data() else { return };
+    let Some(dir) = testdata::folder() else { return };
     let open = |name: &str| SegyFile::open(&dir.join(name), &SegyOptions::default(), &Progress::silent()).unwrap();
 
     let depth = open("volumes/f3_depth_il300-427_xl720-975_int16.sgy");
@@ -191,7 +183,7 @@ fn domains_units_and_places_of_real_files() {
 
 #[test]
 fn a_single_trace_is_described_and_not_read() {
-    let Some(dir) = data() else { return };
+    let Some(dir) = testdata::folder() else { return };
     for name in ["delay-scalar.sgy", "multi-text.sgy"] {
         let path = dir.join("segy/segyio").join(name);
         let info = scan(&path, &SegyOptions::default(), &Progress::silent()).unwrap();
@@ -204,7 +196,7 @@ fn a_single_trace_is_described_and_not_read() {
 
 #[test]
 fn the_json_has_the_keys_that_scripts_rely_on() {
-    let Some(dir) = data() else { return };
+    let Some(dir) = testdata::folder() else { return };
     let path = dir.join("segy/penobscot_variants/il9_xl21.sgy");
     let info = scan(&path, &SegyOptions::default(), &Progress::silent()).unwrap();
     let json = serde_json::to_value(&info).unwrap();

@@ -6,19 +6,21 @@
 
 mod followed;
 
+use super::orders::snapshot;
 use super::running::Running;
 use super::{Event, Outbox, compute_apart, spawn};
 use crate::state::picking::{Pick, voxel_of};
-use crate::state::{Notice, PickingStep, PickingTask, Place};
+use crate::state::{Notice, PickingStep, PickingTask, Place, Snapshot};
 use figure::interpretation::{FaultMesh, Interpretation, PickedSheets, SheetHole, TraceSheet};
 use followed::Followed;
 use glam::DVec3;
 use interp::ExtractReport;
 use interp::assembly::{ClimbSettings, Overlap, highest_valid, selected_leaves};
-use interp::faults::{Proposal, ProposeSettings};
+use interp::faults::Proposal;
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
 use project::Project;
+use project::command::{Command, Effect, Extract, ProposeFaults};
 use project::content;
 use project::document::Document;
 use project::document::{Assembly, HorizonEntry};
@@ -30,7 +32,6 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
-use store::StoredCandidates;
 use survey::{Fault, Progress, SurveyGeometry};
 use ttf::Colour;
 
@@ -180,33 +181,45 @@ impl Picks {
             PickingTask::Extract(volume, settings) => spawn("extraction", move || {
                 let (guard, progress) = running.begin("Extracting", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
-                    let project = Project::open(&root)?;
-                    extraction::extract(&project, volume.as_deref(), &settings, &progress)
+                    let mut project = Project::open(&root)?;
+                    project.apply(&Command::Extract(Extract { volume, settings: *settings }), &progress)?;
+                    snapshot(&project)
                 });
                 let warnings = guard.warnings();
                 drop(guard);
                 for warning in warnings {
                     outbox.send(Event::Told(Notice::note(Place::Interpret, warning)));
                 }
-                tell(done.map(drop), Some(&progress), &outbox);
+                tell_change(done, &progress, &outbox);
                 let _ = orders.send(Order::Renew);
             }),
             PickingTask::ProposeFaults => spawn("proposals", move || {
                 let (guard, progress) = running.begin("Looking for faults", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
-                    let project = Project::open(&root)?;
-                    proposals::propose(&project, &ProposeSettings::default(), &progress)
+                    let mut project = Project::open(&root)?;
+                    let effect = project.apply(&Command::ProposeFaults(ProposeFaults::default()), &progress)?;
+                    Ok((snapshot(&project)?, effect))
                 });
                 drop(guard);
-                if let Some(text) = done.as_ref().ok().and_then(proposals::Proposals::nothing_new) {
+                if let Ok((_, Effect::FaultsProposed(found))) = &done
+                    && let Some(text) = found.nothing_new()
+                {
                     outbox.send(Event::Told(Notice::note(Place::Interpret, text)));
                 }
-                tell(done.map(drop), Some(&progress), &outbox);
+                tell_change(done.map(|(snapshot, _)| snapshot), &progress, &outbox);
                 let _ = orders.send(Order::Renew);
             }),
             task => drop(orders.send(Order::Do(task, root))),
         }
     }
+}
+
+/// Tells what the project has become, or why it has not changed.
+fn tell_change(done: Result<Snapshot, ProjectError>, progress: &Progress, outbox: &Outbox) {
+    let done = done.map(|snapshot| {
+        outbox.send(Event::Changed { snapshot: Box::new(snapshot), place: Place::Interpret });
+    });
+    tell(done, Some(progress), outbox);
 }
 
 /// Tells a failure; what was stopped by the user is none.
@@ -320,8 +333,11 @@ impl Keeper {
         let former = self.followed.take().filter(|former| former.root == root);
         let (guard, progress) =
             self.running.begin("Reading the interpretation", Place::Interpret, self.outbox.wake.clone());
-        let path = extraction::candidates_path(&root);
-        let stored = path.exists().then(|| StoredCandidates::open(&path)).transpose()?;
+        // Candidates that cannot be opened are damaged, not absent.
+        let stored = match extraction::open(&root, &document) {
+            Err(ProjectError::NotExtracted) => None,
+            opened => Some(opened?),
+        };
         let key = stored.as_ref().map(|stored| stored.info().key.clone());
         let (former_candidates, former_blocks) = match former {
             Some(former) => {
@@ -332,7 +348,7 @@ impl Keeper {
         };
         let candidates = match former_candidates.filter(|kept| Some(&kept.key) == key.as_ref()) {
             Some(kept) => Some(kept),
-            None if stored.is_some() => Some(Candidates::load(&root, &progress)?),
+            None if stored.is_some() => Some(Candidates::load(&root, &document, &progress)?),
             None => None,
         };
         let blocks = match former_blocks {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::frame::Frame;
 use crate::inputs::{Inputs, NamedVolume};
-use crate::media::light::Asked;
+use crate::media::light_grid::Asked;
 use crate::media::prepared::Preparations;
 use crate::media::{EmptySpace, LayerOpacity, Media, Medium, MediumColour, Occlusion, Phong};
 use crate::{Camera, Projection, Scene, VoxelBox};

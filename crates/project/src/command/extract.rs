@@ -1,0 +1,65 @@
+//! Extraction of horizon candidates and the search for faults, as changes of a project: undo leads back to what was there before.
+//!
+//! What takes long is computed by `prepare`, before the project is locked, and kept under a key; `execute` then only names it.
+
+use super::Effect;
+use crate::document::{Document, ExtractionEntry, ProposalsEntry};
+use crate::error::ProjectError;
+use crate::folder::Draft;
+use crate::interpretation::{extraction, proposals};
+use interp::ExtractSettings;
+use interp::faults::ProposeSettings;
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+use survey::Progress;
+
+/// Extracts horizon candidates from a volume; picks are made from them.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Extract {
+    /// The volume; absent: the first on the project's own lattice.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub volume: Option<String>,
+    /// How it is done.
+    #[serde(default)]
+    pub settings: ExtractSettings,
+}
+
+impl Extract {
+    /// Computes the candidates, unless they are there; answers whether it had to.
+    pub(super) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
+        let extracted = extraction::compute(root, document, self.volume.as_deref(), &self.settings, progress)?;
+        Ok(extracted.computed)
+    }
+
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let (root, volume) = (draft.root().to_owned(), self.volume.as_deref());
+        let mut extracted = extraction::compute(&root, &draft.document, volume, &self.settings, progress)?;
+        // It is renamed when the state that names it is saved.
+        extracted.file = extraction::present_path(&root);
+        draft.document.extraction =
+            Some(ExtractionEntry { key: extracted.key.clone(), volume: extracted.volume.clone() });
+        Ok(Effect::Extracted(Box::new(extracted)))
+    }
+}
+
+/// Looks for faults in the offsets and bends of the project's horizons.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct ProposeFaults {
+    /// How they are looked for.
+    #[serde(default)]
+    pub settings: ProposeSettings,
+}
+
+impl ProposeFaults {
+    /// Looks for them, unless that was done.
+    pub(super) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
+        proposals::compute(root, document, &self.settings, progress).map(|_| true)
+    }
+
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let root = draft.root().to_owned();
+        let (key, found) = proposals::compute(&root, &draft.document, &self.settings, progress)?;
+        draft.document.fault_proposals = Some(ProposalsEntry { key });
+        Ok(Effect::FaultsProposed(Box::new(found)))
+    }
+}

@@ -1,0 +1,70 @@
+//! The stretches of a ray through the block: in its surroundings, in cut-outs, and again.
+//!
+//! Voxel space; t in voxels along the ray.
+
+use super::medium::Place;
+use crate::visible::{Ray, Solid, TOUCH};
+
+/// A stretch of a ray in one place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Where it begins and ends.
+    pub t: [f32; 2],
+    /// What it is in.
+    pub place: Place,
+}
+
+/// Calls `found` for each stretch of a ray in the roaming box between `start` and `stop`, front to back.
+pub fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: impl FnMut(Stretch)) {
+    let Some([enter, exit]) = solid.box_interval(ray) else { return };
+    let last = exit.min(stop);
+    let mut t = enter.max(start);
+    let mut add = |from: f32, to: f32, place: Place| {
+        if to > from + TOUCH {
+            found(Stretch { t: [from, to], place });
+        }
+    };
+    if solid.cut_outs.is_empty() {
+        add(t, last, Place::Surroundings);
+        return;
+    }
+    for _ in 0..=solid.cut_outs.len() {
+        if t + TOUCH >= last {
+            return;
+        }
+        let Some(span) = solid.next_span(ray, t) else {
+            add(t, last, Place::CutOut);
+            return;
+        };
+        add(t, span.entry.t.min(last), Place::CutOut);
+        add(span.entry.t, span.end.min(last), Place::Surroundings);
+        t = span.end;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn stretches_alternate_and_end_at_the_stop() {
+        let solid = Solid {
+            roaming_box: [Vec3::ZERO, Vec3::splat(10.0)],
+            cut_outs: vec![
+                [Vec3::new(2.0, 0.0, 0.0), Vec3::new(4.0, 10.0, 10.0)],
+                [Vec3::new(8.0, 0.0, 0.0), Vec3::new(10.0, 10.0, 10.0)],
+            ],
+        };
+        let ray = Ray { origin: Vec3::new(-5.0, 5.0, 5.0), direction: Vec3::X };
+        let all = |stop: f32| {
+            let mut list = Vec::new();
+            stretches(&solid, &ray, [f32::MIN, stop], |s| list.push((s.t[0], s.t[1], s.place == Place::CutOut)));
+            list
+        };
+        let whole = [(5.0, 7.0, false), (7.0, 9.0, true), (9.0, 13.0, false), (13.0, 15.0, true)];
+        assert_eq!(all(f32::INFINITY), whole);
+        assert_eq!(all(9.5), [(5.0, 7.0, false), (7.0, 9.0, true), (9.0, 9.5, false)]);
+        assert_eq!(all(4.0), []);
+    }
+}
