@@ -316,7 +316,7 @@ pub fn load_bare(
     let document = project.document();
     let geometry = document.frame()?.clone();
     let raw = styles::transfer_functions(document).raw;
-    let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).collect();
+    let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).chain(volumes_within(scene)).collect();
     Ok(Loaded {
         rock: None,
         volumes: read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?,
