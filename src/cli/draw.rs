@@ -32,6 +32,9 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         scene.blend = 0.0;
     }
     scene.validate(document.frame()?)?;
+    if let Some(page) = &request.figure {
+        return super::page::draw(request, page, &project, &scene, progress);
+    }
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
     let loaded = load::load_within(&project, &scene, volume_bytes, progress)?;
     let mut painter = Painter::new(request.device, progress)?;
@@ -41,13 +44,12 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let mut stages = loaded.rock.map(|rock| rock.stages).unwrap_or_default();
     stages.push(stage);
     let [width, height] = scene.size_px;
-    let mm = |pixels: u32| f64::from(pixels) / request.dpi * INCH_MM;
     let mut report = Report::default();
     report.say(format!(
         "{}: {width} x {height} pixels, {:.0} x {:.0} mm at {} dpi",
         request.out.display(),
-        mm(width),
-        mm(height),
+        millimetres(width, request.dpi),
+        millimetres(height, request.dpi),
         request.dpi
     ));
     let assumed = assumptions(&project, &scene);
@@ -66,6 +68,11 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     Ok(report)
 }
 
+/// Printed length of so many pixels.
+pub(super) fn millimetres(pixels: u32, dpi: f64) -> f64 {
+    f64::from(pixels) / dpi * INCH_MM
+}
+
 /// A named scene, or a file.
 fn choose(project: &Project, wanted: Option<&str>) -> anyhow::Result<Scene> {
     match wanted {
@@ -75,7 +82,7 @@ fn choose(project: &Project, wanted: Option<&str>) -> anyhow::Result<Scene> {
 }
 
 /// What a reader of the picture must know to trust it.
-fn assumptions(project: &Project, scene: &Scene) -> Vec<String> {
+pub(super) fn assumptions(project: &Project, scene: &Scene) -> Vec<String> {
     let document = project.document();
     let mut lines = Vec::new();
     for medium in scene.media.all() {

@@ -88,5 +88,8 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         | ProjectError::Param(_)
         | ProjectError::Interp(_)
         | ProjectError::Render(_) => return None,
+        ProjectError::Figure(_) => {
+            "`petroglyph render --help` lists what a figure can show; `petroglyph info PROJECT` its lines and horizons"
+        }
     })
 }

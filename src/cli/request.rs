@@ -4,6 +4,7 @@ use super::args::{
     Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs,
     VolumeAction,
 };
+use super::page::PageRequest;
 use super::view::View;
 use super::well;
 use super::{assembly, extraction, interpretation};
@@ -93,6 +94,8 @@ pub(super) struct RenderRequest {
     pub(super) volume_bytes: Option<u64>,
     /// What is seen through, where it was said.
     pub(super) see_through: SeeThrough,
+    /// The page, where more was asked for than a picture of the block.
+    pub(super) figure: Option<PageRequest>,
 }
 
 /// What to list of a project.
@@ -265,8 +268,12 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         Some("phong") => Some(Technique::Phong),
         Some("interleaved") => Some(Technique::Interleaved),
         Some("volume") => Some(Technique::Volume),
+        // A map is a figure of its own.
+        Some("map") => None,
         Some(other) => {
-            return Err(format!("--technique {other}: expected illustrate, occlusion, phong, interleaved or volume"));
+            return Err(format!(
+                "--technique {other}: expected illustrate, occlusion, phong, interleaved, volume or map"
+            ));
         }
     };
     if !(typed.clear_below >= -1.0 && typed.clear_below < 1.0) {
@@ -285,7 +292,9 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         Some(extension) if extension.eq_ignore_ascii_case("png") => {}
         _ => return Err(format!("{}: pictures are written as .png", typed.out.display())),
     }
+    let is_map = typed.technique.as_deref() == Some("map");
     Ok(RenderRequest {
+        figure: PageRequest::meant(typed.figure, is_map)?,
         project: typed.project,
         out: typed.out,
         scene: typed.scene,

@@ -7,6 +7,7 @@ mod chain;
 mod create;
 mod demo;
 mod extraction;
+mod figure;
 mod help;
 mod hostile;
 mod kill;

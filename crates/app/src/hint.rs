@@ -86,5 +86,6 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         | ProjectError::Param(_)
         | ProjectError::Interp(_)
         | ProjectError::Render(_) => return None,
+        ProjectError::Figure(_) => "make the page larger, or show less on it",
     })
 }

@@ -209,7 +209,7 @@ fn a_lasso_on_a_slice_erases_whole_leaves_in_one_step() {
     let before = (nodes(&harness).unwrap(), document(&harness).step);
     let z = on_a_trough().z.round();
     let corners = [[-1.0, -1.0], [12.0, -1.0], [12.0, 30.0], [-1.0, 30.0]].map(glam::DVec2::from_array).to_vec();
-    let on = super::state::LassoOn::Section(super::state::SliceKind::Slice, z);
+    let on = super::state::LassoOn::Section(super::state::SectionKind::Slice, z);
     act(&mut harness, PickingStep::Erase(super::state::Lasso { on, corners }));
     wait(&mut harness, "part of it is gone", |harness| nodes(harness).is_some_and(|now| now < before.0));
     assert_eq!(document(&harness).step, before.1 + 1);

@@ -1,15 +1,11 @@
-//! What egui lays out, painted into an image by the processor: for pictures in print, and for looking at panels without a display.
+//! What egui lays out, painted into an image by the processor: for looking at panels without a display.
 //!
 //! The same as egui's own shaders do: colours are sRGB with premultiplied alpha and are blended as they are, result = source + (1 − α) · below, where
 //! the source is the vertices' colour times the texture's. A pixel belongs to a triangle when its centre lies inside, or on an upper or left side, so that
 //! neighbours share none. Space: pixels, y down.
 
-use super::theme;
 use eframe::egui::epaint::{ClippedPrimitive, Mesh, Primitive, Vertex};
-use eframe::egui::{
-    ColorImage, Context, ImageData, Pos2, RawInput, Rect, TextureId, TexturesDelta, ThemePreference, Ui, ViewportId,
-    vec2,
-};
+use eframe::egui::{ColorImage, ImageData, TextureId, TexturesDelta};
 use image::RgbaImage;
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -18,8 +14,6 @@ use std::sync::Arc;
 
 /// Rows that a thread paints at a time.
 const BAND: usize = 32;
-/// Longest side of a texture, pixels; memory is the only limit.
-const LARGEST_TEXTURE: usize = 1 << 15;
 
 /// The textures that meshes refer to.
 #[derive(Default)]
@@ -61,29 +55,6 @@ impl Raster {
             }
         });
     }
-}
-
-/// Lays `show` out over all of `image`, at so many pixels a point, and paints it: dark on light, as paper is.
-pub fn print(image: &mut RgbaImage, pixels_per_point: f32, mut show: impl FnMut(&mut Ui)) {
-    let ctx = Context::default();
-    theme::install(&ctx);
-    ctx.set_theme(ThemePreference::Light);
-    let size = vec2(image.width() as f32, image.height() as f32) / pixels_per_point;
-    let mut raster = Raster::default();
-    let mut shapes = Vec::new();
-    // Letters are in their texture from the second pass on.
-    for _ in 0..2 {
-        let mut input = RawInput {
-            screen_rect: Some(Rect::from_min_size(Pos2::ZERO, size)),
-            max_texture_side: Some(LARGEST_TEXTURE),
-            ..RawInput::default()
-        };
-        input.viewports.entry(ViewportId::ROOT).or_default().native_pixels_per_point = Some(pixels_per_point);
-        let mut output = ctx.run_ui(input, &mut show);
-        raster.receive(&mut output.textures_delta);
-        shapes = output.shapes;
-    }
-    raster.paint(&ctx.tessellate(shapes, pixels_per_point), pixels_per_point, image);
 }
 
 /// Replaces a part of a texture.

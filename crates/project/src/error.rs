@@ -221,6 +221,9 @@ pub enum ProjectError {
     /// No picture could be made.
     #[error(transparent)]
     Render(#[from] render::RenderError),
+    /// A figure that shows nothing, or has no room.
+    #[error(transparent)]
+    Figure(figure::FigureError),
     /// A synthetic survey could not be made.
     #[error(transparent)]
     Synth(#[from] synth::SynthError),
@@ -449,4 +452,14 @@ pub fn remedy_of(error: &(dyn std::error::Error + 'static)) -> Option<Remedy> {
             error.downcast_ref::<WellFileError>()?.remedy()
         }
     })
+}
+
+impl From<figure::FigureError> for ProjectError {
+    fn from(error: figure::FigureError) -> Self {
+        match error {
+            figure::FigureError::Render(error) => Self::Render(error),
+            figure::FigureError::Pattern(error) => Self::Style(error),
+            other => Self::Figure(other),
+        }
+    }
 }

@@ -17,6 +17,7 @@
 //! | [`picture`] | what a scene needs, loaded once for every renderer, and drawn |
 //! | [`command`] | every change, as data |
 //! | [`Project`] | applies commands; undo and redo |
+//! | [`figures`] | what a figure needs, loaded, and its page made |
 //! | [`demo`], [`segy_export`] | the demonstration; a volume written as SEG-Y |
 //!
 //! Deliberately absent: words of a command line or a window. An error says what is wrong and what helps; how an option or a
@@ -28,6 +29,7 @@ pub mod demo;
 pub mod derived;
 pub mod document;
 pub mod error;
+pub mod figures;
 pub mod folder;
 pub mod interpretation;
 pub mod memory_budget;

@@ -3,10 +3,11 @@
 //! The face is Ubuntu Light (Ubuntu Font Licence 1.0), embedded through `epaint_default_fonts`. Glyphs are
 //! outlined by `ab_glyph` with exact area coverage, kerned, and composited on sRGB-encoded values. Text runs
 //! left to right only. A character that the face lacks is drawn as its missing-glyph box.
+//! [`outline_text`] gives the same lettering as curves, for whoever turns it, strokes it or writes it as vectors.
 
 use std::sync::OnceLock;
 
-use ab_glyph::{Font, FontRef, PxScale, ScaleFont};
+use ab_glyph::{Font, FontRef, OutlineCurve, PxScale, ScaleFont};
 use image::RgbaImage;
 
 use crate::Colour;
@@ -74,13 +75,64 @@ pub fn draw_text(image: &mut RgbaImage, at_px: [f32; 2], size_px: f32, colour: C
                     && pixel[1] < image.height() as f32;
                 if inside {
                     let target = image.get_pixel_mut(pixel[0] as u32, pixel[1] as u32);
-                    blend(&mut target.0, colour, coverage.clamp(0.0, 1.0).powf(COVERAGE_EXPONENT));
+                    blend(&mut target.0, colour, ink_of_coverage(coverage));
                 }
             });
         }
         x += scaled.h_advance(glyph_id);
         previous = Some(glyph_id);
     }
+}
+
+/// A piece of a glyph's contour; contours are closed and follow one another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TextCurve {
+    /// A straight line.
+    Line([[f32; 2]; 2]),
+    /// A quadratic Bézier curve: start, control point, end.
+    Quad([[f32; 2]; 3]),
+    /// A cubic Bézier curve: start, two control points, end.
+    Cubic([[f32; 2]; 4]),
+}
+
+/// The contours of a line of text at a font size (per em), x right and y down from the left end of its baseline.
+///
+/// The advance is that of [`measure_text`]. Fill by the non-zero rule; [`ink_of_coverage`] gives the tone that
+/// [`draw_text`] draws with.
+///
+/// ```
+/// use ttf::text::{TextCurve, outline_text};
+/// // The letter l of this face is one upright rectangle.
+/// let stem = outline_text(100.0, "l");
+/// assert_eq!(stem.len(), 4);
+/// assert!(stem.iter().all(|curve| matches!(curve, TextCurve::Line(_))));
+/// ```
+pub fn outline_text(size_px: f32, text: &str) -> Vec<TextCurve> {
+    let face = face();
+    let scaled = face.as_scaled(scale(size_px));
+    let per_unit = size_px / face.units_per_em().unwrap_or(1000.0);
+    let (mut x, mut previous) = (0.0, None);
+    let mut curves = Vec::new();
+    for character in text.chars() {
+        let glyph = scaled.glyph_id(character);
+        x += previous.map_or(0.0, |before| scaled.kern(before, glyph));
+        if let Some(outline) = face.outline(glyph) {
+            let place = |p: ab_glyph::Point| [x + p.x * per_unit, -p.y * per_unit];
+            curves.extend(outline.curves.iter().map(|curve| match *curve {
+                OutlineCurve::Line(a, b) => TextCurve::Line([a, b].map(place)),
+                OutlineCurve::Quad(a, b, c) => TextCurve::Quad([a, b, c].map(place)),
+                OutlineCurve::Cubic(a, b, c, d) => TextCurve::Cubic([a, b, c, d].map(place)),
+            }));
+        }
+        x += scaled.h_advance(glyph);
+        previous = Some(glyph);
+    }
+    curves
+}
+
+/// The share of ink where a glyph covers this share of a pixel: light faces look too thin without it.
+pub fn ink_of_coverage(coverage: f32) -> f32 {
+    coverage.clamp(0.0, 1.0).powf(COVERAGE_EXPONENT)
 }
 
 /// Composites a colour at a coverage over a pixel with straight alpha.

@@ -1,6 +1,6 @@
 //! What can be typed about pictures, synthetic surveys and measurements.
 
-use super::ViewArgs;
+use super::{FigureArgs, ViewArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -17,8 +17,8 @@ pub(in crate::cli) struct RenderArgs {
     #[arg(long, value_name = "D", default_value_t = 300.0)]
     pub(in crate::cli) dpi: f64,
     /// Way of drawing: illustrate (textured faces), occlusion (the volume seen through, shaded without gradients), phong (by gradients), interleaved
-    /// (both, in stripes) or volume (unshaded) [default: as the view says, else illustrate]
-    #[arg(long, value_name = "illustrate|occlusion|phong|interleaved|volume")]
+    /// (both, in stripes), volume (unshaded), or map (a map of the topmost horizon unless --map names one) [default: as the view says, else illustrate]
+    #[arg(long, value_name = "illustrate|occlusion|phong|interleaved|volume|map")]
     pub(in crate::cli) technique: Option<String>,
     /// Volume that is seen through; with textured faces it fills the cut-outs, in layers that have an opacity if there are any [default: the volume shown as
     /// raw data]
@@ -43,6 +43,8 @@ pub(in crate::cli) struct RenderArgs {
     /// Most memory for the samples of one volume, such as 2G; a larger one is shown by a coarser level of its pyramid [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     pub(in crate::cli) volume_memory: Option<String>,
+    #[command(flatten)]
+    pub(in crate::cli) figure: FigureArgs,
     #[command(flatten)]
     pub(in crate::cli) view: ViewArgs,
 }

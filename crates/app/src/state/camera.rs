@@ -2,10 +2,10 @@
 //!
 //! [`render::Camera`] is fitted to the block: its scale follows the block's outline, which changes with every turn. Under the hand the
 //! block must neither grow nor wander while it turns, so [`hold`] corrects zoom and pan until one anchor
-//! keeps its pixel and the picture its scale there. The scale of a projection p at a point is √(½‖∂p/∂d‖²) over displacements d in display
-//! space (‖·‖ Frobenius): the rows of ∂p/∂d are perpendicular and of that length.
+//! keeps its pixel and the picture its scale there ([`pixels_per_metre`]).
 
 use super::view::StandardView;
+use figure::draw::block::pixels_per_metre;
 use glam::{DVec2, DVec3};
 use render::{Scene, View};
 use survey::SurveyGeometry;
@@ -21,17 +21,9 @@ pub fn view(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> View {
     View::new(&scene.camera, geometry, &scene.box_in(geometry), scene.exaggeration, size_px)
 }
 
-/// Pixels a metre of display space at a voxel position.
-pub fn scale_at(view: &View, voxel: DVec3) -> f64 {
-    let voxel_from_display = view.display_from_voxel().inverse();
-    let middle = view.project(voxel);
-    let of = |axis: DVec3| (view.project(voxel + voxel_from_display * axis) - middle).length_squared();
-    ((of(DVec3::X) + of(DVec3::Y) + of(DVec3::Z)) * 0.5).sqrt()
-}
-
 /// Keeps `anchor` (voxel) at its pixel of `before`, and the scale there.
 pub fn hold(before: &View, scene: &mut Scene, geometry: &SurveyGeometry, size: DVec2, anchor: DVec3) {
-    let factor = scale_at(before, anchor) / scale_at(&view(scene, geometry, size), anchor);
+    let factor = pixels_per_metre(before, anchor) / pixels_per_metre(&view(scene, geometry, size), anchor);
     scene.camera.zoom = (scene.camera.zoom * factor).clamp(ZOOM[0], ZOOM[1]);
     let off = before.project(anchor) - view(scene, geometry, size).project(anchor);
     let pan = DVec2::from_array(scene.camera.pan) + off / size;
@@ -106,7 +98,7 @@ mod tests {
             }
             let after = view(&scene, &geometry, SIZE);
             assert!((after.project(middle) - before.project(middle)).length() < 1e-6);
-            assert!((scale_at(&after, middle) / scale_at(&before, middle) - 1.0).abs() < 1e-6);
+            assert!((pixels_per_metre(&after, middle) / pixels_per_metre(&before, middle) - 1.0).abs() < 1e-6);
         }
     }
 

@@ -25,7 +25,7 @@ pub use notice::{Notice, Place};
 pub use picking::{How, Lasso, LassoOn, Look, Picking, PickingStep, PickingTask, Tool};
 pub use remembered::{Appearance, Remembered};
 pub use session::{Session, Snapshot};
-pub use view::{Compare, Layout, Panel, SliceKind, StandardView, View};
+pub use view::{Compare, Layout, Panel, SectionKind, StandardView, View};
 
 /// Everything the window shows.
 #[derive(Debug, Clone, Default)]

@@ -1,5 +1,7 @@
 //! How a project is looked at: nothing of this belongs to the project until it is kept as a named scene.
 
+pub use figure::SectionKind;
+
 use super::picking::Picking;
 use project::document::Document;
 use project::picture::scene;
@@ -48,32 +50,6 @@ pub enum Panel {
     Values,
     /// Candidates, picks, faults.
     Interpret,
-}
-
-/// A section along the lattice.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SliceKind {
-    /// Constant x.
-    Inline,
-    /// Constant y.
-    Crossline,
-    /// Constant z.
-    Slice,
-}
-
-impl SliceKind {
-    /// All three.
-    pub const ALL: [Self; 3] = [Self::Inline, Self::Crossline, Self::Slice];
-
-    /// The axis that is constant.
-    pub fn axis(self) -> usize {
-        match self {
-            Self::Inline => 0,
-            Self::Crossline => 1,
-            Self::Slice => 2,
-        }
-    }
 }
 
 /// Where the camera can be put at once.

@@ -5,37 +5,42 @@
 use super::lasso;
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
-use super::sections::{draw_line, round_step};
-use super::texture;
+use super::{canvas, texture};
 use crate::state::{Action, Panel, Session};
-use crate::theme;
-use crate::work::fence::{FencePicture, FenceWish, place, stations};
+use crate::work::fence::FenceWish;
 use crate::work::{Rocks, Slices};
-use eframe::egui::{
-    Align2, Button, Color32, Context, FontId, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo,
-    pos2, vec2,
-};
+use eframe::egui::{Button, Context, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
+use figure::cut::{CutLine, FenceCut, length_m, place, stations};
+use figure::draw::axes::{self, Axis};
+use figure::draw::section::{Marks, SectionContents};
 use glam::DVec2;
+use image::RgbaImage;
 use render::FaceData;
+use std::sync::Arc;
 
 /// Room for numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
-/// Least distance between numbers along an axis, points.
-const TICK_EVERY: f32 = 74.0;
 
 /// The view.
 #[derive(Default)]
 pub struct FenceView {
     texture: Option<TextureHandle>,
-    shown: Option<FencePicture>,
+    shown: Option<Shown>,
     wished: Option<(Vec<DVec2>, u64, FaceData)>,
+}
+
+/// A fence as figures take it.
+struct Shown {
+    corners: Vec<DVec2>,
+    image: Arc<RgbaImage>,
+    lines: Vec<CutLine>,
 }
 
 impl FenceView {
     /// Takes a fence in.
-    pub fn receive(&mut self, ctx: &Context, picture: FencePicture) {
-        texture::keep(&mut self.texture, ctx, "fence", texture::pixels(&picture.image));
-        self.shown = Some(picture);
+    pub fn receive(&mut self, ctx: &Context, cut: FenceCut) {
+        texture::keep(&mut self.texture, ctx, "fence", texture::pixels(&cut.image));
+        self.shown = Some(Shown { corners: cut.corners, image: Arc::new(cut.image), lines: cut.lines });
     }
 
     /// Shows the fence in all the room there is; answers what is under the cursor.
@@ -83,7 +88,7 @@ impl FenceView {
     }
 
     /// Paints the fence with its numbers into a rectangle; nothing where it is not cut yet.
-    pub fn paint(&self, ui: &Ui, session: &Session, whole: Rect, overlay: &mut Overlay) -> Option<()> {
+    fn paint(&self, ui: &Ui, session: &Session, whole: Rect, overlay: &mut Overlay) -> Option<()> {
         let geometry = session.document.geometry.as_ref()?;
         let corners: Vec<DVec2> = session.view.fence.iter().copied().map(DVec2::from_array).collect();
         let body = body_of(whole);
@@ -91,37 +96,30 @@ impl FenceView {
         painter.rect_filled(body, 0.0, super::block::paper(ui));
         let shown = self.shown.as_ref().filter(|shown| shown.corners == corners)?;
         let along = stations(&corners);
-        let length = along.last().copied().unwrap_or(1.0).max(1e-6);
         let depth = geometry.size()[2].saturating_sub(1).max(1) as f64;
-        let to_screen = |st: DVec2| -> Pos2 {
-            body.min + vec2((st.x / length) as f32 * body.width(), (st.y / depth) as f32 * body.height())
+        let extent = DVec2::new(along.last().copied().unwrap_or(1.0).max(1e-6), depth);
+        let seen = canvas::page_rect(body);
+        let is_interpreting = session.view.panel == Panel::Interpret;
+        let contents = SectionContents {
+            image: &shown.image,
+            extent,
+            lines: if is_interpreting { &[] } else { &shown.lines },
+            horizons: &project::figures::horizons(&session.document),
+            faults: &[],
+            interpretation: None,
+            // Where it turns.
+            marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
         };
-        if let Some(texture) = &self.texture {
-            painter.image(texture.id(), body, Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0)), Color32::WHITE);
+        canvas::paint(&painter, &contents.drawn(seen, seen), self.texture.as_ref().map(TextureHandle::id));
+        if is_interpreting {
+            overlay.on_fence(&painter, session, &corners, |st| seen.min + st / extent * seen.size());
         }
-        if session.view.panel == Panel::Interpret {
-            overlay.on_fence(&painter, session, &corners, &to_screen);
-        } else {
-            for line in &shown.lines {
-                let points = line.points.iter().map(|st| to_screen(*st)).collect();
-                draw_line(&painter, points, line.kind, line.quality, session);
-            }
-        }
-        let accent = theme::accent(ui.visuals());
-        for s in &along[1..along.len() - 1] {
-            painter.vline(to_screen(DVec2::new(*s, 0.0)).x, body.y_range(), Stroke::new(1.2, accent));
-        }
-        let metres = |corners: &[DVec2]| -> f64 {
-            corners
-                .windows(2)
-                .map(|pair| {
-                    let step = pair[1] - pair[0];
-                    (geometry.inline_vector * step.x + geometry.crossline_vector * step.y).length()
-                })
-                .sum()
-        };
-        let ends = [geometry.vertical.value_at(0.0), geometry.vertical.value_at(depth)];
-        ticks(ui, whole, body, [[0.0, metres(&corners)], ends]);
+        let axis = |ends: [f64; 2], at: [f64; 2]| Axis { name: String::new(), ends, at, least_step: 0.0 };
+        let across = axis([0.0, length_m(geometry, &corners)], [seen.min.x, seen.max.x]);
+        let down = [0.0, depth].map(|index| geometry.vertical.value_at(index));
+        let down = axis(down, [seen.min.y, seen.max.y]);
+        let drawn = axes::drawn(canvas::page_rect(whole), seen, [&across, &down]);
+        canvas::paint(&ui.painter_at(whole), &drawn, None);
         Some(())
     }
 }
@@ -143,35 +141,4 @@ fn header(ui: &mut Ui, corners: &[DVec2], actions: &mut Vec<Action>) {
             actions.push(Action::Fence(Vec::new()));
         }
     });
-}
-
-/// Metres along the upper edge, vertical values along the left one.
-fn ticks(ui: &Ui, whole: Rect, body: Rect, ends: [[f64; 2]; 2]) {
-    let font = FontId::proportional(11.5);
-    let colour = ui.visuals().weak_text_color();
-    let painter = ui.painter_at(whole);
-    for (direction, [first, last]) in ends.into_iter().enumerate() {
-        let room = if direction == 0 { body.width() } else { body.height() };
-        let per_point = (last - first) / f64::from(room);
-        if per_point <= 0.0 {
-            continue;
-        }
-        let step = round_step(per_point * f64::from(TICK_EVERY));
-        let mut value = (first / step).ceil() * step;
-        while value <= last {
-            let at = ((value - first) / per_point) as f32;
-            let unit = if direction == 0 { " m" } else { "" };
-            let text = if step < 1.0 { format!("{value:.1}{unit}") } else { format!("{value:.0}{unit}") };
-            if direction == 0 {
-                let x = body.left() + at;
-                painter.vline(x, body.top() - 4.0..=body.top(), Stroke::new(1.0, colour));
-                painter.text(pos2(x, body.top() - 5.0), Align2::CENTER_BOTTOM, text, font.clone(), colour);
-            } else {
-                let y = body.top() + at;
-                painter.hline(body.left() - 4.0..=body.left(), y, Stroke::new(1.0, colour));
-                painter.text(pos2(body.left() - 6.0, y), Align2::RIGHT_CENTER, text, font.clone(), colour);
-            }
-            value += step;
-        }
-    }
 }

@@ -3,6 +3,7 @@
 pub mod bar;
 pub mod block;
 pub mod candidates;
+pub mod canvas;
 pub mod chooser;
 pub mod controls;
 pub mod data;
@@ -29,8 +30,6 @@ pub mod shortcuts;
 pub mod start;
 pub mod status;
 pub mod surfaces;
-pub mod swatch;
 pub mod texture;
 pub mod tiles;
-pub mod traces;
 pub mod well;

@@ -1,29 +1,27 @@
 //! The interpretation over the pictures: horizons, the selected node, faults, sticks and proposals on sections and on the block.
 //!
-//! Horizons have their own colours, dotted across their holes; the selection is broader and the brighter part of a line is what is selected. Proposed
-//! faults are dark red.
-//! Spaces: (s, t) of a section; voxels; points of the window.
+//! Lines on sections are those that figures print ([`figure::draw::overlay`]); they are cut again when something has changed.
 
-use super::sections::horizon_colour;
-use super::surfaces::{self, Cells};
-use super::traces::{self, Line};
+use super::{canvas, surfaces};
 use crate::state::picking::voxel_of;
-use crate::state::{Panel, Session, SliceKind, camera};
-use crate::work::{Interpreted, ShownHorizon, ShownPick};
-use eframe::egui::{Color32, Painter, Pos2, Rect, Shape, Stroke, Ui, vec2};
-use glam::{DVec2, DVec3};
-use interp::holes::Hole;
-use interp::reassembly::VoxelSheet;
+use crate::state::{Panel, Session, camera};
+use crate::work::{Interpreted, ShownPick, sheet};
+use eframe::egui::{Painter, Rect, Ui};
+use figure::SectionKind;
+use figure::draw::overlay::{OverlayLines, SeenOn, stick};
+use figure::draw::surfaces::{Cells, OPACITY};
+use figure::interpretation::{Interpretation, Selection, Stick};
+use glam::DVec2;
+use project::figures::InterpreterView;
 use std::collections::HashMap;
 use std::sync::Arc;
 use ttf::Colour;
 
-/// How far from a section sticks are drawn on it, traces or samples.
-const NEAR: f64 = 2.5;
-/// Opacity before the block: of horizons, of the one that is picked, and of the selection.
-const OPACITY: [f32; 3] = [0.22, 0.6, 0.85];
+/// Sticks that are drawn for a fault, and the one being drawn.
+const STICKS: [Colour; 2] = [Colour::new(0x9c, 0x27, 0x6f), Colour::new(0xe0, 0x20, 0x60)];
 
-/// What lines on a section were made of: the interpretation, the selection, how many proposals are dismissed and whether minor ones show, and where.
+/// What lines on a section were made of: the interpretation, the selection, how many proposals are dismissed and whether minor ones
+/// show, and where.
 type Made<P> = (u64, usize, (usize, bool), P);
 
 /// What is drawn over the pictures while interpreting. Cheap to clone.
@@ -33,59 +31,37 @@ pub struct Overlay {
     selected: Option<Arc<ShownPick>>,
     /// Grows with each selection.
     selection: usize,
-    cells: Arc<Vec<(Color32, Vec<Cells>)>>,
+    cells: Arc<Vec<(Colour, Vec<Cells>)>>,
     selected_cells: Arc<Vec<Cells>>,
-    lines: HashMap<SliceKind, (Made<u64>, Lines)>,
-    fence: Option<(Made<Vec<DVec2>>, Lines)>,
+    lines: HashMap<SectionKind, (Made<u64>, OverlayLines)>,
+    fence: Option<(Made<Vec<DVec2>>, OverlayLines)>,
 }
 
-/// Lines on one section.
-#[derive(Clone, Default)]
-struct Lines {
-    horizons: Vec<(Color32, Vec<Line>)>,
-    /// Across the holes of horizons.
-    bridges: Vec<(Color32, Vec<Line>)>,
-    faults: Vec<Line>,
-    proposals: Vec<Line>,
-    selected: Vec<Line>,
-}
-
-/// How sheets, their holes and meshes meet a section.
-struct Cut<'a> {
-    sheet: &'a dyn Fn(&VoxelSheet) -> Vec<Line>,
-    bridge: &'a dyn Fn(&VoxelSheet, &[Hole]) -> Vec<Line>,
-    mesh: &'a dyn Fn(&[[DVec3; 3]]) -> Vec<Line>,
-}
-
-impl Lines {
-    fn paint(&self, painter: &Painter, session: &Session, to_screen: &impl Fn(DVec2) -> Pos2) {
-        let screen = |line: &Line| -> Vec<Pos2> { line.iter().map(|st| to_screen(*st)).collect() };
-        let halo = Stroke::new(4.0, Color32::from_white_alpha(150));
-        for (colour, lines) in &self.horizons {
-            for points in lines.iter().map(screen) {
-                painter.add(Shape::line(points.clone(), halo));
-                painter.add(Shape::line(points, Stroke::new(2.0, *colour)));
-            }
-        }
-        for (colour, lines) in &self.bridges {
-            for points in lines.iter().map(screen) {
-                painter.extend(Shape::dotted_line(&points, Color32::from_white_alpha(200), 6.0, 2.6));
-                painter.extend(Shape::dotted_line(&points, *colour, 6.0, 1.7));
-            }
-        }
-        for points in self.faults.iter().map(screen) {
-            painter.add(Shape::line(points.clone(), halo));
-            painter.add(Shape::line(points, Stroke::new(2.2, Color32::BLACK)));
-        }
-        for points in self.proposals.iter().map(screen) {
-            painter.add(Shape::line(points, Stroke::new(1.6, Color32::from_rgb(0xb0, 0x1e, 0x1e))));
-        }
-        let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
-        for points in self.selected.iter().map(screen) {
-            painter.add(Shape::line(points.clone(), Stroke::new(7.0, Color32::from_white_alpha(210))));
-            painter.add(Shape::line(points, Stroke::new(4.0, Color32::from_rgb(r, g, b))));
-        }
+/// What only this view knows of an interpretation: for figures, which read the rest from the project.
+pub fn interpreter_view(session: &Session, selected: Option<&ShownPick>) -> InterpreterView {
+    let picking = &session.view.picking;
+    InterpreterView {
+        picked: picking.horizon.clone(),
+        minor: picking.minor,
+        dismissed: picking.dismissed.clone(),
+        sticks: own_sticks(session).map(|(stick, colour)| (stick.clone(), colour)).collect(),
+        selection: selected.map(|shown| (shown.sheets.clone(), picking.colour_in(&session.document))),
     }
+}
+
+/// Sticks that are not part of the project yet.
+fn own_sticks(session: &Session) -> impl Iterator<Item = (&Vec<[f64; 3]>, Colour)> {
+    let picking = &session.view.picking;
+    let drawn = picking.sticks.iter().map(|stick| (stick, STICKS[0]));
+    drawn.chain(std::iter::once((&picking.stick, STICKS[1]))).filter(|(stick, _)| !stick.is_empty())
+}
+
+/// All sticks there are, with their colours: those of faults, those drawn, the one being drawn.
+fn sticks(session: &Session) -> Vec<Stick> {
+    let Some(geometry) = &session.document.geometry else { return Vec::new() };
+    let made = session.document.sticks.iter().flat_map(|fault| &fault.sticks).map(|stick| (stick, Colour::BLACK));
+    let places = |stick: &Vec<[f64; 3]>| stick.iter().map(|place| voxel_of(geometry, *place)).collect();
+    made.chain(own_sticks(session)).map(|(stick, colour)| Stick { places: places(stick), colour }).collect()
 }
 
 impl Overlay {
@@ -113,8 +89,8 @@ impl Overlay {
         let [nx, ny, _] = geometry.size();
         let horizons = interpreted.horizons.iter().enumerate();
         let cells = horizons.map(|(index, horizon)| {
-            let cells = horizon.sheets.iter().map(|sheet| Cells::of(sheet, [nx, ny])).collect();
-            (horizon_colour(horizon.colour, index), cells)
+            let cells = horizon.sheets.iter().map(|own| Cells::of(&sheet(own), [nx, ny])).collect();
+            (figure::style::horizon_colour(horizon.colour, index), cells)
         });
         self.cells = Arc::new(cells.collect());
         self.interpreted = Some(interpreted);
@@ -128,89 +104,40 @@ impl Overlay {
         let Some(geometry) = &session.document.geometry else { return };
         let [nx, ny, _] = geometry.size();
         let sheets = selected.iter().flat_map(|shown| &shown.sheets);
-        self.selected_cells = Arc::new(sheets.map(|sheet| Cells::of(sheet, [nx, ny])).collect());
+        self.selected_cells = Arc::new(sheets.map(|own| Cells::of(&sheet(own), [nx, ny])).collect());
         self.selected = selected;
         self.selection += 1;
     }
 
-    /// Draws on a section.
+    /// Draws on a section; `page` leads from (s, t) to the page.
     pub fn on_section(
         &mut self,
         painter: &Painter,
         session: &Session,
-        kind: SliceKind,
-        to_screen: &impl Fn(DVec2) -> Pos2,
+        kind: SectionKind,
+        page: impl Fn(DVec2) -> DVec2,
     ) {
-        if session.view.panel != Panel::Interpret {
-            return;
-        }
-        let Some(geometry) = &session.document.geometry else { return };
         let at = session.view.slices[kind.axis()];
         let made = self.made(session, at.to_bits());
+        let on = SeenOn::Section(kind, at);
         if self.lines.get(&kind).is_none_or(|(known, _)| *known != made) {
-            let size = [geometry.size()[0], geometry.size()[1]];
-            let lines = self.lines_on(
-                session,
-                &Cut {
-                    sheet: &|sheet| traces::of_sheet(sheet, size, kind, at),
-                    bridge: &|sheet, holes| traces::bridges(sheet, holes, size, kind, at),
-                    mesh: &|triangles| traces::of_mesh(triangles, kind, at),
-                },
-            );
+            let Some(lines) = self.cut(session, on) else { return };
             self.lines.insert(kind, (made, lines));
         }
         let Some((_, lines)) = self.lines.get(&kind) else { return };
-        lines.paint(painter, session, to_screen);
-        let flat = |p: DVec3| match kind {
-            SliceKind::Inline => DVec2::new(p.y, p.z),
-            SliceKind::Crossline => DVec2::new(p.x, p.z),
-            SliceKind::Slice => DVec2::new(p.x, p.y),
-        };
-        for (stick, colour) in sticks(session) {
-            let voxels: Vec<DVec3> = stick.iter().map(|place| voxel_of(geometry, *place)).collect();
-            if voxels.iter().all(|p| (p[kind.axis()] - at).abs() <= NEAR) {
-                draw_stick(painter, voxels.iter().map(|p| to_screen(flat(*p))).collect(), colour);
-            }
-        }
+        draw(painter, session, lines, on, page);
     }
 
-    /// Draws on a fence: its corners in voxels.
-    pub fn on_fence(
-        &mut self,
-        painter: &Painter,
-        session: &Session,
-        corners: &[DVec2],
-        to_screen: &impl Fn(DVec2) -> Pos2,
-    ) {
-        let Some(geometry) = &session.document.geometry else { return };
+    /// Draws on a fence with these corners, voxels.
+    pub fn on_fence(&mut self, painter: &Painter, session: &Session, corners: &[DVec2], page: impl Fn(DVec2) -> DVec2) {
         let made = self.made(session, corners.to_vec());
+        let on = SeenOn::Fence(corners);
         if self.fence.as_ref().is_none_or(|(known, _)| *known != made) {
-            let size = [geometry.size()[0], geometry.size()[1]];
-            let lines = self.lines_on(
-                session,
-                &Cut {
-                    sheet: &|sheet| traces::along(sheet, size, corners),
-                    bridge: &|sheet, holes| traces::bridges_along(sheet, holes, size, corners),
-                    mesh: &|triangles| traces::mesh_along(triangles, corners),
-                },
-            );
+            let Some(lines) = self.cut(session, on) else { return };
             self.fence = Some((made, lines));
         }
         let Some((_, lines)) = &self.fence else { return };
-        lines.paint(painter, session, to_screen);
-        for (stick, colour) in sticks(session) {
-            let places: Option<Vec<DVec2>> = stick
-                .iter()
-                .map(|place| {
-                    let voxel = voxel_of(geometry, *place);
-                    let (s, off) = traces::station_of(corners, voxel.truncate())?;
-                    (off <= NEAR).then_some(DVec2::new(s, voxel.z))
-                })
-                .collect();
-            if let Some(places) = places {
-                draw_stick(painter, places.into_iter().map(to_screen).collect(), colour);
-            }
-        }
+        draw(painter, session, lines, on, page);
     }
 
     fn made<P>(&self, session: &Session, place: P) -> Made<P> {
@@ -219,24 +146,17 @@ impl Overlay {
         (number, self.selection, (picking.dismissed.len(), picking.minor), place)
     }
 
-    fn lines_on(&self, session: &Session, cut: &Cut) -> Lines {
-        let Some(shown) = &self.interpreted else { return Lines::default() };
+    /// Where everything meets a section.
+    fn cut(&self, session: &Session, on: SeenOn) -> Option<OverlayLines> {
+        let [nx, ny, _] = session.document.geometry.as_ref()?.size();
+        let shown = self.interpreted.as_ref()?;
         let picking = &session.view.picking;
-        let coloured = |made: &dyn Fn(&ShownHorizon) -> Vec<Line>| {
-            let horizons = shown.horizons.iter().enumerate();
-            horizons.map(|(index, horizon)| (horizon_colour(horizon.colour, index), made(horizon))).collect()
-        };
-        let open = shown.proposals.iter().filter(|(proposal, _)| picking.shows(proposal));
-        let selected = self.selected.iter().flat_map(|shown| &shown.sheets);
-        Lines {
-            horizons: coloured(&|horizon| horizon.sheets.iter().flat_map(cut.sheet).collect()),
-            bridges: coloured(&|horizon| {
-                horizon.sheets.iter().flat_map(|sheet| (cut.bridge)(sheet, &horizon.holes)).collect()
-            }),
-            faults: shown.faults.iter().flat_map(|fault| (cut.mesh)(&fault.triangles)).collect(),
-            proposals: open.flat_map(|(_, fault)| (cut.mesh)(&fault.triangles)).collect(),
-            selected: selected.flat_map(cut.sheet).collect(),
-        }
+        let selection = self.selected.as_ref().map(|shown| Selection {
+            sheets: shown.sheets.iter().map(sheet).collect(),
+            colour: picking.colour_in(&session.document),
+        });
+        let seen = shown.seen(|proposal| picking.shows(proposal));
+        Some(OverlayLines::new(&Interpretation { selection, ..seen }, [nx, ny], on))
     }
 
     /// Draws horizons and the selection before the block.
@@ -245,17 +165,15 @@ impl Overlay {
             return;
         }
         let Some(geometry) = &session.document.geometry else { return };
-        let scene = &session.view.scene;
-        let [r, g, b] = session.view.picking.colour_in(&session.document).rgb;
-        let selected = Color32::from_rgb(r, g, b).gamma_multiply(OPACITY[2]);
+        let picking = &session.view.picking;
         let names = self.interpreted.iter().flat_map(|shown| &shown.horizons).map(|horizon| &horizon.name);
         let horizons = self.cells.iter().zip(names).flat_map(|((colour, cells), name)| {
-            let is_picked = session.view.picking.horizon.as_ref() == Some(name);
-            let colour = colour.gamma_multiply(OPACITY[usize::from(is_picked)]);
-            cells.iter().map(move |cells| (cells, colour))
+            let opacity = OPACITY[usize::from(picking.horizon.as_ref() == Some(name))];
+            cells.iter().map(move |cells| (cells, *colour, opacity))
         });
-        let picked = self.selected_cells.iter().map(|cells| (cells, selected));
-        surfaces::paint(ui, pane, scene, geometry, horizons.chain(picked));
+        let own = picking.colour_in(&session.document);
+        let picked = self.selected_cells.iter().map(|cells| (cells, own, OPACITY[2]));
+        surfaces::paint(ui, pane, &session.view.scene, geometry, horizons.chain(picked));
     }
 
     /// Draws sticks before the block.
@@ -264,31 +182,20 @@ impl Overlay {
         if session.view.panel != Panel::Interpret {
             return;
         }
-        let scene = &session.view.scene;
-        let view = camera::view(scene, geometry, DVec2::new(f64::from(pane.width()), f64::from(pane.height())));
+        let size = DVec2::new(f64::from(pane.width()), f64::from(pane.height()));
+        let view = camera::view(&session.view.scene, geometry, size);
         let painter = ui.painter_at(pane);
-        for (stick, colour) in sticks(session) {
-            let points = stick.iter().map(|place| {
-                let at = view.project(voxel_of(geometry, *place));
-                pane.min + vec2(at.x as f32, at.y as f32)
-            });
-            draw_stick(&painter, points.collect(), colour);
+        for Stick { places, colour } in sticks(session) {
+            let places = places.iter().map(|voxel| canvas::page(pane.min) + view.project(*voxel) / canvas::SCALE);
+            canvas::paint(&painter, &stick(places.collect(), colour), None);
         }
     }
 }
 
-/// All sticks there are, with their colours: those of faults, those drawn, the one being drawn.
-fn sticks(session: &Session) -> impl Iterator<Item = (&[[f64; 3]], Color32)> {
-    let picking = &session.view.picking;
-    let made = session.document.sticks.iter().flat_map(|fault| &fault.sticks);
-    let made = made.map(|stick| (stick.as_slice(), Color32::BLACK));
-    let drawn = picking.sticks.iter().map(|stick| (stick.as_slice(), Color32::from_rgb(0x9c, 0x27, 0x6f)));
-    made.chain(drawn).chain(std::iter::once((picking.stick.as_slice(), Color32::from_rgb(0xe0, 0x20, 0x60))))
-}
-
-fn draw_stick(painter: &Painter, points: Vec<Pos2>, colour: Color32) {
-    for point in &points {
-        painter.circle(*point, 3.5, Color32::WHITE, Stroke::new(1.8, colour));
-    }
-    painter.add(Shape::line(points, Stroke::new(2.0, colour)));
+/// Lines and sticks on a section.
+fn draw(painter: &Painter, session: &Session, lines: &OverlayLines, on: SeenOn, page: impl Fn(DVec2) -> DVec2) {
+    lines.drawn(&page).iter().for_each(|group| canvas::paint(painter, group, None));
+    let own = Interpretation { sticks: sticks(session), ..Interpretation::default() };
+    let near = figure::draw::overlay::sticks(&own, on, &page);
+    near.iter().for_each(|group| canvas::paint(painter, group, None));
 }

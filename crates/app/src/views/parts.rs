@@ -1,6 +1,6 @@
 //! What fills the middle of the window, and a printed page: which views, and where.
 
-use crate::state::{Layout, SliceKind};
+use crate::state::{Layout, SectionKind};
 use eframe::egui::Rect;
 
 /// A view.
@@ -9,7 +9,7 @@ pub enum Part {
     /// The block.
     Block,
     /// A section.
-    Section(SliceKind),
+    Section(SectionKind),
     /// The map.
     Map,
     /// The fence.
@@ -33,12 +33,12 @@ pub fn parts(layout: Layout, whole: Rect) -> Vec<(Part, Rect)> {
     match layout {
         Layout::Block => vec![(Part::Block, whole)],
         Layout::Map => two(Part::Block, Part::Map),
-        Layout::Fence => two(Part::Section(SliceKind::Slice), Part::Fence),
+        Layout::Fence => two(Part::Section(SectionKind::Slice), Part::Fence),
         Layout::Sections => {
             let (top, bottom) = whole.split_top_bottom_at_fraction(0.5);
             let rows = [
-                (top, [Part::Block, Part::Section(SliceKind::Inline)]),
-                (bottom, [Part::Section(SliceKind::Slice), Part::Section(SliceKind::Crossline)]),
+                (top, [Part::Block, Part::Section(SectionKind::Inline)]),
+                (bottom, [Part::Section(SectionKind::Slice), Part::Section(SectionKind::Crossline)]),
             ];
             let quarters = rows.into_iter().flat_map(|(row, [first, second])| {
                 let (left, right) = row.split_left_right_at_fraction(0.5);

@@ -193,10 +193,10 @@ impl Window {
     /// Draws what is on the screen to a file.
     fn export(&self, form: ExportForm) {
         let Some(session) = self.state.session.clone() else { return };
-        let (overlay, sections, mapped) = (self.overlay.clone(), self.sections.alike(), self.map.mapped(&session));
-        let page = Page { session, overlay, sections, mapped, form };
+        let mapped = self.map.mapped(&session);
+        let Some(page) = Page::of(&session, &self.overlay, &self.sections, mapped, &form) else { return };
         self.work.background("Drawing the picture", Place::Dialogue, move |progress, outbox| {
-            let path = page.form.path.clone().into();
+            let path = form.path.clone().into();
             page.write(progress).map_err(|error| Notice::failure(Place::Dialogue, &error))?;
             outbox.send(Event::Exported(path));
             Ok(())

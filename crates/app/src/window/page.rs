@@ -4,7 +4,7 @@ use super::Window;
 use crate::state::{Action, Panel as Side, Place, Session};
 use crate::views::parts::{Part, parts};
 use crate::views::{bar, notices, overlay::Overlay};
-use crate::work::map::MapSource;
+use crate::work::map::MapData;
 use crate::work::{Rocks, RunningLine};
 use eframe::egui::{self, CentralPanel, Frame, Panel, Ui};
 
@@ -100,10 +100,10 @@ fn within(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
 }
 
 /// What the map is made from: while interpreting there is no model.
-fn map_source(session: &Session, rocks: Option<(&Rocks, u64)>, overlay: &Overlay) -> Option<(MapSource, u64)> {
+fn map_source(session: &Session, rocks: Option<(&Rocks, u64)>, overlay: &Overlay) -> Option<(MapData, u64)> {
     if session.view.panel != Side::Interpret {
-        return rocks.map(|(rocks, version)| (MapSource::Rocks(rocks.clone()), version));
+        return rocks.map(|(rocks, version)| (MapData::Rocks(rocks.clone()), version));
     }
     let (shown, geometry) = (overlay.interpreted()?, session.document.geometry.as_ref()?);
-    Some((MapSource::Interpreted(shown.clone(), Box::new(geometry.clone())), shown.number))
+    Some((MapData::Interpreted(shown.clone(), Box::new(geometry.clone())), shown.number))
 }

@@ -1,12 +1,9 @@
-//! A section along a line of straight legs: its amplitudes as a raster, horizons and faults as lines over it.
-//!
-//! Space: s, voxels along the line from its beginning; t, samples down. A leg is a plane of its own; the lines of all are put one after the other.
+//! Sections along a line, to be cut for the latest wish.
 
 use super::Rocks;
-use super::slice::{SliceLine, lines_of, raster};
-use glam::{DVec2, DVec3};
-use image::RgbaImage;
-use model::section::SectionPlane;
+use super::slice::source;
+use figure::cut::FenceCut;
+use glam::DVec2;
 use project::picture::load::Loaded;
 use render::FaceData;
 
@@ -21,80 +18,8 @@ pub struct FenceWish {
     pub show: FaceData,
 }
 
-/// A fence.
-pub struct FencePicture {
-    /// Its corners, voxel x and y.
-    pub corners: Vec<DVec2>,
-    /// A pixel a sample, s to the right, t down.
-    pub image: RgbaImage,
-    /// Horizons and faults.
-    pub lines: Vec<SliceLine>,
-}
-
-/// Where each corner lies along the line.
-pub fn stations(corners: &[DVec2]) -> Vec<f64> {
-    let mut at = 0.0;
-    let mut stations = vec![0.0];
-    for pair in corners.windows(2) {
-        at += pair[0].distance(pair[1]);
-        stations.push(at);
-    }
-    stations
-}
-
-/// The place at `s` along the line, voxel x and y.
-pub fn place(corners: &[DVec2], s: f64) -> DVec2 {
-    let stations = stations(corners);
-    let leg = stations.windows(2).position(|ends| s <= ends[1]).unwrap_or(corners.len().saturating_sub(2));
-    let [Some(from), Some(to)] = [corners.get(leg), corners.get(leg + 1)] else {
-        return corners.first().copied().unwrap_or_default();
-    };
-    let length = (stations[leg + 1] - stations[leg]).max(f64::MIN_POSITIVE);
-    from.lerp(*to, ((s - stations[leg]) / length).clamp(0.0, 1.0))
-}
-
 /// Cuts what is loaded.
-pub fn cut(loaded: &Loaded, corners: &[DVec2], show: FaceData) -> FencePicture {
-    let depth = loaded.geometry.size()[2].saturating_sub(1).max(1) as f64;
-    let stations = stations(corners);
-    let length = stations.last().copied().unwrap_or(0.0);
-    let width = length.ceil().max(1.0) as u32 + 1;
-    let step = length / f64::from(width - 1);
-    let image = raster(loaded, [width, depth as u32 + 1], show, |column, row| {
-        place(corners, f64::from(column) * step).extend(f64::from(row)).as_vec3()
-    });
-    let mut lines = Vec::new();
-    for (leg, pair) in corners.windows(2).enumerate() {
-        let length = pair[0].distance(pair[1]);
-        if length < 1e-6 {
-            continue;
-        }
-        let plane = SectionPlane {
-            origin: pair[0].extend(0.0),
-            s_axis: ((pair[1] - pair[0]) / length).extend(0.0),
-            t_axis: DVec3::Z,
-            extent: [length, depth],
-        };
-        let shift = DVec2::new(stations[leg], 0.0);
-        lines.extend(lines_of(loaded, &plane).into_iter().map(|mut line| {
-            line.points.iter_mut().for_each(|point| *point += shift);
-            line
-        }));
-    }
-    FencePicture { corners: corners.to_vec(), image, lines }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn places_run_along_the_legs() {
-        let corners = [[0.0, 0.0], [3.0, 4.0], [3.0, 10.0]].map(DVec2::from_array);
-        assert_eq!(stations(&corners), [0.0, 5.0, 11.0]);
-        for (s, at) in [(0.0, [0.0, 0.0]), (2.5, [1.5, 2.0]), (5.0, [3.0, 4.0]), (8.0, [3.0, 7.0]), (99.0, [3.0, 10.0])]
-        {
-            assert!(place(&corners, s).distance(DVec2::from_array(at)) < 1e-9, "{s}");
-        }
-    }
+pub(super) fn cut(loaded: &Loaded, wish: &FenceWish) -> FenceCut {
+    let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
+    FenceCut::new(&source(loaded, &volumes, &wells), &wish.corners, wish.show)
 }

@@ -4,7 +4,7 @@
 //! the line. Spaces: (s, t) of the section; points of the picture; voxels.
 
 use crate::state::picking::place_of;
-use crate::state::{Lasso, LassoOn, SliceKind, camera};
+use crate::state::{Lasso, LassoOn, camera};
 use glam::{DVec2, DVec3};
 use interp::Forest;
 use interp::assembly::{Operation, Selection};
@@ -27,14 +27,7 @@ pub(super) fn nodes_inside(
     let project: Box<dyn Fn(DVec3) -> Option<DVec2>> = match &lasso.on {
         LassoOn::Section(kind, at) => {
             let (kind, at) = (*kind, *at);
-            Box::new(move |p: DVec3| {
-                let st = match kind {
-                    SliceKind::Inline => DVec2::new(p.y, p.z),
-                    SliceKind::Crossline => DVec2::new(p.x, p.z),
-                    SliceKind::Slice => DVec2::new(p.x, p.y),
-                };
-                ((p[kind.axis()] - at).abs() <= NEAR).then_some(st)
-            })
+            Box::new(move |p: DVec3| ((p[kind.axis()] - at).abs() <= NEAR).then_some(kind.flat(p)))
         }
         LassoOn::Block(scene, size) => {
             let view = camera::view(scene, geometry, *size);

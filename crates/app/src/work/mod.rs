@@ -22,14 +22,16 @@ pub mod swatches;
 mod wishes;
 
 pub use data::{Purpose, Rocks, Seen, Wanted};
-pub use map::{MapPicture, Maps};
-pub use picks::{Interpreted, Picks, ShownFault, ShownHorizon, ShownPick};
+pub use map::Maps;
+pub use picks::{Interpreted, Picks, ShownFault, ShownHorizon, ShownPick, sheet};
 pub use picture::{Drawing, Drawn, PictureWish, Touch};
 pub use running::{Running, RunningLine};
-pub use slice::{SlicePicture, SliceWish, Slices};
+pub use slice::{SliceWish, Slices};
 pub use swatches::Swatches;
 
 use super::state::{Notice, PickingStep, Place, Snapshot, Task};
+use figure::cut::{FenceCut, SectionCut};
+use figure::map::HorizonMap;
 use project::command::PickNode;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
@@ -57,11 +59,11 @@ pub enum Event {
     /// A picture of the block.
     Drawn(Drawn),
     /// A section.
-    Sliced(SlicePicture),
+    Sliced(SectionCut),
     /// A section along a line.
-    Fenced(fence::FencePicture),
+    Fenced(FenceCut),
     /// A map.
-    Mapped(MapPicture),
+    Mapped(HorizonMap),
     /// The interpretation was read.
     Interpreted(Arc<Interpreted>),
     /// The selected node, ready to be drawn; none where nothing is selected.

@@ -1,7 +1,7 @@
 //! Swatches of layers and patterns, drawn on a thread: a pattern is rasterised when it is first seen, which takes a while.
 
 use super::{Wake, spawn};
-use crate::views::swatch;
+use figure::draw::swatch;
 use image::RgbaImage;
 use project::document::Document;
 use project::styles;

@@ -3,9 +3,10 @@
 use crate::document::{FaultEntry, HorizonEntry, VolumeEntry, WellEntry};
 use crate::error::ProjectError;
 use crate::folder::at_hand;
+use glam::DVec3;
 use std::path::Path;
 use store::{self, StoredVolume};
-use survey::{Fault, Horizon, Progress, Volume, Well};
+use survey::{Fault, Horizon, Progress, SurveyGeometry, Volume, Well};
 
 /// Reads a well of the project in `root`.
 ///
@@ -56,4 +57,10 @@ pub fn read_horizon(root: &Path, entry: &HorizonEntry, progress: &Progress) -> R
 pub fn read_fault(root: &Path, entry: &FaultEntry) -> Result<Fault, ProjectError> {
     let fault = store::read_fault(&at_hand(root, &entry.file))?;
     Ok(Fault { name: entry.name.clone(), truncated_by: entry.truncated_by.clone(), ..fault })
+}
+
+/// The triangles of a fault as voxels.
+pub fn fault_triangles(fault: &Fault, geometry: &SurveyGeometry) -> Vec<[DVec3; 3]> {
+    let vertices: Vec<DVec3> = fault.mesh.vertices.iter().map(|vertex| geometry.voxel_from_world(*vertex)).collect();
+    fault.mesh.triangles.iter().map(|corners| corners.map(|v| vertices[v as usize])).collect()
 }

@@ -219,3 +219,13 @@ pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError>
     }
     Ok(kept)
 }
+
+/// The proposals for the horizons as they are, but for those accepted; none where there are none, or of another state.
+pub fn open(root: &Path, document: &Document) -> Vec<Proposal> {
+    let Ok(kept) = kept(root, document) else { return Vec::new() };
+    let accepted = |proposal: &Proposal| {
+        let hash = content::hash_fault(&proposal.fault(""));
+        document.faults.iter().any(|entry| entry.hash == hash)
+    };
+    kept.proposals.into_iter().filter(|proposal| !accepted(proposal)).collect()
+}

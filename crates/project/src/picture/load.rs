@@ -55,27 +55,38 @@ pub fn param_settings(document: &Document) -> ParamSettings {
     ParamSettings { definitions: document.k_definitions(), ..ParamSettings::default() }
 }
 
+/// Builds the model alone, which sections and maps are cut from; `None` for a project without horizons.
+///
+/// # Errors
+/// Damaged data, an interpretation that makes no solid model, or cancelled.
+pub fn structural_model(
+    project: &Project,
+    progress: &Progress,
+) -> Result<Option<(StructuralModel, Stage)>, ProjectError> {
+    let document = project.document();
+    if document.horizons.is_empty() {
+        return Ok(None);
+    }
+    let start = Instant::now();
+    let horizons = document.horizons.iter().map(|entry| content::read_horizon(project.root(), entry, progress));
+    let horizons = horizons.collect::<Result<Vec<_>, _>>()?;
+    let faults = document.faults.iter().map(|entry| content::read_fault(project.root(), entry));
+    let faults = faults.collect::<Result<Vec<_>, _>>()?;
+    let (geometry, settings) = (document.frame()?, ModelSettings::default());
+    let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
+    Ok(Some((model, Stage::new("model", start.elapsed()))))
+}
+
 /// Builds the model and its parameterization; `None` for a project without horizons.
 ///
 /// # Errors
 /// Damaged data, an interpretation that makes no solid model, or cancelled.
 pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, ProjectError> {
     let document = project.document();
-    if document.horizons.is_empty() {
-        return Ok(None);
-    }
-    let geometry = document.frame()?;
-    let mut stages = Vec::new();
-    let start = Instant::now();
-    let horizons = document.horizons.iter().map(|entry| content::read_horizon(project.root(), entry, progress));
-    let horizons = horizons.collect::<Result<Vec<_>, _>>()?;
-    let faults = document.faults.iter().map(|entry| content::read_fault(project.root(), entry));
-    let faults = faults.collect::<Result<Vec<_>, _>>()?;
-    let settings = ModelSettings::default();
-    let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
-    stages.push(Stage::new("model", start.elapsed()));
+    let Some((model, stage)) = structural_model(project, progress)? else { return Ok(None) };
+    let mut stages = vec![stage];
     let param_settings = param_settings(document);
-    let key = derived::parameterization_key(document, &settings, &param_settings);
+    let key = derived::parameterization_key(document, &ModelSettings::default(), &param_settings);
     let parameterization = match derived::load_grids(project.root(), &key) {
         Some(kept) => kept,
         None => {
@@ -296,21 +307,19 @@ impl More {
 ///
 /// # Errors
 /// Damaged data, or cancelled.
-pub fn load_bare(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
+pub fn load_bare(
+    project: &Project,
+    scene: &Scene,
+    volume_bytes: u64,
+    progress: &Progress,
+) -> Result<Loaded, ProjectError> {
     let document = project.document();
     let geometry = document.frame()?.clone();
     let raw = styles::transfer_functions(document).raw;
-    let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).collect();
+    let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).chain(volumes_within(scene)).collect();
     Ok(Loaded {
         rock: None,
-        volumes: read_volumes(
-            project.root(),
-            document,
-            &geometry,
-            &wanted,
-            memory_budget::half_of_available(),
-            progress,
-        )?,
+        volumes: read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?,
         packed: None,
         wells: read_wells(project.root(), document, &geometry)?,
         candidates: ShownCandidates::load(project, scene, None, progress)?,

@@ -8,7 +8,7 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
-use super::{SliceKind, Task};
+use super::{SectionKind, Task};
 use glam::{DVec2, DVec3};
 use interp::ExtractSettings;
 use interp::assembly::Operation;
@@ -127,7 +127,7 @@ pub struct Lasso {
 #[derive(Debug, Clone, PartialEq)]
 pub enum LassoOn {
     /// A section at a voxel position.
-    Section(SliceKind, f64),
+    Section(SectionKind, f64),
     /// A picture of the block, of this size in points.
     Block(Box<Scene>, DVec2),
 }

@@ -3,34 +3,31 @@
 //! Spaces: (s, t) of the section, one a sample; points of the window, y down. Both axes are stretched to the view, so a section fills
 //! it whatever its shape; the wheel with Ctrl zooms about the pointer, a drag moves, the wheel alone goes to the next section.
 
-mod axes;
 mod lines;
 
-pub(super) use axes::round_step;
-pub(super) use lines::draw_line;
 pub use lines::{entry_colour, horizon_colour};
 
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
-use super::texture;
-use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, Session, SliceKind};
-use crate::work::{Rocks, SlicePicture, SliceWish, Slices};
-use axes::{extent, name, ticks, value_at, voxel};
-use eframe::egui::{
-    Align2, Color32, Context, DragValue, FontId, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, pos2,
-    vec2,
-};
+use super::{canvas, texture};
+use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, Session};
+use crate::work::{Rocks, SliceWish, Slices};
+use eframe::egui::{Context, DragValue, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
+use figure::cut::SectionCut;
+use figure::cut::{CutLine, value_at};
+use figure::draw::NamedColour;
+use figure::draw::axes::{self, Axis};
+use figure::draw::section::{SectionContents, Zoom};
 use glam::DVec2;
-use lines::{cross, fence_line};
+use image::RgbaImage;
 use render::FaceData;
 use std::collections::HashMap;
+use std::sync::Arc;
 use survey::SurveyGeometry;
 
 /// Room for numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
-/// Height of the name above a printed section, points.
-const TITLE: f32 = 20.0;
 /// Zoom stays between these.
 const ZOOM: [f32; 2] = [1.0, 40.0];
 /// Wheel travel that goes to the next section, points.
@@ -39,7 +36,8 @@ const WHEEL_STEP: f32 = 24.0;
 /// One section on the screen.
 struct Pane {
     texture: Option<TextureHandle>,
-    shown: Option<SlicePicture>,
+    /// The picture as figures take it, with its lines.
+    shown: Option<(Arc<RgbaImage>, Vec<CutLine>)>,
     wished: Option<(f64, u64, FaceData)>,
     zoom: f32,
     /// Which part of the section is in the middle, shares.
@@ -66,15 +64,15 @@ impl Default for Pane {
 /// The three sections.
 #[derive(Default)]
 pub struct Sections {
-    panes: HashMap<SliceKind, Pane>,
+    panes: HashMap<SectionKind, Pane>,
 }
 
 impl Sections {
     /// Takes a section in.
-    pub fn receive(&mut self, ctx: &Context, picture: SlicePicture) {
-        let pane = self.panes.entry(picture.kind).or_default();
-        texture::keep(&mut pane.texture, ctx, name(picture.kind), texture::pixels(&picture.image));
-        pane.shown = Some(picture);
+    pub fn receive(&mut self, ctx: &Context, cut: SectionCut) {
+        let pane = self.panes.entry(cut.kind).or_default();
+        texture::keep(&mut pane.texture, ctx, cut.kind.name(), texture::pixels(&cut.image));
+        pane.shown = Some((Arc::new(cut.image), cut.lines));
     }
 
     /// Shows one section in all the room there is; answers what is under the cursor.
@@ -83,7 +81,7 @@ impl Sections {
         &mut self,
         ui: &mut Ui,
         session: &Session,
-        kind: SliceKind,
+        kind: SectionKind,
         rocks: Option<(&Rocks, u64)>,
         slices: &Slices,
         overlay: &mut Overlay,
@@ -102,7 +100,7 @@ impl Sections {
         }
         header(ui, session, kind, geometry, actions);
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{} section", name(kind))));
+        response.widget_info(|| WidgetInfo::labeled(Role::Image, true, format!("{} section", kind.name())));
         let body = body_of(whole);
         if !body.is_positive() {
             return None;
@@ -113,7 +111,7 @@ impl Sections {
         }
         let image = pane.paint(ui, session, kind, whole, overlay)?;
         let painter = ui.painter_at(body);
-        let extent = extent(kind, geometry.size());
+        let extent = kind.extent(geometry.size());
         let to_section = |pointer: Pos2| {
             let share = (pointer - image.min) / image.size();
             DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y)
@@ -127,9 +125,9 @@ impl Sections {
         if !(st.x >= 0.0 && st.y >= 0.0 && st.x <= extent.x && st.y <= extent.y) {
             return None;
         }
-        let voxel = voxel(kind, at, st);
+        let voxel = kind.voxel(at, st);
         pane.step(ui, session, kind, actions);
-        if kind == SliceKind::Slice && session.view.layout == Layout::Fence {
+        if kind == SectionKind::Slice && session.view.layout == Layout::Fence {
             if response.clicked() {
                 let mut fence = session.view.fence.clone();
                 fence.push([voxel.x, voxel.y]);
@@ -144,28 +142,13 @@ impl Sections {
 }
 
 impl Sections {
-    /// The same views of the sections, without pictures of them.
-    pub fn alike(&self) -> Self {
-        let alike = |pane: &Pane| Pane { zoom: pane.zoom, middle: pane.middle, ..Pane::default() };
-        Self { panes: self.panes.iter().map(|(kind, pane)| (*kind, alike(pane))).collect() }
-    }
-
-    /// Paints a section under its name and number, for a printed page.
-    pub fn print(&mut self, ui: &Ui, session: &Session, kind: SliceKind, rect: Rect, overlay: &mut Overlay) {
-        let Some(geometry) = &session.document.geometry else { return };
-        let (title, whole) = rect.split_top_bottom_at_y(rect.top() + TITLE);
-        let value = value_at(geometry, kind.axis(), session.view.slices[kind.axis()]);
-        let unit = if kind == SliceKind::Slice { geometry.vertical.unit.symbol() } else { "" };
-        let text = format!("{} {value} {unit}", name(kind));
-        let at = title.left_center() + vec2(MARGIN.x, 0.0);
-        ui.painter().text(
-            at,
-            Align2::LEFT_CENTER,
-            text.trim_end(),
-            FontId::proportional(14.0),
-            ui.visuals().text_color(),
-        );
-        self.panes.entry(kind).or_default().paint(ui, session, kind, whole, overlay);
+    /// Which part of a section is seen.
+    pub fn zoom(&self, kind: SectionKind) -> Zoom {
+        let pane = self.panes.get(&kind);
+        pane.map_or_else(Zoom::default, |pane| Zoom {
+            factor: f64::from(pane.zoom),
+            middle: [pane.middle.x, pane.middle.y].map(f64::from),
+        })
     }
 }
 
@@ -176,32 +159,35 @@ fn body_of(whole: Rect) -> Rect {
 
 impl Pane {
     /// Paints the section with its numbers into a rectangle; answers where all of it lies.
-    fn paint(&self, ui: &Ui, session: &Session, kind: SliceKind, whole: Rect, overlay: &mut Overlay) -> Option<Rect> {
+    fn paint(&self, ui: &Ui, session: &Session, kind: SectionKind, whole: Rect, overlay: &mut Overlay) -> Option<Rect> {
         let geometry = session.document.geometry.as_ref()?;
         let body = body_of(whole);
-        let extent = extent(kind, geometry.size());
+        let extent = kind.extent(geometry.size());
         let image = self.image_rect(body);
         let painter = ui.painter_at(body);
         painter.rect_filled(body, 0.0, super::block::paper(ui));
-        if let Some(texture) = &self.texture {
-            // Sample centres lie at the ends of the axes: half a pixel of the raster hangs over.
-            let half = vec2(0.5 / (extent.x as f32 + 1.0), 0.5 / (extent.y as f32 + 1.0));
-            let uv = Rect::from_min_max(pos2(half.x, half.y), pos2(1.0 - half.x, 1.0 - half.y));
-            painter.image(texture.id(), image, uv, Color32::WHITE);
+        let is_interpreting = session.view.panel == Panel::Interpret;
+        let (on_page, seen) = (canvas::page_rect(image), canvas::page_rect(body));
+        if let (Some((pixels, lines)), Some(texture)) = (&self.shown, &self.texture) {
+            let lines = if is_interpreting { &[] } else { lines.as_slice() };
+            let horizons = project::figures::horizons(&session.document);
+            let contents = contents(pixels, lines, &horizons, extent, session, kind);
+            canvas::paint(&painter, &contents.drawn(seen, on_page), Some(texture.id()));
         }
-        let to_screen = |st: DVec2| {
-            image.min + vec2((st.x / extent.x) as f32 * image.width(), (st.y / extent.y) as f32 * image.height())
+        if is_interpreting {
+            overlay.on_section(&painter, session, kind, |st| on_page.min + st / extent * on_page.size());
+        }
+        let [s, t] = kind.axes();
+        let axis = |axis: usize, last: f64, at: [f64; 2]| Axis {
+            name: String::new(),
+            ends: [0.0, last].map(|index| value_at(geometry, axis, index)),
+            at,
+            least_step: if axis < 2 { 1.0 } else { 0.0 },
         };
-        if let Some(picture) = self.shown.as_ref().filter(|_| session.view.panel != Panel::Interpret) {
-            for line in &picture.lines {
-                let points: Vec<Pos2> = line.points.iter().map(|st| to_screen(*st)).collect();
-                draw_line(&painter, points, line.kind, line.quality, session);
-            }
-        }
-        overlay.on_section(&painter, session, kind, &to_screen);
-        fence_line(ui, &painter, session, kind, &to_screen);
-        cross(ui, &painter, session, kind, body, &to_screen);
-        ticks(ui, whole, body, image, kind, geometry);
+        let across = axis(s, extent.x, [on_page.min.x, on_page.max.x]);
+        let down = axis(t, extent.y, [on_page.min.y, on_page.max.y]);
+        let drawn = axes::drawn(canvas::page_rect(whole), seen, [&across, &down]);
+        canvas::paint(&ui.painter_at(whole), &drawn, None);
         Some(image)
     }
 
@@ -232,7 +218,7 @@ impl Pane {
     }
 
     /// The wheel goes to the next section.
-    fn step(&mut self, ui: &Ui, session: &Session, kind: SliceKind, actions: &mut Vec<Action>) {
+    fn step(&mut self, ui: &Ui, session: &Session, kind: SectionKind, actions: &mut Vec<Action>) {
         let (scroll, has_zoomed) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta() != 1.0));
         if has_zoomed {
             return;
@@ -248,10 +234,23 @@ impl Pane {
     }
 }
 
+/// What a section shows, as figures print it.
+fn contents<'a>(
+    image: &'a Arc<RgbaImage>,
+    lines: &'a [CutLine],
+    horizons: &'a [NamedColour],
+    extent: DVec2,
+    session: &Session,
+    kind: SectionKind,
+) -> SectionContents<'a> {
+    let marks = lines::marks(session, kind);
+    SectionContents { image, extent, lines, horizons, faults: &[], interpretation: None, marks }
+}
+
 /// Name and number of the section; the number can be typed and dragged.
-fn header(ui: &mut Ui, session: &Session, kind: SliceKind, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
+fn header(ui: &mut Ui, session: &Session, kind: SectionKind, geometry: &SurveyGeometry, actions: &mut Vec<Action>) {
     ui.horizontal(|ui| {
-        let label = ui.strong(name(kind));
+        let label = ui.strong(kind.name());
         let axis = kind.axis();
         let last = geometry.size()[axis].saturating_sub(1) as f64;
         let index = session.view.slices[axis];
@@ -271,7 +270,7 @@ fn header(ui: &mut Ui, session: &Session, kind: SliceKind, geometry: &SurveyGeom
         }
         for (word, step) in [("Previous", -1.0), ("Next", 1.0)] {
             let sign = if step < 0.0 { "‹" } else { "›" };
-            let button = ui.small_button(sign).on_hover_text(format!("{word} {}", name(kind).to_lowercase()));
+            let button = ui.small_button(sign).on_hover_text(format!("{word} {}", kind.name().to_lowercase()));
             if button.clicked() {
                 let mut slices = session.view.slices;
                 slices[axis] += step;

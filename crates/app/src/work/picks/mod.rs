@@ -11,6 +11,7 @@ use super::running::Running;
 use super::{Event, Outbox, compute_apart, spawn};
 use crate::state::picking::{Pick, voxel_of};
 use crate::state::{Notice, PickingStep, PickingTask, Place, Snapshot};
+use figure::interpretation::{FaultMesh, Interpretation, PickedSheets, SheetHole, TraceSheet};
 use followed::Followed;
 use glam::DVec3;
 use interp::ExtractReport;
@@ -82,6 +83,41 @@ pub struct Interpreted {
     pub proposals: Vec<(Proposal, ShownFault)>,
     /// Unit of the throws of these.
     pub unit: String,
+}
+
+/// A sheet as figures take it.
+pub fn sheet(sheet: &VoxelSheet) -> TraceSheet<'_> {
+    project::figures::borrowed(sheet)
+}
+
+impl Interpreted {
+    /// As figures take it, with the proposals that are to be seen; sticks and the selection belong to the view.
+    pub fn seen(&self, shows: impl Fn(&Proposal) -> bool) -> Interpretation<'_> {
+        let horizons = self.horizons.iter().enumerate().map(|(index, horizon)| PickedSheets {
+            name: &horizon.name,
+            colour: figure::style::horizon_colour(horizon.colour, index),
+            sheets: horizon.sheets.iter().map(sheet).collect(),
+            holes: horizon.holes.iter().map(|hole| SheetHole { block: hole.block, traces: hole.nodes() }).collect(),
+        });
+        let proposals = self.proposals.iter().filter(|(proposal, _)| shows(proposal));
+        Interpretation {
+            horizons: horizons.collect(),
+            faults: self.faults.iter().map(ShownFault::mesh).collect(),
+            proposals: proposals.map(|(_, fault)| fault.mesh()).collect(),
+            ..Interpretation::default()
+        }
+    }
+
+    /// The horizons alone.
+    pub fn horizons_seen(&self) -> Interpretation<'_> {
+        self.seen(|_| false)
+    }
+}
+
+impl ShownFault {
+    fn mesh(&self) -> FaultMesh<'_> {
+        FaultMesh { name: &self.name, triangles: &self.triangles }
+    }
 }
 
 /// The selected node, to be drawn.
@@ -399,24 +435,16 @@ fn hashes(document: &Document) -> Vec<String> {
 }
 
 fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {
-    let vertices: Vec<DVec3> = fault.mesh.vertices.iter().map(|vertex| geometry.voxel_from_world(*vertex)).collect();
-    let triangles = fault.mesh.triangles.iter().map(|corners| corners.map(|v| vertices[v as usize])).collect();
-    ShownFault { name: fault.name.clone(), triangles }
+    ShownFault { name: fault.name.clone(), triangles: content::fault_triangles(fault, geometry) }
 }
 
-/// The proposals for the horizons as they are, but for those accepted.
+/// The proposals for the horizons as they are, but for those accepted, and the unit of their throws.
 fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec<(Proposal, ShownFault)>, String) {
-    let Ok(kept) = proposals::kept(root, document) else { return (Vec::new(), String::new()) };
-    let accepted = |proposal: &Proposal| {
-        let hash = content::hash_fault(&proposal.fault(""));
-        document.faults.iter().any(|entry| entry.hash == hash)
-    };
-    let open = kept.proposals.into_iter().filter(|proposal| !accepted(proposal));
-    let open = open.map(|proposal| {
+    let open = proposals::open(root, document).into_iter().map(|proposal| {
         let fault = shown(&proposal.fault(&proposal.name), geometry);
         (proposal, fault)
     });
-    (open.collect(), kept.unit)
+    (open.collect(), geometry.vertical.unit.symbol().to_owned())
 }
 
 /// Voxel position of a place where an overlap is worst.

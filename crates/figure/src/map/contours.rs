@@ -1,5 +1,7 @@
-//! Contours of round values, cell by cell (marching squares): along each side a value between the ends is placed by linear interpolation, and a
-//! cell's two or four places are joined, and cells' pieces to lines. A cell with corners in different fault blocks has none: contours end at faults.
+//! Contours of round values, cell by cell (marching squares).
+//!
+//! Along each side of a cell a value between its ends is placed by linear interpolation; a cell's two or four places are joined, and
+//! cells' pieces to lines. A cell with corners in different fault blocks has none: contours end at faults.
 
 use super::Contour;
 use super::grid::Grid;
@@ -107,7 +109,7 @@ mod tests {
     use super::super::grid::Node;
     use super::*;
 
-    fn grid_of(size: [usize; 2], value: impl Fn(f64, f64) -> f64) -> Grid {
+    fn grid_of(size: [usize; 2], value: impl Fn(f64, f64) -> f64 + Sync) -> Grid {
         Grid::by(size, |x, y| Node { value: value(x as f64, y as f64), block: 0, is_open: false })
     }
 

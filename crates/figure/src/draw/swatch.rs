@@ -1,4 +1,4 @@
-//! A piece of a layer as it is drawn: colour and pattern, for column, browser and legend.
+//! A piece of a layer as it is drawn: colour and pattern, for legends and lists.
 
 use image::{Rgba, RgbaImage};
 use ttf::{LayerStyle, TextureLibrary};

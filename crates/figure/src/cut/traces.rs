@@ -1,21 +1,19 @@
 //! Where horizons and faults of an interpretation meet a section.
 //!
-//! A sheet is a value at each trace: along an inline or crossline its line runs from trace to trace, on a slice it is the contour of that depth,
-//! found cell by cell as everywhere on the two triangles of a cell. A mesh is cut triangle by triangle. Across a hole a line has a bridge, straight from rim to
-//! rim. Space: (s, t) of the section, one a sample.
+//! A sheet is a value at each trace: along an inline or crossline its line runs from trace to trace, on a slice it is the contour
+//! of that depth, found on the two triangles of each cell. A mesh is cut triangle by triangle. Across a hole a line has a
+//! bridge, straight from rim to rim. Space: (s, t) of the section, one a sample.
 
-use crate::state::SliceKind;
-use crate::work::fence::{place, stations};
+use super::{SectionKind, place, stations};
+use crate::interpretation::{SheetHole, TraceSheet};
 use glam::{DVec2, DVec3};
-use interp::holes::Hole;
-use interp::reassembly::VoxelSheet;
 
 /// A piece of a line on a section.
 pub type Line = Vec<DVec2>;
 
 /// Where a sheet meets a section at a voxel position; `[inlines, crosslines]` is its size.
-pub fn of_sheet(sheet: &VoxelSheet, [nx, ny]: [usize; 2], kind: SliceKind, at: f64) -> Vec<Line> {
-    if kind != SliceKind::Slice {
+pub fn of_sheet(sheet: &TraceSheet, [nx, ny]: [usize; 2], kind: SectionKind, at: f64) -> Vec<Line> {
+    if kind != SectionKind::Slice {
         return runs(passed(kind, at, [nx, ny]).map(|n| f64::from(sheet.z[n])));
     }
     let z = |x: usize, y: usize| f64::from(sheet.z[x * ny + y]);
@@ -39,20 +37,20 @@ pub fn of_sheet(sheet: &VoxelSheet, [nx, ny]: [usize; 2], kind: SliceKind, at: f
 }
 
 /// Bridges across the holes of a sheet on an inline or crossline; a slice has none, for a hole has no depth.
-pub fn bridges(sheet: &VoxelSheet, holes: &[Hole], size: [usize; 2], kind: SliceKind, at: f64) -> Vec<Line> {
-    if kind == SliceKind::Slice {
+pub fn bridges(sheet: &TraceSheet, holes: &[SheetHole], size: [usize; 2], kind: SectionKind, at: f64) -> Vec<Line> {
+    if kind == SectionKind::Slice {
         return Vec::new();
     }
     gaps(passed(kind, at, size).map(|n| (f64::from(sheet.z[n]), is_hole(holes, sheet.block, n))))
 }
 
 /// Where a sheet meets a fence: the nearest trace's value at every trace's length along it.
-pub fn along(sheet: &VoxelSheet, size: [usize; 2], corners: &[DVec2]) -> Vec<Line> {
+pub fn along(sheet: &TraceSheet, size: [usize; 2], corners: &[DVec2]) -> Vec<Line> {
     runs(passed_by_fence(size, corners).map(|n| n.map_or(f64::NAN, |n| f64::from(sheet.z[n]))))
 }
 
 /// Bridges across the holes of a sheet on a fence.
-pub fn bridges_along(sheet: &VoxelSheet, holes: &[Hole], size: [usize; 2], corners: &[DVec2]) -> Vec<Line> {
+pub fn bridges_along(sheet: &TraceSheet, holes: &[SheetHole], size: [usize; 2], corners: &[DVec2]) -> Vec<Line> {
     gaps(passed_by_fence(size, corners).map(|n| match n {
         Some(n) => (f64::from(sheet.z[n]), is_hole(holes, sheet.block, n)),
         None => (f64::NAN, false),
@@ -60,8 +58,8 @@ pub fn bridges_along(sheet: &VoxelSheet, holes: &[Hole], size: [usize; 2], corne
 }
 
 /// The traces that an inline or crossline passes.
-fn passed(kind: SliceKind, at: f64, [nx, ny]: [usize; 2]) -> impl Iterator<Item = usize> {
-    let is_inline = kind == SliceKind::Inline;
+fn passed(kind: SectionKind, at: f64, [nx, ny]: [usize; 2]) -> impl Iterator<Item = usize> {
+    let is_inline = kind == SectionKind::Inline;
     let at = (at as usize).min(if is_inline { nx } else { ny } - 1);
     (0..if is_inline { ny } else { nx }).map(move |n| if is_inline { at * ny + n } else { n * ny + at })
 }
@@ -76,9 +74,9 @@ fn passed_by_fence([nx, ny]: [usize; 2], corners: &[DVec2]) -> impl Iterator<Ite
     })
 }
 
-fn is_hole(holes: &[Hole], block: u16, trace: usize) -> bool {
+fn is_hole(holes: &[SheetHole], block: u16, trace: usize) -> bool {
     let mut own = holes.iter().filter(|hole| hole.block == block);
-    own.any(|hole| hole.nodes().binary_search(&(trace as u32)).is_ok())
+    own.any(|hole| hole.traces.binary_search(&(trace as u32)).is_ok())
 }
 
 /// Straight lines across runs without a value, where all of a run is hole.
@@ -121,15 +119,10 @@ fn runs(values: impl Iterator<Item = f64>) -> Vec<Line> {
 }
 
 /// Where triangles meet a section.
-pub fn of_mesh(triangles: &[[DVec3; 3]], kind: SliceKind, at: f64) -> Vec<Line> {
+pub fn of_mesh(triangles: &[[DVec3; 3]], kind: SectionKind, at: f64) -> Vec<Line> {
     let axis = kind.axis();
-    let flat = |p: DVec3| match kind {
-        SliceKind::Inline => DVec2::new(p.y, p.z),
-        SliceKind::Crossline => DVec2::new(p.x, p.z),
-        SliceKind::Slice => DVec2::new(p.x, p.y),
-    };
     let cuts = triangles.iter().filter_map(|triangle| cut(triangle, triangle.map(|corner| corner[axis] - at)));
-    cuts.map(|ends| ends.map(flat).to_vec()).collect()
+    cuts.map(|ends| ends.map(|p| kind.flat(p)).to_vec()).collect()
 }
 
 /// Where triangles meet a fence: leg by leg, each cut ending where its leg does.
@@ -160,16 +153,6 @@ pub fn mesh_along(triangles: &[[DVec3; 3]], corners: &[DVec2]) -> Vec<Line> {
     lines
 }
 
-/// Length along a fence of the place on it nearest to a point, and how far that is.
-pub fn station_of(corners: &[DVec2], point: DVec2) -> Option<(f64, f64)> {
-    let legs = corners.windows(2).zip(stations(corners)).map(|(leg, station)| {
-        let (step, off) = (leg[1] - leg[0], point - leg[0]);
-        let share = (step.dot(off) / step.length_squared().max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        (station + share * step.length(), off.distance(step * share))
-    });
-    legs.min_by(|a, b| a.1.total_cmp(&b.1))
-}
-
 /// Where a triangle meets a plane, given its corners' distances from it. Corners on the plane count as beyond it, so that neighbours share no piece.
 fn cut(triangle: &[DVec3; 3], off: [f64; 3]) -> Option<[DVec3; 2]> {
     if off.iter().any(|off| !off.is_finite()) {
@@ -189,25 +172,36 @@ mod tests {
     use super::*;
     use survey::Quality;
 
+    struct VoxelSheet {
+        z: Vec<f32>,
+        quality: Vec<Quality>,
+    }
+
+    impl VoxelSheet {
+        fn sheet(&self) -> TraceSheet<'_> {
+            TraceSheet { block: 0, z: &self.z, quality: &self.quality }
+        }
+    }
+
     /// z = 2 + x + 0.5 y on 5 × 4 traces, without the trace (2, 1).
     fn plane() -> VoxelSheet {
         let mut z: Vec<f32> = (0..20).map(|n| 2.0 + (n / 4) as f32 + 0.5 * (n % 4) as f32).collect();
         z[2 * 4 + 1] = f32::NAN;
-        VoxelSheet { block: 0, quality: vec![Quality::Tracked; 20], z }
+        VoxelSheet { quality: vec![Quality::Tracked; 20], z }
     }
 
     #[test]
     fn a_plane_meets_sections_in_lines_with_its_hole() {
-        let lines = of_sheet(&plane(), [5, 4], SliceKind::Inline, 2.0);
+        let lines = of_sheet(&plane().sheet(), [5, 4], SectionKind::Inline, 2.0);
         assert_eq!(lines.len(), 2);
         assert_eq!(lines[1], [DVec2::new(2.0, 5.0), DVec2::new(3.0, 5.5)]);
-        let whole = of_sheet(&plane(), [5, 4], SliceKind::Crossline, 3.0);
+        let whole = of_sheet(&plane().sheet(), [5, 4], SectionKind::Crossline, 3.0);
         assert_eq!((whole.len(), whole[0].len()), (1, 5));
     }
 
     #[test]
     fn on_a_slice_every_point_has_its_depth() {
-        let lines = of_sheet(&plane(), [5, 4], SliceKind::Slice, 4.6);
+        let lines = of_sheet(&plane().sheet(), [5, 4], SectionKind::Slice, 4.6);
         assert!(!lines.is_empty());
         for point in lines.iter().flatten() {
             assert!((2.0 + point.x + 0.5 * point.y - 4.6).abs() < 1e-6, "{point}");
@@ -217,7 +211,7 @@ mod tests {
     #[test]
     fn along_a_fence_the_plane_rises_leg_by_leg() {
         let corners = [[0.0, 0.0], [3.0, 0.0], [3.0, 2.0]].map(DVec2::from_array);
-        let lines = along(&plane(), [5, 4], &corners);
+        let lines = along(&plane().sheet(), [5, 4], &corners);
         let z: Vec<f64> = lines.iter().flatten().map(|point| point.y).collect();
         assert_eq!(z, [2.0, 3.0, 4.0, 5.0, 5.5, 6.0]);
     }
@@ -225,9 +219,9 @@ mod tests {
     #[test]
     fn a_triangle_is_cut_where_it_passes_the_section() {
         let triangle = [DVec3::new(0.0, 0.0, 0.0), DVec3::new(4.0, 0.0, 8.0), DVec3::new(0.0, 4.0, 0.0)];
-        let lines = of_mesh(&[triangle], SliceKind::Slice, 4.0);
+        let lines = of_mesh(&[triangle], SectionKind::Slice, 4.0);
         assert_eq!(lines, [[DVec2::new(2.0, 0.0), DVec2::new(2.0, 2.0)]]);
-        assert!(of_mesh(&[triangle], SliceKind::Slice, 9.0).is_empty());
+        assert!(of_mesh(&[triangle], SectionKind::Slice, 9.0).is_empty());
     }
 
     #[test]
@@ -235,13 +229,14 @@ mod tests {
         let mut sheet = plane();
         // The trace (4, 3) is missing at the wall, which is no hole.
         sheet.z[4 * 4 + 3] = f32::NAN;
-        let holes = interp::holes::find_holes(std::slice::from_ref(&sheet), [5, 4]);
+        let sheet = sheet.sheet();
+        let holes = [SheetHole { block: 0, traces: &[2 * 4 + 1] }];
         let bridge = |kind, at| bridges(&sheet, &holes, [5, 4], kind, at);
-        assert_eq!(bridge(SliceKind::Inline, 2.0), [[DVec2::new(0.0, 4.0), DVec2::new(2.0, 5.0)]]);
-        assert_eq!(bridge(SliceKind::Crossline, 1.0), [[DVec2::new(1.0, 3.5), DVec2::new(3.0, 5.5)]]);
-        assert!(bridge(SliceKind::Inline, 4.0).is_empty() && bridge(SliceKind::Slice, 4.0).is_empty());
+        assert_eq!(bridge(SectionKind::Inline, 2.0), [[DVec2::new(0.0, 4.0), DVec2::new(2.0, 5.0)]]);
+        assert_eq!(bridge(SectionKind::Crossline, 1.0), [[DVec2::new(1.0, 3.5), DVec2::new(3.0, 5.5)]]);
+        assert!(bridge(SectionKind::Inline, 4.0).is_empty() && bridge(SectionKind::Slice, 4.0).is_empty());
         let corners = [[0.0, 1.0], [4.0, 1.0]].map(DVec2::from_array);
-        assert_eq!(bridges_along(&sheet, &holes, [5, 4], &corners), bridge(SliceKind::Crossline, 1.0));
+        assert_eq!(bridges_along(&sheet, &holes, [5, 4], &corners), bridge(SectionKind::Crossline, 1.0));
     }
 
     #[test]
@@ -262,13 +257,5 @@ mod tests {
         assert_eq!(at, [2.0, 8.0]);
         let height: f64 = lines.iter().map(|line| line[0].distance(line[1])).sum();
         assert!((height - 16.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_place_beside_a_fence_has_its_length_along_it() {
-        let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0]].map(DVec2::from_array);
-        assert_eq!(station_of(&corners, DVec2::new(1.0, -2.0)), Some((1.0, 2.0)));
-        assert_eq!(station_of(&corners, DVec2::new(5.0, 1.5)), Some((5.5, 1.0)));
-        assert_eq!(station_of(&corners[..1], DVec2::ZERO), None);
     }
 }

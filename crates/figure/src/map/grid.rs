@@ -3,9 +3,10 @@
 //! Each trace takes the shallowest place where the horizon lies in the block it belongs to; where no block has it, there is no value.
 
 use super::Mapped;
-use crate::work::{Interpreted, ShownHorizon};
+use crate::interpretation::{Interpretation, SheetHole};
 use glam::Vec3;
-use project::picture::load::Loaded;
+use model::StructuralModel;
+use rayon::prelude::*;
 use survey::{Quality, SurveyGeometry};
 
 /// What is known at a trace.
@@ -33,8 +34,8 @@ struct Place {
 }
 
 impl Grid {
-    pub(super) fn by(size: [usize; 2], node: impl Fn(usize, usize) -> Node) -> Self {
-        Self { size, nodes: (0..size[0] * size[1]).map(|n| node(n / size[1], n % size[1])).collect() }
+    pub(super) fn by(size: [usize; 2], node: impl Fn(usize, usize) -> Node + Sync) -> Self {
+        Self { size, nodes: (0..size[0] * size[1]).into_par_iter().map(|n| node(n / size[1], n % size[1])).collect() }
     }
 
     pub(super) fn at(&self, x: usize, y: usize) -> Node {
@@ -46,9 +47,8 @@ impl Grid {
     }
 
     /// Of the model; `None` when it has no such horizon.
-    pub(super) fn of_model(loaded: &Loaded, mapped: Mapped) -> Option<Self> {
-        let model = &loaded.rock.as_ref()?.model;
-        let last = loaded.geometry.vertical.count.saturating_sub(1) as f32;
+    pub(super) fn of_model(geometry: &SurveyGeometry, model: &StructuralModel, mapped: Mapped) -> Option<Self> {
+        let last = geometry.vertical.count.saturating_sub(1) as f32;
         let place = |horizon: usize, x: usize, y: usize| {
             let (x, y) = (x as f32, y as f32);
             let places = (0..model.block_count() as u16).filter_map(|block| {
@@ -62,11 +62,11 @@ impl Grid {
             Some(Place { z, block, is_open: !matches!(quality, Quality::Picked | Quality::Tracked) })
         };
         let count = model.stratigraphy().horizons.len();
-        mapped.is_among(count).then(|| Self::of(&loaded.geometry, mapped, place))
+        mapped.is_among(count).then(|| Self::of(geometry, mapped, place))
     }
 
     /// Of sheets as they were picked; `None` when there is no such horizon.
-    pub(super) fn of_sheets(shown: &Interpreted, geometry: &SurveyGeometry, mapped: Mapped) -> Option<Self> {
+    pub(super) fn of_sheets(geometry: &SurveyGeometry, shown: &Interpretation, mapped: Mapped) -> Option<Self> {
         let [_, ny, _] = geometry.size();
         let place = |horizon: usize, x: usize, y: usize| {
             let n = x * ny + y;
@@ -78,19 +78,23 @@ impl Grid {
             return None;
         }
         let mut grid = Self::of(geometry, mapped, place);
-        let upper = |horizons: &[ShownHorizon], index: usize| horizons[index].holes.clone();
-        let holes = match mapped {
-            Mapped::Structure(horizon) => upper(&shown.horizons, horizon),
-            Mapped::Thickness(top, base) => [upper(&shown.horizons, top), upper(&shown.horizons, base)].concat(),
+        let holes = |index: usize| shown.horizons[index].holes.clone();
+        let holes: Vec<SheetHole> = match mapped {
+            Mapped::Structure(horizon) => holes(horizon),
+            Mapped::Thickness(top, base) => [holes(top), holes(base)].concat(),
         };
-        for trace in holes.iter().flat_map(|hole| hole.nodes()) {
+        for trace in holes.iter().flat_map(|hole| hole.traces) {
             let node = &mut grid.nodes[*trace as usize];
             node.is_open |= node.value.is_nan();
         }
         Some(grid)
     }
 
-    fn of(geometry: &SurveyGeometry, mapped: Mapped, place: impl Fn(usize, usize, usize) -> Option<Place>) -> Self {
+    fn of(
+        geometry: &SurveyGeometry,
+        mapped: Mapped,
+        place: impl Fn(usize, usize, usize) -> Option<Place> + Sync,
+    ) -> Self {
         let vertical = &geometry.vertical;
         let nothing = Node { value: f64::NAN, block: 0, is_open: false };
         let [nx, ny, _] = geometry.size();

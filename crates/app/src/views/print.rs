@@ -1,0 +1,140 @@
+//! What is on the screen as a figure for print: what the page preview and the file show.
+//!
+//! The page itself is made by [`project::figures::make`], as by `petroglyph render`.
+
+use super::block::{self, BEHIND_VOLUMES};
+use super::overlay::{Overlay, interpreter_view};
+use super::sections::Sections;
+use crate::state::picking::place_of;
+use crate::state::{Compare, ExportForm, Layout, Panel, SectionKind, Session, Shown, State, showing};
+use crate::work::compute;
+use figure::cut::value_at;
+use figure::draw::block::Comparison;
+use figure::map::Mapped;
+use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
+use glam::DVec3;
+use project::figures::{self, FigureSettings, InterpreterView};
+use project::picture::{self, Device};
+use project::{Project, ProjectError, memory_budget};
+use render::{Background, FaceData, Scene};
+use std::path::{Path, PathBuf};
+use survey::{Progress, SurveyGeometry};
+use ttf::Colour;
+
+/// Samples a pixel along each axis.
+const SAMPLES: u32 = 3;
+
+/// What is on the screen, and how it is to be printed.
+pub struct Page {
+    root: PathBuf,
+    figure: Figure,
+    view: InterpreterView,
+    path: String,
+}
+
+impl Page {
+    /// The page that shows what is on the screen; `None` of a project without a frame.
+    pub fn of(
+        session: &Session,
+        overlay: &Overlay,
+        sections: &Sections,
+        mapped: Mapped,
+        form: &ExportForm,
+    ) -> Option<Self> {
+        let geometry = session.document.geometry.as_ref()?;
+        let is_interpreting = session.view.panel == Panel::Interpret;
+        let figure = Figure {
+            size: PageSize::Cm(form.size_cm),
+            dpi: form.dpi,
+            parts: parts(session, geometry, overlay, sections, mapped),
+            legend: form.legend == Shown::Yes,
+            scale_bar: form.scale_bar == Shown::Yes,
+            interpretation: is_interpreting,
+        };
+        let view = interpreter_view(session, overlay.selected());
+        Some(Self { root: session.root.clone(), figure, view, path: form.path.clone() })
+    }
+
+    /// What the page shows.
+    pub fn figure(&self) -> &Figure {
+        &self.figure
+    }
+
+    /// Makes the page and writes it.
+    ///
+    /// # Errors
+    /// Data that cannot be read or drawn, a file that cannot be written, or cancelled.
+    pub fn write(&self, progress: &Progress) -> Result<(), ProjectError> {
+        let project = Project::open(&self.root)?;
+        let settings = FigureSettings { device: Device::Auto, volume_bytes: memory_budget::half_of_available() };
+        let image = compute(|| {
+            let made = figures::make(&project, &self.figure, &self.view, &settings, progress)?;
+            Ok::<_, ProjectError>(figure::raster(&made.page, self.figure.dpi)?)
+        })?;
+        picture::write_png(Path::new(&self.path), &image, self.figure.dpi)
+    }
+}
+
+/// The views on the screen as parts of a figure, in the order that a page has them.
+fn parts(
+    session: &Session,
+    geometry: &SurveyGeometry,
+    overlay: &Overlay,
+    sections: &Sections,
+    mapped: Mapped,
+) -> Vec<Part> {
+    let view = &session.view;
+    let show = if view.panel == Panel::Interpret { view.picking.show } else { FaceData::Rock };
+    let section = |kind: SectionKind| {
+        let at = value_at(geometry, kind.axis(), view.slices[kind.axis()]);
+        Part::Section(SectionPart { kind, at, show, zoom: sections.zoom(kind) })
+    };
+    let block = || Part::Block(block_part(session, overlay));
+    match view.layout {
+        Layout::Block => vec![block()],
+        Layout::Sections => {
+            let [inline, crossline, slice] = SectionKind::ALL.map(section);
+            vec![block(), inline, slice, crossline]
+        }
+        Layout::Map => {
+            let map = map_part(session, mapped);
+            std::iter::once(block()).chain(map.map(Part::Map)).collect()
+        }
+        Layout::Fence => {
+            let corner = |at: &[f64; 2]| {
+                let [inline, crossline, _] = place_of(geometry, DVec3::new(at[0], at[1], 0.0));
+                [inline, crossline]
+            };
+            let corners: Vec<[f64; 2]> = view.fence.iter().map(corner).collect();
+            let fence = (corners.len() > 1).then_some(Part::Fence(FencePart { corners, show }));
+            std::iter::once(section(SectionKind::Slice)).chain(fence).collect()
+        }
+    }
+}
+
+fn map_part(session: &Session, mapped: Mapped) -> Option<MapPart> {
+    let name = |index: usize| session.document.horizons.get(index).map(|entry| entry.name.clone());
+    Some(match mapped {
+        Mapped::Structure(horizon) => MapPart { horizon: name(horizon)?, thickness_to: None },
+        Mapped::Thickness(upper, lower) => MapPart { horizon: name(upper)?, thickness_to: Some(name(lower)?) },
+    })
+}
+
+/// The block, or the blocks that are compared, as on the screen.
+fn block_part(session: &Session, overlay: &Overlay) -> BlockPart {
+    let view = &session.view;
+    let has_candidates = overlay.interpreted().is_some_and(|shown| shown.key.is_some());
+    let horizons = has_candidates.then(|| overlay.leaves(session));
+    let mut scene = Scene { samples: SAMPLES, ..showing::scene(session, horizons.as_deref()) };
+    if block::is_dark(session) {
+        let [r, g, b, _] = BEHIND_VOLUMES.to_array();
+        scene.background = Background::Colour(Colour::new(r, g, b));
+    }
+    let blends = State::blends(view);
+    let comparison = match (block::compare(session), blends.as_slice()) {
+        (Compare::SideBySide, &[first, second]) => Comparison::SideBySide([first, second]),
+        (Compare::Wipe, &[first, second]) => Comparison::Wipe([first, second], f64::from(view.wipe)),
+        _ => Comparison::None,
+    };
+    BlockPart { scene, comparison }
+}

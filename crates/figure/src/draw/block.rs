@@ -1,0 +1,268 @@
+//! The block on a page: one picture or two compared, surfaces and sticks before them, and which is which.
+
+use super::overlay;
+use super::surfaces::{self, Cells, OPACITY};
+use crate::Rect;
+use crate::error::FigureError;
+use crate::interpretation::Interpretation;
+use crate::list::{Across, Group, GroupKind, POINTS_PER_INCH, Path, PathItem, Picture, Stroke, Text, Upright};
+use crate::style::{ACCENT, FRAME_PT, INK, RULE_INK, TEXT_PT};
+use glam::{DVec2, DVec3};
+use image::RgbaImage;
+use render::{RenderError, Scene, View};
+use serde::{Deserialize, Serialize};
+use survey::SurveyGeometry;
+
+/// Two pictures stand one over the other in a room narrower than so many heights: blocks are broader than high.
+const NARROW: f64 = 1.4;
+
+/// Draws pictures of blocks: a renderer with its data, and what watches over it.
+pub trait BlockPainter {
+    /// The picture of a scene, in the scene's own size.
+    ///
+    /// # Errors
+    /// A scene that shows nothing, or a device that fails.
+    fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError>;
+}
+
+impl<F: FnMut(&Scene) -> Result<RgbaImage, RenderError>> BlockPainter for F {
+    fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError> {
+        self(scene)
+    }
+}
+
+/// How pictures of one block are compared.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Comparison {
+    /// One picture.
+    #[default]
+    None,
+    /// Two of these blends beside one another, or one over the other where there is no room.
+    SideBySide([f32; 2]),
+    /// Two of these blends one over the other, parted at a share of the width.
+    Wipe([f32; 2], f64),
+}
+
+impl Comparison {
+    /// The blends, or none where there is one picture.
+    fn blends(self) -> Option<[f32; 2]> {
+        match self {
+            Self::None => None,
+            Self::SideBySide(blends) | Self::Wipe(blends, _) => Some(blends),
+        }
+    }
+
+    /// Where each picture lies in a room.
+    pub fn panes(self, room: Rect) -> Vec<Rect> {
+        match self {
+            Self::None => vec![room],
+            Self::SideBySide(_) if is_narrow(room) => room.split_down(0.5).to_vec(),
+            Self::SideBySide(_) => room.split_across(0.5).to_vec(),
+            Self::Wipe(..) => vec![room; 2],
+        }
+    }
+
+    /// The part of a pane that its picture is seen in.
+    pub fn seen(self, index: usize, pane: Rect) -> Rect {
+        match self {
+            Self::Wipe(_, share) => pane.split_across(share)[index.min(1)],
+            _ => pane,
+        }
+    }
+}
+
+/// Whether two blocks stand one over the other here.
+pub fn is_narrow(room: Rect) -> bool {
+    room.width() < NARROW * room.height()
+}
+
+/// What a picture of a blend is called.
+fn blend_name(blend: f32) -> String {
+    match blend {
+        b if b <= 0.0 => "illustrated".to_owned(),
+        b if b >= 1.0 => "raw".to_owned(),
+        b => format!("{:.0} % raw", 100.0 * b),
+    }
+}
+
+/// Pixels a metre of display space at a voxel position: √(½‖∂p/∂d‖²) over displacements d in display space (‖·‖ Frobenius), whose
+/// rows are perpendicular and of that length.
+pub fn pixels_per_metre(view: &View, voxel: DVec3) -> f64 {
+    let voxel_from_display = view.display_from_voxel().inverse();
+    let middle = view.project(voxel);
+    let of = |axis: DVec3| (view.project(voxel + voxel_from_display * axis) - middle).length_squared();
+    ((of(DVec3::X) + of(DVec3::Y) + of(DVec3::Z)) * 0.5).sqrt()
+}
+
+/// A block with what lies before it.
+pub struct BlockPanel<'a> {
+    /// What it shows; the size is found here.
+    pub scene: &'a Scene,
+    /// Where its samples are.
+    pub geometry: &'a SurveyGeometry,
+    /// One picture, or two.
+    pub comparison: Comparison,
+    /// Surfaces and sticks before it.
+    pub interpretation: Option<&'a Interpretation<'a>>,
+    /// Whether surfaces are laid over the picture; where it is seen through, the picture has them itself.
+    pub has_surfaces: bool,
+    /// Dots an inch that pictures are drawn at.
+    pub dpi: f64,
+}
+
+impl BlockPanel<'_> {
+    /// The panel in its room, and the scale on paper in its middle, points a metre.
+    ///
+    /// # Errors
+    /// What the painter says.
+    pub fn drawn(&self, room: Rect, painter: &mut dyn BlockPainter) -> Result<(Group, f64), FigureError> {
+        let mut group = Group::new(GroupKind::Panel, "block");
+        let mut points_per_m = 0.0;
+        let blends = self.comparison.blends();
+        for (index, pane) in self.comparison.panes(room).into_iter().enumerate() {
+            let pane = self.on_pixels(pane);
+            let size_px = (pane.size() * self.dpi / POINTS_PER_INCH).round().max(DVec2::ONE);
+            let size_px = [size_px.x as u32, size_px.y as u32];
+            let blend = blends.map_or(self.scene.blend, |blends| blends[index]);
+            let scene = Scene { size_px, blend, ..self.scene.clone() };
+            let picture = painter.paint(&scene)?;
+            let seen = self.on_pixels(self.comparison.seen(index, pane));
+            let mut shown = Group::new(GroupKind::Data, blend_name(blend)).clipped(Path::rect(seen));
+            shown.push(Picture::in_rect(picture, pane));
+            let view = scene.view(self.geometry);
+            if let Some(interpretation) = self.interpretation {
+                self.lay_over(&mut shown, &scene, &view, interpretation, pane);
+            }
+            group.push(shown);
+            let middle = scene.box_in(self.geometry).centre();
+            points_per_m = pixels_per_metre(&view, middle) * POINTS_PER_INCH / self.dpi;
+        }
+        if let Some(blends) = blends {
+            group.push(self.rule(room, blends));
+        }
+        Ok((group, points_per_m))
+    }
+
+    /// The rectangle with its sides on pixels, so that a picture is not sampled again.
+    fn on_pixels(&self, rect: Rect) -> Rect {
+        let scale = self.dpi / POINTS_PER_INCH;
+        Rect::new((rect.min * scale).round() / scale, (rect.max * scale).round() / scale)
+    }
+
+    /// Surfaces and sticks before the block.
+    fn lay_over(&self, group: &mut Group, scene: &Scene, view: &View, shown: &Interpretation, pane: Rect) {
+        let [nx, ny, _] = self.geometry.size();
+        if self.has_surfaces {
+            let mut cells: Vec<(Cells, ttf::Colour, f32)> = Vec::new();
+            for horizon in &shown.horizons {
+                let opacity = OPACITY[usize::from(shown.picked == Some(horizon.name))];
+                let sheets = horizon.sheets.iter().map(|sheet| Cells::of(sheet, [nx, ny]));
+                cells.extend(sheets.map(|cells| (cells, horizon.colour, opacity)));
+            }
+            if let Some(selection) = &shown.selection {
+                let sheets = selection.sheets.iter().map(|sheet| Cells::of(sheet, [nx, ny]));
+                cells.extend(sheets.map(|cells| (cells, selection.colour, OPACITY[2])));
+            }
+            let all = cells.iter().map(|(cells, colour, opacity)| (cells, *colour, *opacity));
+            let seen = surfaces::seen(view, scene, self.geometry, all);
+            if !seen.is_empty() {
+                group.push(Picture::in_rect(surfaces::picture(&seen, scene.size_px), pane));
+            }
+        }
+        let page = |voxel: &DVec3| pane.min + view.project(*voxel) * POINTS_PER_INCH / self.dpi;
+        for stick in &shown.sticks {
+            group.push(overlay::stick(stick.places.iter().map(page).collect(), stick.colour));
+        }
+    }
+
+    /// What parts compared pictures, and which is which.
+    fn rule(&self, room: Rect, blends: [f32; 2]) -> Group {
+        let mut group = Group::new(GroupKind::Annotation, "comparison");
+        let is_over = matches!(self.comparison, Comparison::SideBySide(_)) && is_narrow(room);
+        let share = match self.comparison {
+            Comparison::Wipe(_, share) => share,
+            _ => 0.5,
+        };
+        let top = room.min.y + 6.0;
+        let places = if is_over {
+            let y = room.centre().y;
+            let line = Path::line(&[DVec2::new(room.min.x, y), DVec2::new(room.max.x, y)]);
+            group.push(PathItem::stroked(line, Stroke::new(FRAME_PT, RULE_INK)));
+            [(room.min.x + 7.0, top, Across::Start), (room.min.x + 7.0, y + 6.0, Across::Start)]
+        } else {
+            let x = room.min.x + share * room.width();
+            let line = Path::line(&[DVec2::new(x, room.min.y), DVec2::new(x, room.max.y)]);
+            let is_wipe = matches!(self.comparison, Comparison::Wipe(..));
+            let stroke = if is_wipe { Stroke::new(1.2, ACCENT) } else { Stroke::new(FRAME_PT, RULE_INK) };
+            group.push(PathItem::stroked(line, stroke));
+            [(x - 7.0, top, Across::End), (x + 7.0, top, Across::Start)]
+        };
+        for ((x, y, across), blend) in places.into_iter().zip(blends) {
+            let text = Text::new(DVec2::new(x, y), blend_name(blend)).sized(TEXT_PT).inked(INK);
+            let text = text.anchored(across, Upright::Top).haloed(1.2, ttf::Colour::WHITE);
+            // Where the line stands at the rim there is no room for a name beside it.
+            let bounds = text.bounds();
+            if bounds.min.x >= room.min.x && bounds.max.x <= room.max.x {
+                group.push(text);
+            }
+        }
+        group
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use render::Projection;
+    use survey::VerticalUnit;
+
+    #[test]
+    fn panes_stand_beside_one_another_where_there_is_room() {
+        let broad = Rect::sized(DVec2::ZERO, DVec2::new(300.0, 100.0));
+        let narrow = Rect::sized(DVec2::ZERO, DVec2::new(100.0, 100.0));
+        let both = Comparison::SideBySide([0.0, 1.0]);
+        assert_eq!(both.panes(broad)[1].min, DVec2::new(150.0, 0.0));
+        assert_eq!(both.panes(narrow)[1].min, DVec2::new(0.0, 50.0));
+        let wipe = Comparison::Wipe([0.0, 1.0], 0.25);
+        assert_eq!(wipe.seen(0, broad).max.x, 75.0);
+        assert_eq!(wipe.seen(1, broad).min.x, 75.0);
+    }
+
+    #[test]
+    fn a_picture_is_asked_for_in_its_own_pixels_and_laid_on_them() {
+        let geometry = SurveyGeometry::regular([9, 9, 9], 25.0, 4.0, VerticalUnit::Milliseconds);
+        let scene = Scene::default();
+        let panel = BlockPanel {
+            scene: &scene,
+            geometry: &geometry,
+            comparison: Comparison::SideBySide([0.0, 1.0]),
+            interpretation: None,
+            has_surfaces: true,
+            dpi: 144.0,
+        };
+        let mut asked = Vec::new();
+        let mut paint = |scene: &Scene| {
+            asked.push((scene.size_px, scene.blend));
+            Ok(RgbaImage::new(scene.size_px[0], scene.size_px[1]))
+        };
+        let room = Rect::sized(DVec2::new(0.26, 0.0), DVec2::new(100.0, 40.0));
+        let (group, scale) = panel.drawn(room, &mut paint).unwrap();
+        assert_eq!(asked, [([100, 80], 0.0), ([100, 80], 1.0)]);
+        assert!(scale > 0.0);
+        assert_eq!(group.items.len(), 3);
+    }
+
+    #[test]
+    fn scales_of_both_projections_agree_in_the_middle_of_a_distant_block() {
+        let geometry = SurveyGeometry::regular([41, 41, 41], 25.0, 25.0, VerticalUnit::Metres);
+        let scale = |projection| {
+            let mut scene = Scene::default();
+            scene.camera.projection = projection;
+            let middle = scene.box_in(&geometry).centre();
+            pixels_per_metre(&scene.view(&geometry), middle)
+        };
+        let ratio = scale(Projection::Perspective { fov_deg: 0.5 }) / scale(Projection::Orthographic);
+        assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+    }
+}

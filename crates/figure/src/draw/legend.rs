@@ -1,0 +1,135 @@
+//! The legend: layers with their patterns, or horizons with their colours, youngest on top.
+
+use super::{NamedColour, swatch};
+use crate::Rect;
+use crate::error::FigureError;
+use crate::list::{Across, Group, GroupKind, POINTS_PER_MM, Path, PathItem, Picture, Stroke, Text, Upright, width_of};
+use crate::style::{FRAME_PT, HORIZON_PT, INK, TEXT_PT};
+use glam::DVec2;
+use ttf::{LayerStyle, TextureLibrary};
+
+/// Width and height of a swatch, points.
+const SWATCH_PT: [f64; 2] = [30.0, 17.0];
+/// From one swatch to the next, and from one line to the next, points.
+const PITCH_PT: [f64; 2] = [22.5, 14.0];
+/// Between a swatch and its name, points.
+const GAP_PT: f64 = 6.0;
+/// Least room for names, points.
+const LEAST_NAME_PT: f64 = 36.0;
+
+/// What a legend lists.
+#[derive(Clone, Copy)]
+pub enum Legend<'a> {
+    /// Layers, with patterns drawn at this resolution (dots an inch).
+    Layers(&'a [LayerStyle], &'a TextureLibrary, f64),
+    /// Horizons.
+    Horizons(&'a [NamedColour]),
+}
+
+impl Legend<'_> {
+    fn names(&self) -> Vec<&str> {
+        match self {
+            Self::Layers(styles, ..) => styles.iter().map(|style| style.layer.as_str()).collect(),
+            Self::Horizons(horizons) => horizons.iter().map(|horizon| horizon.name.as_str()).collect(),
+        }
+    }
+
+    /// Whether there is anything to list.
+    pub fn is_empty(&self) -> bool {
+        self.names().is_empty()
+    }
+
+    /// The width that shows all names, but no more than `most`, points.
+    pub fn width(&self, most: f64) -> f64 {
+        let longest = self.names().iter().map(|name| width_of(name, TEXT_PT)).fold(LEAST_NAME_PT, f64::max);
+        (SWATCH_PT[0] + GAP_PT + longest + 1.0).min(most)
+    }
+
+    /// The legend in its room; entries that do not fit stand closer.
+    ///
+    /// # Errors
+    /// A pattern that does not draw.
+    pub fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
+        let mut group = Group::new(GroupKind::Annotation, "legend");
+        match self {
+            Self::Layers(styles, library, dpi) => {
+                let pitch = PITCH_PT[0].min(room.height() / styles.len().max(1) as f64);
+                for (row, style) in styles.iter().enumerate() {
+                    let place =
+                        Rect::sized(room.min + DVec2::new(0.0, row as f64 * pitch), DVec2::new(room.width(), pitch));
+                    group.push(layer(style, library, place, *dpi)?);
+                }
+            }
+            Self::Horizons(horizons) => {
+                let pitch = PITCH_PT[1].min(room.height() / horizons.len().max(1) as f64);
+                for (row, horizon) in horizons.iter().enumerate() {
+                    let middle = room.min + DVec2::new(0.0, (row as f64 + 0.5) * pitch);
+                    let line = Path::line(&[middle, middle + DVec2::new(SWATCH_PT[0], 0.0)]);
+                    let entry = Group::new(GroupKind::Horizon, &horizon.name).with([
+                        PathItem::stroked(line, Stroke::new(1.5 * HORIZON_PT, horizon.colour)).into(),
+                        name(&horizon.name, middle + DVec2::new(SWATCH_PT[0], 0.0), room, pitch).into(),
+                    ]);
+                    group.push(entry);
+                }
+            }
+        }
+        Ok(group)
+    }
+}
+
+/// An entry of a layer in its place: a row of the legend.
+fn layer(style: &LayerStyle, library: &TextureLibrary, place: Rect, dpi: f64) -> Result<Group, FigureError> {
+    let rect = Rect::sized(place.min, DVec2::new(SWATCH_PT[0], SWATCH_PT[1].min(0.8 * place.height())));
+    let px_per_pt = dpi / crate::list::POINTS_PER_INCH;
+    let size_px = [rect.width(), rect.height()].map(|side| (side * px_per_pt).round().max(2.0) as u32);
+    let drawn = swatch::draw(style, library, size_px, (px_per_pt * POINTS_PER_MM) as f32)?;
+    let middle = DVec2::new(rect.max.x, rect.centre().y);
+    Ok(Group::new(GroupKind::Layer, &style.layer).with([
+        Picture::in_rect(drawn, rect).into(),
+        PathItem::stroked(Path::rect(rect), Stroke::new(FRAME_PT, INK)).into(),
+        name(&style.layer, middle, place, place.height()).into(),
+    ]))
+}
+
+fn name(name: &str, beside: DVec2, room: Rect, pitch: f64) -> Text {
+    let at = beside + DVec2::new(GAP_PT, 0.0);
+    let text = Text::new(at, name).sized(TEXT_PT.min(0.9 * pitch)).anchored(Across::Start, Upright::Middle);
+    text.fitted(room.max.x - at.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::list::Item;
+    use ttf::Colour;
+
+    fn texts(group: &Group, into: &mut Vec<Text>) {
+        for item in &group.items {
+            match item {
+                Item::Text(text) => into.push(text.clone()),
+                Item::Group(group) => texts(group, into),
+                _ => {}
+            }
+        }
+    }
+
+    #[test]
+    fn names_stay_in_the_room_and_apart_however_many_there_are() {
+        let library = TextureLibrary::builtin().unwrap();
+        for count in [1, 5, 60] {
+            let style = |n: usize| {
+                LayerStyle::textured(&format!("layer {n} of a long and winding name"), Colour::WHITE, "shale")
+            };
+            let styles: Vec<LayerStyle> = (0..count).map(style).collect();
+            let legend = Legend::Layers(&styles, &library, 100.0);
+            let room = Rect::sized(DVec2::new(300.0, 10.0), DVec2::new(legend.width(110.0), 200.0));
+            let mut found = Vec::new();
+            texts(&legend.drawn(room).unwrap(), &mut found);
+            assert_eq!(found.len(), count);
+            for pair in found.windows(2) {
+                assert!(pair[1].at.y - pair[0].at.y >= pair[0].size, "{count}");
+            }
+            assert!(found.iter().all(|text| text.bounds().max.x <= room.max.x + 0.1));
+        }
+    }
+}

@@ -1,0 +1,24 @@
+//! Builders: from data to groups of items on a page.
+//!
+//! Each takes the room it may fill and answers with a named group. Spaces: points of the page unless said otherwise.
+
+pub mod axes;
+pub mod block;
+pub mod legend;
+pub mod map;
+pub mod overlay;
+pub mod scale;
+pub mod section;
+pub mod surfaces;
+pub mod swatch;
+
+use ttf::Colour;
+
+/// A name with the colour it is drawn in.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedColour {
+    /// The name.
+    pub name: String,
+    /// The colour.
+    pub colour: Colour,
+}

@@ -1,0 +1,108 @@
+//! Scale bars, and what a reader must know to read lengths.
+
+use crate::list::{Across, Group, GroupKind, Path, PathItem, Text, Upright};
+use crate::style::{INK, NUMBER_PT, QUIET_INK, TEXT_PT};
+use crate::{Rect, list::Stroke};
+use glam::DVec2;
+use render::{Projection, Scene};
+use survey::{SurveyGeometry, VerticalUnit};
+
+/// Height of the strip that holds a scale bar, points.
+pub const STRIP_PT: f64 = 24.0;
+/// Part of the width that a bar may take.
+const SHARE: f64 = 0.3;
+/// Height of a bar, points.
+const BAR_PT: f64 = 2.2;
+
+/// The largest of 1, 2, 5 × 10ⁿ that is not larger.
+pub fn round_length(longest: f64) -> f64 {
+    let decade = 10f64.powf(longest.log10().floor());
+    let lengths = [5.0, 2.0, 1.0].map(|factor| factor * decade);
+    lengths.into_iter().find(|length| *length <= longest).unwrap_or(decade)
+}
+
+/// A length in the unit that it is read in.
+pub fn length_text(length_m: f64) -> String {
+    if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") }
+}
+
+/// A bar of a round length at the left of a strip, and a caption beside it. `points_per_m` is the scale on paper; without one there
+/// is the caption alone.
+pub fn drawn(strip: Rect, points_per_m: Option<f64>, caption: &str) -> Group {
+    let mut group = Group::new(GroupKind::Annotation, "scale bar");
+    let mut left = strip.min.x;
+    let y = strip.min.y + 7.0;
+    let longest_m = points_per_m.map(|scale| (SHARE * strip.width() / scale, scale));
+    if let Some((longest_m, scale)) = longest_m.filter(|(longest, _)| *longest > 0.0 && longest.is_finite()) {
+        let length_m = round_length(longest_m);
+        let length = length_m * scale;
+        // Two halves, one filled: the eye halves lengths by itself, and the bar prints on any ground.
+        let bar = Rect::sized(DVec2::new(left, y - 0.5 * BAR_PT), DVec2::new(length, BAR_PT));
+        group.push(PathItem::filled(Path::rect(bar), ttf::Colour::WHITE).outlined(Stroke::new(0.5, INK)));
+        group.push(PathItem::filled(Path::rect(bar.split_across(0.5)[0]), INK));
+        let at = |x: f64| DVec2::new(x, bar.max.y + 3.0);
+        let number = |x: f64, text: String| Text::new(at(x), text).sized(NUMBER_PT).inked(INK);
+        group.push(number(left, "0".into()).anchored(Across::Start, Upright::Top));
+        let end = number(left + length, length_text(length_m));
+        let width = end.width();
+        // Under a short bar the number begins where the 0 has ended.
+        let room = length.max(8.0 + width);
+        group.push(Text { at: at(left + room), ..end }.anchored(Across::End, Upright::Top));
+        left += room + 14.0;
+    }
+    if !caption.is_empty() {
+        let text = Text::new(DVec2::new(left, y), caption).sized(TEXT_PT - 0.5).inked(QUIET_INK);
+        group.push(text.anchored(Across::Start, Upright::Middle).fitted(strip.max.x - left));
+    }
+    group
+}
+
+/// "vertical exaggeration 2.5 at 2000 m/s": the velocity where time stands for depth.
+pub fn exaggeration(factor: f64, geometry: &SurveyGeometry) -> String {
+    let rounded = (factor * 100.0).round() / 100.0;
+    let mut text = format!("vertical exaggeration {rounded}");
+    if geometry.vertical.unit == VerticalUnit::Milliseconds {
+        text += &format!(" at {} m/s", geometry.velocity_m_s);
+    }
+    text
+}
+
+/// What a reader must know to read lengths on a block.
+pub fn block_caption(scene: &Scene, geometry: &SurveyGeometry) -> String {
+    let mut text = exaggeration(scene.exaggeration, geometry);
+    if matches!(scene.camera.projection, Projection::Perspective { .. }) {
+        text += "; lengths hold in the middle of the block";
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_have_round_lengths() {
+        for (longest, said) in [(1.0, 1.0), (1.99, 1.0), (4.9, 2.0), (7.0, 5.0), (1234.0, 1000.0), (0.3, 0.2)] {
+            assert!((round_length(longest) - said).abs() < 1e-9, "{longest}");
+        }
+        assert_eq!([length_text(500.0), length_text(2000.0)], ["500 m", "2 km"]);
+    }
+
+    #[test]
+    fn a_bar_is_as_long_on_paper_as_it_says() {
+        let strip = Rect::sized(DVec2::ZERO, DVec2::new(400.0, STRIP_PT));
+        let group = drawn(strip, Some(0.1), "");
+        let crate::list::Item::Path(bar) = &group.items[0] else { panic!("no bar") };
+        // 120 points are 1200 m: 1 km is 100 points.
+        assert!((bar.path.bounds().unwrap().width() - 100.0).abs() < 1e-9);
+        let texts: Vec<_> = group.items.iter().filter(|item| matches!(item, crate::list::Item::Text(_))).collect();
+        assert_eq!(texts.len(), 2);
+    }
+
+    #[test]
+    fn the_caption_says_what_time_was_turned_into_depth_with() {
+        let geometry = SurveyGeometry::regular([9, 9, 9], 25.0, 4.0, VerticalUnit::Milliseconds);
+        let scene = Scene { exaggeration: 2.5, ..Scene::default() };
+        assert_eq!(block_caption(&scene, &geometry), "vertical exaggeration 2.5 at 2000 m/s");
+    }
+}

@@ -1,0 +1,69 @@
+//! Why there is no figure.
+
+use render::RenderError;
+
+/// Why there is no figure.
+#[derive(Debug, thiserror::Error)]
+pub enum FigureError {
+    /// A page of no size, or of too many pixels.
+    #[error(
+        "a page of {:.0} x {:.0} pixels cannot be drawn: each side must have 1 to {most}; change the size or the resolution",
+        size_px[0], size_px[1]
+    )]
+    PageSize {
+        /// Its width and height, pixels.
+        size_px: [f64; 2],
+        /// Most pixels a side.
+        most: u32,
+    },
+    /// A page with no room for what is to be on it.
+    #[error(
+        "there is no room for {what} on a page of {:.1} x {:.1} cm; make the page larger, or leave legend and scale bar out",
+        size_cm[0], size_cm[1]
+    )]
+    NoRoom {
+        /// What does not fit.
+        what: &'static str,
+        /// Width and height, cm.
+        size_cm: [f64; 2],
+    },
+    /// A figure of nothing, or of more parts than a page takes.
+    #[error("a figure has one to four parts, this one has {found}")]
+    Parts {
+        /// How many it has.
+        found: usize,
+    },
+    /// A section beside the survey.
+    #[error("{what} {asked} lies outside the survey, which has {what} {first} to {last}")]
+    Outside {
+        /// "inline", "crossline" or the name of the vertical axis.
+        what: &'static str,
+        /// What was asked for.
+        asked: f64,
+        /// The survey's first line or value.
+        first: f64,
+        /// Its last.
+        last: f64,
+    },
+    /// A fence with fewer than two corners apart from one another.
+    #[error("a fence runs along a line of two corners or more that lie apart; this one has {corners}")]
+    ShortFence {
+        /// Corners that lie apart.
+        corners: usize,
+    },
+    /// A map of a horizon that is not there, or whose horizons are in the wrong order.
+    #[error("there is no map of {what}")]
+    NoMap {
+        /// What was asked for, in words.
+        what: String,
+    },
+    /// An interpreter's view without an interpretation.
+    #[error("the figure shows what an interpreter sees, but no interpretation was given")]
+    NoInterpretation,
+    /// The block could not be drawn.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// A pattern could not be drawn.
+    #[error(transparent)]
+    Pattern(#[from] ttf::Error),
+}

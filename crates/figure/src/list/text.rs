@@ -1,0 +1,227 @@
+//! Lines of text: where they stand, and the room they take.
+
+use super::Ink;
+use crate::Rect;
+use crate::style::INK;
+use glam::DVec2;
+use serde::{Deserialize, Serialize};
+use ttf::text::measure_text;
+
+/// Share of the font size that capital letters are high: what is centred upright is centred on them.
+const CAPITALS: f64 = 0.69;
+
+/// A line of text in the face that [`ttf::text`] has.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Text {
+    /// What it says.
+    pub text: String,
+    /// Where its anchor stands.
+    pub at: DVec2,
+    /// Font size, points per em.
+    pub size: f64,
+    /// Which place of the text stands at `at`.
+    pub anchor: Anchor,
+    /// Turn about `at`, degrees clockwise as seen on the page.
+    pub turn_deg: f64,
+    /// Colour.
+    pub ink: Ink,
+    /// A rim, so that it is read on any ground.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub halo: Option<Halo>,
+}
+
+/// Which place of a text stands at its position.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Anchor {
+    /// Along the line.
+    pub across: Across,
+    /// Across it.
+    pub upright: Upright,
+}
+
+/// A place along a line of text.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Across {
+    /// Its beginning.
+    #[default]
+    Start,
+    /// Its middle.
+    Middle,
+    /// Its end.
+    End,
+}
+
+/// A height of a line of text.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Upright {
+    /// The line that letters stand on.
+    #[default]
+    Baseline,
+    /// Half the height of capital letters and figures.
+    Middle,
+    /// The upper end of capital letters and figures.
+    Top,
+}
+
+/// A rim around letters.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Halo {
+    /// How far it reaches beyond the letters, points.
+    pub width: f64,
+    /// Its colour.
+    pub ink: Ink,
+}
+
+impl Text {
+    /// A line of small text that begins at a place.
+    pub fn new(at: DVec2, text: impl Into<String>) -> Self {
+        Self {
+            text: text.into(),
+            at,
+            size: crate::style::TEXT_PT,
+            anchor: Anchor::default(),
+            turn_deg: 0.0,
+            ink: Ink::solid(INK),
+            halo: None,
+        }
+    }
+
+    /// The same in another size, points.
+    #[must_use]
+    pub fn sized(mut self, size: f64) -> Self {
+        self.size = size;
+        self
+    }
+
+    /// The same anchored elsewhere.
+    #[must_use]
+    pub fn anchored(mut self, across: Across, upright: Upright) -> Self {
+        self.anchor = Anchor { across, upright };
+        self
+    }
+
+    /// The same turned clockwise, degrees.
+    #[must_use]
+    pub fn turned(mut self, turn_deg: f64) -> Self {
+        self.turn_deg = turn_deg;
+        self
+    }
+
+    /// The same in another colour.
+    #[must_use]
+    pub fn inked(mut self, ink: impl Into<Ink>) -> Self {
+        self.ink = ink.into();
+        self
+    }
+
+    /// The same with a rim.
+    #[must_use]
+    pub fn haloed(mut self, width: f64, ink: impl Into<Ink>) -> Self {
+        self.halo = Some(Halo { width, ink: ink.into() });
+        self
+    }
+
+    /// The same no wider than `room`, in a smaller size where that is enough and shortened to end in "…" where it would
+    /// be smaller than [`crate::style::LEAST_TEXT_PT`].
+    #[must_use]
+    pub fn fitted(mut self, room: f64) -> Self {
+        let width = self.width();
+        if width <= room {
+            return self;
+        }
+        let least = crate::style::LEAST_TEXT_PT.min(self.size);
+        self.size = (self.size * room / width).max(least);
+        if self.width() > room {
+            let whole: Vec<char> = self.text.trim_end().chars().collect();
+            let short = |count: usize| whole[..count].iter().collect::<String>().trim_end().to_owned() + "…";
+            let fits = |count: &usize| width_of(&short(*count), self.size) <= room;
+            self.text = (0..whole.len()).rev().find(fits).map_or_else(String::new, short);
+        }
+        self
+    }
+
+    /// Its length along the line, points.
+    ///
+    /// ```
+    /// use figure::list::Text;
+    /// let text = Text::new(glam::DVec2::ZERO, "Top Chalk");
+    /// let twice = text.clone().sized(2.0 * text.size);
+    /// assert!((twice.width() - 2.0 * text.width()).abs() < 1e-3);
+    /// ```
+    pub fn width(&self) -> f64 {
+        width_of(&self.text, self.size)
+    }
+
+    /// The left end of its baseline, before it is turned about [`Text::at`].
+    pub fn baseline_start(&self) -> DVec2 {
+        let left = match self.anchor.across {
+            Across::Start => 0.0,
+            Across::Middle => -0.5 * self.width(),
+            Across::End => -self.width(),
+        };
+        let down = match self.anchor.upright {
+            Upright::Baseline => 0.0,
+            Upright::Middle => 0.5 * CAPITALS * self.size,
+            Upright::Top => CAPITALS * self.size,
+        };
+        self.at + DVec2::new(left, down)
+    }
+
+    /// The corners of its room from ascenders to descenders, turned: upper left, upper right, lower right, lower left.
+    pub fn corners(&self) -> [DVec2; 4] {
+        let extent = measure_text(self.size as f32, &self.text);
+        let start = self.baseline_start() - self.at;
+        let (top, bottom) = (start.y - f64::from(extent.ascent_px), start.y + f64::from(extent.descent_px));
+        let (left, right) = (start.x, start.x + f64::from(extent.width_px));
+        let turn = DVec2::from_angle(self.turn_deg.to_radians());
+        [[left, top], [right, top], [right, bottom], [left, bottom]]
+            .map(|p| self.at + turn.rotate(DVec2::from_array(p)))
+    }
+
+    /// The smallest upright rectangle around it and its halo.
+    pub fn bounds(&self) -> Rect {
+        let corners = self.corners();
+        let bounds = corners.iter().fold(Rect::new(corners[0], corners[0]), |rect, corner| rect.around(*corner));
+        bounds.grown(self.halo.map_or(0.0, |halo| halo.width))
+    }
+}
+
+/// Length of a line of text at a font size, points.
+pub fn width_of(text: &str, size: f64) -> f64 {
+    f64::from(measure_text(size as f32, text).width_px)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn anchors_stand_where_they_say() {
+        let text = |across, upright| Text::new(DVec2::new(50.0, 20.0), "Hagel").sized(10.0).anchored(across, upright);
+        let width = text(Across::Start, Upright::Baseline).width();
+        let start = |across, upright| text(across, upright).baseline_start();
+        assert_eq!(start(Across::Start, Upright::Baseline), DVec2::new(50.0, 20.0));
+        assert!((start(Across::End, Upright::Baseline).x - (50.0 - width)).abs() < 1e-9);
+        assert!((start(Across::Middle, Upright::Top) - DVec2::new(50.0 - 0.5 * width, 26.9)).length() < 1e-9);
+    }
+
+    #[test]
+    fn a_turn_by_a_quarter_stands_text_on_its_side() {
+        let flat = Text::new(DVec2::new(50.0, 20.0), "depth").sized(8.0).anchored(Across::Middle, Upright::Middle);
+        let upright = flat.clone().turned(-90.0);
+        let (a, b) = (flat.bounds(), upright.bounds());
+        assert!((a.width() - b.height()).abs() < 1e-6 && (a.height() - b.width()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn long_names_shrink_and_then_end_in_dots() {
+        let name = Text::new(DVec2::ZERO, "Upper Jurassic mudstones of the northern basin margin").sized(8.0);
+        assert_eq!(name.clone().fitted(1000.0), name);
+        let little = name.clone().fitted(0.95 * name.width());
+        assert!(little.text == name.text && little.size < 8.0);
+        let short = name.fitted(60.0);
+        assert!(short.text.ends_with('…') && short.width() <= 60.0 && short.size >= crate::style::LEAST_TEXT_PT);
+    }
+}

@@ -1,0 +1,123 @@
+//! A horizon, or the thickness between two, as a map: values at the survey's traces and contours of round values.
+//!
+//! Contours are those of a lightly smoothed surface (`smooth`), colours those of the values themselves. What was not picked, but
+//! filled or extrapolated, is hatched; where there is no model yet, holes are.
+
+mod contours;
+mod grid;
+mod hatch;
+mod labels;
+mod smooth;
+
+pub(crate) use labels::{Room, drawn};
+
+use crate::interpretation::Interpretation;
+use glam::DVec2;
+use grid::Grid;
+use image::{Rgba, RgbaImage};
+use model::StructuralModel;
+use survey::SurveyGeometry;
+use ttf::{Colour, ColourMap, RgbaFunction};
+
+/// What is mapped, by indices of horizons, youngest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mapped {
+    /// Its depth or time.
+    Structure(usize),
+    /// Vertical thickness from one down to a deeper one.
+    Thickness(usize, usize),
+}
+
+impl Mapped {
+    /// Whether there is such a thing among so many horizons.
+    pub fn is_among(self, count: usize) -> bool {
+        match self {
+            Self::Structure(horizon) => horizon < count,
+            Self::Thickness(upper, lower) => upper < lower && lower < count,
+        }
+    }
+}
+
+/// What a map is made from.
+#[derive(Clone, Copy)]
+pub enum MapSource<'a> {
+    /// The model.
+    Model(&'a StructuralModel),
+    /// The horizons as they were picked, without a model.
+    Sheets(&'a Interpretation<'a>),
+}
+
+/// A contour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contour {
+    /// Its places, voxel x and y; one that goes around ends where it begins.
+    pub line: Vec<DVec2>,
+    /// Its value, in the survey's unit.
+    pub value: f64,
+    /// Whether it is an index contour.
+    pub is_index: bool,
+}
+
+/// A horizon or a thickness as a map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HorizonMap {
+    /// Of what.
+    pub mapped: Mapped,
+    /// A pixel a trace, inlines to the right, crosslines down; transparent where there is no value.
+    pub image: RgbaImage,
+    /// Contours of the lightly smoothed surface, by value.
+    pub contours: Vec<Contour>,
+    /// Outline and hatching of what was not picked, voxel x and y.
+    pub hatching: Vec<[DVec2; 2]>,
+    /// Smallest and largest value, in the survey's unit.
+    pub range: [f64; 2],
+    /// Distance between contours.
+    pub interval: f64,
+}
+
+impl HorizonMap {
+    /// Maps a horizon or a thickness; `None` when there is nothing of it.
+    pub fn new(geometry: &SurveyGeometry, source: MapSource, mapped: Mapped) -> Option<Self> {
+        let grid = match source {
+            MapSource::Model(model) => Grid::of_model(geometry, model, mapped)?,
+            MapSource::Sheets(shown) => Grid::of_sheets(geometry, shown, mapped)?,
+        };
+        let finite = || grid.nodes().iter().map(|node| node.value).filter(|value| value.is_finite());
+        let range = [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)];
+        if range[0] > range[1] {
+            return None;
+        }
+        let spread = (range[1] - range[0]).max(1e-9);
+        // High is light, as on relief maps: colours run from the deepest to the shallowest.
+        let shade = |value: f64| match mapped {
+            Mapped::Structure(_) => 1.0 - (value - range[0]) / spread,
+            Mapped::Thickness(..) => (value - range[0]) / spread,
+        };
+        let colours = RgbaFunction::over(ColourMap::Strata, [0.0, 1.0]);
+        let image = RgbaImage::from_fn(grid.size[0] as u32, grid.size[1] as u32, |x, y| {
+            let value = grid.at(x as usize, y as usize).value;
+            if value.is_nan() {
+                return Rgba([0; 4]);
+            }
+            let [r, g, b] = tone(&colours, shade(value)).rgb;
+            Rgba([r, g, b, 255])
+        });
+        let interval = contours::interval(spread);
+        let contours = contours::contours(&smooth::smoothed(&grid, interval), range, interval);
+        Some(Self { mapped, image, contours, hatching: hatch::hatching(&grid), range, interval })
+    }
+
+    /// The values at the light and at the dark end of the colours.
+    pub fn ends(&self) -> [f64; 2] {
+        match self.mapped {
+            Mapped::Structure(_) => self.range,
+            Mapped::Thickness(..) => [self.range[1], self.range[0]],
+        }
+    }
+}
+
+/// The colour of a share of the range, 0 = dark.
+pub(crate) fn tone(colours: &RgbaFunction, share: f64) -> Colour {
+    let [r, g, b, _] = colours.evaluate(share as f32);
+    Colour::from_unit([r, g, b])
+}

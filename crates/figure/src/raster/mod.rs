@@ -1,0 +1,208 @@
+//! A page as pixels, at any resolution.
+//!
+//! Items are prepared once in pixels of the whole page and then painted in bands of rows, which threads share; bands have the
+//! same height whatever the number of threads, so the bytes are the same. Paths are filled and stroked by `tiny-skia`,
+//! anti-aliased; letters are covered exactly (`ab_glyph_rasterizer`); images are averaged where they are made smaller.
+//! Everything is composited on sRGB-encoded values.
+
+mod glyphs;
+mod paths;
+mod pictures;
+#[cfg(test)]
+mod tests;
+
+use crate::error::FigureError;
+use crate::list::{DisplayList, Group, Item, POINTS_PER_INCH, Picture};
+use glyphs::Lettering;
+use image::RgbaImage;
+use rayon::prelude::*;
+use tiny_skia::{FillRule, Mask, Paint, PixmapMut, Stroke, Transform};
+
+/// Rows that are painted at a time.
+const BAND: usize = 128;
+/// Longest side of a page, pixels.
+pub const MOST_SIDE_PX: u32 = 32_768;
+
+/// Draws a page at a resolution, dots an inch.
+///
+/// The picture is `size · dpi / 72` pixels wide and high, rounded. Straight alpha; a page without paper is transparent where
+/// nothing is drawn.
+///
+/// # Errors
+/// [`FigureError::PageSize`] where that is nothing or more than [`MOST_SIDE_PX`].
+pub fn raster(list: &DisplayList, dpi: f64) -> Result<RgbaImage, FigureError> {
+    let scale = dpi / POINTS_PER_INCH;
+    let [width, height] = size_px(list, dpi)?;
+    let mut page = Prepared { ops: Vec::new(), clips: Vec::new(), scale };
+    for item in &list.items {
+        page.add(item, None);
+    }
+    let paper = list.paper.map(paths::colour);
+    let mut image = RgbaImage::new(width, height);
+    image.par_chunks_mut(width as usize * 4 * BAND).enumerate().for_each(|(n, rows)| {
+        let size = [width, (rows.len() / (4 * width as usize)) as u32];
+        if let Some(pixmap) = PixmapMut::from_bytes(rows, size[0], size[1]) {
+            let mut band = Band { pixmap, top: (n * BAND) as f32, masks: vec![None; page.clips.len()] };
+            if let Some(paper) = paper {
+                band.pixmap.fill(paper);
+            }
+            page.ops.iter().for_each(|op| band.paint(op, &page));
+        }
+        rows.chunks_exact_mut(4).for_each(straighten);
+    });
+    Ok(image)
+}
+
+/// The size that [`raster`] draws a page in.
+///
+/// # Errors
+/// As [`raster`].
+pub fn size_px(list: &DisplayList, dpi: f64) -> Result<[u32; 2], FigureError> {
+    let size = (list.size * dpi / POINTS_PER_INCH).round();
+    let most = f64::from(MOST_SIDE_PX);
+    if !(size.min_element() >= 1.0 && size.max_element() <= most) {
+        return Err(FigureError::PageSize { size_px: size.to_array(), most: MOST_SIDE_PX });
+    }
+    Ok([size.x as u32, size.y as u32])
+}
+
+/// From premultiplied to straight alpha.
+fn straighten(pixel: &mut [u8]) {
+    let alpha = u32::from(pixel[3]);
+    if alpha == 255 || alpha == 0 {
+        return;
+    }
+    for channel in &mut pixel[..3] {
+        *channel = ((u32::from(*channel) * 255 + alpha / 2) / alpha).min(255) as u8;
+    }
+}
+
+/// What is painted, in pixels of the whole page.
+struct Prepared<'a> {
+    ops: Vec<Op<'a>>,
+    clips: Vec<Clip>,
+    scale: f64,
+}
+
+/// A clip, within another one if it has one.
+struct Clip {
+    path: tiny_skia::Path,
+    parent: Option<usize>,
+}
+
+/// Something to paint.
+struct Op<'a> {
+    what: What<'a>,
+    /// First and last row that it may touch.
+    rows: [f32; 2],
+    clip: Option<usize>,
+}
+
+enum What<'a> {
+    Fill(tiny_skia::Path, FillRule, Paint<'static>),
+    Stroke(tiny_skia::Path, Stroke, Paint<'static>),
+    Picture(&'a Picture),
+    Letters(Lettering),
+}
+
+impl<'a> Prepared<'a> {
+    fn add(&mut self, item: &'a Item, clip: Option<usize>) {
+        match item {
+            Item::Group(group) => self.add_group(group, clip),
+            Item::Path(path) => {
+                let Some(traced) = paths::trace(&path.path, self.scale) else { return };
+                let bounds = traced.bounds();
+                if let Some(ink) = path.fill {
+                    let what = What::Fill(traced.clone(), paths::rule(path.rule), paths::paint(ink));
+                    self.ops.push(Op { what, rows: [bounds.top(), bounds.bottom()], clip });
+                }
+                if let Some(stroke) = &path.stroke
+                    && let Some((drawn, ink)) = paths::stroke(stroke, self.scale)
+                {
+                    let reach = drawn.width + 1.0;
+                    let rows = [bounds.top() - reach, bounds.bottom() + reach];
+                    self.ops.push(Op { what: What::Stroke(traced, drawn, ink), rows, clip });
+                }
+            }
+            Item::Picture(picture) => {
+                let rows = picture.corners().map(|corner| (corner.y * self.scale) as f32);
+                let rows = [rows.into_iter().fold(f32::MAX, f32::min), rows.into_iter().fold(f32::MIN, f32::max)];
+                self.ops.push(Op { what: What::Picture(picture), rows, clip });
+            }
+            Item::Text(text) => {
+                let bounds = text.bounds();
+                let rows = [bounds.min.y, bounds.max.y].map(|y| (y * self.scale) as f32);
+                let rows = [rows[0] - 1.0, rows[1] + 1.0];
+                if let Some((rim, stroke, ink)) = glyphs::halo(text, self.scale) {
+                    self.ops.push(Op { what: What::Stroke(rim, stroke, ink), rows, clip });
+                }
+                self.ops.push(Op { what: What::Letters(Lettering::of(text, self.scale)), rows, clip });
+            }
+        }
+    }
+
+    fn add_group(&mut self, group: &'a Group, clip: Option<usize>) {
+        let own = group.clip.as_ref().map(|path| paths::trace(path, self.scale));
+        let clip = match own {
+            None => clip,
+            // An empty clip hides everything.
+            Some(None) => return,
+            Some(Some(path)) => {
+                self.clips.push(Clip { path, parent: clip });
+                Some(self.clips.len() - 1)
+            }
+        };
+        for item in &group.items {
+            self.add(item, clip);
+        }
+    }
+}
+
+/// Some rows of the page; premultiplied.
+struct Band<'a> {
+    pixmap: PixmapMut<'a>,
+    top: f32,
+    masks: Vec<Option<Mask>>,
+}
+
+impl Band<'_> {
+    fn paint(&mut self, op: &Op, page: &Prepared) {
+        if op.rows[1] < self.top || op.rows[0] > self.top + self.pixmap.height() as f32 {
+            return;
+        }
+        if let Some(clip) = op.clip {
+            self.mask(clip, page);
+        }
+        let mask = op.clip.and_then(|clip| self.masks[clip].as_ref());
+        let shift = Transform::from_translate(0.0, -self.top);
+        match &op.what {
+            What::Fill(path, rule, paint) => self.pixmap.fill_path(path, paint, *rule, shift, mask),
+            What::Stroke(path, stroke, paint) => self.pixmap.stroke_path(path, paint, stroke, shift, mask),
+            What::Picture(picture) => pictures::paint(&mut self.pixmap, picture, page.scale, self.top, mask),
+            What::Letters(letters) => letters.paint(&mut self.pixmap, self.top, mask),
+        }
+    }
+
+    /// Makes the mask of a clip and of all it lies in.
+    fn mask(&mut self, clip: usize, page: &Prepared) {
+        if self.masks[clip].is_some() {
+            return;
+        }
+        let Clip { path, parent } = &page.clips[clip];
+        let shift = Transform::from_translate(0.0, -self.top);
+        let mask = match parent {
+            Some(parent) => {
+                self.mask(*parent, page);
+                self.masks[*parent].clone().map(|mut mask| {
+                    mask.intersect_path(path, FillRule::Winding, true, shift);
+                    mask
+                })
+            }
+            None => Mask::new(self.pixmap.width(), self.pixmap.height()).map(|mut mask| {
+                mask.fill_path(path, FillRule::Winding, true, shift);
+                mask
+            }),
+        };
+        self.masks[clip] = mask;
+    }
+}

@@ -1,0 +1,177 @@
+//! What a figure shows, as one declarative value: written to and read from files, made by window and command line alike.
+//!
+//! Places are line numbers and vertical values, as people type them; sizes are centimetres on paper or pixels.
+
+use crate::cut::SectionKind;
+use crate::draw::block::Comparison;
+use crate::draw::section::Zoom;
+use glam::DVec2;
+use render::{FaceData, Scene};
+use serde::{Deserialize, Serialize};
+
+/// Centimetres in an inch.
+const INCH_CM: f64 = 2.54;
+
+/// A figure.
+///
+/// ```
+/// use figure::{Figure, Part};
+///
+/// let text = r#"{ "size": { "cm": [16.0, 9.0] }, "dpi": 300.0, "parts": [{ "section": { "kind": "inline", "at": 1250.0 } }] }"#;
+/// let figure: Figure = serde_json::from_str(text).unwrap();
+/// assert_eq!(figure.size_px(), [1890, 1063]);
+/// assert!(matches!(&figure.parts[0], Part::Section(section) if section.at == 1250.0));
+/// ```
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Figure {
+    /// Its size. Default 16 × 11 cm: a third of a page.
+    pub size: PageSize,
+    /// Dots an inch that pictures are drawn at. Default 300.
+    pub dpi: f64,
+    /// What it shows: one part fills the page, two share it at 0.42, three or four have a quarter each.
+    pub parts: Vec<Part>,
+    /// Whether layers or horizons are listed beside it. Default no.
+    pub legend: bool,
+    /// Whether scale bars and captions stand below blocks, sections and maps. Default no.
+    pub scale_bar: bool,
+    /// Whether it shows what an interpreter sees, sheets as they were picked, instead of the model. Default no.
+    pub interpretation: bool,
+}
+
+impl Default for Figure {
+    fn default() -> Self {
+        Self {
+            size: PageSize::Cm([16.0, 11.0]),
+            dpi: 300.0,
+            parts: Vec::new(),
+            legend: false,
+            scale_bar: false,
+            interpretation: false,
+        }
+    }
+}
+
+impl Figure {
+    /// A figure of one part.
+    pub fn of(part: Part) -> Self {
+        Self { parts: vec![part], ..Self::default() }
+    }
+
+    /// Its size in pixels.
+    pub fn size_px(&self) -> [u32; 2] {
+        match self.size {
+            PageSize::Cm(size) => {
+                size.map(|cm| (cm / INCH_CM * self.dpi).round().clamp(0.0, f64::from(u32::MAX)) as u32)
+            }
+            PageSize::Px(size) => size,
+        }
+    }
+
+    /// Its size in points: whole pixels at its resolution.
+    pub fn size_pt(&self) -> DVec2 {
+        let [width, height] = self.size_px().map(f64::from);
+        DVec2::new(width, height) * crate::list::POINTS_PER_INCH / self.dpi
+    }
+}
+
+/// How large a page is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PageSize {
+    /// Width and height on paper, cm.
+    Cm([f64; 2]),
+    /// Width and height in pixels at the figure's resolution.
+    Px([u32; 2]),
+}
+
+/// A part of a figure.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Part {
+    /// A block, or two compared.
+    Block(BlockPart),
+    /// A section along the lattice.
+    Section(SectionPart),
+    /// A section along a line.
+    Fence(FencePart),
+    /// A map.
+    Map(MapPart),
+}
+
+/// A block.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct BlockPart {
+    /// What it shows; its size follows from the page.
+    pub scene: Scene,
+    /// One picture, or two compared.
+    pub comparison: Comparison,
+}
+
+/// A section along the lattice.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SectionPart {
+    /// Along what.
+    pub kind: SectionKind,
+    /// Its inline, crossline or vertical value.
+    pub at: f64,
+    /// What of the candidates lies over the amplitudes.
+    #[serde(default)]
+    pub show: FaceData,
+    /// Which part of it is seen.
+    #[serde(default)]
+    pub zoom: Zoom,
+}
+
+/// A section along a line.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FencePart {
+    /// Its corners: inline and crossline each.
+    pub corners: Vec<[f64; 2]>,
+    /// What of the candidates lies over the amplitudes.
+    #[serde(default)]
+    pub show: FaceData,
+}
+
+/// A map.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct MapPart {
+    /// The horizon whose depth or time it shows, or at which a thickness begins.
+    pub horizon: String,
+    /// The deeper horizon that the thickness below ends at; absent: the map shows the structure.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub thickness_to: Option<String>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_figure_survives_being_written_and_read() {
+        let figure = Figure {
+            size: PageSize::Px([800, 600]),
+            parts: vec![
+                Part::Block(BlockPart { comparison: Comparison::Wipe([0.0, 1.0], 0.4), ..BlockPart::default() }),
+                Part::Fence(FencePart { corners: vec![[1.0, 2.0], [3.0, 4.0]], show: FaceData::Leaves }),
+                Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
+            ],
+            legend: true,
+            ..Figure::default()
+        };
+        let read: Figure = serde_json::from_str(&serde_json::to_string(&figure).unwrap()).unwrap();
+        assert_eq!(read, figure);
+        assert!(serde_json::from_str::<Figure>(r#"{ "legends": true }"#).is_err());
+    }
+
+    #[test]
+    fn a_page_is_whole_pixels_at_its_resolution() {
+        let figure = Figure { size: PageSize::Cm([2.54, 5.08]), dpi: 300.0, ..Figure::default() };
+        assert_eq!(figure.size_px(), [300, 600]);
+        assert!((figure.size_pt() - DVec2::new(72.0, 144.0)).length() < 1e-9);
+    }
+}

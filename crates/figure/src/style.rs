@@ -1,0 +1,57 @@
+//! Sizes and colours that all figures share, so that they look like figures of one book.
+//!
+//! Type is 7 to 9 points, lines are 0.4 to 1.6 points, ink is a warm black, and what merely frames is grey.
+
+use ttf::Colour;
+
+/// Font size of titles, points.
+pub const TITLE_PT: f64 = 9.5;
+/// Font size of text, points.
+pub const TEXT_PT: f64 = 8.0;
+/// Font size of numbers along axes, points.
+pub const NUMBER_PT: f64 = 7.0;
+/// No text is smaller, points.
+pub const LEAST_TEXT_PT: f64 = 5.5;
+
+/// Letters and the lines that belong to them.
+pub const INK: Colour = Colour::new(0x23, 0x1f, 0x1b);
+/// Numbers along axes and captions.
+pub const QUIET_INK: Colour = Colour::new(0x57, 0x51, 0x4a);
+/// Thin frames and rules between panels.
+pub const RULE_INK: Colour = Colour::new(0x8c, 0x86, 0x7e);
+/// Where other sections run: ochre, as rock paintings have it.
+pub const ACCENT: Colour = Colour::new(0xa4, 0x4a, 0x1c);
+/// Proposed faults.
+pub const PROPOSAL: Colour = Colour::new(0xb0, 0x1e, 0x1e);
+/// Where a section has no data.
+pub const NO_DATA: Colour = Colour::new(0xdc, 0xdc, 0xda);
+
+/// Width of frames and ticks, points.
+pub const FRAME_PT: f64 = 0.5;
+/// Length of ticks, points.
+pub const TICK_PT: f64 = 2.6;
+/// Width of horizons on sections, points.
+pub const HORIZON_PT: f64 = 1.2;
+/// Width of faults on sections, points.
+pub const FAULT_PT: f64 = 1.3;
+/// How much wider the light rim under a line is, points.
+pub const RIM_PT: f64 = 1.2;
+/// Opacity of that rim.
+pub const RIM_OPACITY: f32 = 0.6;
+
+/// Colours of horizons without one of their own, youngest first: told apart by most eyes, and on grey.
+pub const HORIZON_COLOURS: [Colour; 8] = [
+    Colour::new(0x00, 0x9e, 0x73),
+    Colour::new(0xe6, 0x9f, 0x00),
+    Colour::new(0x00, 0x72, 0xb2),
+    Colour::new(0xcc, 0x79, 0xa7),
+    Colour::new(0x56, 0xb4, 0xe9),
+    Colour::new(0xd5, 0x5e, 0x00),
+    Colour::new(0xb8, 0xa8, 0x00),
+    Colour::new(0x66, 0x33, 0x99),
+];
+
+/// The colour of a horizon: its own, or else that of its place in the order of age.
+pub fn horizon_colour(own: Option<Colour>, index: usize) -> Colour {
+    own.unwrap_or(HORIZON_COLOURS[index % HORIZON_COLOURS.len()])
+}

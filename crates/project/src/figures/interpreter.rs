@@ -1,0 +1,146 @@
+//! What an interpreter sees, read from a project, with what only the interpreter's own view knows.
+
+use crate::content;
+use crate::error::ProjectError;
+use crate::interpretation::{assembly, proposals};
+use crate::project::Project;
+use figure::interpretation::{FaultMesh, Interpretation, PickedSheets, Selection, SheetHole, Stick, TraceSheet};
+use glam::DVec3;
+use interp::faults::Proposal;
+use interp::holes::{Hole, find_holes};
+use interp::reassembly::{VoxelSheet, from_horizon};
+use survey::{Progress, SurveyGeometry};
+use ttf::Colour;
+
+/// Sticks of faults that are part of the project.
+const STICK: Colour = Colour::BLACK;
+
+/// What only an interpreter's own view knows: nothing of it is part of the project.
+#[derive(Debug, Clone, Default)]
+pub struct InterpreterView {
+    /// The horizon that picks go to.
+    pub picked: Option<String>,
+    /// Whether minor proposals are seen, too.
+    pub minor: bool,
+    /// Proposals that are not to be seen, by number.
+    pub dismissed: Vec<u32>,
+    /// Sticks that are drawn and not part of the project yet: line numbers and vertical values.
+    pub sticks: Vec<(Vec<[f64; 3]>, Colour)>,
+    /// The node that is selected and not accepted yet.
+    pub selection: Option<(Vec<VoxelSheet>, Colour)>,
+}
+
+impl InterpreterView {
+    /// Whether a proposal is seen.
+    pub fn shows(&self, proposal: &Proposal) -> bool {
+        (self.minor || !proposal.is_minor) && !self.dismissed.contains(&proposal.id)
+    }
+}
+
+/// A horizon as it was picked.
+struct Picked {
+    name: String,
+    colour: Colour,
+    sheets: Vec<VoxelSheet>,
+    holes: Vec<Hole>,
+}
+
+/// A fault with its triangles, voxels.
+struct Mesh {
+    name: String,
+    triangles: Vec<[DVec3; 3]>,
+}
+
+/// The interpretation of a project.
+pub(super) struct Picks<'a> {
+    view: &'a InterpreterView,
+    horizons: Vec<Picked>,
+    faults: Vec<Mesh>,
+    proposals: Vec<Mesh>,
+    sticks: Vec<Stick>,
+}
+
+impl<'a> Picks<'a> {
+    /// Reads it.
+    pub(super) fn read(
+        project: &Project,
+        view: &'a InterpreterView,
+        progress: &Progress,
+    ) -> Result<Self, ProjectError> {
+        let (root, document) = (project.root(), project.document());
+        let geometry = document.frame()?;
+        let [nx, ny, _] = geometry.size();
+        let blocks = assembly::blocks(root, document, progress)?;
+        let mut horizons = Vec::new();
+        for (entry, named) in document.horizons.iter().zip(super::horizons(document)) {
+            let sheets = from_horizon(&content::read_horizon(root, entry, progress)?, geometry, &blocks);
+            let holes = find_holes(&sheets, [nx, ny]);
+            horizons.push(Picked { name: named.name, colour: named.colour, sheets, holes });
+        }
+        let faults = document.faults.iter().map(|entry| {
+            let fault = content::read_fault(root, entry)?;
+            Ok(Mesh { name: entry.name.clone(), triangles: content::fault_triangles(&fault, geometry) })
+        });
+        let open = proposals::open(root, document).into_iter().filter(|proposal| view.shows(proposal));
+        let open = open.map(|proposal| {
+            let triangles = content::fault_triangles(&proposal.fault(&proposal.name), geometry);
+            Mesh { name: proposal.name.clone(), triangles }
+        });
+        let made = document.sticks.iter().flat_map(|fault| &fault.sticks).map(|stick| (stick, STICK));
+        let drawn = view.sticks.iter().map(|(stick, colour)| (stick, *colour));
+        let sticks = made.chain(drawn).map(|(stick, colour)| Stick { places: voxels(stick, geometry), colour });
+        Ok(Self {
+            view,
+            faults: faults.collect::<Result<_, ProjectError>>()?,
+            proposals: open.collect(),
+            sticks: sticks.collect(),
+            horizons,
+        })
+    }
+
+    /// As figures take it.
+    pub(super) fn borrowed(&self) -> Interpretation<'_> {
+        Interpretation {
+            horizons: self.horizons.iter().map(Picked::borrowed).collect(),
+            faults: self.faults.iter().map(Mesh::borrowed).collect(),
+            proposals: self.proposals.iter().map(Mesh::borrowed).collect(),
+            sticks: self.sticks.clone(),
+            selection: self
+                .view
+                .selection
+                .as_ref()
+                .map(|(sheets, colour)| Selection { sheets: sheets.iter().map(borrowed).collect(), colour: *colour }),
+            picked: self.view.picked.as_deref(),
+        }
+    }
+}
+
+impl Picked {
+    fn borrowed(&self) -> PickedSheets<'_> {
+        PickedSheets {
+            name: &self.name,
+            colour: self.colour,
+            sheets: self.sheets.iter().map(borrowed).collect(),
+            holes: self.holes.iter().map(|hole| SheetHole { block: hole.block, traces: hole.nodes() }).collect(),
+        }
+    }
+}
+
+impl Mesh {
+    fn borrowed(&self) -> FaultMesh<'_> {
+        FaultMesh { name: &self.name, triangles: &self.triangles }
+    }
+}
+
+/// A sheet as figures take it.
+pub fn borrowed(sheet: &VoxelSheet) -> TraceSheet<'_> {
+    TraceSheet { block: sheet.block, z: &sheet.z, quality: &sheet.quality }
+}
+
+/// Voxel positions of a stick's places.
+fn voxels(stick: &[[f64; 3]], geometry: &SurveyGeometry) -> Vec<DVec3> {
+    let voxel = |[inline, crossline, value]: &[f64; 3]| {
+        geometry.voxel_from_lines(*inline, *crossline).extend(geometry.vertical.index_of(*value))
+    };
+    stick.iter().map(voxel).collect()
+}

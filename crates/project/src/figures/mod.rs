@@ -1,0 +1,157 @@
+//! Figures of a project: what one needs is loaded, and its page made, in one way, for the command line and the window alike.
+//!
+//! A figure with a block needs what the block's scene needs. One of sections and maps alone needs the model but no layer coordinates,
+//! and what an interpreter sees needs no model at all.
+
+mod interpreter;
+
+pub use interpreter::{InterpreterView, borrowed};
+
+use crate::document::Document;
+use crate::error::ProjectError;
+use crate::picture::load::{self, Loaded, Stage};
+use crate::picture::{Device, Painter};
+use crate::project::Project;
+use crate::styles;
+use figure::cut::Source;
+use figure::draw::NamedColour;
+use figure::list::DisplayList;
+use figure::{Figure, FigureInputs, Part};
+use interpreter::Picks;
+use model::StructuralModel;
+use render::{FaceData, Scene};
+use survey::Progress;
+use ttf::{LayerStyle, LayerTtf, TextureLibrary};
+
+/// A figure's page, and how it came about.
+pub struct MadeFigure {
+    /// The page.
+    pub page: DisplayList,
+    /// What drew its blocks; absent where it has none.
+    pub device: Option<String>,
+    /// How long the stages took.
+    pub stages: Vec<Stage>,
+}
+
+/// How a figure is made.
+pub struct FigureSettings {
+    /// What draws blocks.
+    pub device: Device,
+    /// Most bytes for the samples of a volume.
+    pub volume_bytes: u64,
+}
+
+/// Loads what a figure needs, and makes its page. `view` is what only an interpreter's own view knows.
+///
+/// # Errors
+/// Damaged data, places or horizons that are not there, a page without room, or cancelled.
+pub fn make(
+    project: &Project,
+    figure: &Figure,
+    view: &InterpreterView,
+    settings: &FigureSettings,
+    progress: &Progress,
+) -> Result<MadeFigure, ProjectError> {
+    let document = project.document();
+    let (loaded, model, mut stages) = load(project, figure, settings, progress)?;
+    let picks = if figure.interpretation { Some(Picks::read(project, view, progress)?) } else { None };
+    let shown = picks.as_ref().map(Picks::borrowed);
+    let library = if figure.legend { Some(styles::pattern_library(project.root(), document)?) } else { None };
+    let layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
+    let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
+    let mut data = loaded.inputs(&volumes, &wells);
+    if let Some(model) = &model {
+        data.model = Some(model);
+    }
+    let inputs = FigureInputs {
+        source: Source { data, raw: loaded.raw.as_ref() },
+        horizons: &horizons(document),
+        faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
+        layers: &layers,
+        library: library.as_ref(),
+        interpretation: shown.as_ref(),
+    };
+    let mut painter = None;
+    let mut paint = |scene: &Scene| {
+        let painter = match &mut painter {
+            Some(painter) => painter,
+            empty => empty.insert(Painter::new(settings.device, progress)?),
+        };
+        // A project that is being interpreted has no model to take the relief from.
+        let ground = scene.ground.filter(|_| loaded.rock.is_some());
+        let (image, stage) = painter.draw(&Scene { ground, ..scene.clone() }, &loaded, progress)?;
+        stages.push(stage);
+        Ok(image)
+    };
+    let page = figure::make(figure, &inputs, &mut paint)?;
+    Ok(MadeFigure { page, device: painter.map(|painter| painter.device().to_owned()), stages })
+}
+
+/// What is read and computed for a figure: a model of its own where no block brings one.
+fn load(
+    project: &Project,
+    figure: &Figure,
+    settings: &FigureSettings,
+    progress: &Progress,
+) -> Result<(Loaded, Option<StructuralModel>, Vec<Stage>), ProjectError> {
+    let scene = needs(figure);
+    let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
+    if has_block && !figure.interpretation {
+        let mut loaded = load::load_within(project, &scene, settings.volume_bytes, progress)?;
+        let stages = loaded.rock.as_mut().map(|rock| std::mem::take(&mut rock.stages)).unwrap_or_default();
+        return Ok((loaded, None, stages));
+    }
+    let loaded = load::load_bare(project, &scene, settings.volume_bytes, progress)?;
+    if figure.interpretation {
+        return Ok((loaded, None, Vec::new()));
+    }
+    let made = load::structural_model(project, progress)?;
+    let (model, stages) = made.map_or((None, Vec::new()), |(model, stage)| (Some(model), vec![stage]));
+    Ok((loaded, model, stages))
+}
+
+/// A scene that needs all that the parts of a figure need.
+fn needs(figure: &Figure) -> Scene {
+    let mut scene = Scene::default();
+    let mut is_raw = false;
+    let mut shown = FaceData::Rock;
+    for part in &figure.parts {
+        match part {
+            Part::Block(block) => {
+                is_raw |= block.comparison != figure::draw::block::Comparison::None;
+                scene = block.scene.clone();
+            }
+            Part::Section(section) => (is_raw, shown) = (true, section.show),
+            Part::Fence(fence) => (is_raw, shown) = (true, fence.show),
+            Part::Map(_) => {}
+        }
+    }
+    if scene.face_data == FaceData::Rock {
+        scene.face_data = shown;
+    }
+    if is_raw {
+        // Half-way needs everything that any blend needs.
+        scene.blend = 0.5;
+    }
+    scene
+}
+
+/// The horizons of a project with the colours that figures and the window draw them in.
+pub fn horizons(document: &Document) -> Vec<NamedColour> {
+    let entries = document.horizons.iter().enumerate();
+    let named = entries.map(|(index, entry)| NamedColour {
+        name: entry.name.clone(),
+        colour: figure::style::horizon_colour(entry.assembly.as_ref().map(|log| log.colour), index),
+    });
+    named.collect()
+}
+
+/// The layers as they are drawn, youngest first: by their own style, or the one they get by default.
+pub fn layer_styles(document: &Document, library: &TextureLibrary) -> Vec<LayerStyle> {
+    let names = document.layers();
+    let style = |(index, name): (usize, &String)| match document.style.layers.style(name) {
+        Some(style) => style.clone(),
+        None => LayerTtf::default_style(name, names.len() - 1 - index, library),
+    };
+    names.iter().enumerate().map(style).collect()
+}

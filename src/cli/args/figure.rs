@@ -1,0 +1,56 @@
+//! What can be typed about figures: pages of sections, maps and blocks with what explains them.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// What is on a page, and how large it is. Several sections, a map and `--block` share one page.
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "Figures")]
+pub(in crate::cli) struct FigureArgs {
+    /// Section along this inline; repeat it for several
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(in crate::cli) inline: Vec<f64>,
+    /// Section along this crossline; repeat it for several
+    #[arg(long, value_name = "N", allow_hyphen_values = true)]
+    pub(in crate::cli) crossline: Vec<f64>,
+    /// Horizontal section at this time or depth; repeat it for several
+    #[arg(long, value_name = "Z", allow_hyphen_values = true)]
+    pub(in crate::cli) slice: Vec<f64>,
+    /// Section along a line with these corners, two or more
+    #[arg(long, value_name = "INLINE,CROSSLINE", num_args = 2..)]
+    pub(in crate::cli) fence: Vec<String>,
+    /// Map of a horizon: its depth or time in colours and contours
+    #[arg(long, value_name = "HORIZON")]
+    pub(in crate::cli) map: Option<String>,
+    /// Map the thickness from that horizon down to this one instead
+    #[arg(long, value_name = "HORIZON", requires = "map")]
+    pub(in crate::cli) thickness_to: Option<String>,
+    /// The block, beside the sections or the map that were asked for
+    #[arg(long)]
+    pub(in crate::cli) block: bool,
+    /// Two blocks compared: their blends, 0 = illustrated to 1 = raw
+    #[arg(long, value_name = "BLEND,BLEND")]
+    pub(in crate::cli) compare: Option<String>,
+    /// Compare them one over the other, parted at this share of the width, instead of side by side
+    #[arg(long, value_name = "0..1", requires = "compare")]
+    pub(in crate::cli) wipe: Option<f64>,
+    /// Show what an interpreter sees: horizons as they were picked, holes dotted, faults, proposals and sticks
+    #[arg(long)]
+    pub(in crate::cli) interpretation: bool,
+    /// List the layers with their patterns, or the horizons with their colours
+    #[arg(long)]
+    pub(in crate::cli) legend: bool,
+    /// Draw scale bars, and say the exaggeration
+    #[arg(long)]
+    pub(in crate::cli) scale_bar: bool,
+    /// Size of the page on paper, in centimetres at --dpi
+    #[arg(long, value_name = "WxH", conflicts_with = "size")]
+    pub(in crate::cli) size_cm: Option<String>,
+    /// TOML file that says what the page shows; nothing else about the page is typed then
+    #[arg(
+        long,
+        value_name = "FILE.toml",
+        conflicts_with_all = ["inline", "crossline", "slice", "fence", "map", "block", "compare", "size_cm", "interpretation", "legend", "scale_bar"]
+    )]
+    pub(in crate::cli) figure: Option<PathBuf>,
+}

@@ -1,0 +1,206 @@
+//! `petroglyph render` with more on the page than a picture of the block: sections, fences, maps, blocks compared, a legend.
+
+use super::args::FigureArgs;
+use super::draw::{assumptions, millimetres};
+use super::report::Report;
+use super::request::{RenderRequest, Usage, numbers};
+use anyhow::Context;
+use figure::draw::block::Comparison;
+use figure::draw::section::Zoom;
+use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart};
+use project::figures::{self, FigureSettings, InterpreterView};
+use project::{Project, memory_budget, picture};
+use render::{Faces, Media, Scene};
+use std::path::PathBuf;
+use survey::Progress;
+
+/// A page as it was asked for.
+#[derive(Debug, Default)]
+pub(super) struct PageRequest {
+    sections: Vec<(SectionKind, f64)>,
+    fence: Vec<[f64; 2]>,
+    /// A map, of the topmost horizon where none is named, and where a thickness ends.
+    map: Option<(Option<String>, Option<String>)>,
+    has_block: bool,
+    comparison: Comparison,
+    is_interpretation: bool,
+    has_legend: bool,
+    has_scale_bar: bool,
+    size_cm: Option<[f64; 2]>,
+    file: Option<PathBuf>,
+}
+
+impl PageRequest {
+    /// What was meant; `None` where only a picture of the block was asked for.
+    pub(super) fn meant(typed: FigureArgs, is_map: bool) -> Result<Option<Self>, Usage> {
+        let kinds = [
+            (SectionKind::Inline, typed.inline),
+            (SectionKind::Slice, typed.slice),
+            (SectionKind::Crossline, typed.crossline),
+        ];
+        let sections = kinds.into_iter().flat_map(|(kind, at)| at.into_iter().map(move |at| (kind, at))).collect();
+        let corner = |text: &String| numbers::<2>("--fence", text, ',');
+        let fence: Vec<[f64; 2]> = typed.fence.iter().map(corner).collect::<Result<_, _>>()?;
+        let map = match (typed.map, is_map) {
+            (None, false) => None,
+            (horizon, _) => Some((horizon, typed.thickness_to)),
+        };
+        let size_cm = typed.size_cm.as_deref().map(size_cm).transpose()?;
+        let meant = Self {
+            sections,
+            fence,
+            map,
+            has_block: typed.block,
+            comparison: comparison(typed.compare.as_deref(), typed.wipe)?,
+            is_interpretation: typed.interpretation,
+            has_legend: typed.legend,
+            has_scale_bar: typed.scale_bar,
+            size_cm,
+            file: typed.figure,
+        };
+        let parts = meant.sections.len()
+            + usize::from(!meant.fence.is_empty())
+            + usize::from(meant.map.is_some())
+            + usize::from(meant.has_block);
+        if parts > 4 {
+            return Err(format!("a page takes four parts, these are {parts}: leave some out"));
+        }
+        Ok(meant.is_page().then_some(meant))
+    }
+
+    /// Whether more was asked for than a picture of the block.
+    fn is_page(&self) -> bool {
+        let has_parts = !self.sections.is_empty() || !self.fence.is_empty() || self.map.is_some() || self.has_block;
+        let has_more = self.is_interpretation || self.has_legend || self.has_scale_bar;
+        let is_paper = self.size_cm.is_some() || self.file.is_some();
+        has_parts || has_more || is_paper || self.comparison != Comparison::None
+    }
+
+    /// The figure, with this scene for its block.
+    fn figure(&self, scene: &Scene, dpi: f64, project: &Project) -> anyhow::Result<Figure> {
+        if let Some(file) = &self.file {
+            let text =
+                std::fs::read_to_string(file).with_context(|| format!("{} could not be read", file.display()))?;
+            return toml::from_str(&text).with_context(|| format!("{} is not a figure", file.display()));
+        }
+        let show = scene.face_data;
+        let section = |(kind, at): &(SectionKind, f64)| {
+            Part::Section(SectionPart { kind: *kind, at: *at, show, zoom: Zoom::default() })
+        };
+        let mut parts: Vec<Part> = self.sections.iter().map(section).collect();
+        if !self.fence.is_empty() {
+            parts.push(Part::Fence(FencePart { corners: self.fence.clone(), show }));
+        }
+        if let Some((horizon, thickness_to)) = &self.map {
+            let topmost = project.document().horizons.first().map(|entry| entry.name.clone());
+            let horizon = horizon.clone().or(topmost).context("a map shows a horizon; the project has none")?;
+            parts.push(Part::Map(MapPart { horizon, thickness_to: thickness_to.clone() }));
+        }
+        if self.has_block || parts.is_empty() {
+            let scene = if self.is_interpretation { interpreted(scene) } else { scene.clone() };
+            parts.insert(0, Part::Block(BlockPart { scene, comparison: self.comparison }));
+        }
+        Ok(Figure {
+            size: self.size_cm.map_or(PageSize::Px(scene.size_px), PageSize::Cm),
+            dpi,
+            parts,
+            legend: self.has_legend,
+            scale_bar: self.has_scale_bar,
+            interpretation: self.is_interpretation,
+        })
+    }
+}
+
+/// Width and height in centimetres.
+fn size_cm(text: &str) -> Result<[f64; 2], Usage> {
+    let usage = || format!("--size-cm {text}: expected width and height in centimetres such as 16x11");
+    let size: [f64; 2] = numbers("--size-cm", &text.replace(['X', '×'], "x"), 'x').map_err(|_| usage())?;
+    if size.iter().all(|side| *side > 0.0) { Ok(size) } else { Err(usage()) }
+}
+
+/// Two blends, side by side or parted.
+fn comparison(blends: Option<&str>, wipe: Option<f64>) -> Result<Comparison, Usage> {
+    let Some(text) = blends else { return Ok(Comparison::None) };
+    let blends = numbers::<2>("--compare", text, ',')?.map(|blend| blend as f32);
+    if !blends.iter().all(|blend| (0.0..=1.0).contains(blend)) {
+        return Err(format!("--compare {text}: expected two blends between 0 and 1, such as 0,1"));
+    }
+    match wipe {
+        None => Ok(Comparison::SideBySide(blends)),
+        Some(share) if (0.0..=1.0).contains(&share) => Ok(Comparison::Wipe(blends, share)),
+        Some(share) => Err(format!("--wipe {share}: expected a share of the width between 0 and 1")),
+    }
+}
+
+/// The block as an interpreter sees it: raw data, the horizons before it; what is seen through stays.
+fn interpreted(scene: &Scene) -> Scene {
+    let is_through = scene.media.faces == Faces::None;
+    let media = if is_through { scene.media.clone() } else { Media::default() };
+    Scene { blend: 1.0, ground: None, media, ..scene.clone() }
+}
+
+/// Makes the page and writes it.
+pub(super) fn draw(
+    request: &RenderRequest,
+    page: &PageRequest,
+    project: &Project,
+    scene: &Scene,
+    progress: &Progress,
+) -> anyhow::Result<Report> {
+    let figure = page.figure(scene, request.dpi, project)?;
+    let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
+    let settings = FigureSettings { device: request.device, volume_bytes };
+    let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
+    let image = figure::raster(&made.page, figure.dpi).map_err(project::ProjectError::from)?;
+    picture::write_png(&request.out, &image, figure.dpi)?;
+    let [width, height] = figure.size_px();
+    let mut report = Report::default();
+    report.say(format!(
+        "{}: {width} x {height} pixels, {:.0} x {:.0} mm at {} dpi",
+        request.out.display(),
+        millimetres(width, figure.dpi),
+        millimetres(height, figure.dpi),
+        figure.dpi
+    ));
+    let blocks = figure.parts.iter().filter_map(|part| match part {
+        Part::Block(block) => Some(&block.scene),
+        _ => None,
+    });
+    let shown = blocks.map(|scene| assumptions(project, scene)).next().unwrap_or_default();
+    shown.iter().for_each(|line| {
+        report.say(format!("  {line}"));
+    });
+    report
+        .field("file", &request.out)
+        .field("size_px", [width, height])
+        .field("dpi", figure.dpi)
+        .field("parts", figure.parts.len())
+        .field("device", made.device)
+        .field("assumptions", shown)
+        .field("stages", made.stages);
+    Ok(report)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_of_the_block_alone_is_no_page() {
+        assert!(PageRequest::meant(FigureArgs::default(), false).unwrap().is_none());
+        assert!(PageRequest::meant(FigureArgs::default(), true).unwrap().is_some());
+        let typed = FigureArgs { legend: true, ..FigureArgs::default() };
+        assert!(PageRequest::meant(typed, false).unwrap().is_some());
+    }
+
+    #[test]
+    fn nonsense_is_a_usage_error() {
+        let refused = |typed: FigureArgs| PageRequest::meant(typed, false).unwrap_err();
+        refused(FigureArgs { fence: vec!["1,2".into(), "3".into()], ..FigureArgs::default() });
+        refused(FigureArgs { compare: Some("0,2".into()), ..FigureArgs::default() });
+        refused(FigureArgs { compare: Some("0,1".into()), wipe: Some(1.5), ..FigureArgs::default() });
+        refused(FigureArgs { size_cm: Some("16".into()), ..FigureArgs::default() });
+        refused(FigureArgs { size_cm: Some("0x4".into()), ..FigureArgs::default() });
+        refused(FigureArgs { inline: vec![1.0; 5], ..FigureArgs::default() });
+    }
+}

@@ -1,0 +1,150 @@
+//! Figures: what each page shows, what is refused, and that window and command line make the same page.
+
+use crate::program::{project, run_in};
+use image::RgbImage;
+use std::path::Path;
+
+const SMALL: &str = "--size-cm 12x9 --dpi 60 --samples 1 --device cpu";
+
+fn picture(at: &Path, options: &str) -> RgbImage {
+    run_in(at, &format!("render p.petro a.png {options} {SMALL}")).done();
+    image::open(at.join("a.png")).unwrap().to_rgb8()
+}
+
+/// Pixels that are neither grey nor nearly so.
+fn coloured(image: &RgbImage) -> usize {
+    let spread = |p: &image::Rgb<u8>| p.0.iter().max().unwrap() - p.0.iter().min().unwrap();
+    image.pixels().filter(|p| spread(p) > 40).count()
+}
+
+#[test]
+fn every_figure_is_a_page_of_its_own_in_its_printed_size() {
+    let folder = project();
+    let at = folder.path();
+    let asked = [
+        "--inline 20",
+        "--crossline 20 --legend",
+        "--slice 200 --scale-bar",
+        "--map Bravo --scale-bar",
+        "--map Alpha --thickness-to Bravo",
+        "--technique map",
+        "--interpretation --inline 20",
+        "--block --map Bravo --legend",
+        "--compare 0,1 --wipe 0.4",
+        "--compare 0,1",
+        "--scale-bar",
+    ];
+    let mut pages: Vec<RgbImage> = Vec::new();
+    for options in asked {
+        let page = picture(at, options);
+        assert_eq!(page.dimensions(), (283, 213), "{options}");
+        assert!(coloured(&page) > 1500, "{options}: {}", coloured(&page));
+        assert!(pages.iter().all(|other| *other != page), "{options} is as one before");
+        pages.push(page);
+    }
+    let fence = run_in(at, &format!("render p.petro a.png {SMALL} --fence 5,5 20,30 40,35 --json")).done().json();
+    assert_eq!((fence["size_px"][0].as_u64(), fence["parts"].as_u64()), (Some(283), Some(1)));
+}
+
+#[test]
+fn a_figure_from_a_file_is_the_one_that_is_typed() {
+    let folder = project();
+    let at = folder.path();
+    let typed = picture(at, "--inline 20 --scale-bar");
+    let text = "size = { cm = [12.0, 9.0] }\ndpi = 60.0\nscale_bar = true\n[[parts]]\nsection = { kind = 'inline', at = 20.0 }\n";
+    std::fs::write(at.join("figure.toml"), text).unwrap();
+    run_in(at, "render p.petro b.png --figure figure.toml --device cpu").done();
+    assert!(image::open(at.join("b.png")).unwrap().to_rgb8() == typed);
+}
+
+#[test]
+fn what_is_not_there_is_said_with_what_helps() {
+    let folder = project();
+    let at = folder.path();
+    let refused = |options: &str, words: &[&str]| {
+        run_in(at, &format!("render p.petro a.png {options}")).failed(words);
+        assert!(!at.join("a.png").exists(), "{options}");
+    };
+    refused("--inline 4711", &["inline 4711", "outside the survey", "1 to 48"]);
+    refused("--slice -5", &["outside the survey"]);
+    refused("--map Omega", &["no map of horizon Omega"]);
+    refused("--map Bravo --thickness-to Alpha", &["no map of the thickness from Bravo down to Alpha"]);
+    refused("--fence 5,5 5,5", &["two corners"]);
+    refused("--inline 20 --size-cm 0.5x0.5 --dpi 60", &["no room"]);
+    refused("--inline 20 --size-cm 500x500 --dpi 1200", &["pixels"]);
+    let usage = run_in(at, "render p.petro a.png --fence 5,5 5");
+    assert_eq!(usage.code, 2, "{}", usage.stderr);
+    assert_eq!(run_in(at, "render p.petro a.png --compare 0,1 --wipe 2").code, 2);
+}
+
+#[cfg(feature = "window")]
+mod window {
+    use super::*;
+    use ::app::state::{Compare, ExportForm, Layout, Look, Panel, Session, Shown, Snapshot};
+    use ::app::views::overlay::Overlay;
+    use ::app::views::print::Page;
+    use ::app::views::sections::Sections;
+    use ::figure::map::Mapped;
+    use survey::Progress;
+
+    /// What the window exports of a project looked at in some way.
+    fn exported(at: &Path, look: impl Fn(&mut Session)) -> RgbImage {
+        let opened = ::project::Project::open(&at.join("p.petro")).unwrap();
+        let (root, document) = (opened.root().to_owned(), opened.document().clone());
+        let mut session = Session::new(Snapshot { root, document, history: Vec::new() }, None);
+        look(&mut session);
+        let path = at.join("window.png").display().to_string();
+        let form = ExportForm {
+            size_cm: [12.0, 9.0],
+            dpi: 60.0,
+            legend: Shown::Yes,
+            scale_bar: Shown::Yes,
+            ..ExportForm::new(path)
+        };
+        let mapped = Mapped::Structure(1);
+        let page = Page::of(&session, &Overlay::default(), &Sections::default(), mapped, &form).unwrap();
+        page.write(&Progress::silent()).unwrap();
+        image::open(at.join("window.png")).unwrap().to_rgb8()
+    }
+
+    fn typed(at: &Path, options: &str) -> RgbImage {
+        let line = format!("render p.petro a.png --size-cm 12x9 --dpi 60 --legend --scale-bar {options}");
+        run_in(at, &line).done();
+        image::open(at.join("a.png")).unwrap().to_rgb8()
+    }
+
+    #[test]
+    fn the_window_exports_the_pixels_that_the_command_line_renders() {
+        let folder = crate::program::project();
+        let at = folder.path();
+        let block = exported(at, |_| {});
+        assert!(block == typed(at, ""), "block");
+        let sections = exported(at, |session| {
+            session.view.layout = Layout::Sections;
+            session.view.slices = [19.0, 11.0, 25.0];
+        });
+        let lines = {
+            let opened = ::project::Project::open(&at.join("p.petro")).unwrap();
+            let geometry = opened.document().geometry.clone().unwrap();
+            [0, 1, 2].map(|axis| ::figure::cut::value_at(&geometry, axis, [19.0, 11.0, 25.0][axis]))
+        };
+        let [inline, crossline, z] = lines;
+        let same = format!("--block --inline {inline} --crossline {crossline} --slice {z}");
+        assert!(sections == typed(at, &same), "sections");
+        // The comparison fails on another picture: the neighbouring inline.
+        let other = format!("--block --inline {} --crossline {crossline} --slice {z}", inline + 1.0);
+        assert!(sections != typed(at, &other), "another inline is another picture");
+        let map = exported(at, |session| session.view.layout = Layout::Map);
+        assert!(map == typed(at, "--block --map Bravo"), "map");
+        let compared = exported(at, |session| {
+            session.view.compare = Compare::Wipe;
+            session.view.wipe = 0.25;
+        });
+        assert!(compared == typed(at, "--compare 0,1 --wipe 0.25"), "comparison");
+        let interpreted = exported(at, |session| {
+            session.view.panel = Panel::Interpret;
+            session.view.picking.look = Look::Faces;
+        });
+        assert!(interpreted == typed(at, "--interpretation"), "interpretation");
+    }
+}
