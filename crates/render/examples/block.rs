@@ -5,6 +5,7 @@
 //! by the CPU reference and by the GPU. Prints their times and differences.
 
 use glam::DVec3;
+use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::compare::compare;
 use render::{Corner, Ground, Inputs, Lookup, NamedVolume, Renderer, Scene, VoxelBox};
@@ -12,7 +13,6 @@ use std::error::Error;
 use std::path::Path;
 use std::time::Instant;
 use survey::Progress;
-use model::{ModelSettings, StructuralModel};
 use synth::{SynthSettings, Synthetic};
 use ttf::{
     BlockExtent, ColourMap, LayerExtent, RawColour, RgbaFunction, TextureLibrary, TransferFunctions, TtfTables,

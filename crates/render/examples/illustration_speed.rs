@@ -14,15 +14,15 @@
 
 use glam::DVec3;
 use image::RgbaImage;
+use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::media::{LayerOpacity, MediumColour};
 use render::reference::CpuRenderer;
 use render::{Inputs, Lookup, Media, Medium, NamedVolume, Renderer, Scene, VoxelBox};
 use std::error::Error;
 use std::time::Instant;
-use model::{ModelSettings, StructuralModel};
-use synth::{SynthSettings, Synthetic};
 use survey::{Progress, Volume};
+use synth::{SynthSettings, Synthetic};
 use ttf::{
     BlockExtent, Colour, LayerExtent, RawColour, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions, TtfTables,
 };

@@ -7,8 +7,8 @@
 //! [`FARTHEST`].
 
 use glam::{DVec2, DVec3};
-use rayon::prelude::*;
 use model::section::SectionPlane;
+use rayon::prelude::*;
 
 /// Largest distance that is measured, voxels. Farther boundaries count as this far.
 pub const FARTHEST: f64 = 4.0;

@@ -19,9 +19,9 @@
 use crate::scene::{Ground, Scene};
 use crate::visible::Ray;
 use glam::{DVec3, Mat3, Vec2, Vec3};
+use model::{Region, StructuralModel};
 use rayon::prelude::*;
 use survey::SurveyGeometry;
-use model::{Region, StructuralModel};
 
 /// Shortest step near the ground, voxels. Ridges thinner than this can be missed.
 pub const SHORTEST_STEP: f32 = 0.5;
@@ -365,8 +365,8 @@ impl Heights {
 mod tests {
     use super::*;
     use crate::VoxelBox;
-    use survey::Progress;
     use model::ModelSettings;
+    use survey::Progress;
     use synth::{SynthSettings, Synthetic};
 
     /// Compares the march with short steps along rays that evaluate the model itself.

@@ -5,8 +5,8 @@ use crate::leaves::{BORDER, BORDER_REACH, BORDER_STEP};
 use crate::voxel_box::VoxelBox;
 use crate::wells::DrawnWell;
 use glam::Vec3;
-use param::{PackedVolume, Parameterization};
 use model::StructuralModel;
+use param::{PackedVolume, Parameterization};
 use survey::{SurveyGeometry, Volume};
 use ttf::TtfTables;
 

@@ -13,8 +13,8 @@ use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
 use crate::wells::Tubes;
 use glam::{DVec3, Vec3};
-use param::{PackedVolume, Parameterization};
 use model::StructuralModel;
+use param::{PackedVolume, Parameterization};
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
 use ttf::{RawColour, TtfTables};
 

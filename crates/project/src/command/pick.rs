@@ -408,7 +408,7 @@ impl ReplayPicks {
 /// Makes one pick again: at its place, at the level whose node is most like what it was.
 fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> NodeFit {
     let Ok(hit) = candidates.leaf_near(geometry, pick.at) else { return NodeFit::Different };
-    let rank = |fit: Fit| match fit {
+    let rank = |fit: NodeFit| match fit {
         NodeFit::Same => 0,
         NodeFit::Similar => 1,
         NodeFit::Different => 2,

@@ -73,7 +73,7 @@ pub struct ReportedOverlap {
 
 impl ReportedOverlap {
     /// The overlap in line numbers; `None` when nothing overlaps.
-    pub(crate) fn new(overlap: Overlap, geometry: &SurveyGeometry) -> Option<Self> {
+    pub fn new(overlap: Overlap, geometry: &SurveyGeometry) -> Option<Self> {
         let Overlap { traces, beside, apart, at_voxel: [x, y, z] } = overlap;
         let lines = geometry.lines_from_voxel(glam::DVec2::new(f64::from(x), f64::from(y)));
         let z = geometry.vertical.value_at(f64::from(z));

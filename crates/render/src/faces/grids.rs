@@ -15,9 +15,9 @@ use crate::gpu::Gpu;
 use crate::outline::solid::{FaceRect, face_rects};
 use crate::resolved::{ResolvedScene, shows_depths};
 use glam::DVec3;
+use model::StructuralModel;
 use param::{Parameterization, RegionGrid, SheetRef};
 use rayon::prelude::*;
-use model::StructuralModel;
 use ttf::tables::NONE;
 
 /// Thickness below which a layer has no inside, voxels, as in `param` and the shader.

@@ -7,9 +7,9 @@ use super::layout::{FaultInfo, ModelInfo, PackedInfo, SheetInfo};
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use glam::{DVec3, Vec3};
+use model::{FaultSurface, StructuralModel};
 use param::PackedVolume;
 use survey::HeightField;
-use model::{FaultSurface, StructuralModel};
 use survey::stratigraphy::Contact;
 
 /// Number of buffers over which the pool may be split.

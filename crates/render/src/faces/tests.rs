@@ -8,12 +8,12 @@ use super::volumes::VolumePlacement;
 use super::{Renderer, shader};
 use crate::media::{march, samples, table};
 use crate::{Inputs, RenderError, Scene, ground, inputs, leaves, visible, wells};
+use model::{ModelSettings, StructuralModel};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use param::{ParamSettings, Parameterization};
 use std::mem::offset_of;
-use model::{ModelSettings, StructuralModel};
-use synth::closed_form::ClosedForm;
 use survey::{Progress, SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
 use ttf::tables::{IntervalEntry, LayerEntry, ScalarEntry, StopEntry, TtfGlobals};
 use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 

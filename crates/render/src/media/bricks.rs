@@ -15,8 +15,8 @@ use super::prepared::BRICK;
 use super::{LayerOpacity, Medium, MediumColour};
 use crate::ground::air_layer;
 use glam::Vec3;
-use rayon::prelude::*;
 use model::StructuralModel;
+use rayon::prelude::*;
 use ttf::{TtfTables, linear_from_srgb};
 
 /// Largest distance stored, bricks.
@@ -266,8 +266,8 @@ impl LayerAppearance {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use survey::Progress;
     use model::ModelSettings;
+    use survey::Progress;
     use synth::{SynthSettings, Synthetic};
 
     #[test]

@@ -18,8 +18,8 @@ use super::samples::NO_DATA_BELOW;
 use super::shell::{SOFT, shell_cover};
 use super::table::extinction;
 use glam::Vec3;
-use param::Parameterization;
 use model::StructuralModel;
+use param::Parameterization;
 use ttf::linear_from_srgb;
 
 /// An isosurface, with its volume resolved.

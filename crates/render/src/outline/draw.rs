@@ -10,8 +10,8 @@ use crate::media::Faces;
 use crate::resolved::{Interpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
-use rayon::prelude::*;
 use model::section::{LineKind, Section, SectionPlane};
+use rayon::prelude::*;
 
 /// Visible lines by kind, pixels.
 #[derive(Debug, Default)]

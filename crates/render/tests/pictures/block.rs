@@ -1,11 +1,11 @@
 //! Small models that tests draw.
 
 use glam::DVec3;
+use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization};
 use render::{Inputs, NamedVolume, VoxelBox};
-use model::{ModelSettings, StructuralModel};
-use synth::closed_form::ClosedForm;
 use survey::{Fault, Horizon, Progress, Stratigraphy, SurveyGeometry};
+use synth::closed_form::ClosedForm;
 use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 
 /// A model with all data derived from it.

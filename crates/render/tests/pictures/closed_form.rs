@@ -3,14 +3,14 @@
 use crate::block::Block;
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};
+use model::section::SectionPlane;
+use model::{ModelSettings, StructuralModel};
 use render::accuracy::boundaries;
 use render::reference::render;
 use render::{Camera, Corner, Inputs, Lookup, NamedVolume, Outlines, Scene, VoxelBox};
-use model::{ModelSettings, StructuralModel};
-use model::section::SectionPlane;
+use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use synth::closed_form::ClosedForm;
 use synth::{SynthSettings, Synthetic};
-use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use ttf::{
     Colour, ColourMap, DepthInterval, Frequency, LayerStyle, LayerTtf, RawColour, RgbaFunction, TextureLibrary,
     TransferFunctions,

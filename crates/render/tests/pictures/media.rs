@@ -9,8 +9,8 @@ use render::{
     Background, Camera, CandidateVolume, DrawnWell, Faces, Ground, Inputs, Isosurface, IsosurfaceSource, Media, Medium,
     NamedVolume, Occlusion, Outlines, PickedHorizon, PickedObject, Projection, Scene, Scope, Shading, VoxelBox, pick,
 };
-use synth::closed_form::ClosedForm;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+use synth::closed_form::ClosedForm;
 use ttf::{Colour, LayerStyle, LayerTtf, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions, srgb_from_linear};
 
 /// A function with one colour and opacity for every value.
