@@ -13,25 +13,13 @@
 //!
 //! Deliberately absent: no state of a project lives here that is not on disk, and no drawing of rock.
 
-#[cfg(test)]
-mod command_tests;
 pub mod error;
 pub mod fields;
 mod hint;
 mod hold;
-#[cfg(test)]
-mod horizon_tests;
-#[cfg(test)]
-mod panel_tests;
-#[cfg(test)]
-mod picking_tests;
 pub mod raster;
 pub mod state;
-#[cfg(test)]
-pub(crate) mod tests;
 pub mod theme;
-#[cfg(test)]
-mod through_tests;
 pub mod views;
 pub mod window;
 pub mod work;

@@ -1,8 +1,8 @@
 //! Volumes and horizons seen through, by labels.
 
-use super::command_tests::{choose, click_last};
-use super::state::through::{Extent, extent};
-use super::tests::{Driven, click, open, state, wait};
+use super::command::{choose, click_last};
+use app::state::through::{Extent, extent};
+use super::driven::{Driven, click, open, state, wait};
 use egui_kittest::kittest::Queryable;
 use render::{Media, Scene, Shading};
 

@@ -1,7 +1,7 @@
 //! Interpreting in the window, by labels, keys and clicks: what is done becomes the commands that the command line gives.
 
-use super::state::{Action, How, Layout, Panel, PickingStep, Tool};
-use super::tests::{Driven, click, document, driven, project, state, wait};
+use app::state::{Action, How, Layout, Panel, PickingStep, Tool};
+use super::driven::{Driven, click, document, driven, project, state, wait};
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
@@ -21,7 +21,7 @@ fn extract(project: &mut Project, settings: &ExtractSettings) {
 }
 
 /// A window on a project with candidates, its interpretation read.
-pub(super) fn interpreting(folder: &Path) -> Driven {
+pub fn interpreting(folder: &Path) -> Driven {
     let root = project(folder);
     let mut settings = ExtractSettings::default();
     settings.forest.min_leaf_triangles = LEAF;
@@ -35,12 +35,12 @@ pub(super) fn interpreting(folder: &Path) -> Driven {
     harness
 }
 
-pub(super) fn act(harness: &mut Driven, step: PickingStep) {
+pub fn act(harness: &mut Driven, step: PickingStep) {
     harness.state_mut().as_mut().unwrap().act(Action::Picking(step));
     harness.run_steps(2);
 }
 
-pub(super) fn picking(harness: &Driven) -> &super::state::Picking {
+pub fn picking(harness: &Driven) -> &app::state::Picking {
     &state(harness).session.as_ref().unwrap().view.picking
 }
 
@@ -64,7 +64,7 @@ fn press(harness: &mut Driven, at: Pos2, modifiers: Modifiers) {
 }
 
 /// A voxel on a strong reflection of the test survey, sin(0.7 z): its first trough is at z = 3π/2/0.7.
-pub(super) fn on_a_trough() -> DVec3 {
+pub fn on_a_trough() -> DVec3 {
     DVec3::new(12.0, 10.0, 1.5 * std::f64::consts::PI / 0.7)
 }
 
@@ -209,8 +209,8 @@ fn a_lasso_on_a_slice_erases_whole_leaves_in_one_step() {
     let before = (nodes(&harness).unwrap(), document(&harness).step);
     let z = on_a_trough().z.round();
     let corners = [[-1.0, -1.0], [12.0, -1.0], [12.0, 30.0], [-1.0, 30.0]].map(glam::DVec2::from_array).to_vec();
-    let on = super::state::LassoOn::Section(super::state::SectionKind::Slice, z);
-    act(&mut harness, PickingStep::Erase(super::state::Lasso { on, corners }));
+    let on = app::state::LassoOn::Section(app::state::SectionKind::Slice, z);
+    act(&mut harness, PickingStep::Erase(app::state::Lasso { on, corners }));
     wait(&mut harness, "part of it is gone", |harness| nodes(harness).is_some_and(|now| now < before.0));
     assert_eq!(document(&harness).step, before.1 + 1);
 }
@@ -282,7 +282,7 @@ fn the_block_is_seen_through_or_not_on_a_key() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
     let is_clear = |harness: &Driven| {
-        let scene = super::state::showing::scene(state(harness).session.as_ref().unwrap(), None);
+        let scene = app::state::showing::scene(state(harness).session.as_ref().unwrap(), None);
         matches!(scene.media.shading, render::Shading::Occlusion(_))
     };
     assert!(is_clear(&harness));
@@ -323,7 +323,7 @@ fn a_well_comes_in_through_its_dialogue() {
     std::fs::write(&path, "md_m,x_m,y_m,tvdss_m\n0,250,250,0\n40,250,250,40\n100,260,250,99\n").unwrap();
     let mut harness = driven(folder.path(), Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
-    let ask = Action::Ask(Box::new(super::state::Dialogue::Well { path }));
+    let ask = Action::Ask(Box::new(app::state::Dialogue::Well { path }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the files are read", |harness| {
         harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())

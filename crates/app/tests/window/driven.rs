@@ -1,7 +1,7 @@
-//! The window driven by its labels, without a display: what a reader of the screen finds is what is clicked.
+//! A window in a test harness, and what the other tests do with it.
 
-use super::state::{Compare, Dialogue, Interpreted, Layout, State, Target};
-use super::window::Window;
+use app::state::{Compare, Dialogue, Interpreted, Layout, State, Target};
+use app::window::Window;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
@@ -16,10 +16,10 @@ use survey::{Contact, Progress, SurveyGeometry, VerticalUnit, Volume};
 /// Longest wait for a worker before a test gives up; far beyond what any needs.
 const PATIENCE: Duration = Duration::from_secs(120);
 
-pub(super) type Driven = Harness<'static, Option<Window>>;
+pub type Driven = Harness<'static, Option<Window>>;
 
 /// A window that keeps its settings in `folder`, with a project open if one is named.
-pub(super) fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
+pub fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
     let settings = folder.join("settings/window.toml");
     let show = move |ui: &mut eframe::egui::Ui, window: &mut Option<Window>| {
         let make = || Window::new(ui.ctx(), Some(settings.clone()), project.clone());
@@ -28,12 +28,12 @@ pub(super) fn driven(folder: &Path, project: Option<PathBuf>) -> Driven {
     Harness::builder().with_size([1280.0, 800.0]).build_ui_state(show, None)
 }
 
-pub(super) fn state(harness: &Driven) -> &State {
+pub fn state(harness: &Driven) -> &State {
     harness.state().as_ref().unwrap().state()
 }
 
 /// Draws frames until something is so.
-pub(super) fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
+pub fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
     let start = Instant::now();
     loop {
         harness.step();
@@ -47,17 +47,17 @@ pub(super) fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> 
     }
 }
 
-pub(super) fn click(harness: &mut Driven, label: &str) {
+pub fn click(harness: &mut Driven, label: &str) {
     harness.get_by_label(label).click();
     // A dialogue is laid out unseen in its first frame.
     harness.run_steps(3);
 }
 
-pub(super) fn geometry() -> SurveyGeometry {
+pub fn geometry() -> SurveyGeometry {
     SurveyGeometry::regular([24, 20, 32], 25.0, 4.0, VerticalUnit::Milliseconds)
 }
 
-pub(super) fn survey(folder: &Path) -> PathBuf {
+pub fn survey(folder: &Path) -> PathBuf {
     let path = folder.join("north.sgy");
     let samples = (0..24 * 20 * 32).map(|n| ((n % 32) as f32 * 0.7).sin()).collect();
     let volume = Volume::from_samples([24, 20, 32], samples).unwrap();
@@ -79,7 +79,7 @@ fn horizon(folder: &Path, name: &str, z: f32) -> PathBuf {
 }
 
 /// A project with a volume and two horizons.
-pub(crate) fn project(folder: &Path) -> PathBuf {
+pub fn project(folder: &Path) -> PathBuf {
     let root = folder.join("north.petro");
     let mut new = Project::create(&root, None).unwrap();
     let import = project::command::ImportVolume {
@@ -105,7 +105,7 @@ pub(crate) fn project(folder: &Path) -> PathBuf {
     new.publish().unwrap().root().to_owned()
 }
 
-pub(super) fn open(folder: &Path) -> Driven {
+pub fn open(folder: &Path) -> Driven {
     let root = project(folder);
     let mut harness = driven(folder, Some(root));
     wait(&mut harness, "the picture is drawn", |harness| {
@@ -114,7 +114,7 @@ pub(super) fn open(folder: &Path) -> Driven {
     harness
 }
 
-pub(super) fn document(harness: &Driven) -> project::document::Document {
+pub fn document(harness: &Driven) -> project::document::Document {
     Project::open(&state(harness).session.as_ref().unwrap().root).unwrap().document().clone()
 }
 
@@ -165,7 +165,7 @@ fn a_survey_becomes_a_project_through_the_import_dialogue() {
     let path = survey(folder.path());
     let mut harness = driven(folder.path(), None);
     harness.step();
-    let ask = super::state::Action::Ask(Box::new(Dialogue::Survey { path, target: Target::NewProject }));
+    let ask = app::state::Action::Ask(Box::new(Dialogue::Survey { path, target: Target::NewProject }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the headers are read", |harness| harness.query_by_label("Map of the traces").is_some());
     for label in ["Inline", "Crossline", "Polarity", "Middle inline"] {
@@ -182,7 +182,7 @@ fn a_horizon_comes_in_through_its_dialogue() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     let path = horizon(folder.path(), "Middle", 55.0);
-    let ask = super::state::Action::Ask(Box::new(Dialogue::Interpretation { path, kind: Interpreted::Horizon }));
+    let ask = app::state::Action::Ask(Box::new(Dialogue::Interpretation { path, kind: Interpreted::Horizon }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the file is read", |harness| {
         harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())
@@ -250,9 +250,9 @@ fn a_picture_is_exported_at_its_printed_size() {
     let path = folder.path().join("out.png");
     let Some(Dialogue::Export(form)) = &state(&harness).dialogue else { panic!("no dialogue") };
     let form =
-        super::state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], dpi: 60.0, ..form.clone() };
+        app::state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], dpi: 60.0, ..form.clone() };
     let expected = form.size_px();
-    harness.state_mut().as_mut().unwrap().act(super::state::Action::Ask(Box::new(Dialogue::Export(form))));
+    harness.state_mut().as_mut().unwrap().act(app::state::Action::Ask(Box::new(Dialogue::Export(form))));
     harness.run_steps(2);
     click(&mut harness, "Export");
     wait(&mut harness, "it is written", |_| path.exists());

@@ -1,7 +1,7 @@
 //! What the other tests leave out of the panels and commands: each by its label, each seen in the project.
 
-use super::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
-use super::tests::{Driven, click, document, open, state, wait};
+use app::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
+use super::driven::{Driven, click, document, open, state, wait};
 use eframe::egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
@@ -11,13 +11,13 @@ use project::command::{Command, PickFault, ProposeFaults};
 use project::interpretation::proposals::{self, Proposals};
 use survey::{Contact, Progress, TriangleMesh};
 
-pub(super) fn act(harness: &mut Driven, action: Action) {
+pub fn act(harness: &mut Driven, action: Action) {
     harness.state_mut().as_mut().unwrap().act(action);
     harness.run_steps(3);
 }
 
 /// Applies a command as another process would, and has the window read the project again.
-pub(super) fn applied(harness: &mut Driven, command: &Command) {
+pub fn applied(harness: &mut Driven, command: &Command) {
     let root = state(harness).session.as_ref().unwrap().root.clone();
     Project::open(&root).unwrap().apply(command, &Progress::silent()).unwrap();
     act(harness, Action::Open(root));
@@ -28,13 +28,13 @@ pub(super) fn applied(harness: &mut Driven, command: &Command) {
 }
 
 /// Chooses an entry of a list that opens under a label.
-pub(super) fn choose(harness: &mut Driven, list: &str, entry: &str) {
+pub fn choose(harness: &mut Driven, list: &str, entry: &str) {
     click_last(harness, list);
     click(harness, entry);
 }
 
 /// Clicks the last of the buttons with a label.
-pub(super) fn click_last(harness: &mut Driven, label: &str) {
+pub fn click_last(harness: &mut Driven, label: &str) {
     // As a screen reader does, whether it is scrolled into view or not.
     harness.query_all_by_label(label).last().unwrap().click_accesskit();
     harness.run_steps(3);
@@ -82,9 +82,9 @@ fn proposed(project: &mut Project) {
 #[test]
 fn proposed_faults_are_accepted_and_dismissed() {
     let folder = tempfile::tempdir().unwrap();
-    let root = super::tests::project(folder.path());
+    let root = super::driven::project(folder.path());
     proposed(&mut Project::open(&root).unwrap());
-    let mut harness = super::tests::driven(folder.path(), Some(root));
+    let mut harness = super::driven::driven(folder.path(), Some(root));
     wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
     click(&mut harness, "Interpret");
     wait(&mut harness, "both are listed", |harness| harness.query_all_by_label_contains("Proposal").count() == 2);
@@ -200,7 +200,7 @@ fn a_tile_of_ones_own_and_a_kept_view_come_and_go() {
     let mut harness = open(folder.path());
     let tile = folder.path().join("dots.png");
     image::RgbaImage::from_pixel(8, 8, image::Rgba([9, 9, 9, 255])).save(&tile).unwrap();
-    act(&mut harness, Action::Ask(Box::new(Dialogue::Choose(super::state::Choice::Texture))));
+    act(&mut harness, Action::Ask(Box::new(Dialogue::Choose(app::state::Choice::Texture))));
     harness.get_by_label("Path").focus();
     harness.step();
     harness.key_press_modifiers(eframe::egui::Modifiers::COMMAND, Key::A);
@@ -246,10 +246,10 @@ fn what_is_on_the_screen_is_exported_while_interpreting() {
     let mut harness = open(folder.path());
     let export = |harness: &mut Driven, name: &str| {
         let path = folder.path().join(name);
-        let form = super::state::ExportForm {
+        let form = app::state::ExportForm {
             size_cm: [10.0, 7.0],
             dpi: 60.0,
-            ..super::state::ExportForm::new(path.display().to_string())
+            ..app::state::ExportForm::new(path.display().to_string())
         };
         act(harness, Action::Export(Box::new(form)));
         wait(harness, "it is written", |_| path.exists());
@@ -257,14 +257,14 @@ fn what_is_on_the_screen_is_exported_while_interpreting() {
     };
     let illustrated = export(&mut harness, "illustrated.png");
     click(&mut harness, "Interpret");
-    act(&mut harness, Action::Picking(PickingStep::Look(super::state::Look::Faces)));
+    act(&mut harness, Action::Picking(PickingStep::Look(app::state::Look::Faces)));
     wait(&mut harness, "the horizons are read", |harness| harness.query_all_by_label_contains("%").count() > 0);
     let faces = export(&mut harness, "faces.png");
-    act(&mut harness, Action::Arrange(super::state::Layout::Sections));
+    act(&mut harness, Action::Arrange(app::state::Layout::Sections));
     let sections = export(&mut harness, "sections.png");
-    act(&mut harness, Action::Arrange(super::state::Layout::Map));
+    act(&mut harness, Action::Arrange(app::state::Layout::Map));
     let map = export(&mut harness, "map.png");
-    act(&mut harness, Action::Picking(PickingStep::Look(super::state::Look::SeeThrough)));
+    act(&mut harness, Action::Picking(PickingStep::Look(app::state::Look::SeeThrough)));
     let through = export(&mut harness, "through.png");
     let all = [&illustrated, &faces, &sections, &map, &through];
     for (n, picture) in all.iter().enumerate() {

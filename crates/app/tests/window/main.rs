@@ -1,0 +1,8 @@
+//! The window driven by its labels, without a display: what a reader of the screen finds is what is clicked.
+
+mod command;
+mod driven;
+mod horizon;
+mod panel;
+mod picking;
+mod volumes;
