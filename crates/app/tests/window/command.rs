@@ -1,7 +1,7 @@
 //! What the other tests leave out of the panels and commands: each by its label, each seen in the project.
 
-use app::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
 use super::driven::{Driven, click, document, open, state, wait};
+use app::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
 use eframe::egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;

@@ -1,9 +1,9 @@
 //! The list of horizons while interpreting: colours, names, holes, picks moved and made again, by labels.
 
 use super::command::{applied, click_last};
+use super::driven::{Driven, click, document, open, state, wait};
 use super::picking::{act, interpreting, on_a_trough, picking};
 use app::state::{Action, How, PickingStep};
-use super::driven::{Driven, click, document, open, state, wait};
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::Queryable;
 use formats::ImportOptions;

@@ -1,10 +1,10 @@
 //! Panels and dialogues by their labels: every field has a name of its own, every hint names a field that is there.
 
 use super::command::{act, applied, choose, click_last};
+use super::driven::{Driven, click, document, driven, open, project, state, survey, wait};
 use app::state::{
     Action, Appearance, Choice, Dialogue, ExportForm, Interpreted, Layout, Panel, PickingStep, Target, Tool,
 };
-use super::driven::{Driven, click, document, driven, open, project, state, survey, wait};
 use eframe::egui::Key;
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};

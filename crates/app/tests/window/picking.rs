@@ -1,7 +1,7 @@
 //! Interpreting in the window, by labels, keys and clicks: what is done becomes the commands that the command line gives.
 
-use app::state::{Action, How, Layout, Panel, PickingStep, Tool};
 use super::driven::{Driven, click, document, driven, project, state, wait};
+use app::state::{Action, How, Layout, Panel, PickingStep, Tool};
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, pos2, vec2};
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;

@@ -1,8 +1,8 @@
 //! Volumes and horizons seen through, by labels.
 
 use super::command::{choose, click_last};
-use app::state::through::{Extent, extent};
 use super::driven::{Driven, click, open, state, wait};
+use app::state::through::{Extent, extent};
 use egui_kittest::kittest::Queryable;
 use render::{Media, Scene, Shading};
 

@@ -1,0 +1,30 @@
+//! The bar above the views, in windows of all widths.
+
+use crate::driven::{driven, project, state, wait};
+use eframe::egui::vec2;
+use egui_kittest::kittest::Queryable;
+
+#[test]
+fn nothing_lies_over_anything_else_in_any_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("a_survey_with_a_name_that_is_longer_than_most_2026_int16.petro");
+    std::fs::rename(project(folder.path()), &root).unwrap();
+    let mut harness = driven(folder.path(), Some(root));
+    wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+    for (width, is_folded) in [(860.0, true), (1024.0, true), (1280.0, false), (1920.0, false)] {
+        harness.set_size(vec2(width, 600.0));
+        harness.run_steps(3);
+        assert_eq!(harness.query_by_label("Compare").is_some(), is_folded, "{width}");
+        let last = if is_folded { "Compare" } else { "Wipe" };
+        let order = ["Project", "Undo", "Redo", "Sections", "Map", "Fence", last, "Export…", "Copy", "?"];
+        let rects = order.map(|label| harness.get_by_label(label).rect());
+        for (pair, names) in rects.windows(2).zip(order.windows(2)) {
+            assert!(pair[0].right() <= pair[1].left(), "{} and {} at {width}: {pair:?}", names[0], names[1]);
+        }
+        assert!(rects.iter().all(|rect| rect.right() <= width), "{width}: {rects:?}");
+        if !is_folded {
+            let number = harness.get_all_by_label("to raw").map(|node| node.rect().right()).fold(0.0, f32::max);
+            assert!(number <= rects[7].left(), "the slider lies under Export at {width}");
+        }
+    }
+}
