@@ -115,7 +115,7 @@ mod window {
 
     #[test]
     fn the_window_exports_the_pixels_that_the_command_line_renders() {
-        let folder = crate::program::project();
+        let folder = project();
         let at = folder.path();
         let block = exported(at, |_| {});
         assert!(block == typed(at, ""), "block");

@@ -219,8 +219,11 @@ impl SectionPanel<'_> {
         let across = Text::new(DVec2::new(body.max.x, baseline), &self.axes[0].name).sized(NUMBER_PT);
         let across = across.inked(QUIET_INK).anchored(Across::End, Upright::Baseline);
         let title = Text::new(DVec2::new(body.min.x, baseline), &self.title).sized(TITLE_PT).inked(INK);
-        group.push(title.fitted((body.width() - across.width() - 6.0).max(30.0)));
-        group.push(across);
+        // In little room the title says enough.
+        if title.width() + across.width() + 8.0 <= body.width() {
+            group.push(across);
+        }
+        group.push(title.fitted(body.width()));
         if let Some(caption) = &self.caption {
             let points_per_m = image.size() / self.extent_m;
             let strip = Rect::new(DVec2::new(body.min.x, body.max.y + 3.0), DVec2::new(body.max.x, room.max.y));
