@@ -93,7 +93,8 @@ pub fn make(
     Ok(list)
 }
 
-/// What the page is made of: the block's own background where that is a paper's, white where volumes lie on a dark ground.
+/// What the page is made of: the block's own background where that is a paper's, white where volumes lie on
+/// a dark ground.
 fn paper(figure: &Figure) -> Option<Ink> {
     let blocks = figure.parts.iter().find_map(|part| match part {
         Part::Block(block) => Some(block.scene.background),

@@ -222,7 +222,8 @@ fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> R
         _ => FaceData::Rock,
     };
     let scene = Scene { face_data, ..Scene::default() };
-    let loaded = super::compute(|| load::load_bare(&project, &scene, project::memory_budget::half_of_available(), progress))?;
+    let loaded =
+        super::compute(|| load::load_bare(&project, &scene, project::memory_budget::half_of_available(), progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
     *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: Seen::default(), rocks: rocks.clone() });
     Ok(rocks)
