@@ -1,4 +1,5 @@
-//! `petroglyph render` with more on the page than a picture of the block: sections, fences, maps, blocks compared, a legend.
+//! `petroglyph render` with more on the page than a picture of the block: sections, fences, maps, blocks
+//! compared, a legend.
 
 use super::args::FigureArgs;
 use super::draw::{assumptions, millimetres};

@@ -1,5 +1,5 @@
-//! What an interpreter sees over pictures and sections, as borrowed data: sheets of horizons as they were picked, their holes, faults,
-//! proposals, sticks, the selection.
+//! What an interpreter sees over pictures and sections, as borrowed data: sheets of horizons as they were
+//! picked, their holes, faults, proposals, sticks, the selection.
 //!
 //! Space: voxels. Nothing of it needs a model: no pick waits for one.
 

@@ -1,8 +1,8 @@
 //! Figures for print: sections, fences, maps and blocks, as pages that know nothing of the file they end in.
 //!
 //! [`make()`] turns what a figure shows ([`Figure`]) and borrowed data ([`FigureInputs`]) into a page, a
-//! [`DisplayList`](list::DisplayList) of paths, text and images in points. [`raster()`] draws a page in pixels; vector formats and the window's
-//! preview draw the same list.
+//! [`DisplayList`] of paths, text and images in points. [`raster()`] draws a page in
+//! pixels; vector formats and the window's preview draw the same list.
 //!
 //! | module | holds |
 //! |---|---|
@@ -15,8 +15,9 @@
 //! | [`spec`], [`make`](mod@make) | what a figure shows, and the one way it is made |
 //! | [`style`] | sizes and colours that all figures share |
 //!
-//! Spaces: voxels; (s, t) of a section, voxels from its first sample; points of the page (1/72 inch, y down).
-//! Absent here: files, projects, windows, and any drawing of rock: blocks come from a [`BlockPainter`](draw::block::BlockPainter).
+//! Spaces: voxels; (s, t) of a section, voxels from its first sample; points of the page (1/72 inch, y
+//! down). Absent here: files, projects, windows, and any drawing of rock: blocks come from a
+//! [`BlockPainter`](draw::block::BlockPainter).
 
 pub mod cut;
 pub mod draw;
@@ -32,6 +33,7 @@ pub mod style;
 
 pub use cut::SectionKind;
 pub use error::FigureError;
+pub use list::DisplayList;
 pub use make::{FigureInputs, make};
 pub use raster::raster;
 pub use rect::Rect;

@@ -3,7 +3,7 @@
 use crate::Rect;
 use crate::cut::{FenceCut, SectionCut, SectionKind, Source, length_m, stations, value_at};
 use crate::draw::axes::Axis;
-use crate::draw::block::{BlockPainter, BlockPanel};
+use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
 use crate::draw::legend::Legend;
 use crate::draw::map::{MapPanel, title};
 use crate::draw::overlay::{OverlayLines, SeenOn};
@@ -93,7 +93,8 @@ pub fn make(
     Ok(list)
 }
 
-/// What the page is made of: the block's own background where that is a paper's, white where volumes lie on a dark ground.
+/// What the page is made of: the block's own background where that is a paper's, white where volumes lie on
+/// a dark ground.
 fn paper(figure: &Figure) -> Option<Ink> {
     let blocks = figure.parts.iter().find_map(|part| match part {
         Part::Block(block) => Some(block.scene.background),
@@ -151,13 +152,19 @@ impl<'a> Maker<'a> {
         }
     }
 
+    /// Layers where blocks show them, horizons where sections show their lines.
     fn legend(&self) -> Option<Legend<'a>> {
-        let shows_layers = !self.figure.interpretation
-            && self.figure.parts.iter().any(|part| matches!(part, Part::Block(block) if block.scene.blend < 1.0));
-        let legend = match self.inputs.library.filter(|_| shows_layers && !self.inputs.layers.is_empty()) {
-            Some(library) => Legend::Layers(self.inputs.layers, library, self.figure.dpi),
-            None => Legend::Horizons(self.inputs.horizons),
+        let parts = &self.figure.parts;
+        let is_illustrated = |block: &BlockPart| match block.comparison {
+            Comparison::None => block.scene.blend < 1.0,
+            Comparison::SideBySide(blends) | Comparison::Wipe(blends, _) => blends.iter().any(|blend| *blend < 1.0),
         };
+        let has_layers = !self.figure.interpretation
+            && parts.iter().any(|part| matches!(part, Part::Block(block) if is_illustrated(block)));
+        let layers = self.inputs.library.filter(|_| has_layers).map(|library| (self.inputs.layers, library));
+        let has_lines = parts.iter().any(|part| matches!(part, Part::Section(_) | Part::Fence(_)));
+        let horizons = if has_lines || layers.is_none() { self.inputs.horizons } else { &[] };
+        let legend = Legend { layers, horizons, dpi: self.figure.dpi };
         (self.figure.legend && !legend.is_empty()).then_some(legend)
     }
 

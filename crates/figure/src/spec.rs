@@ -1,4 +1,5 @@
-//! What a figure shows, as one declarative value: written to and read from files, made by window and command line alike.
+//! What a figure shows, as one declarative value: written to and read from files, made by window and
+//! command line alike.
 //!
 //! Places are line numbers and vertical values, as people type them; sizes are centimetres on paper or pixels.
 

@@ -1,7 +1,8 @@
 //! Items of a figure's page on the screen: the same display list that is printed, painted by egui.
 //!
-//! A point of the page is [`SCALE`] points of the screen, so that a page's 7-point numbers are as large as the window's own.
-//! Images are painted as the texture that the view keeps of them, small ones pixel by pixel.
+//! A point of the page is [`SCALE`] points of the screen, so that a page's 7-point numbers are as large as
+//! the window's own. Images are painted as the texture that the view keeps of them, small ones pixel by
+//! pixel.
 
 use eframe::egui::{
     Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke as Line, TextureId, Vec2,

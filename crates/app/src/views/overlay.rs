@@ -1,6 +1,8 @@
-//! The interpretation over the pictures: horizons, the selected node, faults, sticks and proposals on sections and on the block.
+//! The interpretation over the pictures: horizons, the selected node, faults, sticks and proposals on
+//! sections and on the block.
 //!
-//! Lines on sections are those that figures print ([`figure::draw::overlay`]); they are cut again when something has changed.
+//! Lines on sections are those that figures print ([`figure::draw::overlay`]); they are cut again when
+//! something has changed.
 
 use super::{canvas, surfaces};
 use crate::state::picking::voxel_of;
@@ -20,8 +22,8 @@ use ttf::Colour;
 /// Sticks that are drawn for a fault, and the one being drawn.
 const STICKS: [Colour; 2] = [Colour::new(0x9c, 0x27, 0x6f), Colour::new(0xe0, 0x20, 0x60)];
 
-/// What lines on a section were made of: the interpretation, the selection, how many proposals are dismissed and whether minor ones
-/// show, and where.
+/// What lines on a section were made of: the interpretation, the selection, how many proposals are
+/// dismissed and whether minor ones show, and where.
 type Made<P> = (u64, usize, (usize, bool), P);
 
 /// What is drawn over the pictures while interpreting. Cheap to clone.

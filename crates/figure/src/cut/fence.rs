@@ -1,7 +1,7 @@
 //! A section along a line of straight legs.
 //!
-//! Space: s, voxels along the line from its beginning; t, samples down. A leg is a plane of its own; the lines of all are put one
-//! after the other.
+//! Space: s, voxels along the line from its beginning; t, samples down. A leg is a plane of its own; the
+//! lines of all are put one after the other.
 
 use super::{CutLine, Source, lines_of, pixels};
 use glam::{DVec2, DVec3};

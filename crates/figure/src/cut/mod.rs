@@ -1,8 +1,9 @@
 //! Sections as data: a raster of amplitudes or candidates, and the lines of horizons and faults over it.
 //!
-//! The raster has one pixel a sample; lines are in its coordinates (s, t), voxels from the section's first sample: s to the right,
-//! t down. An inline runs along crosslines, a crossline along inlines, a slice has inlines to the right and crosslines down. A
-//! fence runs along a line of straight legs; s counts voxels along it.
+//! The raster has one pixel a sample; lines are in its coordinates (s, t), voxels from the section's first
+//! sample: s to the right, t down. An inline runs along crosslines, a crossline along inlines, a slice has
+//! inlines to the right and crosslines down. A fence runs along a line of straight legs; s counts voxels
+//! along it.
 
 mod fence;
 mod kind;

@@ -1,8 +1,9 @@
 //! Where horizons and faults of an interpretation meet a section.
 //!
-//! A sheet is a value at each trace: along an inline or crossline its line runs from trace to trace, on a slice it is the contour
-//! of that depth, found on the two triangles of each cell. A mesh is cut triangle by triangle. Across a hole a line has a
-//! bridge, straight from rim to rim. Space: (s, t) of the section, one a sample.
+//! A sheet is a value at each trace: along an inline or crossline its line runs from trace to trace, on a
+//! slice it is the contour of that depth, found on the two triangles of each cell. A mesh is cut triangle
+//! by triangle. Across a hole a line has a bridge, straight from rim to rim. Space: (s, t) of the section,
+//! one a sample.
 
 use super::{SectionKind, place, stations};
 use crate::interpretation::{SheetHole, TraceSheet};
@@ -153,7 +154,8 @@ pub fn mesh_along(triangles: &[[DVec3; 3]], corners: &[DVec2]) -> Vec<Line> {
     lines
 }
 
-/// Where a triangle meets a plane, given its corners' distances from it. Corners on the plane count as beyond it, so that neighbours share no piece.
+/// Where a triangle meets a plane, given its corners' distances from it. Corners on the plane count as
+/// beyond it, so that neighbours share no piece.
 fn cut(triangle: &[DVec3; 3], off: [f64; 3]) -> Option<[DVec3; 2]> {
     if off.iter().any(|off| !off.is_finite()) {
         return None;

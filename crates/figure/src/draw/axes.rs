@@ -1,4 +1,5 @@
-//! Numbers along the upper and the left edge of a section: round values, none over another, none beyond the room.
+//! Numbers along the upper and the left edge of a section: round values, none over another, none beyond the
+//! room.
 
 use crate::Rect;
 use crate::list::{Across, Group, GroupKind, Path, PathItem, Stroke, Text, Upright, width_of};

@@ -86,8 +86,8 @@ fn blend_name(blend: f32) -> String {
     }
 }
 
-/// Pixels a metre of display space at a voxel position: √(½‖∂p/∂d‖²) over displacements d in display space (‖·‖ Frobenius), whose
-/// rows are perpendicular and of that length.
+/// Pixels a metre of display space at a voxel position: √(½‖∂p/∂d‖²) over displacements d in display space
+/// (‖·‖ Frobenius), whose rows are perpendicular and of that length.
 pub fn pixels_per_metre(view: &View, voxel: DVec3) -> f64 {
     let voxel_from_display = view.display_from_voxel().inverse();
     let middle = view.project(voxel);

@@ -17,31 +17,35 @@ const GAP_PT: f64 = 6.0;
 /// Least room for names, points.
 const LEAST_NAME_PT: f64 = 36.0;
 
+/// Between layers and horizons, points.
+const PARAGRAPH_PT: f64 = 9.0;
+
 /// What a legend lists.
 #[derive(Clone, Copy)]
-pub enum Legend<'a> {
-    /// Layers, with patterns drawn at this resolution (dots an inch).
-    Layers(&'a [LayerStyle], &'a TextureLibrary, f64),
-    /// Horizons.
-    Horizons(&'a [NamedColour]),
+pub struct Legend<'a> {
+    /// Layers, and the library that has their patterns.
+    pub layers: Option<(&'a [LayerStyle], &'a TextureLibrary)>,
+    /// Horizons, below the layers.
+    pub horizons: &'a [NamedColour],
+    /// Dots an inch that patterns are drawn at.
+    pub dpi: f64,
 }
 
 impl Legend<'_> {
-    fn names(&self) -> Vec<&str> {
-        match self {
-            Self::Layers(styles, ..) => styles.iter().map(|style| style.layer.as_str()).collect(),
-            Self::Horizons(horizons) => horizons.iter().map(|horizon| horizon.name.as_str()).collect(),
-        }
+    fn styles(&self) -> &[LayerStyle] {
+        self.layers.map_or(&[], |(styles, _)| styles)
     }
 
-    /// Whether there is anything to list.
+    /// Whether there is nothing to list.
     pub fn is_empty(&self) -> bool {
-        self.names().is_empty()
+        self.styles().is_empty() && self.horizons.is_empty()
     }
 
     /// The width that shows all names, but no more than `most`, points.
     pub fn width(&self, most: f64) -> f64 {
-        let longest = self.names().iter().map(|name| width_of(name, TEXT_PT)).fold(LEAST_NAME_PT, f64::max);
+        let layers = self.styles().iter().map(|style| style.layer.as_str());
+        let names = layers.chain(self.horizons.iter().map(|horizon| horizon.name.as_str()));
+        let longest = names.map(|name| width_of(name, TEXT_PT)).fold(LEAST_NAME_PT, f64::max);
         (SWATCH_PT[0] + GAP_PT + longest + 1.0).min(most)
     }
 
@@ -51,30 +55,37 @@ impl Legend<'_> {
     /// A pattern that does not draw.
     pub fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
         let mut group = Group::new(GroupKind::Annotation, "legend");
-        match self {
-            Self::Layers(styles, library, dpi) => {
-                let pitch = PITCH_PT[0].min(room.height() / styles.len().max(1) as f64);
-                for (row, style) in styles.iter().enumerate() {
-                    let place =
-                        Rect::sized(room.min + DVec2::new(0.0, row as f64 * pitch), DVec2::new(room.width(), pitch));
-                    group.push(layer(style, library, place, *dpi)?);
-                }
+        let counts = [self.styles().len(), self.horizons.len()];
+        let between = if counts.contains(&0) { 0.0 } else { PARAGRAPH_PT };
+        let needed = counts[0] as f64 * PITCH_PT[0] + counts[1] as f64 * PITCH_PT[1] + between;
+        let share = (room.height() / needed.max(1.0)).min(1.0);
+        let place = |top: f64, pitch: f64| {
+            Rect::sized(room.min + DVec2::new(0.0, share * top), DVec2::new(room.width(), share * pitch))
+        };
+        let mut top = 0.0;
+        if let Some((styles, library)) = self.layers {
+            for style in styles {
+                group.push(layer(style, library, place(top, PITCH_PT[0]), self.dpi)?);
+                top += PITCH_PT[0];
             }
-            Self::Horizons(horizons) => {
-                let pitch = PITCH_PT[1].min(room.height() / horizons.len().max(1) as f64);
-                for (row, horizon) in horizons.iter().enumerate() {
-                    let middle = room.min + DVec2::new(0.0, (row as f64 + 0.5) * pitch);
-                    let line = Path::line(&[middle, middle + DVec2::new(SWATCH_PT[0], 0.0)]);
-                    let entry = Group::new(GroupKind::Horizon, &horizon.name).with([
-                        PathItem::stroked(line, Stroke::new(1.5 * HORIZON_PT, horizon.colour)).into(),
-                        name(&horizon.name, middle + DVec2::new(SWATCH_PT[0], 0.0), room, pitch).into(),
-                    ]);
-                    group.push(entry);
-                }
-            }
+        }
+        top += between;
+        for named in self.horizons {
+            group.push(horizon(named, place(top, PITCH_PT[1])));
+            top += PITCH_PT[1];
         }
         Ok(group)
     }
+}
+
+/// An entry of a horizon in its place.
+fn horizon(named: &NamedColour, place: Rect) -> Group {
+    let middle = DVec2::new(place.min.x, place.centre().y);
+    let line = Path::line(&[middle, middle + DVec2::new(SWATCH_PT[0], 0.0)]);
+    Group::new(GroupKind::Horizon, &named.name).with([
+        PathItem::stroked(line, Stroke::new(1.5 * HORIZON_PT, named.colour)).into(),
+        name(&named.name, middle + DVec2::new(SWATCH_PT[0], 0.0), place, place.height()).into(),
+    ])
 }
 
 /// An entry of a layer in its place: a row of the legend.
@@ -121,7 +132,7 @@ mod tests {
                 LayerStyle::textured(&format!("layer {n} of a long and winding name"), Colour::WHITE, "shale")
             };
             let styles: Vec<LayerStyle> = (0..count).map(style).collect();
-            let legend = Legend::Layers(&styles, &library, 100.0);
+            let legend = Legend { layers: Some((&styles, &library)), horizons: &[], dpi: 100.0 };
             let room = Rect::sized(DVec2::new(300.0, 10.0), DVec2::new(legend.width(110.0), 200.0));
             let mut found = Vec::new();
             texts(&legend.drawn(room).unwrap(), &mut found);

@@ -1,4 +1,5 @@
-//! Maps on a page: a horizon's structure or the thickness below it, north up, with contours, hatching, a colour bar, a north arrow.
+//! Maps on a page: a horizon's structure or the thickness below it, north up, with contours, hatching, a
+//! colour bar, a north arrow.
 
 use super::scale;
 use crate::Rect;

@@ -1,6 +1,7 @@
 //! Builders: from data to groups of items on a page.
 //!
-//! Each takes the room it may fill and answers with a named group. Spaces: points of the page unless said otherwise.
+//! Each takes the room it may fill and answers with a named group. Spaces: points of the page unless said
+//! otherwise.
 
 pub mod axes;
 pub mod block;

@@ -1,7 +1,8 @@
 //! What an interpreter sees over sections, fences and blocks.
 //!
-//! Horizons have their own colours, dotted across their holes; the selection is broader, and the brighter part of a line is what is
-//! selected. Proposed faults are dark red. Spaces: (s, t) of a section; points of the page.
+//! Horizons have their own colours, dotted across their holes; the selection is broader, and the brighter
+//! part of a line is what is selected. Proposed faults are dark red. Spaces: (s, t) of a section; points of
+//! the page.
 
 use crate::cut::traces::{self, Line};
 use crate::cut::{SectionKind, station_of};

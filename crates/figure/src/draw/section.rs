@@ -1,6 +1,7 @@
 //! Sections and fences on a page: the raster, lines of horizons and faults over it, axes, title, caption.
 //!
-//! Solid where picked, dashed where filled, dotted where extrapolated; on a light rim, so that lines are seen on any amplitude.
+//! Solid where picked, dashed where filled, dotted where extrapolated; on a light rim, so that lines are
+//! seen on any amplitude.
 
 use super::axes::{self, Axis};
 use super::overlay::{self, OverlayLines, SeenOn};
@@ -51,7 +52,8 @@ pub struct Marks {
 }
 
 impl SectionContents<'_> {
-    /// Everything within `body`; the whole section, from its first sample to its last, lies on `image`, which may be larger.
+    /// Everything within `body`; the whole section, from its first sample to its last, lies on `image`,
+    /// which may be larger.
     pub fn drawn(&self, body: Rect, image: Rect) -> Group {
         let page = |st: DVec2| image.min + st / self.extent * image.size();
         let mut group = Group::new(GroupKind::Data, "section").clipped(Path::rect(body));
@@ -152,7 +154,8 @@ pub(crate) fn fence_line(places: &[DVec2]) -> Vec<crate::list::Item> {
     items
 }
 
-/// Which part of a section is seen: how many times it is larger than its room, and which share of it lies in the middle.
+/// Which part of a section is seen: how many times it is larger than its room, and which share of it lies
+/// in the middle.
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Zoom {
@@ -219,8 +222,11 @@ impl SectionPanel<'_> {
         let across = Text::new(DVec2::new(body.max.x, baseline), &self.axes[0].name).sized(NUMBER_PT);
         let across = across.inked(QUIET_INK).anchored(Across::End, Upright::Baseline);
         let title = Text::new(DVec2::new(body.min.x, baseline), &self.title).sized(TITLE_PT).inked(INK);
-        group.push(title.fitted((body.width() - across.width() - 6.0).max(30.0)));
-        group.push(across);
+        // In little room the title says enough.
+        if title.width() + across.width() + 8.0 <= body.width() {
+            group.push(across);
+        }
+        group.push(title.fitted(body.width()));
         if let Some(caption) = &self.caption {
             let points_per_m = image.size() / self.extent_m;
             let strip = Rect::new(DVec2::new(body.min.x, body.max.y + 3.0), DVec2::new(body.max.x, room.max.y));

@@ -1,8 +1,9 @@
 //! Picked surfaces before the block, as shaded cells seen as through glass.
 //!
-//! A sheet is drawn in at most [`CELLS`] cells along each axis, from the far ones to the near ones. A cell is lighter the more it faces
-//! the viewer. Cells of one sheet share their edges exactly: they are filled without gaps or overlaps, which
-//! anti-aliased areas side by side would show. Spaces: voxels; pixels of the picture.
+//! A sheet is drawn in at most [`CELLS`] cells along each axis, from the far ones to the near ones. A cell
+//! is lighter the more it faces the viewer. Cells of one sheet share their edges exactly: they are filled
+//! without gaps or overlaps, which anti-aliased areas side by side would show. Spaces: voxels; pixels of
+//! the picture.
 
 use crate::interpretation::TraceSheet;
 use glam::{DVec2, DVec3};
@@ -132,7 +133,8 @@ pub fn picture(cells: &[SeenCell], [width, height]: [u32; 2]) -> RgbaImage {
     image
 }
 
-/// Lays a triangle over premultiplied pixels whose middles lie in it, or on an upper or left side, so that neighbours share none.
+/// Lays a triangle over premultiplied pixels whose middles lie in it, or on an upper or left side, so that
+/// neighbours share none.
 fn fill(image: &mut RgbaImage, [a, mut b, mut c]: [DVec2; 3], colour: [f32; 3], opacity: f32) {
     let area = (b - a).perp_dot(c - a);
     if area == 0.0 || !area.is_finite() {

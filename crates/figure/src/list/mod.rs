@@ -1,10 +1,10 @@
 //! A page as data: paths, text and images in points, in named groups.
 //!
-//! A [`DisplayList`] knows nothing of the file it ends in. Pixels ([`crate::raster()`]), vectors and the window's preview are
-//! back ends that draw the same list, item after item, later ones over earlier ones.
+//! A [`DisplayList`] knows nothing of the file it ends in. Pixels ([`crate::raster()`]), vectors and the
+//! window's preview are back ends that draw the same list, item after item, later ones over earlier ones.
 //!
-//! Space: points of 1/72 inch from the page's upper left corner, x right, y down. Colours are sRGB and are composited
-//! as they are encoded, as PNG, SVG and PDF viewers do.
+//! Space: points of 1/72 inch from the page's upper left corner, x right, y down. Colours are sRGB and are
+//! composited as they are encoded, as PNG, SVG and PDF viewers do.
 
 mod path;
 mod picture;
@@ -122,7 +122,8 @@ impl From<Group> for Item {
     }
 }
 
-/// Items that belong together under a name, which vector formats keep: what a reader can switch off or move at once.
+/// Items that belong together under a name, which vector formats keep: what a reader can switch off or move
+/// at once.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Group {
     /// What it stands for.

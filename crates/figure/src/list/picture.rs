@@ -41,8 +41,8 @@ impl Picture {
         Self { pixels: pixels.into(), corner: rect.min, right, down, sampling: Sampling::Smooth }
     }
 
-    /// An image whose pixels are samples: the middle of the first lies at `first`, that of the last of the first row at
-    /// `first + right`, and so on. Half a pixel hangs over on each side; a clip cuts it off.
+    /// An image whose pixels are samples: the middle of the first lies at `first`, that of the last of the
+    /// first row at `first + right`, and so on. Half a pixel hangs over on each side; a clip cuts it off.
     pub fn of_samples(pixels: impl Into<Arc<RgbaImage>>, first: DVec2, right: DVec2, down: DVec2) -> Self {
         let pixels = pixels.into();
         let step = |whole: DVec2, count: u32| whole / f64::from(count.saturating_sub(1).max(1));

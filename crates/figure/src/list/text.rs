@@ -123,8 +123,8 @@ impl Text {
         self
     }
 
-    /// The same no wider than `room`, in a smaller size where that is enough and shortened to end in "…" where it would
-    /// be smaller than [`crate::style::LEAST_TEXT_PT`].
+    /// The same no wider than `room`, in a smaller size where that is enough and shortened to end in "…"
+    /// where it would be smaller than [`crate::style::LEAST_TEXT_PT`].
     #[must_use]
     pub fn fitted(mut self, room: f64) -> Self {
         let width = self.width();
@@ -169,7 +169,8 @@ impl Text {
         self.at + DVec2::new(left, down)
     }
 
-    /// The corners of its room from ascenders to descenders, turned: upper left, upper right, lower right, lower left.
+    /// The corners of its room from ascenders to descenders, turned: upper left, upper right, lower right,
+    /// lower left.
     pub fn corners(&self) -> [DVec2; 4] {
         let extent = measure_text(self.size as f32, &self.text);
         let start = self.baseline_start() - self.at;

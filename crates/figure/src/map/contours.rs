@@ -1,7 +1,8 @@
 //! Contours of round values, cell by cell (marching squares).
 //!
-//! Along each side of a cell a value between its ends is placed by linear interpolation; a cell's two or four places are joined, and
-//! cells' pieces to lines. A cell with corners in different fault blocks has none: contours end at faults.
+//! Along each side of a cell a value between its ends is placed by linear interpolation; a cell's two or
+//! four places are joined, and cells' pieces to lines. A cell with corners in different fault blocks has
+//! none: contours end at faults.
 
 use super::Contour;
 use super::grid::Grid;
@@ -22,10 +23,12 @@ pub(super) fn interval(spread: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|factor| factor * decade).find(|step| *step >= wanted).unwrap_or(decade)
 }
 
-/// Corners that a cell's sides go from and to, around it; each the same way for both cells that share it, so that contours meet exactly.
+/// Corners that a cell's sides go from and to, around it; each the same way for both cells that share it,
+/// so that contours meet exactly.
 const SIDES: [[usize; 2]; 4] = [[0, 1], [1, 2], [3, 2], [0, 3]];
 
-/// Where a contour crosses a side between two neighbouring traces: the first of them, and whether the other is the next inline.
+/// Where a contour crosses a side between two neighbouring traces: the first of them, and whether the other
+/// is the next inline.
 type Crossing = (usize, bool);
 
 /// All contours, each in one piece from rim to rim or around.

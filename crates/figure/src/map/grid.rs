@@ -1,6 +1,7 @@
 //! A value at each trace: of the model, or of the sheets as they were picked.
 //!
-//! Each trace takes the shallowest place where the horizon lies in the block it belongs to; where no block has it, there is no value.
+//! Each trace takes the shallowest place where the horizon lies in the block it belongs to; where no block
+//! has it, there is no value.
 
 use super::Mapped;
 use crate::interpretation::{Interpretation, SheetHole};

@@ -1,4 +1,5 @@
-//! What was not picked, to be hatched: an outline around its traces and oblique lines over them. Space: voxel x and y.
+//! What was not picked, to be hatched: an outline around its traces and oblique lines over them. Space:
+//! voxel x and y.
 
 use super::grid::Grid;
 use glam::DVec2;

@@ -1,7 +1,7 @@
 //! Values on index contours, after cartographers' habits (Imhof, 1975).
 //!
-//! A value stands in its line, which is broken for it, along it, upright, where the line is straightest; none over another, none
-//! where there is no room. Space: points of the page.
+//! A value stands in its line, which is broken for it, along it, upright, where the line is straightest;
+//! none over another, none where there is no room. Space: points of the page.
 
 use super::Contour;
 use crate::Rect;

@@ -1,7 +1,8 @@
-//! A horizon, or the thickness between two, as a map: values at the survey's traces and contours of round values.
+//! A horizon, or the thickness between two, as a map: values at the survey's traces and contours of round
+//! values.
 //!
-//! Contours are those of a lightly smoothed surface (`smooth`), colours those of the values themselves. What was not picked, but
-//! filled or extrapolated, is hatched; where there is no model yet, holes are.
+//! Contours are those of a lightly smoothed surface (`smooth`), colours those of the values themselves.
+//! What was not picked, but filled or extrapolated, is hatched; where there is no model yet, holes are.
 
 mod contours;
 mod grid;

@@ -1,20 +1,22 @@
 //! The surface that contours are drawn of: what was picked, lightly smoothed.
 //!
-//! Picks jitter by parts of a sample from trace to trace, and a contour of gentle ground magnifies that by the ground's slope: it
-//! frays. So contours are those of a smoothed surface: passes of (1, 2, 1)/4 along inlines and crosslines in turn, n of which are a
-//! Gaussian of variance n/2 traces². A trace is averaged along a line only where both of its neighbours on that line have a
-//! value and lie in its fault block. Nothing is thereby carried across a fault or a hole, rims stay where they were picked across
-//! themselves, and a plane stays that plane up to its rim (plain masked averages would bend it there).
+//! Picks jitter by parts of a sample from trace to trace, and a contour of gentle ground magnifies that by
+//! the ground's slope: it frays. So contours are those of a smoothed surface: passes of (1, 2, 1)/4 along
+//! inlines and crosslines in turn, n of which are a Gaussian of variance n/2 traces². A trace is averaged
+//! along a line only where both of its neighbours on that line have a value and lie in its fault block.
+//! Nothing is thereby carried across a fault or a hole, rims stay where they were picked across themselves,
+//! and a plane stays that plane up to its rim (plain masked averages would bend it there).
 //!
-//! No trace is moved by more than [`MOST`] of the contour interval: what is farther off is structure, not jitter, and a step that
-//! was tracked without a fault stays one. Colours and the range are those of the picks.
+//! No trace is moved by more than [`MOST`] of the contour interval: what is farther off is structure, not
+//! jitter, and a step that was tracked without a fault stays one. Colours and the range are those of the
+//! picks.
 
 use super::grid::{Grid, Node};
 
 /// Most that a trace may be moved by, contour intervals.
 const MOST: f64 = 0.5;
-/// Standard deviation of the Gaussian: this share of a map's longer side, about two millimetres of a printed page, but no less and
-/// no more traces than so many.
+/// Standard deviation of the Gaussian: this share of a map's longer side, about two millimetres of a
+/// printed page, but no less and no more traces than so many.
 const SHARE: f64 = 1.0 / 80.0;
 const SIGMA: [f64; 2] = [2.0, 6.0];
 

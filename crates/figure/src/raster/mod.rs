@@ -1,9 +1,9 @@
 //! A page as pixels, at any resolution.
 //!
-//! Items are prepared once in pixels of the whole page and then painted in bands of rows, which threads share; bands have the
-//! same height whatever the number of threads, so the bytes are the same. Paths are filled and stroked by `tiny-skia`,
-//! anti-aliased; letters are covered exactly (`ab_glyph_rasterizer`); images are averaged where they are made smaller.
-//! Everything is composited on sRGB-encoded values.
+//! Items are prepared once in pixels of the whole page and then painted in bands of rows, which threads
+//! share; bands have the same height whatever the number of threads, so the bytes are the same. Paths are
+//! filled and stroked by `tiny-skia`, anti-aliased; letters are covered exactly (`ab_glyph_rasterizer`);
+//! images are averaged where they are made smaller. Everything is composited on sRGB-encoded values.
 
 mod glyphs;
 mod paths;
@@ -25,8 +25,8 @@ pub const MOST_SIDE_PX: u32 = 32_768;
 
 /// Draws a page at a resolution, dots an inch.
 ///
-/// The picture is `size · dpi / 72` pixels wide and high, rounded. Straight alpha; a page without paper is transparent where
-/// nothing is drawn.
+/// The picture is `size · dpi / 72` pixels wide and high, rounded. Straight alpha; a page without paper is
+/// transparent where nothing is drawn.
 ///
 /// # Errors
 /// [`FigureError::PageSize`] where that is nothing or more than [`MOST_SIDE_PX`].

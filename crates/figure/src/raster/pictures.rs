@@ -1,4 +1,5 @@
-//! Images: sampled at the middle of each pixel of the page, averaged where they are made smaller, anti-aliased at their edges.
+//! Images: sampled at the middle of each pixel of the page, averaged where they are made smaller,
+//! anti-aliased at their edges.
 
 use crate::list::{Picture, Sampling};
 use glam::{DMat2, DVec2};

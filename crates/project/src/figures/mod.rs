@@ -1,7 +1,8 @@
-//! Figures of a project: what one needs is loaded, and its page made, in one way, for the command line and the window alike.
+//! Figures of a project: what one needs is loaded, and its page made, in one way, for the command line and
+//! the window alike.
 //!
-//! A figure with a block needs what the block's scene needs. One of sections and maps alone needs the model but no layer coordinates,
-//! and what an interpreter sees needs no model at all.
+//! A figure with a block needs what the block's scene needs. One of sections and maps alone needs the model
+//! but no layer coordinates, and what an interpreter sees needs no model at all.
 
 mod interpreter;
 

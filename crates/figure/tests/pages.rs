@@ -1,0 +1,147 @@
+//! Whole pages of a closed-form survey: two flat horizons and a fault that moves nothing.
+
+use figure::cut::Source;
+use figure::draw::NamedColour;
+use figure::draw::block::Comparison;
+use figure::list::{DisplayList, Text};
+use figure::{
+    BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind, SectionPart,
+    make, raster,
+};
+use image::{Rgba, RgbaImage};
+use model::{ModelSettings, StructuralModel};
+use render::{FaceData, Inputs, NamedVolume, Scene};
+use survey::{
+    Contact, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,
+    VerticalUnit, Volume,
+};
+use ttf::{Colour, ColourMap, RawColour, RgbaFunction};
+
+const SIZE: [usize; 3] = [31, 25, 41];
+
+fn geometry() -> SurveyGeometry {
+    SurveyGeometry::regular(SIZE, 25.0, 4.0, VerticalUnit::Milliseconds)
+}
+
+fn model(geometry: &SurveyGeometry) -> StructuralModel {
+    let flat = |name: &str, ms: f32| Horizon {
+        name: name.into(),
+        sheets: vec![Sheet::new(NodeGrid::of_survey(geometry), vec![ms; SIZE[0] * SIZE[1]], Quality::Picked)],
+    };
+    let horizon = |name: &str| StratigraphicHorizon { name: name.into(), contact: Contact::Conformable };
+    let stratigraphy = Stratigraphy { horizons: ["Top", "Base"].map(horizon).into(), layer_names: Vec::new() };
+    let horizons = [flat("Top", 40.0), flat("Base", 120.0)];
+    let settings = ModelSettings::default();
+    StructuralModel::build(geometry, &stratigraphy, &horizons, &[], &settings, &Progress::silent()).unwrap()
+}
+
+fn made(figure: &Figure) -> Result<DisplayList, FigureError> {
+    let geometry = geometry();
+    let model = model(&geometry);
+    let volume = Volume::filled(SIZE, 1.0f32);
+    let volumes = [NamedVolume::whole("seismic", &volume)];
+    let raw = RawColour::new("seismic", RgbaFunction::over(ColourMap::Grey, [0.0, 2.0]));
+    let data = Inputs { model: Some(&model), ..Inputs::raw(&geometry, &volumes) };
+    let horizons = [("Top", Colour::new(255, 0, 0)), ("Base", Colour::new(0, 0, 255))]
+        .map(|(name, colour)| NamedColour { name: name.into(), colour });
+    let inputs = FigureInputs {
+        source: Source { data, raw: Some(&raw) },
+        horizons: &horizons,
+        faults: &[],
+        layers: &[],
+        library: None,
+        interpretation: None,
+    };
+    let mut paint = |scene: &Scene| {
+        Ok(RgbaImage::from_pixel(scene.size_px[0], scene.size_px[1], Rgba([(255.0 * scene.blend) as u8, 90, 0, 255])))
+    };
+    make(figure, &inputs, &mut paint)
+}
+
+fn section(kind: SectionKind, at: f64) -> Part {
+    Part::Section(SectionPart { kind, at, show: FaceData::Rock, zoom: Default::default() })
+}
+
+fn figure(parts: Vec<Part>) -> Figure {
+    Figure { size: PageSize::Cm([14.0, 10.0]), dpi: 150.0, parts, legend: true, scale_bar: true, ..Figure::default() }
+}
+
+fn parts() -> Vec<Part> {
+    vec![
+        section(SectionKind::Inline, 12.0),
+        section(SectionKind::Slice, 80.0),
+        Part::Fence(FencePart { corners: vec![[2.0, 3.0], [20.0, 9.0], [30.0, 24.0]], show: FaceData::Rock }),
+        Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
+    ]
+}
+
+/// Rows of the page, in points, in which a colour is seen within a column.
+fn rows(image: &RgbaImage, colour: [u8; 3], x: u32) -> Vec<f64> {
+    let is_near = |pixel: &Rgba<u8>| (0..3).all(|c| pixel.0[c].abs_diff(colour[c]) < 60);
+    let rows = (0..image.height()).filter(|&y| is_near(image.get_pixel(x, y)));
+    rows.map(|y| (f64::from(y) + 0.5) * 72.0 / 150.0).collect()
+}
+
+#[test]
+fn a_flat_horizon_lies_beside_its_time_on_the_axis() {
+    let page = made(&figure(vec![section(SectionKind::Inline, 12.0)])).unwrap();
+    let image = raster(&page, 150.0).unwrap();
+    let number = |value: &str| page.texts().into_iter().find(|text| text.text == value).unwrap().at.y;
+    // Linear between the numbers 0 and 100 along the left edge.
+    let at = |ms: f64| number("0") + (number("100") - number("0")) * ms / 100.0;
+    for (colour, ms) in [([255, 0, 0], 40.0), ([0, 0, 255], 120.0)] {
+        let found = rows(&image, colour, 300);
+        let middle = found.iter().sum::<f64>() / found.len() as f64;
+        assert!((middle - at(ms)).abs() < 0.35, "{ms} ms lies at {middle}, not at {}", at(ms));
+        assert!((found.last().unwrap() - found[0] - 1.2).abs() < 1.0, "a line of 1.2 points");
+    }
+}
+
+#[test]
+fn texts_of_a_full_page_lie_within_it_and_none_over_another() {
+    for size in [[14.0, 10.0], [9.0, 14.0], [24.0, 18.0]] {
+        let page = made(&Figure { size: PageSize::Cm(size), ..figure(parts()) }).unwrap();
+        let texts: Vec<&Text> = page.texts();
+        assert!(texts.len() > 20);
+        let inner = |text: &Text| Rect::new(text.bounds().min + 0.8, text.bounds().max - 0.8);
+        for (n, text) in texts.iter().enumerate() {
+            let bounds = text.bounds();
+            assert!(page.bounds().grown(0.5).contains(bounds.min) && page.bounds().grown(0.5).contains(bounds.max));
+            for other in &texts[..n] {
+                // Turned text is left out: its upright bounds are larger than itself.
+                let is_flat = text.turn_deg == 0.0 && other.turn_deg == 0.0;
+                assert!(!is_flat || !inner(text).meets(&inner(other)), "{} over {} at {size:?}", text.text, other.text);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_same_figure_is_the_same_page_and_the_same_bytes() {
+    let figure = figure(parts());
+    let (one, two) = (made(&figure).unwrap(), made(&figure).unwrap());
+    assert!(one == two);
+    assert!(raster(&one, 100.0).unwrap() == raster(&two, 100.0).unwrap());
+}
+
+#[test]
+fn a_wipe_shows_one_blend_on_each_side() {
+    let part = BlockPart { scene: Scene::default(), comparison: Comparison::Wipe([0.0, 1.0], 0.25) };
+    let page = Figure { legend: false, scale_bar: false, ..figure(vec![Part::Block(part)]) };
+    let image = raster(&made(&page).unwrap(), 150.0).unwrap();
+    let quarter = image.width() / 4;
+    assert_eq!(image.get_pixel(quarter - 20, 400).0[0], 0);
+    assert_eq!(image.get_pixel(quarter + 20, 400).0[0], 255);
+}
+
+#[test]
+fn what_has_no_page_is_refused() {
+    assert!(matches!(made(&figure(Vec::new())), Err(FigureError::Parts { found: 0 })));
+    assert!(matches!(made(&figure(vec![section(SectionKind::Inline, 99.0)])), Err(FigureError::Outside { .. })));
+    let tiny = Figure { size: PageSize::Px([30, 30]), ..figure(parts()) };
+    assert!(matches!(made(&tiny), Err(FigureError::NoRoom { .. })));
+    let seen = Figure { interpretation: true, ..figure(parts()) };
+    assert!(matches!(made(&seen), Err(FigureError::NoInterpretation)));
+    let short = Part::Fence(FencePart { corners: vec![[2.0, 3.0]; 3], show: FaceData::Rock });
+    assert!(matches!(made(&figure(vec![short])), Err(FigureError::ShortFence { corners: 1 })));
+}
