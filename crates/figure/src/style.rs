@@ -39,16 +39,16 @@ pub const RIM_PT: f64 = 1.2;
 /// Opacity of that rim.
 pub const RIM_OPACITY: f32 = 0.6;
 
-/// Colours of horizons without one of their own, youngest first: told apart by most eyes, and on grey.
+/// Colours that horizons get in turn, wherever they are drawn: told apart by most eyes, and on grey.
 pub const HORIZON_COLOURS: [Colour; 8] = [
-    Colour::new(0x00, 0x9e, 0x73),
-    Colour::new(0xe6, 0x9f, 0x00),
-    Colour::new(0x00, 0x72, 0xb2),
-    Colour::new(0xcc, 0x79, 0xa7),
-    Colour::new(0x56, 0xb4, 0xe9),
     Colour::new(0xd5, 0x5e, 0x00),
-    Colour::new(0xb8, 0xa8, 0x00),
-    Colour::new(0x66, 0x33, 0x99),
+    Colour::new(0x00, 0x72, 0xb2),
+    Colour::new(0x00, 0x9e, 0x73),
+    Colour::new(0xcc, 0x79, 0xa7),
+    Colour::new(0xe6, 0x9f, 0x00),
+    Colour::new(0x56, 0xb4, 0xe9),
+    Colour::new(0x8c, 0x51, 0x0a),
+    Colour::new(0x54, 0x27, 0x88),
 ];
 
 /// The colour of a horizon: its own, or else that of its place in the order of age.

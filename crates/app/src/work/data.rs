@@ -101,7 +101,8 @@ pub(super) struct Loader {
 
 impl Loader {
     pub(super) fn start(outbox: Outbox, running: Running) -> Self {
-        Self { wishes: Wishes::start("data", move |wished| work(wished, &outbox, &running)) }
+        let told = outbox.clone();
+        Self { wishes: Wishes::start("what the pictures need", &told, move |wished| work(wished, &outbox, &running)) }
     }
 
     /// Loads this next; what is being loaded for another state is given up.

@@ -1,7 +1,7 @@
 //! What folders hold, read on threads: one on a network may take its time.
 
 use super::latest::Latest;
-use super::spawn;
+use super::spawn_quietly;
 use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -34,7 +34,7 @@ impl Folder {
         if self.asked.as_deref() != Some(folder) {
             self.asked = Some(folder.to_owned());
             let (number, found, ctx, folder) = (self.found.begin(), self.found.clone(), ctx.clone(), folder.to_owned());
-            spawn("folder", move || {
+            spawn_quietly("folder", move || {
                 found.put(number, Arc::new(read(&folder)));
                 ctx.request_repaint();
             });
@@ -62,7 +62,7 @@ impl Presence {
             self.asked = projects.to_vec();
             let (number, found, ctx) = (self.found.begin(), self.found.clone(), ctx.clone());
             let projects = self.asked.clone();
-            spawn("recent projects", move || {
+            spawn_quietly("recent projects", move || {
                 found.put(number, projects.iter().map(|root| root.join("project.toml").exists()).collect());
                 ctx.request_repaint();
             });

@@ -32,8 +32,9 @@ pub struct Maps {
 impl Maps {
     /// Starts the thread.
     pub fn start(outbox: Outbox) -> Self {
+        let told = outbox.clone();
         Self {
-            wishes: Wishes::start("map", move |wished: &Wished<Option<MapWish>>| {
+            wishes: Wishes::start("the map", &told, move |wished: &Wished<Option<MapWish>>| {
                 while let Some(wish) = wished.next(Option::take) {
                     if let Some(map) = draw(&wish) {
                         outbox.send(Event::Mapped(map));

@@ -19,6 +19,7 @@ pub mod running;
 pub mod scan;
 pub mod slice;
 pub mod swatches;
+mod threads;
 mod wishes;
 
 pub use data::{Purpose, Rocks, Seen, Wanted};
@@ -34,6 +35,7 @@ use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
 use project::command::PickNode;
 use std::path::PathBuf;
+use threads::{keep_working, spawn, spawn_quietly};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
 use survey::Progress;
@@ -212,7 +214,8 @@ impl Work {
     ) {
         let (outbox, running) = (self.outbox.clone(), self.running.clone());
         let title = title.to_owned();
-        spawn("background", move || {
+        let theirs = outbox.clone();
+        spawn("a task", &theirs, move || {
             let (line, progress) = running.begin(&title, place, outbox.wake.clone());
             match job(&progress, &outbox) {
                 Err(notice) if progress.check().is_ok() => outbox.send(Event::Told(notice)),
@@ -248,9 +251,4 @@ fn on<T: Send>(pool: &OnceLock<Option<rayon::ThreadPool>>, job: impl FnOnce() ->
         Some(pool) => pool.install(job),
         None => job(),
     }
-}
-
-/// A named thread; a system that has no thread left loses the job, not the window.
-fn spawn(name: &str, job: impl FnOnce() + Send + 'static) {
-    let _ = std::thread::Builder::new().name(name.to_owned()).spawn(job);
 }

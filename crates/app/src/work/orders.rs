@@ -1,7 +1,7 @@
 //! Orders on projects, one after the other: what changes a project must not overtake itself.
 
 use super::running::{Running, RunningGuard};
-use super::{Event, Outbox, spawn};
+use super::{Event, Outbox, keep_working};
 use crate::state::{Notice, Place, Snapshot};
 use project::Project;
 use project::command::{Command, ImportVolume};
@@ -24,8 +24,9 @@ pub(super) enum Order {
 /// Starts the thread; it ends when the sender is dropped.
 pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
     let (sender, orders) = channel::<Order>();
-    spawn("project", move || {
-        for order in orders {
+    let told = outbox.clone();
+    keep_working("the project", &told, move || {
+        while let Ok(order) = orders.recv() {
             let place = order.place();
             let (guard, progress) = running.begin(&order.title(), place, outbox.wake.clone());
             match super::compute(|| order.carry_out(&progress)) {

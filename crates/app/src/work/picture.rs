@@ -99,7 +99,8 @@ pub struct Drawing {
 impl Drawing {
     /// Starts the thread.
     pub fn start(outbox: Outbox) -> Self {
-        Self { wishes: Wishes::start("picture", move |wished| Artist::new(outbox).work(wished)) }
+        let told = outbox.clone();
+        Self { wishes: Wishes::start("the picture", &told, move |wished| Artist::new(outbox.clone()).work(wished)) }
     }
 
     /// Draws this next, instead of what was wished before.

@@ -51,8 +51,9 @@ pub struct Slices {
 impl Slices {
     /// Starts the thread.
     pub fn start(outbox: Outbox) -> Self {
+        let told = outbox.clone();
         Self {
-            wishes: Wishes::start("sections", move |wished: &Wished<Wanted>| {
+            wishes: Wishes::start("sections", &told, move |wished: &Wished<Wanted>| {
                 while let Some(next) = wished.next(Wanted::take) {
                     outbox.send(match next {
                         Next::Slice(wish) => {

@@ -1,6 +1,6 @@
 //! Swatches of layers and patterns, drawn on a thread: a pattern is rasterised when it is first seen, which takes a while.
 
-use super::{Wake, spawn};
+use super::{Wake, spawn_quietly};
 use figure::draw::swatch;
 use image::RgbaImage;
 use project::document::Document;
@@ -43,7 +43,7 @@ impl Swatches {
         let (orders, received) = channel();
         let done = Arc::new(Mutex::new(Done::default()));
         let theirs = done.clone();
-        spawn("swatches", move || {
+        spawn_quietly("swatches", move || {
             let mut library = TextureLibrary::builtin().ok();
             list(&theirs, library.as_ref());
             for order in received {

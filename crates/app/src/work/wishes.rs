@@ -1,6 +1,6 @@
 //! A thread that works on the latest wishes: what is wished while it works replaces what was wished before.
 
-use super::spawn;
+use super::{Outbox, keep_working};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 struct Slot<W> {
@@ -25,12 +25,12 @@ pub(super) struct Wishes<W> {
 }
 
 impl<W: Default + Send + 'static> Wishes<W> {
-    /// Starts a thread of this name.
-    pub(super) fn start(name: &str, work: impl FnOnce(&Wished<W>) + Send + 'static) -> Self {
+    /// Starts a thread of this name; `work` is called again after a panic, which is told.
+    pub(super) fn start(name: &'static str, outbox: &Outbox, mut work: impl FnMut(&Wished<W>) + Send + 'static) -> Self {
         let slot = Mutex::new(Slot { wishes: W::default(), ended: false });
         let shared = Arc::new(Shared { slot, changed: Condvar::new() });
         let theirs = Wished { shared: shared.clone() };
-        spawn(name, move || work(&theirs));
+        keep_working(name, outbox, move || work(&theirs));
         Self { shared }
     }
 }
@@ -87,7 +87,8 @@ mod tests {
         let (begun, is_begun) = channel();
         let (go, may_go) = channel();
         let (done, is_done) = channel();
-        let wishes = Wishes::start("test", move |wished: &Wished<Option<u32>>| {
+        let outbox = Outbox { sender: channel().0, wake: Arc::new(|| {}) };
+        let wishes = Wishes::start("test", &outbox, move |wished: &Wished<Option<u32>>| {
             while let Some(wish) = wished.next(Option::take) {
                 begun.send(wish).unwrap();
                 may_go.recv().unwrap();

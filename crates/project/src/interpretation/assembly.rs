@@ -1,5 +1,6 @@
 //! From a horizon's log of picks to its sheets: what every command on picks ends with.
 
+use figure::style::horizon_colour;
 use super::order;
 use crate::content;
 use crate::derived;
@@ -21,18 +22,6 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use survey::{Contact, Horizon, Progress, SurveyGeometry};
 use ttf::Colour;
-
-/// Colours that horizons get in turn.
-pub const HORIZON_COLOURS: [[u8; 3]; 8] = [
-    [0xd5, 0x5e, 0x00],
-    [0x00, 0x72, 0xb2],
-    [0x00, 0x9e, 0x73],
-    [0xcc, 0x79, 0xa7],
-    [0xe6, 0x9f, 0x00],
-    [0x56, 0xb4, 0xe9],
-    [0x8c, 0x51, 0x0a],
-    [0x54, 0x27, 0x88],
-];
 
 /// What a horizon is after its picks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
@@ -261,8 +250,7 @@ pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Select
 /// A colour for the next horizon.
 pub fn next_colour(document: &Document) -> Colour {
     let assembled = document.horizons.iter().filter(|entry| entry.assembly.is_some()).count();
-    let [red, green, blue] = HORIZON_COLOURS[assembled % HORIZON_COLOURS.len()];
-    Colour::new(red, green, blue)
+    horizon_colour(None, assembled)
 }
 
 /// Makes the sheets of horizon `name` from `log` and puts both into the draft, the horizon at its place by depth.

@@ -1,5 +1,6 @@
 //! Which view of a project is drawn when nothing else is said.
 
+use figure::style::horizon_colour;
 use crate::document::Document;
 use crate::error::{Noun, ProjectError};
 use crate::styles;
@@ -107,16 +108,6 @@ pub struct ShownIsosurface {
     pub opacity: f32,
 }
 
-/// Colours of horizons shown without one: pink first, as selections have been in the literature.
-const HORIZON_COLOURS: [Colour; 6] = [
-    Colour::new(0xe8, 0x5a, 0x9b),
-    Colour::new(0xf2, 0xc1, 0x2e),
-    Colour::new(0x3f, 0xa7, 0xd6),
-    Colour::new(0x59, 0xb8, 0x6b),
-    Colour::new(0xee, 0x7a, 0x3a),
-    Colour::new(0x8f, 0x74, 0xc9),
-];
-
 /// Colours of isosurfaces shown without one.
 const ISOSURFACE_COLOURS: [Colour; 3] =
     [Colour::new(0xd8, 0xb3, 0x65), Colour::new(0x5a, 0xb4, 0xac), Colour::new(0xc5, 0x7d, 0x8f)];
@@ -132,10 +123,11 @@ impl SeeThrough {
     /// # Errors
     /// The project has no such volume, or none at all.
     pub fn change(&self, scene: &mut Scene, document: &Document) -> Result<(), ProjectError> {
-        for (n, shown) in self.horizons.iter().enumerate() {
-            let entry = &document.horizons[document.position(Noun::Horizon, &shown.name)?];
+        for shown in &self.horizons {
+            let index = document.position(Noun::Horizon, &shown.name)?;
+            let entry = &document.horizons[index];
             let own = entry.assembly.as_ref().map(|log| log.colour);
-            let colour = shown.colour.or(own).unwrap_or(HORIZON_COLOURS[n % HORIZON_COLOURS.len()]);
+            let colour = horizon_colour(shown.colour.or(own), index);
             scene.media.horizons.push(PickedHorizon {
                 name: Some(entry.name.clone()),
                 opacity: shown.opacity,

@@ -2,7 +2,7 @@
 
 use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{Button, Color32, Grid, Role, Stroke, Ui, WidgetInfo, vec2};
-use project::interpretation::assembly::HORIZON_COLOURS;
+use figure::style::HORIZON_COLOURS;
 use ttf::Colour;
 
 /// Colours offered beside those that horizons get in turn.
@@ -17,7 +17,8 @@ pub(super) fn palette(ui: &mut Ui, colour: Colour, name: &str) -> Option<Colour>
         MenuButton::from_button(button)
             .ui(ui, |ui| {
                 Grid::new("colours").num_columns(4).spacing([4.0, 4.0]).show(ui, |ui| {
-                    for (n, rgb) in HORIZON_COLOURS.into_iter().chain(MORE_COLOURS).enumerate() {
+                    let offered = HORIZON_COLOURS.map(|colour| colour.rgb).into_iter().chain(MORE_COLOURS);
+                    for (n, rgb) in offered.enumerate() {
                         let button = Button::new("").fill(paint(rgb)).stroke(Stroke::NONE).min_size(vec2(26.0, 20.0));
                         let offered = ui.add(button);
                         let (is_own, ordinal) = (rgb == colour.rgb, n + 1);

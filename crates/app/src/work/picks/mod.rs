@@ -8,7 +8,7 @@ mod followed;
 
 use super::orders::snapshot;
 use super::running::Running;
-use super::{Event, Outbox, compute_apart, spawn};
+use super::{Event, Outbox, compute_apart, keep_working, spawn};
 use crate::state::picking::{Pick, voxel_of};
 use crate::state::{Notice, PickingStep, PickingTask, Place, Snapshot};
 use figure::interpretation::{FaultMesh, Interpretation, PickedSheets, SheetHole, TraceSheet};
@@ -155,7 +155,7 @@ impl Picks {
     pub(super) fn start(outbox: Outbox, running: Running) -> Self {
         let (orders, received) = channel();
         let mut keeper = Keeper::new(outbox.clone(), running.clone());
-        spawn("picks", move || keeper.work(&received));
+        keep_working("the interpretation", &outbox, move || keeper.work(&received));
         Self { orders, outbox, running }
     }
 
@@ -177,8 +177,9 @@ impl Picks {
     /// Does what a state asks for.
     pub(super) fn run(&self, task: PickingTask, root: PathBuf) {
         let (outbox, running, orders) = (self.outbox.clone(), self.running.clone(), self.orders.clone());
+        let told = outbox.clone();
         match task {
-            PickingTask::Extract(volume, settings) => spawn("extraction", move || {
+            PickingTask::Extract(volume, settings) => spawn("the extraction", &told, move || {
                 let (guard, progress) = running.begin("Extracting", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
                     let mut project = Project::open(&root)?;
@@ -193,7 +194,7 @@ impl Picks {
                 tell_change(done, &progress, &outbox);
                 let _ = orders.send(Order::Renew);
             }),
-            PickingTask::ProposeFaults => spawn("proposals", move || {
+            PickingTask::ProposeFaults => spawn("fault proposals", &told, move || {
                 let (guard, progress) = running.begin("Looking for faults", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
                     let mut project = Project::open(&root)?;

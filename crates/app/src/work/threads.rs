@@ -1,0 +1,92 @@
+//! Threads of the window's workers. A panic in one is an error of the program: it is told, costs the order it happened in and nothing
+//! else, and the worker goes on with the next.
+
+use super::{Event, Outbox};
+use crate::state::{Notice, Place};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::thread::Builder;
+
+/// So often a worker is started again; one that fails more often fails at everything.
+const RESTARTS: usize = 50;
+
+/// A thread for one job. A panic in it, or that there is no thread to be had, is told.
+pub(super) fn spawn(name: &'static str, outbox: &Outbox, job: impl FnOnce() + Send + 'static) {
+    let theirs = outbox.clone();
+    let started = Builder::new().name(name.to_owned()).spawn(move || {
+        if let Err(panic) = catch_unwind(AssertUnwindSafe(job)) {
+            theirs.send(Event::Told(stopped(name, panic.as_ref())));
+        }
+    });
+    if let Err(error) = started {
+        outbox.send(Event::Told(Notice {
+            place: Place::Block,
+            failed: true,
+            text: format!("there is no thread for the work on {name}: {error}"),
+            hint: Some("close other programs, then open the project again".to_owned()),
+        }));
+    }
+}
+
+/// A thread for something that is asked for again when it is missing: a listing, a swatch.
+pub(super) fn spawn_quietly(name: &'static str, job: impl FnOnce() + Send + 'static) {
+    // Without a thread it stays missing, which is seen.
+    let _ = Builder::new().name(name.to_owned()).spawn(job);
+}
+
+/// A thread that works until `job` returns. A panic is told, and the job called again: what it has taken from its inbox is lost, what
+/// waits there is not.
+pub(super) fn keep_working(name: &'static str, outbox: &Outbox, mut job: impl FnMut() + Send + 'static) {
+    let theirs = outbox.clone();
+    spawn(name, outbox, move || {
+        for _ in 0..RESTARTS {
+            match catch_unwind(AssertUnwindSafe(&mut job)) {
+                Ok(()) => return,
+                Err(panic) => theirs.send(Event::Told(stopped(name, panic.as_ref()))),
+            }
+        }
+    });
+}
+
+/// What is told of a panic.
+fn stopped(name: &str, panic: &(dyn Any + Send)) -> Notice {
+    let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
+    Notice {
+        place: Place::Block,
+        failed: true,
+        text: format!("an error in the program stopped the work on {name}: {text}"),
+        hint: Some("try again; nothing of the project was changed by it. Please report what you did".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+    use std::sync::mpsc::channel;
+    use std::time::Duration;
+
+    #[test]
+    fn a_panic_is_told_and_the_next_order_is_carried_out() {
+        let (sender, events) = channel();
+        let outbox = Outbox { sender, wake: Arc::new(|| {}) };
+        let (orders, inbox) = channel::<u32>();
+        let (done, results) = channel();
+        keep_working("numbers", &outbox, move || {
+            while let Ok(order) = inbox.recv() {
+                assert!(order != 1, "one is not wanted");
+                done.send(order).unwrap();
+            }
+        });
+        for order in [0, 1, 2] {
+            orders.send(order).unwrap();
+        }
+        let wait = Duration::from_secs(20);
+        assert_eq!([results.recv_timeout(wait).unwrap(), results.recv_timeout(wait).unwrap()], [0, 2]);
+        let Ok(Event::Told(notice)) = events.recv_timeout(wait) else { panic!("nothing was told") };
+        assert!(notice.failed && notice.text.contains("numbers") && notice.text.contains("one is not wanted"));
+        drop(orders);
+        assert!(results.recv_timeout(wait).is_err(), "it ends with its orders");
+    }
+}
