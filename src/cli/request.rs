@@ -20,7 +20,7 @@ use project::command::{
 };
 use project::picture::Device;
 use project::picture::scene::{SeeThrough, ShownHorizon, ShownIsosurface, Technique};
-use render::{Scalar, Scope};
+use render::{IsosurfaceSource, Scope};
 use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;
 use survey::{SurveyGeometry, VerticalUnit};
@@ -341,7 +341,7 @@ fn shown_isosurface(text: &str) -> Result<ShownIsosurface, Usage> {
     let number = |part: &str| part.parse::<f32>().map_err(|_| usage());
     let ([name, value] | [name, value, _] | [name, value, _, _]) = parts[..] else { return Err(usage()) };
     Ok(ShownIsosurface {
-        of: if name == "k" { Scalar::Depth } else { Scalar::Volume(name.to_owned()) },
+        of: if name == "k" { IsosurfaceSource::Depth } else { IsosurfaceSource::Volume(name.to_owned()) },
         value: number(value)?,
         colour: parts.get(2).map(|part| colour(part)).transpose()?,
         opacity: parts.get(3).map_or(Ok(1.0), |part| number(part))?,

@@ -1,7 +1,9 @@
-//! Measures the quality of extraction for `docs/extraction.md`: `cargo run -p petroglyph-interp --example extraction [SIDE]`.
+//! Measures the quality of extraction for `docs/extraction.md`: `cargo run -p petroglyph-interp --example
+//! extraction [SIDE]`.
 //!
-//! Synthetic surveys of SIDE³ (256) at three signal-to-noise ratios with three seeds; the paper's growing, ours, and ours with its
-//! steps left out. Beside the figures of `interp::evaluate`: coverage as far as the extrema themselves allow it.
+//! Synthetic surveys of SIDE³ voxels (default 256) at three signal-to-noise ratios with three seeds. It
+//! measures the paper's method of growing, ours, and ours without some of its steps, and prints the scores of
+//! `interp::evaluate` and the coverage that the extrema allow.
 
 use interp::evaluate::{EvaluateSettings, Evaluation, TruthIndex, evaluate_with};
 use interp::extrema::find_extrema;
@@ -16,10 +18,10 @@ use synth::{SynthSettings, Synthetic};
 const RATIOS: [f64; 3] = [10.0, 3.0, 1.5];
 /// Seeds.
 const SEEDS: [u64; 3] = [1, 2, 3];
-/// Seeds that were not looked at while the method was made.
+/// Seeds that were not used while the method was developed.
 const HELD_OUT: [u64; 2] = [4, 5];
 
-/// What the tables do not say themselves.
+/// Explanations of the tables.
 const NOTES: &str = "
 ## What falls short, and why
 
@@ -27,18 +29,18 @@ const NOTES: &str = "
   interfere, and no extremum lies within a sample of it. Ours reaches that bound within 0.01 at SNR 10 and 3, within 0.1 at 1.5. What covers Charlie closest to
   its end is the unconformity's own extremum: with extrema more than a sample off the unconformity no more than 0.956, 0.945 and 0.937 of it can be
   covered (SNR 3, seeds 1 to 3), and surfaces of Charlie's own cover 0.953, 0.939 and 0.929.
-- Before side lobes were told from reflectors Charlie's precision at SNR 3 was 0.954, 0.836 and 0.932 (seeds 1 to 3). The vertices off it lay more than
+- Without the recognition of side lobes Charlie's precision at SNR 3 was 0.954, 0.836 and 0.932 (seeds 1 to 3). The vertices off it lay more than
   10 samples from it and mostly more than 12 from the unconformity: on lobes of the reflectors below and above, which a fault lays against it, with a third of its height.
 - The unconformity loses up to 0.01 of precision by it (SNR 3, seed 1): of the vertices off it three in five lie on reflectors that end there, in
   wedges up to 12 traces wide between a fault and the line where both become one extremum. Wedges that are narrower than a core go to the surface that they touch, and the
   cuts beside lobes make more of them. Letting wedges be pieces of their own gives 0.987, but 28 to 45 picks for the unconformity at SNR 10.
-- At SNR 1.5 reflectors that are weaker than three times the noise from trace to trace are parted from the stronger rest: precision over all reflectors was 0.81
-  to 0.84 before and is 0.91 to 0.93, but coverage fell, most on Alpha, from 0.92 to 0.83 (seed 1). Where lobes cannot be known, on F3 and Penobscot, nothing is changed: strong extrema have neighbours of any height there.
+- At SNR 1.5 reflectors that are weaker than three times the noise from trace to trace are separated from the stronger ones: precision over all reflectors was 0.81
+  to 0.84 before and is 0.91 to 0.93, but coverage fell, most on Alpha, from 0.92 to 0.83 (seed 1). Where lobes cannot be recognised, on F3 and Penobscot, nothing is changed: strong extrema have neighbours of any height there.
 - Where the throw of a fault is a whole period within a sample over 80 traces of strike and 50 samples of depth (normal fault,
   seed 1), all reflectors of that part match wrong ones. Only the planes tell: every surface across it was impure without them.
 - Joining pieces by their whole common boundary halves the count of large surfaces, and `docs/picks.md` shows what that is worth; where a leak
   across a fault is there already, it makes it larger.
-- Seeds 1 to 3 were looked at while the method was made, 4 and 5 were not: there a throw near a period costs Delta of seed 5 its purity. That leak is there before pieces
+- Seeds 1 to 3 were used while the method was developed, 4 and 5 were not: there a throw near a period costs Delta of seed 5 its purity. That leak is there before pieces
   are joined, and asking less evidence of a fault (12 instead of 25) does not close it.
 - The times were taken while the machine did other work: compare none of them, not even with one another.
 - Without fault planes, links alone join nearly everything; a horizon of which no surface is its own shows as 0.
@@ -90,8 +92,8 @@ impl Case {
     }
 }
 
-/// What a few lines of array code would find: maxima and minima of traces above one rms, linked to those within a sample on
-/// the next trace, and the connected components of that. Vertices without triangles.
+/// A baseline of a few lines: maxima and minima of traces above one RMS, linked to those within a sample on
+/// the next trace, and the connected components of these links. The surfaces have no triangles.
 fn plain_components(volume: &Volume<f32>) -> Result<Surfaces, Box<dyn Error>> {
     let samples = volume.samples();
     let rms = (samples.iter().map(|s| f64::from(s * s)).sum::<f64>() / samples.len() as f64).sqrt() as f32;
@@ -136,8 +138,8 @@ fn plain_components(volume: &Volume<f32>) -> Result<Surfaces, Box<dyn Error>> {
     Ok(found)
 }
 
-/// Precision and purity over the surfaces that lie on reflectors with at least half of their vertices. (A surface along a side
-/// lobe that touches a reflector here and there is nobody's.)
+/// Precision and purity over the surfaces that lie on reflectors with at least half of their vertices. (A
+/// surface along a side lobe that touches a reflector here and there belongs to none.)
 fn quality(evaluation: &Evaluation, reflector: Option<usize>) -> [f64; 2] {
     let own = || {
         let all = evaluation.surfaces.iter().filter(|s| 2 * s.on_any >= s.vertices && s.majority.is_some());
@@ -187,7 +189,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         ("and cores of 10 traces", GrowSettings { fault_evidence: f32::INFINITY, ..plain.clone() }),
         ("or fault planes", GrowSettings { core_width: 4, ..plain.clone() }),
         ("both", plain),
-        ("and side lobes told", GrowSettings { join_share: 2.0, ..ours.clone() }),
+        ("and side lobes recognised", GrowSettings { join_share: 2.0, ..ours.clone() }),
         ("and pieces joined: ours", ours),
     ];
     let start = Instant::now();

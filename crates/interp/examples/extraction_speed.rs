@@ -1,10 +1,11 @@
 //! Times extraction stage by stage and says whether its result changed:
 //! `cargo run -p petroglyph-interp --example extraction_speed [SIDE | NXxNYxNZ [ROUNDS [FILE]]]`.
 //!
-//! A synthetic survey at SNR 3 of SIDE³ (256) voxels. For every round and stage: seconds of the clock, seconds of the processor (all
-//! threads), bytes a voxel held at its peak beyond the volume, and a digest of what the stage made. Equal digests are equal results. With FILE,
-//! the samples are read from there (little-endian float32 after a NumPy header), or written there when it does not exist, for
-//! `python bench/peers.py --amplitude FILE` to time scipy on the same.
+//! A synthetic survey at SNR 3 of SIDE³ (256) voxels. For every round and stage: seconds of the clock,
+//! seconds of the processor (all threads), bytes a voxel held at its peak beyond the volume, and a digest of
+//! what the stage made. Equal digests are equal results. With FILE, the samples are read from there
+//! (little-endian float32 after a NumPy header), or written there when it does not exist, for `python
+//! bench/peers.py --amplitude FILE` to time scipy on the same.
 
 use interp::{DistanceSettings, Forest, ForestSettings, GrowSettings, LeafDistances, Surfaces, grow_surfaces};
 use std::error::Error;
@@ -19,7 +20,7 @@ use synth::{SynthSettings, Synthetic};
 /// Bytes of a NumPy header.
 const HEADER: usize = 128;
 
-/// Ticks of the processor's time a second, as Linux tells it.
+/// Ticks of processor time a second, as Linux counts it.
 const TICKS: f64 = 100.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -47,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// What was spent before a stage, and held before the first.
+/// Time used before a stage, and memory held before the first stage.
 struct Stage {
     start: Instant,
     processor: f64,
@@ -56,7 +57,7 @@ struct Stage {
 
 impl Stage {
     fn begin(resident: f64) -> Self {
-        // Forgets the peak so far.
+        // Resets the peak of the memory.
         let _ = fs::write("/proc/self/clear_refs", "5");
         Self { start: Instant::now(), processor: processor_seconds(), resident }
     }
@@ -71,7 +72,7 @@ impl Stage {
     }
 }
 
-/// Seconds of the processor that this program has used, 0 where the system does not tell.
+/// Processor seconds that this program has used; 0 where the system does not report them.
 fn processor_seconds() -> f64 {
     let text = fs::read_to_string("/proc/self/stat").unwrap_or_default();
     // After the name in brackets; user and system time are the 14th and 15th field.
@@ -114,7 +115,7 @@ fn size(text: &str) -> Result<[usize; 3], Box<dyn Error>> {
     match sides[..] {
         [side] => Ok([side; 3]),
         [nx, ny, nz] => Ok([nx, ny, nz]),
-        _ => Err(format!("{text} is no size: give one side, or three with x between them").into()),
+        _ => Err(format!("{text} is no size; give one side, or three with x between them").into()),
     }
 }
 

@@ -1,4 +1,5 @@
-//! Prints docs/picks.md: what an extraction is worth to someone who picks on it, on synthetic surveys of several noise levels and seeds.
+//! Prints docs/picks.md: how many picks the horizons of synthetic surveys take, for several noise levels and
+//! seeds.
 //!
 //! `cargo run -p petroglyph-interp --example picks [SIZE] [SEEDS]`
 
@@ -15,18 +16,18 @@ use synth::{SynthSettings, Synthetic};
 
 /// Signal-to-noise ratios.
 const SNR: [f64; 3] = [10.0, 3.0, 1.5];
-/// Seeds that were not looked at while the method was made.
+/// Seeds that were not used while the method was developed.
 const HELD_OUT: [u64; 2] = [4, 5];
-/// What the tables show.
+/// Explanations of the tables.
 const SHORTFALLS: &str = "\n\
 ## What falls short, and why\n\
 \n\
-- Picks: at most parts + 2 is asked for. At SNR 3 Alpha and Bravo keep to it on every seed, Delta on seeds 1 and 3. On seed 2 a fault's throw is near a period,\n\
+- Picks: the aim is at most two more than there are parts. At SNR 3 Alpha and Bravo keep to it on every seed, Delta on seeds 1 and 3. On seed 2 a fault's throw is near a period,\n\
 \x20 and one part of Delta, 28 % of it, lies on a surface that is mostly another reflector. On seed 5 Delta itself is such a mixture.\n\
 - The unconformity of seed 1 is not reached at SNR 3 within 0.98: its precision is 0.973, with wedges of the reflectors that end at it.\n\
 - Charlie thins out below the unconformity. 95 % of it cannot be covered by extrema of its own: at most 0.956, 0.945 and 0.937 (seeds 1 to 3) lie within a sample of an\n\
 \x20 extremum that is not the unconformity's. On seeds 2 and 3 the oracle stops there; the replay goes on, picks the unconformity, and its precision falls. On seed 1 it takes 8.\n\
-- Seeds 4 and 5 were not tuned on; the leak of seed 5 was looked at for its cause.\n\
+- Seeds 4 and 5 were not used for tuning; the cause of the leak of seed 5 was examined.\n\
 - Proposed faults: a trace needs the rims of assembled horizons on both sides. One pick on each part covers too little of each horizon in noise; the\n\
 \x20 more of a horizon is assembled, the better the proposals. The fault that dies out is found by\n\
 \x20 the bends that it makes where horizons were tracked across it: roughly, and with the throw it has there, which is less than its greatest. Bends add minor\n\
@@ -58,7 +59,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     );
     println!("## Extraction and picks\n");
     println!(
-        "Coverage, precision and purity per surface as DESIGN 6 has them, with one sample of tolerance. A pick is one seed and one climb; picks are counted until \
+        "Coverage, precision and purity per surface as in `interp::evaluate`, with one sample of tolerance. A pick is one seed and one climb; picks are counted until \
          95 % of the horizon is covered with at least 98 % of what was picked on it. The oracle knows the truth and takes the best node of any level; the replay puts its seed into \
          the middle of the largest gap and climbs to the highest valid node. In brackets: what was asked was not reached, with coverage and precision.\n"
     );

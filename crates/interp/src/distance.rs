@@ -1,20 +1,24 @@
-//! For every voxel the closest leaf, and how far it is (P-horiz 4.3): distances to the closest point **on the triangles**, not to
-//! voxels or vertices, up to a greatest distance.
+//! For every voxel the closest leaf and its distance (P-horiz 4.3): the distance to the closest point **on
+//! the triangles**, not to voxels or vertices, up to a greatest distance.
 //!
-//! Exact by construction: every triangle that could be closer than what is known already is tested, none is approximated. The
-//! volume is worked some lines at a time, in blocks of columns:
+//! The result is exact: every triangle that could be closer than the closest one so far is tested, none is
+//! approximated. The volume is computed some inlines at a time, in blocks of columns:
 //!
-//! 1. `index`: the triangles around the lines, by cell of the lattice and interval of depth. A triangle lies within one cell, so a column is
-//!    `h` away from all triangles of a cell, and a run of samples at least `√(h² + gap²)`.
-//! 2. `search`: down a column, an upper bound from its own extrema and from the column before (distances differ by at most 1 between neighbours),
-//!    then the triangles of the four cells around it, then those of every cell and interval that the bound cannot exclude.
-//! 3. `triangle`: the distance of several samples of a column to one triangle at once.
+//! 1. `index`: the triangles near these inlines, by cell of the lattice and interval of depth. A triangle
+//!    lies within one cell, so if a column is `h` away from a cell, a run of samples is at least `√(h² +
+//!    gap²)` away from all its triangles.
+//! 2. `search`: down a column, start with an upper bound from the column's own extrema and from the previous
+//!    column (distances differ by at most 1 between neighbours). Then test the triangles of the four cells
+//!    around the column, then those of every cell and interval that the bound cannot exclude.
+//! 3. `triangle`: the distances of several samples of a column to one triangle at once.
 //!
-//! The lesser leaf id wins a tie, so blocks, bounds and threads leave no trace in the result. Space: voxels, all axes alike.
+//! Of leaves at the same distance the lesser id is the closest, so blocks, bounds and threads do not change
+//! the result. Space: voxels, with all axes alike.
 //!
 //! # Encoding
 //!
-//! A distance is one byte, `round(254 · d / max_distance)`; 255 is beyond. With the default of 10 voxels it is off by less than 0.02.
+//! A distance is one byte, `round(254 · d / max_distance)`; 255 means beyond. With the default of 10 voxels
+//! the error is less than 0.02 voxels.
 
 mod index;
 mod search;
@@ -27,7 +31,7 @@ use crate::forest::Forest;
 use crate::lanes::widest;
 use index::{CellIndex, TriangleLists};
 use rayon::prelude::*;
-use search::Block;
+use search::ColumnBlock;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 use survey::Progress;
@@ -36,20 +40,22 @@ pub use survey::candidates::BEYOND;
 /// The code of the greatest distance.
 const FARTHEST: f32 = 254.0;
 
-/// Greatest distance that may be asked for, voxels: the search is made for short ones.
+/// Largest value of the greatest distance, voxels: the search is made for short distances.
 const LIMIT: f32 = 64.0;
 
-/// Inlines that are worked on at a time: more need more memory for their index, fewer keep threads waiting for one another.
+/// Inlines computed at a time. More need more memory for their index, fewer make threads wait for one
+/// another.
 const LINES: usize = 64;
 
-/// Crosslines of a block, which one thread works on. The first column of a line knows nothing of its neighbour.
+/// Crosslines of a block, which one thread computes. The first column of a line has no previous column.
 const BLOCK: usize = 32;
 
-/// How distances are computed.
+/// Settings of the distances.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct DistanceSettings {
-    /// Greatest distance that is told, voxels, at most 64. Default 10, as in the paper; the error of a coded distance is a 508th of it.
+    /// Greatest distance, voxels, at most 64. Default 10, as in the paper. The error of a coded distance is
+    /// at most 1/508 of it.
     pub max_distance: f32,
 }
 
@@ -60,33 +66,66 @@ impl Default for DistanceSettings {
 }
 
 impl DistanceSettings {
-    /// The byte for a distance in voxels.
+    /// The byte that encodes a distance in voxels.
+    ///
+    /// ```
+    /// use interp::DistanceSettings;
+    ///
+    /// let settings = DistanceSettings { max_distance: 10.0 };
+    /// assert_eq!(settings.encode(5.0), 127);
+    /// assert_eq!(settings.decode(127), Some(5.0));
+    /// assert_eq!(settings.decode(settings.encode(10.1)), None);
+    /// ```
     pub fn encode(&self, distance: f32) -> u8 {
         if distance <= self.max_distance { (distance * (FARTHEST / self.max_distance)).round() as u8 } else { BEYOND }
     }
 
-    /// The distance in voxels of a byte; `None` for [`BEYOND`].
+    /// The distance in voxels that a byte encodes; `None` for [`BEYOND`].
     pub fn decode(&self, code: u8) -> Option<f32> {
         (code != BEYOND).then(|| f32::from(code) * (self.max_distance / FARTHEST))
     }
 }
 
-/// Distances and leaf ids of a box of columns, `[inline][crossline][sample]`, with all samples of each.
+/// Distances and leaf ids of a box of columns over all samples: `[inline][crossline][sample]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CandidateColumns {
     /// Inline indices.
     pub x: Range<usize>,
     /// Crossline indices.
     pub y: Range<usize>,
-    /// Coded distances.
+    /// Coded distances (see [`DistanceSettings::decode`]).
     pub distance: Vec<u8>,
     /// Leaf ids, 0 where the distance is [`BEYOND`].
     pub leaf: Vec<u32>,
 }
 
-/// Distances of a forest, ready to be computed for any part of the volume.
+/// Computes the distances to the leaves of a forest, for any part of the volume.
 ///
-/// Memory: 4 bytes a triangle, and while it computes some 20 bytes for each triangle near the lines that it works on.
+/// Memory: 4 bytes a triangle, and while it computes some 20 bytes for each triangle near the current
+/// inlines.
+///
+/// # Examples
+///
+/// ```
+/// use interp::{DistanceSettings, Extremum, Forest, ForestSettings, LeafDistances, Surface, Surfaces, Vertex};
+/// use survey::Progress;
+///
+/// // One cell of four traces with two triangles at sample 2.
+/// let corner = |x, y| Vertex { x, y, z: 2.0 };
+/// let surfaces = Surfaces {
+///     size: [2, 2, 8],
+///     vertices: vec![corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)],
+///     triangles: vec![[0, 2, 1], [1, 2, 3]],
+///     surfaces: vec![Surface { extremum: Extremum::Peak, vertices: 0..4, triangles: 0..2 }],
+/// };
+/// let forest = Forest::build(surfaces, &ForestSettings::default(), &Progress::silent())?;
+/// let settings = DistanceSettings { max_distance: 4.0 };
+/// let found = LeafDistances::new(&forest, &settings)?.columns(0..1, 0..1, &Progress::silent())?;
+/// // On a trace, the distance is that in depth; sample 7 is farther than 4 voxels from the leaf.
+/// assert_eq!(settings.decode(found.distance[4]), Some(2.0));
+/// assert_eq!(found.leaf, [1, 1, 1, 1, 1, 1, 1, 0]);
+/// # Ok::<(), interp::Error>(())
+/// ```
 pub struct LeafDistances<'a> {
     forest: &'a Forest,
     settings: DistanceSettings,
@@ -97,7 +136,8 @@ impl<'a> LeafDistances<'a> {
     /// Prepares the search.
     ///
     /// # Errors
-    /// [`Error::Setting`], and [`Error::MalformedSurfaces`] when a triangle spans more than one cell of the lattice.
+    /// [`Error::Setting`], and [`Error::MalformedSurfaces`] when a triangle spans more than one cell of the
+    /// lattice.
     pub fn new(forest: &'a Forest, settings: &DistanceSettings) -> Result<Self, Error> {
         if !(settings.max_distance > 0.0 && settings.max_distance <= LIMIT) {
             return Err(Error::Setting {
@@ -109,7 +149,7 @@ impl<'a> LeafDistances<'a> {
         Ok(Self { forest, settings: settings.clone(), lists: TriangleLists::new(forest)? })
     }
 
-    /// Computes the columns of a box, block by block on all threads.
+    /// Computes the columns of a box of inline indices `x` and crossline indices `y`, in parallel.
     ///
     /// # Errors
     /// [`Error::Cancelled`].
@@ -120,7 +160,7 @@ impl<'a> LeafDistances<'a> {
         self.columns_of(x, y, &mut CellIndex::new(self.forest.surfaces.size), progress)
     }
 
-    /// [`LeafDistances::columns`] with an index that has not been further on.
+    /// [`LeafDistances::columns`] with an index that has not advanced beyond `x`.
     fn columns_of(
         &self,
         x: Range<usize>,
@@ -154,17 +194,18 @@ impl<'a> LeafDistances<'a> {
                 let columns = from..(from + BLOCK).min(y.end);
                 progress.check()?;
                 let done = (lines.len() * columns.len()) as u64;
-                widest(Block { size, settings: &self.settings, index, x: lines.clone(), y: columns, rows });
+                widest(ColumnBlock { size, settings: &self.settings, index, x: lines.clone(), y: columns, rows });
                 Ok::<(), Error>(progress.step(done)?)
             })?;
         }
         Ok(CandidateColumns { x, y, distance, leaf })
     }
 
-    /// Computes the whole volume, `lines` inlines at a time, and hands over each part as it is done; `lines` changes nothing but the memory.
+    /// Computes the whole volume, `lines` inlines at a time, and passes each part to `take`. `lines` changes
+    /// only the memory.
     ///
     /// # Errors
-    /// [`Error::Cancelled`], and whatever `take` answers.
+    /// [`Error::Cancelled`], and errors of `take`.
     pub fn slabs<E: From<Error>>(
         &self,
         lines: usize,
@@ -181,5 +222,5 @@ impl<'a> LeafDistances<'a> {
     }
 }
 
-/// Lines of a block: distances and leaf ids of each.
+/// Rows of a block: distances and leaf ids of each.
 type BlockRows<'a> = Vec<(&'a mut [u8], &'a mut [u32])>;

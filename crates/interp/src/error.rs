@@ -1,9 +1,9 @@
-//! What can stand against an extraction or an assembly.
+//! Errors of an extraction.
 
 use survey::Cancelled;
 use survey::source::SourceError;
 
-/// A failure of this crate.
+/// Why an extraction failed.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// The user cancelled.
@@ -17,20 +17,20 @@ pub enum Error {
         /// What is wrong.
         fact: &'static str,
     },
-    /// More triangles than ids of 32 bits can name.
-    #[error("{triangles} triangles are more than the {limit} this program can number; extract a part of the volume")]
+    /// There are more triangles than 32-bit ids can number.
+    #[error("{triangles} triangles are more than the {limit} that can be numbered; extract a part of the volume")]
     TooManyTriangles {
-        /// Triangles found.
+        /// Count of triangles found.
         triangles: usize,
-        /// Most that can be numbered.
+        /// Largest count that can be numbered.
         limit: usize,
     },
-    /// A leaf was asked for that the forest does not have.
+    /// The forest has no leaf of this id.
     #[error("there is no leaf {leaf}; leaves are numbered from 1 to {count}")]
     NoSuchLeaf {
-        /// Id asked for.
+        /// The requested id.
         leaf: u32,
-        /// Leaves there are.
+        /// Count of leaves.
         count: usize,
     },
     /// Surfaces could not be grown.
@@ -45,14 +45,14 @@ pub enum Error {
         /// What is wrong.
         fact: &'static str,
     },
-    /// A setting that means nothing.
-    #[error("{setting} = {value} cannot be; it must be {expected}")]
+    /// A setting is out of its range.
+    #[error("{setting} is {value}; it must be {expected}")]
     Setting {
-        /// Its name.
+        /// Name of the setting.
         setting: &'static str,
-        /// What was given.
+        /// Value of the setting.
         value: f64,
-        /// What can be given.
+        /// Range of the setting.
         expected: &'static str,
     },
 }

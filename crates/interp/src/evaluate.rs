@@ -1,16 +1,19 @@
-//! How good an extraction is, measured against a synthetic survey's truth (DESIGN 6).
+//! The quality of an extraction, measured against a synthetic survey's truth.
 //!
-//! For each true horizon, with one sample of tolerance along the trace:
+//! For each true horizon, with a tolerance of one sample along the trace:
 //!
-//! - **coverage**: share of its nodes (a node is the horizon on one trace in one fault block) that have a vertex of some surface within
-//!   the tolerance, also for each part that faults, erosion and walls leave connected;
-//! - **precision**: share of the vertices of the surfaces whose majority is this horizon that lie on it within the tolerance; surfaces
-//!   that lie on no reflector with most of their vertices, such as those along side lobes, are nobody's;
-//! - **purity**, *per surface*: of a surface's vertices that lie on any true reflector, the share that lies on the one most of them lie on. A
-//!   horizon's figure is the vertex-weighted mean over the surfaces whose majority it is; the worst large surface is named.
+//! - **coverage**: the share of its nodes (a node is the horizon on one trace in one fault block) that have a
+//!   vertex of some surface within the tolerance. It is also given for each part that faults, erosion and the
+//!   outer boundary leave connected.
+//! - **precision**: the share of on-horizon vertices among all vertices of the surfaces whose majority is
+//!   this horizon. Surfaces that have fewer than half of their vertices on reflectors, such as those along
+//!   side lobes, belong to no horizon.
+//! - **purity**, *per surface*: of a surface's vertices that lie on any true reflector, the share on the
+//!   reflector that has most of them. The figure of a horizon is the vertex-weighted mean over the surfaces
+//!   whose majority it is; the least pure large surface is given too.
 //!
-//! The same over *all* reflectors, named or not, gives steadier figures to steer by. Side lobes of the wavelet are extrema on no
-//! reflector: surfaces along them count nowhere. Space: voxels.
+//! The same figures over *all* reflectors, named or not, are steadier. Side lobes of the wavelet are extrema
+//! on no reflector, so surfaces along them do not count. Space: voxels.
 
 mod parts;
 mod picks;
@@ -18,7 +21,7 @@ mod picks;
 mod tests;
 mod truth;
 
-pub use parts::{Part, Parts};
+pub use parts::{HorizonPart, Parts};
 pub use picks::{PickCount, PickScore, PickSettings, count_picks};
 pub use truth::{TruthEvent, TruthIndex};
 
@@ -27,14 +30,14 @@ use rayon::prelude::*;
 use serde::Serialize;
 use synth::SynthTruth;
 
-/// What counts as right.
+/// Tolerances of [`evaluate`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct EvaluateSettings {
-    /// Distance along the trace within which a vertex lies on a horizon, samples; default 1.
+    /// Largest distance along the trace at which a vertex lies on a horizon, samples; default 1.
     pub tolerance: f32,
-    /// Triangles from which on a surface may be the worst one; default 500.
+    /// Least count of triangles of a large surface; default 500.
     pub large_triangles: usize,
-    /// Traces below which a piece of a horizon is not counted among its parts; default 64: an island of 8 × 8 traces.
+    /// Least count of traces of a part of a horizon; default 64, an island of 8 × 8 traces.
     pub min_part_traces: usize,
 }
 
@@ -44,51 +47,52 @@ impl Default for EvaluateSettings {
     }
 }
 
-/// How one surface stands to the truth.
+/// The score of one surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SurfaceScore {
     /// Index of the surface.
     pub surface: usize,
-    /// Its triangles.
+    /// Count of its triangles.
     pub triangles: usize,
-    /// Its vertices.
+    /// Count of its vertices.
     pub vertices: usize,
-    /// Vertices on any reflector.
+    /// Count of vertices on any reflector.
     pub on_any: usize,
-    /// Vertices on the reflector that most of them are on.
+    /// Count of vertices on the majority reflector.
     pub on_majority: usize,
-    /// That reflector, an index into [`TruthIndex::reflectors`]; `None` when no vertex lies on one.
+    /// The reflector with most of its vertices, an index into [`TruthIndex::reflectors`]; `None` when no
+    /// vertex lies on one.
     #[serde(skip)]
     pub majority: Option<usize>,
 }
 
 impl SurfaceScore {
-    /// Majority share among the vertices on any reflector; 1 where there are none.
+    /// Share of the majority among the vertices on any reflector; 1 where there are none.
     pub fn purity(&self) -> f64 {
         share(self.on_majority, self.on_any)
     }
 }
 
-/// How well one true horizon, or all reflectors together, was found.
+/// The score of one true horizon, or of all reflectors together.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HorizonScore {
     /// Name of the horizon.
     pub name: String,
-    /// Traces it is on, counted once a fault block.
+    /// Count of its nodes: traces, counted once per fault block.
     pub nodes: usize,
-    /// Those with a vertex within the tolerance.
+    /// Count of nodes with a vertex within the tolerance.
     pub covered: usize,
     /// Its parts of at least [`EvaluateSettings::min_part_traces`], largest first.
-    pub parts: Vec<Part>,
-    /// Surfaces whose majority it is.
+    pub parts: Vec<HorizonPart>,
+    /// Count of surfaces whose majority it is.
     pub surfaces: usize,
-    /// Their vertices.
+    /// Count of their vertices.
     pub vertices: usize,
-    /// Those of their vertices that lie on it.
+    /// Count of their vertices that lie on it.
     pub on_it: usize,
-    /// Vertex-weighted mean of their purities.
+    /// Vertex-weighted mean of the purities of these surfaces.
     pub purity: f64,
-    /// The least pure of them among the large ones.
+    /// The least pure of the large ones among them.
     pub worst: Option<SurfaceScore>,
 }
 
@@ -98,35 +102,36 @@ impl HorizonScore {
         share(self.covered, self.nodes)
     }
 
-    /// Share of its surfaces' vertices that lie on it.
+    /// Share of the vertices of its surfaces that lie on it.
     pub fn precision(&self) -> f64 {
         share(self.on_it, self.vertices)
     }
 
-    /// The coverage of its least covered part.
+    /// The coverage of its least covered part; 1 without parts.
     pub fn least_part(&self) -> f64 {
-        self.parts.iter().map(Part::coverage).fold(1.0, f64::min)
+        self.parts.iter().map(HorizonPart::coverage).fold(1.0, f64::min)
     }
 }
 
-/// The figures of an extraction.
+/// The scores of an extraction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Evaluation {
-    /// Each named horizon, youngest first.
+    /// The score of each named horizon, youngest first.
     pub horizons: Vec<HorizonScore>,
-    /// All reflectors inside the volume together; it has no parts.
+    /// The score of all reflectors inside the volume together; it has no parts.
     pub all: HorizonScore,
-    /// Each surface.
+    /// The score of each surface.
     #[serde(skip)]
     pub surfaces: Vec<SurfaceScore>,
 }
 
-/// Measures `surfaces` against `truth`. Time: about a second at 256³; memory: 16 bytes an event of the truth, 4 a vertex.
+/// Measures `surfaces` against `truth`. Time: about a second at 256³; memory: 16 bytes per true event, 4 per
+/// vertex.
 pub fn evaluate(surfaces: &Surfaces, truth: &SynthTruth, settings: &EvaluateSettings) -> Evaluation {
     evaluate_with(surfaces, truth, &TruthIndex::new(truth), settings)
 }
 
-/// [`evaluate`] with an index that is made once for several extractions of one survey.
+/// [`evaluate`] with an index of the same truth, for several extractions of one survey.
 pub fn evaluate_with(
     surfaces: &Surfaces,
     truth: &SynthTruth,
@@ -140,14 +145,14 @@ pub fn evaluate_with(
     let covered = covered_events(surfaces, index, settings.tolerance);
     let mut horizons = Vec::with_capacity(truth.horizons.len());
     for (h, horizon) in truth.horizons.iter().enumerate() {
-        let reflector = index.reflector_index(truth.reflector_of(h));
+        let reflector = index.reflector_index(truth.reflector_of(h)).expect("the index is of this truth");
         let parts = Parts::of(truth, h);
-        let mut score = sum_up(horizon.name.clone(), &scores, settings, |majority| Some(majority) == reflector);
-        let mut found: Vec<Part> = parts.empty();
+        let mut score = sum_up(horizon.name.clone(), &scores, settings, |majority| majority == reflector);
+        let mut found: Vec<HorizonPart> = parts.empty();
         for (trace, events) in index.traces() {
             for n in events {
                 let event = index.events()[n];
-                if Some(usize::from(event.reflector)) != reflector {
+                if usize::from(event.reflector) != reflector {
                     continue;
                 }
                 score.nodes += 1;
@@ -169,7 +174,7 @@ pub fn evaluate_with(
     Evaluation { horizons, all, surfaces: scores }
 }
 
-/// The precision and purity of the surfaces whose majority is `wanted`.
+/// The precision and purity of the surfaces whose majority reflector is `wanted`.
 fn sum_up(
     name: String,
     scores: &[SurfaceScore],
@@ -194,7 +199,7 @@ fn sum_up(
     }
 }
 
-/// What a surface's vertices lie on.
+/// The score of one surface.
 fn score_surface(surfaces: &Surfaces, surface: usize, index: &TruthIndex, tolerance: f32) -> SurfaceScore {
     let found = &surfaces.surfaces[surface];
     let vertices = &surfaces.vertices[found.vertices.start as usize..found.vertices.end as usize];
@@ -215,13 +220,13 @@ fn score_surface(surfaces: &Surfaces, surface: usize, index: &TruthIndex, tolera
         triangles: found.triangles.len(),
         vertices: vertices.len(),
         on_any,
-        // A reflector counts once a vertex: a trace meets it twice only across a reverse fault.
+        // At most one count per vertex: a trace meets a reflector twice only across a reverse fault.
         on_majority: most.map_or(0, |n| votes[n] as usize).min(on_any),
         majority: most,
     }
 }
 
-/// Which events have a vertex within the tolerance.
+/// Which true events have a vertex within the tolerance.
 fn covered_events(surfaces: &Surfaces, index: &TruthIndex, tolerance: f32) -> Vec<bool> {
     let mut covered = vec![false; index.events().len()];
     for vertex in &surfaces.vertices {
@@ -232,13 +237,13 @@ fn covered_events(surfaces: &Surfaces, index: &TruthIndex, tolerance: f32) -> Ve
     covered
 }
 
-/// `part / whole`; 1 for nothing of nothing.
+/// `part / whole`; 1 if both are 0.
 fn share(part: usize, whole: usize) -> f64 {
     if whole == 0 { 1.0 } else { part as f64 / whole as f64 }
 }
 
 impl std::fmt::Display for Evaluation {
-    /// A table for people.
+    /// A table for a terminal.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         writeln!(
             f,

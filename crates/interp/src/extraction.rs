@@ -19,19 +19,19 @@ use survey::Progress;
 use survey::candidates::{CandidateBox, CandidateInfo, CandidateSink};
 use survey::source::{SlabSource, SourceError};
 
-/// How candidates are extracted.
+/// Settings of an extraction.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ExtractSettings {
-    /// How surfaces are grown.
+    /// Settings of growing.
     pub grow: GrowSettings,
-    /// How their trees are built.
+    /// Settings of the surface trees.
     pub forest: ForestSettings,
-    /// How far distances are told.
+    /// Settings of the distances.
     pub distance: DistanceSettings,
 }
 
-/// Seconds by stage.
+/// Wall-clock time by stage, seconds.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct StageSeconds {
     /// Extrema, links, surfaces.
@@ -40,43 +40,43 @@ pub struct StageSeconds {
     pub trees: f64,
     /// Distances and leaf ids.
     pub distances: f64,
-    /// Writing, 0 when nothing was written.
+    /// Writing; 0 when nothing was written.
     pub storing: f64,
-    /// All of them.
+    /// The whole extraction.
     pub total: f64,
 }
 
-/// What an extraction found.
+/// A summary of an extraction.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ExtractReport {
-    /// How it was done.
+    /// The settings used.
     pub settings: ExtractSettings,
-    /// Surfaces.
+    /// Count of surfaces.
     pub surfaces: usize,
-    /// Leaves of their trees.
+    /// Count of leaves of their trees.
     pub leaves: usize,
-    /// Surfaces with fewer triangles than a leaf should have, which are one leaf each.
+    /// Count of surfaces with fewer triangles than the minimum of a leaf; each of them is one leaf.
     pub undersized: usize,
-    /// Triangles.
+    /// Count of triangles.
     pub triangles: usize,
-    /// Vertices.
+    /// Count of vertices.
     pub vertices: usize,
-    /// Triangles of the largest surface.
+    /// Count of triangles of the largest surface.
     pub largest: usize,
     /// Share of the voxels that have a leaf within the greatest distance, 0 to 1.
     pub within_reach: f64,
-    /// Bytes of a leaf id: 2, or 4 when there are more than 65 535.
+    /// Bytes of a leaf id: 2, or 4 with more than 65 535 leaves.
     pub leaf_id_bytes: usize,
-    /// How long it took.
+    /// Time by stage.
     pub seconds: StageSeconds,
 }
 
 impl ExtractReport {
-    /// What to say when there is no surface.
+    /// A sentence that says why there is no surface; `None` when there are surfaces.
     pub fn nothing_found(&self) -> Option<String> {
         (self.surfaces == 0).then(|| {
             format!(
-                "no surface at least {} traces wide was found: the volume is constant, dead or thinner than that, or it has none of the extrema that were followed",
+                "no surface at least {} traces wide was found: the volume is constant, dead or narrower than that, or it has none of the extrema that were followed",
                 self.settings.grow.min_front_width
             )
         })
@@ -105,7 +105,7 @@ impl fmt::Display for ExtractReport {
             self.settings.distance.max_distance
         )?;
         if self.leaf_id_bytes > 2 {
-            writeln!(f, "there are more than 65535 leaves: their ids take four bytes a voxel instead of two")?;
+            writeln!(f, "there are more than 65535 leaves, so their ids take four bytes a voxel instead of two")?;
         }
         let StageSeconds { growing, trees, distances, storing, total } = self.seconds;
         writeln!(
@@ -115,21 +115,40 @@ impl fmt::Display for ExtractReport {
     }
 }
 
-/// Candidates in memory.
+/// The candidates of a volume, in memory.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extraction {
-    /// Surfaces and their trees.
+    /// The surfaces and their trees.
     pub forest: Forest,
-    /// For every voxel its closest leaf. Memory: 5 bytes a voxel.
+    /// The closest leaf of every voxel. Memory: 5 bytes a voxel.
     pub candidates: CandidateBox,
-    /// What was found.
+    /// The summary.
     pub report: ExtractReport,
 }
 
 /// Extracts the candidates of a volume.
 ///
 /// # Errors
-/// [`Error`]: settings that make no sense, a source that fails, or cancelled. That nothing is found is no error.
+/// [`Error`]: a setting is out of range, the source fails, or the user cancels. Finding no surface is no
+/// error.
+///
+/// # Examples
+///
+/// ```
+/// use interp::{ExtractSettings, extract};
+/// use survey::{Progress, Volume};
+///
+/// // One flat reflector, a peak at sample 10, on 20 × 20 traces.
+/// let mut volume = Volume::filled([20, 20, 21], 0.0f32);
+/// for (n, sample) in volume.samples_mut().iter_mut().enumerate() {
+///     *sample = 5.0 - ((n % 21) as f32 - 10.0).abs();
+/// }
+/// let found = extract(&volume, &ExtractSettings::default(), &Progress::silent())?;
+/// assert_eq!((found.report.surfaces, found.report.leaves), (1, 1));
+/// // With 254 codes for 10 voxels, sample 15 is 127 codes away from the leaf.
+/// assert_eq!((found.candidates.distance[15], found.candidates.leaf[15]), (127, 1));
+/// # Ok::<(), interp::Error>(())
+/// ```
 pub fn extract<S>(source: &S, settings: &ExtractSettings, progress: &Progress) -> Result<Extraction, Error>
 where
     S: SlabSource,
@@ -187,7 +206,8 @@ where
     report.within_reach = reached as f64 / size.iter().product::<usize>().max(1) as f64;
     let writing = Instant::now();
     let tables = forest.tables();
-    // The pyramid's and trees' share is not known before it is written; what it takes is told to the caller alone.
+    // The time for writing the pyramid and the trees is not known before they are written; only the caller
+    // learns it.
     report.seconds.storing = storing;
     report.seconds.total = start.elapsed().as_secs_f64();
     let info = CandidateInfo {
@@ -204,7 +224,7 @@ where
     Ok(report)
 }
 
-/// Grows surfaces and builds their trees.
+/// Grows the surfaces and builds their trees.
 fn grow_forest<S>(source: &S, settings: &ExtractSettings, progress: &Progress) -> Result<(Forest, ExtractReport), Error>
 where
     S: SlabSource,

@@ -1,12 +1,14 @@
-//! Extrema of every trace, refined below the sample (P-horiz 4).
+//! Extrema of every trace, refined between samples (P-horiz 4).
 //!
-//! A peak is a positive sample greater than both neighbours, a trough a negative one smaller than both, a zero crossing
-//! the change from negative above to positive below. A plateau (common in 8-bit data) counts once, at its middle. The place
-//! between samples is the analytic maximum (or zero) of a polynomial through the nearest samples: see [`refine`].
-//! A sample that is not finite ends the trace there; a dead trace has no extrema.
+//! A peak is a positive sample greater than both neighbours, a trough a negative one smaller than both, a
+//! zero crossing the change from negative above to positive below. A plateau (common in 8-bit data) counts
+//! once, at its middle. The position between samples is the analytic maximum (or zero) of a polynomial
+//! through the nearest samples: see [`refine`]. A sample that is not finite is no extremum and no neighbour
+//! of one; a dead trace has no extrema.
 //!
-//! Growing sees nothing of a volume but this, about one extremum in six samples, so a volume that does not fit
-//! into memory is read once, slab by slab, and forgotten ([`SlabSource`]). Space: voxels. Memory: 8 bytes an extremum, 4 a trace.
+//! Growing uses nothing of a volume but its extrema, about one in six samples. A volume that does not fit
+//! into memory is therefore read once, slab by slab ([`SlabSource`]). Space: voxels. Memory: 8 bytes an
+//! extremum, 4 a trace.
 
 pub mod refine;
 
@@ -16,18 +18,18 @@ use std::ops::Range;
 use survey::Progress;
 use survey::source::SlabSource;
 
-/// The extrema of one kind, trace by trace in the order (x, y), top first.
+/// The extrema of one kind, trace by trace in the order (x, y), from the top down.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Extrema {
     /// `[inlines, crosslines, samples]` of the volume.
     pub size: [usize; 3],
-    /// What they are.
+    /// The kind of extremum.
     pub kind: Extremum,
-    /// The first extremum of each trace, and their count: `[x·crosslines + y]`, one entry more than traces.
+    /// Index of the first extremum of each trace `[x·crosslines + y]`, and the total count as the last entry.
     pub offsets: Vec<u32>,
     /// Fractional sample index.
     pub z: Vec<f32>,
-    /// Height of the extremum (positive for troughs too); of a zero crossing its slope, an amplitude a sample.
+    /// Height of an extremum (positive for troughs too), or slope of a zero crossing, amplitude per sample.
     pub amplitude: Vec<f32>,
 }
 
@@ -56,7 +58,7 @@ impl Extrema {
         self.offsets[x * ny] as usize..self.offsets[(x + 1) * ny] as usize
     }
 
-    /// One part of `values` for each inline, to write in parallel.
+    /// Splits `values`, one per extremum, into one part per inline, to be written in parallel.
     pub(crate) fn split_inlines<'v, T>(&self, values: &'v mut [T]) -> Vec<&'v mut [T]> {
         let mut parts = Vec::with_capacity(self.size[0]);
         let mut rest = values;
@@ -75,18 +77,18 @@ pub enum ExtremaError<E> {
     /// The source could not be read.
     #[error("the volume could not be read")]
     Source(E),
-    /// Stopped by the user.
+    /// The user cancelled.
     #[error(transparent)]
     Cancelled(#[from] survey::Cancelled),
-    /// Indices have 32 bits.
-    #[error("{found} extrema of one kind are more than {} can be numbered; extract a part of the volume", u32::MAX - 1)]
+    /// There are more extrema than 32-bit indices can number.
+    #[error("{found} extrema of one kind are more than the {} that can be numbered; extract a part of the volume", u32::MAX - 1)]
     TooMany {
-        /// Extrema found.
+        /// Count of extrema found.
         found: usize,
     },
 }
 
-/// What one slab has: per kind, the counts of its traces and their extrema.
+/// The extrema of one kind in one slab, and their count on each trace.
 #[derive(Default)]
 struct SlabExtrema {
     counts: Vec<u32>,
@@ -94,11 +96,28 @@ struct SlabExtrema {
     amplitude: Vec<f32>,
 }
 
-/// Finds the extrema of each kind in `kinds`, reading `slab_inlines` inlines at a time. The result depends neither on that
-/// nor on the number of threads. Cost: one pass over the samples.
+/// Finds the extrema of each kind in `kinds`; the result has one entry per kind, in the same order.
+/// `slab_inlines` inlines are read at a time. The result depends neither on that nor on the number of
+/// threads. Cost: one pass over the samples.
 ///
 /// # Errors
-/// [`ExtremaError`] when the source fails, the user cancels, or there are more than 2³² extrema of a kind.
+/// [`ExtremaError`] when the source fails, the user cancels, or there are 2³² − 1 or more extrema of a kind.
+///
+/// # Examples
+///
+/// ```
+/// use interp::extrema::find_extrema;
+/// use interp::Extremum;
+/// use survey::{Progress, Volume};
+///
+/// // One trace, a parabola with its maximum at sample 3.25.
+/// let trace = (0..8).map(|z| 10.0 - (z as f32 - 3.25).powi(2)).collect();
+/// let volume = Volume::from_samples([1, 1, 8], trace)?;
+/// let peaks = &find_extrema(&volume, &[Extremum::Peak], 16, &Progress::silent())?[0];
+/// assert_eq!(peaks.on_trace(0, 0), 0..1);
+/// assert!((peaks.z[0] - 3.25).abs() < 1e-4 && (peaks.amplitude[0] - 10.0).abs() < 1e-4);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn find_extrema<S: SlabSource>(
     source: &S,
     kinds: &[Extremum],
@@ -137,7 +156,8 @@ pub fn find_extrema<S: SlabSource>(
     kinds
         .iter()
         .map(|&kind| {
-            let parts: Vec<SlabExtrema> = slabs.iter_mut().filter_map(Iterator::next).collect();
+            let parts = slabs.iter_mut().map(|slab| slab.next().expect("a slab has a part for each kind"));
+            let parts: Vec<SlabExtrema> = parts.collect();
             let found = parts.iter().map(|part| part.z.len()).sum::<usize>();
             if found >= u32::MAX as usize {
                 return Err(ExtremaError::TooMany { found });
@@ -164,7 +184,8 @@ pub fn find_extrema<S: SlabSource>(
         .collect()
 }
 
-/// Calls `found(z, amplitude)` for each extremum of a trace, top first.
+/// Calls `found(z, amplitude)` for each extremum of a trace, from the top down. z is a fractional sample
+/// index.
 pub fn extrema_of_trace(trace: &[f32], kind: Extremum, found: &mut impl FnMut(f32, f32)) {
     match kind {
         Extremum::Peak => maxima(trace, 1.0, found),
@@ -191,13 +212,14 @@ fn maxima(trace: &[f32], sign: f32, found: &mut impl FnMut(f32, f32)) {
             z += 2;
             continue;
         }
-        // A plateau: its end decides whether it is a maximum.
+        // A plateau is a maximum if the trace falls after its end.
         let mut end = z + 1;
         while end + 1 < count && trace[end + 1] * sign == here {
             end += 1;
         }
         if end + 1 < count && trace[end + 1] * sign < here && here.is_finite() && before.is_finite() {
-            // Two equal samples have their maximum between them, higher than both; more have been clipped.
+            // Two equal samples have their maximum between them, higher than both; a longer plateau was
+            // clipped.
             let (t, height) = if end == z + 1 {
                 (0.5, refine::maximum(trace, z, sign).1)
             } else {
@@ -209,7 +231,7 @@ fn maxima(trace: &[f32], sign: f32, found: &mut impl FnMut(f32, f32)) {
     }
 }
 
-/// Changes from negative to positive.
+/// Zero crossings from negative to positive.
 fn crossings(trace: &[f32], found: &mut impl FnMut(f32, f32)) {
     let count = trace.len();
     let mut z = 0;

@@ -1,25 +1,31 @@
-//! Faults proposed where none are interpreted, from the horizons assembled so far.
+//! Faults proposed from the horizons assembled so far.
 //!
-//! A tracked horizon ends at a fault and goes on behind it, higher or lower. So:
+//! A tracked horizon ends at a fault and continues behind it, higher or lower. So:
 //!
-//! 1. `edges`: the rims of each horizon's pieces, with the way out and the plane the piece lies in there.
-//! 2. `pairs`: rims that face one another with an offset. The middle of a pair lies on the fault; the offset of the two planes there is the
-//!    throw. Rims without an offset are those of holes.
-//! 3. `traces`: pairs of one horizon that follow one another along strike, with throws of one sign, are the fault's trace on it; traces on several
-//!    horizons that lie one above the other on one steep surface are one fault.
-//! 4. `surface`: a smooth surface through them, the least squares quadratic of the distance across strike over strike and depth.
-//!    It goes on to where the throw, continued linearly, is nothing; to the walls that its traces reach; up and down to the next
-//!    horizon that passes it unbroken, or through the volume.
+//! 1. `edges`: the rims of each horizon's pieces, each with the direction out of the piece and the plane of
+//!    the piece there. `bends` adds places where a horizon was tracked across a fault.
+//! 2. `pairs`: rims that face one another with an offset. The middle of a pair lies on the fault; the offset
+//!    of the two planes there is the throw. Rims without an offset belong to holes.
+//! 3. `traces`: pairs of one horizon that follow one another along strike, with throws of one sign, form the
+//!    trace of the fault on that horizon. Traces on several horizons that lie one above the other on one
+//!    steep surface form one fault.
+//! 4. `surface`: a smooth surface through the pairs, the least-squares quadratic of the distance across
+//!    strike as a function of strike and depth. Along strike it is extended to where the linearly
+//!    extrapolated throw is 0, or to the outer boundary if its traces reach it. Up and down it is extended to
+//!    the next horizon that passes it unbroken, or through the volume.
 //!
+//! Pairs that lie on a fault of the project (`known`) are removed before step 3, so that such a fault is not
+//! proposed again.
 //!
-//! Pairs that lie on a fault of the project (`known`) are taken out before 3: it is not proposed again.
+//! Proposals are sorted by the area of the offset, i.e. the throw along their traces, summed over horizons
+//! ([`Proposal::offset_m2`]), largest first. On real surveys many proposals are small, at noisy picks,
+//! scatter about their surface, or fit a surface on which the data have no break. These are minor and come
+//! last.
 //!
-//! Proposals come largest first, by the area of what they tore apart: the throw along their traces, summed over horizons ([`Proposal::offset_m2`]). On real
-//! surveys many are small, where picks are noisy, scatter about their surface, or fit one without a break in the data: those are minor and come last.
-//!
-//! Semblance is evidence, not a source: its mean on the surface is told beside that on both sides of it. It gives a fault its dip where a single
-//! horizon cannot, and what is a bend of one horizon and nothing else is left out unless semblance is less on it than beside. Spaces: rims and pairs are voxel, surfaces
-//! metric (m).
+//! Semblance is evidence, not a source: a proposal states its mean on the surface and on both sides of it. It
+//! gives a fault its dip where a single horizon cannot. A proposal that only consists of bends of a single
+//! horizon is dropped unless semblance is lower on it than on both sides. Spaces: rims and pairs are in
+//! voxels, surfaces in metres.
 
 mod bends;
 mod edges;
@@ -39,17 +45,18 @@ use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use survey::{Cancelled, Fault, Progress, SurveyGeometry, TriangleMesh, Volume};
 
-/// How faults are looked for.
+/// Settings of the search for faults.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ProposeSettings {
-    /// Farthest that two facing rims may be apart, traces; default 14. The heave of a flat fault with a large throw is the limit.
+    /// Largest distance between two facing rims, traces; default 14. It limits the heave of a flat fault with
+    /// a large throw.
     pub reach: usize,
     /// Smallest throw, samples; default 2. Smaller ones are lost in the noise of tracked rims.
     pub min_throw: f32,
     /// Shortest trace on a horizon, traces; default 12.
     pub min_length: f32,
-    /// Smallest dip, degrees (in metres); default 30.
+    /// Smallest dip in metric space, degrees; default 30.
     pub min_dip_deg: f64,
 }
 
@@ -59,31 +66,31 @@ impl Default for ProposeSettings {
     }
 }
 
-/// A horizon as evidence.
+/// A horizon in which faults are searched.
 #[derive(Debug, Clone, Copy)]
 pub struct Evidence<'a> {
-    /// Its name.
+    /// Name of the horizon.
     pub name: &'a str,
-    /// Its sheets, assembled without faults or with them.
+    /// Its sheets, assembled with or without faults.
     pub sheets: &'a [VoxelSheet],
 }
 
-/// A fault that horizons speak for.
+/// A fault proposed from horizons.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Proposal {
-    /// Number by which it is accepted, from 1; the largest first.
+    /// Number by which it is accepted, from 1 in the order of the proposals.
     pub id: u32,
-    /// A name to begin with.
+    /// A default name.
     pub name: String,
-    /// Its surface in the world.
+    /// Its surface, in world coordinates.
     pub mesh: TriangleMesh,
-    /// Direction it strikes in, degrees clockwise from north, below 180.
+    /// Direction of its strike, degrees clockwise from north, in [0, 180).
     pub strike_deg: f64,
     /// Mean dip, degrees.
     pub dip_deg: f64,
     /// Whether the hanging wall has moved up.
     pub reverse: bool,
-    /// Median throw and the one that 95 % do not exceed, vertical units.
+    /// Median and 95 % quantile of its throw, vertical units.
     pub throw: [f64; 2],
     /// Inline and crossline numbers of the two ends of its trace at middle depth.
     pub ends: [[f64; 2]; 2],
@@ -91,51 +98,74 @@ pub struct Proposal {
     pub depth: [f64; 2],
     /// Names of the horizons that it offsets.
     pub horizons: Vec<String>,
-    /// Facing pairs of rim nodes that speak for it.
+    /// Count of pairs of rim nodes on it.
     pub support: usize,
-    /// RMS distance of these from its surface, m.
+    /// RMS distance of these pairs from its surface, m.
     pub misfit_m: f64,
-    /// Throw along its traces, summed over horizons: the area of what it tore apart, m².
+    /// Area of the offset, m²: the throw along its traces, summed over horizons.
     #[serde(default)]
     pub offset_m2: f64,
-    /// Whether it is one of the many small ones, its pairs scatter, or the data show no break on it.
+    /// Whether it is one of the many small proposals, its pairs scatter, or the data show no break on it.
     #[serde(default)]
     pub is_minor: bool,
-    /// Mean semblance on it and on both sides of it, if there was a volume.
+    /// Mean semblance on it and on both sides of it, if there was a semblance volume.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub semblance: Option<[f32; 2]>,
 }
 
 impl Proposal {
-    /// The fault, under the name it is accepted by.
+    /// The proposal as a fault of the given name.
     pub fn fault(&self, name: &str) -> Fault {
         Fault { name: name.to_owned(), mesh: self.mesh.clone(), truncated_by: None }
     }
 }
 
-/// What was found.
+/// The result of [`propose_faults`].
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Found {
-    /// New faults, the largest first, minor ones last.
+pub struct FoundFaults {
+    /// New faults, largest first and minor ones last.
     pub proposals: Vec<Proposal>,
-    /// Known faults that were found again, and are not proposed, the largest first.
+    /// Known faults that were found again and are not proposed, largest first.
     pub repeats: Vec<Repeat>,
 }
 
-/// Share of all offset that small proposals hold together, at most.
+/// Largest share of the total offset that the smallest proposals together hold to be minor.
 const MINOR: f64 = 0.2;
-/// RMS distance of pairs from their surface above which a proposal is minor, traces; large faults of Penobscot are up to 2.7 off, where tracking follows an
-/// event of the graben.
+/// RMS distance of pairs from their surface above which a proposal is minor, traces. Large faults of the
+/// Penobscot survey are up to 2.7 off, where tracking follows an event of the graben.
 const SCATTER: f64 = 3.0;
-/// How much less semblance is on a fault that only bends one horizon than beside it.
+/// Least difference of the mean semblance beside and on a fault that consists of bends of a single horizon.
 const BREAK: f32 = 0.02;
 
-/// Looks for faults that offset `horizons`, other than those of `known`. `semblance` is a volume of the survey's size.
+/// Searches for faults that offset `horizons`, other than those of `known`. `semblance` is a volume of the
+/// survey's size.
 ///
 /// Cost: a window of [`ProposeSettings::reach`] around each rim node.
 ///
 /// # Errors
 /// [`Cancelled`].
+///
+/// # Examples
+///
+/// ```
+/// use interp::faults::{Evidence, ProposeSettings, propose_faults};
+/// use interp::reassembly::VoxelSheet;
+/// use model::FaultNetwork;
+/// use survey::{Progress, SurveyGeometry, VerticalUnit};
+///
+/// // A flat horizon that is 6 samples (60 m) deeper from inline index 30 on: a fault with that throw.
+/// let geometry = SurveyGeometry::regular([60, 60, 60], 25.0, 10.0, VerticalUnit::Metres);
+/// let mut sheet = VoxelSheet::empty(0, 60 * 60);
+/// for (trace, z) in sheet.z.iter_mut().enumerate() {
+///     *z = if trace / 60 < 30 { 20.0 } else { 26.0 };
+/// }
+/// let horizons = [Evidence { name: "H", sheets: &[sheet] }];
+/// let (known, settings) = (FaultNetwork::none(), ProposeSettings::default());
+/// let found = propose_faults(&horizons, &geometry, &known, None, &settings, &Progress::silent())?;
+/// assert_eq!(found.proposals.len(), 1);
+/// assert!((found.proposals[0].throw[0] - 60.0).abs() < 1e-3);
+/// # Ok::<(), survey::Cancelled>(())
+/// ```
 pub fn propose_faults(
     horizons: &[Evidence],
     geometry: &SurveyGeometry,
@@ -143,14 +173,14 @@ pub fn propose_faults(
     semblance: Option<&Volume<f32>>,
     settings: &ProposeSettings,
     progress: &Progress,
-) -> Result<Found, Cancelled> {
+) -> Result<FoundFaults, Cancelled> {
     let [nx, ny, _] = geometry.size();
     let metric = geometry.metric_from_voxel();
-    progress.begin("looking for faults", horizons.len() as u64);
+    progress.begin("searching for faults", horizons.len() as u64);
     let mut known = known::Known::of(known, geometry);
     let mut found = Vec::new();
     for (h, horizon) in horizons.iter().enumerate() {
-        let pieces = edges::Pieces::of(horizon.sheets, [nx, ny]);
+        let pieces = edges::HorizonRims::of(horizon.sheets, [nx, ny]);
         let mut pairs = pairs::facing(&pieces, h, settings);
         pairs.extend(bends::of(horizon.sheets, [nx, ny], h, settings));
         found.extend(traces::along_strike(known.others(pairs), settings));
@@ -160,7 +190,7 @@ pub fn propose_faults(
     let mut proposals = Vec::new();
     for cluster in clusters {
         progress.check()?;
-        let Some(surface) = surface::Surface::through(&cluster, geometry, semblance, settings) else { continue };
+        let Some(surface) = surface::FittedFault::through(&cluster, geometry, semblance, settings) else { continue };
         let surface = surface.extended(&cluster, horizons, geometry);
         let proposal = describe(&surface, &cluster, horizons, geometry, semblance);
         let seen = proposal.semblance.is_none_or(|[on, beside]| on < beside - BREAK);
@@ -171,11 +201,12 @@ pub fn propose_faults(
     let repeats = known.repeats();
     let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
     rank(&mut proposals, repeats.iter().map(|repeat| repeat.offset_m2).sum(), bin_m);
-    Ok(Found { proposals, repeats })
+    Ok(FoundFaults { proposals, repeats })
 }
 
-/// Sorts, numbers and names proposals. Minor are the last of them that together hold no more than [`MINOR`] of all offset, theirs and what known faults
-/// repeated, those whose pairs are more than [`SCATTER`] traces off their surface, and those on which semblance is no less than beside.
+/// Sorts, numbers and names proposals. Three kinds are minor: the smallest ones that together hold at most
+/// [`MINOR`] of the total offset (of the proposals and of the known faults found again), those whose pairs
+/// are more than [`SCATTER`] traces off their surface, and those on which semblance is not lower than beside.
 fn rank(proposals: &mut [Proposal], repeated: f64, bin_m: f64) {
     proposals.sort_by(|a, b| b.offset_m2.total_cmp(&a.offset_m2));
     let mut rest: f64 = proposals.iter().map(|proposal| proposal.offset_m2).sum();
@@ -192,9 +223,9 @@ fn rank(proposals: &mut [Proposal], repeated: f64, bin_m: f64) {
     }
 }
 
-/// Everything to be said of a surface.
+/// The proposal of a surface.
 fn describe(
-    surface: &surface::Surface,
+    surface: &surface::FittedFault,
     cluster: &[Pair],
     horizons: &[Evidence],
     geometry: &SurveyGeometry,
@@ -216,7 +247,7 @@ fn describe(
         mesh: surface.mesh(geometry),
         strike_deg: bearing,
         dip_deg: (1.0 / run.max(1e-9)).atan().to_degrees(),
-        // The hanging wall is the side it dips to.
+        // The hanging wall is the side towards which the fault dips.
         reverse: (side > 0.0) != dips_to_positive,
         throw: [throws[throws.len() / 2] * interval, throws[throws.len() * 95 / 100] * interval],
         ends: surface.ends().map(|p| {

@@ -1,8 +1,9 @@
-//! Surface trees (P-horiz 4): each grown surface cut into a binary hierarchy of ever flatter parts.
+//! Surface trees (P-horiz 4): each grown surface is cut into a binary hierarchy of ever flatter parts.
 //!
-//! Hierarchical face clustering (M. Attene, B. Falcidieno, M. Spagnuolo, "Hierarchical mesh segmentation based on fitting
-//! primitives", The Visual Computer 22, 2006, with planes alone): neighbouring parts whose union is flattest are merged first,
-//! until one is left. The cost of a union S is its un-normalised squared distance to its best-fit plane and a tie-break,
+//! The method is hierarchical face clustering (M. Attene, B. Falcidieno, M. Spagnuolo, "Hierarchical mesh
+//! segmentation based on fitting primitives", The Visual Computer 22, 2006) with planes as the only
+//! primitive: neighbouring parts whose union is flattest are merged first, until one is left. The cost of a
+//! union S is its un-normalised squared distance to its best-fit plane and a tie-break,
 //!
 //! ```text
 //! cost(S) = min over planes ∫_S d² dA + 1e-12 · area(S),
@@ -10,16 +11,20 @@
 //!
 //! and the first term is the smallest eigenvalue of the central second moment of S (see `moments`).
 //!
-//! **Departure: no priority queue.** No plane fits a larger set better, so cost(S ∪ T) ≥ cost(S), and the cost of joining A ∪ B with C is never
-//! below the lesser of those of joining A or B with C. For such (reducible) costs, merging any two parts that are each other's
-//! cheapest neighbour makes the same tree as the greedy order of the queue does, whatever the order. So we follow chains of cheapest neighbours
-//! (`cluster`), parts of one large surface can be merged on several threads, and the tree depends on neither.
+//! **Departure: no priority queue.** No plane fits a larger set better, so cost(S ∪ T) ≥ cost(S), and the
+//! cost of joining A ∪ B with C is never below the lesser of those of joining A or B with C. For such
+//! (reducible) costs, merging any two parts that are each other's cheapest neighbour makes the same tree as
+//! the greedy order of the queue, in whatever order it is done. So we follow chains of cheapest neighbours
+//! (`cluster`). Parts of one large surface can then be merged on several threads, and the tree depends
+//! neither on the threads nor on the order.
 //!
-//! **Departure: where it starts.** From the connected triangles of small square tiles ([`ForestSettings::start_cells`]) instead of single triangles;
-//! a leaf holds some sixty of those. A test holds the leaves' total cost beside that of the trees from single triangles.
+//! **Departure: the start.** Clustering starts from the connected triangles of small square tiles
+//! ([`ForestSettings::start_cells`]) instead of single triangles; a leaf contains some sixty of these. A test
+//! compares the total cost of the leaves with that of trees from single triangles.
 //!
-//! Trees are pruned to leaves of [`ForestSettings::min_leaf_triangles`] (`prune`). Triangles are ordered so that every node of a tree owns one
-//! contiguous range: a node is its range, climbing widens it. Space: voxels.
+//! Trees are pruned to leaves of [`ForestSettings::min_leaf_triangles`] (`prune`). Triangles are ordered so
+//! that every node of a tree owns one contiguous range: a node is its range, and its parent is a wider range.
+//! Space: voxels.
 
 mod cluster;
 mod dual;
@@ -41,17 +46,19 @@ use survey::{Cancelled, Progress};
 
 pub use split::Subtree;
 
-/// Most triangles a forest can hold: the distance search keeps two bits of a leaf id for itself.
+/// Largest count of triangles of a forest: the distance search uses two bits of a leaf id for itself.
 pub const MAX_TRIANGLES: usize = (1 << 30) - 1;
 
-/// How trees are built.
+/// Settings of surface trees.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ForestSettings {
-    /// Fewest triangles of a leaf; a surface with fewer is one leaf. Default 500, as in the paper.
+    /// Least count of triangles of a leaf; a surface with fewer is a single leaf. Default 500, as in the
+    /// paper.
     pub min_leaf_triangles: u32,
-    /// Edge of the square tiles whose connected triangles start as one part, in cells of the lattice; 0 starts from single triangles, as the
-    /// paper does, in six times the time. Default 2: eight triangles.
+    /// Edge of the square tiles whose connected triangles start as one part, in cells of the lattice. 0
+    /// starts from single triangles, as the paper does, and takes six times as long. Default 2: eight
+    /// triangles.
     pub start_cells: u16,
 }
 
@@ -61,10 +68,10 @@ impl Default for ForestSettings {
     }
 }
 
-/// A part of a surface.
+/// A node of a surface tree: a part of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Node {
-    /// The node it is half of; `None` for a whole surface.
+    /// The node of which it is one half; `None` for a whole surface.
     pub parent: Option<u32>,
     /// Its two halves; `None` for a leaf.
     pub children: Option<[u32; 2]>,
@@ -76,27 +83,53 @@ pub struct Node {
 
 /// The trees of all surfaces of an extraction.
 ///
-/// Leaf ids are unique over the volume and count from 1 in the order of the triangles; 0 means no leaf. The same surfaces make the same
-/// forest on any number of threads.
+/// A leaf is a *candidate*, the smallest part that can be picked. Leaf ids are unique in the volume and count
+/// from 1 in the order of the triangles; 0 means no leaf. The same surfaces make the same forest on any
+/// number of threads.
+///
+/// # Examples
+///
+/// ```
+/// use interp::{Extremum, Forest, ForestSettings, Surface, Surfaces, Vertex};
+/// use survey::Progress;
+///
+/// // A plane at sample 5 over 9 × 17 traces, two triangles a cell: 2 · 8 · 16 = 256.
+/// let vertices = (0..9 * 17).map(|n| Vertex { x: n / 17, y: n % 17, z: 5.0 }).collect();
+/// let cells = (0..8u32).flat_map(|x| (0..16).map(move |y| x * 17 + y));
+/// let triangles: Vec<_> = cells.flat_map(|v| [[v, v + 17, v + 1], [v + 1, v + 17, v + 18]]).collect();
+/// let plane = Surface { extremum: Extremum::Peak, vertices: 0..153, triangles: 0..256 };
+/// let surfaces = Surfaces { size: [9, 17, 10], vertices, triangles, surfaces: vec![plane] };
+///
+/// let settings = ForestSettings { min_leaf_triangles: 64, ..ForestSettings::default() };
+/// let forest = Forest::build(surfaces, &settings, &Progress::silent())?;
+/// // One binary tree: one node fewer between the leaves than there are leaves.
+/// assert_eq!(forest.roots, [0]);
+/// assert_eq!(forest.nodes.len(), 2 * forest.leaf_count() - 1);
+/// assert_eq!(forest.nodes[0].triangles, 0..256);
+/// assert!(forest.leaves.iter().all(|&leaf| forest.nodes[leaf as usize].triangles.len() >= 64));
+/// # Ok::<(), interp::Error>(())
+/// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Forest {
-    /// The surfaces, their triangles in the order of the leaves.
+    /// The surfaces, with their triangles in the order of the leaves.
     pub surfaces: Surfaces,
-    /// Nodes of all trees; those of a tree lie together, each before its children.
+    /// Nodes of all trees. Those of a tree are contiguous, each before its children.
     pub nodes: Vec<Node>,
-    /// Root of each surface: index into `nodes`.
+    /// Root of each surface, an index into `nodes`.
     pub roots: Vec<u32>,
     /// Node of each leaf: `leaves[id − 1]` is an index into `nodes`.
     pub leaves: Vec<u32>,
 }
 
 impl Forest {
-    /// Builds the trees of `surfaces`, whose triangles are put into the order of the leaves.
+    /// Builds the trees of `surfaces` and puts the triangles into the order of the leaves.
     ///
-    /// Cost: time and memory proportional to the triangles (about 40 bytes each of the surfaces at work at once).
+    /// Cost: time and memory proportional to the triangles (about 40 bytes per triangle of the surfaces in
+    /// work at the same time).
     ///
     /// # Errors
-    /// [`Error::MalformedSurfaces`] when ranges or indices contradict each other, [`Error::TooManyTriangles`], [`Error::Cancelled`].
+    /// [`Error::Setting`], [`Error::MalformedSurfaces`] when ranges or indices contradict each other,
+    /// [`Error::TooManyTriangles`], [`Error::Cancelled`].
     pub fn build(mut surfaces: Surfaces, settings: &ForestSettings, progress: &Progress) -> Result<Self, Error> {
         if settings.min_leaf_triangles == 0 {
             return Err(Error::Setting { setting: "min_leaf_triangles", value: 0.0, expected: "at least 1" });
@@ -104,7 +137,7 @@ impl Forest {
         check(&surfaces)?;
         progress.begin("building surface trees", surfaces.triangles.len() as u64);
         let Surfaces { vertices, triangles, surfaces: parts, .. } = &mut surfaces;
-        // Largest first, so that the threads end together.
+        // Largest first, so that the threads finish together.
         let mut jobs = jobs(triangles, parts.iter().map(|part| part.triangles.len()));
         jobs.sort_by_key(|job| (std::cmp::Reverse(job.1.len()), job.0));
         let mut trees = jobs
@@ -124,7 +157,7 @@ impl Forest {
         Ok(forest)
     }
 
-    /// Adds a surface's tree.
+    /// Adds the tree of a surface.
     fn plant(&mut self, surface: u32, tree: &PrunedTree) {
         let (root, first) = (self.nodes.len() as u32, self.surfaces.surfaces[surface as usize].triangles.start);
         self.roots.push(root);
@@ -141,12 +174,12 @@ impl Forest {
         }
     }
 
-    /// Count of leaves: the greatest leaf id.
+    /// Count of leaves, which is also the greatest leaf id.
     pub fn leaf_count(&self) -> usize {
         self.leaves.len()
     }
 
-    /// Index of a leaf's node.
+    /// Index of the node of a leaf.
     ///
     /// # Errors
     /// [`Error::NoSuchLeaf`].
@@ -155,7 +188,7 @@ impl Forest {
         self.leaves.get(index).copied().ok_or(Error::NoSuchLeaf { leaf, count: self.leaves.len() })
     }
 
-    /// Leaf ids under a node: they are consecutive.
+    /// Ids of the leaves under a node. They are consecutive.
     pub fn leaves_under(&self, node: u32) -> Range<u32> {
         let range = &self.nodes[node as usize].triangles;
         let before =
@@ -163,25 +196,25 @@ impl Forest {
         before(range.start)..before(range.end)
     }
 
-    /// Id of the leaf that holds a triangle.
+    /// Id of the leaf that contains a triangle.
     #[inline]
     pub fn leaf_of_triangle(&self, triangle: u32) -> u32 {
         self.leaves.partition_point(|&leaf| self.nodes[leaf as usize].triangles.start <= triangle) as u32
     }
 
-    /// Nodes from `node` up to its root, itself first.
+    /// Nodes from `node` up to its root, beginning with `node`.
     pub fn climb(&self, node: u32) -> impl Iterator<Item = u32> {
         std::iter::successors(Some(node), |&node| self.nodes[node as usize].parent)
     }
 
-    /// Whether a node is a whole surface too small for a leaf of `min_leaf_triangles`.
+    /// Whether a node is a whole surface with fewer than `min_leaf_triangles` triangles.
     pub fn is_undersized(&self, node: u32, min_leaf_triangles: u32) -> bool {
         let node = &self.nodes[node as usize];
         node.parent.is_none() && (node.triangles.len() as u64) < u64::from(min_leaf_triangles)
     }
 }
 
-/// The triangles of each surface, to be put in order.
+/// The triangles of each surface, with its index.
 fn jobs(mut triangles: &mut [[u32; 3]], counts: impl Iterator<Item = usize>) -> Vec<(usize, &mut [[u32; 3]])> {
     let mut jobs = Vec::new();
     for (surface, count) in counts.enumerate() {
@@ -211,7 +244,7 @@ fn tree(
     Ok(tree)
 }
 
-/// Checks what the rest relies on.
+/// Checks the ranges and indices on which everything else relies.
 fn check(surfaces: &Surfaces) -> Result<(), Error> {
     let triangles = surfaces.triangles.len();
     if triangles > MAX_TRIANGLES {

@@ -1,7 +1,8 @@
-//! Holes of assembled sheets: finding them, and filling them on request by the surface of least curvature.
+//! Holes of assembled sheets: finding them, and filling them on request with the surface of least curvature.
 //!
-//! A **hole** is a connected set of traces without a node that the nodes of its sheet enclose. What is open to a wall, or to the side on which
-//! a fault ends the sheet, is no hole. Only the first sheet of each fault block is looked at. Space: voxels.
+//! A **hole** is a connected set of traces without a node that the nodes of its sheet enclose. A gap that
+//! reaches the outer boundary, or the side on which a fault ends the sheet, is no hole. Only the first sheet
+//! of each fault block is examined. Space: voxels.
 
 mod fill;
 #[cfg(test)]
@@ -19,9 +20,9 @@ use survey::{Cancelled, Progress, Quality};
 pub struct Hole {
     /// Fault block of the sheet.
     pub block: u16,
-    /// Traces without a node.
+    /// Count of traces without a node.
     pub traces: usize,
-    /// Inline and crossline index of the trace of it that is closest to its middle.
+    /// Inline and crossline index of the trace that is closest to the middle of the hole.
     pub at: [usize; 2],
     #[serde(skip)]
     sheet: usize,
@@ -30,35 +31,48 @@ pub struct Hole {
 }
 
 impl Hole {
-    /// Its traces, inline index times crosslines plus crossline index, ascending.
+    /// The traces of the hole, as inline index · crosslines + crossline index, ascending.
     pub fn nodes(&self) -> &[u32] {
         &self.nodes
     }
 }
 
-/// What to fill.
+/// Settings of filling.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct FillSettings {
-    /// Holes of more traces stay; `None` (default) fills all.
+    /// Holes with more traces are not filled; `None` (default) fills all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_traces: Option<usize>,
 }
 
-/// What was filled.
+/// The result of filling.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Filled {
-    /// Holes filled.
+    /// Count of holes filled.
     pub holes: usize,
-    /// Nodes made.
+    /// Count of nodes made.
     pub nodes: usize,
-    /// Traces left empty because the surface would have left its fault block there.
+    /// Count of traces left empty because the surface would have left its fault block there.
     pub across_faults: usize,
-    /// Holes left because they are larger than asked for.
+    /// Count of holes left because they are larger than [`FillSettings::max_traces`].
     pub left: usize,
 }
 
 /// The holes of all sheets, largest first. `size` is `[inlines, crosslines]`.
+///
+/// ```
+/// use interp::holes::find_holes;
+/// use interp::reassembly::VoxelSheet;
+///
+/// // A flat sheet of 5 × 5 traces without its middle node and without a node at the outer boundary.
+/// let mut sheet = VoxelSheet::empty(0, 25);
+/// sheet.z.fill(7.0);
+/// (sheet.z[12], sheet.z[0]) = (f32::NAN, f32::NAN);
+/// let holes = find_holes(&[sheet], [5, 5]);
+/// assert_eq!(holes.len(), 1);
+/// assert_eq!((holes[0].traces, holes[0].at), (1, [2, 2]));
+/// ```
 pub fn find_holes(sheets: &[VoxelSheet], size: [usize; 2]) -> Vec<Hole> {
     let mut holes = Vec::new();
     for (index, sheet) in sheets.iter().enumerate() {
@@ -107,13 +121,15 @@ fn enclosed(index: usize, sheet: &VoxelSheet, [nx, ny]: [usize; 2], holes: &mut 
         let count = nodes.len() as f64;
         let mean = [0, 1].map(|axis| nodes.iter().map(|&n| place(n)[axis] as f64).sum::<f64>() / count);
         let off = |n: u32| (0..2).map(|axis| (place(n)[axis] as f64 - mean[axis]).powi(2)).sum::<f64>();
-        let middle = nodes.iter().copied().min_by(|&a, &b| off(a).total_cmp(&off(b))).unwrap_or(0);
+        let middle = nodes.iter().copied().min_by(|&a, &b| off(a).total_cmp(&off(b)));
+        let middle = middle.expect("a hole has at least the trace that its search started at");
         holes.push(Hole { block: sheet.block, traces: nodes.len(), at: place(middle), sheet: index, nodes });
     }
 }
 
-/// Fills the holes of all sheets; their nodes get [`Quality::Filled`]. A node that would lie in another fault block is not made: the surface
-/// ends at the fault, on either side for itself.
+/// Fills the holes of all sheets. New nodes get [`Quality::Filled`]. A node that would lie in another fault
+/// block is not made: the surface ends at the fault, on each side separately. `size` is `[inlines,
+/// crosslines]`.
 ///
 /// # Errors
 /// [`Cancelled`].

@@ -1,10 +1,13 @@
-//! From selected triangles back to horizons (P-horiz 5.3): sheets on the survey's lattice, one or more for each fault block.
+//! From selected triangles back to horizons (P-horiz 5.3): sheets on the survey's lattice, one or more for
+//! each fault block.
 //!
-//! A vertex is an extremum of one trace, so a sheet's node is its z: nothing is interpolated. Vertices go to the fault block they lie in, and
-//! edges between blocks are cut. In each block the mesh is walked breadth first from the picked triangles; the first vertex to reach a trace takes it.
-//! What finds its trace taken is left for a walk of its own and lands on a further sheet of that block: an overlap is kept in sight, and
-//! without interpreted faults that is how the second side of a reverse fault survives. What tracking left beyond a fault, over or under the sheet
-//! that belongs there, is left out. Space: voxels.
+//! A vertex is an extremum of one trace, so a node of a sheet takes its z and nothing is interpolated. Each
+//! vertex belongs to the fault block in which it lies, and edges between blocks are cut. In each block the
+//! mesh is traversed breadth first from the picked triangles; the first vertex to reach a trace takes it. A
+//! vertex whose trace is taken is left for a traversal of its own and becomes part of a further sheet of that
+//! block. So overlaps stay visible, and without interpreted faults the second side of a reverse fault is
+//! preserved. Patches that tracking left beyond a fault, over or under the sheet that belongs there, are
+//! dropped. Space: voxels.
 
 use crate::assembly::{Overlap, Selection};
 use crate::forest::Forest;
@@ -17,11 +20,11 @@ use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry};
 /// A sheet on the survey's lattice.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VoxelSheet {
-    /// The fault block it lies in.
+    /// The fault block in which it lies.
     pub block: u16,
-    /// Fractional sample of each trace, `[inline][crossline]`; NaN = hole.
+    /// Fractional sample of each trace `[inline][crossline]`; NaN in a hole.
     pub z: Vec<f32>,
-    /// How each node came about.
+    /// Quality of each node, in the same order.
     pub quality: Vec<Quality>,
 }
 
@@ -37,23 +40,50 @@ impl VoxelSheet {
     }
 }
 
-/// What triangles became.
+/// The result of [`reassemble`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reassembled {
-    /// Sheets by block; of several in one block the first is the one that was picked, the others lie over it.
+    /// Sheets, ordered by block. Of several in one block the first is the one that was picked; the others lie
+    /// over it.
     pub sheets: Vec<VoxelSheet>,
     /// Where sheets of one block lie over one another.
     pub overlap: Overlap,
-    /// Count of vertices left out because they lie beyond a fault that their surface was tracked across.
+    /// Count of vertices dropped because they lie beyond a fault that their surface was tracked across.
     pub left_out: usize,
 }
 
 /// No vertex, or none yet.
 const NONE: u32 = u32::MAX;
 
-/// Makes sheets of the selected triangles. `seeds` are triangles to start from, in order of importance.
+/// Makes sheets of the selected triangles. `seeds` are the triangles from which to start, in order of
+/// importance.
 ///
 /// Cost: time and memory proportional to the triangles, and 5 bytes a trace for each sheet.
+///
+/// ```
+/// use interp::assembly::Selection;
+/// use interp::reassembly::reassemble;
+/// use interp::{Extremum, Forest, ForestSettings, Surface, Surfaces, Vertex};
+/// use survey::Progress;
+/// use model::FaultNetwork;
+///
+/// // One cell of four traces with two triangles; only the first is selected.
+/// let corner = |x, y, z| Vertex { x, y, z };
+/// let surfaces = Surfaces {
+///     size: [2, 2, 8],
+///     vertices: vec![corner(0, 0, 2.0), corner(0, 1, 2.5), corner(1, 0, 3.0), corner(1, 1, 3.5)],
+///     triangles: vec![[0, 2, 1], [1, 2, 3]],
+///     surfaces: vec![Surface { extremum: Extremum::Peak, vertices: 0..4, triangles: 0..2 }],
+/// };
+/// let forest = Forest::build(surfaces, &ForestSettings::default(), &Progress::silent())?;
+/// let mut selection = Selection::default();
+/// selection.insert(0..1);
+/// let found = reassemble(&forest, &selection, &[0], &FaultNetwork::none());
+/// assert_eq!(found.sheets.len(), 1);
+/// assert_eq!(found.sheets[0].z[..3], [2.0, 2.5, 3.0]);
+/// assert!(found.sheets[0].z[3].is_nan());
+/// # Ok::<(), interp::Error>(())
+/// ```
 pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks: &FaultNetwork) -> Reassembled {
     let surfaces = &forest.surfaces;
     let [nx, ny, _] = surfaces.size;
@@ -86,29 +116,29 @@ pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks:
             sheets[sheet].quality[trace_of(v)] = Quality::Tracked;
         }
     }
-    // Stable: of one block, the sheet that was begun first stays first.
+    // A stable sort: of the sheets of one block, the one that was begun first stays first.
     sheets.sort_by_key(|sheet| sheet.block);
     let overlap = overlap_of(&sheets, ny);
     Reassembled { sheets, overlap, left_out }
 }
 
 /// Connected vertices of one block, at most one a trace.
-struct Patch {
+struct SheetPatch {
     block: u16,
     vertices: Vec<u32>,
 }
 
-/// Walks the mesh from each start that no walk has reached, within its block.
+/// Traverses the mesh from each start that has not been reached yet, within its block.
 fn patches(
     mesh: &Mesh,
     block: &[u16],
     starts: impl Iterator<Item = u32>,
     trace_of: impl Fn(u32) -> usize,
     traces: usize,
-) -> Vec<Patch> {
+) -> Vec<SheetPatch> {
     let mut patches = Vec::new();
     let mut placed = vec![false; block.len()];
-    // Walk that took a trace last.
+    // The traversal that took each trace last.
     let mut taken = vec![NONE; traces];
     let mut queue = VecDeque::new();
     for start in starts {
@@ -116,7 +146,7 @@ fn patches(
             continue;
         }
         let walk = patches.len() as u32;
-        let mut patch = Patch { block: block[start as usize], vertices: Vec::new() };
+        let mut patch = SheetPatch { block: block[start as usize], vertices: Vec::new() };
         placed[start as usize] = true;
         taken[trace_of(start)] = walk;
         queue.push_back(start);
@@ -136,20 +166,23 @@ fn patches(
     patches
 }
 
-/// Share of a patch that lies over or under a larger one of its block, from which on it can be another block's overshoot.
+/// Share of a patch that lies over or under a larger one of its block, from which on the patch can be the
+/// overshoot of another block.
 const OVERSHOT: f64 = 0.3;
 
-/// Patches of a block with a larger one that reach no farther than this from the fault, traces, can be another block's overshoot too.
+/// A patch that reaches no farther than this from the fault (traces), in a block with a larger patch, can
+/// also be the overshoot of another block.
 const FRINGE: u32 = 12;
 
-/// Which patches are what tracking left beyond a fault: the continuation of a larger patch in another block, where this block has a larger patch
-/// of its own that runs above or below, or far beyond a fringe along the fault.
-fn overshoots(patches: &[Patch], mesh: &Mesh, trace_of: impl Fn(u32) -> usize, traces: usize) -> Vec<bool> {
+/// Which patches are overshoots, i.e. were left by tracking beyond a fault. Such a patch continues a larger
+/// patch of another block, and its own block has a larger patch: either the two lie over one another, or the
+/// overshoot is a mere fringe along the fault.
+fn overshoots(patches: &[SheetPatch], mesh: &Mesh, trace_of: impl Fn(u32) -> usize, traces: usize) -> Vec<bool> {
     let mut patch_of = vec![NONE; mesh.vertices.len()];
     for (p, patch) in patches.iter().enumerate() {
         patch.vertices.iter().for_each(|&v| patch_of[v as usize] = p as u32);
     }
-    // Traces that a larger patch of the block has; blocks one after the other.
+    // Traces of the larger patches of the block; blocks are done one after the other.
     let mut covered = vec![false; traces];
     let mut order: Vec<usize> = (0..patches.len()).collect();
     order.sort_by_key(|&p| (patches[p].block, std::cmp::Reverse(patches[p].vertices.len()), p));
@@ -159,7 +192,7 @@ fn overshoots(patches: &[Patch], mesh: &Mesh, trace_of: impl Fn(u32) -> usize, t
         for &p in of_block {
             let patch = &patches[p];
             let under = patch.vertices.iter().filter(|&&v| covered[trace_of(v)]).count();
-            // What lies at the fault: next to a larger patch of another block.
+            // Vertices at the fault: next to a larger patch of another block.
             let at_fault = |v: &u32| {
                 mesh.neighbours(*v).iter().any(|&m| {
                     let across = &patches[patch_of[m as usize] as usize];
@@ -178,7 +211,7 @@ fn overshoots(patches: &[Patch], mesh: &Mesh, trace_of: impl Fn(u32) -> usize, t
     found
 }
 
-/// Whether a patch reaches no farther than [`FRINGE`] steps along its edges from its vertices at a fault.
+/// Whether a patch reaches at most [`FRINGE`] edges away from its vertices at a fault.
 fn is_fringe(mesh: &Mesh, patch_of: &[u32], patch: u32, fault: Vec<u32>) -> bool {
     let mut seen: HashSet<u32> = fault.iter().copied().collect();
     let mut rim = fault;
@@ -192,7 +225,7 @@ fn is_fringe(mesh: &Mesh, patch_of: &[u32], patch: u32, fault: Vec<u32>) -> bool
     false
 }
 
-/// Where further sheets of a block lie over its first.
+/// Where further sheets of a block lie over its first sheets.
 fn overlap_of(sheets: &[VoxelSheet], ny: usize) -> Overlap {
     let mut overlap = Overlap::default();
     for of_block in sheets.chunk_by(|a, b| a.block == b.block) {
@@ -204,7 +237,7 @@ fn overlap_of(sheets: &[VoxelSheet], ny: usize) -> Overlap {
                     overlap.traces += 1;
                     if apart > overlap.apart {
                         overlap.apart = apart;
-                        overlap.at = [(trace / ny) as f32, (trace % ny) as f32, z];
+                        overlap.at_voxel = [(trace / ny) as f32, (trace % ny) as f32, z];
                     }
                 }
             }
@@ -228,7 +261,7 @@ impl Mesh {
         vertices.sort_unstable();
         vertices.dedup();
         let mut mesh = Self { vertices, starts: Vec::new(), next: Vec::new() };
-        let local = |v: u32| mesh.local(v).unwrap_or(NONE);
+        let local = |v: u32| mesh.local(v).expect("the mesh has all corners of its triangles");
         let mut edges: Vec<[u32; 2]> = Vec::with_capacity(6 * selection.len());
         for [a, b, c] in triangles().map(|corners| corners.map(local)) {
             edges.extend([[a, b], [b, a], [b, c], [c, b], [c, a], [a, c]]);
@@ -255,10 +288,10 @@ impl Mesh {
     }
 }
 
-/// Sheets as a horizon in the survey's vertical unit.
+/// Converts sheets to a horizon in the survey's vertical unit.
 ///
-/// Blocks are not written down: a tracked sheet reaches up to a fault from both sides and a little beyond, and the structural model only sorts out
-/// nodes beside a fault of sheets that leave their block open.
+/// The sheets of the horizon name no block. A tracked sheet reaches up to a fault from both sides and a
+/// little beyond, and the structural model sorts out nodes next to a fault only in sheets without a block.
 pub fn to_horizon(name: &str, sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> Horizon {
     let grid = NodeGrid::of_survey(geometry);
     let sheet = |sheet: &VoxelSheet| Sheet {
@@ -274,8 +307,9 @@ pub fn to_horizon(name: &str, sheets: &[VoxelSheet], geometry: &SurveyGeometry) 
     Horizon { name: name.to_owned(), sheets: sheets.iter().map(sheet).collect() }
 }
 
-/// The nodes of a horizon that lie on the survey's lattice, in samples, sorted into fault blocks; the way back from [`to_horizon`]. Sheets on
-/// other grids are sampled at the traces. What one sheet has in a block stays together: it joins another sheet only where that has no node at all.
+/// The nodes of a horizon on the survey's lattice, in samples, sorted into fault blocks; the inverse of
+/// [`to_horizon`]. Sheets on other grids are sampled at the traces. The nodes of one sheet in one block stay
+/// together: they join another sheet only where that has no node at all.
 pub fn from_horizon(horizon: &Horizon, geometry: &SurveyGeometry, blocks: &FaultNetwork) -> Vec<VoxelSheet> {
     let [nx, ny, _] = geometry.size();
     let mut sheets: Vec<VoxelSheet> = Vec::new();
@@ -298,7 +332,7 @@ pub fn from_horizon(horizon: &Horizon, geometry: &SurveyGeometry, blocks: &Fault
     sheets
 }
 
-/// One sheet on the survey's lattice, a part for each fault block that it reaches.
+/// The parts of a sheet on the survey's lattice, one for each fault block that it reaches.
 fn parts_of(sheet: &Sheet, geometry: &SurveyGeometry, blocks: &FaultNetwork) -> Vec<VoxelSheet> {
     let [nx, ny, _] = geometry.size();
     let survey = NodeGrid::of_survey(geometry);

@@ -1,12 +1,13 @@
-//! Grown surfaces: triangles over extrema of the traces (P-horiz 4).
+//! Grown surfaces: triangles over the extrema of traces (P-horiz 4).
 //!
-//! A vertex is an extremum of one trace, so its x and y are whole numbers and its z is refined below the sample. Triangles join
-//! vertices of traces that are neighbours on the lattice; no triangle spans more than one cell of four traces. Space: voxels.
+//! A vertex is an extremum of one trace, so its x and y are integers and its z lies between samples.
+//! Triangles join vertices of neighbouring traces; no triangle spans more than one cell of four traces.
+//! Space: voxels.
 
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
-/// What of a trace a surface follows.
+/// The feature of a trace that a surface follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Extremum {
@@ -14,7 +15,7 @@ pub enum Extremum {
     Peak,
     /// Negative minima.
     Trough,
-    /// Zero crossings, from negative above to positive below.
+    /// Zero crossings from negative above to positive below.
     Zero,
 }
 
@@ -29,28 +30,28 @@ pub struct Vertex {
     pub z: f32,
 }
 
-/// One grown surface: ranges into the arrays of [`Surfaces`].
+/// One grown surface, as ranges of the arrays of [`Surfaces`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// What it follows.
+    /// The kind of extremum that it follows.
     pub extremum: Extremum,
-    /// Its vertices.
+    /// Its range of [`Surfaces::vertices`].
     pub vertices: Range<u32>,
-    /// Its triangles.
+    /// Its range of [`Surfaces::triangles`].
     pub triangles: Range<u32>,
 }
 
 /// All surfaces grown in a volume. Memory: 8 bytes a vertex and 12 a triangle.
 ///
-/// The order is part of the result: surfaces by their first vertex, vertices of a surface by (x, y, z), so the same volume gives
-/// the same bytes at any number of threads or bricks.
+/// The order is part of the result: surfaces are ordered by their first vertex, and the vertices of a surface
+/// by (x, y, z). The same volume therefore gives the same bytes at any number of threads or slabs.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Surfaces {
     /// `[inlines, crosslines, samples]` of the volume they were grown in.
     pub size: [usize; 3],
-    /// Vertices, surface by surface.
+    /// Vertices, in the order of the surfaces.
     pub vertices: Vec<Vertex>,
-    /// Indices into `vertices`, surface by surface.
+    /// Triangles as indices into `vertices`, in the order of the surfaces.
     pub triangles: Vec<[u32; 3]>,
     /// The surfaces.
     pub surfaces: Vec<Surface>,

@@ -1,4 +1,5 @@
-//! Stage times of the parameterization on a folded, faulted model: `time_param [N …]`, default 64 and 128.
+//! Times the stages of the parameterization on a folded, faulted model of N³ voxels: `time_param [N …]`;
+//! default 64 and 128.
 //!
 //! Four layers between horizons with dips up to 35° and thickness ± 30 %, three fault blocks.
 
@@ -12,7 +13,7 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 use survey::Progress;
 
-/// Two faults dipping 60°, throws of 4 and 6 % of the depth.
+/// A model with two faults that dip about 60°, with throws of 4 and 6 % of the depth.
 fn model(n: usize) -> ClosedForm {
     let side = n as f64;
     let depth = move |h: usize, block: u16, x: f64, y: f64| {
@@ -29,7 +30,7 @@ fn model(n: usize) -> ClosedForm {
     ClosedForm::faulted([n; 3], 3, 3, depth, block_at)
 }
 
-/// Processor seconds of this process so far (Linux; 0 elsewhere): what a busy machine does not spoil.
+/// Processor seconds of this process so far, which other processes do not affect. Linux; 0 elsewhere.
 fn processor_s() -> f64 {
     let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let ticks = stat.rsplit(')').next().unwrap_or_default().split_whitespace().skip(11).take(2);
@@ -44,7 +45,7 @@ fn main() {
         let report = |stage: &str, since: (Instant, f64)| {
             let (wall, processor) = (since.0.elapsed().as_secs_f64(), processor_s() - since.1);
             println!(
-                "{n:4}³ {stage:16} {wall:8.2} s, {processor:8.2} s of processors, {:8.0} ns a voxel",
+                "{n:4}³ {stage:16} {wall:8.2} s, {processor:8.2} s of processor time, {:8.0} ns a voxel",
                 processor / voxels * 1e9
             );
         };
@@ -53,7 +54,7 @@ fn main() {
         let param = Parameterization::compute(&model, &ParamSettings::default(), &Progress::silent()).unwrap();
         report("compute", start);
         let share = param.cost.traces.as_secs_f64() / (param.cost.closest_points + param.cost.traces).as_secs_f64();
-        println!("{n:4}³ of which traces {:.0} %", 100.0 * share);
+        println!("{n:4}³ {:.0} % of that for traces", 100.0 * share);
         let start = now();
         let volumes = param.voxel_volumes(&model, param.size, &Progress::silent()).unwrap();
         report("voxel volumes", start);

@@ -1,13 +1,14 @@
-//! How good a parameterization is: k on the horizons, and the angles between the gradients.
+//! How accurate a parameterization is: k on the horizons, and the angles between the gradients.
 //!
-//! Both measures take a lookup as a function of a voxel position, so that the exact path and the paper's packed path are
-//! measured at the same points in the same way.
+//! Both measures take a lookup as a function of a voxel position, so that the exact lookup and the paper's
+//! packed lookup are measured at the same points in the same way.
 //!
-//! - *k on the horizons*: with K = layer + k, which is continuous across horizons, horizon h lies at K = n − h for n
-//!   horizons. The error is |K − (n − h)| over |∂K/∂z|: voxels of depth.
-//! - *angle*: between the metric gradients of k and of i, and of k and of j, by central differences; degrees off 90°.
+//! - *k on the horizons*: K = layer + k is continuous across horizons; horizon h of n lies at K = n − h. The
+//!   error is |K − (n − h)| over |∂K/∂z|, in voxels of depth.
+//! - *angle*: between the metric gradients of k and of i, and of k and of j, by central differences; degrees
+//!   off 90°.
 //!
-//! Positions come from a Halton sequence: the same on every machine, and never on the lattice.
+//! Positions come from a Halton sequence: they are the same on every machine and never lie on the lattice.
 
 use crate::metric::Metric;
 use crate::{FlatPoint, LayerModel, PackedVolume, ParamError, Parameterization, Region};
@@ -18,7 +19,7 @@ use serde::Serialize;
 /// Half the distance over which gradients are measured, voxels.
 const STEP: f32 = 0.5;
 
-/// Where a sorted set of errors has its middle, its upper end and its worst.
+/// Median, 95 % quantile and maximum of a set of errors.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Spread {
     /// Count of errors.
@@ -32,7 +33,14 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Of absolute errors in any order.
+    /// Sorts absolute errors and takes their quantiles.
+    ///
+    /// ```
+    /// use param::accuracy::Spread;
+    ///
+    /// let spread = Spread::of((1..=100).map(|n| n as f32).collect());
+    /// assert_eq!((spread.count, spread.median, spread.p95, spread.max), (100, 50.0, 95.0, 100.0));
+    /// ```
     pub fn of(mut errors: Vec<f32>) -> Self {
         errors.sort_unstable_by(f32::total_cmp);
         let at = |fraction: f64| {
@@ -43,36 +51,37 @@ impl Spread {
     }
 }
 
-/// Angles of one lookup.
+/// Angle errors of one lookup.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct AngleAccuracy {
     /// Between ∇k and ∇i, degrees off 90.
     pub k_to_i: Spread,
     /// Between ∇k and ∇j, degrees off 90.
     pub k_to_j: Spread,
-    /// Positions beside a crease, left out above.
+    /// Count of positions next to a crease; they are left out of the angles.
     pub at_creases: usize,
 }
 
-/// Everything measured of one lookup.
+/// All errors of one lookup.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct PathAccuracy {
     /// |k − {0, 1}| on the horizons, voxels of depth.
     pub k_on_horizons: Spread,
-    /// Degrees off 90.
+    /// Angles between the gradients, degrees off 90.
     pub angles: AngleAccuracy,
 }
 
-/// The exact lookup and the paper's packed one, measured at the same places.
+/// The errors of the exact lookup and of the paper's packed one, measured at the same positions.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Comparison {
+pub struct LookupComparison {
     /// [`Parameterization::lookup`].
     pub exact: PathAccuracy,
     /// [`PackedVolume::lookup_extrapolated`] (P-illus 3.4).
     pub packed: PathAccuracy,
 }
 
-/// Measures both paths at `count` places per horizon and block and ten times as many inside.
+/// Measures both lookups at up to `count` points per horizon and block, and at up to ten times as many inside
+/// the volume.
 ///
 /// # Errors
 /// [`ParamError::DegenerateMetric`].
@@ -81,11 +90,11 @@ pub fn compare<M: LayerModel + ?Sized>(
     param: &Parameterization,
     packed: &PackedVolume,
     count: usize,
-) -> Result<Comparison, ParamError> {
+) -> Result<LookupComparison, ParamError> {
     let points = horizon_points(model, |horizon, block, x, y| model.sheet(horizon, block).z_at(x, y), count);
     let exact = |p| param.lookup(model, p);
     let paper = |p| packed.lookup_extrapolated(p);
-    Ok(Comparison {
+    Ok(LookupComparison {
         exact: PathAccuracy {
             k_on_horizons: k_on_horizons(model, param, exact, &points),
             angles: angles(model, param, exact, 10 * count)?,
@@ -97,7 +106,7 @@ pub fn compare<M: LayerModel + ?Sized>(
     })
 }
 
-/// The radical inverse of `n` in a base: the Halton sequence's coordinate, in [0, 1).
+/// The radical inverse of `n` in a base: a coordinate of the Halton sequence, in [0, 1).
 fn halton(mut n: usize, base: usize) -> f64 {
     let (mut value, mut unit) = (0.0, 1.0);
     while n > 0 {
@@ -108,7 +117,7 @@ fn halton(mut n: usize, base: usize) -> f64 {
     value
 }
 
-/// A place on a horizon that bounds its two layers there.
+/// A point of a horizon where the horizon bounds its two layers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HorizonPoint {
     /// Horizon, 0 = youngest.
@@ -119,9 +128,9 @@ pub struct HorizonPoint {
     pub p: Vec3,
 }
 
-/// Up to `count` places per horizon and block, walls among them (every 16th is moved onto one), at heights
-/// `depth(horizon, block, x, y)`. Only places count where the horizon bounds its two layers: not where it is cut off,
-/// in another block or outside the volume.
+/// Up to `count` points per horizon and block at the heights `depth(horizon, block, x, y)`. Every 16th lies
+/// on the outer boundary. Only points count where the horizon bounds its two layers, i.e. where it is not cut
+/// off, is in its own block and is inside the volume.
 pub fn horizon_points<M: LayerModel + ?Sized>(
     model: &M,
     depth: impl Fn(usize, u16, f32, f32) -> f32 + Sync,
@@ -142,7 +151,7 @@ pub fn horizon_points<M: LayerModel + ?Sized>(
         }
         let p = Vec3::new(x, y, depth(horizon, block, x, y));
         let layer_above = (horizons - horizon) as u16;
-        // Wide enough for a true depth that the model's sheet misses by a little.
+        // Wide enough for a true depth that the sheet of the model misses by a little.
         let near = Vec3::new(0.0, 0.0, 0.5);
         let bounds = model.region_at(p - near) == Region { layer: layer_above, block }
             && model.region_at(p + near) == Region { layer: layer_above - 1, block };
@@ -154,7 +163,7 @@ pub fn horizon_points<M: LayerModel + ?Sized>(
         .collect()
 }
 
-/// |k − {0, 1}| in voxels of depth at places on horizons.
+/// |k − {0, 1}| at points of horizons, voxels of depth.
 pub fn k_on_horizons<M: LayerModel + ?Sized>(
     model: &M,
     param: &Parameterization,
@@ -176,7 +185,7 @@ pub fn k_on_horizons<M: LayerModel + ?Sized>(
     Spread::of(errors)
 }
 
-/// Angles between the metric gradients at up to `count` places whose surroundings lie in one region.
+/// Angles between the metric gradients at up to `count` points whose surroundings lie in one region.
 ///
 /// # Errors
 /// [`ParamError::DegenerateMetric`].

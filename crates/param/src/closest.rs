@@ -1,55 +1,58 @@
 //! The closest point of a sheet, exact on the bicubic surface.
 //!
-//! With u = p − (x, y, h(x, y)) and w = G u ([`crate::metric`]) the squared distance is F = u·w. Its stationary points
-//! solve s_x·w = s_y·w = 0, s_x = (1, 0, h_x) and s_y = (0, 1, h_y) being the tangents:
+//! With u = p − (x, y, h(x, y)) and w = G u ([`crate::metric`]) the squared distance is F = u·w. Its
+//! stationary points solve s_x·w = s_y·w = 0 with the tangents s_x = (1, 0, h_x) and s_y = (0, 1, h_y):
 //!
 //! ```text
 //! ½ ∂F/∂a    = −s_a·w
 //! ½ ∂²F/∂a∂b = s_aᵀ G s_b − h_ab w_z
 //! ```
 //!
-//! Damped Newton: where the second derivative is not positive definite (beyond a centre of curvature) the surface's own
-//! curvature is left out (Gauss–Newton, always positive definite), and a step that increases F is halved. The surface is
-//! C¹, its second derivative jumps between cells; the convergence stays superlinear there.
+//! Damped Newton's method solves them. Where the second derivative is not positive definite (beyond a centre
+//! of curvature) the curvature of the surface is left out (Gauss–Newton, always positive definite). A step
+//! that increases F is halved. The surface is C¹ and its second derivative jumps between cells; convergence
+//! stays superlinear there.
 //!
-//! A [`Foot`] remembers the jet of the surface where it stands, so that following a point that moves (along a column, along
-//! a trace) costs about one evaluation of the surface a move: the first Newton step is made from the remembered jet, the second
-//! from a fresh one, and as soon as a step is shorter than [`CONVERGED`] it is made on the second-order continuation of the jet.
+//! A [`Foot`] stores the closest point together with the jet of the surface there. Following a moving point
+//! (along a column or a trace) then costs about one evaluation of the surface per move: the first Newton step
+//! uses the stored jet, the second a fresh one, and a step shorter than [`CONVERGED`] is the last and uses
+//! the second-order continuation of the jet.
 //!
-//! Newton finds a *local* minimum; which one is the business of [`crate::lattice`].
+//! Newton's method finds a *local* minimum; [`crate::lattice`] finds the global one.
 
 use crate::metric::Metric;
-use crate::surface::{Frame, Jet, Surface};
+use crate::surface::{BicubicSheet, ColumnFrame, Jet};
 use glam::{Vec2, Vec3};
 
-/// A Newton step this short (voxels) is the last: the error after it is of the order of its square. A fifth of it changes no
-/// figure of the accuracy tests and costs a quarter more evaluations.
+/// A Newton step shorter than this (voxels) is the last: the error after it is of the order of its square. A
+/// fifth of this value changes no figure of the accuracy tests and costs a quarter more evaluations.
 const CONVERGED: f32 = 1e-2;
-/// Newton steps before giving up; reached only on surfaces rougher than their own lattice.
+/// Most Newton steps. The limit is reached only on surfaces that are rough at the spacing of their nodes.
 const MOST_STEPS: usize = 40;
-/// Longest step, voxels: keeps a bad start from flying to another fold.
+/// Longest step, voxels. It keeps a bad start from jumping to another fold.
 const LONGEST_STEP: f32 = 8.0;
 
-/// The closest point of a sheet, all positions relative to a [`Frame`].
+/// The foot of a point on a sheet: the closest point of the sheet. Positions are relative to a
+/// [`ColumnFrame`].
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Foot {
-    /// Voxel (x, y) of the foot, from the frame's column.
+    /// Voxel (x, y) of the foot, relative to the frame's column.
     pub at: Vec2,
-    /// The surface there.
+    /// The jet of the surface at the foot.
     pub jet: Jet,
-    /// Distance, in units of the scaled metric.
+    /// Distance of the point from the foot, in units of the scaled metric.
     pub distance: f32,
 }
 
 impl Foot {
-    /// A start for [`Foot::follow`] at `at`.
+    /// A foot at `at`, from which [`Foot::follow`] can start.
     #[inline]
-    pub fn start(surface: &Surface, frame: Frame, at: Vec2) -> Self {
+    pub fn start(surface: &BicubicSheet, frame: ColumnFrame, at: Vec2) -> Self {
         Self { at, jet: surface.jet(frame, at), distance: f32::INFINITY }
     }
 
-    /// The voxel vector of the upward unit normal of the metric (−z is up), i.e. the metric gradient of the distance
-    /// of points above the sheet. Unlike (p − c)/d it needs no division by a distance near 0.
+    /// The upward unit normal of the sheet (−z is up) as a voxel vector, i.e. the metric gradient of the
+    /// distance for points above the sheet. Unlike (p − c)/d it needs no division by a distance near 0.
     #[inline]
     pub fn upward_normal(&self, metric: &Metric) -> Vec3 {
         let covector = Vec3::new(self.jet.gradient.x, self.jet.gradient.y, -1.0);
@@ -63,9 +66,9 @@ impl Foot {
         self.at.extend(self.jet.h)
     }
 
-    /// Walks to the local closest point of `p` (relative to the frame) from where the foot stands.
+    /// Moves the foot from where it is to the local closest point of `p` (relative to the frame).
     #[inline]
-    pub fn follow(&mut self, surface: &Surface, metric: &Metric, frame: Frame, p: Vec3) {
+    pub fn follow(&mut self, surface: &BicubicSheet, metric: &Metric, frame: ColumnFrame, p: Vec3) {
         let (mut at, mut jet) = (self.at, self.jet);
         let (mut last_at, mut last_f) = (at, f32::INFINITY);
         for step_index in 0..MOST_STEPS {
@@ -73,7 +76,7 @@ impl Foot {
             let w = metric.lower(u);
             let f = u.dot(w);
             if f > last_f * (1.0 + 1e-5) + 1e-10 {
-                // The last step climbed: halve it. A foot that cannot descend any more stays where it was.
+                // The last step increased F: halve it. When no step descends, the foot stays where it was.
                 let half = 0.5 * (at - last_at);
                 at = last_at + half;
                 if half.length_squared() < 1e-9 {

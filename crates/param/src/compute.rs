@@ -1,19 +1,20 @@
 //! Fills the stratigraphic grid of one region.
 //!
-//! Per column the levels are walked from the bottom to the top with both feet following; every node then starts its own trace
-//! to the middle. Columns are independent of each other (they share only the lattice of closest points), so the result does not
-//! depend on threads.
+//! In each column the levels are visited from the bottom to the top while both feet follow. Every node then
+//! starts its own trace to the middle. Columns share only the lattice of closest points, so the result does
+//! not depend on the number of threads.
 //!
-//! Degenerate places: where the sheets are closer than a thousandth of a voxel, or cross (a pinch-out seen from beyond
-//! its edge), offsets are those of the nearest column within two that has a thickness, so that a wedge keeps its k up to the edge, and 0 farther away. A
-//! number that is not finite never leaves this file: its node keeps offset 0 and is flagged.
+//! Degenerate places: where the sheets are closer than a thousandth of a voxel or cross (at a pinch-out and
+//! beyond its edge), a column takes the offsets of the nearest column within two that has a thickness, so
+//! that a wedge keeps its k up to the edge; farther away offsets are 0. A node whose result is not finite
+//! keeps offset 0 and is flagged.
 
 use crate::closest::Foot;
 use crate::grid::{PINCHED, RegionGrid};
 use crate::lattice::{COLUMNS, FootLattice, LEVELS, LatticeShape};
 use crate::layer::{Feet, Layer, LayerKind};
-use crate::surface::Frame;
-use crate::touched::{Depths, Touched};
+use crate::surface::ColumnFrame;
+use crate::touched::{Depths, RegionColumns};
 use crate::trace::Tracer;
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -21,16 +22,16 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use survey::{Cancelled, Progress};
 
-/// Processor time spent, summed over threads.
+/// Processor time used, summed over threads.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct ComputeCost {
     /// Finding closest points, i.e. k (f_z of P-illus 3.1) at all nodes.
     pub closest_points: Duration,
-    /// Following isocurves to the middle, i.e. i and j.
+    /// Tracing isocurves to the middle, i.e. i and j.
     pub traces: Duration,
 }
 
-/// Nanoseconds counted from many threads.
+/// A sum of nanoseconds over many threads.
 #[derive(Default)]
 struct Clock(AtomicU64);
 
@@ -49,21 +50,21 @@ impl Clock {
 /// Isocurves of neighbouring columns that end farther apart than this (voxels) have a crease between them.
 const JUMP: f32 = 3.0;
 
-/// What one column of a grid is filled with.
+/// The part of the results that belongs to one column.
 struct Column<'a> {
     offsets: &'a mut [[f32; 3]],
     creases: &'a mut [bool],
 }
 
-/// Fills `grid.offsets` and `grid.creases`. Levels outside the depths that a column is touched over are copied from the
-/// last one computed.
+/// Fills `grid.offsets` and `grid.creases`. Levels outside the depths in which the region occupies the column
+/// repeat the nearest computed level.
 ///
 /// # Errors
 /// [`Cancelled`].
 pub fn fill(
     grid: &mut RegionGrid,
     layer: &Layer,
-    touched: &Touched,
+    touched: &RegionColumns,
     tolerance: f32,
     progress: &Progress,
 ) -> Result<ComputeCost, Cancelled> {
@@ -109,7 +110,7 @@ impl<'a> Filler<'a> {
     fn new(
         layer: &'a Layer,
         grid: &RegionGrid,
-        touched: &Touched,
+        touched: &RegionColumns,
         tolerance: f32,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
@@ -135,7 +136,7 @@ impl<'a> Filler<'a> {
     }
 
     /// The levels of a column that lie in the wanted depths, and three more on each side.
-    fn level_range(&self, frame: Frame, thickness: f32, depths: Depths) -> (usize, usize) {
+    fn level_range(&self, frame: ColumnFrame, thickness: f32, depths: Depths) -> (usize, usize) {
         let scale = (self.levels - 1) as f32 / thickness;
         let lowest = ((frame.z - depths[1]) * scale).floor() - 3.0;
         let highest = ((frame.z - depths[0]) * scale).ceil() + 3.0;
@@ -157,19 +158,18 @@ impl<'a> Filler<'a> {
                 self.ratio_column(&tracer, frame, thickness, first..=last, &mut out);
                 copy_outwards(out.offsets, first, last);
             }
-            (lattice, other) => {
-                if let Some(lattice) = lattice.as_ref().or(other.as_ref()) {
-                    self.parallel_column(lattice, frame, thickness, first..=last, &mut out);
-                    copy_outwards(out.offsets, first, last);
-                }
+            (Some(lattice), None) | (None, Some(lattice)) => {
+                self.parallel_column(lattice, frame, thickness, first..=last, &mut out);
+                copy_outwards(out.offsets, first, last);
             }
+            (None, None) => debug_assert_eq!(self.layer.kind, LayerKind::Vertical, "every other kind has a lattice"),
         }
     }
 
     fn ratio_column(
         &self,
         tracer: &Tracer,
-        frame: Frame,
+        frame: ColumnFrame,
         thickness: f32,
         levels: std::ops::RangeInclusive<usize>,
         out: &mut Column,
@@ -179,11 +179,12 @@ impl<'a> Filler<'a> {
             let level = *levels.start() as f32;
             let at = lattice.start(frame.column[0] as f32, frame.column[1] as f32, level);
             let origin = Vec2::new(frame.column[0] as f32, frame.column[1] as f32);
+            // The lattice has no start where the sheet is not finite.
             Foot::start(surface, frame, at.map_or(Vec2::ZERO, |at| at - origin))
         };
         let mut feet =
             Feet { bottom: start(tracer.lattices[0], &layer.bottom), top: start(tracer.lattices[1], &layer.top) };
-        // First k at every level, with the feet that its trace starts from; then the traces.
+        // First k at every level, with the feet from which its trace starts; then the traces.
         let clock = Instant::now();
         let place = |level: usize| Vec3::new(0.0, 0.0, -(level as f32 / (self.levels - 1) as f32) * thickness);
         let first = *levels.start();
@@ -192,7 +193,7 @@ impl<'a> Filler<'a> {
         for level in levels {
             let p = place(level);
             layer.follow(frame, p, &mut feet);
-            let jumped = tracer.challenge(frame, p, level as f32, &mut feet) && last_feet.is_some();
+            let jumped = tracer.try_lattice(frame, p, level as f32, &mut feet) && last_feet.is_some();
             states.push((layer.ratio(&feet), feet));
             last_feet = Some(feet);
             out.creases[level] = jumped;
@@ -214,7 +215,7 @@ impl<'a> Filler<'a> {
     fn parallel_column(
         &self,
         lattice: &FootLattice,
-        frame: Frame,
+        frame: ColumnFrame,
         thickness: f32,
         levels: std::ops::RangeInclusive<usize>,
         out: &mut Column,
@@ -223,18 +224,18 @@ impl<'a> Filler<'a> {
         let (surface, upwards, reference) = match layer.kind {
             LayerKind::AboveBottom(reference) => (&layer.bottom, true, reference),
             LayerKind::BelowTop(reference) => (&layer.top, false, reference),
-            LayerKind::Ratio | LayerKind::Vertical => return,
+            LayerKind::Ratio | LayerKind::Vertical => unreachable!("a parallel column belongs to a parallel layer"),
         };
         let clock = Instant::now();
         let mut foot = Foot::start(surface, frame, Vec2::ZERO);
-        // From the sheet outwards, where the foot starts as the column itself.
+        // Start next to the sheet, where the foot is in the column itself.
         let (first, last) = (*levels.start(), *levels.end());
         for n in 0..=last - first {
             let level = if upwards { first + n } else { last - n };
             let v = level as f32 / (self.levels - 1) as f32;
             let p = Vec3::new(0.0, 0.0, -v * thickness);
             foot.follow(surface, &layer.metric, frame, p);
-            out.creases[level] = lattice.challenge(&mut foot, surface, &layer.metric, frame, p, level as f32);
+            out.creases[level] = lattice.try_lattice(&mut foot, surface, &layer.metric, frame, p, level as f32);
             let ratio = foot.distance / reference;
             let k = if upwards { ratio } else { 1.0 - ratio };
             let offset = [foot.at.x, foot.at.y, k - v];
@@ -245,20 +246,20 @@ impl<'a> Filler<'a> {
     }
 }
 
-/// Levels beyond the volume repeat the last one computed.
+/// Copies the first and last computed level to the levels outside them.
 fn copy_outwards(offsets: &mut [[f32; 3]], first: usize, last: usize) {
     let (low, high) = (offsets[first], offsets[last]);
     offsets[..first].fill(low);
     offsets[last + 1..].fill(high);
 }
 
-fn lattice_shape(grid: &RegionGrid, touched: &Touched) -> LatticeShape {
+fn lattice_shape(grid: &RegionGrid, touched: &RegionColumns) -> LatticeShape {
     let along = |count: usize, stride: usize| (count - 1).div_ceil(stride) + 1;
     let size = [along(grid.size[0], COLUMNS), along(grid.size[1], COLUMNS), along(grid.levels, LEVELS)];
     let mut wanted = vec![false; size[0] * size[1]];
     for (n, ..) in touched.columns() {
         let (x, y) = (n / grid.size[1], n % grid.size[1]);
-        // All corners of the cell that holds the column.
+        // All corners of the cell that contains the column.
         for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
             let (u, v) = ((x / COLUMNS + a).min(size[0] - 1), (y / COLUMNS + b).min(size[1] - 1));
             wanted[u * size[1] + v] = true;
@@ -268,7 +269,7 @@ fn lattice_shape(grid: &RegionGrid, touched: &Touched) -> LatticeShape {
 }
 
 /// Flags the nodes of neighbouring columns whose isocurves end farther apart than [`JUMP`].
-fn flag_jumps(touched: &Touched, levels: usize, offsets: &[[f32; 3]], creases: &mut [bool]) {
+fn flag_jumps(touched: &RegionColumns, levels: usize, offsets: &[[f32; 3]], creases: &mut [bool]) {
     let [nx, ny] = touched.size;
     for x in 0..nx {
         for (along_x, step) in [(1, ny), (0, 1)] {
@@ -292,8 +293,8 @@ fn flag_jumps(touched: &Touched, levels: usize, offsets: &[[f32; 3]], creases: &
     }
 }
 
-/// Columns without thickness take the offsets of the nearest column that has one, two columns far at most.
-fn extend_over_pinch_outs(layer: &Layer, touched: &Touched, levels: usize, offsets: &mut [[f32; 3]]) {
+/// Gives columns without thickness the offsets of the nearest column that has one, at most two columns away.
+fn extend_over_pinch_outs(layer: &Layer, touched: &RegionColumns, levels: usize, offsets: &mut [[f32; 3]]) {
     let [nx, ny] = touched.size;
     let mut known = vec![false; nx * ny];
     for (n, column, _) in touched.columns() {

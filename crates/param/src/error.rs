@@ -1,11 +1,11 @@
-//! Why a parameterization cannot be computed.
+//! Errors of this crate.
 
 use survey::Cancelled;
 
 /// Why a parameterization cannot be computed or packed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ParamError {
-    /// The user cancelled; nothing was kept.
+    /// The user cancelled. No result was kept.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
     /// The model covers no voxel.
@@ -14,36 +14,36 @@ pub enum ParamError {
         /// `[inlines, crosslines, samples]`.
         size: [usize; 3],
     },
-    /// The voxel → metre matrix cannot be inverted.
+    /// The voxel-to-metre matrix cannot be inverted.
     #[error(
         "the voxel to metre matrix has determinant {determinant}; check the line vectors, the sample interval and the velocity"
     )]
     DegenerateMetric {
-        /// Its determinant, m³ per voxel.
+        /// Determinant of the matrix, m³ per voxel.
         determinant: f64,
     },
-    /// A setting is outside what it can be.
+    /// A setting is out of its range.
     #[error("{setting} is {found}; it must be {expected}")]
     Setting {
         /// Name of the setting.
         setting: &'static str,
-        /// Its value.
+        /// Value of the setting.
         found: f64,
-        /// What it can be.
+        /// Range of the setting.
         expected: &'static str,
     },
-    /// A definition of k was given for a layer that the model does not have.
-    #[error("k is defined for layer {layer}, but the model has {layers} layers; remove the definition")]
+    /// k is defined for a layer that the model does not have.
+    #[error("k is defined for layer {layer}, but the model has {layers} layers; remove that definition of k")]
     NoSuchLayer {
-        /// The layer named.
+        /// Index of the layer, 0 = deepest.
         layer: usize,
-        /// Count of layers.
+        /// Count of layers of the model.
         layers: usize,
     },
-    /// A volume of this size was asked for.
+    /// The requested volume has no samples.
     #[error("a voxel parameterization of {size:?} has no voxels; every side must be at least 1")]
     VolumeSize {
-        /// The size asked for.
+        /// The requested size, `[inlines, crosslines, samples]`.
         size: [usize; 3],
     },
 }

@@ -1,36 +1,38 @@
-//! The stratigraphic grid of one region: offsets from (x, y, v) to (i, j, k), and the exact lookup in it.
+//! The stratigraphic grid of one region: offsets from (x, y, v) to (i, j, k), and the lookup in it.
 //!
-//! v is 0 on the bottom sheet and 1 on the top sheet of the layer, along the vertical. Columns of the grid are voxel columns, levels are
-//! evenly spaced in v; a node stores
+//! v is the vertical fraction between the layer's sheets: 0 on the bottom sheet and 1 on the top sheet.
+//! Columns of the grid are voxel columns, levels are evenly spaced in v. A node stores
 //!
 //! ```text
 //! dx = i·(Nx−1) − x      dy = j·(Ny−1) − y      dk = k − v
 //! ```
 //!
-//! so that dk = 0 on both sheets of a closed layer: horizons are exact by construction, whatever the resolution. A lookup is
-//! v from the two sheets, then the cubic through four levels along each of the four columns around, and bilinear between them
-//! (along v the cubic gives gradients several times better than a straight line at the same memory); its Jacobian follows by the
-//! chain rule. All in f32 and in this order, so that a shader can do the same.
+//! dk = 0 on both sheets of a closed layer, so horizons are exact by construction at any resolution. A lookup
+//! computes v from the two sheets, interpolates each of the four columns around by the cubic through four
+//! levels, and interpolates bilinearly between the columns. (Along v the cubic gives gradients several times
+//! better than linear interpolation at the same memory.) The Jacobian follows by the chain rule. Everything
+//! is computed in f32 and in this order, so that a shader can do the same.
 //!
-//! Memory: 12 bytes a node, one bit for the crease flag.
+//! Memory: 12 bytes a node and one bit for the crease flag.
 
 use crate::{LayerModel, Region};
 use glam::Vec3;
 
-/// Layers thinner than this (voxels) have no inside: offsets are 0 and v is ½ on the spot.
+/// A layer thinner than this (voxels) counts as pinched out: its offsets are 0 and v is ½.
 pub const PINCHED: f32 = 1e-3;
 
-/// A sheet by reference: a horizon's sheet in the region's block, or a level plane, shifted vertically.
+/// A reference to a sheet: the sheet of a horizon in the region's block, or a horizontal plane, shifted
+/// vertically.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SheetRef {
     /// The horizon; `None` for the plane z = 0.
     pub horizon: Option<usize>,
-    /// Voxels of z added (positive is down).
+    /// Voxels added to z (positive is down).
     pub shift: f32,
 }
 
 impl SheetRef {
-    /// Voxel z and its slopes (∂z/∂x, ∂z/∂y).
+    /// Voxel z at voxel (x, y), and its slopes (∂z/∂x, ∂z/∂y).
     pub fn sample<M: LayerModel + ?Sized>(&self, model: &M, block: u16, x: f32, y: f32) -> (f32, [f32; 2]) {
         match self.horizon {
             None => (self.shift, [0.0; 2]),
@@ -41,7 +43,7 @@ impl SheetRef {
         }
     }
 
-    /// Voxel z.
+    /// Voxel z at voxel (x, y).
     pub fn z<M: LayerModel + ?Sized>(&self, model: &M, block: u16, x: f32, y: f32) -> f32 {
         self.horizon.map_or(0.0, |horizon| model.sheet(horizon, block).z_at(x, y)) + self.shift
     }
@@ -50,42 +52,43 @@ impl SheetRef {
 /// Flat coordinates of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlatPoint {
-    /// Inline coordinate, 0 … 1 over the volume; outside near the walls.
+    /// Inline coordinate: 0 … 1 over the volume, may lie outside near the outer boundary.
     pub i: f32,
     /// Crossline coordinate, likewise.
     pub j: f32,
-    /// 0 on the layer's bottom, 1 on its top.
+    /// 0 on the bottom of the layer, 1 on its top.
     pub k: f32,
-    /// The region it was looked up in.
+    /// The region whose grid was used.
     pub region: Region,
 }
 
 /// The parameterization of one layer in one fault block.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RegionGrid {
-    /// Which.
+    /// The layer and fault block.
     pub region: Region,
     /// Voxel column of grid column (0, 0).
     pub origin: [i32; 2],
-    /// Counts of columns along x and y; 0 when the region touches no voxel column.
+    /// Counts of columns along x and y; 0 when the region occupies no voxel column.
     pub size: [usize; 2],
-    /// Count of levels, at least 3.
+    /// Count of levels: 3 where k is the vertical fraction, otherwise at least 5.
     pub levels: usize,
     /// Where v = 0.
     pub bottom: SheetRef,
-    /// Where v = 1. In an open or parallel layer this is the other sheet shifted by the reference thickness.
+    /// Where v = 1. In an open or parallel layer one of the two is the other shifted by the reference
+    /// thickness.
     pub top: SheetRef,
-    /// Metres of thickness that k = 0 … 1 stands for, in an open or parallel layer.
+    /// Reference thickness in metres (k = 0 … 1) of an open or parallel layer.
     pub thickness_m: Option<f64>,
-    /// `[dx, dy, dk]` per node `[x][y][level]`: voxels, voxels, k.
+    /// `[dx, dy, dk]` per node `[x][y][level]`; dx and dy in voxels.
     pub offsets: Vec<[f32; 3]>,
-    /// One bit per node, 64 a word in the order of `offsets`: a closest point jumped on its trace, or the trace could
-    /// not arrive at the middle.
+    /// One bit per node, 64 a word, in the order of `offsets`. It is set where a closest point jumped along
+    /// the node's trace, or the trace did not arrive at the middle.
     pub creases: Vec<u64>,
 }
 
 impl RegionGrid {
-    /// Index of a node in `offsets`.
+    /// Index of a node in [`RegionGrid::offsets`].
     #[inline]
     pub fn node(&self, x: usize, y: usize, level: usize) -> usize {
         (x * self.size[1] + y) * self.levels + level
@@ -104,7 +107,7 @@ impl RegionGrid {
         let (v, _) = self.level_fraction(model, p);
         let at = [p.x - self.origin[0] as f32, p.y - self.origin[1] as f32, v * (self.levels - 1) as f32];
         let counts = [self.size[0], self.size[1], self.levels];
-        // The cell and one node more on each side, because gradients are measured over a distance.
+        // The cell and one more node on each side, because gradients are measured over a distance.
         let range = |axis: usize| {
             let low = (at[axis] - 1.0).max(0.0) as usize;
             low.min(counts[axis] - 1)..=((at[axis] + 2.0).max(0.0) as usize).min(counts[axis] - 1)
@@ -112,12 +115,12 @@ impl RegionGrid {
         range(0).any(|x| range(1).any(|y| range(2).any(|level| self.is_crease(self.node(x, y, level)))))
     }
 
-    /// Bytes held.
+    /// Memory of the grid, bytes.
     pub fn bytes(&self) -> usize {
         self.offsets.len() * size_of::<[f32; 3]>() + self.creases.len() * size_of::<u64>()
     }
 
-    /// v and its voxel derivative at `p`, clamped to the layer.
+    /// v at `p`, clamped to the layer, and its voxel derivative.
     fn level_fraction<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> (f32, Vec3) {
         let block = self.region.block;
         let (bottom, bottom_slope) = self.bottom.sample(model, block, p.x, p.y);
@@ -132,8 +135,8 @@ impl RegionGrid {
         (v.clamp(0.0, 1.0), Vec3::new(along(0), along(1), -inverse))
     }
 
-    /// Offsets and their derivatives along (x, y, v) at a column position and level fraction: the cubic along four columns,
-    /// then bilinear between them. Positions outside the grid take the nearest column's.
+    /// Offsets and their derivatives along (x, y, v) at a column position and vertical fraction: cubic along
+    /// four columns, then bilinear between them. Positions outside the grid take the nearest column.
     pub(crate) fn interpolate(&self, x: f32, y: f32, v: f32) -> ([f32; 3], [[f32; 3]; 3]) {
         if self.offsets.is_empty() {
             return ([0.0; 3], [[0.0; 3]; 3]);
@@ -164,8 +167,8 @@ impl RegionGrid {
         (value, slope)
     }
 
-    /// Flat coordinates of voxel `p` by this region's parameterization, and their Jacobian ∂(i, j, k)/∂(x, y, z) per
-    /// voxel. `volume` is the count of voxels of the model.
+    /// Flat coordinates of voxel `p` in this region's parameterization, and their Jacobian ∂(i, j, k)/∂(x, y,
+    /// z) per voxel. `model` is the one that was parameterized and `volume` its [`LayerModel::size`].
     pub fn lookup<M: LayerModel + ?Sized>(&self, model: &M, volume: [usize; 3], p: Vec3) -> (FlatPoint, [[f32; 3]; 3]) {
         let (v, v_slope) = self.level_fraction(model, p);
         let ([dx, dy, dk], slope) = self.interpolate(p.x, p.y, v);
@@ -178,7 +181,7 @@ impl RegionGrid {
     }
 }
 
-/// Cell and fraction of a position among `count` nodes, clamped to them. `count` is at least 2.
+/// Cell and fraction of a position among `count` nodes, clamped to the nodes. `count` is at least 2.
 #[inline]
 pub(crate) fn split(at: f32, count: usize) -> (usize, f32) {
     let at = at.clamp(0.0, (count - 1) as f32);
@@ -186,8 +189,8 @@ pub(crate) fn split(at: f32, count: usize) -> (usize, f32) {
     (cell, at - cell as f32)
 }
 
-/// Value and slope (per level) of a column's curve between levels `cell` and `cell + 1`: Catmull–Rom through four
-/// levels; beyond the ends, a level that continues the parabola through the last three.
+/// Value and slope (per level) of a column's curve between levels `cell` and `cell + 1`: Catmull–Rom through
+/// four levels. Beyond the ends, the missing level continues the parabola through the last three.
 #[inline]
 pub(crate) fn cubic(column: &[[f32; 3]], cell: usize, t: f32) -> ([f32; 3], [f32; 3]) {
     let last = column.len() - 1;

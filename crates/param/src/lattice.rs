@@ -1,40 +1,46 @@
-//! Which of the local closest points is the global one.
+//! The global closest points of a sheet: which of the local ones is nearest.
 //!
-//! Finding the global minimum costs a kd-tree query and a walk from where it says; doing that at every node would be slow
-//! and is not needed, since neighbouring places share the branch of the surface that they are closest to. So it is done
-//! on a coarse lattice (every [`COLUMNS`]th column, every [`LEVELS`]th level of a region). Each lattice node then tries
-//! the feet of its neighbours, which mends the rare start that led into the wrong fold, and everything finer (nodes,
-//! steps of traces) follows its own foot and is *challenged* by those of the lattice: where a foot of the lattice is
-//! nearer, or where the lattice around disagrees about the branch, the walk is made from there too and the best is kept.
+//! Finding a global minimum costs a kd-tree query and a Newton search from its answer. Doing that at every
+//! node would be slow, and is not needed, because neighbouring points mostly share the branch of the surface
+//! that is closest to them. So it is done on a coarse lattice (every [`COLUMNS`]th column and every
+//! [`LEVELS`]th level of a region). Each lattice node then also tries the feet of its neighbours, which
+//! corrects the rare start that led into the wrong fold. Everything finer (grid nodes, steps of traces)
+//! follows its own foot and compares it with those of the lattice: where a lattice foot is nearer, or where
+//! the lattice nodes around disagree about the branch, the search is repeated from there and the best foot is
+//! kept.
 //!
-//! Nothing depends on the order of the work: the lattice is computed in passes that read the previous pass only.
+//! The result does not depend on the order of the work: each pass over the lattice reads only the previous
+//! pass.
 
 use crate::closest::Foot;
 use crate::metric::Metric;
 use crate::nearest::NodeFinder;
-use crate::surface::{Frame, Surface};
+use crate::surface::{BicubicSheet, ColumnFrame};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// Columns from one lattice node to the next.
+/// Columns between lattice nodes.
 pub const COLUMNS: usize = 4;
-/// Levels from one lattice node to the next.
+/// Levels between lattice nodes.
 pub const LEVELS: usize = 4;
-/// Whether a lattice node asks the kd-tree: every second one along each axis. The others start from the level below.
+/// Whether a lattice node queries the kd-tree: every second one along each axis. The others start from the
+/// level below.
 fn is_queried(x: usize, y: usize, level: usize) -> bool {
     x % 2 + y % 2 + level % 2 == 0
 }
 
-/// Passes in which lattice nodes try their neighbours' feet.
+/// Passes in which lattice nodes try the feet of their neighbours.
 const PASSES: usize = 3;
 /// A neighbour's foot farther away than this (voxels) is tried.
 const FOREIGN: f32 = 2.0;
-/// Feet of a lattice cell's corners spread over more than this along x or y (voxels) may belong to different branches even if every
-/// edge of the cell is whole. With [`SLACK`] 3, of 15 000 points around a sheet with dips to 66° none was off the
-/// brute-force minimum at 12; two were when only torn edges counted, three at 12 with a slack of 1.
+/// The corners of a lattice cell may lie on different branches where their feet spread over more than this
+/// along x or y (voxels), even if no edge of the cell is torn. Of 15 000 points around a sheet with dips to
+/// 66°, with [`SLACK`] 3, none was off the brute-force minimum at 12; two were when only torn edges counted,
+/// three at 12 with a slack of 1.
 const BRANCH: f32 = 12.0;
-/// A corner's foot is worth a walk when it is farther than the point's own by less than this (scaled metric).
+/// The foot of a cell's corner is tried when it is farther than the point's own foot by less than this
+/// (scaled metric).
 const SLACK: f32 = 3.0;
 
 /// Where the nodes of a region's lattice are.
@@ -44,72 +50,133 @@ pub struct LatticeShape {
     pub origin: [i32; 2],
     /// Counts of lattice nodes along x, y and the levels.
     pub size: [usize; 3],
-    /// Per lattice column `[x][y]`, whether it is wanted.
+    /// Per lattice column `[x][y]`, whether it is computed.
     pub wanted: Vec<bool>,
 }
 
 /// The global closest points of one sheet at the nodes of a lattice.
 pub struct FootLattice {
     shape: LatticeShape,
-    /// Voxel position of the foot, absolute; NaN where it is not wanted.
+    /// Voxel position of the foot of each node `[x][y][level]`, absolute; NaN in columns that are not
+    /// computed.
     feet: Vec<Vec3>,
-    /// Per cell, whether its corners lie on different branches.
+    /// Per cell, whether its corners may lie on different branches.
     mixed: Vec<bool>,
 }
 
+/// The closest points of one sheet, found from given starting points.
+struct Search<'a, P> {
+    shape: &'a LatticeShape,
+    surface: &'a BicubicSheet,
+    metric: &'a Metric,
+    /// Frame of a column, and position of a lattice level in it.
+    place: P,
+}
+
+impl<P: Fn([i32; 2], usize) -> (ColumnFrame, Vec3) + Sync> Search<'_, P> {
+    /// Voxel column of lattice column `index`.
+    fn column(&self, index: usize) -> [i32; 2] {
+        let ny = self.shape.size[1];
+        let at = [index / ny, index % ny].map(|n| (n * COLUMNS) as i32);
+        [self.shape.origin[0] + at[0], self.shape.origin[1] + at[1]]
+    }
+
+    /// The local closest point to a lattice node, searched from voxel (x, y) `from`, and its distance.
+    fn walk(&self, column: [i32; 2], level: usize, from: Vec2) -> (Vec3, f32) {
+        let (frame, p) = (self.place)(column, level);
+        let origin = Vec2::new(column[0] as f32, column[1] as f32);
+        let mut foot = Foot::start(self.surface, frame, from - origin);
+        foot.follow(self.surface, self.metric, frame, p);
+        (foot.position() + origin.extend(frame.z), foot.distance)
+    }
+
+    /// Fills one lattice column from the bottom to the top: some nodes query the kd-tree, the others start
+    /// from the level below.
+    fn fill_column(&self, finder: &NodeFinder, index: usize, feet: &mut [Vec3], distances: &mut [f32]) {
+        let ny = self.shape.size[1];
+        let column = self.column(index);
+        let here = Vec2::new(column[0] as f32, column[1] as f32);
+        for level in 0..feet.len() {
+            if !is_queried(index / ny, index % ny, level) {
+                let from = if level > 0 { feet[level - 1].truncate() } else { here };
+                (feet[level], distances[level]) = self.walk(column, level, from);
+                continue;
+            }
+            let (frame, p) = (self.place)(column, level);
+            let in_voxels = (p + Vec3::new(column[0] as f32, column[1] as f32, frame.z)).as_dvec3();
+            let [x, y] = finder.near(in_voxels);
+            (feet[level], distances[level]) = self.walk(column, level, Vec2::new(x as f32, y as f32));
+            if level > 0 && (feet[level] - feet[level - 1]).truncate().length_squared() > 1.0 {
+                let (foot, distance) = self.walk(column, level, feet[level - 1].truncate());
+                if distance < distances[level] {
+                    (feet[level], distances[level]) = (foot, distance);
+                }
+            }
+        }
+    }
+
+    /// The foot and distance of a node after trying the feet of its neighbours.
+    fn improved(&self, lattice: &FootLattice, distances: &[f32], node: usize) -> (Vec3, f32) {
+        let [_, ny, nl] = self.shape.size;
+        let mut best = (lattice.feet[node], distances[node]);
+        let (index, level) = (node / nl, node % nl);
+        if !self.shape.wanted[index] {
+            return best;
+        }
+        for candidate in lattice.neighbours(index / ny, index % ny, level) {
+            if (candidate - best.0).truncate().length_squared() > FOREIGN * FOREIGN {
+                let (foot, distance) = self.walk(self.column(index), level, candidate.truncate());
+                if distance < best.1 * (1.0 - 1e-5) {
+                    best = (foot, distance);
+                }
+            }
+        }
+        best
+    }
+
+    /// Whether the edges of a node to the next one along x, y and the levels are torn: their feet are apart,
+    /// and a search at one end from the other end's foot does not arrive at its own foot.
+    fn torn_edges(&self, feet: &[Vec3], node: usize) -> [bool; 3] {
+        let [_, ny, nl] = self.shape.size;
+        [ny * nl, nl, 1].map(|step| {
+            let ends = [node, (node + step).min(feet.len() - 1)];
+            let both = ends.map(|end| feet[end]);
+            let apart = (both[1] - both[0]).truncate().length_squared() > 1.0;
+            // Comparisons with the NaN of columns that are not computed are false.
+            apart
+                && [(0, 1), (1, 0)].into_iter().any(|(here, there)| {
+                    let column = self.column(ends[here] / nl);
+                    let (foot, _) = self.walk(column, ends[here] % nl, both[there].truncate());
+                    (foot - both[here]).truncate().length_squared() > 0.25
+                })
+        })
+    }
+}
+
 impl FootLattice {
-    /// Computes the lattice. `place(x, y)` gives the frame of a column and the height of a lattice level in it.
+    /// Computes the lattice. `place(column, level)` gives the frame of a voxel column and the position of a
+    /// lattice level in it, relative to that frame.
     ///
     /// # Errors
     /// [`Cancelled`].
     pub fn new(
         shape: &LatticeShape,
-        surface: &Surface,
+        surface: &BicubicSheet,
         metric: &Metric,
-        place: impl Fn([i32; 2], usize) -> (Frame, Vec3) + Sync,
+        place: impl Fn([i32; 2], usize) -> (ColumnFrame, Vec3) + Sync,
         progress: &Progress,
     ) -> Result<Self, Cancelled> {
         let finder = NodeFinder::new(surface, metric);
-        let [_, ny, nl] = shape.size;
+        let search = Search { shape, surface, metric, place };
+        let levels = shape.size[2];
         let nodes = shape.size.iter().product();
         let mut feet = vec![Vec3::NAN; nodes];
-        let column_of = |column: usize| {
-            let at = [column / ny, column % ny].map(|n| (n * COLUMNS) as i32);
-            [shape.origin[0] + at[0], shape.origin[1] + at[1]]
-        };
-        let walk = |column: [i32; 2], level: usize, from: Vec2| {
-            let (frame, p) = place(column, level);
-            let origin = Vec2::new(column[0] as f32, column[1] as f32);
-            let mut foot = Foot::start(surface, frame, from - origin);
-            foot.follow(surface, metric, frame, p);
-            (foot.position() + origin.extend(frame.z), foot.distance)
-        };
         let mut distances = vec![f32::INFINITY; nodes];
-        feet.par_chunks_mut(nl).zip(distances.par_chunks_mut(nl)).enumerate().try_for_each(
+        feet.par_chunks_mut(levels).zip(distances.par_chunks_mut(levels)).enumerate().try_for_each(
             |(index, (feet, distances))| {
                 progress.check()?;
-                if !shape.wanted[index] {
-                    return Ok(());
-                }
-                let column = column_of(index);
-                let here = Vec2::new(column[0] as f32, column[1] as f32);
-                for level in 0..nl {
-                    let (frame, p) = place(column, level);
-                    if is_queried(index / ny, index % ny, level) {
-                        let in_voxels = (p + Vec3::new(column[0] as f32, column[1] as f32, frame.z)).as_dvec3();
-                        let [x, y] = finder.near(in_voxels);
-                        (feet[level], distances[level]) = walk(column, level, Vec2::new(x as f32, y as f32));
-                    } else {
-                        let from = if level > 0 { feet[level - 1].truncate() } else { here };
-                        (feet[level], distances[level]) = walk(column, level, from);
-                        continue;
-                    }
-                    if level > 0 && (feet[level] - feet[level - 1]).truncate().length_squared() > 1.0 {
-                        let (foot, distance) = walk(column, level, feet[level - 1].truncate());
-                        if distance < distances[level] {
-                            (feet[level], distances[level]) = (foot, distance);
-                        }
-                    }
+                if shape.wanted[index] {
+                    search.fill_column(&finder, index, feet, distances);
                 }
                 Ok(())
             },
@@ -117,48 +184,15 @@ impl FootLattice {
         let mut lattice = Self { shape: shape.clone(), feet, mixed: Vec::new() };
         for _ in 0..PASSES {
             progress.check()?;
-            let improved: Vec<(Vec3, f32)> = (0..nodes)
-                .into_par_iter()
-                .map(|node| {
-                    let mut best = (lattice.feet[node], distances[node]);
-                    let (index, level) = (node / nl, node % nl);
-                    if !shape.wanted[index] {
-                        return best;
-                    }
-                    for candidate in lattice.neighbours(index / ny, index % ny, level) {
-                        let foreign = (candidate - best.0).truncate().length_squared() > FOREIGN * FOREIGN;
-                        if foreign {
-                            let (foot, distance) = walk(column_of(index), level, candidate.truncate());
-                            if distance < best.1 * (1.0 - 1e-5) {
-                                best = (foot, distance);
-                            }
-                        }
-                    }
-                    best
-                })
-                .collect();
+            let improved: Vec<(Vec3, f32)> =
+                (0..nodes).into_par_iter().map(|node| search.improved(&lattice, &distances, node)).collect();
             for (node, (foot, distance)) in improved.into_iter().enumerate() {
                 (lattice.feet[node], distances[node]) = (foot, distance);
             }
         }
         progress.check()?;
-        let torn: Vec<[bool; 3]> = (0..nodes)
-            .into_par_iter()
-            .map(|node| {
-                [ny * nl, nl, 1].map(|step| {
-                    let ends = [node, (node + step).min(nodes - 1)];
-                    let feet = ends.map(|end| lattice.feet[end]);
-                    let apart = (feet[1] - feet[0]).truncate().length_squared() > 1.0;
-                    // Comparisons with the NaN of unwanted nodes are false.
-                    apart
-                        && [(0, 1), (1, 0)].into_iter().any(|(here, there)| {
-                            let column = column_of(ends[here] / nl);
-                            let (foot, _) = walk(column, ends[here] % nl, feet[there].truncate());
-                            (foot - feet[here]).truncate().length_squared() > 0.25
-                        })
-                })
-            })
-            .collect();
+        let torn: Vec<[bool; 3]> =
+            (0..nodes).into_par_iter().map(|node| search.torn_edges(&lattice.feet, node)).collect();
         lattice.mixed = lattice.find_mixed(&torn);
         Ok(lattice)
     }
@@ -216,14 +250,15 @@ impl FootLattice {
         })
     }
 
-    /// A start near voxel (x, y) and a (fractional) level of the region's grid: the nearest lattice node's foot.
+    /// A start for a search at voxel (x, y) and a (fractional) level of the region's grid: the foot of the
+    /// nearest lattice node. `None` where that foot is not finite.
     pub fn start(&self, x: f32, y: f32, level: f32) -> Option<Vec2> {
         let (_, nearest) = self.cell(x, y, level);
         let foot = self.feet[nearest];
         (!foot.is_nan()).then_some(foot.truncate())
     }
 
-    /// The cell that holds a place, and the lattice node nearest to it.
+    /// The cell that contains a position, and the lattice node nearest to it.
     #[inline]
     fn cell(&self, x: f32, y: f32, level: f32) -> ([usize; 3], usize) {
         let [_, ny, nl] = self.shape.size;
@@ -239,14 +274,15 @@ impl FootLattice {
         (cell, (near[0] * ny + near[1]) * nl + near[2])
     }
 
-    /// Lets the lattice challenge a foot that was followed to `p`; returns whether another branch turned out nearer.
+    /// Compares `foot`, which was followed to `p`, with the feet of the lattice around, and replaces it by a
+    /// closer one. Returns whether the foot moved to another branch.
     #[inline]
-    pub fn challenge(
+    pub fn try_lattice(
         &self,
         foot: &mut Foot,
-        surface: &Surface,
+        surface: &BicubicSheet,
         metric: &Metric,
-        frame: Frame,
+        frame: ColumnFrame,
         p: Vec3,
         level: f32,
     ) -> bool {
@@ -257,7 +293,7 @@ impl FootLattice {
             let mut changed = false;
             let corners = self.corners(cell);
             for (n, &corner) in corners.iter().enumerate() {
-                // Corners on one branch lead to one place.
+                // Corners on one branch lead to the same foot.
                 if corners[..n].iter().all(|other| (corner - *other).truncate().length_squared() > 1.0) {
                     changed |= try_branch(foot, surface, metric, frame, p, corner - column, SLACK);
                 }
@@ -268,18 +304,19 @@ impl FootLattice {
     }
 }
 
-/// Walks from `start` (a point of the surface) where that point of the surface is nearer than the foot, give or take `slack` (scaled metric).
+/// Searches from `start`, a point of the surface, if that point is nearer to `p` than the foot plus `slack`
+/// (scaled metric), and replaces the foot by a closer one. Returns whether the foot moved to another branch.
 #[inline]
 fn try_branch(
     foot: &mut Foot,
-    surface: &Surface,
+    surface: &BicubicSheet,
     metric: &Metric,
-    frame: Frame,
+    frame: ColumnFrame,
     p: Vec3,
     start: Vec3,
     slack: f32,
 ) -> bool {
-    // False for the NaN of a lattice node that was not wanted.
+    // False for the NaN of a lattice node that was not computed.
     let limit = foot.distance + slack;
     if metric.length_squared(p - start) < limit * limit {
         let away = start.truncate() - foot.at;
@@ -302,7 +339,8 @@ mod tests {
     use glam::{DMat3, DVec3};
     use survey::HeightField;
 
-    /// Ridges and a bowl: dips to 66°, folds tighter than the points are far away.
+    /// Ridges and a bowl with dips to 66°. The radii of the folds are smaller than the distances of the
+    /// points.
     fn strongly_folded() -> HeightField {
         HeightField::from_fn([-20, -20], [88, 88], |x, y| {
             let (x, y) = (f64::from(x), f64::from(y));
@@ -315,8 +353,8 @@ mod tests {
         DMat3::from_cols(DVec3::new(12.0, 5.0, 0.0), DVec3::new(-4.0, 14.0, 0.0), DVec3::new(0.0, 0.0, 10.0))
     }
 
-    /// The smallest distance to a dense sampling, and then of a finer one around the best.
-    fn brute_force(surface: &Surface, metric: &Metric, frame: Frame, p: Vec3) -> f32 {
+    /// The smallest distance to a dense sampling, refined by finer samplings around the best point.
+    fn brute_force(surface: &BicubicSheet, metric: &Metric, frame: ColumnFrame, p: Vec3) -> f32 {
         let distance = |at: Vec2| metric.length_squared(p - at.extend(surface.jet(frame, at).h)).sqrt();
         let grid = |centre: Vec2, half: i32, step: f32| {
             let mut best = (f32::INFINITY, centre);
@@ -340,7 +378,7 @@ mod tests {
     fn the_closest_point_is_the_global_one() {
         for (name, metric) in [("cubic voxels", DMat3::IDENTITY), ("sheared", sheared())] {
             let metric = Metric::new(metric, 1.0).unwrap();
-            let surface = Surface::new(&strongly_folded(), 0.0);
+            let surface = BicubicSheet::new(&strongly_folded(), 0.0);
             let (columns, levels) = (48usize, 29usize);
             let lattice_levels = (levels - 1).div_ceil(LEVELS) + 1;
             let lattice_columns = (columns - 1).div_ceil(COLUMNS) + 1;
@@ -350,8 +388,9 @@ mod tests {
                 wanted: vec![true; lattice_columns * lattice_columns],
             };
             // Columns run from 30 voxels above the surface's mean to 26 below: both sides of it.
-            let place =
-                |column: [i32; 2], level: f32| (Frame { column, z: 65.0 }, Vec3::new(0.0, 0.0, 26.0 - 2.0 * level));
+            let place = |column: [i32; 2], level: f32| {
+                (ColumnFrame { column, z: 65.0 }, Vec3::new(0.0, 0.0, 26.0 - 2.0 * level))
+            };
             let lattice = FootLattice::new(
                 &shape,
                 &surface,
@@ -369,7 +408,7 @@ mod tests {
                 for level in 0..levels {
                     let (_, p) = place([x, y], level as f32);
                     foot.follow(&surface, &metric, frame, p);
-                    lattice.challenge(&mut foot, &surface, &metric, frame, p, level as f32);
+                    lattice.try_lattice(&mut foot, &surface, &metric, frame, p, level as f32);
                     let brute = brute_force(&surface, &metric, frame, p);
                     let excess = foot.distance - brute;
                     worst = worst.max(excess);

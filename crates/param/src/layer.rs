@@ -1,4 +1,4 @@
-//! One region's sheets, and the field k over them.
+//! The sheets of one region, and the field k between them.
 //!
 //! # Distance ratio (P-illus 3.1)
 //!
@@ -6,33 +6,35 @@
 //! k = d_b / (d_b + d_t)         ∇k = (d_t ∇d_b − d_b ∇d_t) / (d_b + d_t)²
 //! ```
 //!
-//! with ∇d the metric unit normal of the sheet at the closest point, towards the layer: analytic, and stable where d
-//! vanishes. Isocurves are followed with k itself as the parameter, dp/dk = ∇k/|∇k|², so that a curve arrives at
-//! k = 0.5 by construction.
+//! ∇d is the metric unit normal of the sheet at the closest point, towards the layer. It is analytic, and
+//! stable where d vanishes. Isocurves are followed with k itself as the parameter, dp/dk = ∇k/|∇k|², so that
+//! a curve arrives at k = 0.5 by construction.
 //!
 //! # Parallel
 //!
-//! k = d/T from the bottom, or 1 − d/T from the top, T being the layer's reference thickness in metres. Curves along ∇k are the
-//! sheet's normals; their foot is known. The normals of a curved sheet meet farther out, on the side it is hollow
-//! to, so (i, j) are those of the *foot*: there is no common surface at half height that all of them cross.
+//! k = d/T from the bottom, or 1 − d/T from the top, with the layer's reference thickness T in metres. The
+//! curves along ∇k are the normals of the sheet, and their foot is known. The normals of a curved sheet meet
+//! on its concave side, so no surface at half height is crossed by all of them; therefore (i, j) are those of
+//! the *foot*.
 //!
 //! # Spaces
-//! Positions are voxels relative to the [`Frame`] of a column (its integer x, y; height of the bottom sheet there).
+//! Positions are voxels relative to the [`ColumnFrame`] of a column (its integer x, y and the height of the
+//! bottom sheet there).
 
 use crate::closest::Foot;
 use crate::metric::Metric;
-use crate::surface::{Frame, Surface};
+use crate::surface::{BicubicSheet, ColumnFrame};
 use glam::Vec3;
 
-/// Two sheets of one layer in one block, and what k means between them.
+/// Two sheets of one layer in one fault block, and the definition of k between them.
 pub struct Layer {
-    /// Where k = 0; for a layer open below, the top sheet lowered by its thickness.
-    pub bottom: Surface,
-    /// Where k = 1 (distance ratio); otherwise the sheet at the reference thickness.
-    pub top: Surface,
+    /// Where k = 0. In a layer that is open below, the top sheet lowered by the reference thickness.
+    pub bottom: BicubicSheet,
+    /// Where k = 1 for the distance ratio; otherwise the sheet at the reference thickness.
+    pub top: BicubicSheet,
     /// How k is measured.
     pub kind: LayerKind,
-    /// Lengths and angles.
+    /// The metric of lengths and angles.
     pub metric: Metric,
 }
 
@@ -41,15 +43,15 @@ pub struct Layer {
 pub enum LayerKind {
     /// Ratio of the distances to both sheets.
     Ratio,
-    /// Distance from the bottom over the thickness (scaled metric).
+    /// Distance from the bottom sheet over the thickness (scaled metric).
     AboveBottom(f32),
-    /// 1 − distance from the top over the thickness (scaled metric).
+    /// 1 − distance from the top sheet over the thickness (scaled metric).
     BelowTop(f32),
-    /// k is the fraction of the height; i, j are the column's own.
+    /// The fraction of the height; i, j are those of the column.
     Vertical,
 }
 
-/// Both feet of a point that moves through a layer.
+/// The feet of a point on both sheets of its layer.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Feet {
     /// On the bottom sheet.
@@ -58,19 +60,19 @@ pub struct Feet {
     pub top: Foot,
 }
 
-/// The ratio field at a point.
+/// The distance ratio at a point.
 #[derive(Debug, Clone, Copy)]
 pub struct RatioSample {
     /// k.
     pub k: f32,
-    /// dp/dk along the isocurve, voxels per unit of k; zero where ∇k vanishes.
+    /// dp/dk along the isocurve, voxels per unit of k; zero where ∇k is near 0.
     pub velocity: Vec3,
 }
 
 impl Layer {
-    /// The frame of a column: relative height 0 is on the bottom sheet.
-    pub fn frame(&self, column: [i32; 2]) -> Frame {
-        Frame { column, z: self.bottom.node(column[0], column[1]) }
+    /// The frame of a column. Relative height 0 is on the bottom sheet.
+    pub fn frame(&self, column: [i32; 2]) -> ColumnFrame {
+        ColumnFrame { column, z: self.bottom.node(column[0], column[1]) }
     }
 
     /// Voxels between the sheets in a column; negative where they cross.
@@ -78,22 +80,22 @@ impl Layer {
         self.bottom.node(column[0], column[1]) - self.top.node(column[0], column[1])
     }
 
-    /// Moves both feet to `p` and evaluates the ratio there.
+    /// Moves both feet to `p` and evaluates the distance ratio there.
     #[inline]
-    pub fn follow(&self, frame: Frame, p: Vec3, feet: &mut Feet) -> RatioSample {
+    pub fn follow(&self, frame: ColumnFrame, p: Vec3, feet: &mut Feet) -> RatioSample {
         feet.bottom.follow(&self.bottom, &self.metric, frame, p);
         feet.top.follow(&self.top, &self.metric, frame, p);
         self.ratio(feet)
     }
 
-    /// The ratio from feet that are up to date.
+    /// The distance ratio at the point that the feet belong to.
     #[inline]
     pub fn ratio(&self, feet: &Feet) -> RatioSample {
         let (db, dt) = (feet.bottom.distance, feet.top.distance);
         let sum = db + dt;
         let towards_bottom = feet.bottom.upward_normal(&self.metric);
         let towards_top = feet.top.upward_normal(&self.metric);
-        // The distance to the top grows downwards, hence the plus.
+        // The distance to the top increases downwards, hence the plus.
         let gradient = (towards_bottom * dt + towards_top * db) * (1.0 / (sum * sum));
         let squared = self.metric.length_squared(gradient);
         let velocity = if squared * sum * sum > 1e-4 { gradient * (1.0 / squared) } else { Vec3::ZERO };

@@ -1,10 +1,11 @@
 //! Lengths and angles in metres, computed from voxel coordinates.
 //!
-//! With the voxel → metre matrix M, |M u|² = uᵀ G u for G = Mᵀ M. Everything below needs G and its inverse alone: the
-//! metric gradient of a function with voxel derivative c (a covector) is, as a voxel vector, G⁻¹ c.
+//! With the voxel-to-metre matrix M, |M u|² = uᵀ G u for G = Mᵀ M. All that follows needs only G and its
+//! inverse: the metric gradient of a function with voxel derivative c (a covector) is, as a voxel vector, G⁻¹
+//! c.
 //!
-//! G is scaled by s² = |det M|^(2/3) so that f32 numbers stay near 1 whatever the bin size; a length in the scaled
-//! metric times `unit_m` is in metres. All ratios are free of the scale.
+//! G is scaled by s² = |det M|^(2/3) so that f32 numbers stay near 1 for any bin size. A length in this
+//! scaled metric times `unit_m` is in metres. Ratios of lengths do not depend on the scale.
 
 use crate::ParamError;
 use glam::{DMat3, DVec3, Mat3, Vec3};
@@ -20,7 +21,7 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// From the linear part of voxel → metres; `exaggeration` stretches the vertical first.
+    /// From the linear part of the voxel-to-metre map; `exaggeration` stretches the vertical first.
     ///
     /// # Errors
     /// [`ParamError::DegenerateMetric`] when the matrix cannot be inverted.
@@ -35,24 +36,25 @@ impl Metric {
         Ok(Self { g: g.as_mat3(), inverse: g.inverse().as_mat3(), map: m * (1.0 / unit_m), unit_m })
     }
 
-    /// The linear map from voxels into a Cartesian frame in units of the scaled metric.
+    /// The linear map from voxels to Cartesian coordinates in units of the scaled metric.
     pub fn scaled_from_voxel(&self) -> DMat3 {
         self.map
     }
 
-    /// G u: the covector of a voxel vector.
+    /// G u: the covector of voxel vector u.
     #[inline]
     pub fn lower(&self, u: Vec3) -> Vec3 {
         self.g * u
     }
 
-    /// G⁻¹ c: the voxel vector of a covector.
+    /// G⁻¹ c: the voxel vector of covector c.
     #[inline]
     pub fn raise(&self, c: Vec3) -> Vec3 {
         self.inverse * c
     }
 
-    /// The first fundamental form of a surface of slopes (h_x, h_y): products of (1, 0, h_x) and (0, 1, h_y) as (xx, xy, yy).
+    /// The first fundamental form of a surface with slopes (h_x, h_y): the products (xx, xy, yy) of the
+    /// tangents (1, 0, h_x) and (0, 1, h_y).
     #[inline]
     pub fn tangents(&self, hx: f32, hy: f32) -> (f32, f32, f32) {
         let (x, y, z) = (self.g.x_axis, self.g.y_axis, self.g.z_axis);

@@ -1,29 +1,33 @@
-//! What the parameterization needs to know of an interpretation.
+//! What the parameterization needs of an interpretation.
 
 use glam::{DMat3, Vec3};
 pub use model::Region;
 use model::StructuralModel;
 use survey::HeightField;
 
-/// An interpretation made solid: sheets that are defined everywhere, and the region of every point.
+/// An interpretation as a solid model: sheets that are defined everywhere, and the region of every point.
 ///
-/// [`StructuralModel`] is one; closed-form models are others. With n horizons (0 = youngest) there are n + 1 layers:
-/// horizon h is the bottom of layer n − h and the top of layer n − 1 − h. Positions are voxels.
+/// [`StructuralModel`] implements it; so can models in closed form (see the example of the [crate]). With n
+/// horizons (0 = youngest) there are n + 1 layers: horizon h is the bottom of layer n − h and the top of
+/// layer n − 1 − h. Positions are voxels.
 pub trait LayerModel: Sync {
     /// Counts of voxels `[inlines, crosslines, samples]`.
     fn size(&self) -> [usize; 3];
-    /// Voxel → metres, the linear part.
+    /// The linear part of the map from voxels to metres.
     fn metric(&self) -> DMat3;
     /// Count of layers, at least 1.
     fn layer_count(&self) -> usize;
     /// Count of fault blocks, at least 1.
     fn block_count(&self) -> usize;
-    /// The sheet of a horizon in a block, extended past walls, faults and holes and not cut by other horizons.
+    /// The sheet of a horizon in a fault block. It continues past the outer boundary, past faults and across
+    /// holes, and is not cut by other horizons.
     fn sheet(&self, horizon: usize, block: u16) -> &HeightField;
-    /// The region at a voxel position.
+    /// The region at a voxel position. Its layer is below [`LayerModel::layer_count`] and its block below
+    /// [`LayerModel::block_count`].
     fn region_at(&self, p: Vec3) -> Region;
-    /// The regions at all depths (voxel z) of the trace at (x, y): `found(n, region)` for `depths[n]`. A model that can share work down a
-    /// trace says so here.
+    /// The regions at all depths (voxel z) of the trace at (x, y): calls `found(n, region)` for each
+    /// `depths[n]`, in order. The default asks [`LayerModel::region_at`] at each depth; a model that can
+    /// share work along a trace overrides it.
     fn regions_down(&self, x: f32, y: f32, depths: &[f32], found: &mut dyn FnMut(usize, Region)) {
         for (n, &z) in depths.iter().enumerate() {
             found(n, self.region_at(Vec3::new(x, y, z)));

@@ -1,26 +1,27 @@
-//! Where to start looking for a closest point: the nearest of a sparse set of the sheet's nodes, by kd-tree.
+//! Starting points for the search of a closest point: the nearest of a sparse set of the sheet's nodes, by
+//! kd-tree.
 //!
-//! Every [`STRIDE`]th node of a sheet, placed in metres, goes into an immutable `kiddo` tree. The walk over the surface
-//! ([`crate::closest`]) makes the answer exact, so the set can be sparse, and a sparse set is also what keeps the tree fast.
-//! Nodes of a height field differ in (x, y), so there are no duplicates by construction.
+//! Every [`STRIDE`]th node of a sheet, in metres up to a scale, goes into an immutable `kiddo` tree. The set
+//! can be sparse because Newton's method on the surface ([`crate::closest`]) makes the answer exact, and a
+//! sparse set keeps the tree fast. Nodes of a height field differ in (x, y), so there are no duplicates.
 //!
-//! # Flat sheets
-//! A flat sheet never splits along z, so the tree looks at all nodes within the distance itself. Measured on a busy machine
-//! (µs a query, sheet of N × N voxels): 3 and 14 at distances N/4 and N/2 for N = 256, 27 and 67 for N = 512, 86 and
-//! 117 for N = 1024; a third of that on a gentle fold. With one query per 1500 voxels ([`crate::lattice`]) the
-//! worst of these is 0.1 µs a voxel, a sixth of the whole: no second tree is needed.
+//! # Cost on flat sheets
+//! A flat sheet is never split along z, so the tree visits all nodes within the distance itself. Measured on
+//! a busy machine (µs a query, sheet of N × N voxels): 3 and 14 at distances N/4 and N/2 for N = 256, 27 and
+//! 67 for N = 512, 86 and 117 for N = 1024; a third of that on a gentle fold. With one query per 1500 voxels
+//! ([`crate::lattice`]) the worst of these is 0.1 µs a voxel, a sixth of the total.
 
 use crate::metric::Metric;
-use crate::surface::Surface;
+use crate::surface::BicubicSheet;
 use glam::{DMat3, DVec3};
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
-/// Distance between the nodes that are put into the tree, voxels.
+/// Distance between the nodes in the tree, voxels.
 const STRIDE: usize = 4;
 
 /// Finds a node of a sheet near a point.
 pub struct NodeFinder {
-    tree: Option<ImmutableKdTree<f32, 3>>,
+    tree: ImmutableKdTree<f32, 3>,
     columns: Vec<[i32; 2]>,
     map: DMat3,
     centre: DVec3,
@@ -28,7 +29,7 @@ pub struct NodeFinder {
 
 impl NodeFinder {
     /// Builds the tree over a sheet.
-    pub fn new(surface: &Surface, metric: &Metric) -> Self {
+    pub fn new(surface: &BicubicSheet, metric: &Metric) -> Self {
         let (origin, size) = surface.extent();
         let along = |axis: usize| {
             let last = size[axis] - 1;
@@ -43,16 +44,16 @@ impl NodeFinder {
             .iter()
             .map(|&[x, y]| place(DVec3::new(f64::from(x), f64::from(y), f64::from(surface.node(x, y)))))
             .collect();
-        Self { tree: ImmutableKdTree::new_from_slice(&points).ok(), columns, map, centre }
+        let tree = ImmutableKdTree::new_from_slice(&points);
+        // Construction fails on more points than u32 can number and on many points in one place.
+        let tree = tree.expect("a sheet has fewer than 2³² nodes, each in a column of its own");
+        Self { tree, columns, map, centre }
     }
 
-    /// The column of the nearest node in the set to voxel `p`.
+    /// The column of the node in the tree that is nearest to voxel `p`.
     pub fn near(&self, p: DVec3) -> [i32; 2] {
         let query = (self.map * (p - self.centre)).as_vec3().to_array();
-        let item = self.tree.as_ref().map(|tree| tree.query(&query).nearest_one::<SquaredEuclidean<f32>>().execute());
-        match item {
-            Some(found) => self.columns[found.item as usize],
-            None => [p.x.round() as i32, p.y.round() as i32],
-        }
+        let found = self.tree.query(&query).nearest_one::<SquaredEuclidean<f32>>().execute();
+        self.columns[found.item as usize]
     }
 }

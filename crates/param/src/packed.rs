@@ -1,6 +1,6 @@
-//! The paper's packed volume (P-illus 3.3) and its two lookups (3.4): the reference path that ours is compared with.
+//! The paper's packed volume (P-illus 3.3) and its two lookups (3.4), the baseline for our own lookup.
 //!
-//! One 3-component volume holds everything:
+//! One 3-component volume stores coordinates and ids:
 //!
 //! ```text
 //! k' = (k + L) / NumLayers          L = 0 … NumLayers − 1 from the bottom
@@ -9,16 +9,18 @@
 //! layer = ⌊k'·NumLayers⌋            block = ⌊j'·NumFaultBlocks⌋, both clamped
 //! ```
 //!
-//! The paper counts L from 1 in one sentence and from 0 in its example; zero-based is the consistent form. It shifts k in
-//! words and j in the formula for blocks; j it is. The widening keeps ĵ inside (0, 1), so that the block id of a stored value is certain; k is
-//! kept inside [0, 1) for the same reason, except that k = 1 on a top may read as the layer above: that is the paper's packing.
+//! The paper counts L from 1 in one sentence and from 0 in its example; we count from 0, which is consistent
+//! with its formulas. Its text shifts k for blocks, its formula j; we shift j. The widening keeps ĵ inside
+//! (0, 1), so that the block id of a stored value is certain. k is kept inside [0, 1) for the same reason; k
+//! = 1 on a top may still read as the layer above, which is a property of the paper's packing.
 //!
 //! # Lookup
-//! [`PackedVolume::lookup_linear`] is plain trilinear interpolation: wrong in every cell that straddles a boundary.
-//! [`PackedVolume::lookup_extrapolated`] follows 3.4. The id of the looked-up position is not defined by the paper when interpolation is what fails
-//! there; ours is that of the nearest corner. Corners with another id are invalid; each gets a value extrapolated linearly from its
-//! two neighbours in +x if both have the id of the position, else −x, +y, −y, +z, −z; where none
-//! works the stored value stays (the paper's "erroneous interpolation").
+//! [`PackedVolume::lookup_linear`] is plain trilinear interpolation, which is wrong in every cell that
+//! straddles a boundary. [`PackedVolume::lookup_extrapolated`] follows 3.4. The paper does not define the id
+//! of the lookup position, where interpolation is what fails; ours is the id of the nearest corner. Corners
+//! with another id are invalid. Each of them gets a value extrapolated linearly from its two neighbours in +x
+//! if both have the id of the position, else from those in −x, +y, −y, +z, −z. Where none works the stored
+//! value is used (the paper's "erroneous interpolation").
 //!
 //! Positions are voxels of the model; the volume is corner-aligned with it. Memory: 12 bytes a sample.
 
@@ -27,32 +29,55 @@ use glam::Vec3;
 
 /// Fraction by which the ranges of i and j are widened on each side.
 const PADDING: f32 = 1.0 / 4096.0;
-/// Largest k that is packed: what is above would read as the next layer.
+/// Largest packed k; a larger one would read as the next layer.
 const BELOW_ONE: f32 = 1.0 - 1.0 / 16384.0;
 /// Order in which neighbours are tried (P-illus 3.4).
 const DIRECTIONS: [[i32; 3]; 6] = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
 
-/// The 3-component volume.
+/// The paper's 3-component volume.
+///
+/// ```
+/// use glam::Vec3;
+/// use param::{PackedVolume, Region, VoxelParameterization};
+/// use survey::Volume;
+///
+/// // One layer in one block, k = 1 − z / 4 over 2 × 2 × 5 samples.
+/// let size = [2, 2, 5];
+/// let samples = |value: fn(usize) -> f32| Volume::from_samples(size, (0..20).map(value).collect()).unwrap();
+/// let volumes = VoxelParameterization {
+///     size,
+///     i: samples(|n| (n / 10) as f32),
+///     j: samples(|n| (n / 5 % 2) as f32),
+///     k: samples(|n| 1.0 - (n % 5) as f32 / 4.0),
+///     layer: Volume::filled(size, 0u16),
+///     block: Volume::filled(size, 0u16),
+/// };
+/// let packed = PackedVolume::from_voxels(&volumes, size, 1, 1);
+/// let flat = packed.lookup_extrapolated(Vec3::new(0.25, 0.5, 2.5));
+/// assert_eq!(flat.region, Region { layer: 0, block: 0 });
+/// assert!((flat.i - 0.25).abs() < 1e-5 && (flat.j - 0.5).abs() < 1e-5 && (flat.k - 0.375).abs() < 1e-5);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PackedVolume {
-    /// Counts of samples.
+    /// Counts of samples `[inlines, crosslines, samples]`.
     pub size: [usize; 3],
-    /// Counts of voxels of the model it spans, corner-aligned.
+    /// Counts of voxels of the model that the volume spans, corner-aligned.
     pub voxels: [usize; 3],
     /// NumLayers.
     pub layers: usize,
     /// NumFaultBlocks.
     pub blocks: usize,
-    /// i at î = 0 and at î = 1.
+    /// i where î is 0 and where î is 1.
     pub i_range: [f32; 2],
-    /// j at ĵ = 0 and at ĵ = 1.
+    /// j where ĵ is 0 and where ĵ is 1.
     pub j_range: [f32; 2],
-    /// `[i', j', k']`, `[inline][crossline][sample]`; samples of no region hold NaN.
+    /// `[i', j', k']` per sample `[inline][crossline][sample]`; NaN in samples of no region.
     pub values: Vec<[f32; 3]>,
 }
 
 impl PackedVolume {
-    /// Packs sampled volumes of a model of `voxels`.
+    /// Packs the sampled parameterization of a model of `voxels` voxels, with its counts of layers and fault
+    /// blocks.
     pub fn from_voxels(volumes: &VoxelParameterization, voxels: [usize; 3], layers: usize, blocks: usize) -> Self {
         let range = |samples: &[f32]| {
             let known = samples.iter().copied().filter(|value| value.is_finite());
@@ -92,7 +117,7 @@ impl PackedVolume {
         (0..3).all(|axis| p[axis] >= 0 && p[axis] < self.size[axis] as i32)
     }
 
-    /// The ids that a value carries: floors on half-open intervals, clamped; [`NO_REGION`] for the NaN of no region.
+    /// The ids that a packed value carries: floors on half-open intervals, clamped. [`NO_REGION`] for NaN.
     #[inline]
     pub fn region_of(&self, value: [f32; 3]) -> Region {
         if value[2].is_nan() {
@@ -102,7 +127,7 @@ impl PackedVolume {
         Region { layer: id(value[2], self.layers), block: id(value[1], self.blocks) }
     }
 
-    /// Cell and fractions of a voxel position.
+    /// The cell that contains a voxel position, and the fractions in it.
     fn cell(&self, p: Vec3) -> ([i32; 3], [f32; 3]) {
         let mut cell = [0; 3];
         let mut fraction = [0.0; 3];
@@ -115,7 +140,7 @@ impl PackedVolume {
         (cell, fraction)
     }
 
-    /// Unpacks a value by given ids.
+    /// Unpacks a value with given ids.
     fn unpack(&self, value: [f32; 3], region: Region) -> FlatPoint {
         let spread = |unit: f32, range: [f32; 2]| range[0] + unit * (range[1] - range[0]);
         FlatPoint {
@@ -126,7 +151,7 @@ impl PackedVolume {
         }
     }
 
-    /// Trilinear interpolation of the packed values, ids from the result.
+    /// Trilinear interpolation of the packed values at voxel `p`; the ids are read from the result.
     pub fn lookup_linear(&self, p: Vec3) -> FlatPoint {
         let (cell, fraction) = self.cell(p);
         let corners = std::array::from_fn(|c| self.at(corner(cell, c)));
@@ -134,13 +159,15 @@ impl PackedVolume {
         self.unpack(value, self.region_of(value))
     }
 
-    /// P-illus 3.4: corners of another region are extrapolated from neighbours of this one before interpolating.
+    /// The lookup of P-illus 3.4 at voxel `p`: corners of another region are extrapolated from neighbours of
+    /// this one before interpolating.
     pub fn lookup_extrapolated(&self, p: Vec3) -> FlatPoint {
         let (corners, fraction, region) = self.extrapolated_cell(p);
         self.unpack(trilinear(&corners, fraction), region)
     }
 
-    /// The same with the Jacobian ∂(i, j, k)/∂(x, y, z) per voxel of the interpolation inside the cell.
+    /// [`PackedVolume::lookup_extrapolated`] with the Jacobian ∂(i, j, k)/∂(x, y, z) per voxel of the
+    /// interpolation inside the cell.
     pub fn lookup_extrapolated_jacobian(&self, p: Vec3) -> (FlatPoint, [[f32; 3]; 3]) {
         let (corners, fraction, region) = self.extrapolated_cell(p);
         let spread = |range: [f32; 2]| range[1] - range[0];
@@ -159,7 +186,8 @@ impl PackedVolume {
         (self.unpack(trilinear(&corners, fraction), region), jacobian)
     }
 
-    /// The corners of the cell around a position, those of another region extrapolated; the fractions in it; the region.
+    /// The corners of the cell around a position, those of another region extrapolated; the fractions in the
+    /// cell; the region.
     fn extrapolated_cell(&self, p: Vec3) -> ([[f32; 3]; 8], [f32; 3], Region) {
         let (cell, fraction) = self.cell(p);
         let nearest: [i32; 3] = std::array::from_fn(|axis| cell[axis] + i32::from(fraction[axis] >= 0.5));
@@ -261,7 +289,8 @@ mod tests {
             let plain = packed.lookup_linear(Vec3::new(x, 4.4, z));
             assert!((plain.i - found.i).abs() > 0.01 || (plain.k - found.k).abs() > 0.01, "{plain:?} at {x}, {z}");
         }
-        // Where the fault meets the horizon the corner across both has no neighbour of the own region: 3.4's failure.
+        // Where the fault meets the horizon the corner across both has no neighbour of the own region: 3.4's
+        // failure.
         let junction = packed.lookup_extrapolated(Vec3::new(3.2, 4.4, 3.3));
         assert!((junction.i - 0.32).abs() > 0.01);
     }

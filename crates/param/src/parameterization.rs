@@ -4,19 +4,20 @@ use crate::compute::{self, ComputeCost};
 use crate::grid::{FlatPoint, RegionGrid, SheetRef};
 use crate::layer::{Layer, LayerKind};
 use crate::metric::Metric;
-use crate::surface::Surface;
-use crate::touched::{Sounding, Touched};
+use crate::surface::BicubicSheet;
+use crate::touched::{ColumnScan, RegionColumns};
 use crate::{KDefinition, LayerModel, ParamError, ParamSettings, Region};
 use glam::Vec3;
 use rayon::prelude::*;
 use survey::{HeightField, Progress};
 
-/// Fewest levels of a grid: the cubic along columns wants four.
+/// Fewest levels of a grid; the cubic along a column uses four.
 const FEWEST_LEVELS: usize = 5;
 
-/// k, i and j of every point of a model.
+/// The flat coordinates of every point of a model.
 ///
-/// Lookups ask the model for the region and for its sheets, so the model that was parameterized has to be passed along.
+/// Lookups use the regions and sheets of the model, so they take the model that was parameterized as an
+/// argument.
 #[derive(Debug, Clone)]
 pub struct Parameterization {
     /// Counts of voxels of the model.
@@ -25,20 +26,20 @@ pub struct Parameterization {
     pub layers: usize,
     /// Count of fault blocks.
     pub blocks: usize,
-    /// Index `block · layers + layer`.
+    /// The grids; region (layer, block) has index `block · layers + layer`.
     pub grids: Vec<RegionGrid>,
-    /// What it cost; the only part that differs from run to run.
+    /// Processor time of the computation; the only part that differs from run to run.
     pub cost: ComputeCost,
 }
 
 impl Parameterization {
-    /// Parameterizes a model.
+    /// Computes the parameterization of a model.
     ///
-    /// Cost: about 1 µs a node on one core; nodes ≈ voxels / `level_spacing`, more where fault blocks overlap in the map.
-    /// Memory: 12 bytes a node, while it runs 1 byte more.
+    /// Cost: about 1 µs a node on one core. Nodes ≈ voxels / `level_spacing`, more where fault blocks overlap
+    /// on the map. Memory: 12 bytes a node, and 1 byte more while it runs.
     ///
     /// # Errors
-    /// [`ParamError`]: a setting out of range, a degenerate model, or cancelled.
+    /// [`ParamError`]: a setting is out of range, the model is degenerate, or the user cancelled.
     pub fn compute<M: LayerModel + ?Sized>(
         model: &M,
         settings: &ParamSettings,
@@ -50,8 +51,8 @@ impl Parameterization {
             return Err(ParamError::Empty { size });
         }
         let metric = Metric::new(model.metric(), settings.exaggeration)?;
-        let sounding = Sounding::of(model, progress)?;
-        let touched: Vec<Touched> = (0..layers * blocks)
+        let scan = ColumnScan::of(model, progress)?;
+        let touched: Vec<RegionColumns> = (0..layers * blocks)
             .into_par_iter()
             .map(|n| {
                 let region = Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
@@ -59,10 +60,10 @@ impl Parameterization {
                 let node = |horizon: Option<usize>, x, y, open| {
                     horizon.map_or(open, |horizon| model.sheet(horizon, region.block).node(x, y))
                 };
-                sounding.touched(region, |x, y| (node(bottom, x, y, f32::INFINITY), node(top, x, y, f32::NEG_INFINITY)))
+                scan.touched(region, |x, y| (node(bottom, x, y, f32::INFINITY), node(top, x, y, f32::NEG_INFINITY)))
             })
             .collect();
-        drop(sounding);
+        drop(scan);
         let rows: usize = touched.iter().map(|region| region.size[0]).sum();
         progress.begin("parameterizing", rows as u64);
         let mut reaches = vec![1.0f32; layers];
@@ -90,48 +91,65 @@ impl Parameterization {
     }
 
     /// The grid of a region.
+    ///
+    /// # Panics
+    /// When the model has no such layer or block.
     pub fn grid(&self, region: Region) -> &RegionGrid {
-        let index = usize::from(region.block) * self.layers + usize::from(region.layer);
-        &self.grids[index.min(self.grids.len() - 1)]
+        let (layer, block) = (usize::from(region.layer), usize::from(region.block));
+        assert!(
+            layer < self.layers && block < self.blocks,
+            "{region:?} of {} layers, {} blocks",
+            self.layers,
+            self.blocks
+        );
+        &self.grids[block * self.layers + layer]
     }
 
-    /// Flat coordinates of a voxel position: the exact path. Total: a point outside the volume is looked up in the region
-    /// that the model says it is in, with the offsets of the nearest column.
+    /// Flat coordinates of a voxel position: the exact lookup. Every position has an answer: outside the
+    /// volume, the region is the one that the model gives and the offsets are those of the nearest column.
     pub fn lookup<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> FlatPoint {
         self.lookup_in(model, p, model.region_at(p)).0
     }
 
-    /// Flat coordinates of a voxel position by the (extended) parameterization of a given region, with the Jacobian
+    /// Flat coordinates of a voxel position in the (extended) parameterization of `region`, and the Jacobian
     /// ∂(i, j, k)/∂(x, y, z) per voxel.
+    ///
+    /// # Panics
+    /// As [`Parameterization::grid`].
     pub fn lookup_in<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, region: Region) -> (FlatPoint, [[f32; 3]; 3]) {
         self.grid(region).lookup(model, self.size, p)
     }
 
-    /// Whether the parameterization has a crease (a jump of a closest point) beside voxel `p` of a region.
+    /// Whether the parameterization of `region` has a crease (a jump of the closest point) next to voxel `p`.
     pub fn is_near_crease<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3, region: Region) -> bool {
         self.grid(region).is_near_crease(model, p)
     }
 
-    /// Bytes held by all grids.
+    /// Memory of all grids, bytes.
     pub fn bytes(&self) -> usize {
         self.grids.iter().map(RegionGrid::bytes).sum()
     }
 }
 
-/// Horizons at the bottom and top of a layer.
+/// Horizons at the bottom and the top of a layer.
 fn horizons(layer: usize, layers: usize) -> (Option<usize>, Option<usize>) {
     ((layer > 0).then(|| layers - 1 - layer), (layer + 1 < layers).then(|| layers - 2 - layer))
 }
 
-/// Voxels from a layer's reference sheet to the farthest place of the region, along the vertical: what the reference
-/// thickness of open and parallel layers has to cover. The distance is never longer than the vertical.
-fn farthest<M: LayerModel + ?Sized>(model: &M, settings: &ParamSettings, region: Region, touched: &Touched) -> f32 {
+/// Vertical distance (voxels) from the reference sheet of an open or parallel layer to the farthest point of
+/// the region; the reference thickness has to cover it. The shortest distance to the sheet is never longer.
+fn farthest<M: LayerModel + ?Sized>(
+    model: &M,
+    settings: &ParamSettings,
+    region: Region,
+    touched: &RegionColumns,
+) -> f32 {
     let layers = model.layer_count();
     let layer = usize::from(region.layer);
     let (bottom, top) = horizons(layer, layers);
     let last = model.size()[2].saturating_sub(1) as f32;
     let node = |horizon: usize, [x, y]: [i32; 2]| model.sheet(horizon, region.block).node(x, y);
-    // An open layer reaches to the edge of the volume, a closed one as far as it is met.
+    // An open layer reaches to the edge of the volume, a closed one as far as the region was found.
     let met = |column: [i32; 2], z: f32| model.region_at(Vec3::new(column[0] as f32, column[1] as f32, z)) == region;
     let step = 2.0;
     let depths_met = |column: [i32; 2], depths: [f32; 2]| {
@@ -152,13 +170,13 @@ fn farthest<M: LayerModel + ?Sized>(model: &M, settings: &ParamSettings, region:
     touched.columns().map(|(_, column, depths)| height(column, depths)).fold(0.0, f32::max)
 }
 
-/// The empty grid of a region, and how to make its sheets.
+/// The empty grid of a region, and a function that makes its sheets.
 fn plan<'a, M: LayerModel + ?Sized>(
     model: &'a M,
     settings: &ParamSettings,
     metric: &'a Metric,
     region: Region,
-    touched: &'a Touched,
+    touched: &'a RegionColumns,
     reach: f32,
 ) -> (RegionGrid, impl FnOnce() -> Layer + 'a) {
     let layers = model.layer_count();
@@ -202,8 +220,8 @@ fn plan<'a, M: LayerModel + ?Sized>(
         creases: Vec::new(),
     };
     let surface = move |sheet: SheetRef| match sheet.horizon {
-        Some(horizon) => Surface::new(model.sheet(horizon, region.block), sheet.shift),
-        None => Surface::new(&HeightField::from_fn(touched.origin, touched.size, |_, _| 0.0), sheet.shift),
+        Some(horizon) => BicubicSheet::new(model.sheet(horizon, region.block), sheet.shift),
+        None => BicubicSheet::new(&HeightField::from_fn(touched.origin, touched.size, |_, _| 0.0), sheet.shift),
     };
     (grid, move || Layer { bottom: surface(bottom), top: surface(top), kind, metric: *metric })
 }

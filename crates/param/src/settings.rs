@@ -4,27 +4,28 @@ use crate::ParamError;
 use serde::{Deserialize, Serialize};
 use survey::{Contact, Stratigraphy};
 
-/// What k means inside a layer. k is 0 at the bottom sheet and grows upwards in all of them.
+/// What k means inside a layer. With every definition k is 0 at the bottom sheet and increases upwards.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[non_exhaustive]
 pub enum KDefinition {
-    /// k = d_bottom / (d_bottom + d_top), distances in metres to the closest points of the two sheets; i, j are where the
-    /// curve along ∇k crosses k = 0.5 (P-illus 3.1). An open layer has one sheet only and falls back on the parallel
-    /// definition of that sheet.
+    /// k = d_bottom / (d_bottom + d_top), with the distances in metres to the closest points of the two
+    /// sheets; i, j are where the curve along ∇k crosses k = 0.5 (P-illus 3.1). An open layer has only one
+    /// sheet and uses the parallel definition of that sheet.
     #[default]
     DistanceRatio,
-    /// k = d_bottom / T with the layer's reference thickness T: beds parallel to the bottom, cut off by the top, as
-    /// below an unconformity. i, j are those of the closest point on the bottom sheet.
+    /// k = d_bottom / T with the layer's reference thickness T: beds are parallel to the bottom and are cut
+    /// off by the top, as below an unconformity. i, j are those of the closest point on the bottom sheet.
     ParallelToBottom,
-    /// k = 1 − d_top / T: beds parallel to the top that end on the bottom, as above an onlap surface. i, j are those of
-    /// the closest point on the top sheet.
+    /// k = 1 − d_top / T: beds are parallel to the top and end on the bottom, as above an onlap surface. i, j
+    /// are those of the closest point on the top sheet.
     ParallelToTop,
 }
 
 impl KDefinition {
-    /// The definitions that contacts ask for, index 0 = deepest layer: an intrusion that cuts through the horizon below it has
-    /// no bottom, so its layer is measured from its outline; every other layer keeps the distance ratio.
+    /// The definitions that follow from the contact rules, index 0 = deepest layer. An intrusion cuts through
+    /// the horizon below it, so its layer has no bottom and is measured from its outline
+    /// ([`KDefinition::ParallelToTop`]). Every other layer keeps the distance ratio.
     pub fn for_contacts(stratigraphy: &Stratigraphy) -> Vec<Self> {
         let layer = |layer: usize| match stratigraphy.top_of(layer) {
             Some(top) if stratigraphy.horizons[top].contact == Contact::Intrusive => Self::ParallelToTop,
@@ -38,18 +39,21 @@ impl KDefinition {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ParamSettings {
-    /// Distance between two levels of the stratigraphic grid where the layer is thickest, voxels (a layer has five
-    /// levels at least). Default 3: memory and time go with its inverse. On folds 80 voxels long with dips above 30° the angles'
-    /// median and 95 % are 0.04° and 0.25° at 3, 0.03° and 0.17° at 2.
+    /// Distance between two levels of the stratigraphic grid where the layer is thickest, voxels. Every layer
+    /// has at least five levels. Default 3. Memory and time are inversely proportional to it. On folds 80
+    /// voxels long with dips above 30°, median and 95 % of the angle error are 0.04° and 0.25° at 3, 0.03°
+    /// and 0.17° at 2.
     pub level_spacing: f32,
-    /// Definition of k per layer, index 0 = deepest. Layers beyond the list take [`KDefinition::DistanceRatio`].
-    /// Default empty.
+    /// Definition of k per layer, index 0 = deepest. Layers beyond the end of the list use
+    /// [`KDefinition::DistanceRatio`]. Default empty.
     pub definitions: Vec<KDefinition>,
-    /// Vertical exaggeration at which distances and angles are measured: 1 (default) is true space; another value
-    /// parameterizes in display space, so that textures look undistorted at that exaggeration.
+    /// Vertical exaggeration at which distances and angles are measured. 1 (default) is true space. With
+    /// another value the parameterization is computed in display space, so that textures look undistorted at
+    /// that exaggeration.
     pub exaggeration: f64,
-    /// Error estimate allowed per step of a trace, voxels across. Default 4e-3: the estimate is that of the lower order of the
-    /// pair, the step's own error is several times smaller, and angles do not change by a hundredth of a degree.
+    /// Largest error estimate of a trace step, horizontal voxels. Default 4e-3. The estimate belongs to the
+    /// lower order of the Runge–Kutta pair; the error of the step itself is several times smaller, and angles
+    /// change by less than a hundredth of a degree.
     pub trace_tolerance: f32,
 }
 
@@ -60,10 +64,10 @@ impl Default for ParamSettings {
 }
 
 impl ParamSettings {
-    /// Checks the ranges of all settings for a model of so many layers.
+    /// Checks the ranges of all settings for a model of `layers` layers.
     ///
     /// # Errors
-    /// The first [`ParamError`] found.
+    /// [`ParamError::Setting`] or [`ParamError::NoSuchLayer`]; the first error found.
     pub fn validate(&self, layers: usize) -> Result<(), ParamError> {
         let in_range = |setting, found: f64, expected, ok: bool| {
             if ok { Ok(()) } else { Err(ParamError::Setting { setting, found, expected }) }
@@ -80,8 +84,20 @@ impl ParamSettings {
         }
     }
 
-    /// The definition that holds in `layer`: the stated one, or the parallel one that an open layer allows. `None` when
-    /// the only layer is open on both sides: k is then the vertical fraction of the volume.
+    /// The definition used in `layer`: the one in [`ParamSettings::definitions`], or the parallel one where
+    /// the layer is open on one side. `None` when the only layer is open on both sides; k is then the
+    /// vertical fraction of the volume.
+    ///
+    /// ```
+    /// use param::{KDefinition, ParamSettings};
+    ///
+    /// // Three layers: the deepest and the youngest have one horizon each.
+    /// let settings = ParamSettings::default();
+    /// assert_eq!(settings.definition(0, 3), Some(KDefinition::ParallelToTop));
+    /// assert_eq!(settings.definition(1, 3), Some(KDefinition::DistanceRatio));
+    /// assert_eq!(settings.definition(2, 3), Some(KDefinition::ParallelToBottom));
+    /// assert_eq!(settings.definition(0, 1), None);
+    /// ```
     pub fn definition(&self, layer: usize, layers: usize) -> Option<KDefinition> {
         let stated = self.definitions.get(layer).copied().unwrap_or_default();
         match (layer == 0, layer + 1 == layers) {

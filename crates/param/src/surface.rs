@@ -1,26 +1,26 @@
-//! A sheet made ready for many evaluations: value, slope and curvature of the Catmull–Rom bicubic in one pass.
+//! A sheet prepared for fast evaluation: value, slope and curvature of the Catmull–Rom bicubic in one pass.
 //!
-//! The surface is exactly that of [`survey::HeightField`] (same nodes, same weights). Two things are added: a border of
-//! linearly continued nodes, so that walks past the walls stay on the fast path, and evaluation *relative* to a column
-//! and a height (`Frame`), so that f32 keeps its precision far from the origin: differences of nearby numbers are formed
-//! first, on the nodes, where they are exact.
+//! The surface is that of [`survey::HeightField`] (same nodes, same weights). Two things are added. A border
+//! of linearly continued nodes keeps evaluations past the outer boundary on the fast path. Evaluation is
+//! *relative* to a column and a height ([`ColumnFrame`]), so that f32 keeps its precision far from the
+//! origin: differences of nearby numbers are formed first, on the nodes, where they are exact.
 
 use glam::{Mat4, Vec2, Vec4};
 use survey::HeightField;
 
-/// Nodes continued past each side of the height field, voxels.
+/// Width of the border of continued nodes on each side of the height field, voxels.
 const BORDER: i32 = 32;
 
-/// Where relative coordinates start: an integer voxel column and a height.
+/// Origin of relative coordinates: an integer voxel column and a height.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Frame {
+pub struct ColumnFrame {
     /// Voxel x, y.
     pub column: [i32; 2],
     /// Voxel z.
     pub z: f32,
 }
 
-/// Value and derivatives of a surface at one place, height relative to the frame.
+/// The 2-jet of a surface at one place: its height, slope and curvature. The height is relative to the frame.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Jet {
     /// h − frame.z, voxels.
@@ -45,9 +45,9 @@ impl Jet {
     }
 }
 
-/// A height field with a border, shifted vertically. Memory: 4 bytes a node.
+/// A sheet as a bicubic surface with a border, shifted vertically. Memory: 4 bytes a node.
 #[derive(Debug, Clone)]
-pub struct Surface {
+pub struct BicubicSheet {
     origin: [i32; 2],
     size: [i32; 2],
     /// Counts of 4 × 4 patches along x and y.
@@ -69,7 +69,7 @@ fn weights(t: f32) -> [Vec4; 3] {
     [a + t * (b + t * (c + t * d)), b + t * (2.0 * c + (3.0 * t) * d), 2.0 * c + (6.0 * t) * d]
 }
 
-/// Largest integer not above `value`, and the rest in [0, 1). Far values saturate instead of wrapping.
+/// Largest integer not above `value`, and the rest in [0, 1). Values beyond ±10⁶ saturate.
 #[inline]
 fn split(value: f32) -> (i32, f32) {
     let value = value.clamp(-1e6, 1e6);
@@ -78,7 +78,7 @@ fn split(value: f32) -> (i32, f32) {
     (floor, value - floor as f32)
 }
 
-impl Surface {
+impl BicubicSheet {
     /// Copies a sheet, lowered by `shift` voxels of z.
     pub fn new(field: &HeightField, shift: f32) -> Self {
         let origin = [field.origin[0] - BORDER, field.origin[1] - BORDER];
@@ -107,14 +107,14 @@ impl Surface {
 
     /// The jet at `at`, voxels from the frame's column.
     #[inline]
-    pub fn jet(&self, frame: Frame, at: Vec2) -> Jet {
+    pub fn jet(&self, frame: ColumnFrame, at: Vec2) -> Jet {
         let ((cell_x, fx), (cell_y, fy)) = (split(at.x), split(at.y));
         let (u, v) = (frame.column[0] + cell_x - 1 - self.origin[0], frame.column[1] + cell_y - 1 - self.origin[1]);
         let inside = (u as u32) < self.inner[0] && (v as u32) < self.inner[1];
         let rows = if inside {
             let stride = self.size[1] as usize;
             let nodes = &self.z[u as usize * stride + v as usize..];
-            // Four loads of four nodes; the compiler sees one check for the last.
+            // Four loads of four nodes; loading the last row first leaves one bounds check.
             let row = |a: usize| Vec4::from_slice(&nodes[a * stride..]);
             let last = row(3);
             [row(0), row(1), row(2), last]
@@ -151,8 +151,8 @@ mod tests {
         let field = HeightField::from_fn([-3, 4], [30, 25], |x, y| {
             600.0 + 8.0 * (0.3 * x as f32).sin() + 5.0 * (0.2 * (x + 2 * y) as f32).cos()
         });
-        let surface = Surface::new(&field, 1.5);
-        let frame = Frame { column: [7, 11], z: 590.0 };
+        let surface = BicubicSheet::new(&field, 1.5);
+        let frame = ColumnFrame { column: [7, 11], z: 590.0 };
         for (x, y) in [(7.0, 11.0), (3.25, 8.75), (11.9, 20.1), (-20.5, 11.3), (-200.5, 400.25), (26.4, 28.9)] {
             let jet = surface.jet(frame, Vec2::new(x - 7.0, y - 11.0));
             let sample = field.sample(x, y);
@@ -167,8 +167,8 @@ mod tests {
     #[test]
     fn a_moved_jet_is_the_quadratic() {
         let field = HeightField::from_fn([0, 0], [20, 20], |x, y| 0.05 * (x * x) as f32 + 0.02 * (x * y) as f32);
-        let surface = Surface::new(&field, 0.0);
-        let frame = Frame { column: [8, 8], z: 0.0 };
+        let surface = BicubicSheet::new(&field, 0.0);
+        let frame = ColumnFrame { column: [8, 8], z: 0.0 };
         let moved = surface.jet(frame, Vec2::new(0.2, 0.3)).moved(Vec2::new(0.3, -0.1));
         let there = surface.jet(frame, Vec2::new(0.5, 0.2));
         assert!((moved.h - there.h).abs() < 1e-4 && (moved.gradient - there.gradient).length() < 1e-4);

@@ -1,58 +1,59 @@
-//! Which voxel columns each region touches, and over which depths: only there its grid is computed.
+//! Which voxel columns each region occupies, and over which depths: its grid is computed only there.
 //!
-//! Every column is looked at each [`STRIDE`] samples: which blocks it crosses, over which depths, and which layers
-//! are met. Depths are widened by the stride and by those of the columns around ([`MARGIN`]), so that every
-//! interpolation inside a region has its neighbours. A layer is wanted in a column where it overlaps the block's
-//! depths and is too thin to be sure of meeting it, and wherever it was met not far away (a layer that an unconformity
-//! removed is neither).
+//! The region is sampled along every column each [`STRIDE`] samples: which blocks the column crosses, over
+//! which depths, and which layers occur. Depths are widened by the stride and by those of the columns around
+//! ([`MARGIN`]), so that every interpolation inside a region has its neighbours. A layer is computed in a
+//! column if it was found within [`REACH`] columns. It is also computed where its sheets lie in the block's
+//! depths but are so close together that sampling could have missed it. A layer that an unconformity removed
+//! is not computed.
 
 use crate::{LayerModel, Region};
 use glam::Vec3;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// Samples between two looks along a column, voxels.
+/// Distance between samples of the region along a column, voxels.
 const STRIDE: usize = 4;
-/// Columns around a column whose depths it shares.
+/// Columns around a column whose depths are added to its own.
 const MARGIN: usize = 3;
-/// Columns within which a layer must have been met.
+/// Columns within which a layer must have been found.
 const REACH: usize = 8;
-/// A layer thinner than this (voxels) may be met nowhere although it is there.
+/// A layer thinner than this (voxels) may exist although no sample found it.
 const THIN: f32 = 2.0 * STRIDE as f32;
 
-/// Depths in one column, voxel z; empty when the first is larger.
+/// Range of depths in one column, voxel z; empty when the first is larger.
 pub type Depths = [f32; 2];
-/// No depth.
+/// The empty range.
 const NOWHERE: Depths = [f32::INFINITY, f32::NEG_INFINITY];
 
-/// What was met in all columns, widened by [`MARGIN`] columns on every side of the survey.
-pub struct Sounding {
+/// The blocks and layers found in all columns, on the survey widened by [`MARGIN`] columns on every side.
+pub struct ColumnScan {
     size: [usize; 2],
     layers: usize,
-    /// Per block, `[x][y]`.
+    /// Range of depths per block, `[x][y]`.
     depths: Vec<Vec<Depths>>,
-    /// Per region (`block · layers + layer`), `[x][y]`: met within [`REACH`] columns.
+    /// Per region (`block · layers + layer`), `[x][y]`: whether it was found within [`REACH`] columns.
     met: Vec<Vec<bool>>,
 }
 
-/// The columns of one region.
+/// The columns that one region occupies.
 #[derive(Debug, Clone)]
-pub struct Touched {
+pub struct RegionColumns {
     /// First column of the bounding box.
     pub origin: [i32; 2],
-    /// Columns of the bounding box, 0 when none is touched.
+    /// Size of the bounding box, columns; 0 when the region occupies none.
     pub size: [usize; 2],
-    /// Depths that are wanted per column of the box, `[x][y]`.
+    /// Range of depths to compute per column of the box, `[x][y]`.
     pub depths: Vec<Depths>,
 }
 
-impl Touched {
-    /// Whether column n of the box is wanted.
+impl RegionColumns {
+    /// Whether column n of the box is to be computed.
     pub fn is_wanted(&self, n: usize) -> bool {
         self.depths[n][0] <= self.depths[n][1]
     }
 
-    /// The wanted columns: index in the box, voxel column, depths.
+    /// The columns to be computed: index in the box, voxel column, range of depths.
     pub fn columns(&self) -> impl Iterator<Item = (usize, [i32; 2], Depths)> {
         let ny = self.size[1];
         (0..self.depths.len()).filter(|&n| self.is_wanted(n)).map(move |n| {
@@ -62,8 +63,8 @@ impl Touched {
     }
 }
 
-impl Sounding {
-    /// Looks at all columns of a model.
+impl ColumnScan {
+    /// Samples the regions of all columns of a model.
     ///
     /// # Errors
     /// [`Cancelled`].
@@ -74,14 +75,14 @@ impl Sounding {
         let mut depths = vec![NOWHERE; blocks * wide_x * wide_y];
         let mut met = vec![false; layers * blocks * wide_x * wide_y];
         progress.begin("finding the regions", wide_x as u64);
-        // Both in the order [x][y][block …] while the columns are looked at, one row of x a task.
+        // Both arrays are in the order [x][y][block …] here; one task is one row of x.
         depths
             .par_chunks_mut(wide_y * blocks)
             .zip(met.par_chunks_mut(wide_y * layers * blocks))
             .enumerate()
             .try_for_each(|(u, (depths, met))| {
                 for v in 0..wide_y {
-                    // Columns past the walls repeat the wall's.
+                    // Columns outside the volume repeat the column at its boundary.
                     let [x, y] = [(u, nx), (v, ny)].map(|(n, count)| n.saturating_sub(MARGIN).min(count - 1) as f32);
                     for z in (0..nz).step_by(STRIDE).chain([nz - 1]) {
                         let Region { layer, block } = model.region_at(Vec3::new(x, y, z as f32));
@@ -120,7 +121,7 @@ impl Sounding {
     }
 
     /// The columns of a region whose sheets lie at `sheets(x, y)` = (bottom, top), voxel z.
-    pub fn touched(&self, region: Region, sheets: impl Fn(i32, i32) -> (f32, f32)) -> Touched {
+    pub fn touched(&self, region: Region, sheets: impl Fn(i32, i32) -> (f32, f32)) -> RegionColumns {
         let [nx, ny] = self.size;
         let (layer, block) = (usize::from(region.layer), usize::from(region.block));
         let met = &self.met[block * self.layers + layer];
@@ -141,21 +142,21 @@ impl Sounding {
             high = [high[0].max(at[0]), high[1].max(at[1])];
         }
         if low[0] == usize::MAX {
-            return Touched { origin: [0; 2], size: [0; 2], depths: Vec::new() };
+            return RegionColumns { origin: [0; 2], size: [0; 2], depths: Vec::new() };
         }
         for axis in 0..2 {
-            // Two columns at least, so that there is a cell to interpolate in.
+            // At least two columns, so that there is a cell to interpolate in.
             if low[axis] == high[axis] {
                 (low[axis], high[axis]) = (low[axis].saturating_sub(1), low[axis].max(1));
             }
         }
         let size: [usize; 2] = std::array::from_fn(|axis| high[axis] - low[axis] + 1);
         let depths = (low[0]..=high[0]).flat_map(|x| all[x * ny + low[1]..=x * ny + high[1]].iter().copied()).collect();
-        Touched { origin: low.map(|n| n as i32 - margin), size, depths }
+        RegionColumns { origin: low.map(|n| n as i32 - margin), size, depths }
     }
 }
 
-/// The union over a square of 2·radius + 1 columns around each column.
+/// The union of the values in a square of 2·radius + 1 columns around each column.
 fn widen<T: Copy>(size: [usize; 2], values: &[T], radius: usize, union: impl Fn(T, T) -> T) -> Vec<T> {
     let [nx, ny] = size;
     let pass = |from: &[T], along: usize, stride: usize| -> Vec<T> {

@@ -1,7 +1,7 @@
 //! The parameterization sampled on a lattice: the arrays i, j, k, layer and block of a project on disk.
 //!
-//! Sample p of a volume of M samples along an axis of N voxels lies at voxel p·(N−1)/(M−1) (corner-aligned), and values are
-//! *evaluated* there by the exact lookup, not resampled.
+//! Along an axis, sample p of M lies at voxel p·(N−1)/(M−1) of N (the lattice is corner-aligned with the
+//! volume). Values are *evaluated* there by the exact lookup, not resampled.
 //!
 //! Memory: 16 bytes a sample.
 
@@ -31,16 +31,23 @@ pub struct VoxelParameterization {
     pub block: Volume<u16>,
 }
 
-/// Voxel position of a sample of a corner-aligned lattice.
+/// Voxel position of sample `sample` of `samples` in a corner-aligned lattice over `voxels` voxels.
+///
+/// ```
+/// // Five samples over nine voxels: every second voxel.
+/// let at: Vec<f32> = (0..5).map(|sample| param::corner_aligned(sample, 5, 9)).collect();
+/// assert_eq!(at, [0.0, 2.0, 4.0, 6.0, 8.0]);
+/// ```
 pub fn corner_aligned(sample: usize, samples: usize, voxels: usize) -> f32 {
     if samples < 2 { 0.0 } else { (sample as f64 * (voxels - 1) as f64 / (samples - 1) as f64) as f32 }
 }
 
 impl Parameterization {
-    /// Samples the parameterization on a lattice of `size` that spans the survey; [`Self::size`] for one sample a voxel.
+    /// Samples the parameterization on a lattice of `size` `[inlines, crosslines, samples]` that spans the
+    /// survey. [`Self::size`] gives one sample a voxel. Samples of no region hold NaN and [`NO_REGION`].
     ///
     /// # Errors
-    /// [`ParamError::VolumeSize`] when a side is 0, or cancelled.
+    /// [`ParamError::VolumeSize`] when a side is 0, [`ParamError::Cancelled`].
     pub fn voxel_volumes<M: LayerModel + ?Sized>(
         &self,
         model: &M,
@@ -68,7 +75,7 @@ impl Parameterization {
             let x = corner_aligned(px, size[0], self.size[0]);
             for py in 0..size[1] {
                 let y = corner_aligned(py, size[1], self.size[1]);
-                let mut trace = Trace::default();
+                let mut trace = TraceSheets::default();
                 model.regions_down(x, y, &depths, &mut |pz, region| {
                     if usize::from(region.layer) >= self.layers || usize::from(region.block) >= self.blocks {
                         return;
@@ -85,15 +92,15 @@ impl Parameterization {
     }
 }
 
-/// Sheet heights of the region that a walk down a trace is in.
+/// The sheet heights of the current region while a trace is followed down.
 #[derive(Default)]
-struct Trace {
+struct TraceSheets {
     region: Option<Region>,
     bottom: f32,
     thickness: f32,
 }
 
-impl Trace {
+impl TraceSheets {
     fn at<M: LayerModel + ?Sized>(&mut self, param: &Parameterization, model: &M, region: Region, p: Vec3) -> [f32; 3] {
         let grid = param.grid(region);
         if self.region != Some(region) {
@@ -109,7 +116,7 @@ impl Trace {
 }
 
 impl RegionGrid {
-    /// The offsets of [`RegionGrid::lookup`] without their slopes: columns of no weight are not visited.
+    /// The offsets of [`RegionGrid::lookup`] without their derivatives; columns of no weight are skipped.
     fn offset(&self, x: f32, y: f32, v: f32) -> [f32; 3] {
         if self.offsets.is_empty() {
             return [0.0; 3];

@@ -1,4 +1,5 @@
-//! What holds for any model: the same bytes on any number of threads, cancellation, no NaN, refusals.
+//! Properties for any model: the same bytes on any number of threads, cancellation, no NaN, errors for bad
+//! input.
 
 mod closed_form;
 
@@ -9,7 +10,8 @@ use std::sync::Arc;
 use survey::Progress;
 use survey::progress::ProgressSink;
 
-/// Rough to the voxel, crossing sheets, two blocks: worse than any interpretation.
+/// Two blocks of sheets that are rough at the voxel scale and cross each other: worse than any
+/// interpretation.
 fn rough() -> ClosedForm {
     let noise = |x: f64, y: f64, h: usize| {
         let seed = (x * 12.9898 + y * 78.233 + h as f64 * 37.719).sin() * 43758.5453;
@@ -68,7 +70,7 @@ fn points_outside_the_volume_have_an_answer() {
     }
 }
 
-/// Cancels when a stage reaches a step.
+/// Cancels when the stage of this name begins.
 struct CancelAt(std::sync::OnceLock<Progress>, &'static str);
 
 impl ProgressSink for CancelAt {

@@ -1,4 +1,5 @@
-//! Concentric cylinders: k from the radii, traces radial, open layers by the distance from their horizon.
+//! Concentric cylinders: k follows from the radii and traces are radial; in open layers k is the distance
+//! from the horizon.
 
 mod closed_form;
 
@@ -10,7 +11,7 @@ const AXIS_X: f64 = 30.0;
 const AXIS_Z: f64 = 80.0;
 const RADII: [f64; 2] = [60.0, 40.0];
 
-/// A circle about the axis, continued by its tangent where it grows steeper than 58°.
+/// A circle about the axis, continued by its tangent where it is steeper than 58°.
 fn arch(radius: f64, x: f64) -> f64 {
     let limit = 0.85 * radius;
     let u = x - AXIS_X;

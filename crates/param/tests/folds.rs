@@ -1,4 +1,4 @@
-//! Folds with dips above 30° and thickness ± 30 %: the accuracy rows of the design.
+//! Accuracy on folds with dips above 30° and a thickness that varies by 30 %.
 
 mod closed_form;
 
@@ -8,7 +8,7 @@ use param::{PackedVolume, ParamSettings, Parameterization};
 use std::f64::consts::TAU;
 use survey::Progress;
 
-/// Three horizons of wavelength 80 voxels; the middle one is 30 % nearer or farther than the mean.
+/// Three horizons with folds 80 voxels long; the distance of the middle one to the others varies by 30 %.
 fn folded() -> ClosedForm {
     ClosedForm::new([80, 72, 80], 3, |h, x, y| {
         let fold = 8.0 * (TAU * (x + 0.35 * y) / 76.0).sin();
@@ -18,7 +18,7 @@ fn folded() -> ClosedForm {
 }
 
 #[test]
-fn angles_and_horizons_hold_the_designs_figures() {
+fn angles_and_k_on_horizons_are_accurate_on_folds() {
     let model = folded();
     let param = Parameterization::compute(&model, &ParamSettings::default(), &Progress::silent()).unwrap();
     let volumes = param.voxel_volumes(&model, param.size, &Progress::silent()).unwrap();
@@ -31,7 +31,7 @@ fn angles_and_horizons_hold_the_designs_figures() {
     for spread in [angles.k_to_i, angles.k_to_j] {
         assert!(spread.count > 15_000 && spread.median <= 0.1 && spread.p95 <= 0.5, "{angles:?}");
     }
-    // The paper's path is measured by the same yardstick, and the yardstick sees its flaws.
+    // The paper's lookup is measured in the same way, and its errors show.
     assert!(found.packed.k_on_horizons.median > 10.0 * k.median);
 }
 

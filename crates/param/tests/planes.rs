@@ -1,4 +1,5 @@
-//! Layers between planes, where k, i and j are known in closed form: flat, dipping, wedges, pinch-outs, fault blocks.
+//! Layers between planes, where k, i and j are known in closed form: flat, dipping, wedges, pinch-outs, fault
+//! blocks.
 
 mod closed_form;
 
@@ -25,7 +26,7 @@ impl Plane {
     }
 }
 
-/// Voxel where the metric normal of `plane`'s direction through `p` meets `plane`.
+/// Voxel where the line through `p` along the metric normal of `plane` meets `plane`.
 fn along_normal(p: DVec3, plane: Plane, metric: DMat3) -> DVec3 {
     let normal = (metric.transpose() * metric).inverse() * DVec3::new(plane.a, plane.b, -1.0);
     let s = (plane.z(p.x, p.y) - p.z) / (normal.z - plane.a * normal.x - plane.b * normal.y);
@@ -44,7 +45,7 @@ fn flat_layers_are_linear() {
         assert!((found.k - (bottom - z) / (bottom - top)).abs() < 1e-5, "k at {x}, {y}, {z}: {}", found.k);
         assert!((found.i - x / 19.0).abs() < 1e-6 && (found.j - y / 29.0).abs() < 1e-6);
     }
-    // The open layers: k by the distance over the thickness that reaches the volume's edge.
+    // Open layers: k is the distance over the thickness up to the edge of the volume.
     let top = param.lookup(&model, Vec3::new(5.0, 5.0, 4.0));
     assert!((top.k - 0.6).abs() < 1e-5, "{}", top.k);
     let bottom = param.lookup(&model, Vec3::new(5.0, 5.0, 49.0));
@@ -109,7 +110,7 @@ fn parallel_dipping_layers_follow_the_normals_in_metres() {
                         assert!((f64::from(k) - expected).abs() < 2e-5, "layer {layer} at {p}: k {k}, not {expected}");
                     }
                     None => {
-                        // Distance in metres over the reference thickness, from the horizon's side.
+                        // Distance in metres over the reference thickness, from the one horizon.
                         open += 1;
                         let grid = param.grid(Region { layer, block: 0 });
                         let k_m = (metric * (p - crossing)).length() / grid.thickness_m.unwrap();
@@ -124,7 +125,7 @@ fn parallel_dipping_layers_follow_the_normals_in_metres() {
     assert!(closed > 10_000 && open > 10_000, "{closed} and {open} voxels");
 }
 
-/// Two planes that meet in the line x = apex at depth z: k depends on the angle around it alone.
+/// Two planes that meet in the line (apex_x, apex_z): k depends only on the angle around it.
 struct Wedge {
     apex_x: f64,
     apex_z: f64,
@@ -177,8 +178,9 @@ fn a_wedge_keeps_its_k_up_to_the_pinch_out() {
 }
 
 #[test]
-fn blocks_beside_a_vertical_and_a_dipping_fault_are_exact_up_to_faults_and_walls() {
-    // Block 0 | vertical fault at x = 17.4 | block 1 | fault dipping 60° | block 2; dips of 20° to 35° in x and y.
+fn blocks_beside_a_vertical_and_a_dipping_fault_are_exact_up_to_faults_and_the_outer_boundary() {
+    // Block 0 | vertical fault at x = 17.4 | block 1 | fault dipping 60° | block 2; dips of 20° to 35° in x
+    // and y.
     let planes = |h: usize, block: u16| {
         let (a, b) = [(0.36, 0.0), (-0.3, 0.62), (0.0, -0.7)][usize::from(block)];
         Plane { z0: 24.0 + 22.0 * h as f64 + 5.0 * f64::from(block) - 28.0 * (a + b), a, b }
@@ -216,7 +218,7 @@ fn blocks_beside_a_vertical_and_a_dipping_fault_are_exact_up_to_faults_and_walls
         }
     }
     assert!(seen.iter().all(|&count| count > 1000), "{seen:?}");
-    assert!(outside > 500, "near the walls i, j leave [0, 1] instead of being clamped: {outside}");
+    assert!(outside > 500, "near the outer boundary i, j leave [0, 1] instead of being clamped: {outside}");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The synthetic survey with its faults and its unconformity: k on the true horizons, angles, blocks.
+//! Accuracy on the synthetic survey with its faults and its unconformity: k on the true horizons, and angles.
 
 use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization, accuracy};
@@ -6,7 +6,7 @@ use survey::Progress;
 use synth::{SynthSettings, Synthetic};
 
 #[test]
-fn the_synthetic_survey_holds_the_designs_figures() {
+fn angles_and_k_on_horizons_are_accurate_on_the_synthetic_survey() {
     let silent = Progress::silent();
     let settings = SynthSettings { size: [96, 96, 96], snr: None, ..Default::default() };
     let survey = Synthetic::generate(&settings, &silent).unwrap();
@@ -28,7 +28,7 @@ fn the_synthetic_survey_holds_the_designs_figures() {
     assert!(param.blocks > 1);
     let k = found.exact.k_on_horizons;
     assert!(k.count > 3000 && k.median <= 0.02 && k.p95 <= 0.1, "{k:?}");
-    // The same at the true depths: what the sheets of the model miss counts too.
+    // The same at the true depths, where the errors of the model's sheets count too.
     let truth =
         |h: usize, block: u16, x: f32, y: f32| survey.truth.sheet_z(h, block, f64::from(x), f64::from(y)) as f32;
     let points = accuracy::horizon_points(&model, truth, 2000);

@@ -1,7 +1,8 @@
-//! Draws a block of the synthetic survey: `cargo run -p petroglyph-render --example block -- OUT_DIR [SIZE] [PICTURE]`.
+//! Draws a block of the synthetic survey: `cargo run -p petroglyph-render --example block -- OUT_DIR [SIZE]
+//! [PICTURE]`.
 //!
-//! Writes illustrative, raw and half-way pictures, a corner cut, a stair and the ground as relief, each from the CPU reference and
-//! from the GPU, and prints their times and differences.
+//! Writes illustrative, raw and half-blended pictures, a corner cut, a stair and the ground as relief, each
+//! by the CPU reference and by the GPU. Prints their times and differences.
 
 use glam::DVec3;
 use model::{ModelSettings, StructuralModel};

@@ -1,12 +1,16 @@
-//! How long the scene of P-illus 5 takes: `cargo run -p petroglyph-render --example illustration_speed -- [--side N] [--size WxH] [--device cpu|gpu|both]
-//! [--repeats N]`.
+//! Measures how long the scene of P-illus 5 takes: `cargo run -p petroglyph-render --example
+//! illustration_speed -- [--side N] [--size WxH] [--device cpu|gpu|both] [--repeats N]`.
 //!
-//! Needs nothing but a Vulkan driver (none with `--device cpu`). A folded, faulted synthetic survey whose parameterization has N³ voxels (128, as in the paper), a
-//! reflectance of 240 × 271 × 500 samples over all of it and an attribute of 96 × 96 × 500 over its middle; exact boundaries, half illustrated and half raw. The attribute
-//! fills the cut-out, by a dense function (every sample shows a little, no ray ends early), a typical and a sparse one; once there is none in it. Last the same faces by the published packed
-//! and extrapolated lookup: the exact one may take three times as long.
+//! Needs only a Vulkan driver (none with `--device cpu`). The scene is a folded, faulted synthetic survey
+//! whose parameterization has N³ voxels (128, as in the paper), with a reflectance volume of 240 × 271 × 500
+//! samples over all of it and an attribute of 96 × 96 × 500 over its middle. Boundaries are exact, and the
+//! blend is half illustrated and half raw. The attribute fills the cut-out, with a dense function (every
+//! sample is visible, no ray ends early), a typical and a sparse one; one picture is without it. The last
+//! picture shows the same faces by the published packed and extrapolated lookup. The exact lookup may take
+//! three times as long.
 //!
-//! Printed: the median of the repeats after a first that compiles and uploads, and pictures a second.
+//! Prints the median of the repeats, after a first picture that compiles and uploads, and pictures per
+//! second.
 
 use glam::DVec3;
 use image::RgbaImage;
@@ -54,7 +58,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
     Ok(options)
 }
 
-/// Bent layers between −1 and 1, one period every twenty samples.
+/// Folded layers with values between −1 and 1, with a period of twenty samples.
 fn bent(size: [usize; 3]) -> Result<Volume<f32>, Box<dyn Error>> {
     let [nx, ny, nz] = size;
     let samples = (0..nx * ny * nz).map(|n| {
@@ -65,7 +69,8 @@ fn bent(size: [usize; 3]) -> Result<Volume<f32>, Box<dyn Error>> {
     Ok(Volume::from_samples(size, samples.collect())?)
 }
 
-/// White, of one opacity at the low end of the values and another at the high end, clear up to a share of them.
+/// White, with one opacity at the low end of the values and another at the high end; transparent up to a
+/// fraction of them.
 fn white(low: f32, high: f32, clear: f32) -> RgbaFunction {
     let stop = |at: f32, opacity: f32| RgbaStop { at, colour: Colour::WHITE, opacity };
     let mut stops = vec![stop(0.0, low)];
@@ -100,7 +105,7 @@ fn scenes(size_px: [u32; 2], whole: VoxelBox) -> Vec<(String, Scene)> {
     scenes
 }
 
-/// Median seconds of `repeats` pictures after a first.
+/// Median time in seconds of `repeats` pictures, after a first one.
 fn median(
     repeats: usize,
     mut draw: impl FnMut() -> Result<RgbaImage, render::RenderError>,

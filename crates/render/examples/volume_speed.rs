@@ -1,12 +1,15 @@
-//! How long volumes take to draw: `cargo run -p petroglyph-render --example volume_speed -- [--side N] [--size WxH] [--device cpu|gpu|both] [--only TEXT]
-//! [--keep FOLDER] [--dump FILE]`.
+//! Measures how long volumes take to draw: `cargo run -p petroglyph-render --example volume_speed -- [--side
+//! N] [--size WxH] [--device cpu|gpu|both] [--only TEXT] [--keep FOLDER] [--dump FILE]`.
 //!
-//! Needs nothing but a Vulkan driver (none with `--device cpu`). A closed-form volume of bent layers with noise is drawn with one sample a voxel in a parallel
-//! projection over a corner: unshaded, by gradients, and with carried occlusion at one slice a voxel; each with a dense function (every sample
-//! shows a little, no ray ends early), a typical one (the white ramp) and a sparse one (the strongest values only), the sparse one also without
-//! skipping. Printed per picture, the best of three after a first that compiles and uploads: seconds by the clock, seconds of processor time of this
-//! process, millions of samples a second. `--only` draws the pictures whose name begins so, `--keep` saves them. `--dump` writes the volume as raw 32-bit floats for `bench/peers.py --volume`, which draws the same
-//! picture with VTK.
+//! Needs only a Vulkan driver (none with `--device cpu`). A closed-form volume of folded layers with noise is
+//! drawn with one sample per voxel in an orthographic projection over a corner: unshaded, shaded by
+//! gradients, and with occlusion at one slice per voxel. Each is drawn with a dense function (every sample is
+//! visible, no ray ends early), a typical one (the white ramp) and a sparse one (the strongest values only),
+//! the last also without empty-space skipping. Prints for each picture the best of three, after a first one
+//! that compiles and uploads: wall-clock seconds, seconds of processor time of this process, and millions of
+//! samples per second. `--only` draws the pictures whose name begins with TEXT, `--keep` saves them. `--dump`
+//! writes the volume as raw 32-bit floats for `bench/peers.py --volume`, which draws the same picture with
+//! VTK.
 
 use image::RgbaImage;
 use render::media::{EmptySpace, LayerOpacity, MediumColour, white_ramp};
@@ -52,7 +55,7 @@ fn options() -> Result<Options, Box<dyn Error>> {
     Ok(options)
 }
 
-/// Bent layers between −1 and 1 and noise of 0.3 to either side, the same everywhere.
+/// Folded layers with values between −1 and 1, plus uniform noise of ± 0.3.
 fn volume(side: usize) -> Volume<f32> {
     let scale = 256.0 / side as f32;
     let values = (0..side * side * side).map(|n| {
@@ -65,7 +68,7 @@ fn volume(side: usize) -> Volume<f32> {
         let noise = ((hash ^ hash >> 16) & 0xffff) as f32 / 65_535.0 - 0.5;
         ((z + bend) * 0.35).sin() * (0.6 + 0.4 * (x * 0.05 + y * 0.04).sin()) + 0.6 * noise
     });
-    // The count is the size's product.
+    // The number of values is the product of the size.
     Volume::from_samples([side; 3], values.collect()).unwrap_or_else(|_| Volume::filled([side; 3], 0.0))
 }
 
@@ -118,16 +121,17 @@ fn scenes(size_px: [u32; 2]) -> Vec<(String, Scene)> {
     scenes
 }
 
-/// Seconds of processor time of this process, as Linux tells them.
+/// Seconds of processor time of this process, as reported by Linux.
 fn processor_seconds() -> f64 {
     let text = fs::read_to_string("/proc/self/stat").unwrap_or_default();
     let fields: Vec<f64> =
         text.rsplit(')').next().unwrap_or_default().split_whitespace().filter_map(|field| field.parse().ok()).collect();
-    // The state is no number: user and system time, the 14th and 15th of all, are the 11th and 12th here. In hundredths of a second.
+    // User and system time are fields 14 and 15 of the file, in hundredths of a second. The fields before and
+    // including the process state are left out, so they are 11 and 12 here.
     fields.get(10..12).map_or(f64::NAN, |times| (times[0] + times[1]) / 100.0)
 }
 
-/// The least of three, by the clock and of the processor.
+/// The shortest of three times, by the clock and of the processor.
 fn time(
     mut draw: impl FnMut() -> Result<RgbaImage, render::RenderError>,
 ) -> Result<(f64, f64, RgbaImage), Box<dyn Error>> {

@@ -1,35 +1,36 @@
-//! How far boundaries in a picture are from where they are in truth (DESIGN 6, row "boundaries").
+//! Measures how far the boundaries in a picture are from the true ones.
 //!
-//! A section is looked at with a number of pixels a voxel. Wherever two neighbouring pixels have different labels (layers, say), the place of the
-//! change between them is bisected, and its distance to the nearest change of the true labels in the plane is measured along rays
-//! in 32 directions. Then the same from the truth to the picture, so that a boundary that is missing altogether counts, too. Distances are
-//! voxels, and never more than [`FARTHEST`].
+//! A section is sampled at a number of pixels per voxel. Between any two neighbouring pixels with different
+//! labels (layers, for example), bisection finds where the label changes, and rays in 32 directions measure
+//! the distance from there to the nearest change of the true labels in the plane. The same is done from the
+//! truth to the picture, so that a missing boundary counts too. Distances are in voxels and at most
+//! [`FARTHEST`].
 
 use glam::{DVec2, DVec3};
 use model::section::SectionPlane;
 use rayon::prelude::*;
 
-/// Distances beyond this count as this, voxels.
+/// Largest distance that is measured, voxels. Farther boundaries count as this far.
 pub const FARTHEST: f64 = 4.0;
-/// Directions in which the nearest boundary is searched: off by 0.5 % at most on a straight one.
+/// Directions in which the nearest boundary is searched: the error is at most 0.5 % for a straight boundary.
 const DIRECTIONS: usize = 32;
-/// Steps in which a ray looks for a change, voxels.
+/// Length of the steps in which a ray searches for a change, voxels.
 const STEP: f64 = 0.02;
-/// Halvings that place a change between two pixels or steps.
+/// Bisections that locate a change between two pixels or steps.
 const BISECTIONS: usize = 12;
 
 /// Distances between boundaries, voxels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BoundaryAccuracy {
-    /// Places measured.
+    /// Count of measured distances.
     pub count: usize,
-    /// Half of them are nearer.
+    /// Median of the distances.
     pub median: f64,
-    /// 95 % are nearer.
+    /// 95th percentile.
     pub percentile_95: f64,
-    /// 99 % are nearer.
+    /// 99th percentile.
     pub percentile_99: f64,
-    /// The farthest.
+    /// Largest distance.
     pub worst: f64,
 }
 
@@ -44,8 +45,8 @@ impl BoundaryAccuracy {
     }
 }
 
-/// Measures the boundaries of `picture` against those of `truth`, both labels of voxel positions, on a plane seen with so many pixels a voxel.
-/// `None` where neither has a boundary.
+/// Measures the boundaries of `picture` against those of `truth` on a plane, sampled at a number of pixels
+/// per voxel. Both functions return the label of a voxel position. Returns `None` if neither has a boundary.
 ///
 /// ```
 /// use glam::DVec3;
@@ -73,7 +74,7 @@ fn distances(
 ) -> Vec<f64> {
     let scale = DVec2::new(plane.s_axis.length(), plane.t_axis.length()) * pixels_per_voxel;
     let counts = [plane.extent[0] * scale.x, plane.extent[1] * scale.y].map(|n| n.floor() as usize);
-    // Pixel centres, in (s, t).
+    // Pixel centres in (s, t).
     let centre = |x: usize, y: usize| (DVec2::new(x as f64, y as f64) + 0.5) / scale;
     let label = |st: DVec2| from(plane.voxel(st));
     (0..counts[0])
@@ -96,7 +97,7 @@ fn distances(
         .collect()
 }
 
-/// Where the label changes between two places that have different ones.
+/// Where the label changes between two positions with different labels.
 fn change(mut here: DVec2, mut there: DVec2, label: impl Fn(DVec2) -> u32) -> DVec2 {
     let first = label(here);
     for _ in 0..BISECTIONS {
@@ -112,7 +113,7 @@ fn nearest(plane: &SectionPlane, at: DVec2, label: &impl Fn(DVec3) -> u32) -> f6
     let mut best = FARTHEST;
     for n in 0..DIRECTIONS {
         let angle = DVec2::from_angle(std::f64::consts::TAU * n as f64 / DIRECTIONS as f64);
-        // One voxel along this direction.
+        // A step of one voxel in this direction.
         let step = angle / (plane.s_axis * angle.x + plane.t_axis * angle.y).length();
         let changed = |distance: f64| label(plane.voxel(at + step * distance)) != here;
         let mut distance = STEP;

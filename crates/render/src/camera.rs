@@ -1,14 +1,14 @@
-//! From pixels to rays in voxel space and back.
+//! The camera: from pixels to rays in voxel space, and back.
 //!
-//! Display space is X east, Y north, Z up in metres, with depth times the vertical exaggeration, relative to the
-//! middle of the roaming box: `display = diag(1, 1, −e) · metric · (voxel − centre)`. The voxel-to-display map may mirror
-//! (many surveys do); rays are cast through its inverse from a right-handed camera, so that the
-//! picture never does. The camera looks along
-//! `forward = (sin a cos h, cos a cos h, −sin h)` for azimuth a (a bearing) and elevation h, with
-//! `right = (cos a, −sin a, 0)` and `up = right × forward`, so north is up when looking straight down.
+//! Display space is X east, Y north, Z up in metres, with depth multiplied by the vertical exaggeration,
+//! relative to the middle of the roaming box: `display = diag(1, 1, −e) · metric · (voxel − centre)`. The
+//! voxel-to-display map may mirror, as it does for many surveys. Rays are cast through its inverse from a
+//! right-handed camera, so the picture is never mirrored. The camera looks along `forward = (sin a cos h, cos
+//! a cos h, −sin h)` for azimuth a (a bearing) and elevation h, with `right = (cos a, −sin a, 0)` and `up =
+//! right × forward`, so north is up when it looks straight down.
 //!
-//! A view is affine in the pixel (orthographic) or its direction is (perspective), which gives exact pixel
-//! differentials for texture filtering.
+//! Either the origin (orthographic) or the direction (perspective) of a ray is affine in the pixel position,
+//! which gives exact pixel differentials for texture filtering.
 
 use crate::error::SceneError;
 use crate::voxel_box::{Corner, VoxelBox};
@@ -16,39 +16,49 @@ use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
 
-/// Where the block is looked at from.
+/// The position and projection of the camera.
+///
+/// ```
+/// use render::{Camera, VoxelBox};
+/// use survey::{SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry::regular([41, 31, 21], 25.0, 10.0, VerticalUnit::Metres);
+/// // The longer side runs east, so its normal is north; the camera looks 35 degrees off it.
+/// let bearing = Camera::default().azimuth_for(&geometry, &VoxelBox::of_size([41, 31, 21]));
+/// assert!((bearing.abs() - 35.0).abs() < 1e-9);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Camera {
-    /// Bearing the camera looks along, degrees clockwise from north. Absent: over a corner of the block, 35° off
-    /// its longer visible side, as near to north as that allows.
+    /// Bearing of the viewing direction, degrees clockwise from north. Absent: over a corner of the block,
+    /// 35° off the normal of its longer visible side, as near to north as that allows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub azimuth_deg: Option<f64>,
-    /// Height of the camera above the horizontal, degrees in [−90, 90]. Default 28: the top is seen, the sides rule.
+    /// Elevation of the camera above the horizontal, degrees in [−90, 90]. Default 28: the top is visible,
+    /// but the side faces take more of the picture.
     pub elevation_deg: f64,
-    /// Parallel or converging rays.
+    /// Orthographic or perspective projection.
     pub projection: Projection,
     /// Voxel position in the middle of the image. Absent: the projected block is centred.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub target: Option<[f64; 3]>,
-    /// Factor on the scale at which the block just fits. Default 1.
+    /// Magnification relative to the scale at which the block just fits. Default 1.
     pub zoom: f64,
-    /// Shift of the picture in shares of its width (right) and height (down). Default 0, 0.
+    /// Shift of the picture to the right and down, as fractions of its width and height. Default 0, 0.
     pub pan: [f64; 2],
-    /// Free border around the fitted block, in shares of the image's smaller side. Default 0.04.
+    /// Free border around the fitted block, as a fraction of the image's smaller side. Default 0.04.
     pub margin: f64,
 }
 
-/// Parallel or converging rays.
+/// Orthographic or perspective projection.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Projection {
-    /// Parallel rays: lengths along each axis keep one scale, as in textbook block diagrams.
+    /// Parallel rays: lengths along each axis have one scale, as in textbook block diagrams.
     #[default]
     Orthographic,
     /// Converging rays.
     Perspective {
-        /// Angle that the block's bounding sphere fills, degrees in (0, 120].
+        /// Angle that the block's bounding sphere subtends, degrees in (0, 120].
         fov_deg: f64,
     },
 }
@@ -71,18 +81,12 @@ impl Default for Camera {
 const CORNER_VIEW_DEG: f64 = 35.0;
 
 impl Camera {
-    /// Refuses values that have no picture.
+    /// Checks that the values can be rendered.
     ///
     /// # Errors
     /// The first [`SceneError`] found.
     pub fn validate(&self) -> Result<(), SceneError> {
-        let number = |what: &'static str, value: f64, low: f64, high: f64| {
-            if value >= low && value <= high {
-                Ok(())
-            } else {
-                Err(SceneError::OutOfRange { what, found: value, low, high })
-            }
-        };
+        let number = SceneError::check_range;
         number("the camera's azimuth", self.azimuth_deg.unwrap_or(0.0), -36_000.0, 36_000.0)?;
         number("the camera's elevation", self.elevation_deg, -90.0, 90.0)?;
         number("the camera's zoom", self.zoom, 1e-3, 1e4)?;
@@ -95,13 +99,13 @@ impl Camera {
         Ok(())
     }
 
-    /// The bearing used: the one set, or the automatic one for this box.
+    /// The bearing in use: the one that is set, or else the automatic one for this box.
     pub fn azimuth_for(&self, geometry: &SurveyGeometry, roaming_box: &VoxelBox) -> f64 {
         self.azimuth_deg.unwrap_or_else(|| {
             let extent = roaming_box.extent();
             let x = geometry.inline_vector;
             let y = geometry.crossline_vector;
-            // The face across x is as wide as the box along y, and the other way round.
+            // The face of constant x is as wide as the box is long in y, and vice versa.
             let across_x_is_wider = y.length() * extent.y >= x.length() * extent.x;
             let normal = if across_x_is_wider { x } else { y };
             [normal, -normal]
@@ -109,7 +113,7 @@ impl Camera {
                 .flat_map(|n| [CORNER_VIEW_DEG, -CORNER_VIEW_DEG].map(|turn| n.x.atan2(n.y).to_degrees() + turn))
                 .map(|bearing| (bearing + 540.0).rem_euclid(360.0) - 180.0)
                 .min_by(|a, b| a.abs().total_cmp(&b.abs()))
-                .unwrap_or(0.0)
+                .expect("four bearings were compared")
         })
     }
 }
@@ -123,11 +127,23 @@ pub struct ViewRay {
     pub direction: DVec3,
     /// Change of the origin for a step of one pixel to the right and down.
     pub origin_step: [DVec3; 2],
-    /// Change of the (unnormalised, same scale as `direction`) direction for the same steps.
+    /// Change of the direction (not normalised, at the scale of `direction`) for the same steps.
     pub direction_step: [DVec3; 2],
 }
 
-/// A camera fitted to one block and image: pixels ↔ rays in voxel space.
+/// A camera fitted to a block and an image: maps pixels to rays in voxel space, and voxels to pixels.
+///
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use render::{Camera, View, VoxelBox};
+/// use survey::{SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry::regular([11; 3], 10.0, 10.0, VerticalUnit::Metres);
+/// let view = View::new(&Camera::default(), &geometry, &VoxelBox::of_size([11; 3]), 1.0, [300, 200]);
+/// // The middle of the block is in the middle of the image, and its ray leads back to it.
+/// assert!((view.project(DVec3::splat(5.0)) - DVec2::new(150.0, 100.0)).length() < 1e-9);
+/// let ray = view.ray(DVec2::new(150.0, 100.0));
+/// assert!((DVec3::splat(5.0) - ray.origin).cross(ray.direction).length() < 1e-9);
+/// ```
 #[derive(Debug, Clone, Copy)]
 pub struct View {
     display_from_voxel: DMat3,
@@ -136,18 +152,18 @@ pub struct View {
     right: DVec3,
     up: DVec3,
     forward: DVec3,
-    /// Distance of the eye (perspective) or of the ray origins (orthographic) from the box's centre, m.
+    /// Distance of the eye (perspective) or of the ray origins (orthographic) from the centre of the box, m.
     distance: f64,
     perspective: bool,
-    /// Pixels a metre (orthographic) or pixels a unit of tangent (perspective).
+    /// Pixels per metre (orthographic) or per unit of tangent (perspective).
     scale: f64,
-    /// View coordinates that fall on `centre_px`.
+    /// View coordinates of the point at `centre_px`.
     centre: DVec2,
     centre_px: DVec2,
 }
 
 impl View {
-    /// Fits the camera to the box. The inputs must be valid.
+    /// Fits the camera to the box. Camera and box must be valid.
     pub fn new(
         camera: &Camera,
         geometry: &SurveyGeometry,
@@ -207,19 +223,21 @@ impl View {
         self.centre_px + DVec2::new(flat.x, -flat.y) * self.scale
     }
 
-    /// A direction given as right, up and towards the viewer, in display space, unit.
+    /// The unit direction in display space of a vector that is given as right, up and towards the viewer.
     pub fn display_direction(&self, eye: DVec3) -> DVec3 {
         (self.right * eye.x + self.up * eye.y - self.forward * eye.z).normalize_or_zero()
     }
 
-    /// The affine map from voxel to eye space: right, up and forward in m of display space, forward counted from where rays start.
+    /// The affine map from voxel to eye space: right, up and forward in metres of display space. Forward is
+    /// measured from the plane or point where rays start.
     pub fn eye_from_voxel(&self) -> (DMat3, DVec3) {
         let rows = DMat3::from_cols(self.right, self.up, self.forward).transpose();
         let linear = rows * self.display_from_voxel;
         (linear, DVec3::new(0.0, 0.0, self.distance) - linear * self.centre_voxel)
     }
 
-    /// The inverse, for view coordinates (m right and up, or tangents) at a depth: `origin + depth · direction`, voxels.
+    /// The inverse of [`Self::eye_from_voxel`] for view coordinates (metres right and up, or tangents). At a
+    /// depth, the voxel position is `origin + depth · direction`.
     pub fn depth_ray(&self, flat: DVec2) -> (DVec3, DVec3) {
         let spread = self.voxel_from_display * (self.right * flat.x + self.up * flat.y);
         let forward = self.voxel_from_display * self.forward;
@@ -254,7 +272,7 @@ impl View {
         }
     }
 
-    /// Direction from a voxel position towards the camera, in voxel space (not normalised).
+    /// Direction from a voxel position to the camera, in voxel space (not normalised).
     pub fn towards_camera(&self, voxel: DVec3) -> DVec3 {
         if self.perspective {
             self.centre_voxel - self.voxel_from_display * (self.forward * self.distance) - voxel
@@ -263,17 +281,18 @@ impl View {
         }
     }
 
-    /// Whether the parallel-ray form applies.
+    /// Whether the projection is a perspective.
     pub fn is_perspective(&self) -> bool {
         self.perspective
     }
 
-    /// The linear part of voxel → display (X east, Y north, Z up and exaggerated), m per voxel.
+    /// The linear part of the map from voxel to display space (X east, Y north, Z up, exaggerated), metres
+    /// per voxel.
     pub fn display_from_voxel(&self) -> DMat3 {
         self.display_from_voxel
     }
 
-    /// The corner of the box nearest to the camera: where a cut is best seen.
+    /// The corner of the box nearest to the camera, where a cut-out is seen best.
     pub fn nearest_corner(&self, roaming_box: &VoxelBox) -> Corner {
         let towards = self.towards_camera(roaming_box.centre());
         match (towards.x > 0.0, towards.y > 0.0) {
@@ -328,7 +347,7 @@ mod tests {
         }
     }
 
-    /// East is right and north is away (up in the image) whatever way the survey's axes run.
+    /// East is right and north is away (up in the image), whichever way the survey's axes run.
     #[test]
     fn no_survey_comes_out_mirrored() {
         for inline in [DVec2::X, -DVec2::X, DVec2::Y, -DVec2::Y, DVec2::new(0.6, 0.8)] {

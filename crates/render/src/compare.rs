@@ -1,47 +1,59 @@
-//! Whether two pictures of one scene are the same, apart from edges.
+//! Decides whether two pictures of one scene agree, apart from edges.
 //!
-//! Edges are found in the *reference* picture alone: pixels of which a channel differs from one of the eight neighbours' by more than
-//! [`EDGE_STEP`]. There a rounding of a millionth of a voxel may choose the other side; elsewhere it may not show.
+//! Edges are found in the *reference* picture alone: they are the pixels of which a channel differs from that
+//! of one of the eight neighbours by more than [`EDGE_STEP`]. At an edge, rounding by a millionth of a voxel
+//! may choose the other side; elsewhere it must not show.
 //!
-//! Both pictures must come from different renderers; comparing one with itself says nothing, and a test shows
-//! that wrong pictures are told apart.
+//! The pictures must come from different renderers, since a comparison of a picture with itself cannot fail.
+//! A test shows that wrong pictures are recognised.
 
 use image::RgbaImage;
 
-/// Channel step between neighbours that makes an edge.
+/// Channel difference of neighbours above which a pixel is an edge.
 pub const EDGE_STEP: u8 = 24;
 /// Largest channel difference that counts as equal.
 pub const EQUAL: u8 = 2;
-/// Largest share of all pixels that may differ, all of them on edges.
+/// Largest fraction of all pixels that may differ, all of them on edges.
 pub const EDGE_SHARE: f64 = 0.005;
 
-/// What a comparison found.
+/// The result of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Comparison {
-    /// Largest channel difference at pixels that are no edge.
+pub struct PictureComparison {
+    /// Largest channel difference at pixels that are not edges.
     pub worst_off_edges: u8,
-    /// Where that is.
+    /// The pixel with that difference.
     pub worst_at: [u32; 2],
-    /// Share of all pixels that are edges of the reference.
+    /// Fraction of all pixels that are edges of the reference.
     pub edge_share: f64,
-    /// Share of all pixels that are edges and differ by more than [`EQUAL`].
+    /// Fraction of all pixels that are edges and differ by more than [`EQUAL`].
     pub differing_edge_share: f64,
 }
 
-impl Comparison {
-    /// Whether the pictures agree as DESIGN 6 asks.
+impl PictureComparison {
+    /// Whether the pictures agree: within [`EQUAL`] off the edges, and at most [`EDGE_SHARE`] of all pixels
+    /// differ on them.
     pub fn agrees(&self) -> bool {
         self.worst_off_edges <= EQUAL && self.differing_edge_share <= EDGE_SHARE
     }
 }
 
-/// Compares a picture with the reference; `None` if their sizes differ or they are empty.
-pub fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<Comparison> {
+/// Compares a picture with the reference. Returns `None` if their sizes differ or they are empty.
+///
+/// ```
+/// use image::{Rgba, RgbaImage};
+/// use render::compare::compare;
+/// let grey = |v: u8| RgbaImage::from_pixel(8, 8, Rgba([v, v, v, 255]));
+/// assert!(compare(&grey(100), &grey(102)).unwrap().agrees());
+/// assert_eq!(compare(&grey(100), &grey(103)).unwrap().worst_off_edges, 3);
+/// assert!(compare(&grey(100), &RgbaImage::new(8, 9)).is_none());
+/// ```
+pub fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<PictureComparison> {
     if reference.dimensions() != picture.dimensions() || reference.is_empty() {
         return None;
     }
     let (width, height) = reference.dimensions();
-    let mut found = Comparison { worst_off_edges: 0, worst_at: [0; 2], edge_share: 0.0, differing_edge_share: 0.0 };
+    let mut found =
+        PictureComparison { worst_off_edges: 0, worst_at: [0; 2], edge_share: 0.0, differing_edge_share: 0.0 };
     let share = 1.0 / (f64::from(width) * f64::from(height));
     for (x, y, pixel) in reference.enumerate_pixels() {
         let difference = step(pixel.0, picture.get_pixel(x, y).0);
@@ -57,7 +69,7 @@ pub fn compare(reference: &RgbaImage, picture: &RgbaImage) -> Option<Comparison>
 
 /// Largest channel difference of two pixels.
 fn step(a: [u8; 4], b: [u8; 4]) -> u8 {
-    a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).max().unwrap_or(0)
+    a.into_iter().zip(b).map(|(a, b)| a.abs_diff(b)).fold(0, u8::max)
 }
 
 fn is_edge(image: &RgbaImage, x: u32, y: u32) -> bool {
@@ -98,7 +110,7 @@ mod tests {
         assert!(spoilt(|_| ()));
         assert!(!spoilt(|image| image.get_pixel_mut(10, 10).0[1] += 3));
         assert!(!spoilt(|image| image.pixels_mut().for_each(|p| p.0[0] -= 10)));
-        // The edge one pixel farther left: every row differs there.
+        // The edge is one pixel farther left, so every row differs there.
         assert!(!spoilt(|image| (0..80).for_each(|y| *image.get_pixel_mut(49, y) = Rgba([40, 40, 40, 255]))));
         assert!(!spoilt(|image| *image = image::imageops::flip_horizontal(image)));
         assert!(compare(&picture(), &RgbaImage::new(99, 80)).is_none());

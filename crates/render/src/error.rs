@@ -1,8 +1,8 @@
-//! What can go wrong, with the facts and what to do about it.
+//! The errors of this crate. Each has its facts as fields, and its text says what to do.
 
 use survey::Cancelled;
 
-/// A scene that has no picture.
+/// What is wrong with a scene.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SceneError {
     /// A number outside its range, or not a number.
@@ -18,7 +18,7 @@ pub enum SceneError {
         high: f64,
     },
     /// An image without pixels, or larger than an image may be.
-    #[error("an image of {width} x {height} pixels cannot be made; each side must be between 1 and {limit}")]
+    #[error("an image of {width} x {height} pixels is not possible; each side must be between 1 and {limit}")]
     ImageSize {
         /// Pixels across.
         width: u32,
@@ -28,7 +28,7 @@ pub enum SceneError {
         limit: u32,
     },
     /// A box without a volume.
-    #[error("{what} has no volume: it runs from {min:?} to {max:?}; every max must be larger than its min")]
+    #[error("{what} is empty: it runs from {min:?} to {max:?}; every maximum must be larger than its minimum")]
     EmptyBox {
         /// Which box.
         what: String,
@@ -37,9 +37,9 @@ pub enum SceneError {
         /// Its largest corner.
         max: [f64; 3],
     },
-    /// The roaming box leaves the survey.
+    /// A roaming box that reaches beyond the survey.
     #[error(
-        "the roaming box {min:?} to {max:?} leaves the survey, whose samples run from 0 to {last:?} (inline, crossline, sample index)"
+        "the roaming box {min:?} to {max:?} reaches beyond the survey, whose samples run from 0 to {last:?} (inline, crossline, sample index); make it smaller"
     )]
     OutsideSurvey {
         /// Its smallest corner.
@@ -49,7 +49,7 @@ pub enum SceneError {
         /// The survey's last sample.
         last: [f64; 3],
     },
-    /// A cut-out that cuts nothing.
+    /// A cut-out that does not intersect the roaming box.
     #[error(
         "cut-out {index} ({min:?} to {max:?}) lies outside the roaming box {box_min:?} to {box_max:?}; move it or remove it"
     )]
@@ -65,49 +65,56 @@ pub enum SceneError {
         /// The roaming box's largest corner.
         box_max: [f64; 3],
     },
-    /// More of something than a scene can have.
-    #[error("{found} {what} are more than the {limit} a scene can have")]
+    /// More of something than a scene may have.
+    #[error("{found} {what} are more than the {limit} that a scene can have; remove some")]
     TooMany {
-        /// Of what.
+        /// What there is too much of.
         what: &'static str,
-        /// How many.
+        /// The number found.
         found: usize,
-        /// How many are possible.
+        /// The largest number allowed.
         limit: usize,
     },
-    /// Cut-outs that leave nothing to see, or too many of them.
-    #[error("{found} cut-outs are more than the {limit} a scene can have; merge some")]
+    /// More cut-outs than a scene may have.
+    #[error("{found} cut-outs are more than the {limit} that a scene can have; merge some")]
     TooManyCutOuts {
-        /// How many.
+        /// The number found.
         found: usize,
-        /// How many are possible.
+        /// The largest number allowed.
         limit: usize,
     },
 }
 
-/// Why no picture was made.
+impl SceneError {
+    /// Returns an error for a number outside [`low`, `high`], NaN included.
+    pub(crate) fn check_range(what: &'static str, found: f64, low: f64, high: f64) -> Result<(), Self> {
+        if found >= low && found <= high { Ok(()) } else { Err(Self::OutOfRange { what, found, low, high }) }
+    }
+}
+
+/// Why a scene could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum RenderError {
-    /// The scene has no picture.
+    /// The scene cannot be drawn.
     #[error("{0}")]
     Scene(#[from] SceneError),
     /// The transfer functions cannot be drawn.
     #[error("{0}")]
     Transfer(#[from] ttf::Error),
-    /// The scene names a volume that was not given.
+    /// The scene names a volume that is not among the inputs.
     #[error("the scene shows the volume `{name}`, which the project does not have; it has {present:?}")]
     UnknownVolume {
         /// The name asked for.
         name: String,
-        /// The names there are.
+        /// The names of the volumes there are.
         present: Vec<String>,
     },
     /// More volumes than the renderer can bind.
-    #[error("the scene uses {found} volumes; at most {limit} can be shown at once")]
+    #[error("the scene uses {found} volumes; at most {limit} can be shown at once, so remove some")]
     TooManyVolumes {
-        /// How many.
+        /// The number found.
         found: usize,
-        /// How many are possible.
+        /// The largest number allowed.
         limit: usize,
     },
     /// The transfer functions were compiled for another model.
@@ -118,7 +125,7 @@ pub enum RenderError {
         /// Layers of the model.
         layers: usize,
     },
-    /// A part of the input that this scene needs is missing.
+    /// An input that this scene needs is missing.
     #[error("the scene needs {what}; {remedy}")]
     Missing {
         /// What is missing.
@@ -126,28 +133,28 @@ pub enum RenderError {
         /// How to get it.
         remedy: &'static str,
     },
-    /// The distances or leaves do not fill their box.
+    /// The numbers of distances and leaves do not match the size of the candidates.
     #[error("candidates of {size:?} need {expected} distances and leaves, found {found:?}; extract them again")]
     CandidateSize {
         /// `[inlines, crosslines, samples]`.
         size: [usize; 3],
-        /// Values the box holds.
+        /// Number of values of that size.
         expected: usize,
         /// Distances and leaves given.
         found: [usize; 2],
     },
-    /// The user stopped it.
+    /// The user cancelled the drawing.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
-    /// No GPU or software driver.
+    /// There is no graphics adapter, neither a GPU nor a software driver.
     #[error(
         "no graphics adapter was found ({reason}); install a Vulkan driver (the software one is in the packages mesa-vulkan-drivers and libvulkan1), or render on the CPU"
     )]
     NoAdapter {
-        /// What the graphics library says.
+        /// The message of the graphics library.
         reason: String,
     },
-    /// The adapter lacks something the passes need.
+    /// The adapter lacks something that the shaders need.
     #[error("the graphics adapter `{adapter}` cannot run the renderer: {reason}; render on the CPU instead")]
     Unsuitable {
         /// Its name.
@@ -155,33 +162,37 @@ pub enum RenderError {
         /// What is missing.
         reason: String,
     },
-    /// Out of memory on the device.
-    #[error("the graphics adapter ran out of memory: {reason}; take a smaller roaming box or render on the CPU")]
+    /// The device has too little memory.
+    #[error("the graphics adapter ran out of memory: {reason}; choose a smaller roaming box or render on the CPU")]
     OutOfMemory {
-        /// What the graphics library says.
+        /// The message of the graphics library.
         reason: String,
     },
-    /// The device went away while rendering.
+    /// The device was lost while it was rendering.
     #[error("the graphics device was lost ({reason}); try again, or render on the CPU")]
     DeviceLost {
-        /// What the graphics library says.
+        /// The message of the graphics library.
         reason: String,
     },
-    /// The graphics library refused a command: a mistake in this program.
-    #[error("the graphics library refused a command: {reason}")]
+    /// The graphics library refused a command, which is a defect of this program.
+    #[error(
+        "the graphics library refused a command: {reason}; this is a defect of the program, so render on the CPU instead"
+    )]
     Device {
-        /// What the graphics library says.
+        /// The message of the graphics library.
         reason: String,
     },
 }
 
-/// A scene that shows surfaces of k' without an interpretation.
-pub(crate) const NO_DEPTHS: RenderError = RenderError::Missing {
-    what: "horizons for surfaces of k'",
-    remedy: "add horizons and parameterize the project, or name a volume",
-};
-/// A scene that shows candidates which are not there.
-pub(crate) const NO_CANDIDATES: RenderError = RenderError::Missing {
-    what: "horizon candidates",
-    remedy: "extract them first, or leave leaves and distances out of the scene",
-};
+impl RenderError {
+    /// The scene shows surfaces of k' without an interpretation.
+    pub(crate) const NO_DEPTHS: Self = Self::Missing {
+        what: "horizons for surfaces of k'",
+        remedy: "add horizons and parameterize the project, or name a volume",
+    };
+    /// The scene shows horizon candidates that are not there.
+    pub(crate) const NO_CANDIDATES: Self = Self::Missing {
+        what: "horizon candidates",
+        remedy: "extract them first, or leave leaves and distances out of the scene",
+    };
+}

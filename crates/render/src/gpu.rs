@@ -1,7 +1,7 @@
-//! The graphics device without a window, and its errors as ours.
+//! The graphics device, opened without a window, and its errors as [`RenderError`].
 //!
-//! The adapter's own limits are asked for, because the software driver and real cards differ by more than a factor of ten in
-//! what they can bind.
+//! The device is opened with the limits of the adapter, because the software driver and real cards differ by
+//! more than a factor of ten in what they can bind.
 
 use crate::error::RenderError;
 use std::sync::{Arc, Mutex};
@@ -11,18 +11,18 @@ pub(crate) struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub adapter_name: String,
-    /// Floats that one storage buffer can hold and bind.
+    /// Number of floats that one storage buffer can hold and bind.
     pub buffer_floats: usize,
     /// Whether textures of 32-bit floats can be filtered.
     pub filters_floats: bool,
     lost: Arc<Mutex<Option<String>>>,
 }
 
-/// Storage buffers that the largest pass binds.
+/// Number of storage buffers that the largest shader binds.
 const STORAGE_BUFFERS: u32 = 16;
 
 impl Gpu {
-    /// Opens the fastest adapter there is; the environment variables of wgpu (`WGPU_ADAPTER_NAME`, …) choose another.
+    /// Opens the fastest adapter. The environment variables of wgpu (`WGPU_ADAPTER_NAME`, …) choose another.
     pub fn headless() -> Result<Self, RenderError> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let options = wgpu::RequestAdapterOptions {
@@ -36,7 +36,7 @@ impl Gpu {
         let unsuitable = |reason: String| RenderError::Unsuitable { adapter: adapter_name.clone(), reason };
         if limits.max_storage_buffers_per_shader_stage < STORAGE_BUFFERS {
             let found = limits.max_storage_buffers_per_shader_stage;
-            return Err(unsuitable(format!("it binds {found} storage buffers, {STORAGE_BUFFERS} are needed")));
+            return Err(unsuitable(format!("it binds {found} storage buffers, but {STORAGE_BUFFERS} are needed")));
         }
         let (device, queue) = pollster::block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("petroglyph"),
@@ -45,7 +45,8 @@ impl Gpu {
             ..wgpu::DeviceDescriptor::default()
         }))
         .map_err(|error| unsuitable(error.to_string()))?;
-        // A whole number of 16-byte units, as buffers are sized, that a shader can count.
+        // The count of floats is a multiple of four, since buffers are sized in units of 16 bytes, and fits
+        // into the 32 bits with which a shader counts.
         let limits = device.limits();
         let bytes = limits.max_storage_buffer_binding_size.min(limits.max_buffer_size);
         let buffer_floats = (bytes / 16 * 4).min(u64::from(u32::MAX)) as usize;
@@ -60,7 +61,7 @@ impl Gpu {
         Ok(Self { device, queue, adapter_name, buffer_floats, filters_floats, lost })
     }
 
-    /// Runs commands and turns what the graphics library says about them into an error.
+    /// Runs commands and converts the errors that the graphics library reports about them.
     pub fn guarded<T>(&self, commands: impl FnOnce() -> Result<T, RenderError>) -> Result<T, RenderError> {
         let memory = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let validation = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
@@ -68,7 +69,7 @@ impl Gpu {
         let result = commands();
         let errors = [internal, validation, memory].map(|scope| pollster::block_on(scope.pop()));
         if result.is_err() || errors.iter().any(Option::is_some) {
-            // Whether the device was lost is only said to those who ask; the answer comes by the callback.
+            // The callback reports a lost device only when the device is polled.
             let _ = self.device.poll(wgpu::PollType::Poll);
         }
         if let Some(reason) = self.lost_reason() {
@@ -91,7 +92,8 @@ impl Gpu {
     /// Writes the texels of the plane at depth `plane` of a 3D texture, row by row.
     pub fn write_plane(&self, texture: &wgpu::Texture, plane: u32, bytes: &[u8]) {
         let size = wgpu::Extent3d { depth_or_array_layers: 1, ..texture.size() };
-        let texel_bytes = texture.format().block_copy_size(None).unwrap_or(1);
+        let texel_bytes =
+            texture.format().block_copy_size(None).expect("an uncompressed colour format has one texel size");
         self.queue.write_texture(
             wgpu::TexelCopyTextureInfo {
                 texture,
@@ -109,7 +111,7 @@ impl Gpu {
         );
     }
 
-    /// A storage buffer with these bytes; never empty, since a binding may not be.
+    /// A storage buffer with these bytes. It is never empty, since an empty buffer cannot be bound.
     pub fn storage(&self, label: &str, bytes: &[u8]) -> wgpu::Buffer {
         self.filled(label, bytes, wgpu::BufferUsages::STORAGE)
     }
@@ -132,7 +134,7 @@ impl Gpu {
         buffer
     }
 
-    /// Waits until everything submitted is done.
+    /// Waits until all submitted work is done.
     pub fn wait(&self) -> Result<(), RenderError> {
         match self.device.poll(wgpu::PollType::wait_indefinitely()) {
             Ok(_) => Ok(()),

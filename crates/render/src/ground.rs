@@ -1,18 +1,20 @@
-//! The ground: the relief of the topmost horizon, found along a ray (P-illus 5).
+//! The ground: the relief of the topmost horizon, intersected by rays (P-illus 5).
 //!
-//! Everything in the topmost (open) layer is air. A coarse map holds, for cells of a few voxels, a height above which there is only
-//! air, so a ray skips most of the block cell by cell. Below that height it advances by a step that cannot cross a sheet: with
-//! `gap` the vertical distance to the nearest sheet and s the ground's steepest slope,
-//! `step = gap / (|d_z| + s·|d_xy|)`, not over a fault in one go and never shorter than [`SHORTEST_STEP`].
-//! The step that ends in rock is cut by the secant where one sheet of one block lies across it, and bisected elsewhere.
-//! Crossing a fault into rock gives the fault scarp, whose normal is the fault's.
+//! Everything in the topmost (open) layer is air. A coarse map stores, for cells of a few voxels, a height
+//! above which there is only air, so a ray skips most of the block cell by cell. Below that height it
+//! advances by a step that cannot cross a sheet: with `gap` the vertical distance to the nearest sheet and s
+//! the steepest slope of the ground, `step = gap / (|d_z| + s·|d_xy|)`. The distance to the nearest fault
+//! limits a step, too, and no step is shorter than [`SHORTEST_STEP`]. The step that ends in rock is refined: by the
+//! secant method if it crosses a single sheet of one block, and by bisection otherwise. Where the ray crosses
+//! a fault into rock, it hits the fault scarp, whose normal is that of the fault.
 //!
-//! Only horizons that form the ground somewhere in the box are asked on the way ([`Relief::horizons`]): deeper ones cannot, and those cut off
-//! below an erosion surface do not change what is air.
+//! The march evaluates only horizons that form the ground somewhere in the box ([`Relief::horizons`]). Deeper
+//! ones cannot form it, and those truncated by an erosion surface do not change what is air.
 //!
-//! Departure: the paper marches a volume with empty-space skipping; the height fields themselves are exact.
+//! Departure: the paper marches through a volume with empty-space skipping. We use the height fields
+//! themselves, which are exact.
 //!
-//! Voxel space, f32; the shader `ground.wgsl` computes the same.
+//! Voxel space, f32. The shader `ground.wgsl` computes the same.
 
 use crate::scene::{Ground, Scene};
 use crate::visible::Ray;
@@ -21,39 +23,40 @@ use model::{Region, StructuralModel};
 use rayon::prelude::*;
 use survey::SurveyGeometry;
 
-/// Shortest step near the ground, voxels: ridges thinner than this can be missed.
+/// Shortest step near the ground, voxels. Ridges thinner than this can be missed.
 pub const SHORTEST_STEP: f32 = 0.5;
-/// Halvings of a last step that the secant cannot cut: half a voxel down to 2⁻⁸ voxel.
+/// Bisections of a last step to which the secant method does not apply: from half a voxel to 2⁻⁸ voxel.
 pub const BISECTIONS: u32 = 7;
-/// Steps after which a ray is taken to miss.
+/// Largest number of steps; a ray that needs more misses the ground.
 pub const MAX_STEPS: u32 = 4096;
 /// Side of a cell of the coarse map, voxels.
 pub const CELL: f32 = 4.0;
-/// How far a skipping ray goes into the next cell, voxels.
+/// How far a ray that skips a cell enters the next one, voxels.
 pub const INTO_CELL: f32 = 0.01;
-/// Depth below the ground at which its layer is asked, voxels: more than rounding.
+/// Depth below the ground at which its layer is looked up, voxels: more than rounding.
 pub const INTO_ROCK: f32 = 0.05;
-/// Steeper ground than this is stepped over as if it had this slope.
+/// Largest slope that step lengths take into account; steeper ground is treated as if it had this slope.
 const STEEPEST: f32 = 3.0;
-/// Nodes from one that is asked for its height to the next.
+/// Spacing of the nodes at which the height is evaluated, voxels.
 const STRIDE: usize = 2;
-/// How far the ground may reach beyond the heights found at nodes, voxels, besides what its slope allows.
+/// How far the ground may reach beyond the heights found at nodes, voxels, in addition to what its slope
+/// allows.
 const HEIGHT_MARGIN: f32 = 1.0;
 
 /// The relief in a roaming box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Relief {
-    /// Heights between which the ground lies, voxel z.
+    /// Range of the heights of the ground, voxel z.
     pub z_range: [f32; 2],
     /// Steepest slope of the ground, voxels per voxel, with a margin.
     pub steepest: f32,
     /// Horizons that form the ground somewhere in the box.
     pub horizons: Vec<usize>,
-    /// Smallest x, y of the coarse map, voxel.
+    /// Smallest x, y of the coarse map, voxels.
     pub map_low: Vec2,
     /// Cells of the map along x and y.
     pub map_cells: [usize; 2],
-    /// Voxel z above which (smaller z) a cell is only air, `[x][y]`.
+    /// Voxel z above which (smaller z) a cell contains only air, `[x][y]`.
     pub map_tops: Vec<f32>,
     /// Longest voxel edge, m.
     pub longest_m: f32,
@@ -63,19 +66,19 @@ pub struct Relief {
     pub hill_shade: f32,
     /// Opacity.
     pub opacity: f32,
-    /// Voxel covector → display covector.
+    /// Map from voxel covectors to display covectors.
     pub display_normal_from_voxel: Mat3,
 }
 
-/// What the march asks of a point.
+/// What the march needs to know about a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Probe {
     is_rock: bool,
     block: u16,
-    /// Vertical distance to the nearest sheet of [`Relief::horizons`], voxels, and its horizon.
+    /// Vertical distance to the nearest sheet of [`Relief::horizons`], voxels, and the horizon of that sheet.
     gap: f32,
     horizon: usize,
-    /// Offset from the nearest fault, m, and which.
+    /// Distance from the nearest fault, m, and that fault.
     fault_m: f32,
     fault: usize,
 }
@@ -85,9 +88,9 @@ struct Probe {
 pub struct GroundHit {
     /// Distance along the ray, voxels.
     pub t: f32,
-    /// Where.
+    /// The hit point.
     pub point: Vec3,
-    /// What is there.
+    /// Its layer and block.
     pub region: Region,
     /// Normal as a voxel covector, pointing into the air.
     pub normal: Vec3,
@@ -122,7 +125,7 @@ impl Relief {
         !self.probe(model, p).is_rock
     }
 
-    /// The first ground between distances `from` (in the air) and `to` along a ray.
+    /// The first hit of the ground along a ray between distances `from` (in the air) and `to`.
     pub fn march(&self, model: &StructuralModel, ray: &Ray, from: f32, to: f32) -> Option<GroundHit> {
         let (start, end) = self.clip(ray, from, to)?;
         let fall = ray.direction.z.abs() + self.steepest * ray.direction.truncate().length();
@@ -148,7 +151,7 @@ impl Relief {
         None
     }
 
-    /// The first distance from `t` on at which the coarse map does not rule rock out.
+    /// The first distance at or after `t` at which the coarse map does not exclude rock.
     fn skip(&self, ray: &Ray, mut t: f32, end: f32) -> f32 {
         let d = ray.direction;
         for _ in 0..MAX_STEPS {
@@ -175,7 +178,7 @@ impl Relief {
         t
     }
 
-    /// The part of a stretch in which the ground can be.
+    /// The part of an interval of the ray in which the ground can be.
     fn clip(&self, ray: &Ray, from: f32, to: f32) -> Option<(f32, f32)> {
         let [low, high] = self.z_range;
         let (z, dz) = (ray.origin.z, ray.direction.z);
@@ -187,7 +190,7 @@ impl Relief {
         (start < end).then_some((start, end))
     }
 
-    /// Cuts a step from air to rock.
+    /// Refines a step that leads from air into rock.
     fn refine(
         &self,
         model: &StructuralModel,
@@ -225,7 +228,7 @@ impl Relief {
         GroundHit { t, point, region, normal }
     }
 
-    /// What is at a point, as far as the ground is concerned.
+    /// What the march needs to know about a point.
     fn probe(&self, model: &StructuralModel, p: Vec3) -> Probe {
         let (block, fault, fault_m) = block_and_fault(model, p);
         let mut below = 0u64;
@@ -241,7 +244,7 @@ impl Relief {
         Probe { is_rock, block, gap, horizon, fault_m, fault }
     }
 
-    /// The hill-shading factor of a slope: 1 where it is flat.
+    /// The hill-shading factor of a slope; 1 if it is flat.
     pub fn shade(&self, normal: Vec3) -> f32 {
         let n = (self.display_normal_from_voxel * normal).normalize_or_zero();
         let lit = n.dot(self.light).max(0.0) / self.light.z;
@@ -254,12 +257,12 @@ pub fn air_layer(model: &StructuralModel) -> u16 {
     (model.layer_count() - 1) as u16
 }
 
-/// Whether a voxel position is air when the ground is shown, by all horizons.
+/// Whether a voxel position is air when the ground is shown, according to all horizons.
 pub fn is_air(model: &StructuralModel, p: Vec3) -> bool {
     model.region_at(p).layer == air_layer(model)
 }
 
-/// The block at a voxel position, the nearest fault and the offset from it, m.
+/// The block at a voxel position, the nearest fault, and the distance from it in metres.
 fn block_and_fault(model: &StructuralModel, p: Vec3) -> (u16, usize, f32) {
     let faults = model.faults();
     let mut bits = 0u64;
@@ -283,17 +286,18 @@ struct Heights {
     tops: Vec<f32>,
 }
 
-/// The same over a row of nodes along y.
+/// Heights of the ground over a row of nodes along y.
 struct HeightRow {
     /// Smallest and largest voxel z per node.
     ranges: Vec<[f32; 2]>,
     steepest: f32,
-    /// Bit h: horizon h is or nearly is the ground.
+    /// Bit h is set if horizon h forms the ground or nearly does.
     horizons: u64,
 }
 
 impl HeightRow {
-    /// Asks the nodes at `x`. Of each block only the part that it owns counts: sheets extended beyond it may be steep.
+    /// Evaluates the nodes at `x`. Only the part of a sheet that lies in its own block counts; sheets that
+    /// are extended beyond it may be steep.
     fn of(model: &StructuralModel, x: f32, ys: &[f32]) -> Self {
         let mut row = Self { ranges: vec![[f32::MAX, f32::MIN]; ys.len()], steepest: 0.0, horizons: 0 };
         for block in 0..model.block_count() as u16 {
@@ -326,7 +330,7 @@ impl Heights {
         let rows: Vec<HeightRow> = xs.par_iter().map(|&x| HeightRow::of(model, x, &ys)).collect();
         let steepest = rows.iter().map(|row| row.steepest).fold(0.0, f32::max);
         let steepest = (steepest * 1.5).min(STEEPEST);
-        // Between the nodes that were asked the ground can rise as its slope allows.
+        // Between the evaluated nodes the ground can rise as far as its slope allows.
         let margin = HEIGHT_MARGIN + STRIDE as f32 * steepest;
         let cells = [xs.len(), ys.len()].map(|nodes| ((nodes - 1) * STRIDE).div_ceil(CELL as usize).max(1));
         let mut own = vec![f32::MAX; cells[0] * cells[1]];
@@ -365,7 +369,7 @@ mod tests {
     use survey::Progress;
     use synth::{SynthSettings, Synthetic};
 
-    /// Walks rays in short steps and asks the model itself.
+    /// Compares the march with short steps along rays that evaluate the model itself.
     #[test]
     fn it_agrees_with_walking() {
         let quiet = Progress::silent();
@@ -390,7 +394,7 @@ mod tests {
                 let walked = (0..(end * 50.0) as usize).map(|s| s as f32 * 0.02).find(|t| !is_air(&model, ray.at(*t)));
                 let found = relief.march(&model, &ray, 0.0, end).map(|hit| hit.t);
                 hits += usize::from(walked.is_some());
-                // A ray may slip through less rock than the shortest step.
+                // A ray may miss rock that is thinner than the shortest step.
                 far += usize::from((walked.unwrap_or(end) - found.unwrap_or(end)).abs() > 0.1);
             }
         }

@@ -1,42 +1,57 @@
-//! What a scene is drawn from: borrowed data of the project, in voxel space.
+//! The data that a scene is drawn from, borrowed from the project. Voxel space.
 
 use crate::error::RenderError;
 use crate::leaves::{BORDER, BORDER_REACH, BORDER_STEP};
 use crate::voxel_box::VoxelBox;
-use crate::wells::WellPath;
+use crate::wells::DrawnWell;
 use glam::Vec3;
 use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
 use survey::{SurveyGeometry, Volume};
 use ttf::TtfTables;
 
-/// The data behind a picture. What is `None` is not drawn: without a model, for instance, faces show raw data only.
+/// The data of a picture. What is `None` is not drawn: without a model, for instance, faces show raw data
+/// only.
 #[derive(Clone, Copy)]
 pub struct Inputs<'a> {
-    /// Where samples are.
+    /// Where the samples lie.
     pub geometry: &'a SurveyGeometry,
-    /// The interpretation made solid.
+    /// The structural model of the interpretation.
     pub model: Option<&'a StructuralModel>,
-    /// i, j, k of that model, for the exact lookup.
+    /// The parameterization (i, j, k) of that model, for the exact lookup.
     pub param: Option<&'a Parameterization>,
     /// The paper's packed volume, for the packed lookup.
     pub packed: Option<&'a PackedVolume>,
-    /// Layer styles, scalar functions and raw colours, compiled for this block; bottom layer first, as in the model.
+    /// Layer styles, scalar functions and raw colours, compiled for this block. The bottom layer is first, as
+    /// in the model.
     pub tables: Option<&'a TtfTables>,
-    /// Scalar volumes, raw data among them.
+    /// Scalar volumes, the raw data among them.
     pub volumes: &'a [NamedVolume<'a>],
-    /// Distances to horizon candidates and their leaves.
-    pub candidates: Option<Candidates<'a>>,
+    /// Horizon candidates: distances and leaves.
+    pub candidates: Option<CandidateVolume<'a>>,
     /// Wells.
-    pub wells: &'a [WellPath<'a>],
-    /// Changes whenever data behind any of these references change: what is on the GPU is kept while it stays the same.
+    pub wells: &'a [DrawnWell<'a>],
+    /// Version of the data. It must change whenever the data behind any of these references changes; uploaded
+    /// data are reused while it stays the same.
     pub version: u64,
 }
 
-/// A scalar volume and the part of the survey it covers; size and extent may differ from the survey's (P-illus 5.1).
+/// A scalar volume and the part of the survey that it covers. Its size and extent may differ from the
+/// survey's (P-illus 5.1).
+///
+/// ```
+/// use glam::Vec3;
+/// use render::NamedVolume;
+/// let mut volume = survey::Volume::filled([2, 2, 2], 0.0f32);
+/// // Inline 1 has the value 8.
+/// (0..2).for_each(|y| volume.trace_mut(1, y).fill(8.0));
+/// let named = NamedVolume::whole("seismic", &volume);
+/// assert_eq!(named.sample(Vec3::new(0.25, 0.5, 0.5)), 2.0);
+/// assert!(named.sample(Vec3::new(1.5, 0.0, 0.0)).is_nan());
+/// ```
 #[derive(Clone, Copy)]
 pub struct NamedVolume<'a> {
-    /// Unique name, as scenes and transfer functions have it.
+    /// Unique name by which scenes and transfer functions refer to it.
     pub name: &'a str,
     /// The samples.
     pub volume: &'a Volume<f32>,
@@ -44,24 +59,40 @@ pub struct NamedVolume<'a> {
     pub covers: VoxelBox,
 }
 
-/// For every sample of the survey the distance to the nearest candidate surface and the leaf of its tree (P-horiz 4.4, 5.2).
+/// The distance volume of the horizon candidates (P-horiz 4.4, 5.2): for every sample of the survey, the
+/// distance to the nearest candidate surface and the leaf of its surface tree there.
+///
+/// ```
+/// use glam::Vec3;
+/// // A trace of three samples with the leaf 7 on the middle one; a step is half a voxel.
+/// let candidates = render::CandidateVolume {
+///     size: [1, 1, 3],
+///     distance: &[2, 0, 2],
+///     leaf: &[7; 3],
+///     voxels_per_step: 0.5,
+///     groups: None,
+/// };
+/// candidates.validate().unwrap();
+/// assert_eq!(candidates.leaf_at(Vec3::new(0.0, 0.0, 1.2)), 7);
+/// assert_eq!(candidates.distance_at(Vec3::new(0.0, 0.0, 0.5)), 0.5);
+/// ```
 #[derive(Debug, Clone, Copy)]
-pub struct Candidates<'a> {
+pub struct CandidateVolume<'a> {
     /// `[inlines, crosslines, samples]`.
     pub size: [usize; 3],
-    /// Distance in steps; 255 = farther.
+    /// Distance in steps; 255 stands for all larger distances.
     pub distance: &'a [u8],
-    /// Leaf id; 0 = none.
+    /// Leaf id; 0 stands for no leaf.
     pub leaf: &'a [u32],
-    /// Voxels to a step of `distance`.
+    /// Length of a step of `distance`, voxels.
     pub voxels_per_step: f32,
-    /// What leaves are coloured by, by leaf id: the node of their tree at some level, for instance; 0 = not shown. Absent: the
-    /// leaf itself.
+    /// The group by leaf id, which determines a leaf's colour: for instance its ancestor at some level of the
+    /// surface tree. 0: the leaf is not shown. Absent: each leaf is a group of its own.
     pub groups: Option<&'a [u32]>,
 }
 
-impl Candidates<'_> {
-    /// Refuses volumes that do not fill their box.
+impl CandidateVolume<'_> {
+    /// Checks that there is one distance and one leaf per sample.
     ///
     /// # Errors
     /// [`RenderError::CandidateSize`].
@@ -75,7 +106,7 @@ impl Candidates<'_> {
         }
     }
 
-    /// Leaf of the nearest sample.
+    /// Leaf at the nearest sample.
     pub fn leaf_at(&self, p: Vec3) -> u32 {
         self.leaf[self.index_of(self.sample_at(p))]
     }
@@ -88,15 +119,18 @@ impl Candidates<'_> {
         (x * self.size[1] + y) * self.size[2] + z
     }
 
-    /// The number that a leaf is coloured by; 0 = not shown.
+    /// The group of a leaf; 0 if it is not shown.
     pub fn group(&self, leaf: u32) -> u32 {
         self.groups.map_or(leaf, |groups| groups.get(leaf as usize).copied().unwrap_or(0))
     }
 
-    /// Whether a place lies beside another group: its surface goes on as another group's on a trace to the side.
+    /// Whether a point lies at the border of two groups: on a neighbouring trace, its surface continues as a
+    /// surface of another group.
     ///
-    /// Surfaces may lie a few samples apart, so it is not enough that a neighbour belongs to another: the surface's own sample is found first; on the
-    /// neighbouring traces the surface is looked for at about that depth, and only where it does not go on, another.
+    /// Surfaces may lie only a few samples apart, so it is not enough that a neighbouring sample belongs to
+    /// another group. First the sample of the point's own surface is located on its trace. On the
+    /// neighbouring traces that surface is searched for at about the same depth; only if it does not continue
+    /// there, a surface of another group counts.
     pub fn is_border(&self, p: Vec3) -> bool {
         let place = self.sample_at(p);
         let own = self.group(self.leaf[self.index_of(place)]);
@@ -112,8 +146,9 @@ impl Candidates<'_> {
             || differ(aside(Vec3::Y * BORDER), aside(Vec3::Y * -BORDER))
     }
 
-    /// The sample of a trace nearest to its surface, of those at most `reach` above and below one and of one group if that is asked, with its group;
-    /// none where all are far from theirs.
+    /// The sample of a trace that is nearest to its surface, and the group of that surface. Considers samples
+    /// at most `reach` above and below z, and one group if `only` names it. `None` if all samples are too far
+    /// from their surfaces.
     fn surface_sample(&self, [x, y, z]: [usize; 3], reach: usize, only: Option<u32>) -> Option<(usize, u32)> {
         let mut nearest = BORDER_REACH;
         let mut found = None;
@@ -129,7 +164,7 @@ impl Candidates<'_> {
         found
     }
 
-    /// Distance by trilinear interpolation, voxels.
+    /// Distance to the nearest candidate, interpolated trilinearly, voxels.
     pub fn distance_at(&self, p: Vec3) -> f32 {
         let last = Vec3::from_array(self.size.map(|n| (n - 1) as f32));
         let clamped = p.clamp(Vec3::ZERO, last);
@@ -147,9 +182,9 @@ impl Candidates<'_> {
     }
 }
 
-/// Interpolation weights below this do not ask for their sample.
+/// Samples with an interpolation weight below this are not read.
 pub const NO_WEIGHT: f32 = 1e-5;
-/// How far outside its extent a volume still answers, in its own samples: only rounding.
+/// How far outside its extent a volume still has values, in its own samples: only rounding.
 pub const SLACK: f32 = 1e-3;
 
 impl<'a> Inputs<'a> {
@@ -170,19 +205,29 @@ impl<'a> Inputs<'a> {
 }
 
 impl<'a> NamedVolume<'a> {
-    /// A volume on the survey's own lattice.
+    /// The volume of this name.
+    pub(crate) fn find(volumes: &[Self], name: &str) -> Result<Self, RenderError> {
+        volumes.iter().find(|v| v.name == name).copied().ok_or_else(|| RenderError::UnknownVolume {
+            name: name.to_owned(),
+            present: volumes.iter().map(|v| v.name.to_owned()).collect(),
+        })
+    }
+
+    /// A volume on the lattice of the survey.
     pub fn whole(name: &'a str, volume: &'a Volume<f32>) -> Self {
         Self { name, volume, covers: VoxelBox::of_size(volume.size()) }
     }
 
-    /// Scale and offset from voxel to this volume's own sample indices: `index = p · scale + offset`.
+    /// Scale and offset from voxel positions to the volume's own sample indices: `index = p · scale +
+    /// offset`.
     pub fn index_from_voxel(&self) -> (Vec3, Vec3) {
         let last = Vec3::from_array(self.volume.size().map(|n| n.saturating_sub(1) as f32));
         let scale = last / self.covers.extent().as_vec3().max(Vec3::splat(1e-6));
         (scale, -self.covers.low().as_vec3() * scale)
     }
 
-    /// Trilinear value at a voxel position; NaN outside the extent and where a needed sample is dead or not a number.
+    /// Value at a voxel position, interpolated trilinearly. NaN outside the extent, and where a needed sample
+    /// is dead or not finite.
     pub fn sample(&self, p: Vec3) -> f32 {
         let (scale, offset) = self.index_from_voxel();
         let index = p * scale + offset;
@@ -252,7 +297,8 @@ mod tests {
         assert!(named.sample(Vec3::new(12.0, 21.0, 34.1)).is_nan());
     }
 
-    /// Surfaces three samples apart that dip by two samples in three traces, the shallower one changing its leaf at trace 12.
+    /// Surfaces lie three samples apart and dip by two samples in three traces. The shallowest changes its
+    /// leaf at trace 12.
     #[test]
     fn a_border_is_where_a_surface_changes_its_leaf_not_where_another_is_near() {
         let size = [24, 5, 40];
@@ -266,15 +312,16 @@ mod tests {
             distance.push((below(nearest) / 0.04).min(255.0) as u8);
             leaf.push(if nearest == 0 && x >= 12 { 9 } else { nearest as u32 + 1 });
         }
-        let candidates = Candidates { size, distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
+        let candidates =
+            CandidateVolume { size, distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
         candidates.validate().unwrap();
         for n in 0..900 {
-            // About the shell of one voxel around each surface.
+            // Positions around the shell of one voxel about each surface.
             let x = 2.0 + (n % 100) as f32 * 0.2;
             let surface = n / 100 % 3;
             let off = ((n / 300) as f32 - 1.0) * 0.9 / lean;
             let p = Vec3::new(x, 2.0, depth(x) + 3.0 * surface as f32 + off);
-            // Where the nearest sample is another surface's, so is the place.
+            // If the nearest sample belongs to another surface, so does the point.
             let shallowest = [1, 9].contains(&candidates.leaf_at(p));
             let expected = shallowest && (x - 11.5).abs() < 0.2;
             let clear = !shallowest || (x - 11.5).abs() > 1.3;

@@ -1,40 +1,48 @@
-//! Colours of leaves by their id, and what faces show of horizon candidates: without them nobody can judge an extraction.
+//! Colours of leaves by their id, and how faces show horizon candidates, so that an extraction can be judged.
 //!
-//! Hues follow the id through the golden ratio's fractional multiples, so that neighbours in number are far apart in hue, whatever number of
-//! ids there is; brightness and saturation take three steps each. sRGB-encoded.
+//! Hues are fractional multiples of the golden ratio, so that leaves with consecutive ids differ in hue,
+//! however many ids there are. Brightness and saturation take three steps each. sRGB-encoded.
 
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// What the faces of rock show.
+/// What the faces of the block show.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FaceData {
-    /// The illustration and the raw data, as the blend says.
+    /// The illustration blended with the raw data.
     #[default]
     Rock,
-    /// Horizon candidates in the colours of their leaves, over that.
+    /// The same, and over it the horizon candidates in the colours of their leaves.
     Leaves,
-    /// Distance to the nearest candidate: white on it, darker with distance, black beyond (P-horiz, figure 4).
+    /// Distance to the nearest candidate: white on it, darker with distance, black beyond [`BLACK_AT`]
+    /// (P-horiz, figure 4).
     Distance,
 }
 
-/// Half of a leaf's thickness on a face, voxels.
+/// Half of the thickness of a leaf on a face, voxels.
 pub const HALF_WIDTH: f32 = 0.8;
-/// Over which it fades, voxels.
+/// Width over which the edge of a leaf fades, voxels.
 pub const FADE: f32 = 0.5;
-/// Distance that is black, voxels.
+/// Distance that is shown as black, voxels.
 pub const BLACK_AT: f32 = 10.0;
-/// How far aside a leaf's border is looked for, voxels.
+/// How far to the side the border of a leaf is searched for, voxels.
 pub const BORDER: f32 = 0.75;
-/// Farther from its surface a sample says nothing of borders, voxels.
+/// Largest distance from its surface of a sample that counts in the search for borders, voxels.
 pub const BORDER_REACH: f32 = 0.75;
-/// Samples that another leaf may lie above or below on a neighbouring trace to be the same surface; the leaf itself may rise or fall by twice that.
+/// Largest difference in depth between neighbouring traces, samples, at which another leaf counts as the
+/// continuation of a surface. The same leaf may rise or fall by twice that.
 pub const BORDER_STEP: usize = 1;
-/// Factor on the colour of a border between leaves.
+/// Factor on the colour at the border between leaves.
 pub const BORDER_TONE: f32 = 0.35;
 
 /// The colour of a leaf.
+///
+/// ```
+/// let [a, b] = [1, 2].map(render::leaves::leaf_colour);
+/// assert!((a - b).length() > 0.2);
+/// assert!(a.min_element() >= 0.0 && a.max_element() <= 1.0);
+/// ```
 pub fn leaf_colour(id: u32) -> Vec3 {
     let hash = id.wrapping_mul(0x9e37_79b9);
     let hue = (hash >> 8) as f32 / 16_777_216.0 * 6.0;
@@ -47,12 +55,12 @@ pub fn leaf_colour(id: u32) -> Vec3 {
     Vec3::new(channel(5.0), channel(3.0), channel(1.0))
 }
 
-/// How much of a face a candidate at this distance covers.
+/// Fraction of a face that a candidate at this distance covers.
 pub fn cover(distance: f32) -> f32 {
     ((HALF_WIDTH - distance) / FADE + 0.5).clamp(0.0, 1.0)
 }
 
-/// The grey of a distance.
+/// The grey value that shows a distance.
 pub fn distance_tone(distance: f32) -> f32 {
     (1.0 - distance / BLACK_AT).clamp(0.0, 1.0)
 }

@@ -1,22 +1,30 @@
 //! Rendering of illustrated and raw seismic blocks.
 //!
-//! One declarative [`Scene`] says what a picture shows, [`Inputs`] bring the data. Two renderers draw it by the same algorithm:
-//! [`reference::render`] on the CPU, written for clarity, and [`Renderer`] on the GPU, without a window. [`compare`] tells whether they
-//! agree.
+//! A declarative [`Scene`] says what a picture shows; [`Inputs`] hold the data. Two renderers draw it by the
+//! same algorithm: [`reference::render`] on the CPU, written for clarity, and [`Renderer`] on the GPU,
+//! without a window. [`compare`] decides whether their pictures agree.
 //!
-//! One ray per sample finds the first face of the block ([`visible`]) or the ground ([`ground`]); the point is looked up in flat
-//! space, textured, blended to the raw data; what is in front of it is integrated by [`media`]; outlines ([`outline`]) are stroked over the finished picture.
+//! Each sample of a pixel casts one ray, which finds the first face of the block ([`visible`]) or the ground
+//! ([`ground`]). That point is looked up in flat space, textured, and blended with the raw data. [`media`]
+//! integrates the volumes in front of it (volume rendering). [`outline`] strokes lines over the finished
+//! picture.
 //!
 //! # Spaces
-//! Everything is voxel space (x = inline index, y = crossline index, z = sample index downwards), but for the camera's
-//! display space (X east, Y north, Z up, m, exaggerated) and pixels (x right, y down, centres at halves).
+//! All positions are in voxel space (x = inline index, y = crossline index, z = sample index downwards),
+//! except in the camera's display space (X east, Y north, Z up, in metres, with exaggeration) and in pixels
+//! (x right, y down, pixel centres at halves).
+//!
+//! # The papers
+//! - P-illus: Patel, Giertsen, Thurmond and Gröller, "Illustrative Rendering of Seismic Data" (Vision,
+//!   Modeling and Visualization 2007).
+//! - P-horiz: Patel, Bruckner, Viola and Gröller, "Seismic Volume Visualization for Horizon Extraction" (IEEE
+//!   Pacific Visualization 2010).
 
 pub mod accuracy;
 pub mod camera;
 pub mod compare;
 pub mod error;
 pub mod faces;
-mod frame;
 mod gpu;
 pub mod ground;
 pub mod inputs;
@@ -25,6 +33,7 @@ pub mod media;
 pub mod outline;
 pub mod pick;
 pub mod reference;
+mod resolved;
 pub mod scene;
 mod shade;
 pub mod visible;
@@ -34,13 +43,13 @@ pub mod wells;
 pub use camera::{Camera, Projection, View};
 pub use error::{RenderError, SceneError};
 pub use faces::Renderer;
-pub use inputs::{Candidates, Inputs, NamedVolume};
+pub use inputs::{CandidateVolume, Inputs, NamedVolume};
 pub use leaves::FaceData;
 pub use media::{
-    Faces, Interleaved, Isosurface, Media, Medium, Occlusion, Phong, PickedHorizon, Scalar, Scope, Shading,
+    Faces, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading,
 };
 pub use outline::{Outlines, Stroke};
-pub use pick::{Pick, Picked, pick};
+pub use pick::{PickedObject, PickedPoint, pick};
 pub use scene::{Background, Ground, Lookup, Scene};
 pub use voxel_box::{Corner, VoxelBox};
-pub use wells::{WellPath, WellStyle};
+pub use wells::{DrawnWell, WellStyle};

@@ -1,17 +1,18 @@
-//! The CPU reference: what the GPU passes must reproduce, written for clarity.
+//! The CPU reference, which the shaders must reproduce; written for clarity.
 //!
-//! Each pixel takes `samples` × `samples` rays on a regular grid. A ray finds the first point of the block
-//! ([`crate::visible`]), which is coloured and averaged with its pixel's others on sRGB-encoded, alpha-weighted values.
+//! Each pixel casts `samples` × `samples` rays on a regular grid. A ray finds the first point of the block
+//! ([`crate::visible`]) and its colour. The colours of a pixel are averaged as sRGB-encoded values weighted
+//! by alpha.
 
 use crate::camera::ViewRay;
 use crate::error::RenderError;
-use crate::frame::Frame;
 use crate::inputs::Inputs;
 use crate::media::interleaved::{halves, interleave};
 use crate::media::light::LightVolume;
 use crate::media::light_grid::Asked;
 use crate::media::prepared::Preparations;
-use crate::outline;
+use crate::outline::draw::draw as draw_outlines;
+use crate::resolved::ResolvedScene;
 use crate::scene::Scene;
 use crate::shade::trace;
 use glam::{DVec2, Vec4};
@@ -21,13 +22,34 @@ use survey::Progress;
 
 /// Draws the scene on the CPU.
 ///
+/// ```
+/// use render::{Background, Inputs, NamedVolume, Outlines, Scene};
+/// use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+/// use ttf::{Colour, ColourMap, RawColour, RgbaFunction};
+/// let geometry = SurveyGeometry::regular([4, 4, 4], 10.0, 10.0, VerticalUnit::Metres);
+/// // A volume of the value 0 in a grey map over -1 … 1: every pixel of the block is half grey.
+/// let volume = Volume::filled([4, 4, 4], 0.0f32);
+/// let volumes = [NamedVolume::whole("seismic", &volume)];
+/// let scene = Scene {
+///     size_px: [16, 12],
+///     samples: 1,
+///     raw: Some(RawColour::new("seismic", RgbaFunction::centred(ColourMap::Grey, 1.0))),
+///     background: Background::Colour(Colour::BLACK),
+///     outlines: Outlines::none(),
+///     ..Scene::default()
+/// };
+/// let image = render::reference::render(&scene, &Inputs::raw(&geometry, &volumes), &Progress::silent()).unwrap();
+/// assert_eq!(image.get_pixel(8, 6).0, [128, 128, 128, 255]);
+/// assert_eq!(image.get_pixel(0, 0).0, [0, 0, 0, 255]);
+/// ```
+///
 /// # Errors
-/// A scene without a picture, missing inputs, or cancellation.
+/// A scene that cannot be drawn, missing inputs, or cancellation.
 pub fn render(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
     CpuRenderer::default().render(scene, inputs, progress)
 }
 
-/// The CPU renderer, keeping what it learnt of the data while [`Inputs::version`] stays the same.
+/// The CPU renderer. It keeps what it has computed from the data while [`Inputs::version`] stays the same.
 #[derive(Debug, Default)]
 pub struct CpuRenderer {
     kept: Preparations,
@@ -37,37 +59,37 @@ impl CpuRenderer {
     /// Draws the scene.
     ///
     /// # Errors
-    /// A scene without a picture, missing inputs, or cancellation.
+    /// A scene that cannot be drawn, missing inputs, or cancellation.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
         if let Some(([first, second], stripes)) = halves(scene) {
             let first = self.render(&first, inputs, progress)?;
             return Ok(interleave(first, &self.render(&second, inputs, progress)?, stripes));
         }
-        draw(&Frame::new(scene, inputs, &mut self.kept)?, progress)
+        draw(&ResolvedScene::new(scene, inputs, &mut self.kept)?, progress)
     }
 }
 
-/// Pixels along a side of what one task draws.
+/// Side of the tile that one task draws, pixels.
 const TILE: u32 = 32;
-/// Pixels along a side of what is traced together.
+/// Side of the block of pixels that is traced together.
 const BLOCK: usize = 8;
-/// Tiles drawn before they are put into the picture.
+/// Number of tiles that are drawn before they are copied into the picture.
 const TILES_AT_ONCE: usize = 4096;
 
-fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
-    let light = match &frame.field {
+fn draw(resolved: &ResolvedScene, progress: &Progress) -> Result<RgbaImage, RenderError> {
+    let light = match &resolved.field {
         Some(field) => {
-            let asked = if frame.tubes.is_some() { Asked::Everywhere } else { Asked::Block };
-            LightVolume::new(field, &frame.view, &frame.solid, &frame.roaming_box, asked, progress)?
+            let asked = if resolved.tubes.is_some() { Asked::Everywhere } else { Asked::Block };
+            LightVolume::new(field, &resolved.view, &resolved.solid, &resolved.roaming_box, asked, progress)?
         }
         None => None,
     };
-    let [width, height] = frame.scene.size_px;
+    let [width, height] = resolved.scene.size_px;
     let across = width.div_ceil(TILE);
     let tiles = across * height.div_ceil(TILE);
     progress.begin("render", u64::from(tiles));
     let mut image = RgbaImage::new(width, height);
-    // Some at a time, so that large pictures are not held twice.
+    // A limited number at a time, so that a large picture is not held in memory twice.
     for first in (0..tiles).step_by(TILES_AT_ONCE) {
         let drawn: Vec<(u32, u32, Vec<[u8; 4]>)> = (first..tiles.min(first + TILES_AT_ONCE as u32))
             .into_par_iter()
@@ -78,7 +100,7 @@ fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
                 for y in (top..bottom).step_by(BLOCK) {
                     for x in (left..right).step_by(BLOCK) {
                         let (across, down) = ((right - x).min(BLOCK as u32), (bottom - y).min(BLOCK as u32));
-                        for (n, pixel) in (0..).zip(block(frame, light.as_ref(), [x, y], [across, down])) {
+                        for (n, pixel) in (0..).zip(block(resolved, light.as_ref(), [x, y], [across, down])) {
                             let (column, row) = (x - left + n % across, y - top + n / across);
                             pixels[(row * (right - left) + column) as usize] = pixel;
                         }
@@ -94,23 +116,28 @@ fn draw(frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
             }
         }
     }
-    outline::draw(frame, &mut image);
+    draw_outlines(resolved, &mut image);
     Ok(image)
 }
 
-/// The averaged colours of a block of pixels, straight 8-bit RGBA, row by row.
-fn block(frame: &Frame, light: Option<&LightVolume>, [left, top]: [u32; 2], [across, down]: [u32; 2]) -> Vec<[u8; 4]> {
-    let samples = frame.scene.samples;
+/// The averaged colours of a block of pixels, 8-bit straight RGBA, row by row.
+fn block(
+    resolved: &ResolvedScene,
+    light: Option<&LightVolume>,
+    [left, top]: [u32; 2],
+    [across, down]: [u32; 2],
+) -> Vec<[u8; 4]> {
+    let samples = resolved.scene.samples;
     let per_pixel = samples * samples;
     let rays: Vec<ViewRay> = (0..across * down * per_pixel)
         .map(|n| {
             let (pixel, sub) = (n / per_pixel, n % per_pixel);
             let corner = DVec2::new(f64::from(left + pixel % across), f64::from(top + pixel / across));
             let offset = DVec2::new(f64::from(sub % samples) + 0.5, f64::from(sub / samples) + 0.5);
-            frame.view.ray(corner + offset / f64::from(samples))
+            resolved.view.ray(corner + offset / f64::from(samples))
         })
         .collect();
-    let colours = trace(frame, light, &rays);
+    let colours = trace(resolved, light, &rays);
     let average = |colours: &[Vec4]| {
         let sum: Vec4 = colours.iter().map(|colour| (colour.truncate() * colour.w).extend(colour.w)).sum();
         straight_bytes(sum / per_pixel as f32)
@@ -118,7 +145,7 @@ fn block(frame: &Frame, light: Option<&LightVolume>, [left, top]: [u32; 2], [acr
     colours.chunks(per_pixel as usize).map(average).collect()
 }
 
-/// 8-bit straight RGBA of a premultiplied colour.
+/// Converts a premultiplied colour to 8-bit straight RGBA.
 fn straight_bytes(premultiplied: Vec4) -> [u8; 4] {
     let alpha = premultiplied.w;
     let rgb = if alpha > 0.0 { premultiplied.truncate() / alpha } else { premultiplied.truncate() };

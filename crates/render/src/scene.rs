@@ -1,12 +1,13 @@
-//! What a picture shows, as one declarative value: written to and read from TOML, with a default for everything.
+//! What a picture shows, as one declarative value. It is written to and read from TOML, and every part has a
+//! default.
 //!
-//! A [`Scene`] says nothing about where data come from; [`crate::Inputs`] brings those. Positions are voxel
-//! (x = inline index, y = crossline index, z = sample index downwards), sizes of lines and images are pixels.
+//! A [`Scene`] does not say where data come from; [`crate::Inputs`] hold those. Positions are in voxels (x =
+//! inline index, y = crossline index, z = sample index downwards), line widths and image sizes in pixels.
 
 use crate::camera::{Camera, View};
 use crate::error::SceneError;
 use crate::leaves::FaceData;
-use crate::media::Media;
+use crate::media::{Faces, Media};
 use crate::outline::Outlines;
 use crate::voxel_box::VoxelBox;
 use crate::wells::WellStyle;
@@ -16,9 +17,9 @@ use ttf::{Colour, RawColour};
 
 /// Largest image side, pixels.
 pub const MAX_SIDE_PX: u32 = 32_768;
-/// Most samples a pixel along one axis.
+/// Largest number of samples per pixel along one axis.
 pub const MAX_SAMPLES: u32 = 16;
-/// Most cut-outs in a scene.
+/// Largest number of cut-outs in a scene.
 pub const MAX_CUT_OUTS: usize = 16;
 
 /// A picture of a block.
@@ -33,9 +34,9 @@ pub const MAX_CUT_OUTS: usize = 16;
 pub struct Scene {
     /// Pixels across and down. Default 1600 × 1200.
     pub size_px: [u32; 2],
-    /// Samples a pixel along each axis, averaged on sRGB-encoded values. Default 3, so 9 a pixel.
+    /// Samples per pixel along each axis, averaged as sRGB-encoded values. Default 3, so 9 per pixel.
     pub samples: u32,
-    /// Vertical exaggeration of the display; the parameterization does not see it. Default 1.
+    /// Vertical exaggeration of the display. It does not change the parameterization. Default 1.
     pub exaggeration: f64,
     /// 0 = illustrative … 1 = raw (P-illus 4.3, 5.2). Default 0.
     pub blend: f32,
@@ -45,32 +46,32 @@ pub struct Scene {
     pub lookup: Lookup,
     /// Colour behind the block. Default white; [`Background::Transparent`] leaves the pixels empty.
     pub background: Background,
-    /// Darkening of the side faces that turn away from the viewer's left, 0 = unlit (DESIGN: faces are unlit) …
-    /// 0.5. Default 0.
+    /// Darkening of the side faces on the right, from 0 (unlit) to 0.5. Default 0.
     pub face_tone: f32,
-    /// The part of the survey shown. Absent: all of it.
+    /// The part of the survey that is shown. Absent: all of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub roaming_box: Option<VoxelBox>,
-    /// Where from.
+    /// The camera.
     pub camera: Camera,
-    /// The ground as relief of the topmost horizon; absent: the block has a flat top.
+    /// The ground as relief of the topmost horizon. Absent: the block has a flat top.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ground: Option<Ground>,
-    /// The volume shown as raw data and its colours; absent: those of the transfer functions.
+    /// The volume that is shown as raw data, and its colours. Absent: those of the transfer functions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raw: Option<RawColour>,
     /// Lines drawn over the faces.
     pub outlines: Outlines,
     /// Boxes cut out of the roaming box.
     pub cut_outs: Vec<VoxelBox>,
-    /// What faces show. Default the rock.
+    /// What faces show. Default: the rock.
     pub face_data: FaceData,
-    /// Levels of the surface trees above the leaves at which leaves are told apart, where they are; who brings the candidates groups them so. Default 0:
-    /// leaves.
+    /// Level of the surface trees, counted up from the leaves, at which leaves are grouped for colouring. The
+    /// caller groups the candidates accordingly ([`crate::CandidateVolume::groups`]). Default 0: each leaf by
+    /// itself.
     pub tree_level: u32,
     /// How wells are drawn.
     pub wells: WellStyle,
-    /// What is seen through, in the cut-outs and around them.
+    /// The media: volume rendering in the cut-outs and around them.
     pub media: Media,
 }
 
@@ -103,10 +104,11 @@ impl Default for Scene {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Lookup {
-    /// The region from the interpretation itself, coordinates from its own grid: crisp at any zoom.
+    /// The region comes from the interpretation itself and the coordinates from the grid of that region:
+    /// crisp at any zoom.
     #[default]
     Exact,
-    /// The paper's packed volume with extrapolated corners (P-illus 3.3, 3.4), the baseline.
+    /// The paper's packed volume with extrapolated corners (P-illus 3.3, 3.4), kept as the baseline.
     Packed,
 }
 
@@ -134,16 +136,17 @@ impl Background {
     }
 }
 
-/// The relief of the topmost horizon: everything above it is air (P-illus 5).
+/// The relief of the topmost horizon. Everything above it is air (P-illus 5).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Ground {
-    /// Strength of the hill shading that tells slopes apart, 0 (none) … 1. Default 0.35: mild.
+    /// Strength of the hill shading, which distinguishes slopes: 0 (none) … 1. Default 0.35, which is mild.
     pub hill_shade: f32,
-    /// Bearing the light comes from, degrees clockwise from north, turning with the camera: 0 = from behind the block.
-    /// Default −45, so from the upper left, as maps have it.
+    /// Bearing from which the light comes, degrees clockwise from north, relative to the camera: 0 = from
+    /// behind the block. Default −45: from the upper left, as is usual for maps.
     pub light_deg: f32,
-    /// Opacity of the relief; through it the back faces of cut-outs and what is seen through below are seen, not the rock's inside. Default 1.
+    /// Opacity of the relief. If it is below 1, the back faces of cut-outs and the media below the ground are
+    /// visible through it, but not the inside of the rock. Default 1.
     pub opacity: f32,
 }
 
@@ -154,14 +157,20 @@ impl Default for Ground {
 }
 
 impl Scene {
-    /// The part of the survey shown.
+    /// The part of the survey that is shown.
     pub fn box_in(&self, geometry: &SurveyGeometry) -> VoxelBox {
         self.roaming_box.unwrap_or_else(|| VoxelBox::of_size(geometry.size()))
     }
 
-    /// The fitted camera. The scene must be valid.
+    /// The camera, fitted to the block and the image. The scene must be valid.
     pub fn view(&self, geometry: &SurveyGeometry) -> View {
         View::new(&self.camera, geometry, &self.box_in(geometry), self.exaggeration, self.size_px)
+    }
+
+    /// Whether the edges at the back of the block are drawn behind the media: if the whole box is rendered as
+    /// a volume.
+    pub(crate) fn has_back_edges(&self) -> bool {
+        self.media.faces == Faces::None && self.outlines.edges.width_px > 0.0
     }
 
     /// The cut-outs, clipped to the roaming box.
@@ -170,7 +179,7 @@ impl Scene {
         self.cut_outs.iter().filter_map(|cut| cut.intersection(&roaming_box)).collect()
     }
 
-    /// Refuses what has no picture.
+    /// Checks that the scene can be drawn.
     ///
     /// # Errors
     /// The first [`SceneError`] found.
@@ -179,10 +188,8 @@ impl Scene {
         if [width, height].iter().any(|side| !(1..=MAX_SIDE_PX).contains(side)) {
             return Err(SceneError::ImageSize { width, height, limit: MAX_SIDE_PX });
         }
-        let number = |what: &'static str, found: f64, low: f64, high: f64| {
-            if found >= low && found <= high { Ok(()) } else { Err(SceneError::OutOfRange { what, found, low, high }) }
-        };
-        number("the samples a pixel", f64::from(self.samples), 1.0, f64::from(MAX_SAMPLES))?;
+        let number = SceneError::check_range;
+        number("the number of samples per pixel", f64::from(self.samples), 1.0, f64::from(MAX_SAMPLES))?;
         number("the vertical exaggeration", self.exaggeration, 1e-3, 1e3)?;
         number("the blend", f64::from(self.blend), 0.0, 1.0)?;
         number("the global frequency", f64::from(self.global_frequency), 1e-4, 1e4)?;

@@ -1,16 +1,19 @@
-//! The first point of the solid block on a ray (P-illus 5.1): inside the roaming box, outside every cut-out.
+//! Finds the first point of the solid block on a ray (P-illus 5.1): inside the roaming box and outside every
+//! cut-out.
 //!
-//! A ray crosses each box over an interval of t. The solid is the roaming box's interval minus the cut-outs': from a
-//! start t, while the point is inside a cut-out, go on to that cut-out's exit. Because only interval ends
-//! are compared, any number of overlapping or touching cut-outs works, and the plane hit is known exactly.
+//! A ray crosses each box over an interval of t. The solid part is the interval of the roaming box minus
+//! those of the cut-outs: from a start t, while the point is inside a cut-out, t moves to the exit of that
+//! cut-out. Only the ends of intervals are compared, so any number of overlapping or touching cut-outs works,
+//! and the plane of the hit is known exactly.
 //!
-//! Voxel space, f32; rays have unit direction, so t is in voxels. The shader `faces.wgsl` computes the same.
+//! Voxel space, f32. Rays have unit direction, so t is in voxels. The shader `visible.wgsl` computes the
+//! same.
 
 use crate::camera::ViewRay;
 use crate::voxel_box::VoxelBox;
 use glam::Vec3;
 
-/// Boxes closer than this along a ray touch, voxels.
+/// Boxes closer than this along a ray count as touching, voxels.
 pub const TOUCH: f32 = 1e-3;
 
 /// A ray in voxel space, single precision.
@@ -40,7 +43,7 @@ impl From<ViewRay> for Ray {
 pub struct FaceHit {
     /// Distance along the ray, voxels.
     pub t: f32,
-    /// Where, with the plane's coordinate exact.
+    /// The hit point, with the coordinate of the plane exact.
     pub point: Vec3,
     /// The axis of the plane's normal: 0 = x, 1 = y, 2 = z.
     pub axis: usize,
@@ -49,13 +52,23 @@ pub struct FaceHit {
 /// A stretch of solid rock along a ray.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SolidSpan {
-    /// The face it begins at.
+    /// The face at which it begins.
     pub entry: FaceHit,
     /// Distance at which it ends, voxels.
     pub end: f32,
 }
 
-/// The roaming box without its cut-outs.
+/// The solid block: the roaming box minus its cut-outs.
+///
+/// ```
+/// use glam::Vec3;
+/// use render::visible::{Ray, Solid};
+/// let cut_outs = vec![[Vec3::ZERO, Vec3::new(3.0, 10.0, 10.0)]];
+/// let solid = Solid { roaming_box: [Vec3::ZERO, Vec3::splat(10.0)], cut_outs };
+/// let ray = Ray { origin: Vec3::new(-5.0, 4.0, 6.0), direction: Vec3::X };
+/// let span = solid.next_span(&ray, f32::MIN).unwrap();
+/// assert_eq!((span.entry.t, span.entry.point, span.end), (8.0, Vec3::new(3.0, 4.0, 6.0), 15.0));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
     /// Smallest and largest corner of the roaming box.
@@ -66,18 +79,18 @@ pub struct Solid {
 
 /// The interval of t over which a ray is inside a box, and the axes of the planes at its ends.
 #[derive(Debug, Clone, Copy)]
-struct Crossing {
+struct BoxCrossing {
     enter: f32,
     exit: f32,
     enter_axis: usize,
     exit_axis: usize,
 }
 
-/// Largest component that counts as parallel to a plane is replaced by this, so that 1/d stays finite.
+/// Components of a direction smaller than this are replaced by it, so that 1/d stays finite.
 const PARALLEL: f32 = 1e-12;
 
-fn cross(ray: &Ray, [low, high]: [Vec3; 2]) -> Crossing {
-    let mut crossing = Crossing { enter: f32::MIN, exit: f32::MAX, enter_axis: 0, exit_axis: 0 };
+fn cross(ray: &Ray, [low, high]: [Vec3; 2]) -> BoxCrossing {
+    let mut crossing = BoxCrossing { enter: f32::MIN, exit: f32::MAX, enter_axis: 0, exit_axis: 0 };
     for axis in 0..3 {
         let d = ray.direction[axis];
         let d = if d.abs() < PARALLEL { PARALLEL } else { d };
@@ -100,7 +113,8 @@ impl Solid {
         Self { roaming_box: corners(roaming_box), cut_outs: cut_outs.iter().map(corners).collect() }
     }
 
-    /// Whether a point is in the box and in no cut-out; borders count as inside for the box and outside for cut-outs.
+    /// Whether a point is in the box and in no cut-out. The boundary of the box counts as inside, that of a
+    /// cut-out as outside it.
     pub fn contains(&self, p: Vec3) -> bool {
         let [low, high] = self.roaming_box;
         p.cmpge(low).all()
@@ -108,7 +122,7 @@ impl Solid {
             && !self.cut_outs.iter().any(|[low, high]| p.cmpgt(*low).all() && p.cmplt(*high).all())
     }
 
-    /// The interval of a ray in the roaming box, cut-outs or not.
+    /// The interval of a ray in the roaming box, regardless of cut-outs.
     pub fn box_interval(&self, ray: &Ray) -> Option<[f32; 2]> {
         let outer = cross(ray, self.roaming_box);
         (outer.exit > outer.enter).then_some([outer.enter, outer.exit])
@@ -201,7 +215,7 @@ mod tests {
         }
     }
 
-    /// Walks rays in small steps and asks at each point whether it is rock.
+    /// Compares with small steps along rays that test each point.
     #[test]
     fn it_agrees_with_walking() {
         let mut solid = block();
@@ -216,7 +230,7 @@ mod tests {
             let through =
                 Vec3::new(3.0 + (n % 7) as f32 * 0.7, 2.0 + (n % 5) as f32 * 1.3, 1.0 + (n % 11) as f32 * 0.7);
             let ray = Ray { origin: through - direction * 30.0, direction };
-            // Rock shorter than the tolerance (an edge just grazed) does not count.
+            // Rock shorter than the tolerance does not count, as at an edge that the ray grazes.
             let rock = |t: f32| (0..5).all(|step| solid.contains(ray.at(t + step as f32 * 1e-3)));
             let walked = (0..60_000).map(|s| s as f32 * 1e-3).find(|t| rock(*t));
             let found = solid.next_span(&ray, f32::MIN).map(|span| span.entry.t);

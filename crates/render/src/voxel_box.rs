@@ -1,8 +1,8 @@
-//! Boxes in voxel space: the roaming box, the cut-outs, and the textbook's usual ways to cut a block.
+//! Boxes in voxel space: the roaming box, the cut-outs, and the usual ways to cut a block diagram.
 //!
-//! P-illus 5.1 knows one roaming box and one cut-out; we take any number of cut-outs, so that a corner cut
-//! is a box over the whole height and a stair is a few boxes. Coordinates are voxel (x = inline index,
-//! y = crossline index, z = sample index downwards), fractional, and both ends belong to the box.
+//! P-illus 5.1 has one roaming box and one cut-out. We allow any number of cut-outs, so that a corner cut is
+//! a box of full height and a stair is a few boxes. Coordinates are in voxels (x = inline index, y =
+//! crossline index, z = sample index downwards) and fractional; both ends belong to the box.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -17,7 +17,7 @@ pub struct VoxelBox {
     pub max: [f64; 3],
 }
 
-/// A vertical edge of a box, by the ends of x and y it lies at.
+/// A vertical edge of a box, named by the ends of x and y at which it lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Corner {
@@ -32,10 +32,10 @@ pub enum Corner {
 }
 
 impl Corner {
-    /// All four.
+    /// All four corners.
     pub const ALL: [Self; 4] = [Self::MinMin, Self::MinMax, Self::MaxMin, Self::MaxMax];
 
-    /// Whether the corner lies at the largest x and at the largest y.
+    /// Whether the corner lies at the largest x, and whether at the largest y.
     pub fn at_max(self) -> [bool; 2] {
         match self {
             Self::MinMin => [false, false],
@@ -84,7 +84,7 @@ impl VoxelBox {
         })
     }
 
-    /// What both boxes cover; `None` where they do not share a volume.
+    /// The part that both boxes cover; `None` if they share no volume.
     pub fn intersection(&self, other: &Self) -> Option<Self> {
         let min = self.low().max(other.low());
         let max = self.high().min(other.high());
@@ -96,7 +96,8 @@ impl VoxelBox {
         self.min.iter().chain(&self.max).all(|v| v.is_finite()) && self.extent().min_element() > 0.0
     }
 
-    /// The full-height cut-out at `corner` that takes `share` of the length along x and along y.
+    /// The cut-out of full height at `corner` that takes the fractions `share` of the length along x and
+    /// along y.
     ///
     /// ```
     /// use render::{Corner, VoxelBox};
@@ -117,8 +118,9 @@ impl VoxelBox {
         cut
     }
 
-    /// A stair of `count` steps down towards `corner`: the lowest step reaches `depth_share` of the height and takes
-    /// `share` / `count` of the length, each step above it the same height less and the same length more.
+    /// A stair of `count` steps down towards `corner`. The lowest step reaches the fraction `depth_share` of
+    /// the height and takes `share` / `count` of the length. Each step above it has the same height less and
+    /// the same length more.
     pub fn stair(&self, corner: Corner, share: [f64; 2], depth_share: f64, count: usize) -> Vec<Self> {
         (1..=count)
             .map(|step| {

@@ -1,13 +1,14 @@
-//! Wells as tubes with tops as rings on them, in cut-outs and in media (P-horiz, figure 7k).
+//! Wells as tubes, with their tops as rings, in cut-outs and in media (P-horiz, figure 7k).
 //!
-//! A tube is a chain of capsules around the path, round in display space: the distance of a ray o + s·d to a segment a + u·b is least where
+//! A tube is a chain of capsules around the path, round in display space. The distance from a ray o + s·d to
+//! a segment a + u·b has its minimum where
 //!
 //! ```text
 //! |o − a + s·d − u·b| = r,   0 ≤ u ≤ 1
 //! ```
 //!
-//! is solved for the smaller s, with a ball at each end. Lit by the angle to the viewer, so that the tube looks round; a top is a
-//! band one and a half times as wide. Display space relative to voxel 0, m.
+//! is solved for the smaller s, with a ball at each end. The light depends on the angle to the viewer, so
+//! that the tube looks round. A top is a band 1.6 times as wide. Display space relative to voxel 0, m.
 
 use crate::camera::View;
 use crate::error::SceneError;
@@ -18,12 +19,12 @@ use ttf::Colour;
 
 /// A well to draw.
 #[derive(Debug, Clone, Copy)]
-pub struct WellPath<'a> {
+pub struct DrawnWell<'a> {
     /// Its name.
     pub name: &'a str,
     /// Its path from the surface down, voxels.
     pub path: &'a [DVec3],
-    /// Places of its tops on the path, voxels.
+    /// Positions of its tops on the path, voxels.
     pub tops: &'a [DVec3],
 }
 
@@ -31,7 +32,7 @@ pub struct WellPath<'a> {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct WellStyle {
-    /// Half of a tube's thickness, in shares of the block's longest side. Default 0.006; 0 = not drawn.
+    /// Radius of a tube as a fraction of the block's longest side. Default 0.006; 0: wells are not drawn.
     pub radius: f32,
     /// Colour of the tubes. Default near black.
     pub colour: Colour,
@@ -46,17 +47,12 @@ impl Default for WellStyle {
 }
 
 impl WellStyle {
-    /// Refuses what cannot be drawn.
+    /// Checks that this can be drawn.
     ///
     /// # Errors
     /// [`SceneError::OutOfRange`].
     pub fn validate(&self) -> Result<(), SceneError> {
-        let found = f64::from(self.radius);
-        if (0.0..=0.5).contains(&found) {
-            Ok(())
-        } else {
-            Err(SceneError::OutOfRange { what: "the radius of wells", found, low: 0.0, high: 0.5 })
-        }
+        SceneError::check_range("the radius of wells", f64::from(self.radius), 0.0, 0.5)
     }
 }
 
@@ -69,7 +65,7 @@ pub struct Capsule {
     pub radius: f32,
     /// Colour, sRGB-encoded.
     pub colour: [f32; 3],
-    /// Which well.
+    /// The index of the well.
     pub well: usize,
 }
 
@@ -78,7 +74,7 @@ pub struct Capsule {
 pub struct WellHit {
     /// Distance along the ray, voxels.
     pub t: f32,
-    /// Which well.
+    /// The index of the well.
     pub well: usize,
     /// Its colour there, sRGB-encoded.
     pub colour: Vec3,
@@ -87,23 +83,23 @@ pub struct WellHit {
 /// All wells of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tubes {
-    /// Their pieces.
+    /// The pieces of the tubes.
     pub capsules: Vec<Capsule>,
-    /// Voxel → display.
+    /// The linear map from voxel to display space.
     pub display_from_voxel: Mat3,
 }
 
-/// Light on a tube seen at its rim, of that at its middle.
+/// Brightness at the rim of a tube, relative to its middle.
 pub const RIM_LIGHT: f32 = 0.35;
-/// How far a tube may lie off its path, voxels: a drawn path is sampled far more densely than it bends.
+/// How far a tube may deviate from its path, voxels. Paths are sampled far more densely than they bend.
 const STRAIGHT: f64 = 0.05;
-/// Width of a top's band over the tube's.
+/// Width of the band of a top, relative to the tube.
 const TOP_WIDTH: f32 = 1.6;
 
 impl Tubes {
-    /// The wells inside a block; `None` where there are none.
+    /// The wells inside a block; `None` if there are none.
     pub fn new(
-        wells: &[WellPath],
+        wells: &[DrawnWell],
         style: &WellStyle,
         view: &View,
         longest_m: f64,
@@ -135,7 +131,7 @@ impl Tubes {
         (!capsules.is_empty()).then_some(Self { capsules, display_from_voxel: to_display.as_mat3() })
     }
 
-    /// The first well on a ray before `stop`.
+    /// The first well on a ray before distance `stop`.
     pub fn hit(&self, ray: &Ray, stop: f32) -> Option<WellHit> {
         let origin = self.display_from_voxel * ray.origin;
         let along = self.display_from_voxel * ray.direction;
@@ -157,11 +153,12 @@ impl Tubes {
     }
 }
 
-/// The points of a path without those that lie within `tolerance` of the line through their neighbours kept (Douglas and Peucker 1973).
+/// The points of a path, without those within `tolerance` of the line through the neighbours that are kept
+/// (Douglas and Peucker 1973).
 fn simplified(path: &[DVec3], tolerance: f64) -> Vec<DVec3> {
     let (Some(&first), Some(&last)) = (path.first(), path.last()) else { return Vec::new() };
     let mut kept = vec![first];
-    // Stretches still to be looked at, the next one last.
+    // Parts still to be simplified; the next one is last.
     let mut stretches = vec![(0, path.len() - 1)];
     while let Some((from, to)) = stretches.pop() {
         let along = path[to] - path[from];
@@ -200,7 +197,7 @@ fn clipped(ends: [DVec3; 2], [low, high]: [Vec3; 2]) -> Option<[DVec3; 2]> {
     (from < to).then(|| [ends[0] + along * from, ends[0] + along * to])
 }
 
-/// Unit direction of the piece of a path nearest to a place, display space.
+/// Unit direction, in display space, of the piece of a path that is nearest to a position.
 fn direction_at(path: &[DVec3], place: DVec3, to_display: glam::DMat3) -> DVec3 {
     let nearest = path.windows(2).min_by(|a, b| {
         let off = |ends: &[DVec3]| {
@@ -213,13 +210,15 @@ fn direction_at(path: &[DVec3], place: DVec3, to_display: glam::DMat3) -> DVec3 
     nearest.map_or(DVec3::Z, |ends| (to_display * (ends[1] - ends[0])).normalize_or(DVec3::Z))
 }
 
-/// Distance along a ray (unit direction) to a capsule, and how much its surface faces the viewer there, 0 … 1.
+/// Distance along a ray (unit direction) to a capsule, and the cosine between its normal there and the
+/// direction to the viewer, 0 … 1.
 fn meet(origin: Vec3, direction: Vec3, capsule: &Capsule) -> Option<(f32, f32)> {
     let [a, b] = capsule.ends;
     let axis = b - a;
     let length_sq = axis.length_squared().max(1e-12);
     let r_sq = capsule.radius * capsule.radius;
-    // From the point of the ray nearest to the segment's middle, so that far eyes lose no digits.
+    // Computed from the point of the ray nearest to the middle of the segment, so that distant eyes lose no
+    // digits.
     let shift = (0.5 * (a + b) - origin).dot(direction);
     let from = origin + direction * shift - a;
     let (da, fa) = (direction.dot(axis) / length_sq, from.dot(axis) / length_sq);

@@ -1,7 +1,7 @@
 //! Colours as they are written (`#rrggbb`, sRGB) and how they are composited.
 //!
-//! Everything here works on sRGB-*encoded* values, so that a PNG made by us and an SVG or HTML page
-//! composited by a browser show the same colours (`c = top·a + bottom·(1 − a)` on encoded values).
+//! All functions work on sRGB-*encoded* values, so that a PNG of ours and an SVG or HTML page composited by a
+//! browser show the same colours (`c = top·a + bottom·(1 − a)` on encoded values).
 
 use serde::{Deserialize, Serialize};
 
@@ -37,12 +37,12 @@ impl Colour {
         self.rgb.map(|channel| f32::from(channel) / 255.0)
     }
 
-    /// The nearest eight-bit colour; channels are clamped to [0, 1], NaN becomes 0.
+    /// The nearest eight-bit colour. Channels are clamped to [0, 1]; NaN becomes 0.
     pub fn from_unit(rgb: [f32; 3]) -> Self {
         Self { rgb: rgb.map(|channel| (channel.clamp(0.0, 1.0) * 255.0).round() as u8) }
     }
 
-    /// Relative luminance Y in [0, 1] (Rec. 709 weights on linear light): what greyscale print keeps.
+    /// Relative luminance Y in [0, 1] (Rec. 709 weights on linear light): the tone in greyscale print.
     pub fn luminance(self) -> f32 {
         let [r, g, b] = self.to_unit().map(linear_from_srgb);
         0.2126 * r + 0.7152 * g + 0.0722 * b
@@ -50,6 +50,11 @@ impl Colour {
 }
 
 /// Linear light from an sRGB-encoded channel (IEC 61966-2-1).
+///
+/// ```
+/// assert!((ttf::linear_from_srgb(0.5) - 0.214_041).abs() < 1e-5);
+/// assert!((ttf::srgb_from_linear(ttf::linear_from_srgb(0.5)) - 0.5).abs() < 1e-6);
+/// ```
 pub fn linear_from_srgb(encoded: f32) -> f32 {
     if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }

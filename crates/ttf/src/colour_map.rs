@@ -1,29 +1,37 @@
 //! Named colour maps, as stops on [0, 1].
 //!
-//! The three classical seismic maps and grey are our own stops in the field's manner. `CoolWarm` is
-//! computed from the closed formula of K. Moreland, "Diverging Color Maps for Scientific
-//! Visualization" (2009): colours in Msh, the polar form of CIELAB (M = |Lab|, s = angle from the L
-//! axis, h = hue), interpolated through an unsaturated middle of M = 88 with the hue turned by
-//! `spin = s·√(M² − Mₛ²)/(Mₛ·sin s)`. `Strata` is ours: evenly rising lightness in Oklab (B. Ottosson, 2020)
-//! from a dark blue through green to a light sand, readable in greyscale.
+//! The three classical seismic maps and grey are our own stops in the field's manner. `CoolWarm` is computed
+//! from the closed formula of K. Moreland, "Diverging Color Maps for Scientific Visualization" (2009):
+//! colours in Msh, the polar form of CIELAB (M = |Lab|, s = angle from the L axis, h = hue), interpolated
+//! through an unsaturated middle of M = 88 with the hue turned by `spin = s·√(M² − Mₛ²)/(Mₛ·sin s)`. `Strata`
+//! is ours: its lightness rises evenly in Oklab (B. Ottosson, 2020) from a dark blue through green to a light
+//! sand, so that it can be read in greyscale.
 //!
-//! Diverging maps mean something only when centred on zero: [`crate::RgbaFunction::centred`].
+//! Centre diverging maps on zero with [`crate::RgbaFunction::centred`]; otherwise their middle has no
+//! meaning.
 
 use serde::{Deserialize, Serialize};
 
 use crate::Colour;
 use crate::colour::{linear_from_srgb, srgb_from_linear};
 
-/// Stops given to the maps that are computed: enough for an error far below 1/255 between stops.
+/// Stops of the computed maps: the error between stops stays far below 1/255.
 const COMPUTED_STOPS: usize = 33;
 
 /// A named colour map.
+///
+/// ```
+/// use ttf::{Colour, ColourMap};
+/// let stops = ColourMap::Grey.stops();
+/// assert_eq!(stops, [(0.0, Colour::WHITE), (1.0, Colour::BLACK)]);
+/// assert_eq!(ColourMap::from_name("grey"), Some(ColourMap::Grey));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ColourMap {
     /// Dark red, orange, white, blue, black: the customary look of seismic sections.
     Seismics,
-    /// Cyan, blue, grey, brown, red, yellow: strong events stand out of a grey middle.
+    /// Cyan, blue, grey, brown, red, yellow: strong events stand out from a grey middle.
     PetrelLike,
     /// Red, white, black.
     RedWhiteBlack,
@@ -40,7 +48,7 @@ impl ColourMap {
     pub const ALL: [Self; 6] =
         [Self::Seismics, Self::PetrelLike, Self::RedWhiteBlack, Self::Grey, Self::CoolWarm, Self::Strata];
 
-    /// The name used in files and on the command line.
+    /// The name by which files and commands refer to the map.
     pub fn name(self) -> &'static str {
         match self {
             Self::Seismics => "seismics",
@@ -62,7 +70,7 @@ impl ColourMap {
         !matches!(self, Self::Grey | Self::Strata)
     }
 
-    /// Positions in [0, 1] and their colours; the first at 0, the last at 1.
+    /// Positions in [0, 1] with their colours. The first is at 0, the last at 1.
     pub fn stops(self) -> Vec<(f32, Colour)> {
         let listed: &[(f32, u32)] = match self {
             Self::Seismics => &[
@@ -112,8 +120,8 @@ fn moreland_cool_warm(t: f32) -> [f32; 3] {
     const MIDDLE: f32 = 88.0;
     let cool = msh_from_srgb([0.230, 0.299, 0.754]);
     let warm = msh_from_srgb([0.706, 0.016, 0.150]);
-    // Both ends are saturated and differ in hue by more than 60 degrees, so the unsaturated middle
-    // is always inserted; each half then blends one end with it at the hue that end spins to.
+    // Both ends are saturated and differ in hue by more than 60 degrees, so the unsaturated middle is always
+    // inserted. Each half interpolates between one end and that middle, at the hue to which the end spins.
     let (end, fraction) = if t <= 0.5 { (cool, 1.0 - 2.0 * t) } else { (warm, 2.0 * t - 1.0) };
     let [m, s, h] = end;
     let spin = s * (MIDDLE * MIDDLE - m * m).max(0.0).sqrt() / (m * s.sin());
@@ -157,7 +165,8 @@ fn srgb_from_msh([m, s, h]: [f32; 3]) -> [f32; 3] {
     .map(|channel| srgb_from_linear(channel.max(0.0)))
 }
 
-/// Our sequential map in Oklch: L from 0.28 to 0.94, hue from 262 to 88 degrees, chroma an arch that stays inside sRGB.
+/// Our sequential map in Oklch: L from 0.28 to 0.94, hue from 262 to 88 degrees, chroma an arch that stays
+/// inside sRGB.
 fn strata(t: f32) -> [f32; 3] {
     let lightness = 0.28 + 0.66 * t;
     let chroma = 0.06 + 0.28 * t * t * (1.0 - t);

@@ -1,7 +1,7 @@
-//! From flat space to texture space on a face (P-illus 3.5; DESIGN 3.4).
+//! From flat space to texture space on a face (P-illus 3.5).
 //!
-//! A point of a face has flat coordinates (i, j, k). A pattern is laid on it by one of three
-//! *mappings*, each linear in (i, j, k), with `a` = extent of j / extent of i in metres:
+//! A point of a face has flat coordinates (i, j, k). One of three *mappings* lays a pattern on it. Each is
+//! linear in (i, j, k), with `a` = extent of j / extent of i in metres:
 //!
 //! | mapping | u (times the horizontal frequency) | v | where |
 //! |---|---|---|---|
@@ -10,19 +10,23 @@
 //! | map | `i` | `a·j` (times the horizontal frequency) | any face that is parallel to the layer |
 //!
 //! t is the horizontal direction that lies in the face: y for a face of constant x, x for a face of constant
-//! y, x for a horizontal face, and the true direction for an oblique one, so a pattern keeps its size on
-//! any vertical cut. The paper always uses `along` on top faces, with t = x: where a layer dips towards x,
-//! i and k then change together and nothing changes along y, so the pattern smears into stripes. We take
-//! the horizontal coordinate that runs along strike, and leave k for j when the face is parallel to
-//! the layer, because there k does not change at all.
+//! y, x for a horizontal face, and the true direction for an oblique one, so that a pattern keeps its size on
+//! any vertical cut. The paper always uses `along` on top faces, with t = x. Where a layer dips towards x, i
+//! and k then change together and nothing changes along y, so the pattern smears into stripes. We take the
+//! horizontal coordinate that runs along strike. Where the face is parallel to the layer, k does not change
+//! at all, and j takes its place.
 //!
-//! Weights come from the strike line on the face, s = n × g, for face normal n and g = ∇k/|∇k|:
+//! The weights follow from the strike line on the face, s = n × g, for face normal n and g = ∇k/|∇k|: |s| is
+//! the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep: `map = 1 − S(sin² 10°,
+//! sin² 25°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map
+//! − along`; t′ = t turned by 90°.
 //! |s| is the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep:
-//! `map = 1 − S(sin² 10°, sin² 25°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`,
-//! `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map − along`; t′ = t turned by 90°.
+//! `map = 1 − S(sin² 10°, sin² 25°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65,
+//! r)`, `across = 1 − map − along`; t′ = t turned by 90°.
 //!
-//! Spaces: normals and gradients are in metric space with the axes of voxel space (x, y in metres, z
-//! in metres downwards); their signs do not matter. All arithmetic is f32 so that a WGSL twin computes the same.
+//! Spaces: normals and gradients are in metric space with the axes of voxel space (x, y in metres, z in
+//! metres downwards); their signs do not matter. All arithmetic is f32, so that the WGSL twin computes the
+//! same.
 
 /// sin² of the angle between face and layer below which only the map mapping is used (10°).
 pub const MAP_ONLY_SIN_SQ: f32 = 0.030_153_69;
@@ -35,7 +39,7 @@ pub const ALONG_ONLY_SHARE: f32 = 0.65;
 /// Squared horizontal part of the unit normal below which a face counts as horizontal.
 const HORIZONTAL_NORMAL_SQ: f32 = 1e-6;
 
-/// A face as the texture mapping sees it: its normal and the horizontal direction in it.
+/// A face as the mappings need it: its normal, and the horizontal direction in it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaceFrame {
     /// Unit normal (metric axes x, y, z down); the sign has no effect.
@@ -89,8 +93,16 @@ impl FaceFrame {
         Self { normal, along: [sign * x + 0.0, sign * y + 0.0] }
     }
 
-    /// The weights at a point where k rises along `grad_k` (any length). A gradient that is zero or
-    /// NaN gives the along mapping alone.
+    /// The weights at a point where k rises along `grad_k` (any length). A gradient that is zero or NaN gives
+    /// the along mapping alone.
+    ///
+    /// ```
+    /// use ttf::FaceFrame;
+    /// let top = FaceFrame::new([0.0, 0.0, 1.0]);
+    /// // A flat layer on a top face is seen as a map; on a side face k runs upwards.
+    /// assert_eq!(top.weights([0.0, 0.0, -1.0]).to_array(), [0.0, 0.0, 1.0]);
+    /// assert_eq!(FaceFrame::new([1.0, 0.0, 0.0]).weights([0.0, 0.0, -1.0]).to_array(), [1.0, 0.0, 0.0]);
+    /// ```
     pub fn weights(&self, grad_k: [f32; 3]) -> MappingWeights {
         let g = unit(grad_k);
         let n = self.normal;
@@ -108,8 +120,8 @@ impl FaceFrame {
         MappingWeights { along, across: (1.0 - map - along).max(0.0), map }
     }
 
-    /// The three mappings (along, across, map) for a block whose j axis is `aspect_j` times as long
-    /// as its i axis.
+    /// The three mappings (along, across, map) for a block whose j axis is `aspect_j` times as long as its i
+    /// axis.
     pub fn mappings(&self, aspect_j: f32) -> [Mapping; 3] {
         let [x, y] = self.along;
         let k = [0.0, 0.0, 1.0];
@@ -122,7 +134,7 @@ impl FaceFrame {
 }
 
 impl MappingWeights {
-    /// In the order of [`FaceFrame::mappings`].
+    /// The weights in the order of [`FaceFrame::mappings`].
     pub fn to_array(self) -> [f32; 3] {
         [self.along, self.across, self.map]
     }
@@ -136,13 +148,13 @@ impl Mapping {
     }
 }
 
-/// The cubic step of WGSL's `smoothstep`.
+/// WGSL's cubic `smoothstep`.
 pub fn smoothstep(low: f32, high: f32, x: f32) -> f32 {
     let t = ((x - low) / (high - low)).clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
 }
 
-/// The vector at unit length; zero where it has none.
+/// The vector scaled to unit length; zero if it has no direction.
 fn unit(vector: [f32; 3]) -> [f32; 3] {
     let length_sq = vector.iter().map(|part| part * part).sum::<f32>();
     if length_sq > 0.0 && length_sq.is_finite() {

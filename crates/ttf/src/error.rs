@@ -1,9 +1,8 @@
-//! What can be wrong with a transfer function or a texture, with the facts as fields and a hint in
-//! the text.
+//! The errors of this crate. Each has its facts as fields, and its text says what to do.
 
 use std::path::PathBuf;
 
-/// Everything this crate refuses.
+/// What is wrong with a transfer function or a texture.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A colour that is not `#rrggbb`.
@@ -13,7 +12,9 @@ pub enum Error {
         text: String,
     },
     /// A frequency that is not a positive finite number.
-    #[error("{place}: the frequency {horizontal} x {vertical} is not usable; both numbers must be finite and above 0")]
+    #[error(
+        "{place}: the frequency {horizontal} x {vertical} is not usable; both numbers must be finite and greater than 0"
+    )]
     BadFrequency {
         /// Where it was found.
         place: String,
@@ -78,7 +79,7 @@ pub enum Error {
         /// The layer's name.
         layer: String,
     },
-    /// A layer name that the stratigraphy does not have.
+    /// A layer name that is not in the stratigraphy.
     #[error("there is no layer `{layer}`; the layers are {known}")]
     UnknownLayer {
         /// The name asked for.
@@ -88,7 +89,7 @@ pub enum Error {
     },
     /// A texture name that is not in the library.
     #[error(
-        "{place}: there is no texture `{texture}`{}; `petroglyph patterns OUT.png` draws all of them",
+        "{place}: there is no texture `{texture}`{}; use a name from the pattern library, or add the texture to it",
         match nearest { Some(name) => format!(", did you mean `{name}`?"), None => String::new() }
     )]
     UnknownTexture {
@@ -99,8 +100,8 @@ pub enum Error {
         /// The most similar name there is, if one is close.
         nearest: Option<String>,
     },
-    /// A texture name that is taken.
-    #[error("the texture name `{texture}` is taken; rename the file or give another name")]
+    /// A texture name that is in use already.
+    #[error("the texture name `{texture}` is in use already; rename the file or choose another name")]
     DuplicateTexture {
         /// The name.
         texture: String,
@@ -125,8 +126,8 @@ pub enum Error {
         /// Upper end.
         high: f32,
     },
-    /// The block has no extent to relate patterns to.
-    #[error("{quantity} is {value}; it must be finite and above 0 to size the patterns")]
+    /// An extent of the block that patterns cannot be sized by.
+    #[error("{quantity} is {value}; it must be finite and greater than 0, since patterns are sized by it")]
     BadExtent {
         /// Which length.
         quantity: &'static str,
@@ -138,35 +139,35 @@ pub enum Error {
     ReadTexture {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: std::io::Error,
     },
-    /// A texture file whose name says no format we read.
-    #[error("{path} is not a texture we read; use .png, .jpg, .jpeg or .svg")]
+    /// A texture file whose extension is none of the formats that can be read.
+    #[error("{path} is not in a texture format that can be read; use .png, .jpg, .jpeg or .svg")]
     UnknownFormat {
         /// The file.
         path: PathBuf,
     },
-    /// A raster image that does not decode.
-    #[error("the texture {path} does not decode ({source}); open and save it again as PNG")]
+    /// A raster image that cannot be decoded.
+    #[error("the texture {path} cannot be decoded ({source}); open it in an image editor and save it as PNG")]
     BadImage {
         /// The file.
         path: PathBuf,
-        /// Why.
+        /// The cause.
         source: image::ImageError,
     },
-    /// An SVG that does not parse.
-    #[error("the texture {name} is not a usable SVG ({source}); text and linked images are not supported, paths are")]
+    /// An SVG that cannot be parsed.
+    #[error(
+        "the texture {name} is not a usable SVG ({source}); convert text to paths and remove linked images, which are not supported"
+    )]
     BadSvg {
         /// The file or pattern.
         name: String,
-        /// Why.
+        /// The cause.
         source: resvg::usvg::Error,
     },
     /// An image without pixels, or one too large to be a tile.
-    #[error(
-        "the texture {name} is {width} x {height} pixels; a tile must have between 1 and {limit} a side, scale it down"
-    )]
+    #[error("the texture {name} is {width} x {height} pixels; resize it to between 1 and {limit} pixels a side")]
     BadSize {
         /// The file or pattern.
         name: String,
@@ -177,8 +178,8 @@ pub enum Error {
         /// Largest side accepted.
         limit: u32,
     },
-    /// A file that is larger than any tile has reason to be.
-    #[error("the texture {path} has {bytes} bytes, more than the {limit} accepted; scale it down")]
+    /// A file larger than a tile may be.
+    #[error("the texture {path} has {bytes} bytes, more than the limit of {limit}; reduce its size")]
     TooManyBytes {
         /// The file.
         path: PathBuf,
@@ -187,8 +188,8 @@ pub enum Error {
         /// Bytes accepted.
         limit: u64,
     },
-    /// The pattern catalogue does not parse or does not fit the drawings.
-    #[error("the pattern catalogue is damaged: {fact}")]
+    /// The pattern catalogue cannot be parsed, or does not match the drawings.
+    #[error("the built-in pattern catalogue is damaged: {fact}; this is a defect of the program")]
     BadCatalogue {
         /// What is wrong.
         fact: String,

@@ -1,8 +1,8 @@
 //! How often a tile repeats across the block.
 //!
-//! A frequency counts repeats: `horizontal` over i in [0, 1], `vertical` over k in [0, 1] (P-illus
-//! 4.1). Along j the same tile repeats `horizontal · extent_j / extent_i` times, so that a pattern
-//! has one size on both pairs of side faces.
+//! A frequency counts repeats: `horizontal` over i in [0, 1], `vertical` over k in [0, 1] (P-illus 4.1).
+//! Along j the same tile repeats `horizontal · extent_j / extent_i` times, so that a pattern has the same
+//! size on both pairs of side faces.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,13 +14,13 @@ use crate::Error;
 pub struct Frequency {
     /// Repeats over i in [0, 1].
     pub horizontal: f32,
-    /// Repeats over k in [0, 1], so in one layer's thickness.
+    /// Repeats over k in [0, 1], the thickness of one layer.
     pub vertical: f32,
 }
 
 impl Frequency {
-    /// The frequency at which a tile of `tile_m` metres (width, height) prints undistorted in a block
-    /// `extent_i_m` metres long in a layer that is `thickness_m` metres thick on average.
+    /// The frequency at which a tile of `tile_m` metres (width, height) is printed undistorted in a block
+    /// `extent_i_m` metres long, in a layer with a mean thickness of `thickness_m` metres.
     ///
     /// ```
     /// let frequency = ttf::Frequency::for_tile(6000.0, 300.0, [150.0, 150.0]);
@@ -30,12 +30,12 @@ impl Frequency {
         Self { horizontal: extent_i_m / tile_m[0], vertical: thickness_m / tile_m[1] }
     }
 
-    /// Multiplied by a scalar function's factors (P-illus 4.2).
+    /// The frequency multiplied by the factors of a scalar function (P-illus 4.2).
     pub fn scaled(self, factor: [f32; 2]) -> Self {
         Self { horizontal: self.horizontal * factor[0], vertical: self.vertical * factor[1] }
     }
 
-    /// Refuses numbers that are not finite and positive.
+    /// Checks that both numbers are finite and positive.
     ///
     /// # Errors
     /// [`Error::BadFrequency`] naming `place`.

@@ -1,6 +1,5 @@
-//! Everything that decides how a cut face is coloured, in one serialisable value: the layer
-//! function, the stack of scalar functions, the raw-data colours and the blend between them
-//! (P-illus 4, figure 7).
+//! All that decides how a cut face is coloured, as one serialisable value: the layer function, the stack of
+//! scalar functions, the colours of the raw data and the blend between them (P-illus 4, figure 7).
 
 use serde::{Deserialize, Serialize};
 
@@ -8,21 +7,29 @@ use crate::layer::check_unit;
 use crate::{Colour, Error, LayerTtf, RgbaFunction, ScalarTtf, TextureLibrary};
 
 /// The transfer functions of a scene.
+///
+/// ```
+/// use ttf::{ColourMap, RawColour, RgbaFunction, TextureLibrary, TransferFunctions};
+/// let mut functions = TransferFunctions::default();
+/// functions.raw = Some(RawColour::new("amplitude", RgbaFunction::centred(ColourMap::Grey, 1500.0)));
+/// functions.settings.blend = 1.5;
+/// assert!(functions.validate(&TextureLibrary::builtin().unwrap()).is_err());
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TransferFunctions {
     /// Blend and global frequency.
     pub settings: TtfSettings,
-    /// Raw-data colours; absent = nothing to blend to, and the blend has no effect.
+    /// Colours of the raw data. Absent: there is nothing to blend with, and the blend has no effect.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub raw: Option<RawColour>,
-    /// Layer styles. Layers without one get a default.
+    /// Layer styles. A layer without one gets [`LayerTtf::default_style`].
     pub layers: LayerTtf,
     /// Scalar functions, composited over the layers first to last.
     pub scalars: Vec<ScalarTtf>,
 }
 
-/// The two sliders.
+/// The settings that hold for all functions.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct TtfSettings {
@@ -44,8 +51,8 @@ impl Default for TtfSettings {
 pub struct RawColour {
     /// Name of the volume shown.
     pub volume: String,
-    /// Colour of a sample without data; absent = the illustration shows through there. Default a light grey,
-    /// so that no data is shown as such.
+    /// Colour of a sample without data. Absent: the illustration shows there. Default a light grey, so that
+    /// missing data can be recognised.
     #[serde(default = "no_data_grey", skip_serializing_if = "Option::is_none")]
     pub no_data: Option<Colour>,
     /// Value → colour.
@@ -57,17 +64,17 @@ fn no_data_grey() -> Option<Colour> {
 }
 
 impl RawColour {
-    /// A volume in the colours of a function, no data in light grey.
+    /// A volume coloured by a function; missing data in light grey.
     pub fn new(volume: &str, function: RgbaFunction) -> Self {
         Self { volume: volume.to_owned(), no_data: no_data_grey(), function }
     }
 }
 
 impl TransferFunctions {
-    /// Refuses what cannot be drawn.
+    /// Checks that this can be drawn.
     ///
     /// # Errors
-    /// Whatever the parts refuse, with the place named.
+    /// Everything that the parts refuse, with the place named.
     pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
         check_unit("the settings", "the blend", self.settings.blend)?;
         let factor = self.settings.global_frequency;

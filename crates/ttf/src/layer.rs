@@ -1,18 +1,27 @@
-//! The layer texture transfer function (P-illus 4.1): layer and depth in it → texture, frequencies,
-//! opacity.
+//! The layer texture transfer function (P-illus 4.1): maps a layer and the depth in it to a texture, its
+//! frequencies and its opacity.
 //!
-//! The paper maps one packed k' to texture and frequencies. We store styles by layer *identity* (its
-//! name) and local k in [0, 1] (0 = bottom horizon), so that adding or removing a horizon does not
-//! shift the look of every layer above it; packed values are derived where they are needed.
+//! The paper maps one packed k' to texture and frequencies. We store styles by the *name* of the layer and
+//! local k in [0, 1] (0 = bottom horizon), so that adding or removing a horizon does not change how the
+//! layers above it look. Packed values are derived where they are needed.
 //!
-//! Intervals are half-open, `[low, high)`; the one that ends at 1 includes the top horizon itself.
-//! Where no interval covers k, the layer shows its plain colour.
+//! Intervals are half-open, `[low, high)`; the one that ends at 1 includes the top horizon itself. Where no
+//! interval covers k, the layer shows its plain colour.
 
 use serde::{Deserialize, Serialize};
 
 use crate::{Colour, Error, Frequency, TextureLibrary};
 
-/// The styles of all layers that have been given one, in any order.
+/// The styles of the layers that have one, in any order.
+///
+/// ```
+/// use ttf::{Colour, LayerStyle, LayerTtf};
+/// let mut layers = LayerTtf::default();
+/// layers.set(LayerStyle::plain("Salt", Colour::WHITE));
+/// layers.set(LayerStyle::plain("Salt", Colour::BLACK));
+/// assert_eq!(layers.styles.len(), 1);
+/// assert_eq!(layers.style("Salt").unwrap().colour, Colour::BLACK);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct LayerTtf {
@@ -37,16 +46,17 @@ pub struct LayerStyle {
     pub layer: String,
     /// The colour under the pattern, sRGB.
     pub colour: Colour,
-    /// Recolours the ink of the patterns; absent = the texture's own colours.
+    /// Replaces the colour of the patterns' ink. Absent: the texture keeps its own colours.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ink: Option<Colour>,
-    /// Opacity of the layer inside a cut-out, in [0, 1] (P-illus 5: extruding layers). Default 0: cut away.
+    /// Opacity of the layer inside a cut-out, in [0, 1] (P-illus 5: extruding layers). Default 0: the layer
+    /// is cut away.
     #[serde(default)]
     pub opacity: f32,
-    /// Frequency of the intervals that state none; absent = from the tile's printed size.
+    /// Frequency of the intervals that state none. Absent: it follows from the tile's printed size.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequency: Option<Frequency>,
-    /// Textures by depth in the layer; empty = plain colour.
+    /// Textures by depth in the layer. Empty: the layer has a plain colour.
     #[serde(default)]
     pub intervals: Vec<DepthInterval>,
 }
@@ -59,13 +69,13 @@ pub struct DepthInterval {
     pub k: [f32; 2],
     /// Name of the texture in the library.
     pub texture: String,
-    /// Repeats of the tile; absent = the layer's.
+    /// Repeats of the tile. Absent: those of the layer.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequency: Option<Frequency>,
     /// Opacity of the texture over the colour, in [0, 1]. Default 1.
     #[serde(default = "opaque")]
     pub opacity: f32,
-    /// Background of this interval; absent = the layer's colour.
+    /// Background of this interval. Absent: the layer's colour.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
 }
@@ -101,11 +111,11 @@ impl LayerStyle {
         })
     }
 
-    /// Refuses what cannot be drawn.
+    /// Checks that this can be drawn.
     ///
     /// # Errors
-    /// Intervals outside [0, 1], empty, overlapping; opacities outside [0, 1]; unusable frequencies;
-    /// textures the library does not have.
+    /// Intervals that are empty, overlap or reach outside [0, 1]; opacities outside [0, 1]; frequencies that
+    /// are not finite and positive; textures that the library does not have.
     pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
         let place = format!("layer `{}`", self.layer);
         check_unit(&place, "the cut-out opacity", self.opacity)?;
@@ -133,7 +143,7 @@ impl LayerTtf {
         self.styles.iter().find(|style| style.layer == layer)
     }
 
-    /// Puts a style in place of the layer's present one, or adds it.
+    /// Replaces the layer's style, or adds it.
     pub fn set(&mut self, style: LayerStyle) {
         match self.styles.iter_mut().find(|present| present.layer == style.layer) {
             Some(present) => *present = style,
@@ -141,10 +151,10 @@ impl LayerTtf {
         }
     }
 
-    /// Refuses what cannot be drawn.
+    /// Checks that this can be drawn.
     ///
     /// # Errors
-    /// Two styles for one layer, and whatever [`LayerStyle::validate`] refuses.
+    /// Two styles for one layer, and everything that [`LayerStyle::validate`] refuses.
     pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
         for (index, style) in self.styles.iter().enumerate() {
             if self.styles[..index].iter().any(|earlier| earlier.layer == style.layer) {
@@ -156,7 +166,7 @@ impl LayerTtf {
     }
 }
 
-/// Refuses a value outside [0, 1], NaN included.
+/// Returns an error for a value outside [0, 1], NaN included.
 pub(crate) fn check_unit(place: &str, quantity: &'static str, value: f32) -> Result<(), Error> {
     if (0.0..=1.0).contains(&value) {
         return Ok(());
@@ -164,7 +174,7 @@ pub(crate) fn check_unit(place: &str, quantity: &'static str, value: f32) -> Res
     Err(Error::OutsideUnit { place: place.to_owned(), quantity, value })
 }
 
-/// Refuses half-open intervals that share values. The intervals themselves must be valid.
+/// Returns an error for half-open intervals that share values. Each interval must be valid by itself.
 pub(crate) fn check_overlap(place: &str, intervals: impl Iterator<Item = [f32; 2]>) -> Result<(), Error> {
     let mut sorted: Vec<[f32; 2]> = intervals.collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));

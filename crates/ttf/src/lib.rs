@@ -1,13 +1,19 @@
 //! Texture transfer functions, colour maps and the pattern library.
 //!
-//! A cut face is coloured by a stack of functions (P-illus 4, figure 7): the layer's texture by
-//! layer and depth ([`LayerTtf`]), textures of scalar volumes over it ([`ScalarTtf`]), and a blend to the raw
-//! data in the colours of an [`RgbaFunction`]. [`TransferFunctions`] holds them as they are written in a
-//! project, [`TtfTables`] as the CPU and the GPU read them, [`shade()`] is the reference evaluation.
-//! Textures come from the [`TextureLibrary`]; [`FaceFrame`] says how they lie on a face.
+//! A cut face is coloured by a stack of functions (P-illus 4, figure 7). The texture of a layer depends on
+//! the layer and the depth in it ([`LayerTtf`]). Textures of scalar volumes lie over it ([`ScalarTtf`]). The
+//! result is blended with the raw data in the colours of an [`RgbaFunction`]. [`TransferFunctions`] holds all
+//! of these as they are written in a project file, [`TtfTables`] holds them as the CPU and the GPU read them,
+//! and [`shade()`] is the reference evaluation. Textures come from the [`TextureLibrary`]. [`FaceFrame`] says
+//! how they lie on a face.
 //!
-//! Spaces: (i, j, k) are flat coordinates with k local to a layer; normals and gradients are metric
-//! with voxel axes (z down); colours are sRGB-encoded throughout.
+//! # Spaces
+//! (i, j, k) are flat coordinates with k local to a layer. Normals and gradients are metric with voxel axes
+//! (z down). Colours are sRGB-encoded throughout.
+//!
+//! # The paper
+//! P-illus is Patel, Giertsen, Thurmond and Gröller, "Illustrative Rendering of Seismic Data" (Vision,
+//! Modeling and Visualization 2007).
 
 mod builtin;
 mod colour;
@@ -39,7 +45,7 @@ pub use library::{Pattern, TextureLibrary};
 pub use raster::{MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX};
 pub use rgba::{RgbaFunction, RgbaStop, symmetric_clip};
 pub use scalar::{ScalarInterval, ScalarTtf};
-pub use shade::{FlatFootprint, FlatPoint, ShadePoint, blend_raw, shade};
+pub use shade::{FlatFootprint, LayerPoint, ShadePoint, blend_raw, shade};
 pub use sheet::contact_sheet;
 pub use tables::{BlockExtent, LayerExtent, TtfTables};
 pub use texture::Texture;

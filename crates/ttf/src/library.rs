@@ -1,8 +1,9 @@
 //! The texture library: the built-in lithology patterns and the user's own tiles.
 //!
-//! Built-in patterns are SVG tiles of ink on nothing, in `textures/` with `catalogue.toml`, compiled
-//! into the program; numbers and names follow section 37 of the FGDC Digital Cartographic Standard
-//! (FGDC-STD-013-2006), the drawings are ours. They are rasterised when first used.
+//! Built-in patterns are SVG tiles of ink on a transparent ground. They lie in `textures/` with
+//! `catalogue.toml` and are compiled into the program. Numbers and names follow section 37 of the FGDC
+//! Digital Cartographic Standard (FGDC-STD-013-2006); the drawings are ours. A tile is rasterised when it is
+//! first used.
 
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
@@ -17,12 +18,12 @@ use crate::{Colour, Error, Texture};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Pattern {
-    /// The name by which transfer functions call it.
+    /// The name by which transfer functions refer to it.
     pub name: String,
-    /// Number in FGDC section 37, if it stands for one.
+    /// Its number in FGDC section 37, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fgdc: Option<u16>,
-    /// Name for people, as in a legend.
+    /// Its name in legends.
     pub title: String,
     /// What is drawn, and for which rock.
     pub description: String,
@@ -30,20 +31,29 @@ pub struct Pattern {
     pub family: String,
     /// Width and height of the tile in a printed figure, in millimetres.
     pub tile_mm: [f32; 2],
-    /// Whether the drawing has an up: it must follow the layer (bricks, dashes) rather than the page.
+    /// Whether the drawing has an up direction, so that it must follow the layer (bricks, dashes) rather than
+    /// the page.
     pub directional: bool,
-    /// The colour it lies on unless told otherwise.
+    /// The colour below it, unless a style states another.
     pub colour: Colour,
 }
 
 /// The textures by name.
+///
+/// ```
+/// let library = ttf::TextureLibrary::builtin().unwrap();
+/// let limestone = library.find("limestone").unwrap();
+/// assert_eq!(library.pattern(limestone).fgdc, Some(627));
+/// let error = library.index_of("limstone", "layer `Chalk`").unwrap_err();
+/// assert!(error.to_string().contains("did you mean `limestone`?"));
+/// ```
 #[derive(Debug)]
 pub struct TextureLibrary {
-    entries: Vec<Entry>,
+    entries: Vec<LibraryEntry>,
 }
 
 #[derive(Debug)]
-struct Entry {
+struct LibraryEntry {
     pattern: Pattern,
     svg: Option<String>,
     texture: OnceLock<Arc<Texture>>,
@@ -59,7 +69,7 @@ impl TextureLibrary {
     /// The patterns that come with the program.
     ///
     /// # Errors
-    /// [`Error::BadCatalogue`] if catalogue and drawings do not fit, which a test rules out.
+    /// [`Error::BadCatalogue`] if catalogue and drawings do not match. A test rules this out.
     pub fn builtin() -> Result<Self, Error> {
         let catalogue: Catalogue =
             toml::from_str(CATALOGUE).map_err(|error| Error::BadCatalogue { fact: error.to_string() })?;
@@ -74,14 +84,15 @@ impl TextureLibrary {
         Ok(library)
     }
 
-    /// Adds a user's tile from a PNG, JPEG or SVG file under the file's name without extension, and
-    /// returns its index.
+    /// Adds a user's tile from a PNG, JPEG or SVG file and returns its index. Its name is the file's name
+    /// without extension.
     ///
-    /// An opaque image hides the layer's colour, one with transparency lets it show. The tile is printed 20 mm
-    /// wide unless the returned pattern is given another size with [`Self::set_tile_mm`]; height follows the image's shape.
+    /// An opaque image hides the layer's colour; a transparent one lets it show. The tile is printed 20 mm
+    /// wide unless [`Self::set_tile_mm`] changes that; its height follows from the aspect ratio of the image.
     ///
     /// # Errors
-    /// A file that cannot be read, is no image, is empty or absurdly large; a name that is taken.
+    /// A file that cannot be read, is not an image, has no pixels or is too large; a name that is in use
+    /// already.
     pub fn add_user(&mut self, path: &Path) -> Result<usize, Error> {
         let (texture, svg, shape) = raster::read_tile(path)?;
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -108,7 +119,7 @@ impl TextureLibrary {
         if self.find(&pattern.name).is_some() {
             return Err(Error::DuplicateTexture { texture: pattern.name });
         }
-        self.entries.push(Entry { pattern, svg, texture });
+        self.entries.push(LibraryEntry { pattern, svg, texture });
         Ok(self.entries.len() - 1)
     }
 
@@ -122,12 +133,12 @@ impl TextureLibrary {
         self.entries.is_empty()
     }
 
-    /// All entries in the order of the catalogue, the user's last.
+    /// All entries: the catalogue in its order, then the user's.
     pub fn patterns(&self) -> impl ExactSizeIterator<Item = &Pattern> {
         self.entries.iter().map(|entry| &entry.pattern)
     }
 
-    /// An entry by index (0 … [`Self::len`] − 1).
+    /// The entry at an index (0 … [`Self::len`] − 1).
     pub fn pattern(&self, index: usize) -> &Pattern {
         &self.entries[index].pattern
     }
@@ -142,10 +153,10 @@ impl TextureLibrary {
         self.entries.iter().position(|entry| entry.pattern.name == name)
     }
 
-    /// Index of a name that was asked for at `place`.
+    /// Index of a name, which an error text says was used at `place`.
     ///
     /// # Errors
-    /// [`Error::UnknownTexture`] with the nearest name there is.
+    /// [`Error::UnknownTexture`], with the most similar name there is.
     pub fn index_of(&self, name: &str, place: &str) -> Result<usize, Error> {
         self.find(name).ok_or_else(|| {
             let nearest = self
@@ -158,16 +169,16 @@ impl TextureLibrary {
         })
     }
 
-    /// The pixels of a texture; rasterised on first use, then shared.
+    /// The pixels of a texture. It is rasterised on first use and then shared.
     ///
     /// # Errors
-    /// [`Error::BadSvg`] for a built-in drawing that does not parse, which a test rules out.
+    /// [`Error::BadSvg`] for a built-in drawing that cannot be parsed. A test rules this out.
     pub fn texture(&self, index: usize) -> Result<Arc<Texture>, Error> {
         let entry = &self.entries[index];
         if let Some(texture) = entry.texture.get() {
             return Ok(Arc::clone(texture));
         }
-        let svg = entry.svg.as_deref().unwrap_or_default();
+        let svg = entry.svg.as_deref().expect("an entry without texels has a drawing");
         let (texture, _) = raster::rasterize(&entry.pattern.name, svg.as_bytes())?;
         Ok(Arc::clone(entry.texture.get_or_init(|| Arc::new(texture))))
     }

@@ -1,15 +1,15 @@
-//! The look of a layer nobody has styled: a project renders before anything is assigned.
+//! Default styles, so that a project can be rendered before any layer has a style.
 //!
-//! A layer whose name speaks of a rock ("Zechstein salt", "Chalk Gp") gets that rock; the others
-//! take turns through a sequence in which neighbours differ in tone and in texture.
+//! A layer whose name contains the name of a rock ("Zechstein salt", "Chalk Gp") gets the pattern of that
+//! rock. The others take the patterns of a sequence in which neighbours differ in tone and in texture.
 
 use crate::{Colour, LayerStyle, LayerTtf, TextureLibrary};
 
-/// Patterns for layers without a telling name, bottom to top.
+/// Patterns of layers whose name contains no word of [`WORDS`], bottom to top.
 const SEQUENCE: [&str; 8] =
     ["granite", "shale", "sandstone-bedded", "limestone", "siltstone", "dolostone", "marl", "sand"];
 
-/// Words in a layer's name and the pattern they stand for; the first that fits counts.
+/// Words in the name of a layer, and the pattern of each. The first word that is found decides.
 const WORDS: [(&str, &str); 31] = [
     ("water", "water"),
     ("sea", "water"),
@@ -45,7 +45,13 @@ const WORDS: [(&str, &str); 31] = [
 ];
 
 impl LayerTtf {
-    /// The style of layer number `index` (from the bottom) while it has none of its own.
+    /// The style that layer number `index` (counted from the bottom) has unless it is given one.
+    ///
+    /// ```
+    /// use ttf::{LayerTtf, TextureLibrary};
+    /// let style = LayerTtf::default_style("Zechstein salt", 3, &TextureLibrary::builtin().unwrap());
+    /// assert_eq!(style.texture_at(0.5), Some("salt"));
+    /// ```
     pub fn default_style(layer: &str, index: usize, library: &TextureLibrary) -> LayerStyle {
         let lower = layer.to_lowercase();
         let by_name = WORDS.iter().find(|(word, _)| lower.contains(word)).map(|(_, pattern)| *pattern);

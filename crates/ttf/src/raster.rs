@@ -1,8 +1,8 @@
-//! Tiles from files to texels: SVG through resvg, PNG and JPEG through image.
+//! Reads tiles from files: SVG through resvg, PNG and JPEG through image.
 //!
-//! Every tile becomes a square [`Texture`] of [`TEXTURE_SIDE_PX`]; its shape lives on in the printed
-//! size. Rows are turned over on the way (image files start at the top, textures at v = 0).
-//! Images are resampled as tiles, with wrap-around: area average when they shrink, linear when they grow.
+//! Every tile becomes a square [`Texture`] of [`TEXTURE_SIDE_PX`]; its aspect ratio is kept in the printed
+//! size. Rows are reversed, since image files start at the top and textures at v = 0. Images are resampled
+//! with wrap-around: by area average when they shrink, linearly when they grow.
 
 use std::path::Path;
 
@@ -17,7 +17,7 @@ pub const MAX_IMAGE_SIDE_PX: u32 = 4096;
 /// Largest file accepted as a tile, in bytes.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
 
-/// Reads a tile: its texture, its source if it is an SVG, and its height over its width.
+/// Reads a tile. Returns its texture, its source if it is an SVG, and its height divided by its width.
 ///
 /// # Errors
 /// See [`crate::TextureLibrary::add_user`].
@@ -40,7 +40,8 @@ pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), E
     Ok((texture, None, shape))
 }
 
-/// Rasterises an SVG tile, its whole view box stretched to the square; also its height over its width.
+/// Rasterises an SVG tile, its whole view box stretched to the square. Also returns its height divided by its
+/// width.
 ///
 /// # Errors
 /// [`Error::BadSvg`] with the name given.
@@ -114,7 +115,7 @@ fn resample_rows(texels: &[[f32; 4]], from: usize, to: usize) -> Vec<[f32; 4]> {
         .collect()
 }
 
-/// The texels under [start, start + width) with their shares.
+/// The texels that [start, start + width) covers, with their shares.
 fn area_weights(start: f64, width: f64) -> Vec<(usize, f32)> {
     let end = start + width;
     (start.floor() as usize..end.ceil() as usize)
@@ -125,12 +126,13 @@ fn area_weights(start: f64, width: f64) -> Vec<(usize, f32)> {
         .collect()
 }
 
-/// The two texels around the centre of target texel `index`; indices count from one tile further right.
+/// The two texels around the centre of target texel `index`, with their weights. The caller takes indices
+/// modulo the row.
 fn linear_weights(index: usize, step: f64) -> Vec<(usize, f32)> {
     let centre = (index as f64 + 0.5) * step - 0.5;
     let low = centre.floor();
     let fraction = (centre - low) as f32;
-    // The centre may lie left of texel 0: the caller wraps, so any whole tile may be added.
+    // The centre may lie left of texel 0. The caller wraps, so any whole tile may be added.
     let from = (step * TEXTURE_SIDE_PX as f64).round() as i64;
     let low = (low as i64).rem_euclid(from) as usize;
     vec![(low, 1.0 - fraction), (low + 1, fraction)]
@@ -179,7 +181,7 @@ mod tests {
                 |texels: &[[f32; 4]]| texels.iter().map(|texel| f64::from(texel[0])).sum::<f64>() / texels.len() as f64;
             assert!((mean(&texels) - mean(&square)).abs() < 2e-3, "{width} x {height}");
         }
-        // Black and white texel side by side, enlarged: half grey on both edges of both.
+        // A black and a white texel side by side, enlarged: half grey at both edges of each.
         let row = resample_rows(&[[0.0; 4], [1.0; 4]], 2, 512);
         assert!((row[0][0] - 0.5).abs() < 0.01 && (row[511][0] - 0.5).abs() < 0.01 && (row[256][0] - 0.5).abs() < 0.01);
     }

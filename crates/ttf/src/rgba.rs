@@ -1,9 +1,9 @@
-//! RGBA transfer functions: value → colour and opacity, piecewise linear, for raw data (P-illus 4.3,
-//! 5).
+//! RGBA transfer functions for raw data: a piecewise linear map from a value to colour and opacity (P-illus
+//! 4.3, 5).
 //!
-//! A value is first placed in the domain, `t = clamp((value − low)/(high − low), 0, 1)`; colour and
-//! opacity are interpolated between the two stops around t, on sRGB-encoded straight values. No
-//! data (NaN) is transparent black, `[0, 0, 0, 0]`.
+//! A value is first scaled to the domain, `t = clamp((value − low)/(high − low), 0, 1)`. Colour and opacity
+//! are interpolated between the two stops around t, on sRGB-encoded straight values. A missing value (NaN) is
+//! transparent black, `[0, 0, 0, 0]`.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,9 +14,9 @@ use crate::{Colour, ColourMap, Error};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RgbaFunction {
-    /// The values that the first and the last stop stand for; values outside are clamped.
+    /// The values of the first and the last stop. Values outside are clamped.
     pub domain: [f32; 2],
-    /// Stops at rising positions, the first at 0, the last at 1.
+    /// Stops at rising positions: the first at 0, the last at 1.
     pub stops: Vec<RgbaStop>,
 }
 
@@ -40,8 +40,8 @@ impl RgbaFunction {
         Self { domain, stops }
     }
 
-    /// A colour map centred on zero and clipped at ±`clip`, usually the 99th percentile of the
-    /// absolute value ([`symmetric_clip`]): the only fair way to colour amplitudes.
+    /// A colour map centred on zero and clipped at ±`clip`, usually the 99th percentile of the absolute value
+    /// ([`symmetric_clip`]). Amplitudes need a centred map, since their sign has a meaning.
     ///
     /// ```
     /// use ttf::{ColourMap, RgbaFunction};
@@ -70,19 +70,25 @@ impl RgbaFunction {
         [mix(a[0], b[0]), mix(a[1], b[1]), mix(a[2], b[2]), mix(left.opacity, right.opacity)]
     }
 
-    /// The function sampled at `count` evenly spaced values of the domain, ends included: a lookup
-    /// table for volume rendering.
+    /// The function sampled at `count` evenly spaced values of the domain, ends included: a lookup table for
+    /// volume rendering.
+    ///
+    /// ```
+    /// use ttf::{ColourMap, RgbaFunction};
+    /// let table = RgbaFunction::over(ColourMap::Grey, [0.0, 10.0]).bake(3);
+    /// assert_eq!(table, [[1.0, 1.0, 1.0, 1.0], [0.5, 0.5, 0.5, 1.0], [0.0, 0.0, 0.0, 1.0]]);
+    /// ```
     pub fn bake(&self, count: usize) -> Vec<[f32; 4]> {
         let [low, high] = self.domain;
         let last = count.saturating_sub(1).max(1) as f32;
         (0..count).map(|index| self.evaluate(low + (high - low) * index as f32 / last)).collect()
     }
 
-    /// Refuses what cannot be evaluated.
+    /// Checks that the function can be evaluated.
     ///
     /// # Errors
-    /// An empty or infinite domain; fewer than two stops; positions that do not rise from 0 to 1;
-    /// opacities outside [0, 1].
+    /// An empty or infinite domain; fewer than two stops; positions that do not rise from 0 to 1; opacities
+    /// outside [0, 1].
     pub fn validate(&self, place: &str) -> Result<(), Error> {
         let [low, high] = self.domain;
         if !(low.is_finite() && high.is_finite() && low < high) {
@@ -104,8 +110,9 @@ impl RgbaFunction {
     }
 }
 
-/// The value that `fraction` (for example 0.99) of the samples do not exceed in size: where a centred
-/// function is clipped. Samples that are not finite are left out; none left, or only zeros, gives `None`.
+/// The absolute value that `fraction` (for example 0.99) of the samples do not exceed: where a centred
+/// function is clipped. Samples that are not finite are ignored. Returns `None` if no sample remains or all
+/// are zero.
 ///
 /// ```
 /// let samples: Vec<f32> = (-100..=100).map(|value| value as f32).collect();

@@ -1,14 +1,14 @@
-//! Scalar texture transfer functions (P-illus 4.2): value of a named volume → texture, frequency
-//! factors, opacity.
+//! Scalar texture transfer functions (P-illus 4.2): map the value of a named volume to a texture, frequency
+//! factors and an opacity.
 //!
-//! Functions form an ordered stack, composited over the layer's texture first to last. Intervals
-//! are half-open, `[low, high)`; a sample without data (NaN) lies in none, so what is below shows.
-//! The frequency is the layer's at that place times `factor`, so a scalar texture that crosses from
-//! a thin to a thick layer deforms with them.
+//! Functions form an ordered stack and are composited over the layer's texture, first to last. Intervals are
+//! half-open, `[low, high)`. A sample without data (NaN) lies in no interval, so what is below remains
+//! visible. The frequency is that of the layer at that place times `factor`, so a scalar texture that crosses
+//! from a thin to a thick layer deforms with them.
 //!
-//! Departure: our patterns are ink on nothing, where the paper's tiles are opaque. An interval with
-//! a `colour` is opaque (opacity 1 overdraws the layer, as in the paper); without one only the ink
-//! is laid over the layer.
+//! Departure: our patterns are ink on a transparent ground, where the paper's tiles are opaque. An interval
+//! with a `colour` is opaque: opacity 1 covers the layer, as in the paper. Without a `colour` only the ink is
+//! drawn over the layer.
 
 use serde::{Deserialize, Serialize};
 
@@ -16,6 +16,12 @@ use crate::layer::{check_overlap, check_unit, opaque};
 use crate::{Colour, Error, Frequency, TextureLibrary};
 
 /// One scalar texture transfer function, bound to a volume by name.
+///
+/// ```
+/// let function: ttf::ScalarTtf = toml::from_str("volume = 'impedance'\nintervals = [{ range = [2.0, 5.0], texture = 'sand' }]").unwrap();
+/// assert_eq!(function.interval_at(2.0).unwrap().texture, "sand");
+/// assert!(function.interval_at(5.0).is_none() && function.interval_at(f32::NAN).is_none());
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ScalarTtf {
@@ -40,10 +46,10 @@ pub struct ScalarInterval {
     /// Opacity over what is below, in [0, 1]. Default 1.
     #[serde(default = "opaque")]
     pub opacity: f32,
-    /// Background of the texture; absent = ink only.
+    /// Background of the texture. Absent: ink only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
-    /// Recolours the ink; absent = the texture's own colours.
+    /// Replaces the colour of the ink. Absent: the texture keeps its own colours.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub ink: Option<Colour>,
 }
@@ -58,10 +64,11 @@ impl ScalarTtf {
         self.intervals.iter().find(|interval| value >= interval.range[0] && value < interval.range[1])
     }
 
-    /// Refuses what cannot be drawn.
+    /// Checks that this can be drawn.
     ///
     /// # Errors
-    /// Empty, reversed or overlapping intervals; unusable factors or opacities; unknown textures.
+    /// Intervals that are empty, reversed or overlap; factors or opacities outside their range; unknown
+    /// textures.
     pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
         let place = format!("scalar function on `{}`", self.volume);
         for interval in &self.intervals {

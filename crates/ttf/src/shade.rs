@@ -1,25 +1,29 @@
-//! The colour of a point on a cut face: the CPU reference of what the GPU computes.
+//! The colour of a point on a cut face. This is the CPU reference of the shader `shade.wgsl`.
 //!
 //! Step by step (P-illus 4, figure 7), all on sRGB-encoded values:
 //! 1. The layer's colour, or that of its interval at k: `c`.
-//! 2. The interval's texture sample T (premultiplied, inked): `c ← T·o + c·(1 − T.a·o)`, o its opacity.
-//! 3. For each scalar interval that holds its volume's value, in stack order: its sample over its
-//!    background, T, composited the same way. Its frequency is the layer's here times its factor.
+//! 2. The interval's texture sample T (premultiplied, with its ink colour): `c ← T·o + c·(1 − T.a·o)`, where
+//!    o is its opacity.
+//! 3. For each scalar interval that contains the value of its volume, in stack order: T is the texture sample
+//!    over its background, composited the same way. Its frequency is that of the layer at this point times
+//!    its factor.
 //! 4. The raw colour: `c ← c + (raw − c)·blend`.
 //!
 //! A texture sample is the weighted sum over the face's mappings ([`crate::FaceFrame`]).
-//! NaN: no k or no (i, j) leaves the plain colour; no scalar value lies in no interval; no raw value
-//! takes the no-data colour, or leaves the illustration if there is none.
+//!
+//! NaN stands for missing values. Without k or (i, j) the layer has its plain colour. A missing scalar value
+//! lies in no interval. A missing raw value takes the no-data colour, or leaves the illustration unchanged if
+//! there is none.
 
 use crate::coordinates::FaceFrame;
 use crate::tables::{NONE, TtfTables};
 
 /// A point of a face in flat space.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlatPoint {
-    /// Along x; 0 to 1 over the block, beyond it near the walls.
+pub struct LayerPoint {
+    /// Along x: 0 to 1 over the block. May lie outside that range near the side faces.
     pub i: f32,
-    /// Along y; 0 to 1 over the block, beyond it near the walls.
+    /// Along y: 0 to 1 over the block. May lie outside that range near the side faces.
     pub j: f32,
     /// Local depth in the layer: 0 bottom horizon, 1 top horizon.
     pub k: f32,
@@ -36,11 +40,11 @@ pub struct FlatFootprint {
     pub dy: [f32; 3],
 }
 
-/// Everything about a point that [`shade`] asks for.
+/// What [`shade`] needs to know about a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadePoint {
     /// Where it is in flat space.
-    pub flat: FlatPoint,
+    pub flat: LayerPoint,
     /// How flat space changes around it.
     pub footprint: FlatFootprint,
     /// The face it lies on.
@@ -49,9 +53,26 @@ pub struct ShadePoint {
     pub grad_k: [f32; 3],
 }
 
-/// Straight RGBA of a point, sRGB-encoded; alpha is 1 where the layer exists, 0 where there is none.
+/// Straight RGBA of a point, sRGB-encoded. Alpha is 1 where the layer exists and 0 where it does not.
 ///
-/// `scalars` holds one value per entry of [`TtfTables::volumes`]; missing ones count as no data.
+/// `scalars` holds one value per entry of [`TtfTables::volumes`]; a missing entry counts as no data.
+///
+/// ```
+/// use ttf::{BlockExtent, Colour, FaceFrame, FlatFootprint, LayerExtent, LayerPoint, LayerStyle, ShadePoint};
+/// use ttf::{TextureLibrary, TransferFunctions, TtfTables};
+/// let mut functions = TransferFunctions::default();
+/// functions.layers.set(LayerStyle::plain("Salt", Colour::new(255, 0, 51)));
+/// let layers = vec![LayerExtent { name: "Salt".into(), thickness_m: 200.0 }];
+/// let block = BlockExtent { extent_i_m: 4000.0, extent_j_m: 2000.0, layers, metres_per_mm: 20.0 };
+/// let tables = TtfTables::compile(&functions, &block, &TextureLibrary::builtin().unwrap()).unwrap();
+/// let point = ShadePoint {
+///     flat: LayerPoint { i: 0.5, j: 0.5, k: 0.5, layer: 0 },
+///     footprint: FlatFootprint::default(),
+///     face: FaceFrame::new([0.0, 1.0, 0.0]),
+///     grad_k: [0.0, 0.0, -1.0],
+/// };
+/// assert_eq!(ttf::shade(&tables, &point, &[]), [1.0, 0.0, 0.2, 1.0]);
+/// ```
 pub fn shade(tables: &TtfTables, point: &ShadePoint, scalars: &[f32]) -> [f32; 4] {
     let Some(layer) = tables.layers.get(point.flat.layer as usize) else {
         return [0.0; 4];
@@ -81,7 +102,7 @@ pub fn shade(tables: &TtfTables, point: &ShadePoint, scalars: &[f32]) -> [f32; 4
     [colour[0], colour[1], colour[2], 1.0]
 }
 
-/// Blends an illustrated colour to the raw colour of `value` (step 4); NaN is no data.
+/// Blends an illustrated colour with the raw colour of `value` (step 4). NaN is no data.
 pub fn blend_raw(tables: &TtfTables, colour: [f32; 3], value: f32) -> [f32; 3] {
     if tables.globals.raw_volume == NONE {
         return colour;
@@ -95,7 +116,7 @@ pub fn blend_raw(tables: &TtfTables, colour: [f32; 3], value: f32) -> [f32; 3] {
     std::array::from_fn(|c| colour[c] + (raw[c] - colour[c]) * share)
 }
 
-/// The raw colours at a value that is not NaN: piecewise linear between the stops, clamped.
+/// The raw colour of a value that is not NaN: linear between the stops, clamped.
 fn raw_colour(tables: &TtfTables, value: f32) -> [f32; 4] {
     let [low, high] = tables.globals.raw_domain;
     let t = ((value - low) / (high - low)).clamp(0.0, 1.0);
@@ -110,7 +131,7 @@ fn raw_colour(tables: &TtfTables, value: f32) -> [f32; 4] {
     colour
 }
 
-/// Recolours a premultiplied sample where `ink` asks for it.
+/// Replaces the colour of a premultiplied sample where `ink` says so.
 fn inked(sample: [f32; 4], ink: [f32; 4]) -> [f32; 4] {
     let alpha = sample[3];
     let replaced = |c: usize| sample[c] + (ink[c] * alpha - sample[c]) * ink[3];
@@ -133,7 +154,7 @@ fn over(bottom: [f32; 3], top: [f32; 4], opacity: f32) -> [f32; 3] {
     std::array::from_fn(|c| top[c] * opacity + bottom[c] * (1.0 - top[3] * opacity))
 }
 
-/// The point's mappings, ready to sample any texture at any frequency.
+/// The mappings of a point, from which any texture can be sampled at any frequency.
 struct Sampler<'a> {
     tables: &'a TtfTables,
     weights: [f32; 3],
@@ -213,7 +234,7 @@ mod tests {
 
     fn at(i: f32, k: f32, layer: u32) -> ShadePoint {
         ShadePoint {
-            flat: FlatPoint { i, j: 0.1, k, layer },
+            flat: LayerPoint { i, j: 0.1, k, layer },
             footprint: FlatFootprint::default(),
             face: FaceFrame::new([0.0, 1.0, 0.0]),
             grad_k: [0.0, 0.0, -1.0],

@@ -1,31 +1,31 @@
-//! The contact sheet: every texture of a library at printed size, on its colour, with its name and
-//! FGDC number beneath.
+//! The contact sheet: every texture of a library at printed size on its colour, with its name and FGDC number
+//! below.
 
 use image::{Rgba, RgbaImage};
 
 use crate::text::{draw_text, measure_text};
 use crate::{Colour, Error, Pattern, Texture, TextureLibrary};
 
-/// Pixels to a millimetre (220 dpi): patterns are as large as in a figure printed at that resolution.
+/// Pixels per millimetre (220 dpi): patterns are as large as in a figure printed at that resolution.
 const PIXELS_PER_MM: f32 = 220.0 / 25.4;
 /// Width and height of a swatch.
 const SWATCH_MM: [f32; 2] = [42.0, 29.0];
-/// Space beneath a swatch for its two lines, and between columns.
+/// Space between columns, and below a swatch for its two lines of text.
 const GAP_MM: [f32; 2] = [4.0, 11.5];
 /// Margin around the sheet.
 const MARGIN_MM: f32 = 6.0;
 /// Swatches in a row.
 const COLUMNS: usize = 6;
-/// Samples a side in a pixel.
+/// Samples per pixel along each axis.
 const SUPERSAMPLES: u32 = 2;
 
 const LETTERS: Colour = Colour::new(0x23, 0x1f, 0x1b);
 const SMALL_LETTERS: Colour = Colour::new(0x66, 0x60, 0x58);
 
-/// Draws all textures of a library: swatches at printed size (220 dpi), six in a row, in catalogue order.
+/// Draws all textures of a library as swatches at printed size (220 dpi), six in a row, in catalogue order.
 ///
 /// # Errors
-/// A drawing that does not rasterise.
+/// A drawing that cannot be rasterised.
 pub fn contact_sheet(library: &TextureLibrary) -> Result<RgbaImage, Error> {
     let px = |mm: f32| (mm * PIXELS_PER_MM).round() as u32;
     let rows = library.len().div_ceil(COLUMNS).max(1);

@@ -1,7 +1,7 @@
-//! Transfer functions compiled to flat tables that the CPU reads as slices and the GPU as buffers.
+//! Transfer functions compiled to flat tables. The CPU reads them as slices, the GPU as buffers.
 //!
-//! All entries are `repr(C)`, 16-byte aligned in size, without padding the compiler chose, so that
-//! they go to storage buffers as they are. Colours are sRGB-encoded in [0, 1]. Texture indices are
+//! All entries are `repr(C)`, have a size that is a multiple of 16 bytes and no implicit padding, so that
+//! they are uploaded to storage buffers as they are. Colours are sRGB-encoded in [0, 1]. Texture indices are
 //! slots of [`TtfTables::textures`], which holds only the textures in use.
 
 use std::sync::Arc;
@@ -13,16 +13,16 @@ use crate::{Error, Frequency, LayerStyle, LayerTtf, ScalarInterval, Texture, Tex
 /// Stands for "no texture" or "no volume" in the tables.
 pub const NONE: u32 = u32::MAX;
 
-/// What the tables must know of the block: its layers and sizes in metres.
+/// The layers and the sizes of the block, which scale the patterns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockExtent {
-    /// Length of the block along x in metres, (Nx − 1)·spacing: what i in [0, 1] stands for.
+    /// Length of the block along x in metres, (Nx − 1)·spacing: the length of i in [0, 1].
     pub extent_i_m: f32,
     /// Length of the block along y in metres.
     pub extent_j_m: f32,
     /// The layers, bottom to top: index = layer number.
     pub layers: Vec<LayerExtent>,
-    /// Metres of rock to a millimetre of the printed figure: sizes the patterns that state no frequency.
+    /// Metres of rock per millimetre of the printed figure. Sizes the patterns that state no frequency.
     pub metres_per_mm: f32,
 }
 
@@ -31,15 +31,15 @@ pub struct BlockExtent {
 pub struct LayerExtent {
     /// The layer's name in the stratigraphy.
     pub name: String,
-    /// Mean thickness in metres: what k in [0, 1] stands for.
+    /// Mean thickness in metres: the length of k in [0, 1].
     pub thickness_m: f32,
 }
 
-/// The scene-wide numbers.
+/// The numbers that hold for the whole scene.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct TtfGlobals {
-    /// Colour of raw samples without data; alpha 0 = the illustration shows.
+    /// Colour of raw samples without data. Alpha 0: the illustration shows there.
     pub no_data: [f32; 4],
     /// Domain of the raw colours.
     pub raw_domain: [f32; 2],
@@ -47,7 +47,7 @@ pub struct TtfGlobals {
     pub blend: f32,
     /// Factor on every frequency.
     pub global_frequency: f32,
-    /// Extent of j over extent of i, in metres.
+    /// Extent of j divided by extent of i, in metres.
     pub aspect_j: f32,
     /// Slot of the raw volume, or [`NONE`].
     pub raw_volume: u32,
@@ -61,7 +61,7 @@ pub struct TtfGlobals {
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 pub struct LayerEntry {
-    /// Plain colour (r, g, b) and opacity in a cut-out.
+    /// Plain colour (r, g, b), and the opacity in a cut-out.
     pub colour: [f32; 4],
     /// Frequency where no interval covers k (scalar textures use it).
     pub frequency: [f32; 2],
@@ -77,9 +77,9 @@ pub struct LayerEntry {
 pub struct IntervalEntry {
     /// Background (r, g, b), and the opacity of the texture on it.
     pub colour: [f32; 4],
-    /// Ink (r, g, b); w = 1: it replaces the texture's colours, 0: it does not.
+    /// Ink (r, g, b); w = 1: the ink replaces the texture's colours, w = 0: it does not.
     pub ink: [f32; 4],
-    /// Half-open range of k; ends on a horizon are stretched to ±`f32::MAX`.
+    /// Half-open range of k. Ends on a horizon are moved to ±`f32::MAX`.
     pub k: [f32; 2],
     /// Horizontal and vertical frequency.
     pub frequency: [f32; 2],
@@ -95,7 +95,7 @@ pub struct IntervalEntry {
 pub struct ScalarEntry {
     /// Background (r, g, b); w = 1: opaque, 0: ink only.
     pub colour: [f32; 4],
-    /// Ink (r, g, b); w = 1: it replaces the texture's colours, 0: it does not.
+    /// Ink (r, g, b); w = 1: the ink replaces the texture's colours, w = 0: it does not.
     pub ink: [f32; 4],
     /// Half-open range of values.
     pub range: [f32; 2],
@@ -124,13 +124,24 @@ pub struct StopEntry {
 }
 
 /// The compiled transfer functions.
+///
+/// ```
+/// use ttf::{BlockExtent, Colour, LayerExtent, LayerStyle, TextureLibrary, TransferFunctions, TtfTables};
+/// let mut functions = TransferFunctions::default();
+/// functions.layers.set(LayerStyle::plain("Salt", Colour::new(255, 0, 51)));
+/// let layers = vec![LayerExtent { name: "Salt".into(), thickness_m: 200.0 }];
+/// let block = BlockExtent { extent_i_m: 4000.0, extent_j_m: 2000.0, layers, metres_per_mm: 20.0 };
+/// let tables = TtfTables::compile(&functions, &block, &TextureLibrary::builtin().unwrap()).unwrap();
+/// assert_eq!(tables.globals.aspect_j, 0.5);
+/// assert_eq!(tables.average_colour(0, 1.0), [1.0, 0.0, 0.2]);
+/// ```
 #[derive(Debug, Clone)]
 pub struct TtfTables {
-    /// Scene-wide numbers.
+    /// Numbers that hold for the whole scene.
     pub globals: TtfGlobals,
     /// One entry per layer, bottom to top.
     pub layers: Vec<LayerEntry>,
-    /// Depth intervals, a layer's own in a row, rising in k.
+    /// Depth intervals. Those of one layer follow one another, rising in k.
     pub intervals: Vec<IntervalEntry>,
     /// Scalar intervals in the order in which they are composited.
     pub scalars: Vec<ScalarEntry>,
@@ -145,12 +156,12 @@ pub struct TtfTables {
 impl TtfTables {
     /// Compiles the functions for a block.
     ///
-    /// Layers without a style get [`LayerTtf::default_style`]. Styles of layers that the block does not
-    /// have are left out.
+    /// A layer without a style gets [`LayerTtf::default_style`]. Styles of layers that the block does not
+    /// have are ignored.
     ///
     /// # Errors
-    /// What [`TransferFunctions::validate`] refuses; extents that are not finite and positive; a
-    /// pattern that does not rasterise.
+    /// Everything that [`TransferFunctions::validate`] refuses; extents that are not finite and positive; a
+    /// pattern that cannot be rasterised.
     pub fn compile(
         functions: &TransferFunctions,
         block: &BlockExtent,
@@ -209,8 +220,8 @@ impl TtfTables {
         Ok(Self { globals, layers, intervals, scalars, stops, volumes, textures })
     }
 
-    /// The opaque average colour of a layer at local k, its texture included: the ground's colour is
-    /// that of the topmost layer at k = 1 (P-illus 5). Black for a layer there is not.
+    /// The opaque average colour of a layer at local k, its texture included. The ground has the average
+    /// colour of the layer below it at k = 1 (P-illus 5). Black if there is no such layer.
     pub fn average_colour(&self, layer: u32, k: f32) -> [f32; 3] {
         let Some(entry) = self.layers.get(layer as usize) else {
             return [0.0; 3];
@@ -236,7 +247,7 @@ impl TtfTables {
     }
 }
 
-/// Tile size assumed for a layer without a texture: the usual one of the library.
+/// Tile size assumed for a layer without a texture: the usual size in the library.
 const PLAIN_TILE_MM: [f32; 2] = [20.0, 20.0];
 
 impl BlockExtent {
@@ -256,7 +267,7 @@ impl BlockExtent {
     }
 }
 
-/// Gives textures and volumes their slots in the order in which they are first needed.
+/// Assigns slots to textures and volumes in the order in which they are first needed.
 struct Slots<'a> {
     library: &'a TextureLibrary,
     library_indices: Vec<usize>,

@@ -1,8 +1,8 @@
-//! Lettering in pixels, for the contact sheet and for legends: one upright sans-serif face.
+//! Text drawn into images, for the contact sheet and for legends, in one upright sans-serif face.
 //!
-//! The face is Ubuntu Light (Ubuntu Font Licence 1.0), embedded through `epaint_default_fonts`; glyphs are
-//! outlined by `ab_glyph` with exact area coverage, kerned, and composited on sRGB-encoded values.
-//! Left to right only; a character the face does not have is drawn as its missing-glyph box.
+//! The face is Ubuntu Light (Ubuntu Font Licence 1.0), embedded through `epaint_default_fonts`. Glyphs are
+//! outlined by `ab_glyph` with exact area coverage, kerned, and composited on sRGB-encoded values. Text runs
+//! left to right only. A character that the face lacks is drawn as its missing-glyph box.
 //! [`outline_text`] gives the same lettering as curves, for whoever turns it, strokes it or writes it as vectors.
 
 use std::sync::OnceLock;
@@ -12,10 +12,10 @@ use image::RgbaImage;
 
 use crate::Colour;
 
-/// Coverage is raised to this power: dark lettering in a light face looks too thin without it.
+/// Exponent of the coverage: dark text in a light face looks too thin without it.
 const COVERAGE_EXPONENT: f32 = 0.75;
 
-/// The space a line of text takes.
+/// The extent of a line of text.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TextExtent {
     /// Advance from the first glyph's origin to the end.
@@ -26,7 +26,7 @@ pub struct TextExtent {
     pub descent_px: f32,
 }
 
-/// The space that a line takes at a font size (pixels per em).
+/// The extent of a line of text at a font size (pixels per em).
 ///
 /// ```
 /// let small = ttf::text::measure_text(10.0, "limestone");
@@ -45,8 +45,18 @@ pub fn measure_text(size_px: f32, text: &str) -> TextExtent {
     TextExtent { width_px, ascent_px: scaled.ascent(), descent_px: -scaled.descent() }
 }
 
-/// Draws a line of text; `at_px` is the left end of its baseline (x right, y down), `size_px` the font
-/// size (pixels per em). What falls outside the image is left out.
+/// Draws a line of text. `at_px` is the left end of its baseline (x right, y down), `size_px` the font size
+/// (pixels per em). Parts outside the image are not drawn.
+///
+/// ```
+/// use ttf::text::draw_text;
+/// let mut image = image::RgbaImage::from_pixel(40, 20, image::Rgba([255; 4]));
+/// let blank = image.clone();
+/// draw_text(&mut image, [100.0, 15.0], 12.0, ttf::Colour::BLACK, "outside");
+/// assert!(image == blank);
+/// draw_text(&mut image, [2.0, 15.0], 12.0, ttf::Colour::BLACK, "I");
+/// assert!(image != blank);
+/// ```
 pub fn draw_text(image: &mut RgbaImage, at_px: [f32; 2], size_px: f32, colour: Colour, text: &str) {
     let scaled = face().as_scaled(scale(size_px));
     let mut x = at_px[0];
@@ -125,7 +135,7 @@ pub fn ink_of_coverage(coverage: f32) -> f32 {
     coverage.clamp(0.0, 1.0).powf(COVERAGE_EXPONENT)
 }
 
-/// A colour at a coverage over a straight-alpha pixel.
+/// Composites a colour at a coverage over a pixel with straight alpha.
 fn blend(pixel: &mut [u8; 4], colour: Colour, coverage: f32) {
     let below = f32::from(pixel[3]) / 255.0 * (1.0 - coverage);
     let alpha = coverage + below;
@@ -142,14 +152,15 @@ fn blend(pixel: &mut [u8; 4], colour: Colour, coverage: f32) {
 fn face() -> &'static FontRef<'static> {
     static FACE: OnceLock<FontRef<'static>> = OnceLock::new();
     FACE.get_or_init(|| {
-        FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT).expect("the embedded face parses, as a test shows")
+        FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)
+            .expect("the embedded face is a constant of the program, and a test parses it")
     })
 }
 
-/// `ab_glyph` scales by the face's height; sizes here are per em, as in typography.
+/// `ab_glyph` scales by the height of the face; sizes here are per em, as in typography.
 fn scale(size_px: f32) -> PxScale {
     let face = face();
-    let per_em = face.units_per_em().unwrap_or(1000.0);
+    let per_em = face.units_per_em().expect("the embedded face states its units per em");
     PxScale::from(size_px * face.height_unscaled() / per_em)
 }
 

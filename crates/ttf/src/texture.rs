@@ -1,31 +1,43 @@
 //! A tile as pixels: mip chain, average colour, filtered sampling.
 //!
-//! **Storage.** Square, [`TEXTURE_SIDE_PX`] a side at level 0, each level half the one before down to 1 × 1, made by a
-//! 2 × 2 box, computed in f32 from the unrounded level before and rounded once. Texels are RGBA8,
-//! sRGB-encoded, **premultiplied** (so that filtering ink on nothing never darkens its edge). **Row 0 is the
-//! bottom of the tile (v = 0), u runs right**: an image file's rows are turned over when it is read.
+//! **Storage.** Level 0 is a square of [`TEXTURE_SIDE_PX`] texels a side. Each level is half as large as the
+//! one before, down to 1 × 1: the mean of 2 × 2 texels, computed in f32 from the unrounded level before and
+//! rounded once. Texels are RGBA8, sRGB-encoded and **premultiplied**, so that filtering ink on a transparent
+//! ground never darkens its edge. **Row 0 is the bottom of the tile (v = 0), u runs right**: the rows of an
+//! image file are reversed when it is read.
 //!
-//! **Sampling** (a WGSL twin must do exactly this; S = side of level 0 in texels, all f32):
-//! 1. Footprint: A = S·∂(u, v)/∂x, B = S·∂(u, v)/∂y for one sample step on the image. With p = A.u² + B.u²,
-//!    q = A.u·A.v + B.u·B.v, r = A.v² + B.v²: λ± = (p + r)/2 ± √(((p − r)/2)² + q²); major = √λ₊, minor = √max(λ₋, 0).
+//! **Sampling** (the WGSL twin follows the same steps; S = side of level 0 in texels, all f32):
+//! 1. Footprint: A = S·∂(u, v)/∂x, B = S·∂(u, v)/∂y for one sample step on the image. With p = A.u² + B.u², q
+//!    = A.u·A.v + B.u·B.v, r = A.v² + B.v²: λ± = (p + r)/2 ± √(((p − r)/2)² + q²); major = √λ₊, minor =
+//!    √max(λ₋, 0).
 //! 2. Level: lod = log2(max(minor, major/8, 1)), clamped to the last level.
 //! 3. Taps: N = clamp(⌈major/2^lod − 0.01⌉, 1, 8), at (u, v) + ((n + ½)/N − ½)·(major/S)·e for n = 0 … N − 1,
-//!    e the unit eigenvector of λ₊: (λ₊ − r, q) or (q, λ₊ − p), whichever is longer, (1, 0) if both vanish. Equal weights.
-//! 4. Each tap is trilinear: levels ⌊lod⌋ and ⌊lod⌋ + 1 mixed by the fraction; in a level of side s the
-//!    texel coordinate is fract(u)·s − ½, bilinear, with wrap-around.
+//!    e the unit eigenvector of λ₊: (λ₊ − r, q) or (q, λ₊ − p), whichever is longer, (1, 0) if both vanish.
+//!    Equal weights.
+//! 4. Each tap is trilinear: levels ⌊lod⌋ and ⌊lod⌋ + 1 mixed by the fraction; in a level of side s the texel
+//!    coordinate is fract(u)·s − ½, bilinear, with wrap-around.
 //!
-//! The footprint of several taps tiles the major axis with boxes as wide as the minor axis, so a
-//! pattern on a stretched parameterization is neither blurred across nor aliased along.
+//! The taps divide the major axis of the footprint into boxes as wide as the minor axis, so a pattern on a
+//! stretched parameterization is neither blurred across nor aliased along that axis.
 
-/// Side of a texture at level 0 in texels. At 300 dpi a tile of 19 mm is printed with 224 pixels, so
-/// twice that leaves room to zoom.
+/// Side of a texture at level 0 in texels. At 300 dpi a tile of 19 mm is printed with 224 pixels; twice that
+/// allows zooming.
 pub const TEXTURE_SIDE_PX: u32 = 512;
 
-/// Largest number of taps along the major axis: footprints up to 8 : 1 are filtered exactly, longer
-/// ones are blurred across.
+/// Largest number of taps along the major axis. Footprints up to 8 : 1 are filtered exactly; longer ones are
+/// blurred across.
 pub const MAX_TAPS: u32 = 8;
 
 /// A tile with its mip chain.
+///
+/// ```
+/// let library = ttf::TextureLibrary::builtin().unwrap();
+/// let plain = library.texture(library.find("plain").unwrap()).unwrap();
+/// assert_eq!(plain.side_px(), ttf::texture::TEXTURE_SIDE_PX);
+/// // A tile without ink is transparent everywhere.
+/// assert_eq!(plain.sample([0.3, 0.7], [0.0; 2], [0.0; 2]), [0.0; 4]);
+/// assert_eq!(plain.average_over([0.25, 0.5, 1.0], None), [0.25, 0.5, 1.0]);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Texture {
     levels: Vec<Vec<[u8; 4]>>,
@@ -36,7 +48,7 @@ impl Texture {
     /// A texture from the premultiplied texels of level 0, bottom row first, each channel in [0, 1].
     ///
     /// # Panics
-    /// If the count is not the square of a power of two; callers resample first.
+    /// If the count of texels is not the square of a power of two. Callers resample first.
     pub(crate) fn from_premultiplied(mut texels: Vec<[f32; 4]>) -> Self {
         let mut side = texels.len().isqrt();
         assert!(side.is_power_of_two() && side * side == texels.len(), "{} texels", texels.len());
@@ -54,7 +66,7 @@ impl Texture {
         TEXTURE_SIDE_PX.min(1 << (self.levels.len() - 1))
     }
 
-    /// The mip levels, largest first; rows bottom to top, RGBA8 premultiplied.
+    /// The mip levels, largest first. Rows run bottom to top; texels are RGBA8, premultiplied.
     pub fn levels(&self) -> &[Vec<[u8; 4]>] {
         &self.levels
     }
@@ -64,16 +76,16 @@ impl Texture {
         self.mean
     }
 
-    /// The average colour when the tile lies on `background`; `ink` recolours it (see
-    /// [`crate::LayerStyle::ink`]).
+    /// The average colour of the tile on `background`; `ink` recolours it (see [`crate::LayerStyle::ink`]).
     pub fn average_over(&self, background: [f32; 3], ink: Option<[f32; 3]>) -> [f32; 3] {
         let [r, g, b, alpha] = self.mean;
         let top = ink.map_or([r, g, b], |ink| ink.map(|channel| channel * alpha));
         std::array::from_fn(|c| top[c] + background[c] * (1.0 - alpha))
     }
 
-    /// The filtered texel at `uv` (tile units, wrapping), premultiplied; `duv_dx`, `duv_dy` are the
-    /// changes of uv over one sample step to the right and down the image. See the module's text.
+    /// The filtered texel at `uv` (tile units, wrapping), premultiplied. `duv_dx` and `duv_dy` are the
+    /// changes of uv over one sample step to the right and down the image. The module documentation states
+    /// the rule.
     pub fn sample(&self, uv: [f32; 2], duv_dx: [f32; 2], duv_dy: [f32; 2]) -> [f32; 4] {
         let side = self.side_px() as f32;
         let footprint = Footprint::new(side, duv_dx, duv_dy);
@@ -123,7 +135,7 @@ impl Texture {
     }
 }
 
-/// The largest integer that is not above `x`; `f32::floor` is a library call on plain x86-64.
+/// The largest integer that is not above `x`. `f32::floor` is a library call on x86-64 without extensions.
 fn floor(x: f32) -> i32 {
     let truncated = x as i32;
     truncated - i32::from(truncated as f32 > x)
@@ -165,7 +177,7 @@ impl Footprint {
     }
 }
 
-/// Each texel the mean of a 2 × 2 box.
+/// Each texel becomes the mean of a 2 × 2 box.
 fn halve(texels: &[[f32; 4]], side: usize) -> Vec<[f32; 4]> {
     let half = side / 2;
     (0..half * half)

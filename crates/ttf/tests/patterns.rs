@@ -1,4 +1,5 @@
-//! The pattern library as a whole: every catalogue entry is drawn, seamless, and itself.
+//! The pattern library as a whole: every catalogue entry has a drawing, is seamless, and differs from the
+//! others.
 
 use std::path::Path;
 
@@ -12,15 +13,15 @@ fn parse(svg: &str) -> usvg::Tree {
     usvg::Tree::from_str(svg, &usvg::Options::default()).expect("the drawing parses")
 }
 
-/// Alpha of two drawings of the same SIDE × SIDE window whose corner is a tile corner moved by half a tile:
-/// first cut from the tile repeated, then drawn from the geometry laid out at nine places, uncut.
+/// Alpha of two drawings of the same SIDE × SIDE window, which is centred on a corner of the tile. The first
+/// is cut from the repeated tile; the second is drawn from the geometry at nine places, without cutting.
 fn tiled_and_uncut(svg: &str) -> (Vec<u8>, Vec<u8>) {
     let tree = parse(svg);
     let scale = SIDE as f32 / tree.size().width();
     let mut tile = tiny_skia::Pixmap::new(SIDE, SIDE).unwrap();
     resvg::render(&tree, tiny_skia::Transform::from_scale(scale, scale), &mut tile.as_mut());
-    // usvg cuts a drawing at its view box; a view box of nine tiles shows what lies beyond.
-    // usvg counts in pixels of 1/96 inch, the drawings in points of 1/72.
+    // usvg clips a drawing at its view box; a view box of nine tiles shows what lies beyond. usvg counts in
+    // pixels of 1/96 inch, the drawings in points of 1/72.
     let side = (tree.size().width() * 0.75).round();
     let frame = format!("viewBox=\"0 0 {side} {side}\"");
     let size = format!("width=\"{side}pt\" height=\"{side}pt\"");
@@ -42,8 +43,8 @@ fn tiled_and_uncut(svg: &str) -> (Vec<u8>, Vec<u8>) {
     (tiled, uncut.pixels().iter().map(|pixel| pixel.alpha()).collect())
 }
 
-/// Number of pixels that are solid ink in one and empty in the other. What lies between is left out: the
-/// uncut drawing lays copies over copies, which darkens the soft edges of strokes.
+/// Number of pixels that are solid ink in one drawing and empty in the other. Values in between do not count:
+/// the second drawing overlays copies, which darkens the soft edges of strokes.
 fn misfits(svg: &str) -> usize {
     let (tiled, uncut) = tiled_and_uncut(svg);
     let differ = |a: u8, b: u8| a >= 250 && b <= 20;
@@ -84,7 +85,7 @@ fn every_drawing_is_in_the_catalogue_once_and_every_entry_makes_sense() {
     let all = numbers.len();
     numbers.sort_unstable();
     numbers.dedup();
-    assert_eq!(numbers.len(), all, "an FGDC number stands twice");
+    assert_eq!(numbers.len(), all, "an FGDC number is used twice");
     for (index, pattern) in library.patterns().enumerate() {
         let size = parse(library.svg(index).unwrap()).size();
         // usvg counts in pixels of 1/96 inch.
@@ -123,7 +124,7 @@ fn every_pattern_shows_its_layers_colour_and_no_two_are_alike() {
 
 #[test]
 fn stipple_is_even() {
-    // In a window of a third of the tile the cover stays near the mean: no clumps, no rivers.
+    // In a window of a third of the tile the cover stays near the mean: there are no clumps and no gaps.
     let library = TextureLibrary::builtin().unwrap();
     for name in ["sand", "granite", "tuff", "serpentinite", "gravel"] {
         let texture = library.texture(library.find(name).unwrap()).unwrap();

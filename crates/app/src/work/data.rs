@@ -264,14 +264,14 @@ fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use render::{Isosurface, Scalar};
+    use render::{Isosurface, IsosurfaceSource};
     use ttf::RgbaFunction;
 
     #[test]
     fn a_view_lists_every_volume_it_shows() {
         let mut scene = Scene::default();
         assert_eq!(Seen::of(&scene), Seen::default());
-        let of = Scalar::Volume("impedance".into());
+        let of = IsosurfaceSource::Volume("impedance".into());
         scene.media.isosurfaces.push(Isosurface {
             of,
             value: 1.0,

@@ -6,7 +6,7 @@ use super::{Event, Outbox, Rocks};
 use crate::state::SectionKind;
 use figure::cut::{SectionCut, Source};
 use project::picture::load::Loaded;
-use render::{FaceData, NamedVolume, WellPath};
+use render::{DrawnWell, FaceData, NamedVolume};
 use std::collections::HashMap;
 use std::sync::PoisonError;
 
@@ -81,7 +81,7 @@ impl Slices {
 }
 
 /// What sections are cut from.
-pub(super) fn source<'a>(loaded: &'a Loaded, volumes: &'a [NamedVolume<'a>], wells: &'a [WellPath<'a>]) -> Source<'a> {
+pub(super) fn source<'a>(loaded: &'a Loaded, volumes: &'a [NamedVolume<'a>], wells: &'a [DrawnWell<'a>]) -> Source<'a> {
     Source { data: loaded.inputs(volumes, wells), raw: loaded.raw.as_ref() }
 }
 

@@ -5,7 +5,7 @@ use crate::style::NO_DATA;
 use glam::Vec3;
 use image::{Rgba, RgbaImage};
 use rayon::prelude::*;
-use render::{Candidates, FaceData, leaves};
+use render::{CandidateVolume, FaceData, leaves};
 
 /// Colours that a value's range is divided into.
 const COLOURS: usize = 1024;
@@ -53,7 +53,7 @@ fn raw_colour<'a>(source: &'a Source) -> impl Fn(Vec3) -> Option<[u8; 4]> + Sync
 }
 
 /// A leaf in its colour over the raw data, or the distance in its place.
-fn lay_candidates(pixel: &mut [u8], candidates: &Candidates, point: Vec3, show: FaceData) {
+fn lay_candidates(pixel: &mut [u8], candidates: &CandidateVolume, point: Vec3, show: FaceData) {
     let distance = candidates.distance_at(point);
     let byte = |channel: f32| (channel * 255.0 + 0.5) as u8;
     if show == FaceData::Distance {

@@ -1,4 +1,4 @@
-//! Up the tree: by levels, or to the highest node that is still one sheet.
+//! Climbing a tree: by a count of levels, or to the highest node that is still a single sheet.
 
 use super::error::AssemblyError;
 use super::occupancy::{Occupancy, Overlap};
@@ -6,14 +6,16 @@ use super::selection::Selection;
 use crate::forest::Forest;
 use model::FaultNetwork;
 
-/// How far a climb may go.
+/// Limits of a climb.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ClimbSettings {
-    /// Share of a node's vertices that may lie over others of the node in one fault block. A few do in noise, where a front passes above or
-    /// below a speckle and meets again; a reflector merged with another overlaps by far more. Default 0.02.
+    /// Share of a node's vertices that may lie over others of the node in one fault block. Noise makes a few,
+    /// where a front passes above or below an error and meets itself again; a reflector merged with another
+    /// overlaps by far more. Default 0.02.
     pub tolerated_share: f64,
-    /// Share of a node's vertices that may lie over what is chosen already. Where a fault is not interpreted, or not quite where it is, the two
-    /// sides of a reverse fault lie over one another in a strip; another reflector lies over all of it. Default 0.1.
+    /// Share of a node's vertices that may lie over the selected triangles. Where a fault is not interpreted,
+    /// or not exactly where it is, the two sides of a reverse fault lie over one another in a strip; another
+    /// reflector lies over all of it. Default 0.1.
     pub tolerated_beside: f64,
 }
 
@@ -23,14 +25,14 @@ impl Default for ClimbSettings {
     }
 }
 
-/// Where a climb ended.
+/// The end of a climb.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Climbed {
-    /// Index of the node.
+    /// Index of the highest node reached.
     pub node: u32,
-    /// Levels above the leaf.
+    /// Its level above the leaf.
     pub up: u32,
-    /// Overlap of the next higher node, which stopped the climb; `None` at the root.
+    /// Overlap that the next higher node would add, which ended the climb; `None` at the root.
     pub stopped_by: Option<Overlap>,
 }
 
@@ -38,6 +40,9 @@ pub struct Climbed {
 ///
 /// # Errors
 /// [`AssemblyError::BeyondRoot`].
+///
+/// # Panics
+/// When the forest has no leaf of this id.
 pub fn node_above(forest: &Forest, leaf: u32, up: u32) -> Result<u32, AssemblyError> {
     let mut node = forest.leaves[leaf as usize - 1];
     for levels in 0..up {
@@ -46,10 +51,15 @@ pub fn node_above(forest: &Forest, leaf: u32, up: u32) -> Result<u32, AssemblyEr
     Ok(node)
 }
 
-/// The highest node above `leaf` that does not lie twice over a trace of one fault block, by itself or with what is `selected` already. The leaf
-/// itself when even that overlaps.
+/// The highest node above `leaf` that lies at most once over each trace of a fault block, both by itself and
+/// together with the `selected` triangles, within the limits of `settings`. The leaf itself if its parent
+/// already overlaps too much.
 ///
-/// An overlap only grows on the way up, so the first node that has too much of it ends the climb. Cost: the triangles of that node.
+/// An overlap only grows on the way up, so the first node with too much of it ends the climb. Cost: the
+/// triangles of that node.
+///
+/// # Panics
+/// When the forest has no leaf of this id.
 pub fn highest_valid(
     forest: &Forest,
     leaf: u32,
@@ -61,7 +71,7 @@ pub fn highest_valid(
     for range in selected.ranges() {
         occupancy.add(range.clone());
     }
-    // What overlaps already is not this node's doing.
+    // The overlap of the selection with itself is not the node's.
     let before = (occupancy.vertices(), occupancy.overlap());
     occupancy.set_apart();
     let mut node = forest.leaves[leaf as usize - 1];

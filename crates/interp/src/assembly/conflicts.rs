@@ -1,28 +1,28 @@
-//! Where horizons contradict one another: one leaf in two of them, sheets that cross, an order other than the stratigraphy's.
+//! Contradictions between horizons: leaves in two of them, sheets that cross, an order other than that of the
+//! stratigraphy.
 
 use super::leaf_of;
 use super::selection::Selection;
 use crate::forest::Forest;
 use crate::reassembly::VoxelSheet;
-use serde::Serialize;
 
 /// A horizon to compare with others.
 #[derive(Debug, Clone)]
 pub struct NamedSheets<'a> {
-    /// Its name.
+    /// Name of the horizon.
     pub name: &'a str,
     /// Its sheets on the survey's lattice.
     pub sheets: &'a [VoxelSheet],
-    /// Its triangles, if it was assembled from the forest at hand.
+    /// Its triangles, if it was assembled from the present forest.
     pub selection: Option<&'a Selection>,
 }
 
-/// What counts as a crossing.
+/// Tolerances of [`conflicts`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConflictSettings {
-    /// Depth difference from which on one horizon is above the other, samples; default 0.5.
+    /// Depth difference above which one horizon is above the other, samples; default 0.5.
     pub tolerance: f32,
-    /// Share of the common traces on the lesser side that is forgiven; default 0.01.
+    /// Largest share of the common traces on the rarer side that does not count as a crossing; default 0.01.
     pub forgiven_share: f64,
 }
 
@@ -33,36 +33,35 @@ impl Default for ConflictSettings {
 }
 
 /// A contradiction between two horizons.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[serde(tag = "conflict", rename_all = "kebab-case")]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Conflict {
-    /// Both hold triangles of the same leaves.
+    /// Both contain triangles of the same leaves.
     SharedLeaves {
         /// The two horizons.
         horizons: [String; 2],
         /// Ids of the leaves.
         leaves: Vec<u32>,
-        /// Triangles in both.
+        /// Count of triangles in both.
         triangles: usize,
     },
-    /// One is above the other here and below it there.
+    /// One horizon is above the other at some traces and below it at others.
     Crossing {
         /// The two horizons; the first is above at more traces.
         horizons: [String; 2],
-        /// Traces at which the first is above.
+        /// Count of traces at which the first is above.
         above: usize,
-        /// Traces at which it is below.
+        /// Count of traces at which it is below.
         below: usize,
         /// The largest distance by which it is below, samples.
         worst: f32,
-        /// Inline and crossline index of that.
-        at: [usize; 2],
+        /// Inline and crossline index of the trace with that distance.
+        at_voxel: [usize; 2],
     },
-    /// The younger one lies below the older one.
+    /// The younger horizon lies below the older one.
     Swapped {
-        /// The younger and the older one, by the stratigraphy.
+        /// The younger and the older horizon, by the stratigraphy.
         horizons: [String; 2],
-        /// Traces at which the younger one is below.
+        /// Count of traces at which the younger one is below.
         traces: usize,
     },
 }
@@ -78,7 +77,9 @@ impl Conflict {
     }
 }
 
-/// Compares every two horizons, given youngest first. `may_cross(young, old)` says which pairs a contact rule lets cut each other.
+/// Finds the conflicts between all pairs of horizons, which are given youngest first. `size` is `[inlines,
+/// crosslines]`. `may_cross(young, old)` returns whether a contact rule lets a pair cut each other; such
+/// pairs are only compared for shared leaves, and for those only when `forest` is given.
 pub fn conflicts(
     forest: Option<&Forest>,
     size: [usize; 2],
@@ -101,7 +102,7 @@ pub fn conflicts(
             if may_cross(young, old) {
                 continue;
             }
-            let order = Order::of(size, a.sheets, b.sheets, settings.tolerance);
+            let order = RelativeDepth::of(size, a.sheets, b.sheets, settings.tolerance);
             let forgiven = settings.forgiven_share * (order.above + order.below) as f64;
             if order.above.min(order.below) as f64 > forgiven {
                 found.push(order.crossing(names()));
@@ -113,16 +114,17 @@ pub fn conflicts(
     found
 }
 
-/// How often the first horizon is above and below the second, in one block on one trace.
+/// How often, per block and trace, the first horizon is above the second and how often below.
 #[derive(Default)]
-struct Order {
+struct RelativeDepth {
     above: usize,
     below: usize,
+    /// The largest distance by which it is above, samples, and the trace with it.
     most_above: (f32, [usize; 2]),
     most_below: (f32, [usize; 2]),
 }
 
-impl Order {
+impl RelativeDepth {
     fn of(size: [usize; 2], a: &[VoxelSheet], b: &[VoxelSheet], tolerance: f32) -> Self {
         let mut order = Self::default();
         for (left, right) in a.iter().flat_map(|left| b.iter().map(move |right| (left, right))) {
@@ -132,7 +134,7 @@ impl Order {
             for (trace, (za, zb)) in left.z.iter().zip(&right.z).enumerate() {
                 let by = zb - za;
                 let place = [trace / size[1], trace % size[1]];
-                // A hole in either compares as neither.
+                // NaN (a hole) is neither above nor below.
                 if by > tolerance {
                     order.above += 1;
                     if by > order.most_above.0 {
@@ -151,11 +153,11 @@ impl Order {
 
     fn crossing(&self, [a, b]: [String; 2]) -> Conflict {
         if self.above >= self.below {
-            let (worst, at) = self.most_below;
-            Conflict::Crossing { horizons: [a, b], above: self.above, below: self.below, worst, at }
+            let (worst, at_voxel) = self.most_below;
+            Conflict::Crossing { horizons: [a, b], above: self.above, below: self.below, worst, at_voxel }
         } else {
-            let (worst, at) = self.most_above;
-            Conflict::Crossing { horizons: [b, a], above: self.below, below: self.above, worst, at }
+            let (worst, at_voxel) = self.most_above;
+            Conflict::Crossing { horizons: [b, a], above: self.below, below: self.above, worst, at_voxel }
         }
     }
 }

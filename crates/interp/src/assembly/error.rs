@@ -1,19 +1,19 @@
-//! What can stand against a pick.
+//! Errors of picks.
 
 use glam::Vec3;
 
-/// Why a pick has no node.
+/// Why a pick selects no node.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AssemblyError {
-    /// There is nothing to pick.
+    /// The extraction has no surfaces.
     #[error("the extraction found no surface at all; extract with other settings")]
     Empty,
-    /// The place is not in the volume.
+    /// The point is outside the volume.
     #[error("{at} lies outside the volume of {size:?} voxels; pick inside it")]
     Outside {
-        /// Where, voxels.
+        /// The point, voxels.
         at: Vec3,
-        /// `[inlines, crosslines, samples]`.
+        /// Size of the volume, `[inlines, crosslines, samples]`.
         size: [usize; 3],
     },
     /// No surface is near enough.
@@ -21,25 +21,25 @@ pub enum AssemblyError {
         "no candidate lies within {max_distance} voxels of {at}: the nearest is leaf {leaf}, {distance:.1} voxels away at {nearest}; pick there"
     )]
     NothingNear {
-        /// Where, voxels.
+        /// The point, voxels.
         at: Vec3,
-        /// The limit.
+        /// The greatest distance, voxels.
         max_distance: f32,
-        /// The nearest leaf.
+        /// Id of the nearest leaf.
         leaf: u32,
         /// Its distance, voxels.
         distance: f32,
         /// Its closest point, voxels.
         nearest: Vec3,
     },
-    /// The tree is not as high.
+    /// The tree is not high enough.
     #[error("the tree of leaf {leaf} has {levels} levels above it, {up} were asked for; climb by at most {levels}")]
     BeyondRoot {
-        /// The leaf.
+        /// Id of the leaf.
         leaf: u32,
-        /// Levels above it.
+        /// Count of levels above it.
         levels: u32,
-        /// Levels asked for.
+        /// Requested level.
         up: u32,
     },
 }

@@ -1,37 +1,39 @@
-//! What a node was, in a few numbers that outlive its extraction: a replay finds out whether a pick still means the same.
+//! A record of a node in a few numbers that outlive its extraction, by which a replay finds out whether a
+//! pick still means the same.
 
 use crate::forest::Forest;
 use serde::{Deserialize, Serialize};
 
-/// What is remembered of a picked node.
+/// The record of a picked node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Fingerprint {
-    /// Its triangles.
+    /// Count of its triangles.
     pub triangles: u32,
     /// Smallest inline and crossline index.
     pub low: [u16; 2],
     /// Largest inline and crossline index.
     pub high: [u16; 2],
-    /// Mean sample of its triangles' corners.
+    /// Mean sample index of its triangles' corners.
     pub mean_z: f32,
-    /// FNV-1a of the corners of its triangles in the order of the forest.
+    /// FNV-1a hash of the corners of its triangles in the order of the forest.
     pub digest: u32,
 }
 
-/// How a node found again compares with what it was.
+/// How a node compares with a recorded one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Fit {
-    /// The very same triangles.
+pub enum NodeFit {
+    /// The same triangles.
     Same,
-    /// The same place and extent for all practical purposes: count within 5 %, bounds within 3 traces, mean within half a sample.
+    /// The same place and extent for practical purposes: count within 5 %, bounds within 3 traces, mean
+    /// within half a sample.
     Similar,
-    /// Something else.
+    /// Another node.
     Different,
 }
 
 impl Fingerprint {
-    /// Of a node.
+    /// The fingerprint of a node.
     pub fn of(forest: &Forest, node: u32) -> Self {
         let range = forest.nodes[node as usize].triangles.clone();
         let (mut low, mut high) = ([u16::MAX; 2], [0; 2]);
@@ -51,14 +53,14 @@ impl Fingerprint {
         Self { triangles: range.len() as u32, low, high, mean_z: (sum / corners) as f32, digest }
     }
 
-    /// How `now` compares with what was remembered.
-    pub fn compare(&self, now: &Self) -> Fit {
+    /// Compares `now` with this record.
+    pub fn compare(&self, now: &Self) -> NodeFit {
         if self == now {
-            return Fit::Same;
+            return NodeFit::Same;
         }
         let count = f64::from(self.triangles.abs_diff(now.triangles)) <= 0.05 * f64::from(self.triangles);
         let bounds = (0..2)
             .all(|axis| self.low[axis].abs_diff(now.low[axis]) <= 3 && self.high[axis].abs_diff(now.high[axis]) <= 3);
-        if count && bounds && (self.mean_z - now.mean_z).abs() <= 0.5 { Fit::Similar } else { Fit::Different }
+        if count && bounds && (self.mean_z - now.mean_z).abs() <= 0.5 { NodeFit::Similar } else { NodeFit::Different }
     }
 }

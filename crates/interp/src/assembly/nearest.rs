@@ -1,7 +1,8 @@
-//! From a picked place to the leaf closest to it: exact, on the triangles.
+//! The leaf closest to a picked point, by the exact distance to the triangles.
 //!
-//! The distance volume answers the same for voxels within its reach. This search also says what is nearest when nothing is near, needs no
-//! volume, and takes milliseconds: every triangle is within one cell of its first vertex, so most are passed over by that vertex alone.
+//! The distance volume gives the same answer for voxels within its range. This search also finds the nearest
+//! leaf when none is within range, needs no volume, and takes milliseconds: a triangle is within one cell of
+//! its first vertex, so most triangles are excluded by that vertex alone.
 
 use super::error::AssemblyError;
 use super::leaf_of;
@@ -9,27 +10,28 @@ use crate::forest::Forest;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// The candidate closest to a place.
+/// The leaf closest to a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Hit {
+pub struct ClosestLeaf {
     /// Leaf id, from 1.
     pub leaf: u32,
     /// Index of the triangle.
     pub triangle: u32,
-    /// Distance, voxels.
+    /// Distance of the point, voxels.
     pub distance: f32,
-    /// The closest point.
+    /// The closest point of the triangle, voxels.
     pub nearest: Vec3,
 }
 
-/// Triangles looked at by one task.
+/// Count of triangles that one task searches.
 const CHUNK: usize = 1 << 16;
 
-/// The leaf closest to `at`, no farther than `max_distance` voxels; of equal distances the first triangle.
+/// The leaf closest to the voxel position `at`, no farther than `max_distance` voxels; of equal distances the
+/// first triangle. A position up to half a voxel outside the volume counts as inside.
 ///
 /// # Errors
 /// [`AssemblyError::Outside`], [`AssemblyError::Empty`] or [`AssemblyError::NothingNear`].
-pub fn leaf_at(forest: &Forest, at: Vec3, max_distance: f32) -> Result<Hit, AssemblyError> {
+pub fn leaf_at(forest: &Forest, at: Vec3, max_distance: f32) -> Result<ClosestLeaf, AssemblyError> {
     let size = forest.surfaces.size;
     let inside = |c: f32, n: usize| c >= -0.5 && c <= n as f32 - 0.5;
     if !(inside(at.x, size[0]) && inside(at.y, size[1]) && inside(at.z, size[2])) {
@@ -45,7 +47,7 @@ pub fn leaf_at(forest: &Forest, at: Vec3, max_distance: f32) -> Result<Hit, Asse
             let mut best: Option<(f32, u32, Vec3)> = None;
             for (n, corners) in triangles.iter().enumerate() {
                 let first = &vertices[corners[0] as usize];
-                // The triangle reaches one trace beyond its first vertex at most.
+                // The triangle reaches at most one trace beyond its first vertex.
                 let off = (f32::from(first.x) - at.x).abs().max((f32::from(first.y) - at.y).abs()) - 1.0;
                 if best.is_some_and(|(least, ..)| off > least) {
                     continue;
@@ -68,10 +70,10 @@ pub fn leaf_at(forest: &Forest, at: Vec3, max_distance: f32) -> Result<Hit, Asse
     if distance > max_distance {
         return Err(AssemblyError::NothingNear { at, max_distance, leaf, distance, nearest });
     }
-    Ok(Hit { leaf, triangle, distance, nearest })
+    Ok(ClosestLeaf { leaf, triangle, distance, nearest })
 }
 
-/// The point of a triangle closest to `p`, by the region of the triangle's plane that `p` projects to.
+/// The point of a triangle closest to `p`, by the region of the triangle's plane into which `p` projects.
 fn closest_point([a, b, c]: [Vec3; 3], p: Vec3) -> Vec3 {
     let (ab, ac, ap) = (b - a, c - a, p - a);
     let (d1, d2) = (ab.dot(ap), ac.dot(ap));

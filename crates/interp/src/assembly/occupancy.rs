@@ -1,24 +1,23 @@
-//! Which traces are taken: one vertex a trace and fault block is what a horizon may have.
+//! Which traces are occupied: a horizon may have one vertex per trace and fault block.
 //!
-//! Memory: 4 bytes a trace, 8 a vertex that was added, a bit a vertex of the extraction.
+//! Memory: 4 bytes a trace, 8 bytes per added vertex, and one bit per vertex of the extraction.
 
 use crate::surfaces::Surfaces;
 use glam::Vec3;
 use model::FaultNetwork;
-use serde::Serialize;
 use std::ops::Range;
 
 /// Where sheets lie over one another.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Overlap {
-    /// Vertices that share trace and fault block with one that was there before.
+    /// Count of vertices that share trace and fault block with an earlier vertex.
     pub traces: usize,
-    /// Those of them that share it with a vertex of before [`Occupancy::set_apart`].
+    /// Count of those that share it with a vertex added before [`Occupancy::set_apart`].
     pub beside: usize,
     /// The largest distance between two such vertices, samples.
     pub apart: f32,
-    /// Where that is: inline index, crossline index, sample.
-    pub at: [f32; 3],
+    /// Voxel position of the vertex with that distance: inline index, crossline index, sample.
+    pub at_voxel: [f32; 3],
 }
 
 /// No entry.
@@ -29,15 +28,15 @@ pub struct Occupancy<'a> {
     surfaces: &'a Surfaces,
     blocks: &'a FaultNetwork,
     seen: Vec<u64>,
-    /// First entry of each trace.
+    /// First entry of each trace, or `NONE`.
     heads: Vec<u32>,
     entries: Vec<Entry>,
-    /// Entries before this one are of others.
+    /// Count of entries added before [`Occupancy::set_apart`].
     others: usize,
     overlap: Overlap,
 }
 
-/// A vertex on its trace.
+/// A vertex in the list of its trace.
 struct Entry {
     z: f32,
     block: u16,
@@ -45,7 +44,7 @@ struct Entry {
 }
 
 impl<'a> Occupancy<'a> {
-    /// Nothing added yet.
+    /// An occupancy without vertices.
     pub fn new(surfaces: &'a Surfaces, blocks: &'a FaultNetwork) -> Self {
         Self {
             surfaces,
@@ -58,12 +57,12 @@ impl<'a> Occupancy<'a> {
         }
     }
 
-    /// What was added so far is others', and overlaps with it are counted apart.
+    /// Sets apart the vertices added so far: overlaps with them are counted in [`Overlap::beside`].
     pub fn set_apart(&mut self) {
         self.others = self.entries.len();
     }
 
-    /// Adds the vertices of triangles; those added before count once.
+    /// Adds the vertices of a range of triangles. A vertex that was added before is skipped.
     pub fn add(&mut self, triangles: Range<u32>) {
         let surfaces = self.surfaces;
         for &v in surfaces.triangles[triangles.start as usize..triangles.end as usize].iter().flatten() {
@@ -85,7 +84,7 @@ impl<'a> Occupancy<'a> {
                     beside |= (at as usize) < self.others;
                     let apart = (entry.z - vertex.z).abs();
                     if apart > self.overlap.apart {
-                        (self.overlap.apart, self.overlap.at) = (apart, place.to_array());
+                        (self.overlap.apart, self.overlap.at_voxel) = (apart, place.to_array());
                     }
                 }
                 at = entry.next;
@@ -102,7 +101,7 @@ impl<'a> Occupancy<'a> {
         self.entries.len()
     }
 
-    /// Where what was added lies over itself.
+    /// The overlap of the added vertices.
     pub fn overlap(&self) -> Overlap {
         self.overlap
     }

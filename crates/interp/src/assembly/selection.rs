@@ -1,8 +1,20 @@
-//! A set of triangles as sorted, disjoint ranges: nodes of trees are ranges, so a few of them describe a horizon.
+//! A set of triangles as sorted, disjoint ranges. Nodes of trees are ranges, so a few ranges describe a
+//! horizon.
 
 use std::ops::Range;
 
 /// A set of triangles of a forest.
+///
+/// ```
+/// use interp::assembly::Selection;
+///
+/// let mut selection = Selection::default();
+/// selection.insert(0..10);
+/// selection.insert(20..30);
+/// selection.remove(&(5..25));
+/// assert_eq!(selection.ranges(), [0..5, 25..30]);
+/// assert!(selection.contains(4) && !selection.contains(5));
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {
     /// Sorted, disjoint, not touching one another, none empty.
@@ -10,12 +22,12 @@ pub struct Selection {
 }
 
 impl Selection {
-    /// Adds a range.
+    /// Adds a range of triangles.
     pub fn insert(&mut self, range: Range<u32>) {
         if range.is_empty() {
             return;
         }
-        // Everything that overlaps or touches the new range becomes one with it.
+        // Everything that overlaps or touches the new range is joined with it.
         let first = self.ranges.partition_point(|r| r.end < range.start);
         let last = self.ranges.partition_point(|r| r.start <= range.end);
         let (mut start, mut end) = (range.start, range.end);
@@ -26,7 +38,7 @@ impl Selection {
         self.ranges.splice(first..last, std::iter::once(start..end));
     }
 
-    /// Takes a range out.
+    /// Removes a range of triangles.
     pub fn remove(&mut self, range: &Range<u32>) {
         if range.is_empty() {
             return;
@@ -39,7 +51,7 @@ impl Selection {
         self.ranges = self.ranges.iter().flat_map(cut).filter(|r| !r.is_empty()).collect();
     }
 
-    /// Whether it holds a triangle.
+    /// Whether the set contains a triangle.
     pub fn contains(&self, triangle: u32) -> bool {
         let after = self.ranges.partition_point(|r| r.end <= triangle);
         self.ranges.get(after).is_some_and(|r| r.start <= triangle)
@@ -60,12 +72,12 @@ impl Selection {
         self.ranges.iter().map(ExactSizeIterator::len).sum()
     }
 
-    /// Whether there is no triangle.
+    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         self.ranges.is_empty()
     }
 
-    /// What two sets share.
+    /// The triangles that are in both sets.
     pub fn intersection(&self, other: &Self) -> Self {
         let mut shared = Self::default();
         for range in &self.ranges {

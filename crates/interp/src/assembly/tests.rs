@@ -13,8 +13,8 @@ use synth::closed_form::ClosedForm;
 /// One surface: z over traces; a cell has two triangles where its four corners have a vertex.
 pub(crate) type Height<'a> = &'a dyn Fn(usize, usize) -> Option<f32>;
 
-/// A forest of surfaces that may hold several vertices a trace: each surface is a list of branches, joined along the traces at which their
-/// heights agree.
+/// A forest of surfaces that may hold several vertices a trace: each surface is a list of branches, joined
+/// along the traces at which their heights agree.
 pub(crate) fn forest_of(size: [usize; 3], surfaces: &[&[Height]], leaf_triangles: u32) -> Forest {
     let mut all = Surfaces { size, ..Surfaces::default() };
     for branches in surfaces {
@@ -122,7 +122,8 @@ fn picks_add_and_take_away_in_order() {
     assert_eq!(selection.len(), 1024);
 }
 
-/// A surface that folds back under itself: the left half belongs to z = 20, the right half runs back below the left.
+/// A surface that folds back under itself: the left half belongs to z = 20, the right half runs back below
+/// the left.
 #[test]
 fn the_highest_valid_node_is_the_last_one_without_overlap() {
     let ramp = |x: usize, _: usize| Some(20.0 + 0.1 * x as f32);
@@ -138,7 +139,8 @@ fn the_highest_valid_node_is_the_last_one_without_overlap() {
     assert_eq!(node_above(&forest, 1, climbed.up), Ok(climbed.node));
     assert!(node.parent.is_some() && node.triangles.start == 0);
 
-    // Two sheets that do not overlap climb to the root, unless the horizon has something over the same traces already.
+    // Two sheets that do not overlap climb to the root, unless the horizon has something over the same traces
+    // already.
     let forest = two_planes();
     let climbed = highest_valid(&forest, 5, &Selection::default(), &none, &settings);
     assert_eq!((climbed.up, climbed.stopped_by), (3, None));
@@ -151,7 +153,8 @@ fn the_highest_valid_node_is_the_last_one_without_overlap() {
     assert_eq!(highest_valid(&forest, 8, &selected, &none, &settings).up, 3);
 }
 
-/// Without the fault, the sides of a reverse fault overlap in a strip; a reflector on top of another does everywhere.
+/// Without the fault, the sides of a reverse fault overlap in a strip; a reflector on top of another does
+/// everywhere.
 #[test]
 fn a_climb_tolerates_a_strip_over_what_is_chosen_and_not_more() {
     let left = |x: usize, _: usize| (x <= 16).then_some(20.0);
@@ -183,7 +186,8 @@ fn network() -> (SurveyGeometry, FaultNetwork) {
 #[test]
 fn a_fault_turns_an_overlap_into_two_sheets_of_their_own_blocks() {
     let (geometry, faulted) = network();
-    // The fault is x = 16 + (z − 31.5); the hanging wall (x beyond it) at 26 reaches back to x = 11, the footwall at 36 on to x = 20.
+    // The fault is x = 16 + (z − 31.5); the hanging wall (x beyond it) at 26 reaches back to x = 11, the
+    // footwall at 36 on to x = 20.
     let footwall = |x: usize, _: usize| (x <= 20).then_some(36.0);
     let hanging = |x: usize, _: usize| (x >= 11).then_some(26.0);
     let forest = forest_of(SIZE, &[&[&footwall], &[&hanging]], 128);
@@ -220,7 +224,8 @@ fn a_fault_turns_an_overlap_into_two_sheets_of_their_own_blocks() {
     }
 }
 
-/// A plane up to inline `left` and a deeper one from inline `right`, all of both, and a vertical fault at inline 16.
+/// A plane up to inline `left` and a deeper one from inline `right`, all of both, and a vertical fault at
+/// inline 16.
 fn beside_a_fault(left: usize, right: usize) -> (Forest, Selection, FaultNetwork) {
     let upper: Height = &|x, _| (x <= left).then_some(12.0);
     let lower: Height = &|x, _| (x >= right).then_some(20.0);
@@ -233,7 +238,8 @@ fn beside_a_fault(left: usize, right: usize) -> (Forest, Selection, FaultNetwork
     (forest, all, faulted.unwrap())
 }
 
-/// Both sides were tracked six traces past a vertical fault: once it is drawn, each block keeps its own sheet.
+/// Both sides were tracked six traces past a vertical fault: once it is drawn, each block keeps its own
+/// sheet.
 #[test]
 fn what_was_tracked_past_a_fault_is_left_out() {
     let (forest, all, faulted) = beside_a_fault(22, 10);
@@ -249,7 +255,8 @@ fn what_was_tracked_past_a_fault_is_left_out() {
     }
 }
 
-/// The left side's own reflection ends ten traces before the fault; what the right side's tracking left along the fault is no sheet of the left.
+/// The left side's own reflection ends ten traces before the fault; what the right side's tracking left along
+/// the fault is no sheet of the left.
 #[test]
 fn a_fringe_along_a_fault_is_left_out() {
     let (forest, all, faulted) = beside_a_fault(6, 12);
@@ -293,11 +300,11 @@ fn a_fingerprint_knows_the_same_the_similar_and_the_different() {
     let print = |forest: &Forest, leaf, up| Fingerprint::of(forest, node_above(forest, leaf, up).unwrap());
     let plane = print(&forest, 1, 3);
     assert_eq!((plane.triangles, plane.low, plane.high, plane.mean_z), (1024, [0, 0], [32, 16], 20.25));
-    assert_eq!(plane.compare(&print(&two_planes(), 2, 3)), Fit::Same);
+    assert_eq!(plane.compare(&print(&two_planes(), 2, 3)), NodeFit::Same);
     let shifted = forest_of(SIZE, &[&[&|_, _| Some(20.5)]], 128);
-    assert_eq!(plane.compare(&print(&shifted, 1, 3)), Fit::Similar);
-    assert_eq!(plane.compare(&print(&forest, 1, 2)), Fit::Different);
-    assert_eq!(plane.compare(&print(&forest, 9, 3)), Fit::Different);
+    assert_eq!(plane.compare(&print(&shifted, 1, 3)), NodeFit::Similar);
+    assert_eq!(plane.compare(&print(&forest, 1, 2)), NodeFit::Different);
+    assert_eq!(plane.compare(&print(&forest, 9, 3)), NodeFit::Different);
 }
 
 #[test]
@@ -331,8 +338,10 @@ fn contradictions_between_horizons_are_found() {
     let steep_sheets = reassemble(&steep, &upper, &[], &none).sheets;
     let steep = NamedSheets { name: "s", sheets: &steep_sheets, selection: None };
     let crossing = find(&[steep.clone(), named("l", &lower, &lower_sheets)]);
-    let [Conflict::Crossing { horizons, above, below, worst, at }] = &crossing[..] else { panic!("{crossing:?}") };
-    assert_eq!((horizons, *worst, at[0]), (&["l".to_owned(), "s".to_owned()], 10.0, 0));
+    let [Conflict::Crossing { horizons, above, below, worst, at_voxel }] = &crossing[..] else {
+        panic!("{crossing:?}")
+    };
+    assert_eq!((horizons, *worst, at_voxel[0]), (&["l".to_owned(), "s".to_owned()], 10.0, 0));
     assert_eq!((*above, *below), (18 * 17, 13 * 17));
     assert!(
         conflicts(None, size, &[steep, named("l", &lower, &lower_sheets)], |_, _| true, &ConflictSettings::default())

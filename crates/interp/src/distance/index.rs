@@ -1,8 +1,10 @@
-//! Triangles by where they are.
+//! An index of triangles by position.
 //!
-//! Bricks are of 4 × 4 cells and 8 samples, in a brick by cell, so that an empty brick is passed over at once and a cell is found from any depth. A
-//! triangle stands in every interval of depth that it reaches into, so steep ones need no allowance. For the whole volume there are but
-//! lists of triangle numbers by row of bricks; of the bricks, those rows exist that the lines at work can reach, each made once.
+//! A brick spans 4 × 4 cells and 8 samples and holds its triangles by cell, so that an empty brick is skipped
+//! at once and a cell is found from any depth. A triangle is stored in every interval of depth that it
+//! reaches into, so steep triangles need no special handling. For the whole volume only lists of triangle
+//! numbers per row of bricks exist. Bricks are made for those rows that the current inlines can reach, each
+//! row once.
 
 use super::triangle::CellTriangle;
 use crate::error::Error;
@@ -20,7 +22,7 @@ const CELLS: usize = BRICK * BRICK;
 /// Samples of an interval of depth.
 pub(super) const INTERVAL: usize = 8;
 
-/// Triangles that are put into lists at a time.
+/// Count of triangles put into lists at a time.
 const CHUNK: usize = 1 << 16;
 
 /// The triangles of each row of bricks, ascending.
@@ -28,14 +30,14 @@ pub(super) struct TriangleLists {
     chunks: Vec<TriangleList>,
 }
 
-/// Those of a range of triangles.
+/// The triangles of each row of bricks, for one range of triangles.
 struct TriangleList {
-    /// First of each row; one more at the end.
+    /// Start of each row, and the end of the last.
     starts: Vec<u32>,
     triangles: Vec<u32>,
 }
 
-/// Near corner of the cell that a triangle lies in.
+/// Near corner of the cell that contains a triangle.
 fn cell(forest: &Forest, triangle: [u32; 3]) -> [usize; 2] {
     let [a, b, c] = triangle.map(|v| forest.surfaces.vertices[v as usize]);
     [a.x.min(b.x).min(c.x).into(), a.y.min(b.y).min(c.y).into()]
@@ -84,7 +86,7 @@ impl TriangleList {
     }
 }
 
-/// Whether a triangle is what the search relies on.
+/// Whether a triangle lies in the lattice, within one cell, with its corners on three traces.
 fn within_a_cell(forest: &Forest, triangle: [u32; 3]) -> bool {
     let [nx, ny, _] = forest.surfaces.size;
     let corners = triangle.map(|v| forest.surfaces.vertices[v as usize]);
@@ -97,18 +99,18 @@ fn within_a_cell(forest: &Forest, triangle: [u32; 3]) -> bool {
     corners.iter().all(near) && a != b && b != c && c != a
 }
 
-/// The triangles around the lines at work, row by row of bricks.
+/// The triangles near the current inlines, by row of bricks.
 pub(super) struct CellIndex {
-    /// Number of the first row, and all that there are.
+    /// Number of the first row that exists.
     first: usize,
     rows: VecDeque<BrickRow>,
-    /// Rows of the volume, bricks of a row, and intervals of depth.
+    /// Counts of rows of the volume, of bricks in a row, and of intervals of depth.
     counts: [usize; 3],
 }
 
 /// A row of bricks.
 struct BrickRow {
-    /// First triangle of each (brick along y, interval, cell); one more at the end.
+    /// Start of each (brick along y, interval, cell), and the end of the last.
     starts: Vec<u32>,
     triangles: Vec<CellTriangle>,
     /// Least and greatest z of the triangles of each brick.
@@ -117,7 +119,7 @@ struct BrickRow {
 
 /// The triangles of a brick.
 pub(super) struct Brick<'a> {
-    /// First triangle of each cell; one more at the end.
+    /// Start of each cell, and the end of the last.
     starts: &'a [u32],
     triangles: &'a [CellTriangle],
     /// Least and greatest z; `None` when it is empty.
@@ -125,7 +127,7 @@ pub(super) struct Brick<'a> {
 }
 
 impl<'a> Brick<'a> {
-    /// Triangles of a cell: row · 4 + column of it.
+    /// The triangles of a cell, numbered row · 4 + column within the brick.
     #[inline(always)]
     pub(super) fn in_cell(&self, cell: usize) -> &'a [CellTriangle] {
         &self.triangles[self.starts[cell] as usize..self.starts[cell + 1] as usize]
@@ -135,13 +137,13 @@ impl<'a> Brick<'a> {
 /// The triangles of a cell.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Cell<'a> {
-    /// Starts, from the first interval's on.
+    /// Starts, beginning with the first interval.
     starts: &'a [u32],
     triangles: &'a [CellTriangle],
 }
 
 impl<'a> Cell<'a> {
-    /// Those in an interval of depth.
+    /// The triangles in an interval of depth.
     #[inline(always)]
     pub(super) fn within(&self, interval: usize) -> &'a [CellTriangle] {
         match self.starts.get(interval * CELLS..interval * CELLS + 2) {
@@ -152,13 +154,14 @@ impl<'a> Cell<'a> {
 }
 
 impl CellIndex {
-    /// An index of a volume of `size`, of no rows yet.
+    /// An index for a volume of `size`, without rows.
     pub(super) fn new(size: [usize; 3]) -> Self {
         let counts = [size[0].div_ceil(BRICK), size[1].div_ceil(BRICK), size[2].div_ceil(INTERVAL).max(1)];
         Self { first: 0, rows: VecDeque::new(), counts }
     }
 
-    /// Goes on to the lines `x`, which are further on than any before: makes the rows of their cells and forgets those before.
+    /// Advances to the inlines `x`, which must lie beyond all earlier ones: makes the rows of their cells and
+    /// drops the rows before.
     pub(super) fn advance(&mut self, forest: &Forest, lists: &TriangleLists, x: Range<usize>) {
         let from = x.start / BRICK;
         while self.first < from && self.rows.pop_front().is_some() {
@@ -174,12 +177,12 @@ impl CellIndex {
         self.rows.extend(made);
     }
 
-    /// Intervals of depth.
+    /// Count of intervals of depth.
     pub(super) fn intervals(&self) -> usize {
         self.counts[2]
     }
 
-    /// Interval that a depth lies in; the first and last reach to infinity.
+    /// The interval that contains a depth; the first and the last are open.
     #[inline(always)]
     pub(super) fn interval(&self, z: f32) -> usize {
         interval(z, self.counts[2])
@@ -192,11 +195,11 @@ impl CellIndex {
             return Cell::default();
         };
         let start = y / BRICK * self.counts[2] * CELLS + (x % BRICK) * BRICK + y % BRICK;
-        // Past the last interval other bricks follow, which are asked for by nobody.
+        // The slice also contains later bricks; nobody asks for those.
         Cell { starts: row.starts.get(start..).unwrap_or_default(), triangles: &row.triangles }
     }
 
-    /// A brick, by its number along x and y in the volume, and the interval of depth.
+    /// A brick, by its numbers along x and y in the volume and its interval of depth.
     #[inline(always)]
     pub(super) fn brick(&self, x: usize, y: usize, interval: usize) -> Brick<'_> {
         let row = &self.rows[x - self.first];
@@ -206,7 +209,7 @@ impl CellIndex {
         Brick { starts, triangles: &row.triangles, z_range: (!is_empty).then(|| row.z_ranges[brick]) }
     }
 
-    /// Bricks, numbered in the volume, that have cells within `reach` of a column.
+    /// The bricks, numbered in the volume, that have cells within `reach` of a column.
     #[inline(always)]
     pub(super) fn bricks_within(&self, column: [usize; 2], reach: usize) -> [Range<usize>; 2] {
         let around = |at: usize, within: Range<usize>| {
@@ -216,10 +219,10 @@ impl CellIndex {
     }
 }
 
-/// Interval of `count` that a depth lies in.
+/// The interval, of `count`, that contains a depth.
 #[inline(always)]
 fn interval(z: f32, count: usize) -> usize {
-    // The conversion saturates.
+    // The conversion to i32 saturates.
     ((z * (1.0 / INTERVAL as f32)) as i32).max(0).min(count as i32 - 1) as usize
 }
 
@@ -228,7 +231,7 @@ impl BrickRow {
         let mut starts = vec![0u32; bricks * intervals * CELLS + 1];
         let mut found: Vec<(u32, CellTriangle)> = Vec::new();
         let span = |triangle: &CellTriangle| triangle.z_range().map(|z| interval(z, intervals));
-        // Triangles ascend, and so do the leaves they are in.
+        // Triangles ascend, and so do their leaves.
         let (mut leaf, mut end) = (0, 0);
         for n in lists.of_row(row) {
             if n >= end {
@@ -265,7 +268,7 @@ impl BrickRow {
     }
 }
 
-/// A triangle as the search wants it.
+/// A triangle in the form that the search uses.
 fn cell_triangle(forest: &Forest, corners: [u32; 3], cell: [usize; 2], leaf: u32) -> CellTriangle {
     // z by far in x, far in y.
     let mut z = [[f32::NAN; 2]; 2];
@@ -273,7 +276,7 @@ fn cell_triangle(forest: &Forest, corners: [u32; 3], cell: [usize; 2], leaf: u32
         let vertex = forest.surfaces.vertices[corner as usize];
         z[usize::from(vertex.x) - cell[0]][usize::from(vertex.y) - cell[1]] = vertex.z;
     }
-    // The corner between the others is opposite to the one that is missing.
+    // The corner between the others is opposite to the missing one.
     let missing = [(0, 0), (0, 1), (1, 0)].into_iter().find(|&(x, y)| z[x][y].is_nan()).unwrap_or((1, 1));
     let (x, y) = (1 - missing.0, 1 - missing.1);
     CellTriangle { z: [z[x][y], z[1 - x][y], z[x][1 - y]], code: leaf << 2 | (x << 1 | y) as u32 }

@@ -1,10 +1,11 @@
-//! The search down the columns of a block, run by run of eight samples.
+//! The search down the columns of a block, in runs of eight samples.
 //!
-//! Cells are asked in three rings. The four *around* a column hold most answers: there a triangle of the run's own depth is tested, and one
-//! above or below it as long as the bound of the nearest sample does not exclude it (bounds of neighbouring samples differ by at most 1, so that
-//! sample speaks for the further ones). The twelve cells *next* to those are at least 1 away, so only samples z whose closest triangle is
-//! b > 1 away can be closer to them, and reach the depths z ± √(b² − 1). What is two or more away is asked, brick by brick, by
-//! runs whose bound is beyond 2.
+//! Cells are searched in three rings. The four cells *around* a column give most answers. There, a triangle
+//! at the depths of the run is tested, and one above or below it unless the bound of the nearest sample
+//! excludes it (bounds of neighbouring samples differ by at most 1, so the nearest sample decides for the
+//! others). The twelve cells *next* to those are at least 1 away, so only samples z whose closest triangle is
+//! b > 1 away can be closer to them, and such samples reach the depths z ± √(b² − 1). Cells two or more away
+//! are searched, brick by brick, for runs whose bound is above 2.
 
 use super::index::{BRICK, Cell, CellIndex, INTERVAL};
 use super::triangle::{CellTriangle, FromColumn, LANES, greater, lesser};
@@ -12,30 +13,30 @@ use super::{BEYOND, BlockRows, DistanceSettings};
 use crate::lanes::Wide;
 use std::ops::Range;
 
-/// Samples that are searched together: an interval of the index.
+/// Samples that are searched together: one interval of the index.
 const RUN: usize = INTERVAL;
 
 const _: () = assert!(RUN == LANES);
 
-/// Added to bounds, so that rounding never excludes what is closest. Voxels.
+/// Added to bounds, so that rounding never excludes the closest triangle. Voxels.
 const SLACK: f32 = 1e-3;
 
-/// The columns of a block, to be computed into their lines.
-pub(super) struct Block<'a, 'r> {
+/// The columns of a block, with the rows that receive their results.
+pub(super) struct ColumnBlock<'a, 'r> {
     pub(super) size: [usize; 3],
     pub(super) settings: &'a DistanceSettings,
-    /// All that the block can reach.
+    /// An index that covers everything within reach of the block.
     pub(super) index: &'a CellIndex,
     pub(super) x: Range<usize>,
     pub(super) y: Range<usize>,
     pub(super) rows: BlockRows<'r>,
 }
 
-impl Wide for Block<'_, '_> {
+impl Wide for ColumnBlock<'_, '_> {
     #[inline(always)]
     fn run(self) {
         let Self { size: [_, _, nz], settings, index, x, y, rows } = self;
-        let mut column = Column::new(index, settings.max_distance, nz);
+        let mut column = ColumnSearch::new(index, settings.max_distance, nz);
         for (row, line) in rows.into_iter().zip(x) {
             for (n, crossline) in y.clone().enumerate() {
                 column.search([line, crossline], if n == 0 { Neighbour::None } else { Neighbour::Before });
@@ -46,55 +47,55 @@ impl Wide for Block<'_, '_> {
     }
 }
 
-/// What was searched before a column.
+/// The column that was searched before.
 #[derive(Clone, Copy)]
 enum Neighbour {
-    /// Nothing near.
+    /// No column, or none near.
     None,
-    /// The column next to it.
+    /// The neighbouring column.
     Before,
 }
 
-/// Where triangles are tested.
-struct Place {
+/// A cell and interval whose triangles are tested against a run.
+struct CellVisit {
     column: [usize; 2],
     cell: [usize; 2],
-    /// Squared horizontal distance of the two.
+    /// Squared horizontal distance of column and cell.
     h_sq: f32,
     run: usize,
-    /// The interval of depth that the triangles stand in, and the first that is visited for this run.
+    /// The interval of depth that contains the triangles, and the first one that is visited for this run.
     interval: usize,
     top: usize,
 }
 
-/// Horizontal distance, along one axis, of a column to the `count` cells from `unit · count`.
+/// Horizontal distance, along one axis, of a column from the `count` cells that begin at `unit · count`.
 #[inline(always)]
 fn apart(at: usize, unit: usize, count: usize) -> f32 {
     (unit * count).saturating_sub(at).max(at.saturating_sub((unit + 1) * count)) as f32
 }
 
-/// A cell near a column: its triangles, and the column less its near corner.
+/// A cell near a column: its triangles, and the column minus its near corner.
 #[derive(Clone, Copy, Default)]
-struct Near<'a> {
+struct NearCell<'a> {
     cell: Cell<'a>,
     apart: [f32; 2],
-    /// Squared horizontal distance of the two.
+    /// Squared horizontal distance of column and cell.
     h_sq: f32,
 }
 
-/// A column at work. Arrays are filled up to whole runs.
-struct Column<'a> {
+/// The column being searched. Arrays are padded to whole runs.
+struct ColumnSearch<'a> {
     index: &'a CellIndex,
     max: f32,
     count: usize,
-    /// Squared distance and leaf of the closest so far; the bound and all ones before any.
+    /// Squared distance and leaf of the closest triangle so far; initially the squared bound and `u32::MAX`.
     best_sq: Vec<f32>,
     leaf: Vec<u32>,
-    /// A distance that the closest triangle is not beyond; differs by at most 1 from sample to sample.
+    /// An upper bound of the distance of the closest triangle; differs by at most 1 from sample to sample.
     bound: Vec<f32>,
 }
 
-impl<'a> Column<'a> {
+impl<'a> ColumnSearch<'a> {
     fn new(index: &'a CellIndex, max: f32, count: usize) -> Self {
         let padded = count.div_ceil(RUN).max(1) * RUN;
         Self {
@@ -107,7 +108,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Finds the closest leaf of every sample of a column. `neighbour` says what was searched before.
+    /// Finds the closest leaf of every sample of a column. `neighbour` says which column was searched before.
     #[inline(always)]
     fn search(&mut self, column: [usize; 2], neighbour: Neighbour) {
         for (bound, best_sq) in self.bound.iter_mut().zip(&self.best_sq) {
@@ -140,32 +141,34 @@ impl<'a> Column<'a> {
 
     /// The four cells around a column and the twelve next to those.
     #[inline(always)]
-    fn near(&self, [x, y]: [usize; 2]) -> ([Near<'a>; 4], [Near<'a>; 12]) {
-        let (mut around, mut next) = ([Near::default(); 4], [Near::default(); 12]);
+    fn near(&self, [x, y]: [usize; 2]) -> ([NearCell<'a>; 4], [NearCell<'a>; 12]) {
+        let (mut around, mut next) = ([NearCell::default(); 4], [NearCell::default(); 12]);
         let (mut first, mut second) = (around.iter_mut(), next.iter_mut());
         for (far_x, far_y) in (0..4).flat_map(|far_x| (0..4).map(move |far_y| (far_x, far_y))) {
             let off = |far: usize| (far == 0 || far == 3) as usize;
             let ring = off(far_x) + off(far_y);
-            let Some(near) = (if ring == 0 { first.next() } else { second.next() }) else { continue };
-            // Cells begin two traces before to one behind.
+            let slot = if ring == 0 { first.next() } else { second.next() };
+            let near = slot.expect("of 4 × 4 cells, four are inside and twelve on the rim");
+            // Cells begin from two traces before the column to one trace behind it.
             if let (Some(cell_x), Some(cell_y)) = ((x + far_x).checked_sub(2), (y + far_y).checked_sub(2)) {
                 let apart = [2.0 - far_x as f32, 2.0 - far_y as f32];
-                *near = Near { cell: self.index.cell(cell_x, cell_y), apart, h_sq: ring as f32 };
+                *near = NearCell { cell: self.index.cell(cell_x, cell_y), apart, h_sq: ring as f32 };
             }
         }
         (around, next)
     }
 
-    /// How far the closest triangle of any sample of a run can be.
+    /// Upper bound of the distance of the closest triangle over the samples of a run.
     #[inline(always)]
     fn reach(&self, run: usize) -> f32 {
         let most_sq = self.best_sq[run * RUN..(run + 1) * RUN].iter().fold(0.0, |most, sq| greater(most, *sq));
         most_sq.sqrt() + SLACK
     }
 
-    /// Bounds by the triangles' corners on this very trace, and by samples above and below.
+    /// Lowers the bounds by the triangles' corners on this trace, and by the bounds of samples above and
+    /// below.
     #[inline(always)]
-    fn bound_by_extrema(&mut self, around: &[Near<'_>; 4]) {
+    fn bound_by_extrema(&mut self, around: &[NearCell<'_>; 4]) {
         let last = self.bound.len() - 1;
         for near in around {
             let far = near.apart.map(|apart| apart as u32);
@@ -192,11 +195,11 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Tests the triangles of the four cells around the column against a run.
+    /// Tests a run against the triangles of the four cells around the column.
     #[inline(always)]
-    fn visit_around(&mut self, around: &[Near<'_>; 4], run: usize) {
+    fn visit_around(&mut self, around: &[NearCell<'_>; 4], run: usize) {
         let [first, last] = [run * RUN, (run + 1) * RUN - 1];
-        // The depths that the first sample reaches up to, and the last down to.
+        // The depths that the first sample reaches up to and the last one down to.
         let [up, down] = [first as f32 - self.bound[first], last as f32 + self.bound[last]];
         let [top, bottom] = [self.index.interval(up), self.index.interval(down)];
         for near in around {
@@ -204,7 +207,7 @@ impl<'a> Column<'a> {
                 let begin = if interval == top { f32::NEG_INFINITY } else { (interval * INTERVAL) as f32 };
                 for triangle in near.cell.within(interval) {
                     let [high, low] = triangle.z_range();
-                    // One that stands in several intervals is taken in the first.
+                    // A triangle stored in several intervals is tested in the first.
                     if (low < up) | (high > down) | (high < begin) {
                         continue;
                     }
@@ -214,11 +217,11 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Tests the triangles of the twelve cells that are one away.
+    /// Tests a run against the triangles of the twelve cells that are one away.
     #[inline(always)]
-    fn visit_next(&mut self, next: &[Near<'_>; 12], run: usize) {
+    fn visit_next(&mut self, next: &[NearCell<'_>; 12], run: usize) {
         let begin = (run * RUN) as f32;
-        // The depths that the samples reach one cell away.
+        // The depths that the samples reach at a horizontal distance of one cell.
         let [mut up, mut down] = [f32::INFINITY, f32::NEG_INFINITY];
         for (n, best_sq) in self.best_sq.as_chunks::<RUN>().0[run].iter().enumerate() {
             let left = best_sq - 1.0;
@@ -247,7 +250,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Visits the cells that `reach` reaches and that are two or more away.
+    /// Tests a run against the cells within `reach` that are two or more away.
     #[inline(always)]
     fn visit_bricks(&mut self, [x, y]: [usize; 2], run: usize, reach: f32) {
         let index = self.index;
@@ -270,8 +273,8 @@ impl<'a> Column<'a> {
                         let h = [apart(x, cell[0], 1), apart(y, cell[1], 1)];
                         let h_sq = h[0] * h[0] + h[1] * h[1];
                         if h_sq >= 4.0 && h_sq <= reach_sq {
-                            let place = Place { column: [x, y], cell, h_sq, run, top: intervals.start, interval };
-                            self.test(&place, brick.in_cell(n));
+                            let visit = CellVisit { column: [x, y], cell, h_sq, run, top: intervals.start, interval };
+                            self.test(&visit, brick.in_cell(n));
                         }
                     }
                 }
@@ -279,7 +282,7 @@ impl<'a> Column<'a> {
         }
     }
 
-    /// Intervals of depth within reach of a run, at a horizontal distance.
+    /// The intervals of depth within reach of a run at a horizontal distance.
     #[inline(always)]
     fn intervals(&self, run: usize, reach: f32, h_sq: f32) -> Range<usize> {
         let left = reach * reach - h_sq;
@@ -290,32 +293,33 @@ impl<'a> Column<'a> {
         self.index.interval(top - down)..self.index.interval(top + (RUN - 1) as f32 + down) + 1
     }
 
-    /// Tests triangles of a cell against a run.
+    /// Tests a run against the triangles of a cell.
     #[inline(always)]
-    fn test(&mut self, place: &Place, triangles: &[CellTriangle]) {
-        let apart = [0, 1].map(|axis| place.column[axis] as f32 - place.cell[axis] as f32);
-        let top = (place.run * RUN) as f32;
+    fn test(&mut self, visit: &CellVisit, triangles: &[CellTriangle]) {
+        let apart = [0, 1].map(|axis| visit.column[axis] as f32 - visit.cell[axis] as f32);
+        let top = (visit.run * RUN) as f32;
         for triangle in triangles {
             let [high, low] = triangle.z_range();
-            let best_sq = &self.best_sq.as_chunks::<RUN>().0[place.run];
-            if !may_be_closer(best_sq, place.h_sq, [high - top, low - top]) {
+            let best_sq = &self.best_sq.as_chunks::<RUN>().0[visit.run];
+            if !may_be_closer(best_sq, visit.h_sq, [high - top, low - top]) {
                 continue;
             }
-            // One that stands in several intervals is taken in the first that is visited.
-            if place.interval > place.top && self.index.interval(high) < place.interval {
+            // A triangle stored in several intervals is tested in the first that is visited.
+            if visit.interval > visit.top && self.index.interval(high) < visit.interval {
                 continue;
             }
-            self.keep_closest(&FromColumn::new(triangle, apart), place.run, triangle.leaf());
+            self.keep_closest(&FromColumn::new(triangle, apart), visit.run, triangle.leaf());
         }
     }
 
-    /// Takes over, for the samples of a run, what is closer; of equals the lesser leaf.
+    /// Keeps, for each sample of a run, the closer one of the known and the given triangle; at equal distance
+    /// the lesser leaf.
     #[inline(always)]
     fn keep_closest(&mut self, triangle: &FromColumn, run: usize, leaf: u32) {
         let found = triangle.distances_sq((run * RUN) as f32);
         let best_sq = &mut self.best_sq.as_chunks_mut::<RUN>().0[run];
         let leaves = &mut self.leaf.as_chunks_mut::<RUN>().0[run];
-        // Whole groups are read before any is written, so that the compiler keeps them in lanes.
+        // Whole groups are read before any is written, so that the compiler keeps them in SIMD registers.
         let (known_sq, known) = (*best_sq, *leaves);
         let (mut least_sq, mut closest) = ([0.0; LANES], [0; LANES]);
         for lane in 0..LANES {
@@ -327,7 +331,7 @@ impl<'a> Column<'a> {
         *leaves = closest;
     }
 
-    /// Writes the column down.
+    /// Writes the results of the column.
     #[inline(always)]
     fn write(&self, settings: &DistanceSettings, distance: &mut [u8], leaf: &mut [u32]) {
         for n in 0..self.count {
@@ -338,7 +342,8 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Whether a triangle `h` away horizontally and from `high` to `low` below the first sample could be closer to one of the samples.
+/// Whether a triangle at squared horizontal distance `h_sq`, from `high` to `low` below the first sample,
+/// could be closer to one of the samples.
 #[inline(always)]
 fn may_be_closer<const N: usize>(best_sq: &[f32; N], h_sq: f32, [high, low]: [f32; 2]) -> bool {
     let mut may = false;

@@ -16,7 +16,8 @@ fn whole(forest: &Forest, settings: &DistanceSettings) -> CandidateColumns {
     LeafDistances::new(forest, settings).unwrap().columns(0..nx, 0..ny, &Progress::silent()).unwrap()
 }
 
-/// Squared distance of a point to a triangle: the foot on the plane when it is inside by signed areas, else the nearest edge.
+/// Squared distance of a point to a triangle: the foot on the plane when it is inside by signed areas, else
+/// the nearest edge.
 fn distance_sq(p: [f64; 3], triangle: [[f64; 3]; 3]) -> f64 {
     let minus = |a: [f64; 3], b: [f64; 3]| [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -192,7 +193,7 @@ fn four_lanes_and_as_many_as_there_are_make_the_same_bits() {
     let (mut distance, mut leaf) = (vec![0; count], vec![0; count]);
     let rows = distance.chunks_mut(size[1] * size[2]).zip(leaf.chunks_mut(size[1] * size[2])).collect();
     // Not by `widest`: compiled for any processor.
-    Block { size, settings: &settings, index: &index, x: 0..size[0], y: 0..size[1], rows }.run();
+    ColumnBlock { size, settings: &settings, index: &index, x: 0..size[0], y: 0..size[1], rows }.run();
     assert_eq!((distance, leaf), (wanted.distance, wanted.leaf));
 }
 

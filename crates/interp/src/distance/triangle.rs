@@ -1,17 +1,19 @@
-//! The distance of samples of one column to one triangle of a surface.
+//! The distances of samples of one column to one triangle of a surface.
 //!
-//! A triangle lies within one cell and its corners on three of the cell's four traces, so seen from the corner R between the other two
-//! its edges are u = (1, 0, u_z) and v = (0, 1, v_z), after flipping x and y where they point the other way. With w = p − R the foot on its plane
-//! is s·u + t·v,
+//! A triangle lies within one cell, with its corners on three of the cell's four traces. Seen from the corner
+//! R between the other two, its edges are u = (1, 0, u_z) and v = (0, 1, v_z), after flipping x and y where
+//! they point the other way. With w = p − R, the foot of p on the plane is s·u + t·v,
 //!
 //! ```text
 //! s = (v·v · u·w − u·v · v·w) / D,   t = (u·u · v·w − u·v · u·w) / D,   D = 1 + u_z² + v_z²,
 //! d² = (w_z − u_z w_x − v_z w_y)² / D    where s, t ≥ 0 and s + t ≤ 1,
 //! ```
 //!
-//! and the least distance to the three edges elsewhere. Straight-line code, so that the compiler does several samples at once.
+//! and elsewhere the least distance to the three edges. The code has no branches, so that the compiler
+//! vectorizes it over several samples.
 
-/// The lesser of two numbers. Unlike `f32::min` it says nothing of NaN, of which there is none here, and is one instruction.
+/// The lesser of two numbers. Unlike `f32::min` it does not handle NaN, which does not occur here, and is one
+/// instruction.
 #[inline(always)]
 pub(super) fn lesser(a: f32, b: f32) -> f32 {
     if a < b { a } else { b }
@@ -23,21 +25,21 @@ pub(super) fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
-/// A number brought into 0 … 1.
+/// A number clamped to 0 … 1.
 #[inline(always)]
 fn share(a: f32) -> f32 {
     lesser(greater(a, 0.0), 1.0)
 }
 
-/// Samples done at once.
+/// Count of samples computed at once.
 pub(super) const LANES: usize = 8;
 
-/// A triangle as the index keeps it: 16 bytes.
+/// A triangle as stored in the index: 16 bytes.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct CellTriangle {
-    /// z of the corner between the two others, of its neighbour along x, of its neighbour along y.
+    /// z of the corner between the two others, of its neighbour along x, and of its neighbour along y.
     pub(super) z: [f32; 3],
-    /// Leaf id · 4 + which of the cell's corners that corner is: bit 1 = far in x, bit 0 = far in y.
+    /// Leaf id · 4 + which corner of the cell that corner is: bit 1 = far in x, bit 0 = far in y.
     pub(super) code: u32,
 }
 
@@ -79,14 +81,14 @@ pub(super) struct FromColumn {
 }
 
 impl FromColumn {
-    /// `apart`: the column less the cell's near corner.
+    /// `apart` is the column minus the near corner of the cell.
     #[inline(always)]
     pub(super) fn new(triangle: &CellTriangle, [dx, dy]: [f32; 2]) -> Self {
         let x = if triangle.code & 2 == 0 { dx } else { 1.0 - dx };
         let y = if triangle.code & 1 == 0 { dy } else { 1.0 - dy };
         let [z, a, b] = triangle.z;
         let (u, v) = (a - z, b - z);
-        // One after the other in memory, so that the four divisions are one.
+        // Contiguous in memory, so that the four divisions are one instruction.
         let mut inverses = [1.0 + u * u + v * v, 1.0 + u * u, 1.0 + v * v, 2.0 + (v - u) * (v - u)];
         for inverse in &mut inverses {
             *inverse = 1.0 / *inverse;

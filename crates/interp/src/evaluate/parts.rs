@@ -1,8 +1,9 @@
-//! The parts of a true horizon that can be walked over without a jump.
+//! The parts of a true horizon that are connected without a jump.
 //!
-//! A node is the horizon on one trace in one fault block. Nodes of neighbouring traces (sharing an edge of the lattice) are connected in one
-//! block, and across the boundary of two blocks where the fault between them is only the continuation of one that has died out. What
-//! erosion, faults and walls leave unconnected are different parts.
+//! A node is the horizon on one trace in one fault block. Nodes of neighbouring traces (sharing an edge of
+//! the lattice) are connected in one block, and across the boundary of two blocks where the fault between
+//! them is only the extension of a fault beyond its tip. Erosion, faults and the outer boundary separate
+//! parts.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -12,32 +13,32 @@ use synth::SynthTruth;
 
 /// A connected part of a true horizon.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct Part {
-    /// Fault blocks it lies in.
+pub struct HorizonPart {
+    /// Fault blocks in which it lies.
     pub blocks: Vec<u16>,
-    /// Traces, counted once a block.
+    /// Count of its nodes: traces, counted once per block.
     pub nodes: usize,
-    /// Those with a vertex within the tolerance.
+    /// Count of nodes with a vertex within the tolerance.
     pub covered: usize,
 }
 
-impl Part {
+impl HorizonPart {
     /// Share of its nodes that are covered.
     pub fn coverage(&self) -> f64 {
         super::share(self.covered, self.nodes)
     }
 }
 
-/// Which part each node belongs to.
+/// The part of each node of a true horizon.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parts {
     traces: usize,
-    /// Part of node block·traces + trace; `NONE` where the horizon is not.
+    /// HorizonPart of node block·traces + trace; `NONE` where the horizon does not exist.
     part: Vec<u32>,
     blocks: Vec<Vec<u16>>,
 }
 
-/// No node here.
+/// No node.
 const NONE: u32 = u32::MAX;
 
 impl Parts {
@@ -90,7 +91,7 @@ impl Parts {
         Self { traces, part, blocks: found }
     }
 
-    /// What of the parts `is_taken` leaves; it is asked with inline index, crossline index and sample index of every node.
+    /// The parts without the nodes for which `is_taken(inline index, crossline index, sample index)` is true.
     pub fn without(
         &self,
         truth: &SynthTruth,
@@ -106,7 +107,8 @@ impl Parts {
         Self { part: left.collect(), ..self.clone() }
     }
 
-    /// One place in the middle of each part of at least `fewest` nodes, voxels: where someone who sees the horizon would pick it.
+    /// A point in the middle of each part of at least `fewest` nodes, voxels: where someone who sees the
+    /// horizon would pick it.
     pub fn middles(&self, truth: &SynthTruth, horizon: usize, fewest: usize) -> Vec<DVec3> {
         let [nx, ny, _] = truth.size;
         let neighbours = |node: usize| {
@@ -118,7 +120,7 @@ impl Parts {
                 (y + 1 < ny).then(|| node + 1),
             ]
         };
-        // Rings from the rim inwards; the last node of a part to be reached is its middle.
+        // A flood from the rim inwards; the node of a part that is reached last is its middle.
         let mut left: Vec<bool> = self.part.iter().map(|&part| part != NONE).collect();
         let on_rim = |node: usize| neighbours(node).iter().any(|next| next.is_none_or(|next| self.part[next] == NONE));
         let mut queue: VecDeque<usize> = (0..left.len()).filter(|&node| left[node] && on_rim(node)).collect();
@@ -140,14 +142,15 @@ impl Parts {
         found.into_iter().filter(|(nodes, _)| *nodes >= fewest).map(|(_, node)| place(node)).collect()
     }
 
-    /// All parts, with nothing counted yet.
-    pub fn empty(&self) -> Vec<Part> {
-        self.blocks.iter().map(|blocks| Part { blocks: blocks.clone(), ..Part::default() }).collect()
+    /// All parts, with all counts at 0.
+    pub fn empty(&self) -> Vec<HorizonPart> {
+        self.blocks.iter().map(|blocks| HorizonPart { blocks: blocks.clone(), ..HorizonPart::default() }).collect()
     }
 
-    /// The part of the node on `trace` (x·crosslines + y) in `block`.
+    /// The part of the node on `trace` (x·crosslines + y) in `block`; `None` where the horizon does not
+    /// exist.
     pub fn at(&self, trace: usize, block: u16) -> Option<usize> {
-        let part = *self.part.get(usize::from(block) * self.traces + trace)?;
+        let part = self.part[usize::from(block) * self.traces + trace];
         (part != NONE).then_some(part as usize)
     }
 }

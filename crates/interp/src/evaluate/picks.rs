@@ -1,11 +1,14 @@
-//! How many picks a horizon takes (DESIGN 6): until 95 % of its nodes are covered, with at least 98 % of what was picked within a sample of it.
+//! Counts the picks that a horizon takes: until 95 % of its nodes are covered, with at least 98 % of the
+//! picked vertices within a sample of it.
 //!
-//! A pick is one seed and one climb. Two interpreters are played:
+//! A pick is one seed and one climb. Two interpreters are simulated:
 //!
-//! - the **oracle** knows the truth and always takes the node, at any level of any tree, that covers most of what is not covered yet
-//!   without letting the precision fall below what is asked: a greedy bound of what the trees allow;
-//! - the **replay** knows where the horizon is, as someone does who sees it on a section, and nothing else: it puts its seed into the middle of the
-//!   largest gap and climbs to the highest valid node. What it gets is what a user gets who never looks twice.
+//! - The **oracle** knows the truth and always takes the node, at any level of any tree, that covers most of
+//!   what is not covered yet without reducing the precision below the required one. It is a greedy bound of
+//!   what the trees allow.
+//! - The **replay** knows where the horizon is, as someone does who sees it on a section, and nothing else.
+//!   It puts its seed into the middle of the largest gap and climbs to the highest valid node. It stands for
+//!   a user who never corrects a pick.
 //!
 //! Space: voxels.
 
@@ -20,18 +23,18 @@ use std::collections::VecDeque;
 use survey::{Cancelled, Progress};
 use synth::SynthTruth;
 
-/// When a horizon is done, and how picks are made.
+/// Conditions for a horizon to be complete, and settings of picks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PickSettings {
-    /// Share of the nodes to cover; default 0.95.
+    /// Required share of covered nodes; default 0.95.
     pub coverage: f64,
-    /// Share of the picked vertices that must lie on the horizon; default 0.98.
+    /// Required share of the picked vertices that lie on the horizon; default 0.98.
     pub precision: f64,
-    /// Picks after which it is given up; default 60.
+    /// Most picks of one horizon; default 60.
     pub most_picks: usize,
-    /// Distance from a seed within which a candidate is found, voxels; default 1.5.
+    /// Distance from a seed within which a leaf is found, voxels; default 1.5.
     pub max_distance: f32,
-    /// How the replay climbs.
+    /// Limits of the climbs of the replay.
     pub climb: ClimbSettings,
 }
 
@@ -41,33 +44,34 @@ impl Default for PickSettings {
     }
 }
 
-/// What an interpreter reached.
+/// The result of one interpreter.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct PickCount {
-    /// Picks made.
+    /// Count of picks.
     pub picks: usize,
     /// Share of the horizon's nodes covered.
     pub coverage: f64,
-    /// Share of the picked vertices on the horizon.
+    /// Share of the picked vertices that lie on the horizon.
     pub precision: f64,
-    /// Whether both are what was asked for.
+    /// Whether coverage and precision are as required.
     pub reached: bool,
 }
 
-/// Picks of one horizon.
+/// The picks of one horizon.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PickScore {
     /// Name of the horizon.
     pub name: String,
-    /// Its parts; each takes at least one pick.
+    /// Count of its parts; each takes at least one pick.
     pub parts: usize,
-    /// With the truth known.
+    /// The interpreter who knows the truth.
     pub oracle: PickCount,
-    /// Without.
+    /// The interpreter who does not.
     pub replay: PickCount,
 }
 
-/// Plays both interpreters on every horizon. `blocks` are the faults interpreted so far, [`FaultNetwork::none`] on raw data.
+/// Simulates both interpreters on every horizon. `blocks` are the interpreted faults; [`FaultNetwork::none`]
+/// for raw data. `index` is of the same truth.
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -82,7 +86,7 @@ pub fn count_picks(
 ) -> Result<Vec<PickScore>, Cancelled> {
     progress.begin("picking", truth.horizons.len() as u64);
     let score = |(h, horizon): (usize, &synth::TruthHorizon)| {
-        let target = Target::of(forest, truth, index, h, evaluate.tolerance);
+        let target = PickTarget::of(forest, truth, index, h, evaluate.tolerance);
         let parts = Parts::of(truth, h);
         let mut sizes = vec![0; parts.empty().len()];
         for &n in &target.events {
@@ -103,25 +107,25 @@ pub fn count_picks(
     truth.horizons.par_iter().enumerate().map(score).collect()
 }
 
-/// A horizon to be picked.
-struct Target<'a> {
+/// A horizon to pick.
+struct PickTarget<'a> {
     forest: &'a Forest,
     index: &'a TruthIndex,
     blocks: usize,
     /// Its nodes: indices of events, ascending.
     events: Vec<usize>,
-    /// The node (place in `events`) that each vertex lies on, or `NONE`.
+    /// The node (an index into `events`) on which each vertex lies, or `NONE`.
     on: Vec<u32>,
 }
 
 /// No node.
 const NONE: u32 = u32::MAX;
 
-/// Traces around a seed that leads nowhere which are not tried again.
+/// Radius (traces) around a seed without a result in which no other seed is tried.
 const DEAD_RADIUS: usize = 3;
 
-/// What was picked so far.
-struct Picked {
+/// The nodes and vertices picked so far.
+struct PickedSet {
     covered: Vec<bool>,
     count: usize,
     seen: Vec<bool>,
@@ -129,10 +133,10 @@ struct Picked {
     on: usize,
 }
 
-impl<'a> Target<'a> {
+impl<'a> PickTarget<'a> {
     fn of(forest: &'a Forest, truth: &SynthTruth, index: &'a TruthIndex, horizon: usize, tolerance: f32) -> Self {
-        let wanted = index.reflector_index(truth.reflector_of(horizon));
-        let is_wanted = |n: &usize| Some(usize::from(index.events()[*n].reflector)) == wanted;
+        let wanted = index.reflector_index(truth.reflector_of(horizon)).expect("the index is of this truth");
+        let is_wanted = |n: &usize| usize::from(index.events()[*n].reflector) == wanted;
         let events: Vec<usize> = (0..index.events().len()).filter(is_wanted).collect();
         let on = forest.surfaces.vertices.iter().map(|vertex| {
             let near = index.range_near(usize::from(vertex.x), usize::from(vertex.y), vertex.z, tolerance);
@@ -140,14 +144,14 @@ impl<'a> Target<'a> {
                 let off = |n: usize| (index.events()[n].z - vertex.z).abs();
                 off(a).total_cmp(&off(b))
             });
-            closest.and_then(|n| events.binary_search(&n).ok()).map_or(NONE, |n| n as u32)
+            closest.map_or(NONE, |n| events.binary_search(&n).expect("events has all wanted ones") as u32)
         });
         let on = on.collect();
         Self { forest, index, blocks: truth.block_count(), events, on }
     }
 
-    fn nothing(&self) -> Picked {
-        Picked {
+    fn nothing(&self) -> PickedSet {
+        PickedSet {
             covered: vec![false; self.events.len()],
             count: 0,
             seen: vec![false; self.on.len()],
@@ -156,8 +160,8 @@ impl<'a> Target<'a> {
         }
     }
 
-    /// Adds a node of the forest to what was picked.
-    fn take(&self, picked: &mut Picked, node: u32) {
+    /// Adds a node of the forest to the picked ones.
+    fn take(&self, picked: &mut PickedSet, node: u32) {
         let range = self.forest.nodes[node as usize].triangles.clone();
         let corners = &self.forest.surfaces.triangles[range.start as usize..range.end as usize];
         for &v in corners.iter().flatten() {
@@ -173,7 +177,7 @@ impl<'a> Target<'a> {
         }
     }
 
-    fn count(&self, picks: usize, picked: &Picked, settings: &PickSettings) -> PickCount {
+    fn count(&self, picks: usize, picked: &PickedSet, settings: &PickSettings) -> PickCount {
         let (coverage, precision) = (share(picked.count, self.events.len()), share(picked.on, picked.vertices));
         let reached = coverage >= settings.coverage && precision >= settings.precision;
         PickCount { picks, coverage, precision, reached }
@@ -181,7 +185,8 @@ impl<'a> Target<'a> {
 
     fn oracle(&self, settings: &PickSettings) -> PickCount {
         let forest = self.forest;
-        // For each leaf: the horizon's nodes it covers, and its vertices on and off the horizon.
+        // For each leaf: the horizon's nodes that it covers, and the counts of its vertices on the horizon
+        // and in total.
         let leaves: Vec<(Vec<u32>, u64, u64)> = forest
             .leaves
             .par_iter()
@@ -269,7 +274,7 @@ impl<'a> Target<'a> {
         [trace / ny, trace % ny]
     }
 
-    /// The uncovered node with the widest surroundings of such nodes; walls end them.
+    /// The uncovered node that is farthest inside a gap of such nodes. The outer boundary ends a gap.
     fn middle_of_largest_gap(&self, covered: &[bool], dead: &[bool]) -> Option<usize> {
         let [nx, ny, _] = self.index.size();
         let mut node_of = vec![NONE; self.blocks * nx * ny];
@@ -285,7 +290,7 @@ impl<'a> Target<'a> {
             [(x > 0).then(|| s - ny), (x + 1 < nx).then(|| s + ny), (y > 0).then(|| s - 1), (y + 1 < ny).then(|| s + 1)]
         };
         let mut left: Vec<bool> = node_of.iter().map(|&n| n != NONE).collect();
-        // Rings from the rim inwards; the last node to be reached is the middle.
+        // A flood from the rim inwards; the node that is reached last is the middle.
         let mut queue: VecDeque<usize> = VecDeque::new();
         for (s, &inside) in left.iter().enumerate() {
             if inside && neighbours(s).iter().any(|next| next.is_none_or(|next| node_of[next] == NONE)) {

@@ -1,4 +1,4 @@
-//! Measures of surfaces and picks on truths made by hand, where every figure is known.
+//! Scores of surfaces and picks on surfaces made by hand from a truth, where every figure is known.
 
 use super::*;
 use crate::surfaces::{Extremum, Surface, Vertex};
@@ -11,7 +11,7 @@ fn truth() -> SynthTruth {
     Synthetic::generate(&settings, &Progress::silent()).unwrap().truth
 }
 
-/// A surface over given nodes, each moved by `shift`; triangles are of no concern here but for their number.
+/// A surface over given nodes, each moved by `shift`; only the count of its triangles matters.
 fn surface_of(all: &mut Surfaces, nodes: impl Iterator<Item = (usize, usize, f64)>, triangles: u32) {
     let first = all.vertices.len() as u32;
     all.vertices.extend(nodes.map(|(x, y, z)| Vertex { x: x as u16, y: y as u16, z: z as f32 }));
@@ -92,7 +92,7 @@ fn off_every_reflector_is_imprecise_but_pure() {
     let found = evaluate(&surfaces, &truth, &EvaluateSettings::default());
     assert_eq!(found.horizons[0].purity, 1.0);
     assert!((found.horizons[0].precision() - 0.5).abs() < 1e-12);
-    // With one vertex more off than on, it is no surface of a reflector.
+    // With one more vertex off, fewer than half lie on a reflector, so the surface belongs to none.
     surfaces.surfaces[0].vertices.start += 1;
     assert_eq!(evaluate(&surfaces, &truth, &EvaluateSettings::default()).horizons[0].surfaces, 0);
 }
@@ -137,7 +137,8 @@ fn named_horizons_are_reflectors_of_the_index() {
     }
 }
 
-/// Whole true sheets as surfaces: each part takes one pick, and the climb stops at no overlap but that of the reverse fault.
+/// Whole true sheets as surfaces: each part takes one pick, and only the overlap of the reverse fault stops a
+/// climb.
 #[test]
 fn true_sheets_take_a_pick_a_part() {
     let truth = truth();
@@ -146,7 +147,8 @@ fn true_sheets_take_a_pick_a_part() {
         let (x, y) = (x as f64, y as f64);
         truth.exists(h, block, x, y).then(|| truth.sheet_z(h, block, x, y) as f32)
     };
-    // Blocks 1 and 2 are one part around the tip of the fault between them: two picks here, since the sheets are not joined.
+    // Blocks 1 and 2 are one part around the tip of the fault between them: two picks here, since the sheets
+    // are not joined.
     let sheets: Vec<_> = (0..4u16).map(|block| move |x: usize, y: usize| height(0, block, x, y)).collect();
     let sheets: Vec<[crate::assembly::tests::Height; 1]> = sheets.iter().map(|sheet| [sheet as _]).collect();
     let sheets: Vec<&[crate::assembly::tests::Height]> = sheets.iter().map(|sheet| sheet.as_slice()).collect();

@@ -1,32 +1,33 @@
-//! The true reflectors over every trace, ready to be asked what lies near a depth.
+//! An index of the true reflectors by trace and depth.
 
 use rayon::prelude::*;
 use std::ops::Range;
 use synth::{Reflector, SynthTruth};
 
-/// A reflector over one trace.
+/// A reflector on one trace.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TruthEvent {
-    /// Fractional sample.
+    /// Fractional sample index.
     pub z: f32,
     /// Index into [`TruthIndex::reflectors`].
     pub reflector: u16,
-    /// Fault block it lies in.
+    /// Fault block in which it lies.
     pub block: u16,
 }
 
-/// All true reflectors inside a volume, by trace and depth. Memory: 8 bytes an event, about 20 events a trace.
+/// All true reflectors inside a volume, by trace and depth. Memory: 8 bytes an event, with about 20 events a
+/// trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TruthIndex {
     size: [usize; 3],
     reflectors: Vec<Reflector>,
-    /// First event of each trace, and the end of the last.
+    /// First event of each trace, and the end of the last trace.
     starts: Vec<usize>,
     events: Vec<TruthEvent>,
 }
 
 impl TruthIndex {
-    /// Evaluates the closed form on every trace.
+    /// Evaluates the truth's closed form on every trace.
     pub fn new(truth: &SynthTruth) -> Self {
         let [nx, ny, nz] = truth.size;
         let young = truth.young_column.reflectors_m.len();
@@ -60,17 +61,17 @@ impl TruthIndex {
         self.size
     }
 
-    /// All reflectors of the model: those above the unconformity, itself, those below.
+    /// All reflectors of the model: those above the unconformity, the unconformity, those below.
     pub fn reflectors(&self) -> &[Reflector] {
         &self.reflectors
     }
 
-    /// Place of a reflector in [`TruthIndex::reflectors`].
+    /// Index of a reflector in [`TruthIndex::reflectors`]; `None` for a reflector of another truth.
     pub fn reflector_index(&self, reflector: Reflector) -> Option<usize> {
         self.reflectors.iter().position(|&other| other == reflector)
     }
 
-    /// All events: trace by trace, top first.
+    /// All events, trace by trace from the top down.
     pub fn events(&self) -> &[TruthEvent] {
         &self.events
     }

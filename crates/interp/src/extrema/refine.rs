@@ -1,19 +1,24 @@
-//! Places between samples: the analytic maximum of a polynomial through the nearest samples (P-horiz 4).
+//! Positions between samples: the analytic maximum of a polynomial through the nearest samples (P-horiz 4).
 //!
-//! A maximum: the quartic p(t) = Σ aₙtⁿ through the five samples around it; its stationary point is found by Newton's method on the cubic p′ from
-//! the vertex of the parabola through three. Where five samples are not there (ends of a trace, samples that are not finite) the
-//! parabola stands. Of a clipped maximum only the flanks are left; it lies between them. A zero crossing: the cubic through four samples, by Newton's method from the straight line.
+//! A maximum: the quartic p(t) = Σ aₙtⁿ through the five samples around it. Its stationary point is found by
+//! Newton's method on the cubic p′, started at the vertex of the parabola through three samples. Where five
+//! samples do not exist (at the ends of a trace or beside samples that are not finite) the vertex of the
+//! parabola is the result. A clipped maximum has only its flanks left and lies midway between them. A zero
+//! crossing: the cubic through four samples, by Newton's method from the straight line.
 //!
-//! Largest error over all phases, samples, in brackets the parabola's: a sinusoid of 8 samples a period 0.0015 (0.010), of 5 samples
-//! 0.009 (0.028); a Ricker wavelet of peak period 8: 0.010 (0.025), and 1 % of its height (3 %).
+//! Largest error over all phases, in samples (in brackets that of the parabola): 0.0015 (0.010) for a
+//! sinusoid of 8 samples a period, 0.009 (0.028) for one of 5 samples, 0.010 (0.025) for a Ricker wavelet of
+//! peak period 8, whose height is off by 1 % (3 %).
 
-/// Farthest a maximum may lie from its sample: the parabola's stays within 0.5, the quartic's may pass it a little.
+/// Largest distance of a maximum from its sample. The parabola's is at most 0.5, the quartic's can be a
+/// little larger.
 const MAX_SHIFT: f64 = 0.75;
 
-/// Newton steps: the start is within 0.05 of the answer, two steps bring it to single precision.
+/// Newton steps. The start is within 0.05 of the answer, and two steps reach single precision.
 const STEPS: usize = 3;
 
-/// Offset (−0.75 … 0.75) and height of the maximum of `sign`·trace at sample z, which is greater than its two neighbours.
+/// Offset (−0.75 … 0.75) and height of the maximum of `sign`·trace at sample z, which is greater than its two
+/// neighbours.
 #[inline]
 pub fn maximum(trace: &[f32], z: usize, sign: f32) -> (f32, f32) {
     let at = |index: usize| f64::from(trace[index] * sign);
@@ -48,12 +53,12 @@ pub fn maximum(trace: &[f32], z: usize, sign: f32) -> (f32, f32) {
     (t as f32, height.min(f64::from(f32::MAX)) as f32)
 }
 
-/// Offset from sample `first` of the middle of what was cut off a maximum whose samples `first..=last` are equal: halfway between
-/// the places where its flanks, straight on from the two samples outside, reach that level. The middle of the samples where flanks are
-/// not there.
+/// Offset from sample `first` of the middle of a clipped maximum, whose samples `first..=last` are equal. It
+/// is halfway between the places where the flanks, extrapolated linearly from the two samples outside, reach
+/// that level; the middle of the samples where a flank does not exist.
 pub fn clipped(trace: &[f32], first: usize, last: usize, sign: f32) -> f32 {
     let level = trace[first] * sign;
-    // Samples from the sample outside to the place, 0 to 1.
+    // Samples from the sample outside to that place, 0 to 1.
     let reached = |outside: usize, before: usize| {
         let (near, far) = (trace[outside] * sign, trace[before] * sign);
         let places = (level - near) / (near - far);

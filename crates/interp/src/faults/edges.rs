@@ -1,16 +1,19 @@
 //! The rims of a horizon's pieces.
 //!
-//! A piece is a set of nodes connected along the lattice without a jump. A rim node has a neighbouring trace in the survey that its piece lacks, and is
-//! not on the edge of a small hole. The way out is away from the middle of its piece's nodes around it; the plane is theirs.
+//! A piece is a set of nodes connected along the lattice without a jump. A rim node has a neighbouring trace
+//! in the survey that its piece lacks, and is not on the edge of a small hole. The direction out of the piece
+//! points away from the mean of the piece's nodes around the rim node; the plane of the rim is fitted to
+//! these nodes.
 
 use crate::reassembly::VoxelSheet;
 use glam::Vec2;
 
-/// Neighbouring nodes farther apart than this are not one piece, samples.
+/// Largest depth difference of neighbouring nodes of one piece, samples.
 pub(super) const JUMP: f32 = 5.0;
-/// Radius of the neighbourhood that a rim's plane is fitted to, traces. Larger is steadier, smaller follows folds.
+/// Radius of the neighbourhood to which the plane of a rim is fitted, traces. A larger one is steadier, a
+/// smaller one follows folds.
 const RADIUS: usize = 6;
-/// Rims of gaps with fewer traces are those of holes.
+/// Gaps with fewer traces are holes; their edges are no rims.
 const SMALL_GAP: usize = 60;
 /// Fewest nodes of a neighbourhood.
 const FEWEST: usize = 12;
@@ -22,31 +25,31 @@ pub(super) struct Rim {
     pub at: [usize; 2],
     /// Horizontal unit vector out of the piece.
     pub out: Vec2,
-    /// Sample of the plane at the node, and its slope per trace.
+    /// Sample index of the plane at the node, and its slope, samples per trace.
     pub z: f32,
     pub slope: Vec2,
 }
 
 impl Rim {
-    /// Place of the node.
+    /// Position of the node, traces.
     pub fn place(&self) -> Vec2 {
         Vec2::new(self.at[0] as f32, self.at[1] as f32)
     }
 
-    /// The plane at a place.
+    /// Sample index of the plane at a position.
     pub fn z_at(&self, place: Vec2) -> f32 {
         self.z + self.slope.dot(place - self.place())
     }
 }
 
 /// The rims of all pieces of a horizon.
-pub(super) struct Pieces {
+pub(super) struct HorizonRims {
     pub size: [usize; 2],
     pub rims: Vec<Rim>,
 }
 
-impl Pieces {
-    /// Finds them on each sheet.
+impl HorizonRims {
+    /// Finds the rims on each sheet.
     pub fn of(sheets: &[VoxelSheet], size: [usize; 2]) -> Self {
         let rims = sheets.iter().flat_map(|sheet| rims_of(&sheet.z, size)).collect();
         Self { size, rims }
@@ -60,7 +63,8 @@ fn neighbours(n: usize, [nx, ny]: [usize; 2]) -> impl Iterator<Item = usize> {
         .flatten()
 }
 
-/// Numbers the connected sets of nodes; `joined` says which neighbours belong together. Also the size of each set.
+/// Numbers the connected sets of nodes; `joined` returns whether neighbours belong together. Also returns the
+/// size of each set.
 fn components(size: [usize; 2], joined: impl Fn(usize, usize) -> bool) -> (Vec<u32>, Vec<usize>) {
     let mut label = vec![u32::MAX; size[0] * size[1]];
     let mut sizes = Vec::new();
@@ -87,9 +91,9 @@ fn components(size: [usize; 2], joined: impl Fn(usize, usize) -> bool) -> (Vec<u
     (label, sizes)
 }
 
-/// Numbers the pieces of a sheet; also the size of each.
+/// Numbers the pieces of a sheet; also returns the size of each.
 pub(super) fn pieces_of(z: &[f32], size: [usize; 2]) -> (Vec<u32>, Vec<usize>) {
-    // NaN is in no comparison.
+    // Comparisons with NaN are false.
     components(size, |a, b| (z[a] - z[b]).abs() <= JUMP)
 }
 
@@ -105,7 +109,7 @@ fn rims_of(z: &[f32], size: [usize; 2]) -> Vec<Rim> {
     (0..z.len()).filter(on_rim).filter_map(|n| rim(n, z, &piece, size)).collect()
 }
 
-/// Fits the plane around node `n`.
+/// Fits the plane around node `n`; `None` where the nodes around do not determine a plane or a direction.
 fn rim(n: usize, z: &[f32], piece: &[u32], [nx, ny]: [usize; 2]) -> Option<Rim> {
     let (x, y) = (n / ny, n % ny);
     let (mut count, mut mean) = (0.0f64, [0.0f64; 3]);
@@ -138,7 +142,8 @@ fn rim(n: usize, z: &[f32], piece: &[u32], [nx, ny]: [usize; 2]) -> Option<Rim> 
     }
     let slope = [(c[3] * c[2] - c[4] * c[1]) / determinant, (c[4] * c[0] - c[3] * c[1]) / determinant];
     let out = Vec2::new(-mean[0] as f32, -mean[1] as f32);
-    // A rim node lies well off the middle of its piece around it; one that does not sits in a notch and knows no way out.
+    // A rim node lies far from the mean of the nodes around it. A node near the mean sits in a notch and has
+    // no direction out.
     (out.length() > 0.15 * RADIUS as f32).then(|| Rim {
         at: [x, y],
         out: out.normalize(),

@@ -1,10 +1,13 @@
-//! Which evidence is of faults that are known already.
+//! Removes the pairs that lie on known faults.
 //!
-//! All that a pair tells of its fault is that it passes between two rims. A pair lies on a known fault where that fault, as the model continues it,
-//! passes between the rims or at no more than [`REACH`] traces from one, strikes as the pair does, and has not ended: neither at another fault nor, by more than the same reach, at its tip along strike. Above and below what was drawn a fault goes on: someone
-//! who drew it on a few sections seldom drew all its depth, and a second surface beside the continued one would cut slivers off the blocks. Such pairs
-//! are taken out before traces are made of the others, so that what goes on past a known fault's tip is still proposed, and what is left of a trace
-//! beside one is not, unless it is long enough by itself.
+//! A pair only says that its fault passes between two rims. It lies on a known fault if that fault, as the
+//! structural model extends it, passes between the rims or within [`REACH`] traces of one of them, strikes as
+//! the pair does, and has not ended there: neither at another fault, nor at its tip along strike by more than
+//! the same distance. Above and below the interpreted part a fault counts as continuing, because someone who
+//! drew it on a few sections seldom drew all its depth, and a second surface beside the extended one would
+//! cut slivers off the blocks. Such pairs are removed before the others are grouped into traces. So the
+//! continuation beyond a known fault's tip is still proposed, while the remains of a trace beside a known
+//! fault are not, unless they are long enough by themselves.
 
 use super::Pair;
 use glam::{DVec2, DVec3, Vec3};
@@ -13,33 +16,35 @@ use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 use survey::SurveyGeometry;
 
-/// Farthest that the rims of a pair may be from a known fault, traces: what the proposals of drawn faults are off by, and half as much again.
+/// Largest distance of the rims of a pair from a known fault, traces: one and a half times the error of the
+/// proposals of interpreted faults.
 const REACH: f64 = 5.0;
-/// Cosine between the ways across of a pair and of a known fault; rims zigzag, so 45° off is still along it.
+/// Least cosine between the directions across of a pair and of a known fault; rims zigzag, so 45° off is
+/// still parallel.
 const PARALLEL: f64 = 0.7;
 
-/// A known fault that horizons speak for too.
+/// A known fault that was found again in the horizons.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Repeat {
-    /// Its name.
+    /// Name of the fault.
     pub fault: String,
-    /// Facing pairs that lie on it.
+    /// Count of pairs that lie on it.
     pub support: usize,
-    /// Share of its length along which they do.
+    /// Share of its length along which there are such pairs.
     pub along: f64,
     /// Median distance of their rims from it, traces; 0 where it passes between them.
     pub off_traces: f64,
     /// Their median throw, vertical units.
     pub throw: f64,
-    /// Throw along their traces, summed over horizons, m².
+    /// Area of the offset, m²: the throw along their traces, summed over horizons.
     pub offset_m2: f64,
 }
 
-/// Known faults, how far each goes along strike, and the pairs that were found on them.
+/// Known faults, their ends along strike, and the pairs found on them.
 pub(super) struct Known<'a> {
     network: &'a FaultNetwork,
     geometry: &'a SurveyGeometry,
-    /// First and last cell along strike of what was interpreted.
+    /// First and last cell of the interpreted part along strike, per fault.
     ends: Vec<[f64; 2]>,
     on: Vec<On>,
 }
@@ -47,7 +52,7 @@ pub(super) struct Known<'a> {
 /// A pair on a known fault.
 struct On {
     fault: usize,
-    /// Distance of what lies between its rims from the fault, traces.
+    /// Distance of the fault from the segment between the rims, traces.
     off: f64,
     /// Cell along the fault's strike.
     along: f64,
@@ -70,7 +75,7 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// The pairs that lie on none of them; the others are kept.
+    /// Keeps the pairs that lie on a known fault and returns the others.
     pub(super) fn others(&mut self, pairs: Vec<Pair>) -> Vec<Pair> {
         let mut others = Vec::with_capacity(pairs.len());
         for pair in pairs {
@@ -82,7 +87,7 @@ impl<'a> Known<'a> {
         others
     }
 
-    /// The fault that a pair lies on, how far off, traces, and at which cell along strike.
+    /// The fault on which a pair lies, its distance (traces), and the cell along strike.
     fn nearest(&self, pair: &Pair) -> Option<(usize, f64, f64)> {
         let place = Vec3::from_array(pair.at);
         let faults = self.network.surfaces().iter().enumerate();
@@ -91,7 +96,7 @@ impl<'a> Known<'a> {
             let gradient = fault.side_gradient(p).truncate();
             let (side, steep) = (fault.side(p), gradient.length());
             let parallel = gradient.dot(pair.across.as_dvec2()).abs() >= PARALLEL * steep;
-            // From what lies between the rims.
+            // From the segment between the rims.
             let off = (side.abs() / steep.max(1e-9) - 0.5 * f64::from(pair.heave.abs())).max(0.0);
             let reach = REACH * per_trace(fault, gradient.perp());
             let along = fault.frame(p).x;
@@ -103,7 +108,7 @@ impl<'a> Known<'a> {
         near.min_by(|a, b| a.1.total_cmp(&b.1))
     }
 
-    /// What was found of each, the largest first.
+    /// The known faults that were found again, largest first.
     pub(super) fn repeats(&self) -> Vec<Repeat> {
         let mut repeats: Vec<Repeat> = (0..self.ends.len()).filter_map(|fault| self.repeat(fault)).collect();
         repeats.sort_by(|a, b| b.offset_m2.total_cmp(&a.offset_m2));
@@ -146,7 +151,7 @@ fn per_trace(fault: &FaultSurface, along: DVec2) -> f64 {
     (fault.frame_from_voxel * along.normalize_or_zero().extend(0.0)).truncate().length()
 }
 
-/// First and last cell along strike (u) where a fault was interpreted, within the survey.
+/// First and last cell along strike (u) in which a fault was interpreted, within the survey.
 fn ends(fault: &FaultSurface, geometry: &SurveyGeometry) -> [f64; 2] {
     let field = &fault.extent;
     let voxel_from_frame = fault.frame_from_voxel.inverse();

@@ -1,7 +1,7 @@
-//! Rims that face one another with an offset.
+//! Pairs of rims that face one another with an offset.
 
 use super::ProposeSettings;
-use super::edges::{Pieces, Rim};
+use super::edges::{HorizonRims, Rim};
 use glam::Vec2;
 
 /// Two rims of one horizon that face one another across a fault.
@@ -9,27 +9,29 @@ use glam::Vec2;
 pub struct Pair {
     /// Index of the horizon.
     pub horizon: usize,
-    /// The middle between them: a place on the fault, voxels.
+    /// The middle between them, a point on the fault, voxels.
     pub at: [f32; 3],
     /// Horizontal unit vector across the fault.
     pub across: Vec2,
     /// How much deeper the horizon is on the side that `across` points to, samples.
     pub throw: f32,
-    /// Traces from the rim behind to the rim that `across` points to, along `across`; negative where they overlap.
+    /// Traces from the rim behind to the rim towards which `across` points, along `across`; negative where
+    /// they overlap.
     pub heave: f32,
-    /// Whether the horizon was tracked across, and only bends.
+    /// Whether the horizon was tracked across the fault and only bends there.
     pub bend: bool,
 }
 
-/// Cosine between one way out and the other reversed; 45° off is still facing.
+/// Least cosine between the direction out of one rim and the reversed direction out of the other; 45° off is
+/// still facing.
 const FACING: f32 = 0.7;
-/// Farthest that two rims may be apart along the fault, traces.
+/// Largest distance of two rims along the fault, traces.
 const ALONG: f32 = 2.5;
 
 /// The closest facing rim of each rim node, where the horizon is offset between them.
-pub(super) fn facing(pieces: &Pieces, horizon: usize, settings: &ProposeSettings) -> Vec<Pair> {
+pub(super) fn facing(pieces: &HorizonRims, horizon: usize, settings: &ProposeSettings) -> Vec<Pair> {
     let [nx, ny] = pieces.size;
-    // Rims by trace; up to a few at one, across a reverse fault.
+    // Rims by trace; a trace has several across a reverse fault.
     let mut order: Vec<u32> = (0..pieces.rims.len() as u32).collect();
     let trace = |n: u32| pieces.rims[n as usize].at[0] * ny + pieces.rims[n as usize].at[1];
     order.sort_by_key(|&n| (trace(n), n));
@@ -55,7 +57,8 @@ pub(super) fn facing(pieces: &Pieces, horizon: usize, settings: &ProposeSettings
                 let score = off.abs() + 2.0 * along;
                 if off.abs() <= reach as f32 && along <= ALONG && best.is_none_or(|(least, _)| score < least) {
                     let offset = throw(rim, other);
-                    // A fault is steeper than its horizons: what is far apart must be far offset.
+                    // A fault is steeper than its horizons, so rims that are far apart must have a large
+                    // offset.
                     if offset.abs() >= settings.min_throw {
                         best = Some((score, other));
                     }

@@ -1,7 +1,9 @@
-//! The smooth surface of a fault: distance across strike as a quadratic of strike and depth.
+//! The smooth surface of a fault: the distance across strike as a quadratic of strike and depth.
 //!
-//! `c(s, z) = c₀ + c₁s + c₂z + c₃s² + c₄sz + c₅z²`, least squares, twice with the farthest left out. With horizons at fewer than three depths c₅ is
-//! left out, with one horizon c₂ is the dip along which semblance is least, or the median of heave over throw, and c₄ is left out too. Metric space, s and z from the middle.
+//! `c(s, z) = c₀ + c₁s + c₂z + c₃s² + c₄sz + c₅z²`, fitted by least squares, up to three times, each time
+//! without the outliers. With pairs on fewer than three horizons c₅ is left out. With a single horizon c₄ is
+//! left out too, and c₂ is the dip along which semblance is lowest, or else the median of heave over throw.
+//! Metric space; s and z are measured from the middle.
 
 use super::pairs::Pair;
 use super::traces::across_m;
@@ -10,26 +12,27 @@ use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 use survey::{SurveyGeometry, TriangleMesh, Volume};
 
-/// Places farther off the fit than this many times its RMS are left out of the next.
+/// Points farther from the fit than this many times its RMS are left out of the next fit.
 const OUTLIER: f64 = 2.5;
-/// Distance between the nodes of the mesh along strike, traces, and down dip, samples.
+/// Distance between nodes of the mesh along strike, traces, and down dip, samples.
 const MESH: [f64; 2] = [4.0, 6.0];
-/// Ends nearer than this to a wall reach it, traces.
-const TO_WALL: f64 = 8.0;
-/// Farthest that a fault goes on beyond its last pair, in traces and as a share of its length.
+/// Distance from the outer boundary within which an end is extended to the boundary, traces.
+const TO_BOUNDARY: f64 = 8.0;
+/// Farthest extension of a fault beyond its last pair, in traces and as a share of its length.
 const BEYOND: [f64; 2] = [30.0, 0.5];
-/// Dips tried where the data are asked for one, degrees apart; samples above and below the horizon; at most so many of its places.
+/// The search for a dip in semblance: step between dips, degrees; samples above and below the horizon;
+/// largest count of points.
 const LEAN_STEP_DEG: f64 = 5.0;
 const LEAN_REACH: i32 = 20;
 const LEAN_PLACES: usize = 400;
-/// How far the least mean semblance must lie below that of all dips.
+/// Least difference between the lowest mean semblance and the mean over all dips.
 const LEAN_CLEAR: f64 = 0.01;
-/// Most coefficients.
+/// Largest count of coefficients.
 const TERMS: usize = 6;
 
-/// A fault's surface.
+/// The fitted surface of a fault.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Surface {
+pub(super) struct FittedFault {
     middle: DVec3,
     along: DVec2,
     across: DVec2,
@@ -37,12 +40,13 @@ pub(super) struct Surface {
     /// Extent along strike and in depth, m from the middle.
     s: [f64; 2],
     z: [f64; 2],
-    /// RMS distance of its places, m.
+    /// RMS distance of its points, m.
     pub misfit_m: f64,
 }
 
-impl Surface {
-    /// Fits a fault's pairs; `None` when it would be flatter than a fault may be.
+impl FittedFault {
+    /// Fits the pairs of a fault; `None` when the surface is flatter than [`ProposeSettings::min_dip_deg`] or
+    /// the fit has no solution.
     pub fn through(
         pairs: &[Pair],
         geometry: &SurveyGeometry,
@@ -89,8 +93,9 @@ impl Surface {
         (surface.run().1 <= 1.0 / settings.min_dip_deg.to_radians().tan()).then_some(surface)
     }
 
-    /// Gives a fault that one horizon tells of the dip that the data show: of all to both sides the one on which the semblance around the
-    /// horizon is least. Where none stands out, the dip stays what heave and throw make it.
+    /// Sets c₂ of a fault on a single horizon to the dip on which the semblance around the horizon is lowest,
+    /// of all dips to both sides. Where none stands out, c₂ stays what heave and throw make it. `None` when a
+    /// fit has no solution.
     fn lean(
         &mut self,
         points: &[[f64; 3]],
@@ -127,7 +132,7 @@ impl Surface {
     }
 
     fn fit(&mut self, points: &[[f64; 3]], used: &[usize]) -> Option<()> {
-        // Scaled, so that the normal equations are well conditioned.
+        // The terms are scaled, so that the normal equations are well conditioned.
         let scale = |axis: usize| points.iter().map(|p| p[axis].abs()).fold(1.0, f64::max);
         let scales = scales_of(scale(0), scale(2));
         let mut matrix = [[0.0; TERMS]; TERMS];
@@ -142,7 +147,7 @@ impl Surface {
                 }
             }
         }
-        // A little stiffness where the places say nothing: quadratic terms fade first.
+        // A weak regularisation where the points determine nothing; it affects quadratic terms first.
         for (a, &i) in used.iter().enumerate() {
             matrix[a][a] += points.len() as f64 * if i >= 3 { 1e-4 } else { 1e-9 };
         }
@@ -159,7 +164,7 @@ impl Surface {
         terms_of(s, z).iter().zip(self.c).map(|(term, c)| term * c).sum()
     }
 
-    /// Metric place on the surface.
+    /// The point of the surface at (s, z), metric.
     fn at(&self, s: f64, z: f64) -> DVec3 {
         self.middle + (self.along * s + self.across * self.c_at(s, z)).extend(z)
     }
@@ -169,22 +174,23 @@ impl Surface {
         let [low, high] = self.z;
         let depth = (high - low).max(1.0);
         let run = (self.c_at(0.0, low + depth) - self.c_at(0.0, low)) / depth;
-        // Across is normal to strike at the middle of the fit only.
+        // `across` is normal to the strike only at the middle of the fit.
         let strike = self.c[1];
         (run > 0.0, run.abs() / (1.0 + strike * strike).sqrt())
     }
 
-    /// Horizontal direction of strike.
+    /// Horizontal direction of the strike.
     pub fn strike(&self) -> DVec2 {
         (self.along + self.across * self.c[1]).normalize()
     }
 
-    /// The throw of a pair, counted towards `across`.
+    /// The throw of a pair, positive if the side towards which `across` points is deeper.
     pub fn throw_across(&self, pair: &Pair) -> f64 {
         f64::from(pair.throw)
     }
 
-    /// Throw along the traces on all horizons, m²: its mean over each bin along strike on which a horizon has pairs, times the bin.
+    /// The area of the offset, m²: the mean throw in each bin along strike in which a horizon has pairs,
+    /// times the bin's width, summed over bins and horizons.
     pub fn offset_m2(&self, pairs: &[Pair], geometry: &SurveyGeometry) -> f64 {
         let metric = geometry.metric_from_voxel();
         let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
@@ -204,13 +210,14 @@ impl Surface {
         self.s.map(|s| self.at(s, z))
     }
 
-    /// Shallowest and deepest place, m.
+    /// Shallowest and deepest point, m.
     pub fn depths_m(&self) -> [f64; 2] {
         self.z.map(|z| z + self.middle.z)
     }
 
-    /// The surface continued to where it ends: along strike to the walls its places nearly reach, or to where the throw has gone;
-    /// in depth to the next unbroken horizon, or through the volume.
+    /// Extends the surface to where it ends. Along strike: to the outer boundary if its points nearly reach
+    /// it, or to where the throw has decreased to 0. In depth: to the next unbroken horizon, or through the
+    /// volume.
     pub fn extended(mut self, pairs: &[Pair], horizons: &[Evidence], geometry: &SurveyGeometry) -> Self {
         let metric = geometry.metric_from_voxel();
         let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
@@ -230,9 +237,9 @@ impl Surface {
         for (end, sign) in [(0, -1.0), (1, 1.0)] {
             let last = reach[end];
             let z = 0.5 * (self.z[0] + self.z[1]);
-            let wall = (1..=TO_WALL as usize).any(|k| !inside(self.at(last + sign * k as f64 * bin_m, z)));
-            let by = if wall {
-                2.0 * TO_WALL * bin_m
+            let at_boundary = (1..=TO_BOUNDARY as usize).any(|k| !inside(self.at(last + sign * k as f64 * bin_m, z)));
+            let by = if at_boundary {
+                2.0 * TO_BOUNDARY * bin_m
             } else {
                 dies_out(&throw, reach, end).min(BEYOND[0] * bin_m).min(BEYOND[1] * (reach[1] - reach[0]))
             };
@@ -258,7 +265,8 @@ impl Surface {
         self
     }
 
-    /// The mean depth (m from the middle) at which a horizon passes the surface without an offset over most of its length.
+    /// The mean depth (m from the middle) at which a horizon passes the surface without an offset over most
+    /// of its length; `None` if it does not.
     fn unbroken(&self, horizon: &Evidence, geometry: &SurveyGeometry) -> Option<f64> {
         const STATIONS: usize = 24;
         let metric = geometry.metric_from_voxel();
@@ -275,7 +283,7 @@ impl Surface {
         let (mut whole, mut depth) = (0, 0.0);
         for k in 0..STATIONS {
             let s = self.s[0] + (self.s[1] - self.s[0]) * (k as f64 + 0.5) / STATIONS as f64;
-            // Where the horizon meets the surface, by a few steps of fixed-point iteration.
+            // Find where the horizon meets the surface, by a few fixed-point iterations.
             let mut z = 0.0;
             let mut met = None;
             for _ in 0..6 {
@@ -296,7 +304,7 @@ impl Surface {
         (2 * whole > STATIONS).then(|| depth / f64::from(whole as u32))
     }
 
-    /// The mesh in the world: strips of equal steps along strike and in depth.
+    /// The surface as a mesh in world coordinates, in strips of equal steps along strike and in depth.
     pub fn mesh(&self, geometry: &SurveyGeometry) -> TriangleMesh {
         let metric = geometry.metric_from_voxel();
         let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
@@ -324,7 +332,7 @@ impl Surface {
     }
 }
 
-/// The value of the nearest voxel; `None` outside, and where there is none.
+/// The value of the nearest voxel; `None` outside the volume and where the value is not finite.
 fn value_near(volume: &Volume<f32>, voxel: DVec3) -> Option<f64> {
     let voxel = voxel.round();
     let inside = (0..3).all(|axis| voxel[axis] >= 0.0 && voxel[axis] < volume.size()[axis] as f64);
@@ -332,8 +340,8 @@ fn value_near(volume: &Volume<f32>, voxel: DVec3) -> Option<f64> {
     value.is_finite().then_some(f64::from(value))
 }
 
-/// Mean semblance on the surface, and eight traces off it on both sides.
-pub(super) fn semblance_on(surface: &Surface, geometry: &SurveyGeometry, volume: &Volume<f32>) -> [f32; 2] {
+/// Mean semblance on the surface, and eight traces away from it on both sides.
+pub(super) fn semblance_on(surface: &FittedFault, geometry: &SurveyGeometry, volume: &Volume<f32>) -> [f32; 2] {
     const STATIONS: usize = 64;
     const OFF_TRACES: f64 = 8.0;
     let metric = geometry.metric_from_voxel();
@@ -356,7 +364,7 @@ pub(super) fn semblance_on(surface: &Surface, geometry: &SurveyGeometry, volume:
     sums.map(|(sum, count)| (sum / count.max(1) as f64) as f32)
 }
 
-/// How far beyond an end of the trace the throw, continued from the last third, is nothing, m.
+/// Distance (m) beyond an end of the trace at which the throw, extrapolated from the last third, is 0.
 fn dies_out(throw: &[(f64, f64)], reach: [f64; 2], end: usize) -> f64 {
     let third = (reach[1] - reach[0]) / 3.0;
     let from_end = |s: f64| (s - reach[end]).abs();
@@ -370,11 +378,12 @@ fn dies_out(throw: &[(f64, f64)], reach: [f64; 2], end: usize) -> f64 {
     let (ss, st) = near.iter().fold((0.0, 0.0), |sum, p| (sum.0 + (p.0 - ms).powi(2), sum.1 + (p.0 - ms) * (p.1 - mt)));
     let slope = st / ss.max(1e-9);
     let at_end = mt - slope * ms;
-    // Throw that does not fall towards the end says nothing about where it is gone.
+    // Where the throw does not decrease towards the end, its end is unknown.
     if slope <= 0.0 || at_end <= 0.0 { 0.0 } else { at_end / slope }
 }
 
-/// Median of heave over throw: the cotangent of the dip as the rims of one horizon have it, positive when dipping towards `across`.
+/// Median of heave over throw: the cotangent of the dip according to the rims of one horizon, positive for a
+/// dip towards `across`.
 fn run_of_pairs(pairs: &[Pair], metric: glam::DMat3) -> f64 {
     let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
     let mut runs: Vec<f64> = pairs
@@ -394,7 +403,7 @@ fn scales_of(s: f64, z: f64) -> [f64; TERMS] {
     terms_of(s, z)
 }
 
-/// Gaussian elimination with pivots of the first `count` rows and columns.
+/// Gaussian elimination with pivots on the first `count` rows and columns; `None` for a singular matrix.
 fn solve(matrix: &mut [[f64; TERMS]; TERMS], right: &mut [f64; TERMS], count: usize) -> Option<[f64; TERMS]> {
     for column in 0..count {
         let pivot = (column..count).max_by(|&a, &b| matrix[a][column].abs().total_cmp(&matrix[b][column].abs()))?;

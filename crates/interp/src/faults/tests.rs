@@ -45,7 +45,7 @@ fn found(
     geometry: &SurveyGeometry,
     known: &FaultNetwork,
     likeness: Option<&Volume<f32>>,
-) -> Found {
+) -> FoundFaults {
     let settings = ProposeSettings::default();
     propose_faults(horizons, geometry, known, likeness, &settings, &Progress::silent()).unwrap()
 }
@@ -114,7 +114,8 @@ fn a_horizon_with_holes_has_no_faults() {
     assert!(found.is_empty(), "{:?}", found.iter().map(|p| (p.support, p.throw, p.ends)).collect::<Vec<_>>());
 }
 
-/// A dipping plane over 90 x 80 traces with `step(distance from a line, trace)` added, and noise of 0.25 samples.
+/// A dipping plane over 90 x 80 traces with `step(distance from a line, trace)` added, and noise of 0.25
+/// samples.
 fn stepped(step: impl Fn(f32) -> f32) -> (SurveyGeometry, Vec<VoxelSheet>) {
     let geometry = SurveyGeometry::regular([90, 80, 60], 25.0, 10.0, VerticalUnit::Metres);
     let height = |n: usize| {
@@ -142,7 +143,7 @@ fn a_fault_that_was_tracked_across_is_found_by_its_bend() {
     }
     let mut ends = fault.ends.map(|end| end[1]);
     ends.sort_by(f64::total_cmp);
-    assert!(ends[0] < 12.0 && ends[1] > 67.0, "it goes through the survey, not from {:?}", fault.ends);
+    assert!(ends[0] < 12.0 && ends[1] > 67.0, "it crosses the whole survey: {:?}", fault.ends);
 }
 
 /// The same offset over twenty traces is a fold.
@@ -154,7 +155,8 @@ fn a_flexure_is_no_fault() {
     assert!(found.is_empty(), "{:?}", found.iter().map(|p| (p.support, p.throw, p.ends)).collect::<Vec<_>>());
 }
 
-/// The line of [`stepped`] moved `off` traces across, from crossline `from` to `to` and turned by `turn` degrees about its middle, as a vertical fault.
+/// The line of [`stepped`] moved `off` traces across, from crossline `from` to `to` and turned by `turn`
+/// degrees about its middle, as a vertical fault.
 fn drawn(geometry: &SurveyGeometry, off: f64, [from, to]: [f64; 2], turn: f64, z: [f64; 2]) -> FaultNetwork {
     let along = DVec2::new(-0.3, 1.0).normalize();
     let (along, middle) = (along.rotate(DVec2::from_angle(turn.to_radians())), DVec2::new(45.0, 40.0));
@@ -213,7 +215,8 @@ fn proposals_come_by_the_area_they_tore_apart() {
     assert_eq!((large.id, small.id), (1, 2));
 }
 
-/// Offsets of 50, 30, 12, 5 and 3: the last three hold a fifth, unless known faults of 200 were found again too: then the last four.
+/// Offsets of 50, 30, 12, 5 and 3: the last three hold a fifth, unless known faults of 200 were found again
+/// too: then the last four.
 #[test]
 fn minor_proposals_hold_a_fifth_of_the_offset_or_are_not_seen_in_the_data() {
     let (geometry, sheets) = stepped(|d| 4.0 * (d / 3.0 + 0.5).clamp(0.0, 1.0));

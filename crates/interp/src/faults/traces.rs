@@ -1,29 +1,29 @@
-//! Pairs become traces of faults on horizons, and traces become faults.
+//! Groups pairs into traces of faults on horizons, and traces into faults.
 
 use super::pairs::Pair;
 use super::{ProposeSettings, metres};
 use glam::{DMat3, DVec2, Vec2};
 
-/// Pairs of one trace follow one another at no more than this, traces.
+/// Largest distance between successive pairs of one trace, traces.
 const STEP: f32 = 5.0;
-/// Cosine between the ways across of two that do.
+/// Least cosine between the directions across of two such pairs.
 const PARALLEL: f32 = 0.8;
-/// Share of the shorter trace that must lie over the other one for the two to be one fault.
+/// Least share of the shorter trace that must lie over the other one for the two to belong to one fault.
 const COMMON: f64 = 0.4;
-/// Spread of the distances across between two traces of one fault, traces.
+/// Largest spread of the distances across between two traces of one fault, traces.
 const SPREAD: f64 = 4.0;
 
-/// Traces on one horizon that are farther apart than this, traces, are two.
+/// Traces on one horizon that are farther apart than this (traces) belong to two faults.
 const BESIDE: f32 = 6.0;
 
-/// Throws of one sign, and neither more than three times the other.
+/// Whether two throws have one sign, and neither is much more than three times the other.
 fn alike(a: &Pair, b: &Pair) -> bool {
     let same_way = if a.across.dot(b.across) >= 0.0 { 1.0 } else { -1.0 };
     let (s, t) = (a.throw, same_way * b.throw);
     s * t > 0.0 && s.abs() < 3.0 * t.abs() + 2.0 && t.abs() < 3.0 * s.abs() + 2.0
 }
 
-/// Groups the pairs of one horizon into traces of at least the smallest length.
+/// Groups the pairs of one horizon into traces, and drops those below the smallest length.
 pub(super) fn along_strike(pairs: Vec<Pair>, settings: &ProposeSettings) -> Vec<Vec<Pair>> {
     let mut parent: Vec<usize> = (0..pairs.len()).collect();
     let mut order: Vec<usize> = (0..pairs.len()).collect();
@@ -49,9 +49,10 @@ pub(super) fn along_strike(pairs: Vec<Pair>, settings: &ProposeSettings) -> Vec<
     groups(parent, pairs).into_iter().filter(long).collect()
 }
 
-/// Joins traces of all horizons that lie on one steep surface; the pairs of each fault, all with `across` pointing to the same side.
+/// Groups the traces of all horizons that lie on one steep surface. Returns the pairs of each fault, all with
+/// `across` pointing to the same side.
 pub(super) fn across_horizons(traces: Vec<Vec<Pair>>, metric: DMat3, settings: &ProposeSettings) -> Vec<Vec<Pair>> {
-    // Nearest in depth first: a trace's neighbour above or below is told most surely.
+    // Nearest in depth first: a trace is matched most reliably with its neighbour above or below.
     let mut links: Vec<(f64, usize, usize)> = Vec::new();
     for a in 0..traces.len() {
         for b in a + 1..traces.len() {
@@ -88,7 +89,7 @@ pub(super) fn across_horizons(traces: Vec<Vec<Pair>>, metric: DMat3, settings: &
         .collect()
 }
 
-/// Whether two traces run beside one another on one horizon: they are of two faults.
+/// Whether two traces run beside one another on one horizon, so that they belong to two faults.
 fn side_by_side(a: &[Pair], b: &[Pair]) -> bool {
     a.iter().any(|p| {
         b.iter().any(|q| {
@@ -98,7 +99,8 @@ fn side_by_side(a: &[Pair], b: &[Pair]) -> bool {
     })
 }
 
-/// Whether two traces lie one above the other on a steep surface, or one behind the other on one horizon: their mean distance in depth, m.
+/// The mean distance in depth (m) of two traces that lie one above the other on a steep surface, or one
+/// behind the other on one horizon; `None` for other traces.
 fn one_fault(a: &[Pair], b: &[Pair], metric: DMat3, settings: &ProposeSettings) -> Option<f64> {
     let (shorter, longer) = if a.len() <= b.len() { (a, b) } else { (b, a) };
     let bin_m = 0.5 * (metric.x_axis.length() + metric.y_axis.length());
@@ -106,7 +108,7 @@ fn one_fault(a: &[Pair], b: &[Pair], metric: DMat3, settings: &ProposeSettings) 
     let mut offsets = Vec::new();
     let mut depth_m = 0.0;
     for pair in shorter {
-        // The place of the longer trace straight across from this one.
+        // The pair of the longer trace straight across from this one.
         let across = pair.across;
         let opposite = longer.iter().filter(|other| {
             (place(other) - place(pair)).perp_dot(across).abs() <= STEP && other.across.dot(across).abs() >= PARALLEL
@@ -128,7 +130,7 @@ fn one_fault(a: &[Pair], b: &[Pair], metric: DMat3, settings: &ProposeSettings) 
     (steep && at(0.85) - at(0.15) <= SPREAD + 0.15 * depth_m / bin_m).then_some(depth_m)
 }
 
-/// The mean way across, up to its sign: the main axis of all of them, doubled angles averaged.
+/// The mean direction across, up to its sign: the main axis of all directions, by averaging doubled angles.
 fn mean_across(pairs: &[Pair]) -> Vec2 {
     let doubled: Vec2 = pairs.iter().map(|pair| pair.across.rotate(pair.across)).sum();
     Vec2::from_angle(0.5 * doubled.to_angle())
@@ -138,7 +140,7 @@ fn place(pair: &Pair) -> Vec2 {
     Vec2::new(pair.at[0], pair.at[1])
 }
 
-/// Horizontal metric direction of a voxel direction across: the normal of the metric image of the strike.
+/// The horizontal metric direction across: the normal of the metric image of the strike.
 pub(super) fn across_m(pairs: &[Pair], metric: DMat3) -> DVec2 {
     let strike = mean_across(pairs).perp();
     let along = metres(metric, [strike.x, strike.y, 0.0]).truncate().normalize();
@@ -161,7 +163,7 @@ fn unite(parent: &mut [usize], a: usize, b: usize) {
     parent[a.max(b)] = a.min(b);
 }
 
-/// The members of each set, sets by their first member.
+/// The members of each set; sets are ordered by their first member.
 fn groups<T>(mut parent: Vec<usize>, members: Vec<T>) -> Vec<Vec<T>> {
     let roots: Vec<usize> = (0..parent.len()).map(|n| root_of(&mut parent, n)).collect();
     let mut groups: Vec<Vec<T>> = (0..roots.len()).map(|_| Vec::new()).collect();

@@ -1,10 +1,12 @@
-//! Hierarchical clustering along chains of cheapest neighbours (see [`super`] for why this makes the greedy tree).
+//! Hierarchical clustering along chains of cheapest neighbours (see [`super`] for why this makes the greedy
+//! tree).
 //!
-//! From any part, go to its cheapest neighbour until two parts choose each other; merge them; go on from the part before. Pairs
-//! are ordered by (cost, lesser id, greater id), a part's id being its least patch, so every step goes strictly down and nothing depends on
-//! chance. A surface of many patches is first clustered in square regions, each by itself: there only such parts are merged as have all their
-//! neighbours inside, so those merges are among the ones that the whole surface would make. Cost: about three chain steps a merge, each as
-//! many costs as a part has neighbours, six on average.
+//! From any part, go to its cheapest neighbour until two parts choose each other; merge them; continue from
+//! the part before. Pairs are ordered by (cost, lesser id, greater id), where the id of a part is its least
+//! patch, so every step goes strictly down and the result is unique. A surface of many patches is first
+//! clustered in separate square regions. There only those parts are merged that have all their neighbours
+//! inside, so these merges are among the ones that the whole surface would make. Cost: about three chain
+//! steps a merge, each with as many cost evaluations as a part has neighbours, six on average.
 
 use super::dual::{Patches, find};
 use super::moments::Moments;
@@ -13,19 +15,21 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use survey::{Cancelled, Progress};
 
-/// Patches from which on a surface is clustered in regions first. Below, one thread has it done in some milliseconds.
+/// Count of patches from which a surface is first clustered in regions. Below it, one thread needs some
+/// milliseconds.
 pub(super) const REGIONAL: usize = 1 << 13;
 
-/// Edge of a region in voxels: about a thousand patches, so that few touch its border.
+/// Edge of a region, voxels: about a thousand patches, so that few of them touch its border.
 const REGION: f64 = 64.0;
 
-/// Merges between two looks at whether the user cancelled.
+/// Merges between two checks for cancellation.
 const CHECK_EVERY: usize = 1 << 12;
 
-/// Stands in a list of neighbours for all that lie outside the region.
+/// Stands in a list of neighbours for all those outside the region.
 const OUTSIDE: u32 = u32::MAX;
 
-/// Merges all parts of a surface into one. Each merge `[a, b]`, a < b, puts part b into part a; a part is named by its least patch.
+/// Merges all parts of a surface into one. A merge `[a, b]`, a < b, puts part b into part a; a part is named
+/// by its least patch.
 pub(super) fn cluster(patches: &Patches, progress: &Progress) -> Result<Vec<[u32; 2]>, Cancelled> {
     let mut merges = Vec::with_capacity(patches.len());
     let mut clusters = if patches.len() < REGIONAL {
@@ -33,7 +37,7 @@ pub(super) fn cluster(patches: &Patches, progress: &Progress) -> Result<Vec<[u32
     } else {
         let regions = regions(patches);
         let parts = regions.par_iter().map(|own| cluster_region(patches, own, progress));
-        let parts: Vec<Region> = parts.collect::<Result<_, Cancelled>>()?;
+        let parts: Vec<MergedRegion> = parts.collect::<Result<_, Cancelled>>()?;
         Clusters::after(patches, &parts, &mut merges)
     };
     clusters.merge_chains(&mut merges, progress)?;
@@ -41,7 +45,7 @@ pub(super) fn cluster(patches: &Patches, progress: &Progress) -> Result<Vec<[u32
     Ok(merges)
 }
 
-/// Patches of each square region that has some.
+/// Patches of each square region that is not empty.
 fn regions(patches: &Patches) -> Vec<Vec<u32>> {
     let key = |patch: u32| {
         let [x, y, _] = patches.moments[patch as usize].centroid;
@@ -52,15 +56,15 @@ fn regions(patches: &Patches) -> Vec<Vec<u32>> {
     order.chunk_by(|&a, &b| key(a) == key(b)).map(<[u32]>::to_vec).collect()
 }
 
-/// What was merged in a region, in ids of the surface.
-struct Region {
+/// The result of one region, in ids of the surface.
+struct MergedRegion {
     merges: Vec<[u32; 2]>,
-    /// What is left: id, moments, and neighbours as patches of the surface.
+    /// The remaining parts: id, moments, and neighbours as patches of the surface.
     left: Vec<(u32, Moments, Vec<u32>)>,
 }
 
-/// Merges what has all its neighbours in the region.
-fn cluster_region(patches: &Patches, own: &[u32], progress: &Progress) -> Result<Region, Cancelled> {
+/// Merges the parts that have all their neighbours in the region.
+fn cluster_region(patches: &Patches, own: &[u32], progress: &Progress) -> Result<MergedRegion, Cancelled> {
     progress.check()?;
     // `own` ascends, so local ids keep the order of the surface's.
     let local = |patch: u32| own.binary_search(&patch).map_or(OUTSIDE, |n| n as u32);
@@ -69,7 +73,7 @@ fn cluster_region(patches: &Patches, own: &[u32], progress: &Progress) -> Result
     let mut clusters = Clusters::new(moments, lists);
     let mut merges = Vec::new();
     clusters.merge_chains(&mut merges, progress)?;
-    // Every patch that a part has outside is a neighbour of one of its patches.
+    // Every outside patch next to a part is a neighbour of one of its patches.
     let mut outside: Vec<Vec<u32>> = vec![Vec::new(); own.len()];
     for (n, &patch) in own.iter().enumerate() {
         let root = find(&mut clusters.parent, n as u32) as usize;
@@ -86,7 +90,7 @@ fn cluster_region(patches: &Patches, own: &[u32], progress: &Progress) -> Result
         }
     }
     let merges = merges.into_iter().map(|pair| pair.map(|n| own[n as usize])).collect();
-    Ok(Region { merges, left })
+    Ok(MergedRegion { merges, left })
 }
 
 /// The parts of a surface while they are merged.
@@ -97,21 +101,21 @@ pub(super) struct Clusters {
     moments: Vec<Moments>,
     /// Cost of each root's part.
     costs: Vec<f64>,
-    /// First entry and count of each root's neighbours in `arena`; they may be outdated or repeated.
+    /// First entry and count of each root's neighbours in `arena`. The entries may be outdated or repeated.
     lists: Vec<[u32; 2]>,
     arena: Vec<u32>,
-    /// Part for which a neighbour was last seen, to drop repetitions.
+    /// The part for which a neighbour was last seen, to skip repetitions.
     seen: Vec<u32>,
     mark: u32,
 }
 
-/// What a part's neighbours say.
+/// The cheapest neighbour of a part.
 enum Nearest {
-    /// It has none.
+    /// The part has no neighbour.
     Alone,
-    /// Some lie outside the region.
+    /// Some neighbours lie outside the region.
     Unknown,
-    /// The cheapest to merge with.
+    /// The part that is cheapest to merge with.
     Part(u32),
 }
 
@@ -134,8 +138,8 @@ impl Clusters {
         Self::new(patches.moments.clone(), lists)
     }
 
-    /// The state that the merges of all regions lead to.
-    fn after(patches: &Patches, regions: &[Region], merges: &mut Vec<[u32; 2]>) -> Self {
+    /// The state after the merges of all regions.
+    fn after(patches: &Patches, regions: &[MergedRegion], merges: &mut Vec<[u32; 2]>) -> Self {
         let count = patches.len();
         let mut all = Self::new(vec![Moments::EMPTY; count], (0..count).map(|_| std::iter::empty()));
         for region in regions {
@@ -158,7 +162,7 @@ impl Clusters {
         &self.arena[start as usize..(start + count) as usize]
     }
 
-    /// Brings a part's neighbours up to date.
+    /// Updates the list of a part's neighbours.
     fn compact(&mut self, part: u32) {
         let [start, count] = self.lists[part as usize];
         self.mark += 1;
@@ -191,7 +195,8 @@ impl Clusters {
         if self.list(part).last() == Some(&OUTSIDE) {
             return Nearest::Unknown;
         }
-        // A union costs no less than both parts together, so the cheapest part first rules out most others.
+        // A union costs at least as much as both parts together, so starting with the cheapest part excludes
+        // most others.
         let list = self.list(part);
         let cheapest = list.iter().copied().min_by(|&a, &b| self.costs[a as usize].total_cmp(&self.costs[b as usize]));
         let mut best: Option<(f64, u32)> = None;
@@ -202,7 +207,7 @@ impl Clusters {
                 continue;
             }
             let cost = union.cost();
-            // With one part fixed, the order of pairs of equal cost is that of the other.
+            // With one part fixed, pairs of equal cost are ordered by the other part.
             if best.is_none_or(|(least, id)| cost < least || (cost == least && other < id)) {
                 best = Some((cost, other));
             }
@@ -210,7 +215,7 @@ impl Clusters {
         best.map_or(Nearest::Alone, |(_, other)| Nearest::Part(other))
     }
 
-    /// Merges two parts; the lesser id stays.
+    /// Merges two parts; the lesser id remains.
     fn merge(&mut self, a: u32, b: u32) -> [u32; 2] {
         let (low, high) = (a.min(b), a.max(b));
         self.moments[low as usize] = self.moments[low as usize].union(&self.moments[high as usize]);
@@ -227,7 +232,7 @@ impl Clusters {
         [low, high]
     }
 
-    /// Merges until no chain can go on.
+    /// Merges until no chain can continue.
     pub(super) fn merge_chains(&mut self, merges: &mut Vec<[u32; 2]>, progress: &Progress) -> Result<(), Cancelled> {
         let mut chain: Vec<u32> = Vec::new();
         let mut in_chain = vec![false; self.parent.len()];
@@ -255,7 +260,8 @@ impl Clusters {
                         progress.check()?;
                     }
                 } else if in_chain[next as usize] {
-                    // Only rounding can make a merged part cheaper for the rest of the chain than what it followed: begin it anew.
+                    // Only rounding can make a merged part cheaper for the rest of the chain than the part it
+                    // followed: start the chain again.
                     chain.drain(..).for_each(|part| in_chain[part as usize] = false);
                     chain.push(top);
                 } else {
@@ -267,7 +273,8 @@ impl Clusters {
     }
 }
 
-/// Joins what shares no edge (pieces that touch in a vertex, or not at all), always the two pieces of fewest triangles.
+/// Joins pieces that share no edge (they touch in a vertex or not at all), always the two with the fewest
+/// triangles.
 fn join_separate(patches: &Patches, parent: &mut [u32], merges: &mut Vec<[u32; 2]>) {
     let mut counts = vec![0u64; parent.len()];
     for patch in 0..parent.len() as u32 {

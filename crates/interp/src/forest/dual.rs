@@ -1,7 +1,8 @@
-//! The dual graph of a surface, and the small parts that clustering starts from.
+//! The dual graph of a surface, and the small parts from which clustering starts.
 //!
-//! Triangles that share an edge are neighbours; an edge of more than two triangles (a surface that branches) joins each with the next. Parts are
-//! the connected triangles within square tiles of the lattice, so that two sheets of one surface over the same tile are two parts.
+//! Triangles that share an edge are neighbours. An edge of more than two triangles (of a surface that
+//! branches) joins each of them with the next. Parts are the connected triangles within square tiles of the
+//! lattice, so two sheets of one surface over the same tile are two parts.
 
 use super::moments::Moments;
 use crate::surfaces::Vertex;
@@ -31,7 +32,7 @@ impl Patches {
     }
 }
 
-/// Cuts a surface into parts of at most `cells` × `cells` cells; single triangles when `cells` is 0.
+/// Cuts a surface into parts of at most `cells` × `cells` cells, or into single triangles when `cells` is 0.
 pub(super) fn patches(vertices: &[Vertex], triangles: &[[u32; 3]], cells: u16) -> Patches {
     let edges = dual_edges(triangles);
     let of_triangle = match cells {
@@ -93,7 +94,10 @@ fn dual_edges(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 fn connected_in_tiles(vertices: &[Vertex], triangles: &[[u32; 3]], edges: &[[u32; 2]], cells: u16) -> Vec<u32> {
     let tile = |triangle: &[u32; 3]| {
         let corners = triangle.map(|v| vertices[v as usize]);
-        let low = |axis: fn(&Vertex) -> u16| corners.iter().map(axis).min().unwrap_or(0) / cells;
+        let low = |axis: fn(&Vertex) -> u16| {
+            let [a, b, c] = corners.each_ref().map(axis);
+            a.min(b).min(c) / cells
+        };
         (u32::from(low(|v| v.x)) << 16) | u32::from(low(|v| v.y))
     };
     let tiles: Vec<u32> = triangles.iter().map(tile).collect();
@@ -103,12 +107,12 @@ fn connected_in_tiles(vertices: &[Vertex], triangles: &[[u32; 3]], edges: &[[u32
             join(&mut parent, a, b);
         }
     }
-    // The root is the least triangle of its set, so it is met first.
+    // The root is the least triangle of its set, so it comes first.
     let mut count = 0;
     for triangle in 0..parent.len() {
         let root = parent[triangle] as usize;
         if root == triangle {
-            // From here on the number of the part stands in the root's place.
+            // From here on, the entry of the root is the number of the part.
             parent[triangle] = count;
             count += 1;
         } else {
@@ -118,7 +122,7 @@ fn connected_in_tiles(vertices: &[Vertex], triangles: &[[u32; 3]], edges: &[[u32
     parent
 }
 
-/// Root of an element; the path to it is halved.
+/// Root of an element, with path halving.
 #[inline]
 pub(super) fn find(parent: &mut [u32], mut element: u32) -> u32 {
     while parent[element as usize] != element {

@@ -1,12 +1,14 @@
-//! Nodes at a level of the trees: what leaves are coloured by (P-horiz, figure 3).
+//! Nodes at a level of the trees, by which leaves are coloured (P-horiz, figure 3).
 //!
-//! The *height* of a node is the most steps from it down to a leaf. At level L a leaf belongs to its highest ancestor of height L or less: level 0 are
-//! the leaves, and above the highest tree every surface is one node. Whatever the level, nodes do not overlap and leave nothing out.
+//! The *height* of a node is the largest count of steps from it down to a leaf. At level L a leaf belongs to
+//! its highest ancestor of height L or less: at level 0 to itself, and above the height of the highest tree
+//! every surface is one node. At every level, the nodes are disjoint and cover everything.
 
 use super::Forest;
 
 impl Forest {
-    /// For each leaf id the number, counted from 1, of the node that it belongs to at a level; the first entry stands for "no leaf" and is 0.
+    /// For each leaf id the number, counted from 1, of the node to which the leaf belongs at a level. The
+    /// first entry stands for "no leaf" and is 0.
     pub fn nodes_at_level(&self, level: u32) -> Vec<u32> {
         let mut height = vec![0u32; self.nodes.len()];
         // Nodes stand before their children.
@@ -17,7 +19,7 @@ impl Forest {
         }
         let node_of = |leaf: &u32| {
             let within = self.climb(*leaf).take_while(|&node| height[node as usize] <= level).last();
-            within.unwrap_or(*leaf) + 1
+            within.expect("a leaf has height 0, and no level is lower") + 1
         };
         std::iter::once(0).chain(self.leaves.iter().map(node_of)).collect()
     }

@@ -1,14 +1,14 @@
-//! Moments of a set of triangles: what the flatness of any union is computed from in constant time.
+//! Moments of a set of triangles, from which the flatness of any union follows in constant time.
 //!
-//! Of a triangle with corners v, centroid c and area a, ∫ppᵀ dA = a/12 · (Σ vvᵀ + 9 ccᵀ), so about its own centroid
-//! ∫(p − c)(p − c)ᵀ dA = a/12 · Σ (v − c)(v − c)ᵀ. Moments of a union about its centroid follow from those of its parts (parallel
-//! axes): M = M₁ + M₂ + a₁a₂/(a₁ + a₂) · ddᵀ with d = c₁ − c₂. Kept central throughout, they never lose the small eigenvalue to the distance
-//! from an origin. Space: voxels; f64.
+//! For a triangle with corners v, centroid c and area a, ∫ppᵀ dA = a/12 · (Σ vvᵀ + 9 ccᵀ), so about its own
+//! centroid ∫(p − c)(p − c)ᵀ dA = a/12 · Σ (v − c)(v − c)ᵀ. The moments of a union about its centroid follow
+//! from those of its parts (parallel axes): M = M₁ + M₂ + a₁a₂/(a₁ + a₂) · ddᵀ with d = c₁ − c₂. Because they
+//! are kept central, the small eigenvalue is never lost to the distance from an origin. Space: voxels; f64.
 
-/// Weight of the area that breaks ties between equally flat unions in favour of the smaller.
+/// Weight of the area, which breaks ties between equally flat unions in favour of the smaller one.
 const TIE_BREAK: f64 = 1e-12;
 
-/// Newton's steps at most; between two and six are needed but where the moment is nearly isotropic.
+/// Most Newton steps. Two to six are needed, more only where the moment is nearly isotropic.
 const MAX_STEPS: usize = 64;
 
 /// Area, centroid and central second moment (xx, yy, zz, xy, xz, yz).
@@ -38,7 +38,7 @@ impl Moments {
         Self { area, centroid, second }
     }
 
-    /// Moments of two sets that share no area.
+    /// Moments of the union of two sets that share no area.
     #[inline]
     pub(super) fn union(&self, other: &Self) -> Self {
         let area = self.area + other.area;
@@ -60,13 +60,14 @@ impl Moments {
         Self { area, centroid, second }
     }
 
-    /// Cost of a set: squared distance to its best-fit plane, integrated over the area, and the tie-break.
+    /// Cost of a set: its squared distance to its best-fit plane, integrated over the area, and the
+    /// tie-break.
     #[inline]
     pub(super) fn cost(&self) -> f64 {
         smallest_eigenvalue(&self.second) + TIE_BREAK * self.area
     }
 
-    /// What rounding may do to the cost of a set.
+    /// Bound of the rounding error of the cost of a set.
     #[inline]
     pub(super) fn doubt(&self) -> f64 {
         1e-14 * (self.second[0] + self.second[1] + self.second[2])
@@ -85,8 +86,9 @@ fn add_outer(second: &mut [f64; 6], d: [f64; 3], weight: f64) {
 
 /// Smallest eigenvalue of a symmetric positive semi-definite 3×3 matrix.
 ///
-/// The characteristic polynomial λ³ − c₂λ² + c₁λ − c₀ has real roots only, so Newton's steps from 0 climb to the smallest without passing it. The error is a
-/// few 1e-16 of the largest eigenvalue, as of any method that works on the matrix.
+/// The characteristic polynomial λ³ − c₂λ² + c₁λ − c₀ has only real roots, so Newton's method from 0 climbs
+/// to the smallest root without passing it. The error is a few 1e-16 of the largest eigenvalue, as with any
+/// method that works on the matrix.
 #[inline]
 fn smallest_eigenvalue(m: &[f64; 6]) -> f64 {
     let [xx, yy, zz, xy, xz, yz] = *m;
@@ -115,7 +117,7 @@ fn smallest_eigenvalue(m: &[f64; 6]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Numbers in [0, 1) that look random.
+    /// Pseudo-random numbers in [0, 1).
     fn noise(seed: u64) -> impl FnMut() -> f64 {
         let mut state = seed;
         move || {
@@ -155,7 +157,8 @@ mod tests {
             })
             .collect();
         let whole = triangles.iter().fold(Moments::EMPTY, |sum, t| sum.union(&Moments::of_triangle(*t)));
-        // The integral of a quadratic over a triangle is exact at the midpoints of its edges, a third of the area each.
+        // The integral of a quadratic over a triangle is exact at the midpoints of its edges, a third of the
+        // area each.
         let samples: Vec<(f64, [f64; 3])> = triangles
             .iter()
             .flat_map(|t| {

@@ -1,7 +1,8 @@
-//! From all merges to a tree with leaves of a minimum size.
+//! From the list of merges to a tree whose leaves have a minimum size.
 //!
-//! Seen from the root, a node of which one half is below the minimum is contracted into its larger half: the small half goes to
-//! that neighbouring leaf whose cost grows least by it. A node of which both halves are below the minimum, but not the whole, is a leaf.
+//! Seen from the root, a node with one half below the minimum is contracted into its larger half, and the
+//! small half goes to the neighbouring leaf whose cost increases least. A node of at least the minimum whose
+//! halves are both below it is a leaf.
 
 use super::dual::{Patches, find};
 use super::moments::Moments;
@@ -33,7 +34,7 @@ impl PrunedTree {
     }
 }
 
-/// What a part has become.
+/// The state of a part that is large enough: a leaf, or a node of two halves.
 #[derive(Clone, Copy)]
 enum Branch {
     Leaf(u32),
@@ -43,21 +44,21 @@ enum Branch {
 struct Pruning<'a> {
     patches: &'a Patches,
     min_leaf: u32,
-    /// Union–find over patches, as far as the merges have been followed.
+    /// Union–find over patches, after the merges so far.
     parent: Vec<u32>,
     /// Triangles of each part.
     counts: Vec<u32>,
-    /// The patches of a part below the minimum: from its id along `next` to `last`.
+    /// The patches of a part below the minimum, as a linked list: from its id along `next` to `last`.
     next: Vec<u32>,
     last: Vec<u32>,
-    /// Branch of each part that has one.
+    /// Branch of each part that is large enough.
     branch: Vec<u32>,
     branches: Vec<Branch>,
     leaf_of: Vec<u32>,
     leaf_moments: Vec<Moments>,
 }
 
-/// Follows the merges of a surface and prunes their tree.
+/// Replays the merges of a surface and prunes their tree. The surface has at least `min_leaf` triangles.
 pub(super) fn prune(patches: &Patches, merges: &[[u32; 2]], min_leaf: u32) -> PrunedTree {
     let count = patches.len();
     let mut pruning = Pruning {
@@ -78,11 +79,10 @@ pub(super) fn prune(patches: &Patches, merges: &[[u32; 2]], min_leaf: u32) -> Pr
     for &[low, high] in merges {
         pruning.merge(low, high);
     }
-    // Every merge names the lesser first, so all end in patch 0.
-    match pruning.branch.first() {
-        Some(&root) if root != NONE => pruning.emit(root),
-        _ => PrunedTree::leaf(patches.counts.iter().sum()),
-    }
+    // Every merge names the lesser part first, so all end in patch 0.
+    let root = pruning.branch[0];
+    assert_ne!(root, NONE, "a surface of at least one leaf has a root");
+    pruning.emit(root)
 }
 
 impl Pruning<'_> {
@@ -109,7 +109,7 @@ impl Pruning<'_> {
         self.settle(low);
     }
 
-    /// Makes a part a leaf once it is large enough.
+    /// Makes a part a leaf if it is large enough and is none yet.
     fn settle(&mut self, part: u32) {
         if self.branch[part as usize] != NONE || self.counts[part as usize] < self.min_leaf {
             return;
@@ -121,7 +121,7 @@ impl Pruning<'_> {
         self.assign(part, leaf);
     }
 
-    /// Puts the patches of a small part into a leaf.
+    /// Adds the patches of a small part to a leaf.
     fn assign(&mut self, part: u32, leaf: u32) {
         let mut patch = part;
         while patch != NONE {
@@ -132,7 +132,7 @@ impl Pruning<'_> {
         }
     }
 
-    /// Gives a small part to that leaf of a large one which it neighbours and which stays the flattest.
+    /// Adds a small part to the neighbouring leaf of a large part that stays the flattest.
     fn give(&mut self, small: u32, large: u32) {
         let mut leaves: Vec<u32> = Vec::new();
         let mut moments = Moments::EMPTY;
@@ -156,7 +156,7 @@ impl Pruning<'_> {
         self.assign(small, leaf);
     }
 
-    /// The leaf that stands first under a branch, for pieces that touch none.
+    /// The first leaf under a branch, for pieces that touch none.
     fn first_leaf(&self, mut branch: u32) -> u32 {
         loop {
             match self.branches[branch as usize] {
@@ -166,13 +166,13 @@ impl Pruning<'_> {
         }
     }
 
-    /// Writes the tree down, each node before its children, and the triangles leaf by leaf.
+    /// Writes the tree, each node before its children, and the triangles leaf by leaf.
     fn emit(&self, root: u32) -> PrunedTree {
         let mut of_leaf = vec![0u32; self.leaf_moments.len()];
         for (&leaf, &count) in self.leaf_of.iter().zip(&self.patches.counts) {
             of_leaf[leaf as usize] += count;
         }
-        // Halves were made before what they are halves of.
+        // Halves were made before the branches they belong to.
         let mut totals = Vec::with_capacity(self.branches.len());
         for branch in &self.branches {
             totals.push(match *branch {

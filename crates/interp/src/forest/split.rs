@@ -1,17 +1,19 @@
-//! Cutting a leaf further when an interpreter asks for less than it holds.
+//! Cutting a leaf further, for an interpreter who wants less than a leaf.
 
 use super::{Forest, ForestSettings, Node, tree};
 use crate::error::Error;
 use survey::Progress;
 
-/// The tree inside a leaf. The same forest, leaf and size always make the same.
+/// The tree inside a leaf. The same forest, leaf and size always give the same tree.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Subtree {
-    /// Id of the leaf that was cut.
+    /// Id of the leaf.
     pub leaf: u32,
-    /// Its triangles (indices of [`Surfaces::triangles`](crate::Surfaces::triangles)), part by part.
+    /// Its triangles (indices of [`Surfaces::triangles`](crate::Surfaces::triangles)), in the order of the
+    /// parts.
     pub triangles: Vec<u32>,
-    /// Nodes, the leaf first, each before its children; `parent` and `children` are indices into this, ranges are those of `triangles` here.
+    /// Nodes, the leaf first, each before its children. `parent` and `children` are indices of this list;
+    /// ranges are those of [`Subtree::triangles`].
     pub nodes: Vec<Node>,
 }
 

@@ -1,4 +1,4 @@
-//! A forest as the tables that the store keeps, and back.
+//! Conversion of a forest to the tables of the store and back.
 
 use super::{Forest, Node, check};
 use crate::error::Error;
@@ -15,7 +15,11 @@ impl Forest {
     /// The forest as tables.
     pub fn tables(&self) -> ForestTables {
         let Surfaces { vertices, triangles, surfaces, .. } = &self.surfaces;
-        let kind = |extremum| KINDS.iter().position(|&kind| kind == extremum).unwrap_or(0) as u32;
+        let kind = |extremum| match extremum {
+            Extremum::Peak => 0,
+            Extremum::Trough => 1,
+            Extremum::Zero => 2,
+        };
         ForestTables {
             trace: vertices.iter().map(|v| [v.x, v.y]).collect(),
             z: vertices.iter().map(|v| v.z).collect(),
@@ -63,7 +67,8 @@ impl Forest {
         Ok(forest)
     }
 
-    /// The trees that rows of nodes describe, without vertices and triangles: enough to climb, and to tell leaves.
+    /// The trees that rows of nodes describe, without vertices and triangles: enough to climb, and to tell
+    /// leaves.
     ///
     /// # Errors
     /// [`Error::DamagedForest`] when they contradict each other.

@@ -1,4 +1,5 @@
-//! Trees against closed forms, a greedy oracle with a plain priority queue, and the properties every tree has.
+//! Trees against closed forms, a greedy oracle with a plain priority queue, and the properties every tree
+//! has.
 
 use super::cluster::{Clusters, REGIONAL, cluster};
 use super::dual::{Patches, patches};
@@ -65,7 +66,7 @@ fn moments_of(surfaces: &Surfaces, range: &Range<u32>) -> Moments {
     })
 }
 
-/// What every forest must be.
+/// Properties of every forest.
 fn assert_sound(forest: &Forest, before: &Surfaces, min_leaf: u32) {
     let sorted = |triangles: &[[u32; 3]]| {
         let mut all = triangles.to_vec();
@@ -117,7 +118,7 @@ fn a_roof_falls_into_its_two_sides_first() {
     }
 }
 
-/// The published way: a queue over all pairs of neighbours, cheapest first, on plain maps.
+/// The published method: a priority queue over all pairs of neighbours, cheapest first, on plain maps.
 fn greedy(patches: &Patches) -> BTreeSet<Vec<u32>> {
     let mut members: BTreeMap<u32, Vec<u32>> = (0..patches.len() as u32).map(|n| (n, vec![n])).collect();
     let mut moments = patches.moments.clone();

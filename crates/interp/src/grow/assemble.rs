@@ -1,11 +1,11 @@
 //! From labelled extrema to [`Surfaces`]: the triangles of the cells whose corners share a label.
 //!
-//! A closed cell of four corners makes two triangles, split along the diagonal that is less steep; three corners make one. The
-//! order of surfaces, vertices and triangles follows from the extrema alone.
+//! A closed cell of four corners makes two triangles, split along the diagonal that is less steep; three
+//! corners make one. The order of surfaces, vertices and triangles follows from the extrema alone.
 //!
-//! What a surface has on one inline stands together in the result, so inlines are filled in at the same time once it is counted
-//! how much that is. Triangles are made three times over (to see which extrema they use, to count, to write them down): that is cheaper than to
-//! keep them.
+//! The vertices and triangles of a surface on one inline are contiguous in the result, so once they are
+//! counted the inlines are written in parallel. Triangles are made three times (to find the extrema they use,
+//! to count, to write), which is cheaper than storing them.
 
 use super::links::{Links, NONE};
 use crate::extrema::Extrema;
@@ -20,19 +20,20 @@ pub(super) struct Labelled<'e> {
     pub(super) labels: Vec<u32>,
 }
 
-/// One kind with its surfaces numbered.
+/// One kind of extremum with its surfaces numbered.
 struct Numbered<'e> {
     extrema: &'e Extrema,
     links: Links,
-    /// Surface of each extremum that a triangle uses, in the order of their first vertices.
+    /// Number of the surface of each extremum that a triangle uses, otherwise [`NONE`]. Surfaces are numbered
+    /// in the order of their first vertices.
     numbers: Vec<u32>,
     /// First vertex of each surface.
     firsts: Vec<Vertex>,
-    /// Index of each vertex in the result, once it is written down.
+    /// Index in the result of each vertex that has been written.
     places: Vec<u32>,
 }
 
-/// How much a surface has on an inline: vertices, and triangles of the cells that begin there.
+/// Counts of a surface on one inline: vertices, and triangles of the cells that begin there.
 #[derive(Clone, Copy)]
 struct Count {
     surface: u32,
@@ -40,8 +41,8 @@ struct Count {
     counts: [u32; 2],
 }
 
-/// Where what a surface has on an inline is written.
-struct Part<'s> {
+/// The part of the result that belongs to one surface on one inline.
+struct InlineSlot<'s> {
     surface: u32,
     /// Index of the first vertex.
     first: u32,
@@ -49,10 +50,10 @@ struct Part<'s> {
     triangles: &'s mut [[u32; 3]],
 }
 
-/// Steps that [`surfaces`] makes an inline.
+/// Progress steps of [`surfaces`] per inline.
 pub(super) const STEPS: usize = 3;
 
-/// The surfaces of all kinds, by their first vertex (ties: in the order given).
+/// The surfaces of all kinds, ordered by their first vertex (ties: in the order given).
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
@@ -75,8 +76,8 @@ pub(super) fn surfaces(size: [usize; 3], kinds: Vec<Labelled<'_>>, progress: &Pr
         triangles: vec![[0; 3]; total(1)],
         surfaces: Vec::with_capacity(order.len()),
     };
-    // The result is handed out piece by piece, in its order.
-    let mut parts: Vec<Vec<Vec<Part>>> =
+    // The result is divided piece by piece, in its order.
+    let mut parts: Vec<Vec<Vec<InlineSlot>>> =
         kinds.iter().map(|_| (0..size[0]).map(|_| Vec::new()).collect::<Vec<_>>()).collect();
     let starts: Vec<Vec<usize>> = counts.iter().zip(&kinds).map(|(counts, kind)| kind.starts(counts)).collect();
     let (mut vertices, mut triangles) = (all.vertices.as_mut_slice(), all.triangles.as_mut_slice());
@@ -88,7 +89,7 @@ pub(super) fn surfaces(size: [usize; 3], kinds: Vec<Labelled<'_>>, progress: &Pr
             vertices = rest;
             let (faces, rest) = std::mem::take(&mut triangles).split_at_mut(count.counts[1] as usize);
             triangles = rest;
-            let part = Part { surface: surface as u32, first: reached[0], vertices: own, triangles: faces };
+            let part = InlineSlot { surface: surface as u32, first: reached[0], vertices: own, triangles: faces };
             parts[kind][count.inline as usize].push(part);
             reached = [reached[0] + count.counts[0], reached[1] + count.counts[1]];
         }
@@ -108,14 +109,15 @@ impl<'e> Numbered<'e> {
     /// Numbers the surfaces of a kind.
     fn new(labelled: Labelled<'e>) -> Self {
         let Labelled { extrema, links, labels: mut numbers } = labelled;
-        // Used by a cell that begins on the same inline, and by one that begins on the inline before.
+        // Whether a cell that begins on the same inline uses an extremum, and one that begins on the inline
+        // before.
         let [mut here, mut ahead] = [(); 2].map(|()| vec![false; extrema.len()]);
         let lines =
             extrema.split_inlines(&mut here).into_iter().zip(extrema.split_inlines(&mut ahead).into_iter().skip(1));
         lines.collect::<Vec<_>>().into_par_iter().enumerate().for_each(|(x, (here, ahead))| {
             let line = extrema.on_inline(x);
             for a in line.clone() {
-                for corner in Cell::new(extrema, &links, &numbers, a as u32).triangles().iter().flatten() {
+                for corner in CellTriangles::new(extrema, &links, &numbers, a as u32).triangles().iter().flatten() {
                     let corner = *corner as usize;
                     if corner < line.end {
                         here[corner - line.start] = true;
@@ -146,12 +148,12 @@ impl<'e> Numbered<'e> {
         Self { extrema, links, numbers, firsts, places: ranks }
     }
 
-    /// Triangles of the cell that begins at an extremum.
-    fn cell(&self, a: usize) -> Cell {
-        Cell::new(self.extrema, &self.links, &self.numbers, a as u32)
+    /// The triangles of the cell that begins at an extremum.
+    fn cell(&self, a: usize) -> CellTriangles {
+        CellTriangles::new(self.extrema, &self.links, &self.numbers, a as u32)
     }
 
-    /// How much each surface has on each inline, by surface.
+    /// The counts of each surface on each inline, ordered by surface.
     fn count(&self) -> Vec<Count> {
         let none = || vec![[0u32; 2]; self.firsts.len()];
         let mut counts: Vec<Count> = (0..self.extrema.size[0])
@@ -190,14 +192,14 @@ impl<'e> Numbered<'e> {
         counts
     }
 
-    /// Where the counts of each surface begin, and one end more.
+    /// Where the counts of each surface begin, and the end of the last.
     fn starts(&self, counts: &[Count]) -> Vec<usize> {
         let surfaces = 0..=self.firsts.len() as u32;
         surfaces.map(|surface| counts.partition_point(|count| count.surface < surface)).collect()
     }
 
-    /// Writes the vertices down, inline by inline.
-    fn write_vertices(&mut self, parts: &mut [Vec<Part<'_>>]) {
+    /// Writes the vertices, inline by inline.
+    fn write_vertices(&mut self, parts: &mut [Vec<InlineSlot<'_>>]) {
         let Self { extrema, numbers, firsts, places, .. } = self;
         let none = || vec![[0usize; 2]; firsts.len()];
         let lines = extrema.split_inlines(places).into_par_iter().zip(parts).enumerate();
@@ -219,8 +221,8 @@ impl<'e> Numbered<'e> {
         });
     }
 
-    /// Writes the triangles down, inline by inline.
-    fn write_triangles(&self, parts: Vec<Vec<Part<'_>>>) {
+    /// Writes the triangles, inline by inline.
+    fn write_triangles(&self, parts: Vec<Vec<InlineSlot<'_>>>) {
         let none = || vec![[0usize; 2]; self.firsts.len()];
         parts.into_par_iter().enumerate().for_each_init(none, |at, (x, mut parts)| {
             parts.iter().enumerate().for_each(|(n, part)| at[part.surface as usize] = [n, 0]);
@@ -236,12 +238,12 @@ impl<'e> Numbered<'e> {
 }
 
 /// The triangles of a cell.
-struct Cell {
+struct CellTriangles {
     triangles: [[u32; 3]; 2],
     count: usize,
 }
 
-impl Cell {
+impl CellTriangles {
     /// The triangles of the cell that begins at `a`.
     fn new(extrema: &Extrema, links: &Links, labels: &[u32], a: u32) -> Self {
         let none = Self { triangles: [[0; 3]; 2], count: 0 };
@@ -271,7 +273,7 @@ impl Cell {
     }
 }
 
-/// Surfaces of several kinds in one list, by their first vertex (ties: in the order given).
+/// The surfaces of several kinds in one list, ordered by their first vertex (ties: in the order given).
 pub(super) fn joined(size: [usize; 3], parts: &[Surfaces]) -> Surfaces {
     let mut order: Vec<(usize, usize)> =
         parts.iter().enumerate().flat_map(|(kind, part)| (0..part.surfaces.len()).map(move |s| (kind, s))).collect();

@@ -1,10 +1,12 @@
-//! From links to labelled surfaces: closed cells, the opening of the least width, connected windows.
+//! From links to labelled surfaces: closed cells, morphological opening by the least width, connected
+//! windows.
 //!
-//! A cell is closed when going x then y arrives where y then x does. With w the least front width, a *window* is a block of
-//! (w − 1)² closed cells, i.e. w × w traces; the union of all windows is the morphological opening of the surface by that
-//! width. Two windows shifted by one trace are connected: so a neck narrower than w traces does not connect, as in the paper a border
-//! narrower than w ends. Components are numbered by their first window. A vertex belongs to the component with the most windows
-//! among those that cover it (ties: the first).
+//! A cell is closed when stepping along x then y arrives at the same extremum as y then x. With the least
+//! front width w, a *window* is a block of (w − 1)² closed cells, i.e. of w × w traces. The union of all
+//! windows is the morphological opening of the surface by that width. Two windows shifted by one trace are
+//! connected. So a neck narrower than w traces does not connect, just as in the paper a border narrower than
+//! w ends. Components are numbered by their first window. A vertex belongs to the component with the most
+//! windows among those that cover it (ties: the first).
 
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
 use super::union_find::UnionFind;
@@ -13,7 +15,7 @@ use rayon::prelude::*;
 use std::cmp::Reverse;
 use survey::{Cancelled, Progress};
 
-/// Extrema handled at a time by one thread.
+/// Count of extrema that one thread handles at a time.
 const GRAIN: usize = 1 << 14;
 
 /// Whether the cell that begins at each extremum is closed and none of its four links is broken.
@@ -26,7 +28,8 @@ pub(super) fn open_cells(links: &Links, broken: &[[bool; 2]]) -> Vec<bool> {
     (0..broken.len() as u32).into_par_iter().with_min_len(GRAIN).map(is_open).collect()
 }
 
-/// The component of each extremum (the index of its first window), or [`NONE`]; see [`open_cells`].
+/// The component of each extremum (the index of its first window), or [`NONE`]. `open` is the result of
+/// [`open_cells`].
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
@@ -63,7 +66,7 @@ pub(super) fn label(
     }
     drop((windows, sets));
     progress.check()?;
-    // Ranks instead of sets, from 1: the more windows the higher, of equals the first.
+    // Ranks instead of sets, from 1: more windows rank higher, among equals the first.
     let mut sets: Vec<u32> = (0..extrema.len() as u32).filter(|&set| count[set as usize] > 0).collect();
     sets.par_sort_unstable_by_key(|&set| (count[set as usize], Reverse(set)));
     let mut rank = count;
@@ -82,9 +85,10 @@ pub(super) fn label(
     Ok(labels)
 }
 
-/// Whether each extremum is the first corner of a complete window: of as many cells along y of which each begins as many along x.
+/// Whether each extremum is the first corner of a complete window: `cells` cells along y, each the first of
+/// `cells` cells along x.
 fn windows(extrema: &Extrema, links: &Links, open: &[bool], cells: usize) -> Vec<bool> {
-    // Open cells one after the other along x, from this one on, as far as they count. A cell that is open has its links.
+    // Runs of open cells along x from this one on, counted up to `cells`. An open cell has its links.
     let most = u16::try_from(cells).unwrap_or(u16::MAX);
     let mut runs = vec![0u16; extrema.len()];
     for x in (0..extrema.size[0]).rev() {
@@ -97,7 +101,7 @@ fn windows(extrema: &Extrema, links: &Links, open: &[bool], cells: usize) -> Vec
             }
         });
     }
-    // The same along y, of those that are complete along x.
+    // The same along y, over cells whose runs along x are complete.
     extrema.split_inlines(&mut runs).into_par_iter().enumerate().for_each(|(x, line)| {
         let first = extrema.on_inline(x).start;
         for n in (0..line.len()).rev() {
@@ -108,24 +112,25 @@ fn windows(extrema: &Extrema, links: &Links, open: &[bool], cells: usize) -> Vec
     runs.into_iter().map(|run| run == most).collect()
 }
 
-/// Gives every extremum the greatest of the ranks of the windows that cover it: of those up to `cells` behind it along y and then along x.
+/// Gives every extremum the greatest rank of the windows that cover it, i.e. of those up to `cells` traces
+/// behind it along y and then along x.
 ///
-/// A chain of links back to the first corner of a window stays within it, where every way leads to the same corner, so one
-/// axis can be done after the other. `room` is as long as `ranks`.
-fn carry(extrema: &Extrema, links: &Links, ranks: &mut Vec<u32>, mut room: Vec<u32>, cells: usize) {
+/// A chain of links back to the first corner of a window stays within the window, where every path leads to
+/// the same corner, so one axis can be done after the other. `scratch` is as long as `ranks`.
+fn carry(extrema: &Extrema, links: &Links, ranks: &mut Vec<u32>, mut scratch: Vec<u32>, cells: usize) {
     let greatest = |rank: u32, back: u32, from: &[u32], start: usize| {
         if back == NONE { rank } else { rank.max(from[back as usize - start]) }
     };
     for _ in 0..cells.min(extrema.size[0]) {
-        room.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(v, out)| {
+        scratch.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(v, out)| {
             *out = greatest(ranks[v], links.to[BACK_X][v], ranks, 0);
         });
-        std::mem::swap(ranks, &mut room);
+        std::mem::swap(ranks, &mut scratch);
     }
     extrema.split_inlines(ranks).into_par_iter().enumerate().for_each(|(x, line)| {
         let first = extrema.on_inline(x).start;
         for _ in 0..cells.min(extrema.size[1]) {
-            // What is behind comes first, so from the end on no rank is carried further than one trace.
+            // In descending order, so that in each round no rank moves by more than one trace.
             for n in (0..line.len()).rev() {
                 line[n] = greatest(line[n], links.to[BACK_Y][first + n], line, first);
             }

@@ -1,24 +1,26 @@
-//! The dip that links are guided by.
+//! The dip that guides the links.
 //!
-//! Two steps. A coarse field: histograms of the jumps of unguided links over bricks of traces, pooled with their neighbours; the
-//! mode is the dip, so that neither a fault nor links that skipped a cycle bend it ([`DipField`]). Then, link by link, a
-//! normalised convolution along the surfaces themselves: p̄ = G∗(w·jump) / G∗w, with G a binomial of 7 × 7 traces that never
-//! steps over a link that does not fit, and w falling with the misfit to the dip known so far ([`along_surfaces`]).
-//! Unlike a structure tensor's, these dips do not alias where a reflector steps by more than half a period a trace. Unit: samples a trace.
+//! Two steps. First a coarse field ([`DipField`]): the jumps of unguided links are collected in histograms
+//! over bricks of traces, pooled with their neighbours. The mode is the dip, so that neither a fault nor
+//! links that skipped a cycle bias it. Then, link by link, a normalised convolution along the surfaces
+//! ([`along_surfaces`]): p̄ = G∗(w·jump) / G∗w, with G a binomial of 7 × 7 traces that never crosses a link
+//! that does not fit, and w decreasing with the misfit to the dip known so far. Unlike those of a structure
+//! tensor, these dips do not alias where a reflector steps by more than half a period a trace. Unit: samples
+//! a trace.
 
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
-use super::smoothing::{self, Passable, Room};
+use super::smoothing::{self, Passable, Scratch};
 use crate::extrema::Extrema;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// Traces and samples of a brick.
+/// Size of a brick: inlines, crosslines, samples.
 const BRICK: [usize; 3] = [8, 8, 16];
 
 /// Width of a histogram's bin, samples.
 const BIN: f32 = 0.25;
 
-/// Bins: jumps from −4 to 4 samples.
+/// Count of bins: jumps from −4 to 4 samples.
 const BINS: usize = 32;
 
 /// Coarse dips at the centres of bricks.
@@ -27,11 +29,11 @@ pub(super) struct DipField {
     dips: Vec<[f32; 2]>,
 }
 
-/// Jumps along x and along y in one brick.
+/// Histograms of the jumps along x and along y in one brick.
 type Histograms = [[f32; BINS]; 2];
 
 impl DipField {
-    /// Finds the dips from the links of all kinds.
+    /// Finds the dips from the links of all kinds of extrema.
     pub(super) fn new(size: [usize; 3], kinds: &[(&Extrema, &Links)]) -> Self {
         let count = [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]).max(1));
         let slab = count[1] * count[2];
@@ -69,7 +71,7 @@ impl DipField {
         Self { count, dips }
     }
 
-    /// Dips at each extremum, linear between the centres of bricks.
+    /// Dips at each extremum, interpolated linearly between the centres of bricks.
     pub(super) fn at_extrema(&self, extrema: &Extrema) -> Vec<[f32; 2]> {
         let mut dips = vec![[0.0; 2]; extrema.len()];
         let ny = extrema.size[1];
@@ -97,7 +99,7 @@ impl DipField {
         dips
     }
 
-    /// The two bricks that a place lies between along an axis, with their weights.
+    /// The two bricks around position `at` along an axis, with their weights.
     fn between(&self, axis: usize, at: f32) -> [(usize, f32); 2] {
         let place = ((at + 0.5) / BRICK[axis] as f32 - 0.5).clamp(0.0, (self.count[axis] - 1) as f32);
         let low = place as usize;
@@ -121,7 +123,7 @@ fn add_trace(extrema: &Extrema, links: &Links, trace: std::ops::Range<usize>, co
     }
 }
 
-/// The most frequent jump: the highest of the smoothed bins, then the mean of those around it; 0 where there are none.
+/// The most frequent jump: the mean around the highest of the smoothed bins; 0 for an empty histogram.
 fn mode(histogram: &[f32; BINS]) -> f32 {
     let at = |bin: usize| histogram[bin];
     let smoothed = |bin: usize| {
@@ -142,30 +144,30 @@ fn mode(histogram: &[f32; BINS]) -> f32 {
     if weight > 0.0 { sum / weight } else { 0.0 }
 }
 
-/// Rounds of the binomial 1-2-1 along x and y: 3 make 7 × 7 traces.
+/// Rounds of the binomial 1-2-1 along x and y; 3 rounds cover 7 × 7 traces.
 const ROUNDS: usize = 3;
 
-/// Weight of the dip known so far, so that an extremum without links has one.
+/// Weight of the dip known so far, so that an extremum without links keeps it.
 const PRIOR: f32 = 0.02;
 
-/// Refines `dips` along the surfaces. A link counts by `w = 1/(1 + (misfit/scale)²)²`; the convolution steps only over links
-/// with a misfit below two scales.
+/// Refines `dips` along the surfaces. A link has the weight `w = 1/(1 + (misfit/scale)²)²`. The convolution
+/// crosses only links with a misfit below two scales.
 ///
 /// # Errors
-/// [`Cancelled`] by the user; the dips are then as they were.
+/// [`Cancelled`] by the user; the dips are then unchanged.
 pub(super) fn along_surfaces(
     extrema: &Extrema,
     links: &Links,
     dips: &mut [[f32; 2]],
     scale: f32,
-    room: &mut Room,
+    scratch: &mut Scratch,
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     let count = extrema.len();
-    room.resize(count);
+    scratch.resize(count);
     let mut marks = vec![0u8; count];
-    // What each link to the next trace says: [w·jump_x, w, w·jump_y, w].
-    (&mut room.spare, &mut marks).into_par_iter().with_min_len(GRAIN).enumerate().for_each(|(v, (said, marks))| {
+    // The contribution of each link to the next trace: [w·jump_x, w, w·jump_y, w].
+    (&mut scratch.spare, &mut marks).into_par_iter().with_min_len(GRAIN).enumerate().for_each(|(v, (said, marks))| {
         *said = [0.0; 4];
         *marks = 0;
         for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
@@ -181,8 +183,8 @@ pub(super) fn along_surfaces(
             *marks |= u8::from(misfit.abs() < 2.0 * scale) << direction;
         }
     });
-    // The same link speaks at its other end.
-    let Room { values, spare } = room;
+    // A link contributes to both of its ends.
+    let Scratch { values, spare } = scratch;
     let forward = &marks;
     let passable: Vec<u8> = values
         .par_iter_mut()
@@ -206,12 +208,12 @@ pub(super) fn along_surfaces(
         .collect();
     for _ in 0..ROUNDS {
         progress.check()?;
-        smoothing::across(extrema, links, Passable::Marked(&passable), room);
+        smoothing::across(extrema, links, Passable::Marked(&passable), scratch);
     }
-    let smoothed = dips.par_iter_mut().with_min_len(GRAIN).zip(&room.values);
+    let smoothed = dips.par_iter_mut().with_min_len(GRAIN).zip(&scratch.values);
     smoothed.for_each(|(dip, &[x, wx, y, wy])| *dip = [x / wx, y / wy]);
     progress.step(extrema.size[0] as u64)
 }
 
-/// Extrema handled at a time by one thread.
+/// Count of extrema that one thread handles at a time.
 const GRAIN: usize = 1 << 14;

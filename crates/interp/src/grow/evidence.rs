@@ -1,16 +1,19 @@
-//! How much each link speaks for a break: misfit to the dip and change of amplitude, in units of what noise alone does.
+//! The evidence of each link for a break: misfit to the dip and change of amplitude, in units of what noise
+//! alone makes.
 //!
-//! Noise moves an extremum of height a by an amount in proportion to 1/a. For a link with misfit r between extrema of heights a and b
+//! Noise moves an extremum of height a by an amount proportional to 1/a. For a link with misfit r between
+//! extrema of heights a and b
 //!
 //! `m = r/√(c²·(1/a² + 1/b²) + f²)`, `h = (b − a)/√(s² + g²·max(a, b)²)`, `E = ½·m̄²/var m̄ + ½·h̄²/var h̄`
 //!
-//! where c and s are the volume's own, medians over its links in classes of dip (s of amplitude too), and the bar is a binomial over the surface *across*
-//! the link: along a fault misfits keep their sign and add up, noise does not. Variances are measured (by medians) too, so that on a
-//! continuous reflector E is about 1 at any signal-to-noise ratio. f and g keep clean data from being judged by their last digit.
-//! A strong extremum without a partner has the greatest E. E is kept in quarters, at most [`MOST`].
-
+//! c and s are measured in the volume: medians over its links in classes of dip (s in classes of amplitude
+//! too). The bar is a binomial over the surface *across* the link: along a fault misfits keep their sign and
+//! add up, while noise cancels. Variances are measured (by medians) too, so that E is about 1 on a continuous
+//! reflector at any signal-to-noise ratio. f and g keep rounding errors of clean data from counting as
+//! evidence. A strong extremum without a partner has the greatest E. E is stored in quarters, at most
+//! [`MOST`].
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
-use super::smoothing::{self, Four, Room};
+use super::smoothing::{self, Four, Scratch};
 use super::surroundings::Surroundings;
 use crate::extrema::Extrema;
 use rayon::prelude::*;
@@ -19,54 +22,56 @@ use survey::{Cancelled, Progress};
 /// Greatest E, in quarters.
 pub(super) const MOST: u8 = 100;
 
-/// E that noise alone makes, in quarters.
+/// E made by noise alone, in quarters.
 const FROM_NOISE: f32 = 4.0;
 
-/// Greatest E that counts for what is usual around a place, in quarters.
+/// Greatest E that counts in the mean around a place, in quarters.
 const LOUD: u8 = 24;
 
-/// What interpolation and curvature may do to a misfit, samples.
+/// f: misfit that interpolation and curvature can make, samples.
 const LEAST_MISFIT: f32 = 0.08;
 
-/// Relative change of amplitude from trace to trace that is no sign of a break.
+/// g: relative change of amplitude from trace to trace that is no sign of a break.
 const LEAST_CHANGE: f32 = 0.05;
 
-/// Median of the absolute value of a normal variable over its standard deviation.
+/// Median of the absolute value of a normal variable, in standard deviations.
 const MEDIAN_OVER_SIGMA: f32 = 0.6745;
 
-/// Links of which one is looked at to measure the noise.
+/// One in this many extrema is used to measure the noise.
 const SPARSE: usize = 7;
 
-/// Width of the classes of dip that noise is measured in, samples a trace.
+/// Width of the classes of dip, samples a trace.
 const DIP_CLASS: f32 = 0.25;
 
-/// Classes of dip; the last holds all that is steeper.
+/// Count of classes of dip; the last one is open.
 const DIP_CLASSES: usize = 13;
 
-/// Shares of all extrema below the steps from one class of amplitude to the next.
+/// Quantiles of the amplitudes that separate the classes of amplitude.
 const HEIGHT_SHARES: [f32; HEIGHT_CLASSES - 1] = [0.5, 0.7, 0.82, 0.9, 0.95, 0.98];
 
-/// Classes of amplitude.
+/// Count of classes of amplitude.
 const HEIGHT_CLASSES: usize = 7;
 
-/// Links that a class needs to be measured; one with fewer takes over from the next less steep one.
+/// Least count of links in a class; a class with fewer takes the value of the next less steep one.
 const LEAST_LINKS: usize = 64;
 
-/// What noise does to the links of one kind of extremum.
+/// The effect of noise on the links of one kind of extremum.
 #[derive(Debug, Clone)]
 pub(super) struct Noise {
-    /// For each class of dip c, amplitude × samples.
+    /// c for each class of dip, amplitude × samples.
     places: [f32; DIP_CLASSES],
     /// Least amplitude of each class but the first.
     steps: [f32; HEIGHT_CLASSES - 1],
-    /// For each class of amplitude and of dip s, amplitude.
+    /// s for each class of amplitude and of dip, amplitude.
     changes: [[f32; DIP_CLASSES]; HEIGHT_CLASSES],
 }
 
 impl Noise {
-    /// Measures the noise on every seventh extremum's links, in classes of dip: noise that is alike on neighbouring traces
-    /// at one depth moves the extrema of a flat reflector together, those of a dipping one apart. Changes of amplitude in classes of
-    /// amplitude too: beside what is added to all samples alike, a reflector's strength itself varies, the more the stronger it is.
+    /// Measures the noise on the links of every seventh extremum, in classes of dip: noise that is similar on
+    /// neighbouring traces at one depth moves the extrema of a flat reflector together and those of a dipping
+    /// one apart. Changes of amplitude are also measured in classes of amplitude: besides noise, which is
+    /// added to all samples alike, the strength of a reflector varies, and it varies more the stronger the
+    /// reflector is.
     pub(super) fn measure(extrema: &Extrema, links: &Links, dips: &[[f32; 2]]) -> Self {
         let steps = height_steps(extrema);
         let mut places: [Vec<f32>; DIP_CLASSES] = Default::default();
@@ -100,29 +105,29 @@ impl Noise {
         noise
     }
 
-    /// c and s of a link at a dip, the higher of whose extrema has this amplitude.
+    /// c and s of a link at a dip; `amplitude` is the larger one of its extrema.
     fn of(&self, amplitude: f32, dip: f32) -> [f32; 2] {
         let dip = class(dip);
         [self.places[dip], self.changes[height_class(&self.steps, amplitude)][dip]]
     }
 
-    /// s of the weaker half of the extrema where reflectors are flat: what noise does to a height.
+    /// s of the weaker half of the extrema where reflectors are flat: the effect of noise on a height.
     pub(super) fn least_change(&self) -> f32 {
         self.changes[0][0]
     }
 
-    /// s where reflectors are flat.
+    /// s of an amplitude where reflectors are flat.
     fn change(&self, amplitude: f32) -> f32 {
         self.changes[height_class(&self.steps, amplitude)][0]
     }
 }
 
-/// The standard deviation of a class; of the class before it where it has too few links.
+/// The standard deviation of a class, or that of the class `before` it when it has too few links.
 fn measured(values: &mut [f32], before: Option<f32>) -> f32 {
     before.filter(|_| values.len() < LEAST_LINKS).unwrap_or_else(|| sigma(values))
 }
 
-/// Amplitudes between the classes: the shares of [`HEIGHT_SHARES`] are below.
+/// Amplitudes between the classes, at the quantiles of [`HEIGHT_SHARES`].
 fn height_steps(extrema: &Extrema) -> [f32; HEIGHT_CLASSES - 1] {
     let mut sample: Vec<f32> = extrema.amplitude.iter().step_by(SPARSE).copied().collect();
     sample.sort_unstable_by(f32::total_cmp);
@@ -139,7 +144,7 @@ fn class(dip: f32) -> usize {
     ((dip.abs() / DIP_CLASS) as usize).min(DIP_CLASSES - 1)
 }
 
-/// Standard deviation by the median of absolute values.
+/// Standard deviation, from the median of absolute values.
 fn sigma(values: &mut [f32]) -> f32 {
     if values.is_empty() {
         return 0.0;
@@ -160,31 +165,31 @@ pub(super) fn misfit(extrema: &Extrema, dips: &[[f32; 2]], v: usize, next: usize
     extrema.z[next] - extrema.z[v] - 0.5 * (dips[v][axis] + dips[next][axis])
 }
 
-/// Rounds of the binomial 1-2-1 across the link: 8 make a standard deviation of two traces.
+/// Rounds of the binomial 1-2-1 across the link; 8 rounds have a standard deviation of two traces.
 const ROUNDS: usize = 8;
 
-/// Least variance of what was smoothed, so that clean data are not judged by their last digit.
+/// Least variance of smoothed values, so that rounding errors of clean data do not count as evidence.
 const LEAST_VARIANCE: f32 = 0.1;
 
-/// Greatest square that misfit or change of amplitude count with.
+/// Greatest square with which a misfit or a change of amplitude counts.
 const MOST_SQUARE: f32 = 25.0;
 
-/// E of the links to x + 1 and y + 1 of each extremum, in quarters; for a strong extremum without one [`MOST`], for a weak
-/// one 0.
+/// E of the links to x + 1 and y + 1 of each extremum, in quarters. An extremum without such a link has
+/// [`MOST`] when it is strong and 0 when it is weak.
 pub(super) fn evidence(
     extrema: &Extrema,
     links: &Links,
     dips: &[[f32; 2]],
     noise: &Noise,
-    room: &mut Room,
+    scratch: &mut Scratch,
     progress: &Progress,
 ) -> Result<Vec<[u8; 2]>, Cancelled> {
     let mut found = vec![[0u8; 2]; extrema.len()];
-    room.resize(extrema.len());
+    scratch.resize(extrema.len());
     for axis in 0..2 {
-        signed_breaks(extrema, links, dips, noise, axis, &mut room.values);
-        smoothing::along(extrema, links, 1 - axis, ROUNDS, room, progress)?;
-        let signed = &room.values;
+        signed_breaks(extrema, links, dips, noise, axis, &mut scratch.values);
+        smoothing::along(extrema, links, 1 - axis, ROUNDS, scratch, progress)?;
+        let signed = &scratch.values;
         let variance = [0, 1].map(|which| {
             let mut sample: Vec<f32> =
                 signed.iter().step_by(SPARSE).filter(|s| s[2] > 0.0).map(|s| (s[which] / s[2]).abs()).collect();
@@ -205,7 +210,7 @@ pub(super) fn evidence(
     Ok(found)
 }
 
-/// Divides evidence by what is usual around it.
+/// Divides evidence by the mean around it.
 fn beside_surroundings(extrema: &Extrema, links: &Links, found: &mut [[u8; 2]], axis: usize) {
     let linked = |v: usize| links.to[2 * axis][v] != NONE;
     let usual = Surroundings::new(extrema, |v| linked(v).then(|| found[v][axis].min(LOUD)));
@@ -222,7 +227,8 @@ fn beside_surroundings(extrema: &Extrema, links: &Links, found: &mut [[u8; 2]], 
     });
 }
 
-/// Misfit and change of amplitude of each link along `axis` in units of the noise, and a weight: 1 where there is a link.
+/// Misfit and change of amplitude of each link along `axis` in units of the noise, and a weight that is 1
+/// where there is a link.
 fn signed_breaks(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], noise: &Noise, axis: usize, signed: &mut [Four]) {
     let next = &links.to[2 * axis];
     signed.par_iter_mut().with_min_len(1 << 14).enumerate().for_each(|(v, signed)| {
@@ -239,19 +245,19 @@ fn signed_breaks(extrema: &Extrema, links: &Links, dips: &[[f32; 2]], noise: &No
     });
 }
 
-/// (a² + b²)^½, as the C library's `hypotf` has it: computed with twice the digits.
+/// (a² + b²)^½ as the C library's `hypotf` gives it: computed in double precision.
 fn length(a: f32, b: f32) -> f32 {
     let (a, b) = (f64::from(a), f64::from(b));
     (a * a + b * b).sqrt() as f32
 }
 
-/// Whether an extremum is too high to be noise.
+/// Whether an extremum is too strong to be noise.
 #[inline]
 pub(super) fn is_strong(amplitude: f32, noise: &Noise) -> bool {
     amplitude > 5.0 * noise.change(amplitude)
 }
 
-/// Strong extrema without a partner behind them, along x and y.
+/// Along x and along y, whether an extremum is strong and has no partner behind it.
 #[inline]
 pub(super) fn begins(extrema: &Extrema, links: &Links, v: usize, noise: &Noise) -> [bool; 2] {
     [BACK_X, BACK_Y].map(|back| links.to[back][v] == NONE && is_strong(extrema.amplitude[v], noise))

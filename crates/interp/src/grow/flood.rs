@@ -1,10 +1,12 @@
-//! Gives extrema that belong to no surface yet to the surfaces beside them.
+//! Assigns extrema without a surface to the surfaces next to them.
 //!
-//! What the cuts and the opening leave out is assigned along the minimum spanning forest of the links, in order of their evidence for a
-//! break (ties by index), with every surface a root: two surfaces never join. A watershed on links, so a set again.
+//! What the cuts and the opening leave out is assigned along the minimum spanning forest of the links, in
+//! order of their evidence for a break (ties by index). Every surface is a root, so two surfaces never join.
+//! This is a watershed on links, and its result is again independent of any order of visits.
 //!
-//! Where reflectors are chaotic, in salt or between many small faults, such a flood spirals from layer to layer. A surface that comes to lie over itself
-//! keeps of what it was given only what is near it; the rest is for others, or for none.
+//! Where reflectors are chaotic, in salt or between many small faults, such a flood spirals from layer to
+//! layer. A surface that comes to lie over itself keeps only those of the assigned extrema that are near it;
+//! the others go to other surfaces or to none.
 
 use super::links::{Links, NEXT_X, NEXT_Y, NONE};
 use super::union_find::UnionFind;
@@ -14,16 +16,16 @@ use survey::{Cancelled, Progress};
 /// Greatest evidence, in quarters, of a link that is followed.
 const PASSABLE: u8 = 48;
 
-/// One trace of so many of a surface that it lies on twice, and it lies over itself.
+/// A surface lies over itself if it lies twice on more than one in this many of its traces.
 const LAYERED: u32 = 20;
 
-/// Links that a surface which lies over itself keeps of what it was given.
+/// Distance in links within which a surface that lies over itself keeps assigned extrema.
 const OUTSKIRTS: usize = 10;
 
-/// Links between two looks at whether the user cancelled.
+/// Links between two checks for cancellation.
 const CHECK_EVERY: usize = 1 << 18;
 
-/// Extends `labels` over links.
+/// Extends `labels` along links.
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
@@ -71,9 +73,10 @@ pub(super) fn flood(
     progress.check()
 }
 
-/// How often each label lies on a trace.
+/// How often each label lies on its traces.
 struct Layers {
-    /// For each label: its last trace, counted from 1, its traces, and how often it lies on one again.
+    /// For each label: its last trace (counted from 1), its count of traces, and how often it lies on a trace
+    /// again.
     counts: Vec<[u32; 3]>,
     /// Whether some label lies over itself.
     any: bool,
@@ -102,16 +105,16 @@ impl Layers {
         layers
     }
 
-    /// Whether a label lies on too many of its traces again.
+    /// Whether a label lies again on too many of its traces.
     fn over_itself(&self, label: u32) -> bool {
         let [_, traces, again] = self.counts[label as usize];
         again * LAYERED > traces
     }
 }
 
-/// Which extrema are at most [`OUTSKIRTS`] passable links from one of `rooted`.
+/// Which extrema are at most [`OUTSKIRTS`] passable links away from one of `rooted`.
 fn near(links: &Links, evidence: &[[u8; 2]], rooted: &[bool]) -> Vec<bool> {
-    // Calls `found` for what passable links lead to from an extremum; links lead both ways.
+    // Calls `found` for each extremum that a passable link joins to `v`; links lead both ways.
     let around = |v: u32, found: &mut dyn FnMut(u32)| {
         for (axis, to) in links.to.as_chunks::<2>().0.iter().enumerate() {
             let [next, back] = [to[0][v as usize], to[1][v as usize]];
@@ -122,7 +125,7 @@ fn near(links: &Links, evidence: &[[u8; 2]], rooted: &[bool]) -> Vec<bool> {
             }
         }
     };
-    // The first link is asked from its other end: fewer are without a root than with one.
+    // The first step starts at the extrema without a root, which are fewer than those with one.
     let mut near = rooted.to_vec();
     let mut front = Vec::new();
     for v in (0..rooted.len() as u32).filter(|&v| !rooted[v as usize]) {
@@ -146,9 +149,9 @@ fn near(links: &Links, evidence: &[[u8; 2]], rooted: &[bool]) -> Vec<bool> {
     near
 }
 
-/// The links that may be followed to an extremum without a surface, by evidence, each as `v << 1 | axis`.
+/// The passable links to an extremum without a surface, in order of their evidence, each as `v << 1 | axis`.
 fn edges(links: &Links, evidence: &[[u8; 2]], labels: &[u32]) -> Vec<u64> {
-    // They are met in the order of the extrema, so it is enough to count.
+    // They are visited in the order of the extrema, so a counting sort suffices.
     let mut starts = [0usize; PASSABLE as usize + 2];
     each_edge(links, evidence, labels, |evidence, _| starts[evidence as usize + 1] += 1);
     for n in 1..starts.len() {
@@ -163,7 +166,8 @@ fn edges(links: &Links, evidence: &[[u8; 2]], labels: &[u32]) -> Vec<u64> {
     edges
 }
 
-/// Calls `found(evidence, edge)` for each of those links, in the order of the extrema.
+/// Calls `found(evidence, edge)` for each passable link to an extremum without a surface, in the order of the
+/// extrema.
 #[inline]
 fn each_edge(links: &Links, evidence: &[[u8; 2]], labels: &[u32], mut found: impl FnMut(u8, u64)) {
     for v in 0..labels.len() {

@@ -1,10 +1,11 @@
-//! Links between extrema of neighbouring traces: each the other's best.
+//! Links between extrema of neighbouring traces that are each other's best match.
 //!
-//! The extremum at z on one trace expects its continuation on the next at z + dip. Of the extrema within reach the one
-//! of least cost is its choice; a link is a pair of extrema that choose each other. A relation, not a walk: nothing depends on order.
+//! An extremum at z on one trace is expected to continue on the next trace at z + dip. Of the extrema within
+//! reach it chooses the one of least cost. A link is a pair of extrema that choose each other, so links do
+//! not depend on any order.
 //!
-//! `cost = misfit² + (2·(a − b)/(a + b))²`, misfit in samples, a and b the amplitudes; the second term is the squared
-//! logarithm of their ratio while they are alike, and at most 4.
+//! `cost = misfit² + (2·(a − b)/(a + b))²` with the misfit in samples and the amplitudes a and b. The second
+//! term approximates the squared logarithm of their ratio while they are similar, and is at most 4.
 
 use crate::extrema::Extrema;
 use rayon::prelude::*;
@@ -20,14 +21,14 @@ pub(super) const BACK_X: usize = 1;
 pub(super) const NEXT_Y: usize = 2;
 pub(super) const BACK_Y: usize = 3;
 
-/// Links of the extrema of one kind, one entry an extremum. Memory: 16 bytes an extremum.
+/// Links of the extrema of one kind. Memory: 16 bytes an extremum.
 pub(super) struct Links {
-    /// Partner at x + 1, x − 1, y + 1, y − 1, or [`NONE`].
+    /// Partner of each extremum at x + 1, x − 1, y + 1, y − 1, or [`NONE`].
     pub(super) to: [Vec<u32>; 4],
 }
 
 impl Links {
-    /// The corners [at, x + 1, y + 1, both] of the cell that begins at `a`, if all four links are there and agree.
+    /// The corners [a, x + 1, y + 1, both] of the cell that begins at `a`, if all four links exist and agree.
     #[inline]
     pub(super) fn closed(&self, a: u32) -> Option<[u32; 4]> {
         let (b, c) = (self.to[NEXT_X][a as usize], self.to[NEXT_Y][a as usize]);
@@ -39,7 +40,7 @@ impl Links {
     }
 }
 
-/// The traces on both sides of a link, and where what is expected.
+/// The extrema of one of the two traces of a link, with their dips.
 struct Side<'e> {
     z: &'e [f32],
     amplitude: &'e [f32],
@@ -57,11 +58,11 @@ impl<'e> Side<'e> {
         }
     }
 
-    /// For each extremum its choice on the other trace, which lies `direction` (±1) along `axis`.
+    /// For each extremum its choice on the other trace, which lies in `direction` (±1) along `axis`.
     #[inline]
     fn choose(&self, other: &Self, axis: usize, direction: f32, reach: f32, chosen: &mut Vec<u32>) {
         chosen.clear();
-        // Neighbours begin their search nearly where the one before did.
+        // The search begins close to where the previous extremum's began.
         let mut start = 0;
         for (here, (&z, &amplitude)) in self.z.iter().zip(self.amplitude).enumerate() {
             let expected = z + direction * self.dips.get(here).map_or(0.0, |dip| dip[axis]);
@@ -90,9 +91,17 @@ impl<'e> Side<'e> {
     }
 }
 
-/// Links two traces: `next` and `back` begin at the first extremum of theirs.
-fn link(from: &Side, to: &Side, axis: usize, reach: f32, next: &mut [u32], back: &mut [u32], room: &mut [Vec<u32>; 2]) {
-    let [forward, backward] = room;
+/// Links two traces. `next` and `back` begin at the first extremum of their trace.
+fn link(
+    from: &Side,
+    to: &Side,
+    axis: usize,
+    reach: f32,
+    next: &mut [u32],
+    back: &mut [u32],
+    scratch: &mut [Vec<u32>; 2],
+) {
+    let [forward, backward] = scratch;
     from.choose(to, axis, 1.0, reach, forward);
     to.choose(from, axis, -1.0, reach, backward);
     for (here, &there) in forward.iter().enumerate() {
@@ -103,7 +112,7 @@ fn link(from: &Side, to: &Side, axis: usize, reach: f32, next: &mut [u32], back:
     }
 }
 
-/// All mutual links (see [`Links::renew`]).
+/// All mutual links (see `find`).
 pub(super) fn mutual_links(
     extrema: &Extrema,
     dips: &[[f32; 2]],
@@ -116,8 +125,8 @@ pub(super) fn mutual_links(
 }
 
 impl Links {
-    /// All mutual links with continuations expected along `dips` (samples a trace along x and y, one entry an extremum; none: flat), at
-    /// most `reach` samples from where they are expected.
+    /// Finds all mutual links. Continuations are expected along `dips` (samples a trace along x and y, one
+    /// entry an extremum; empty for flat) and accepted within `reach` samples.
     fn find(&mut self, extrema: &Extrema, dips: &[[f32; 2]], reach: f32, progress: &Progress) -> Result<(), Cancelled> {
         let ny = extrema.size[1];
         let [next_x, back_x, next_y, back_y] = &mut self.to;
@@ -125,31 +134,31 @@ impl Links {
             extrema.split_inlines(next_x).into_iter().zip(extrema.split_inlines(back_x).into_iter().skip(1)).collect();
         pairs.into_par_iter().enumerate().try_for_each(|(x, (next, back))| {
             progress.check()?;
-            let mut room = [Vec::new(), Vec::new()];
+            let mut scratch = [Vec::new(), Vec::new()];
             let (first, second) = (extrema.on_inline(x).start, extrema.on_inline(x + 1).start);
             for y in 0..ny {
                 let (from, to) = (extrema.on_trace(x, y), extrema.on_trace(x + 1, y));
                 let (next, back) = (&mut next[from.start - first..], &mut back[to.start - second..]);
-                link(&Side::of(extrema, dips, from), &Side::of(extrema, dips, to), 0, reach, next, back, &mut room);
+                link(&Side::of(extrema, dips, from), &Side::of(extrema, dips, to), 0, reach, next, back, &mut scratch);
             }
             Ok(())
         })?;
         let pairs: Vec<_> = extrema.split_inlines(next_y).into_iter().zip(extrema.split_inlines(back_y)).collect();
         pairs.into_par_iter().enumerate().try_for_each(|(x, (next, back))| {
             progress.check()?;
-            let mut room = [Vec::new(), Vec::new()];
+            let mut scratch = [Vec::new(), Vec::new()];
             let first = extrema.on_inline(x).start;
             for y in 1..ny {
                 let (from, to) = (extrema.on_trace(x, y - 1), extrema.on_trace(x, y));
                 let (next, back) = (&mut next[from.start - first..], &mut back[to.start - first..]);
-                link(&Side::of(extrema, dips, from), &Side::of(extrema, dips, to), 1, reach, next, back, &mut room);
+                link(&Side::of(extrema, dips, from), &Side::of(extrema, dips, to), 1, reach, next, back, &mut scratch);
             }
             Ok(())
         })?;
         progress.step(extrema.size[0] as u64)
     }
 
-    /// Finds all links anew, in the same memory.
+    /// Finds all links again, in the same memory.
     pub(super) fn renew(
         mut self,
         extrema: &Extrema,

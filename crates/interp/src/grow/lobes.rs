@@ -1,63 +1,72 @@
 //! Which extrema are side lobes of those above and below them.
 //!
-//! A reflector is not one extremum but three and more: the wavelet's side lobes follow it wherever it goes, with heights and at distances
-//! that change as little as its own. A fault lays them against other reflectors, and a surface that crosses there goes on along a lobe without a visible
-//! step. What betrays a lobe is not on the surface but above and below it: its height is that which the extrema beside it on
-//! the trace leave there. So the heights a of the extrema of a trace are resolved into what each has of its own, r:
+//! A reflector makes not one extremum but three or more: the side lobes of the wavelet accompany it
+//! everywhere, with heights and at distances as constant as its own. A fault puts them against other
+//! reflectors, and a surface that crosses there continues along a lobe without a visible step. What
+//! identifies a lobe is not on the surface but above and below it: its height is explained by the
+//! neighbouring extrema of its trace. So the heights a of the extrema of a trace are resolved into each
+//! extremum's own height r:
 //!
-//! `a_i = r_i ± c(z_i − z_{i−1})·r_{i−1} ± c(z_{i+1} − z_i)·r_{i+1}`, + between a peak and a trough, − between two of a kind,
+//! `a_i = r_i ± c(z_i − z_{i−1})·r_{i−1} ± c(z_{i+1} − z_i)·r_{i+1}`, + between a peak and a trough, −
+//! between two of a kind,
 //!
-//! with c the height that a reflector leaves at a distance: Ricker's wavelet's, negated where it is negative and else 0, scaled to the distance
-//! and relative height at which the survey's strong extrema have their neighbours (medians). The system is tridiagonal, and well-posed because c < ½.
-//! Over the extremum and those linked to it, Σr/Σa is near 1 on reflectors and near 0 on lobes; noise between reflectors is nobody's lobe, but low. What is
-//! neither a lobe nor low is a reflector's, and a link between such an extremum and another speaks for a break as loudly as any can.
+//! with c the relative height of a lobe at a distance: the Ricker wavelet, negated where it is negative and 0
+//! elsewhere, scaled to the distance and relative height at which the survey's strong extrema have their
+//! neighbours (medians). The system is tridiagonal, and well-posed because c < ½. Over the extremum and those
+//! linked to it, Σr/Σa is near 1 on reflectors and near 0 on lobes; noise between reflectors is no lobe, but
+//! low. An extremum that is neither a lobe nor low belongs to a reflector. A link between such an extremum
+//! and another one has the greatest evidence for a break.
 //!
-//! This asks that lobes can be known: where strong extrema have neighbours of any height, because reflectors lie closer than
-//! the wavelet is long, or as high as themselves, because all rings, nothing is concluded.
+//! The method needs lobes that can be recognised. Where strong extrema have neighbours of any height, because
+//! reflectors lie closer than the wavelet is long, or neighbours as high as themselves, because everything
+//! rings, nothing is concluded.
 
 use super::evidence::MOST;
 use super::links::{Links, NEXT_X, NEXT_Y, NONE};
-use super::smoothing::{self, Four, Passable, Room};
+use super::smoothing::{self, Four, Passable, Scratch};
 use crate::extrema::Extrema;
 use crate::surfaces::Extremum;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// Greatest c: more, and a trace could not be resolved. Ricker's wavelet has 0.446.
+/// Greatest c; above it a trace could not be resolved. The Ricker wavelet has 0.446.
 const MOST_COUPLING: f32 = 0.45;
 
-/// Relative height of the strong extrema's neighbours from which on they ring rather than have lobes (median).
+/// Relative height (median) of the neighbours of strong extrema from which on they are ringing rather than
+/// lobes.
 const RINGING: f32 = 0.55;
 
-/// Span of the middle half of those relative heights up to which they are taken for lobes. One wavelet in noise as strong as two thirds of the
-/// signal spans 0.22; real surveys with reflectors closer than their wavelet 0.5 and 0.6.
+/// Largest interquartile range of those relative heights at which they are taken for lobes. One wavelet in
+/// noise as strong as two thirds of the signal has 0.22; real surveys with reflectors closer than their
+/// wavelet have 0.5 and 0.6.
 const MOST_SPAN: f32 = 0.25;
 
 /// Share of the extrema that count as strong.
 const STRONG: f32 = 0.05;
 
-/// Height of its own that a reflector has at least, in standard deviations of what noise does to a height from one trace to the next. Noise
-/// between reflectors has its height to itself too, and leads from one to the other.
+/// Least own height of a reflector, in standard deviations of the effect of noise on a height from one trace
+/// to the next. Noise between reflectors also has its height of its own, and would connect one reflector to
+/// the other.
 const LEAST_OVER_NOISE: f32 = 3.0;
 
-/// How a reflector's side lobes are.
+/// The side lobes of a reflector.
 #[derive(Debug, Clone, Copy)]
 struct Lobes {
     /// Distance from the reflector, samples.
     distance: f32,
-    /// Height relative to its own.
+    /// Height relative to that of the reflector.
     height: f32,
 }
 
 impl Lobes {
-    /// Height that a reflector leaves at a distance, relative to its own.
+    /// Height of the lobe that a reflector makes at a distance, relative to its own.
     #[inline]
     fn coupling(self, distance: f32) -> f32 {
         let square = (distance / self.distance).powi(2);
         (self.height * 0.5 * (3.0 * square - 1.0) * (1.5 * (1.0 - square)).exp()).max(0.0)
     }
 
-    /// Measured beside the strong extrema of `pair`; `None` where they tell of none.
+    /// Measures the lobes beside the strong extrema of `pair`; `None` where they cannot be recognised.
     fn measure(pair: [&Extrema; 2]) -> Option<Self> {
         let [nx, ny, _] = pair[0].size;
         let mut heights: Vec<f32> = pair.iter().flat_map(|e| e.amplitude.iter().step_by(17).copied()).collect();
@@ -101,7 +110,7 @@ struct OnTrace {
     index: usize,
 }
 
-/// The extrema of both kinds on a trace, top first.
+/// The extrema of both kinds on a trace, from the top down.
 fn merged(pair: [&Extrema; 2], x: usize, y: usize, trace: &mut Vec<OnTrace>) {
     trace.clear();
     let [mut a, mut b] = pair.map(|e| e.on_trace(x, y));
@@ -118,8 +127,8 @@ fn merged(pair: [&Extrema; 2], x: usize, y: usize, trace: &mut Vec<OnTrace>) {
     }
 }
 
-/// What each extremum of each kind has of its own height, r; empty where there are no lobes to be told: of zero crossings,
-/// of peaks without troughs or troughs without peaks, and where [`Lobes::measure`] finds none.
+/// The own height r of each extremum of each kind. Empty where lobes cannot be recognised: for zero
+/// crossings, for peaks without troughs or troughs without peaks, and where [`Lobes::measure`] finds none.
 pub(super) fn own_heights(extrema: &[Extrema]) -> Vec<Vec<f32>> {
     let mut own: Vec<Vec<f32>> = extrema.iter().map(|_| Vec::new()).collect();
     let place = |kind: Extremum| extrema.iter().position(|e| e.kind == kind);
@@ -148,7 +157,7 @@ pub(super) fn own_heights(extrema: &[Extrema]) -> Vec<Vec<f32>> {
     own
 }
 
-/// Replaces the heights on a trace by what each extremum has of its own. `upper` is room.
+/// Replaces the heights on a trace by own heights (Thomas algorithm). `upper` is scratch memory.
 fn resolve(trace: &mut [OnTrace], lobes: Lobes, upper: &mut Vec<f32>) {
     upper.clear();
     for n in 0..trace.len() {
@@ -170,17 +179,18 @@ fn resolve(trace: &mut [OnTrace], lobes: Lobes, upper: &mut Vec<f32>) {
     }
 }
 
-/// What a reflector has of its own at least.
+/// The least own height of a reflector.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Least {
     /// Share of its height.
     pub(super) share: f32,
-    /// What noise does to a height from one trace to the next; [`LEAST_OVER_NOISE`] times that.
+    /// Effect of noise on a height from one trace to the next; the least own height is [`LEAST_OVER_NOISE`]
+    /// times that.
     pub(super) noise: f32,
 }
 
-/// Gives the links between reflectors and what is none the greatest evidence for a break, from what the extrema have of their own
-/// ([`own_heights`]).
+/// Gives the links between reflectors and other extrema the greatest evidence for a break. `own` are the own
+/// heights ([`own_heights`]).
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
@@ -190,19 +200,19 @@ pub(super) fn part(
     own: &[f32],
     least: Least,
     evidence: &mut [[u8; 2]],
-    room: &mut Room,
+    scratch: &mut Scratch,
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     if own.is_empty() {
         return Ok(());
     }
-    room.resize(extrema.len());
-    room.values.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(v, value)| {
+    scratch.resize(extrema.len());
+    scratch.values.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(v, value)| {
         *value = [own[v], extrema.amplitude[v], 0.0, 0.0];
     });
-    smoothing::across(extrema, links, Passable::All, room);
+    smoothing::across(extrema, links, Passable::All, scratch);
     let of_its_own = |[own, all, ..]: Four| own >= least.share * all && own >= LEAST_OVER_NOISE * least.noise;
-    let reflects: Vec<bool> = room.values.par_iter().with_min_len(GRAIN).map(|&value| of_its_own(value)).collect();
+    let reflects: Vec<bool> = scratch.values.par_iter().with_min_len(GRAIN).map(|&value| of_its_own(value)).collect();
     progress.check()?;
     evidence.par_iter_mut().with_min_len(GRAIN).enumerate().for_each(|(v, evidence)| {
         for (evidence, direction) in evidence.iter_mut().zip([NEXT_X, NEXT_Y]) {
@@ -215,7 +225,7 @@ pub(super) fn part(
     Ok(())
 }
 
-/// Extrema handled at a time by one thread.
+/// Count of extrema that one thread handles at a time.
 const GRAIN: usize = 1 << 14;
 
 #[cfg(test)]
@@ -224,7 +234,7 @@ mod tests {
     use crate::extrema::find_extrema;
     use survey::Volume;
 
-    /// Ricker's wavelet, its lobes 3.1 samples away.
+    /// A Ricker wavelet whose lobes are 3.1 samples away.
     fn ricker(samples: f32) -> f32 {
         let square = (std::f32::consts::PI * samples / 8.0).powi(2);
         (1.0 - 2.0 * square) * (-square).exp()
@@ -232,7 +242,8 @@ mod tests {
 
     #[test]
     fn reflectors_have_their_height_to_themselves_and_lobes_have_nothing() {
-        // A reflector every 9 or 13 samples, so that lobes of two reflectors lie beside one another, of alternating polarity and uneven strength.
+        // A reflector every 9 or 13 samples, of alternating polarity and uneven strength, so that lobes of
+        // two reflectors lie beside one another.
         let reflectors: Vec<(f32, f32)> =
             (0..8).map(|n| (20.3 + 11.0 * n as f32 - 2.0 * (n % 2) as f32, [1.0, -0.8, 0.6, -0.9][n % 4])).collect();
         let mut volume = Volume::filled([6, 6, 128], 0.0f32);

@@ -1,15 +1,18 @@
 //! Joins pieces of one surface by the evidence along their whole common boundary.
 //!
-//! The cuts at necks and planes leave more pieces than there are surfaces: noise breaks a surface anywhere, a fault along all of it. What
-//! tells them apart is the boundary as a whole. Where a piece A ends between two neighbouring traces and a piece B
-//! begins there, they *meet*: for them where an unbroken link leads from one to the other, against them where
-//! the link is broken, or where there is none and B begins within `FACING_REACH` samples. A link that a plane broke and that itself says little
-//! counts for neither: planes are long, and cut reflectors that go on beside others that end. Two pieces are joined when enough of their
-//! boundary is for it, when they are alike in amplitude, and when they do not lie over one another: a leak across a fault is a neck in a
-//! long boundary at which the pieces face without a link.
+//! The cuts at necks and planes leave more pieces than there are surfaces: noise breaks a surface anywhere, a
+//! fault along its whole length. The boundary as a whole tells the two apart. Where a piece A ends between
+//! two neighbouring traces and a piece B begins there, the place counts *for* joining them if an unbroken
+//! link leads from one to the other. It counts *against* if the link is broken, or if there is none and B
+//! begins within `FACING_REACH` samples. A link that was broken by a plane and itself has little evidence for
+//! a break counts for neither, because planes are long and also cut reflectors that continue beside others
+//! that end. Two pieces are joined when a large enough share of their boundary is for it, when they are
+//! similar in amplitude, and when they do not lie over one another. A leak across a fault is a neck in a long
+//! boundary along which the pieces face each other without a link.
 //!
-//! Pairs are joined in the order of their share (ties: more links, then lesser numbers); what is joined meets its neighbours with the sums of both. The
-//! order follows from the extrema alone, so the result is a set as the rest of growing is.
+//! Pairs are joined in the order of their share (ties: more links, then lesser numbers). The boundaries of a
+//! joined piece are the sums of those of its parts. The order follows from the extrema alone, so the result
+//! is independent of threads, as in the rest of growing.
 
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
 use crate::extrema::Extrema;
@@ -18,29 +21,32 @@ use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
 use survey::{Cancelled, Progress};
 
-/// Samples up and down within which a piece that begins is the possible continuation of one that ends.
+/// Largest difference in depth at which a piece that begins is a possible continuation of one that ends,
+/// samples.
 const FACING_REACH: f32 = 12.0;
 
-/// Links for it that two pieces must meet with.
+/// Least count of links for joining two pieces.
 const LEAST_LINKS: u32 = 6;
 
-/// Traces that two pieces may both lie on, as a share of the smaller's; noise folds a rim over a rim.
+/// Traces that two joined pieces may both lie on, as a share of the smaller piece's; noise folds a rim over a
+/// rim.
 const TOLERATED_OVERLAP: f32 = 0.01;
 
-/// Greatest evidence, in quarters, of a link of its own at which a break that a plane makes of it is in doubt: four times what noise makes.
+/// Greatest evidence, in quarters, at which a break made by a plane is in doubt: four times what noise makes.
 const DOUBTFUL: u8 = 16;
 
-/// Greatest logarithm of the ratio of the pieces' mean amplitudes: 1.6 times. A side lobe that goes on where a reflector ends is weaker.
+/// Greatest logarithm of the ratio of the pieces' mean amplitudes: a ratio of 1.6. A side lobe that continues
+/// where a reflector ends is weaker.
 const MOST_CONTRAST: f64 = 0.45;
 
-/// How two pieces meet: links for it, and places against it.
+/// The common boundary of two pieces: links for joining them, and places against it.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Contact {
+struct Boundary {
     joined: u32,
     against: u32,
 }
 
-impl Contact {
+impl Boundary {
     fn share(self) -> f32 {
         self.joined as f32 / (self.joined + self.against).max(1) as f32
     }
@@ -51,40 +57,40 @@ impl Contact {
     }
 }
 
-/// A pair that could be joined, by its share.
-struct Candidate {
-    contact: Contact,
+/// A pair of pieces that could be joined, ordered by its share.
+struct PiecePair {
+    boundary: Boundary,
     pair: [u32; 2],
 }
 
-impl Candidate {
+impl PiecePair {
     fn key(&self) -> (f32, u32, std::cmp::Reverse<[u32; 2]>) {
-        (self.contact.share(), self.contact.joined, std::cmp::Reverse(self.pair))
+        (self.boundary.share(), self.boundary.joined, std::cmp::Reverse(self.pair))
     }
 }
 
-impl PartialEq for Candidate {
+impl PartialEq for PiecePair {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
     }
 }
 
-impl Eq for Candidate {}
+impl Eq for PiecePair {}
 
-impl PartialOrd for Candidate {
+impl PartialOrd for PiecePair {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
     }
 }
 
-impl Ord for Candidate {
+impl Ord for PiecePair {
     fn cmp(&self, other: &Self) -> Ordering {
         let (a, b) = (self.key(), other.key());
         a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)).then(a.2.cmp(&b.2))
     }
 }
 
-/// Joins labels whose boundary is for it with at least `least_share`.
+/// Joins labels whose boundary is for it with a share of at least `least_share`.
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
@@ -98,7 +104,7 @@ pub(super) fn merge(
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     let mut pieces = Pieces::of(extrema, labels);
-    pieces.meet(contacts(extrema, links, broken, evidence, &pieces.piece));
+    pieces.meet(boundaries(extrema, links, broken, evidence, &pieces.piece));
     progress.check()?;
     pieces.join_all(least_share, progress)?;
     let Pieces { piece, into, .. } = &pieces;
@@ -111,18 +117,18 @@ pub(super) fn merge(
     Ok(())
 }
 
-/// Pieces of a kind.
+/// The pieces of one kind of extremum.
 struct Pieces {
-    /// Piece of each extremum, or [`NONE`]; numbered in the order of first extrema.
+    /// Piece of each extremum, or [`NONE`]; pieces are numbered in the order of their first extrema.
     piece: Vec<u32>,
-    /// What each was joined into; itself while it stands.
+    /// The piece that each piece was joined into; itself while it is separate.
     into: Vec<u32>,
-    /// Traces of each, ascending.
+    /// Traces of each piece, ascending.
     traces: Vec<Vec<u32>>,
-    /// Sum of the logarithms of amplitude of each, and count.
+    /// Sum of the logarithms of amplitude of each piece, and their count.
     strength: Vec<(f64, f64)>,
-    /// How each meets others.
-    meets: Vec<HashMap<u32, Contact>>,
+    /// Boundaries of each piece, by neighbour.
+    meets: Vec<HashMap<u32, Boundary>>,
 }
 
 fn root(into: &[u32], mut piece: u32) -> u32 {
@@ -166,26 +172,26 @@ impl Pieces {
         Self { piece, into, traces, strength, meets }
     }
 
-    fn meet(&mut self, contacts: Vec<([u32; 2], Contact)>) {
-        for ([a, b], contact) in contacts {
-            self.meets[a as usize].entry(b).or_default().add(contact);
-            self.meets[b as usize].entry(a).or_default().add(contact);
+    fn meet(&mut self, boundaries: Vec<([u32; 2], Boundary)>) {
+        for ([a, b], boundary) in boundaries {
+            self.meets[a as usize].entry(b).or_default().add(boundary);
+            self.meets[b as usize].entry(a).or_default().add(boundary);
         }
     }
 
-    /// Joins the pair of the greatest share as long as there is one that may be.
+    /// Joins the pair of the greatest share as long as there is one that may be joined.
     fn join_all(&mut self, least_share: f32, progress: &Progress) -> Result<(), Cancelled> {
-        let may = |contact: &Contact| contact.joined >= LEAST_LINKS && contact.share() >= least_share;
-        let mut queue: BinaryHeap<Candidate> = BinaryHeap::new();
+        let may = |boundary: &Boundary| boundary.joined >= LEAST_LINKS && boundary.share() >= least_share;
+        let mut queue: BinaryHeap<PiecePair> = BinaryHeap::new();
         for (a, meets) in self.meets.iter().enumerate() {
             let a = a as u32;
-            let later = meets.iter().filter(|&(&b, contact)| a < b && may(contact));
-            queue.extend(later.map(|(&b, &contact)| Candidate { contact, pair: [a, b] }));
+            let later = meets.iter().filter(|&(&b, boundary)| a < b && may(boundary));
+            queue.extend(later.map(|(&b, &boundary)| PiecePair { boundary, pair: [a, b] }));
         }
-        while let Some(Candidate { contact, pair: [a, b] }) = queue.pop() {
+        while let Some(PiecePair { boundary, pair: [a, b] }) = queue.pop() {
             progress.check()?;
-            // What has changed since is in the queue anew.
-            if self.meets[a as usize].get(&b) != Some(&contact) {
+            // A pair that has changed since is in the queue again.
+            if self.meets[a as usize].get(&b) != Some(&boundary) {
                 continue;
             }
             let (few, many) = (&self.traces[a as usize], &self.traces[b as usize]);
@@ -199,16 +205,16 @@ impl Pieces {
             let (kept, gone) =
                 if self.meets[a as usize].len() >= self.meets[b as usize].len() { (a, b) } else { (b, a) };
             self.join(kept, gone);
-            for (&other, &contact) in &self.meets[kept as usize] {
-                if may(&contact) {
-                    queue.push(Candidate { contact, pair: [kept.min(other), kept.max(other)] });
+            for (&other, &boundary) in &self.meets[kept as usize] {
+                if may(&boundary) {
+                    queue.push(PiecePair { boundary, pair: [kept.min(other), kept.max(other)] });
                 }
             }
         }
         Ok(())
     }
 
-    /// Ratio of the mean amplitudes, as a logarithm.
+    /// Ratio of the mean amplitudes of two pieces, as a logarithm.
     fn contrast(&self, a: u32, b: u32) -> f64 {
         let [a, b] = [a, b].map(|p| self.strength[p as usize]).map(|(sum, count)| sum / count);
         (a - b).abs()
@@ -222,10 +228,10 @@ impl Pieces {
         let added = std::mem::take(&mut self.traces[gone as usize]);
         let own = std::mem::take(&mut self.traces[kept as usize]);
         self.traces[kept as usize] = united(&own, &added);
-        for (other, contact) in std::mem::take(&mut self.meets[gone as usize]) {
+        for (other, boundary) in std::mem::take(&mut self.meets[gone as usize]) {
             self.meets[other as usize].remove(&gone);
             if other != kept {
-                self.meets[kept as usize].entry(other).or_default().add(contact);
+                self.meets[kept as usize].entry(other).or_default().add(boundary);
                 let sum = self.meets[kept as usize][&other];
                 self.meets[other as usize].insert(kept, sum);
             }
@@ -233,11 +239,11 @@ impl Pieces {
     }
 }
 
-/// Traces in both lists, counted to one more than `enough`.
+/// Count of traces in both lists, at most `enough` + 1. Both lists ascend.
 fn overlap(few: &[u32], mut many: &[u32], enough: usize) -> usize {
     let mut count = 0;
     for trace in few {
-        // It is most likely near: ever longer steps first.
+        // It is most likely near the front: exponential search.
         let mut reach = 1;
         while reach < many.len() && many[reach] < *trace {
             reach *= 2;
@@ -252,7 +258,7 @@ fn overlap(few: &[u32], mut many: &[u32], enough: usize) -> usize {
     count
 }
 
-/// Both lists in one, ascending.
+/// The union of two ascending lists, ascending.
 fn united(a: &[u32], b: &[u32]) -> Vec<u32> {
     let mut all = Vec::with_capacity(a.len() + b.len());
     let (mut a, mut b) = (a.iter().peekable(), b.iter().peekable());
@@ -270,16 +276,16 @@ fn united(a: &[u32], b: &[u32]) -> Vec<u32> {
     all
 }
 
-/// How pieces meet, by pair in ascending order.
-fn contacts(
+/// The boundaries of all pairs of pieces, by pair in ascending order.
+fn boundaries(
     extrema: &Extrema,
     links: &Links,
     broken: &[[bool; 2]],
     evidence: &[[u8; 2]],
     piece: &[u32],
-) -> Vec<([u32; 2], Contact)> {
+) -> Vec<([u32; 2], Boundary)> {
     let [nx, ny, _] = extrema.size;
-    let mut all: Vec<([u32; 2], Contact)> = (0..nx)
+    let mut all: Vec<([u32; 2], Boundary)> = (0..nx)
         .into_par_iter()
         .flat_map_iter(|x| {
             let mut found = Vec::new();
@@ -287,7 +293,7 @@ fn contacts(
                 for (axis, there) in [(0, (x + 1 < nx).then_some((x + 1, y))), (1, (y + 1 < ny).then_some((x, y + 1)))]
                 {
                     if let Some((x2, y2)) = there {
-                        let place = Place { extrema, links, broken, evidence, piece, axis };
+                        let place = TracePair { extrema, links, broken, evidence, piece, axis };
                         place.meet(extrema.on_trace(x, y), extrema.on_trace(x2, y2), &mut found);
                     }
                 }
@@ -299,22 +305,22 @@ fn contacts(
     summed_sorted(&all)
 }
 
-fn summed(mut found: Vec<([u32; 2], Contact)>) -> Vec<([u32; 2], Contact)> {
+fn summed(mut found: Vec<([u32; 2], Boundary)>) -> Vec<([u32; 2], Boundary)> {
     found.sort_unstable_by_key(|(pair, _)| *pair);
     summed_sorted(&found)
 }
 
-fn summed_sorted(found: &[([u32; 2], Contact)]) -> Vec<([u32; 2], Contact)> {
-    let sum = |same: &[([u32; 2], Contact)]| {
-        let mut sum = Contact::default();
-        same.iter().for_each(|(_, contact)| sum.add(*contact));
+fn summed_sorted(found: &[([u32; 2], Boundary)]) -> Vec<([u32; 2], Boundary)> {
+    let sum = |same: &[([u32; 2], Boundary)]| {
+        let mut sum = Boundary::default();
+        same.iter().for_each(|(_, boundary)| sum.add(*boundary));
         (same[0].0, sum)
     };
     found.chunk_by(|a, b| a.0 == b.0).map(sum).collect()
 }
 
 /// Two neighbouring traces.
-struct Place<'a> {
+struct TracePair<'a> {
     extrema: &'a Extrema,
     links: &'a Links,
     broken: &'a [[bool; 2]],
@@ -323,9 +329,9 @@ struct Place<'a> {
     axis: usize,
 }
 
-impl Place<'_> {
-    /// Adds how the pieces that end on one trace meet those that begin on the next.
-    fn meet(&self, from: std::ops::Range<usize>, to: std::ops::Range<usize>, found: &mut Vec<([u32; 2], Contact)>) {
+impl TracePair<'_> {
+    /// Adds the boundary between the pieces that end on one trace and those that begin on the next.
+    fn meet(&self, from: std::ops::Range<usize>, to: std::ops::Range<usize>, found: &mut Vec<([u32; 2], Boundary)>) {
         let (next, back) = (&self.links.to[[NEXT_X, NEXT_Y][self.axis]], &self.links.to[[BACK_X, BACK_Y][self.axis]]);
         let Self { piece, extrema, .. } = *self;
         let goes_on = |link: u32, own: u32| link != NONE && piece[link as usize] == own;
@@ -352,9 +358,9 @@ impl Place<'_> {
                 if !joined && w as u32 == linked && self.evidence[v][self.axis] <= DOUBTFUL {
                     continue;
                 }
-                let contact =
-                    if joined { Contact { joined: 1, against: 0 } } else { Contact { joined: 0, against: 1 } };
-                found.push(([a.min(b), a.max(b)], contact));
+                let boundary =
+                    if joined { Boundary { joined: 1, against: 0 } } else { Boundary { joined: 0, against: 1 } };
+                found.push(([a.min(b), a.max(b)], boundary));
             }
         }
     }
@@ -372,7 +378,7 @@ mod tests {
         assert_eq!(overlap(&[], &[1], 0), 0);
     }
 
-    /// Pieces with these counts of traces, far apart, and how they meet.
+    /// Pieces with these traces and boundaries.
     fn pieces(traces: &[std::ops::Range<u32>], amplitude: &[f32], meets: &[([u32; 2], [u32; 2])]) -> Pieces {
         let mut pieces = Pieces {
             piece: Vec::new(),
@@ -381,7 +387,7 @@ mod tests {
             strength: amplitude.iter().map(|a| (f64::from(a.ln()), 1.0)).collect(),
             meets: vec![HashMap::new(); traces.len()],
         };
-        pieces.meet(meets.iter().map(|&(pair, [joined, against])| (pair, Contact { joined, against })).collect());
+        pieces.meet(meets.iter().map(|&(pair, [joined, against])| (pair, Boundary { joined, against })).collect());
         pieces
     }
 

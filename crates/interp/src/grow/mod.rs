@@ -1,22 +1,24 @@
-//! Growing surfaces over extrema (P-horiz 4), the paper's way and ours.
+//! Growing surfaces over extrema (P-horiz 4), by the paper's method and by ours.
 //!
-//! The paper grows from every voxel in turn, so its result depends on the order of seeds. Ours defines the surfaces as a *set*:
-//! which extrema are linked, which links are cut, which cells are complete and which are connected is decided
-//! from the extrema alone, never from who came first, so threads, slabs and tiles cannot matter.
+//! The paper grows from every voxel in turn, so its result depends on the order of the seeds. Our method
+//! defines the surfaces as a *set*: which extrema are linked, which links are cut, which cells are complete
+//! and which are connected follows from the extrema alone and not from any order of visits. Threads, slabs
+//! and tiles therefore cannot change the result.
 //!
-//! | step | ours, in |
+//! | step of our method | module |
 //! |---|---|
-//! | extrema, refined below the sample | [`crate::extrema`] |
+//! | extrema, refined between samples | [`crate::extrema`] |
 //! | mutual best links between neighbouring traces, guided by the dip | `links`, `dip` |
-//! | how much each link speaks for a break, beside the volume's own noise and what is usual around it | `evidence`, `surroundings` |
-//! | side lobes told from reflectors by what lies above and below them; links between the two speak for a break | `lobes` |
-//! | faults: planes along which many links do; they cut links | `planes` |
-//! | closed cells, the opening of the least width, connected windows | `cells` |
-//! | what is left over goes to the surface that it fits best | `flood` |
-//! | pieces that meet along most of their common boundary are joined | `merge` |
+//! | evidence of each link for a break, relative to the volume's noise and to the surroundings | `evidence`, `surroundings` |
+//! | side lobes are told from reflectors by the extrema above and below; links between the two are breaks | `lobes` |
+//! | fault planes: planes along which many links show breaks; they cut links | `planes` |
+//! | closed cells, morphological opening by the least width, connected windows | `cells` |
+//! | extrema left over go to the surface that fits best | `flood` |
+//! | pieces that are linked along most of their common boundary are joined | `merge` |
 //! | triangles | `assemble` |
 //!
-//! Surfaces are connected over necks of `core_width` traces first; what the flood does not reach is connected over necks of `min_front_width`.
+//! Surfaces are first connected over necks of at least `core_width` traces (their *cores*); what the flood
+//! does not reach is then connected over necks of at least `min_front_width`.
 //!
 //! Peaks, troughs and zero crossings never link to one another. Space: voxels.
 
@@ -46,40 +48,41 @@ use serde::{Deserialize, Serialize};
 use survey::source::SlabSource;
 use survey::{Progress, Volume};
 
-/// How surfaces are grown.
+/// The method of growing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Method {
-    /// As a set: independent of order, threads and tiles.
+    /// As a set: the result is independent of order, threads and tiles.
     #[default]
     Ours,
-    /// Fronts from every voxel in turn, each visited once (P-horiz 4).
+    /// Fronts from every voxel in turn; each voxel is visited once (P-horiz 4).
     Paper,
 }
 
-/// What to grow, and how.
+/// Settings of growing.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct GrowSettings {
-    /// Ours by default.
+    /// The method; ours by default.
     pub method: Method,
-    /// What surfaces follow; peaks and troughs by default. They never link to one another.
+    /// Kinds of extrema that surfaces follow; peaks and troughs by default. Kinds never link to one another.
     pub extrema: Vec<Extremum>,
-    /// Traces: surfaces and connections narrower than this are not grown. Default 4 (P-horiz 4); at least 2.
+    /// Least width of a surface and of its connections, traces. Default 4 (P-horiz 4); at least 2.
     pub min_front_width: usize,
-    /// Traces: surfaces that meet in a neck narrower than this stay apart, and share what lies between them; narrow
-    /// surfaces are grown all the same. Default 10: leaks across faults are rarely wider. At most `min_front_width` turns it off.
+    /// Width of a neck below which surfaces stay apart and share what lies between them, traces. Narrow
+    /// surfaces are grown all the same. Default 10: leaks across faults are rarely wider. A value of at most
+    /// `min_front_width` turns this off.
     pub core_width: usize,
-    /// Least evidence along a plane for it to be a fault that cuts surfaces (see `planes`). Default 25; the less, the more cuts.
-    /// Infinite turns the search for faults off.
+    /// Least evidence along a plane for it to be a fault that cuts surfaces (see `planes`). Default 25. A
+    /// smaller value makes more cuts, an infinite one turns the search for faults off.
     pub fault_evidence: f32,
-    /// Share of its height that an extremum must have of its own, and not as another's side lobe, to be a reflector's (see `lobes`).
-    /// Default 0.4; 0 tells no lobes. Needs peaks and troughs both.
+    /// Least share of its height that an extremum of a reflector must have of its own, i.e. not as the side
+    /// lobe of another extremum (see `lobes`). Default 0.4; 0 turns this off. Needs both peaks and troughs.
     pub lobe_share: f32,
-    /// Share of the boundary of two pieces of a surface that must speak for joining them (see `merge`). Default 0.4; the less, the fewer and
-    /// larger surfaces. More than 1 joins none.
+    /// Share of the common boundary of two pieces that must be linked for them to be joined (see `merge`).
+    /// Default 0.4. A smaller value gives fewer and larger surfaces; above 1 nothing is joined.
     pub join_share: f32,
-    /// Inlines read at a time; does not change the result. Default 16.
+    /// Count of inlines read at a time. Does not change the result. Default 16.
     pub slab_inlines: usize,
 }
 
@@ -101,37 +104,41 @@ impl Default for GrowSettings {
 /// Why no surfaces could be grown.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GrowError<E = std::convert::Infallible> {
-    /// The front width makes no sense.
+    /// [`GrowSettings::min_front_width`] is out of range.
     #[error("the least front width is {found} traces; give at least 2 (4 is a good choice)")]
     FrontWidth {
-        /// Asked for.
+        /// The value given.
         found: usize,
     },
-    /// The share of a boundary makes no sense.
-    #[error("{found} is no share of a boundary; give 0.4 (a good choice) to 1, or more to join nothing")]
+    /// [`GrowSettings::join_share`] is out of range.
+    #[error(
+        "the share of a boundary that joins pieces is {found}; give 0.4 (a good choice) to 1, or more to join nothing"
+    )]
     JoinShare {
-        /// Asked for.
+        /// The value given.
         found: f32,
     },
-    /// The evidence asked of a fault makes no sense.
-    #[error("{found} is no evidence to ask of a fault; give 25 (a good choice) to 200, or `inf` to look for none")]
+    /// [`GrowSettings::fault_evidence`] is out of range.
+    #[error(
+        "the least evidence for a fault is {found}; give 25 (a good choice) to 200, or infinity to look for no faults"
+    )]
     FaultEvidence {
-        /// Asked for.
+        /// The value given.
         found: f32,
     },
-    /// Nothing to follow.
-    #[error("no kind of extremum to grow on; ask for peaks, troughs or zero crossings")]
+    /// [`GrowSettings::extrema`] is empty.
+    #[error("there is no kind of extremum to follow; give peaks, troughs or zero crossings")]
     NoExtrema,
-    /// The lattice is too large for its surfaces.
-    #[error("{lines} lines are more than {} that surfaces can number; extract a part of the volume", u16::MAX)]
+    /// The volume has more lines than the indices of vertices can number.
+    #[error("{lines} lines are more than the {} that can be numbered; extract a part of the volume", u16::MAX)]
     TooManyLines {
-        /// Inlines or crosslines.
+        /// Count of inlines or crosslines.
         lines: usize,
     },
     /// The extrema could not be found.
     #[error(transparent)]
     Extrema(#[from] ExtremaError<E>),
-    /// Stopped by the user.
+    /// The user cancelled.
     #[error(transparent)]
     Cancelled(#[from] survey::Cancelled),
 }
@@ -139,7 +146,26 @@ pub enum GrowError<E = std::convert::Infallible> {
 /// Grows all surfaces of a volume in memory; see [`grow_slabs`].
 ///
 /// # Errors
-/// [`GrowError`] when the settings make no sense or the user cancels.
+/// [`GrowError`] when a setting is out of range or the user cancels.
+///
+/// # Examples
+///
+/// ```
+/// use interp::{GrowSettings, grow_surfaces};
+/// use survey::{Progress, Volume};
+///
+/// // One flat reflector, a peak at sample 10, on 20 × 20 traces.
+/// let mut volume = Volume::filled([20, 20, 21], 0.0f32);
+/// for (n, sample) in volume.samples_mut().iter_mut().enumerate() {
+///     *sample = 5.0 - ((n % 21) as f32 - 10.0).abs();
+/// }
+/// let found = grow_surfaces(&volume, &GrowSettings::default(), &Progress::silent())?;
+/// assert_eq!(found.surfaces.len(), 1);
+/// assert!(found.vertices.iter().all(|vertex| (vertex.z - 10.0).abs() < 1e-4));
+/// // Two triangles in each of 19 × 19 cells.
+/// assert_eq!((found.vertices.len(), found.triangles.len()), (400, 722));
+/// # Ok::<(), interp::GrowError>(())
+/// ```
 pub fn grow_surfaces(
     volume: &Volume<f32>,
     settings: &GrowSettings,
@@ -148,11 +174,11 @@ pub fn grow_surfaces(
     grow_slabs(volume, settings, progress)
 }
 
-/// Grows all surfaces of a volume that is read slab by slab. A volume in which nothing is to be followed (constant, dead, one
-/// trace, thinner than the front width) has no surfaces.
+/// Grows all surfaces of a volume that is read slab by slab. A volume without anything to follow (constant,
+/// dead, a single trace, narrower than the front width) has no surfaces.
 ///
 /// # Errors
-/// [`GrowError`] when the settings make no sense, the source fails or the user cancels.
+/// [`GrowError`] when a setting is out of range, the source fails or the user cancels.
 pub fn grow_slabs<S: SlabSource>(
     source: &S,
     settings: &GrowSettings,

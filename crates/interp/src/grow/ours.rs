@@ -1,31 +1,34 @@
-//! Our growing, step by step: links, dips, evidence, side lobes, cuts, windows, flood (see [`super`]).
+//! Our method of growing, step by step: links, dips, evidence, side lobes, cuts, windows, flood (see
+//! [`super`]).
 //!
-//! All kinds of extrema share the coarse dip and the faults; they never link to one another. Memory beside the 8 bytes of an extremum:
-//! 16 of links, 8 of dips, 4 of evidence and cuts, 4 of own heights, and, for one kind at a time, 34 while it is smoothed; half a byte a voxel for the
-//! fault planes. With peaks and troughs together every three to four samples that is some 15 bytes a voxel.
+//! All kinds of extrema share the coarse dip and the faults; they never link to one another. Memory in bytes
+//! per extremum, beside the 8 of the extremum itself: 16 for links, 8 for dips, 4 for evidence and cuts, 4
+//! for own heights, and 34, for one kind at a time, while it is smoothed; half a byte a voxel for the fault
+//! planes. With peaks and troughs together every three to four samples that is some 15 bytes a voxel.
 
 use super::evidence::{self, Noise};
 use super::links::{self, Links, NEXT_X, NEXT_Y, NONE};
-use super::smoothing::Room;
+use super::smoothing::Scratch;
 use super::{GrowSettings, assemble, cells, dip, flood, lobes, merge, planes};
 use crate::extrema::Extrema;
 use crate::surfaces::Surfaces;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// Farthest that a continuation may lie from the same depth while dips are not known, samples.
+/// Largest difference in depth between linked extrema while dips are not known, samples.
 const UNGUIDED_REACH: f32 = 4.0;
 
-/// Farthest from where the dip expects it, samples.
+/// Largest distance of a linked extremum from the depth that the dip predicts, samples.
 const GUIDED_REACH: f32 = 2.0;
 
-/// Misfits at which a link's weight for the dip is a quarter: first beside the coarse dip, then beside the dip along the surface, samples.
+/// Misfits at which the weight of a link in the dip is a quarter: first relative to the coarse dip, then
+/// relative to the dip along the surface, samples.
 const SCALES: [f32; 2] = [0.5, 0.3];
 
-/// Misfit to the dip beyond which a link is broken, samples.
+/// Misfit to the dip above which a link is broken, samples.
 const BROKEN: f32 = 1.0;
 
-/// One kind of extremum with what is known of it.
+/// One kind of extremum with its links, dips, noise and evidence.
 struct Linked<'e> {
     extrema: &'e Extrema,
     links: Links,
@@ -34,13 +37,13 @@ struct Linked<'e> {
     evidence: Vec<[u8; 2]>,
 }
 
-/// Surfaces of each kind.
+/// Grows the surfaces of all kinds; there is at least one kind, and all are of one volume.
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
 pub(super) fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Progress) -> Result<Surfaces, Cancelled> {
-    let Some(first) = extrema.first() else { return Ok(Surfaces::default()) };
-    let (size, lines) = (first.size, first.size[0]);
+    let size = extrema.first().expect("growing checks that there is a kind of extremum").size;
+    let lines = size[0];
     progress.begin(
         "growing surfaces",
         (lines * (STEPS_OF_A_KIND * extrema.len() + assemble::STEPS) + planes::steps(size)) as u64,
@@ -54,15 +57,15 @@ pub(super) fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Prog
     progress.check()?;
     let own = if settings.lobe_share > 0.0 { lobes::own_heights(extrema) } else { vec![Vec::new(); extrema.len()] };
     progress.check()?;
-    let mut room = Room::default();
-    // One kind after the other: each is parallel inside, and needs most memory while its dips are smoothed.
+    let mut scratch = Scratch::default();
+    // One kind after the other: each is parallel inside, and the smoothing of its dips needs the most memory.
     let linked: Vec<Linked> = extrema
         .iter()
         .zip(unguided)
         .zip(own)
-        .map(|((extrema, unguided), own)| linked(extrema, unguided, &own, &field, settings, &mut room, progress))
+        .map(|((extrema, unguided), own)| linked(extrema, unguided, &own, &field, settings, &mut scratch, progress))
         .collect::<Result<_, Cancelled>>()?;
-    drop(room);
+    drop(scratch);
     let mut broken = if settings.fault_evidence.is_finite() {
         let kinds: Vec<_> =
             linked.iter().map(|kind| (kind.extrema, &kind.links, kind.evidence.as_slice(), &kind.noise)).collect();
@@ -84,7 +87,8 @@ pub(super) fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Prog
     assemble::surfaces(size, labelled, progress)
 }
 
-/// Steps that each kind of extremum makes an inline: links twice, dips twice, evidence along both axes, labels in four.
+/// Progress steps of each kind of extremum per inline: links twice, dips twice, evidence along both axes,
+/// labels in four.
 const STEPS_OF_A_KIND: usize = 10;
 
 /// Links, dips and evidence of one kind.
@@ -94,22 +98,22 @@ fn linked<'e>(
     own: &[f32],
     field: &dip::DipField,
     settings: &GrowSettings,
-    room: &mut Room,
+    scratch: &mut Scratch,
     progress: &Progress,
 ) -> Result<Linked<'e>, Cancelled> {
     let mut dips = field.at_extrema(extrema);
     let links = unguided.renew(extrema, &dips, GUIDED_REACH, progress)?;
     for scale in SCALES {
-        dip::along_surfaces(extrema, &links, &mut dips, scale, room, progress)?;
+        dip::along_surfaces(extrema, &links, &mut dips, scale, scratch, progress)?;
     }
     let noise = Noise::measure(extrema, &links, &dips);
-    let mut evidence = evidence::evidence(extrema, &links, &dips, &noise, room, progress)?;
+    let mut evidence = evidence::evidence(extrema, &links, &dips, &noise, scratch, progress)?;
     let least = lobes::Least { share: settings.lobe_share, noise: noise.least_change() };
-    lobes::part(extrema, &links, own, least, &mut evidence, room, progress)?;
+    lobes::part(extrema, &links, own, least, &mut evidence, scratch, progress)?;
     Ok(Linked { extrema, links, dips, noise, evidence })
 }
 
-/// Breaks the links that do not fit the dip, and those that speak for a break as loudly as any can.
+/// Breaks the links that do not fit the dip, and those with the greatest evidence for a break.
 fn break_misfits(kind: &Linked, broken: &mut [[bool; 2]]) {
     broken.par_iter_mut().with_min_len(1 << 14).enumerate().for_each(|(v, broken)| {
         for (axis, direction) in [NEXT_X, NEXT_Y].into_iter().enumerate() {
@@ -121,7 +125,7 @@ fn break_misfits(kind: &Linked, broken: &mut [[bool; 2]]) {
     });
 }
 
-/// The surface of each extremum, or [`NONE`].
+/// The label of the surface of each extremum, or [`NONE`].
 fn labels(
     kind: &Linked,
     broken: &[[bool; 2]],

@@ -1,15 +1,17 @@
-//! The paper's growing (P-horiz 4): fronts from every extremum in turn.
+//! The paper's method of growing (P-horiz 4): fronts from every extremum in turn.
 //!
-//! A seed's surface grows border by border. The next border is every extremum that was not visited yet, lies on one of the
-//! eight traces around a point of the current border and touches it: its sample is at most one away. A border falls into the pieces that touch
-//! one another, and a piece narrower than `min_front_width` ends there; its points stay visited. "Voxels are
-//! visited only once to avoid intersecting and overlapping surfaces", so what is grown depends on the order of seeds: here that of memory,
-//! by x, then y, then z. The borders are triangulated with those before them: every cell of four neighbouring traces whose corners belong to
-//! the two borders and touch makes its triangles.
+//! The surface of a seed grows border by border. The next border is every extremum that has not been visited
+//! yet, lies on one of the eight traces around a point of the current border, and touches it: its sample is
+//! at most one away. A border falls into pieces of points that touch one another, and a piece narrower than
+//! `min_front_width` ends there; its points stay visited. "Voxels are visited only once to avoid intersecting
+//! and overlapping surfaces", so the result depends on the order of seeds: here that of memory, by x, then y,
+//! then z. The borders are triangulated with those before them: every cell of four neighbouring traces whose
+//! corners belong to the two borders and touch makes its triangles.
 //!
-//! The paper leaves open what a first border counts (here: the seed and its ring together) and whether touching is
-//! judged by samples or by refined depths (here: by refined depths, 1.5 samples, so that a reflector that rises by one sample and a
-//! little more is not torn). Steeper reflectors fall apart, as they do in the paper.
+//! The paper leaves two questions open. How large is the first border? (Here: the seed and its ring
+//! together.) Is touching judged by samples or by refined depths? (Here: by refined depths, 1.5 samples, so
+//! that a reflector that rises by one sample and a little more is not torn.) Steeper reflectors fall apart,
+//! as they do in the paper.
 
 use super::links::NONE;
 use crate::extrema::Extrema;
@@ -19,16 +21,16 @@ use survey::{Cancelled, Progress};
 /// Greatest difference in depth of extrema that touch, samples.
 const TOUCH: f32 = 1.5;
 
-/// What is known of every extremum.
-struct Ground<'e> {
+/// The extrema of one kind, and which of them have been visited.
+struct Fronts<'e> {
     extrema: &'e Extrema,
     /// Trace of each extremum.
     trace: Vec<u32>,
-    /// Border it was reached in, counted over all surfaces; 0: not visited.
+    /// The border in which each extremum was reached, counted over all surfaces; 0: not visited.
     border: Vec<u32>,
 }
 
-impl Ground<'_> {
+impl Fronts<'_> {
     /// Calls `found` for every extremum of the traces around `v` that touches it.
     fn around(&self, v: u32, mut found: impl FnMut(u32)) {
         let [nx, ny, _] = self.extrema.size;
@@ -67,10 +69,10 @@ impl Ground<'_> {
 /// [`Cancelled`] by the user.
 pub(super) fn grow(extrema: &Extrema, min_front_width: usize, progress: &Progress) -> Result<Surfaces, Cancelled> {
     let [nx, ny, _] = extrema.size;
-    let mut ground = Ground { extrema, trace: Vec::with_capacity(extrema.len()), border: vec![0; extrema.len()] };
+    let mut fronts = Fronts { extrema, trace: Vec::with_capacity(extrema.len()), border: vec![0; extrema.len()] };
     for x in 0..nx {
         for y in 0..ny {
-            ground.trace.extend(extrema.on_trace(x, y).map(|_| (x * ny + y) as u32));
+            fronts.trace.extend(extrema.on_trace(x, y).map(|_| (x * ny + y) as u32));
         }
     }
     let mut found = Surfaces { size: extrema.size, ..Surfaces::default() };
@@ -78,18 +80,18 @@ pub(super) fn grow(extrema: &Extrema, min_front_width: usize, progress: &Progres
     for x in 0..nx {
         progress.check()?;
         for seed in extrema.on_inline(x) {
-            if ground.border[seed] == 0 {
-                grow_from(&mut ground, seed as u32, min_front_width, &mut borders, &mut found);
+            if fronts.border[seed] == 0 {
+                grow_from(&mut fronts, seed as u32, min_front_width, &mut borders, &mut found);
             }
         }
     }
     Ok(found)
 }
 
-/// Grows the surface of one seed and adds it, if it has triangles.
-fn grow_from(ground: &mut Ground, seed: u32, width: usize, borders: &mut u32, found: &mut Surfaces) {
+/// Grows the surface of one seed and adds it to `found` if it has triangles.
+fn grow_from(fronts: &mut Fronts, seed: u32, width: usize, borders: &mut u32, found: &mut Surfaces) {
     *borders += 1;
-    ground.border[seed as usize] = *borders;
+    fronts.border[seed as usize] = *borders;
     let mut members = vec![seed];
     let mut current = vec![seed];
     let mut is_seed = true;
@@ -98,27 +100,27 @@ fn grow_from(ground: &mut Ground, seed: u32, width: usize, borders: &mut u32, fo
         let mut next = Vec::new();
         for &v in &current {
             let mut reached = Vec::new();
-            ground.around(v, |other| reached.push(other));
+            fronts.around(v, |other| reached.push(other));
             for other in reached {
-                if ground.border[other as usize] == 0 {
-                    ground.border[other as usize] = *borders;
+                if fronts.border[other as usize] == 0 {
+                    fronts.border[other as usize] = *borders;
                     next.push(other);
                 }
             }
         }
-        let pieces = pieces(ground, &next, *borders);
+        let pieces = pieces(fronts, &next, *borders);
         current = pieces.into_iter().filter(|piece| piece.len() + usize::from(is_seed) >= width).flatten().collect();
         current.sort_unstable();
         members.extend_from_slice(&current);
         is_seed = false;
     }
     if members.len() >= 3 {
-        triangulate(ground, members, found);
+        triangulate(fronts, members, found);
     }
 }
 
-/// The pieces of a border: points that touch along the border.
-fn pieces(ground: &Ground, border: &[u32], number: u32) -> Vec<Vec<u32>> {
+/// The pieces of a border: sets of points that touch one another within the border.
+fn pieces(fronts: &Fronts, border: &[u32], number: u32) -> Vec<Vec<u32>> {
     let mut order: Vec<u32> = border.to_vec();
     order.sort_unstable();
     let mut taken = vec![false; order.len()];
@@ -131,8 +133,8 @@ fn pieces(ground: &Ground, border: &[u32], number: u32) -> Vec<Vec<u32>> {
         let mut piece = vec![order[first]];
         let mut reached = 0;
         while reached < piece.len() {
-            ground.around(piece[reached], |other| {
-                if ground.border[other as usize] == number
+            fronts.around(piece[reached], |other| {
+                if fronts.border[other as usize] == number
                     && let Ok(at) = order.binary_search(&other)
                     && !taken[at]
                 {
@@ -147,30 +149,30 @@ fn pieces(ground: &Ground, border: &[u32], number: u32) -> Vec<Vec<u32>> {
     found
 }
 
-/// Triangulates the cells between the members of a surface. A cell's corners belong to at most three borders that follow each
-/// other; two borders of one surface meet only where one grew from the other.
-fn triangulate(ground: &Ground, mut members: Vec<u32>, found: &mut Surfaces) {
-    let [nx, ny, _] = ground.extrema.size;
+/// Triangulates the cells between the members of a surface. The corners of a cell belong to at most three
+/// consecutive borders; two borders of one surface meet only where one grew from the other.
+fn triangulate(fronts: &Fronts, mut members: Vec<u32>, found: &mut Surfaces) {
+    let [nx, ny, _] = fronts.extrema.size;
     members.sort_unstable();
     let place = |v: u32| members.binary_search(&v).map_or(NONE, |at| at as u32);
     let mut triangles = Vec::new();
     let mut used = vec![false; members.len()];
     for &a in &members {
-        let trace = ground.trace[a as usize] as usize;
+        let trace = fronts.trace[a as usize] as usize;
         let (x, y) = (trace / ny, trace % ny);
         if x + 1 >= nx || y + 1 >= ny {
             continue;
         }
-        let z = ground.extrema.z[a as usize];
+        let z = fronts.extrema.z[a as usize];
         let corner = |x: usize, y: usize, z: f32| {
-            ground
+            fronts
                 .touching(x, y, z)
-                .filter(|&v| place(v) != NONE && ground.border[v as usize].abs_diff(ground.border[a as usize]) <= 2)
+                .filter(|&v| place(v) != NONE && fronts.border[v as usize].abs_diff(fronts.border[a as usize]) <= 2)
         };
         let (b, c) = (corner(x + 1, y, z), corner(x, y + 1, z));
         let d = b
-            .and_then(|b| corner(x + 1, y + 1, ground.extrema.z[b as usize]))
-            .or_else(|| c.and_then(|c| corner(x + 1, y + 1, ground.extrema.z[c as usize])));
+            .and_then(|b| corner(x + 1, y + 1, fronts.extrema.z[b as usize]))
+            .or_else(|| c.and_then(|c| corner(x + 1, y + 1, fronts.extrema.z[c as usize])));
         let mut add = |corners: [u32; 3]| {
             let corners = corners.map(place);
             corners.iter().for_each(|&at| used[at as usize] = true);
@@ -194,12 +196,12 @@ fn triangulate(ground: &Ground, mut members: Vec<u32>, found: &mut Surfaces) {
     let mut renumbered = vec![NONE; members.len()];
     for (at, &v) in members.iter().enumerate().filter(|&(at, _)| used[at]) {
         renumbered[at] = found.vertices.len() as u32;
-        let trace = ground.trace[v as usize] as usize;
-        found.vertices.push(Vertex { x: (trace / ny) as u16, y: (trace % ny) as u16, z: ground.extrema.z[v as usize] });
+        let trace = fronts.trace[v as usize] as usize;
+        found.vertices.push(Vertex { x: (trace / ny) as u16, y: (trace % ny) as u16, z: fronts.extrema.z[v as usize] });
     }
     found.triangles.extend(triangles.iter().map(|corners| corners.map(|at| renumbered[at as usize])));
     found.surfaces.push(Surface {
-        extremum: ground.extrema.kind,
+        extremum: fronts.extrema.kind,
         vertices: first_vertex..found.vertices.len() as u32,
         triangles: first_triangle..found.triangles.len() as u32,
     });

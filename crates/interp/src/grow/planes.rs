@@ -1,16 +1,18 @@
-//! Faults: steep planes along which links speak for a break.
+//! Fault planes: steep planes along which links show breaks.
 //!
-//! A fault whose throw is near a whole period joins wrong reflectors without a visible step, but not along all of its surface: what one
-//! link cannot tell, hundreds along a plane can. The evidence E of links (see `evidence`) is summed over pieces of planes, for
-//! every place and every orientation, and the best orientation counts:
+//! A fault whose throw is near a whole period joins wrong reflectors without a visible step, but not on all
+//! of its surface. What one link cannot show, hundreds along a plane can. The evidence E of links (see
+//! `evidence`) is summed over pieces of planes at every place and in every orientation, and the best
+//! orientation counts:
 //!
-//! `L(x, y, z) = max over strike, dip of Σ (E − T)` over the plane through (x, y, z), 17 traces along strike × 52 samples down.
+//! `L(x, y, z) = max over strike, dip of Σ (E − T)` over the plane through (x, y, z), 17 traces along strike
+//! × 52 samples down.
 //!
-//! Planes within 45° of the y axis are scanned with the links along x, the others with those along y. Scanning
-//! orientations for the greatest mean is Hale's (2013, "Methods to compute fault images, extract fault surfaces, and estimate fault throws
-//! from 3D seismic images"); he scans the semblance of a volume, we the links that decide, at a
-//! tenth of the values. A link is cut where L is positive enough and a ridge across the plane. All sums are of whole numbers, so their order does not
-//! matter.
+//! Planes within 45° of the y axis are scanned with the links along x, the others with those along y.
+//! Scanning orientations for the greatest mean follows D. Hale ("Methods to compute fault images, extract
+//! fault surfaces, and estimate fault throws from 3D seismic images", Geophysics 78, 2013). He scans the
+//! semblance of a volume; we scan the links that decide, a tenth as many values. A link is cut where L is
+//! large enough and a ridge across the plane. All sums are of integers, so their order does not matter.
 
 use super::evidence::{Noise, begins};
 use super::links::{Links, NEXT_X, NEXT_Y, NONE};
@@ -19,49 +21,52 @@ use crate::lanes::{Wide, widest};
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// Samples of a cell: within it the steepest plane scanned shifts by one and a half traces.
+/// Samples of a cell: within it the steepest scanned plane shifts by one and a half traces.
 const CELL_SAMPLES: usize = 4;
-/// Traces along strike of a cell.
+/// Traces of a cell along strike.
 const CELL_TRACES: usize = 2;
-/// Cells before and after the middle along strike.
+/// Cells of a plane before and after its middle along strike.
 const HALF_STRIKE: isize = 4;
-/// Cells above and below the middle.
+/// Cells of a plane above and below its middle.
 const HALF_DIP: isize = 6;
-/// Strikes: traces across a trace along, in steps of a quarter from −1 to 1.
+/// Strikes in steps of [`STRIKE_STEP`]: traces across per trace along, from −1 to 1.
 const STRIKES: std::ops::RangeInclusive<isize> = -4..=4;
 const STRIKE_STEP: f32 = 0.25;
-/// Dips: traces across a sample down, in steps of 0.06 from −0.36 to 0.36.
+/// Dips in steps of [`DIP_STEP`]: traces across per sample down, from −0.36 to 0.36.
 const DIPS: std::ops::RangeInclusive<isize> = -6..=6;
 const DIP_STEP: f32 = 0.06;
-/// Cells by which rows are longer than the volume at both ends, so that shifted sums need no tests.
+/// Cells by which rows are longer than the volume at both ends, so that shifted sums need no bounds tests.
 const MARGIN: usize = 24;
 
-/// T, in quarters: 2.25 where noise alone makes 1 on average.
+/// T, in quarters: 2.25, where noise alone makes 1 on average.
 const THRESHOLD: i16 = 9;
 
-/// Greatest E that a link counts with, in quarters: many links that speak a little outweigh a few that speak loudly.
+/// Greatest E with which a link counts, in quarters: many links with a little evidence outweigh a few with a
+/// lot.
 const CAP: i16 = 24;
 
-/// A link is on the ridge when its L is at least this share of the greatest within two traces across.
+/// A link is on the ridge when its L is at least this share of the greatest L within [`RIDGE_REACH`] traces
+/// across.
 const RIDGE: f32 = 0.7;
 
-/// Traces across within which the ridge is looked for.
+/// Distance across within which the ridge is searched, traces.
 const RIDGE_REACH: usize = 2;
 
-/// Steps that the search makes in a volume of `size`.
+/// Progress steps of the search in a volume of `size`.
 pub(super) fn steps(size: [usize; 3]) -> usize {
     size[0].div_ceil(CELL_TRACES) + size[1].div_ceil(CELL_TRACES)
 }
 
-/// The cells that the evidence of the links along one axis is summed in: `[along][down][across]`, across including margins.
-struct Grid {
+/// Sums of the evidence of the links along one axis, in cells `[along][down][across]`; across includes
+/// margins.
+struct EvidenceGrid {
     along: usize,
     down: usize,
     width: usize,
     cells: Vec<i16>,
 }
 
-impl Grid {
+impl EvidenceGrid {
     fn empty(across: usize, along: usize, samples: usize) -> Self {
         let (along, down) = (along.div_ceil(CELL_TRACES), samples.div_ceil(CELL_SAMPLES));
         let width = across + 2 * MARGIN;
@@ -73,12 +78,12 @@ impl Grid {
     }
 }
 
-/// Cells that are summed at once.
+/// Count of cells that are summed at once.
 const CELLS: usize = 64;
 
 /// L of every cell.
-fn scan(grid: &Grid, progress: &Progress) -> Result<Grid, Cancelled> {
-    let mut best = Grid { cells: vec![0; grid.cells.len()], ..*grid };
+fn scan(grid: &EvidenceGrid, progress: &Progress) -> Result<EvidenceGrid, Cancelled> {
+    let mut best = EvidenceGrid { cells: vec![0; grid.cells.len()], ..*grid };
     let slab = grid.down * grid.width;
     best.cells.par_chunks_mut(slab.max(1)).enumerate().try_for_each_init(
         || vec![0i16; slab],
@@ -90,11 +95,11 @@ fn scan(grid: &Grid, progress: &Progress) -> Result<Grid, Cancelled> {
     Ok(best)
 }
 
-/// The scan of the cells at one place along: all planes through them.
+/// The scan of all planes through the cells at one place along strike.
 struct Scan<'a> {
-    grid: &'a Grid,
+    grid: &'a EvidenceGrid,
     along: usize,
-    /// Room for sums along strike.
+    /// Scratch memory for sums along strike.
     striking: &'a mut [i16],
     best: &'a mut [i16],
 }
@@ -104,7 +109,7 @@ impl Wide for Scan<'_> {
     fn run(self) {
         let Self { grid, along, striking, best } = self;
         let width = grid.width;
-        // First of the row of cells `other` down, shifted.
+        // First cell of row `other`, shifted.
         let start = |other: usize, shift: f32| ((other * width + MARGIN) as isize + shift.round() as isize) as usize;
         let mut rows = Vec::with_capacity((2 * HALF_STRIKE.max(HALF_DIP) + 1) as usize);
         for strike in STRIKES {
@@ -134,14 +139,14 @@ impl Wide for Scan<'_> {
     }
 }
 
-/// Raises `best` to the sums of the rows of `cells` that begin at `rows`.
+/// Raises `best` to the sums of the rows of `cells` that begin at `rows`, where those are greater.
 #[inline(always)]
 fn raise(best: &mut [i16], cells: &[i16], rows: &[usize]) {
     let Some(last) = best.len().checked_sub(CELLS) else {
         (0..best.len()).for_each(|at| raise_at::<1>(best, cells, rows, at));
         return;
     };
-    // The last group may begin within the one before: a maximum may be taken twice.
+    // The last group may overlap the one before; taking a maximum twice changes nothing.
     (0..best.len()).step_by(CELLS).for_each(|at| raise_at::<CELLS>(best, cells, rows, at.min(last)));
 }
 
@@ -149,18 +154,19 @@ fn raise(best: &mut [i16], cells: &[i16], rows: &[usize]) {
 fn raise_at<const N: usize>(best: &mut [i16], cells: &[i16], rows: &[usize], at: usize) {
     let mut sums = [0i16; N];
     for row in rows {
-        let Some(from) = cells[row + at..].first_chunk::<N>() else { return };
+        let from = cells[row + at..].first_chunk::<N>().expect("margins keep shifted rows inside the cells");
         for n in 0..N {
             sums[n] = sums[n].saturating_add(from[n]);
         }
     }
-    let Some(best) = best[at..].first_chunk_mut::<N>() else { return };
+    let best = best[at..].first_chunk_mut::<N>().expect("a group lies inside its row");
     for n in 0..N {
         best[n] = best[n].max(sums[n]);
     }
 }
 
-/// For each kind, whether the links to x + 1 and y + 1 of each extremum cross a fault: L of at least `least`.
+/// For each kind, whether the links to x + 1 and y + 1 of each extremum cross a fault, i.e. have an L of at
+/// least `least` on a ridge.
 ///
 /// # Errors
 /// [`Cancelled`] by the user.
@@ -174,7 +180,7 @@ pub(super) fn cuts(
     let [nx, ny, nz] = first.size;
     for axis in 0..2 {
         let (across, along) = if axis == 0 { (nx, ny) } else { (ny, nx) };
-        let mut grid = Grid::empty(across, along, nz);
+        let mut grid = EvidenceGrid::empty(across, along, nz);
         for (extrema, links, evidence, noise) in kinds {
             collect(&mut grid, extrema, links, evidence, noise, axis);
         }
@@ -196,12 +202,19 @@ pub(super) fn cuts(
     Ok(cut)
 }
 
-/// Adds the evidence of the links along `axis` of one kind.
-fn collect(grid: &mut Grid, extrema: &Extrema, links: &Links, evidence: &[[u8; 2]], noise: &Noise, axis: usize) {
+/// Adds the evidence of the links of one kind along `axis`.
+fn collect(
+    grid: &mut EvidenceGrid,
+    extrema: &Extrema,
+    links: &Links,
+    evidence: &[[u8; 2]],
+    noise: &Noise,
+    axis: usize,
+) {
     let [nx, ny, _] = extrema.size;
     let direction = [NEXT_X, NEXT_Y][axis];
     let (across_count, along_count) = if axis == 0 { (nx, ny) } else { (ny, nx) };
-    let Grid { down, width, .. } = *grid;
+    let EvidenceGrid { down, width, .. } = *grid;
     grid.cells.par_chunks_mut((down * width).max(1)).enumerate().for_each(|(cell, slab)| {
         let add = |slab: &mut [i16], across: usize, z: f32, value: i16| {
             let at = &mut slab[interval(z, down) * width + MARGIN + across];
@@ -224,18 +237,18 @@ fn collect(grid: &mut Grid, extrema: &Extrema, links: &Links, evidence: &[[u8; 2
     });
 }
 
-/// Cell down that a depth lies in.
+/// The cell, counted down, that contains a depth.
 fn interval(z: f32, down: usize) -> usize {
     (z.max(0.0) as usize / CELL_SAMPLES).min(down - 1)
 }
 
-/// Whether the cell at `index` is high enough and on a ridge.
-fn on_ridge(likelihood: &Grid, index: usize, least: f32) -> bool {
+/// Whether L at cell `index` is large enough and on a ridge.
+fn on_ridge(likelihood: &EvidenceGrid, index: usize, least: f32) -> bool {
     let here = likelihood.cells[index];
     if f32::from(here) < 4.0 * least {
         return false;
     }
     let around = &likelihood.cells[index - RIDGE_REACH..=index + RIDGE_REACH];
-    let top = around.iter().copied().max().unwrap_or(here);
+    let top = around.iter().copied().fold(here, i16::max);
     f32::from(here) >= RIDGE * f32::from(top)
 }

@@ -1,4 +1,5 @@
-//! Growing on two real surveys: F3's salt dome (its samples clipped, reflectors of very different strength) and Penobscot's faulted Horizon B.
+//! Growing on two real surveys: F3's salt dome (its samples clipped, reflectors of very different strength)
+//! and Penobscot's faulted Horizon B.
 
 use super::{GrowSettings, grow_surfaces};
 use crate::surfaces::{Surface, Surfaces};
@@ -13,7 +14,7 @@ fn grown(file: &Path) -> (Volume<f32>, Surfaces) {
     (volume, surfaces)
 }
 
-/// Nodes a trace that a surface has.
+/// Vertices per trace of a surface.
 fn layers(surfaces: &Surfaces, surface: &Surface) -> f64 {
     let vertices = &surfaces.vertices[surface.vertices.start as usize..surface.vertices.end as usize];
     let mut traces: Vec<_> = vertices.iter().map(|v| (v.x, v.y)).collect();

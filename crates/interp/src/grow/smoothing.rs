@@ -1,34 +1,37 @@
-//! Binomials 1-2-1 over the surfaces: each extremum with those that it is linked to before and behind it along an axis.
+//! Binomial smoothing (1-2-1) over the surfaces: each extremum with those that it is linked to before and
+//! behind it along an axis.
 //!
-//! Four numbers an extremum are smoothed together. What has no partner, or must not be stepped to, leaves its weight out, so
-//! values come with a weight of their own among the four. Rounds along y stay on one inline, so they are done inline by inline while it
-//! is in the cache.
+//! Four numbers per extremum are smoothed together. A missing partner, or a link that must not be crossed,
+//! contributes no weight, so one of the four numbers is the weight of the others. Rounds along y stay on one
+//! inline and are done inline by inline while it is in the cache.
 
 use super::links::{Links, NONE};
 use crate::extrema::Extrema;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// What is smoothed of an extremum.
+/// The numbers that are smoothed per extremum.
 pub(super) type Four = [f32; 4];
 
-/// Two arrays that smoothing works in, kept from one to the next: fresh memory costs more than what is done with it. 32 bytes an extremum.
+/// Two arrays for smoothing that are used again and again, because allocating fresh memory costs more than
+/// the work itself. Memory: 32 bytes an extremum.
 #[derive(Default)]
-pub(super) struct Room {
-    /// The values.
+pub(super) struct Scratch {
+    /// The values to smooth, and afterwards the smoothed values.
     pub(super) values: Vec<Four>,
     pub(super) spare: Vec<Four>,
 }
 
-impl Room {
-    /// Room for `count` extrema; what is in it means nothing.
+impl Scratch {
+    /// Resizes both arrays to `count` extrema. Their contents are undefined.
     pub(super) fn resize(&mut self, count: usize) {
         self.values.resize(count, [0.0; 4]);
         self.spare.resize(count, [0.0; 4]);
     }
 }
 
-/// Which links may be stepped over, one entry an extremum: bit `direction` for [`Links::to`] of it.
+/// Which links may be crossed, one entry an extremum: bit `direction` stands for [`Links::to`] of that
+/// direction.
 #[derive(Clone, Copy)]
 pub(super) enum Passable<'a> {
     /// All.
@@ -37,7 +40,7 @@ pub(super) enum Passable<'a> {
     Marked(&'a [u8]),
 }
 
-/// Steps along one axis.
+/// The links of one axis, and which of them may be crossed.
 #[derive(Clone, Copy)]
 struct Steps<'a> {
     next: &'a [u32],
@@ -51,7 +54,7 @@ impl<'a> Steps<'a> {
         Self { next: &links.to[2 * axis], back: &links.to[2 * axis + 1], passable, axis }
     }
 
-    /// Where an extremum leads to and where it comes from, or [`NONE`].
+    /// The next and the previous extremum of `v`, or [`NONE`].
     #[inline(always)]
     fn around(&self, v: usize) -> [u32; 2] {
         let (next, back) = (self.next[v], self.back[v]);
@@ -64,14 +67,14 @@ impl<'a> Steps<'a> {
         }
     }
 
-    /// One round over the extrema from `first` on; `from` begins at the extremum `start`.
+    /// One round over the extrema from `first` on. `from` begins at extremum `start`.
     #[inline(always)]
     fn round(&self, first: usize, into: &mut [Four], from: &[Four], start: usize) {
         for (n, out) in into.iter_mut().enumerate() {
             let v = first + n;
             let mut sum = from[v - start].map(|value| 0.5 * value);
             for there in self.around(v) {
-                // Where there is nothing, nothing times something: cheaper than to decide.
+                // A missing partner has weight 0: cheaper than a branch.
                 let (at, weight) = if there == NONE { (v, 0.0) } else { (there as usize, 0.25) };
                 let value = from[at - start];
                 for (sum, value) in sum.iter_mut().zip(value) {
@@ -83,21 +86,21 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// `rounds` of the binomial along `axis`, on `room.values`.
+/// `rounds` rounds of the binomial along `axis`, on `scratch.values`.
 ///
 /// # Errors
-/// [`Cancelled`] by the user; the values then mean nothing.
+/// [`Cancelled`] by the user; the values are then undefined.
 pub(super) fn along(
     extrema: &Extrema,
     links: &Links,
     axis: usize,
     rounds: usize,
-    room: &mut Room,
+    scratch: &mut Scratch,
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     let steps = Steps::new(links, Passable::All, axis);
     if axis == 1 {
-        extrema.split_inlines(&mut room.values).into_par_iter().enumerate().for_each_init(
+        extrema.split_inlines(&mut scratch.values).into_par_iter().enumerate().for_each_init(
             Vec::new,
             |other, (x, line)| {
                 let first = extrema.on_inline(x).start;
@@ -112,7 +115,7 @@ pub(super) fn along(
     }
     for _ in 0..rounds {
         progress.check()?;
-        let Room { values, spare } = room;
+        let Scratch { values, spare } = scratch;
         extrema.split_inlines(spare).into_par_iter().enumerate().for_each(|(x, line)| {
             steps.round(extrema.on_inline(x).start, line, values, 0);
         });
@@ -121,10 +124,10 @@ pub(super) fn along(
     Ok(())
 }
 
-/// One round along x, then one along y, on `room.values`.
-pub(super) fn across(extrema: &Extrema, links: &Links, passable: Passable<'_>, room: &mut Room) {
+/// One round along x, then one along y, on `scratch.values`.
+pub(super) fn across(extrema: &Extrema, links: &Links, passable: Passable<'_>, scratch: &mut Scratch) {
     let [along_x, along_y] = [0, 1].map(|axis| Steps::new(links, passable, axis));
-    let Room { values, spare } = room;
+    let Scratch { values, spare } = scratch;
     extrema.split_inlines(spare).into_par_iter().enumerate().for_each_init(Vec::new, |between, (x, line)| {
         let first = extrema.on_inline(x).start;
         between.resize(line.len(), [0.0; 4]);

@@ -1,23 +1,24 @@
-//! How much the links around a place speak for breaks anyway.
+//! The mean evidence for breaks around a place.
 //!
-//! One noise for a whole survey makes every link in a chaotic part, in salt, below gas, a fault. What counts is how much more a link speaks for a break
-//! than those around it: evidence is divided by its mean over the neighbourhood where that is above the 1 that noise makes. A fault
-//! is a few traces wide and hardly moves a mean over 48 × 48 of them. Space: traces and samples.
+//! With one noise for a whole survey, every link in a chaotic part, in salt or below gas would look like a
+//! fault. What counts is how much more evidence a link has than those around it: evidence is divided by its
+//! mean over the neighbourhood where that mean is above the 1 that noise makes. A fault is a few traces wide
+//! and hardly changes a mean over 48 × 48 traces. Space: traces and samples.
 
 use crate::extrema::Extrema;
 use rayon::prelude::*;
 
-/// Traces and samples of a brick; a neighbourhood is 3 × 3 × 3 of them.
+/// Size of a brick: inlines, crosslines, samples. A neighbourhood is 3 × 3 × 3 bricks.
 const BRICK: [usize; 3] = [16, 16, 24];
 
-/// Mean evidence around each place, in the units of what it was made from.
+/// Mean evidence around each place, in the units of the values given.
 pub(super) struct Surroundings {
     count: [usize; 3],
     means: Vec<f32>,
 }
 
 impl Surroundings {
-    /// Takes the mean of `value(v)` over all extrema that have one.
+    /// Takes the mean of `value(v)` over all extrema for which there is a value.
     pub(super) fn new(extrema: &Extrema, value: impl Fn(usize) -> Option<u8> + Sync) -> Self {
         let size = extrema.size;
         let count = [0, 1, 2].map(|axis| size[axis].div_ceil(BRICK[axis]).max(1));
@@ -59,7 +60,7 @@ impl Surroundings {
     }
 }
 
-/// Brick of a depth.
+/// Brick that contains a depth.
 fn down(z: f32, count: usize) -> usize {
     (z.max(0.0) as usize / BRICK[2]).min(count - 1)
 }

@@ -1,4 +1,5 @@
-//! Both growings on layered, faulted and degenerate volumes; what must not depend on order, slabs or threads.
+//! Both methods of growing on layered, faulted and degenerate volumes, and independence of order, slabs and
+//! threads.
 
 use super::*;
 use crate::evaluate::{EvaluateSettings, evaluate};
@@ -26,7 +27,7 @@ fn both() -> [GrowSettings; 2] {
     [Method::Ours, Method::Paper].map(|method| GrowSettings { method, ..GrowSettings::default() })
 }
 
-/// What every result must hold.
+/// Properties of every result.
 fn check(surfaces: &Surfaces) {
     let mut reached = (0, 0);
     for surface in &surfaces.surfaces {
@@ -53,7 +54,7 @@ fn check(surfaces: &Surfaces) {
 
 #[test]
 fn dipping_layers_are_one_surface_each_with_every_trace() {
-    // 0.4 samples a trace: both ways follow it.
+    // 0.4 samples a trace: both methods follow it.
     let volume = layered([24, 20, 64], 10.0, |x, y| 15.0 + 0.4 * x as f32 - 0.2 * y as f32);
     for settings in both() {
         let surfaces = grown(&volume, &settings);
@@ -96,7 +97,8 @@ fn a_step_of_half_a_period_parts_surfaces() {
 
 #[test]
 fn a_reflector_does_not_go_on_along_the_side_lobe_that_a_fault_lays_against_it() {
-    // Ricker wavelets of alternating polarity every 11 samples, thrown by 7.9: each reflector faces a lobe of the next one, 3.1 above it.
+    // Ricker wavelets of alternating polarity every 11 samples, thrown by 7.9: each reflector faces a lobe of
+    // the next one, 3.1 above it.
     let mut volume = Volume::filled([32, 32, 96], 0.0f32);
     for x in 0..32 {
         for y in 0..32 {
@@ -111,8 +113,8 @@ fn a_reflector_does_not_go_on_along_the_side_lobe_that_a_fault_lays_against_it()
             }
         }
     }
-    // No fault is looked for, so only the lobes can tell. At the walls a lobe may be without its reflector; what a lobe has of its own is taken
-    // over three traces.
+    // Without a search for faults only the lobes decide. At the outer boundary a lobe may lack its reflector; the
+    // own height of a lobe is a mean over three traces.
     let across = |lobe_share: f32| {
         let settings = GrowSettings { fault_evidence: f32::INFINITY, lobe_share, ..GrowSettings::default() };
         let surfaces = grown(&volume, &settings);
@@ -260,7 +262,8 @@ fn a_surface_does_not_lie_over_itself_where_reflectors_are_chaotic() {
 
 #[test]
 fn a_strong_reflector_that_varies_is_no_fault() {
-    // One reflector of twenty times the strength of the others, whose strength changes by a tenth from trace to trace.
+    // One reflector of twenty times the strength of the others, whose strength changes by a tenth from trace
+    // to trace.
     let mut volume = layered([64, 64, 96], 8.0, |x, y| 10.0 + 0.2 * x as f32 + 0.05 * y as f32);
     let mut state = 3u32;
     for x in 0..64 {

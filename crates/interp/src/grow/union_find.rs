@@ -1,4 +1,5 @@
-//! Disjoint sets whose representative is the smallest member, so that labels do not depend on the order of unions.
+//! Disjoint sets whose representative is the smallest member, so that labels do not depend on the order of
+//! unions.
 
 /// Disjoint sets over 0 … n − 1.
 pub(super) struct UnionFind {

@@ -1,28 +1,29 @@
-//! The surface of least curvature over the unknown nodes of a hole.
+//! The surface of least curvature over the missing nodes of a hole.
 //!
-//! Energy: Σ (δ²ₓz)² + 2(δₓδ_yz)² + (δ²_yz)² over every stencil of known and unknown nodes that has an unknown one (I. C. Briggs, "Machine
-//! contouring using minimum curvature", Geophysics 39, 1974). Its normal equations are solved by conjugate gradients, preconditioned by
-//! their diagonal and started from the plane through the rim. Known nodes stay as they are.
+//! Energy: Σ (δ²ₓz)² + 2(δₓδ_yz)² + (δ²_yz)² over every stencil of known and unknown nodes that contains an
+//! unknown one (I. C. Briggs, "Machine contouring using minimum curvature", Geophysics 39, 1974). Its normal
+//! equations are solved by conjugate gradients, preconditioned by their diagonal and started from the plane
+//! through the rim. Known nodes are not changed.
 
 use survey::{Cancelled, Progress};
 
-/// The solution is done when the residual has fallen by this factor; a step more changes nothing that is seen.
+/// Factor by which the residual must fall; a further step changes nothing visible.
 const TOLERANCE: f64 = 1e-7;
 /// Most iterations; large holes are smooth in their middle long before.
 const MOST_ITERATIONS: usize = 4000;
-/// Iterations between two looks at whether the user cancelled.
+/// Iterations between two checks for cancellation.
 const CHECK_EVERY: usize = 64;
 
-/// The problem of one hole.
+/// The equations of one hole.
 pub(super) struct Plate {
-    /// Stencils: (unknown, coefficient) pairs and what the known nodes add.
-    rows: Vec<Row>,
+    /// The terms of the energy.
+    rows: Vec<EnergyTerm>,
     /// The plane through the rim at each unknown.
     start: Vec<f64>,
 }
 
 /// One term of the energy: (Σ coefficient·z + known)².
-struct Row {
+struct EnergyTerm {
     count: usize,
     unknown: [u32; 4],
     coefficient: [f64; 4],
@@ -30,12 +31,12 @@ struct Row {
 }
 
 impl Plate {
-    /// Sets it up for the unknown `nodes` (ascending) of a sheet.
+    /// Sets up the equations for the unknown `nodes` (ascending) of a sheet.
     pub(super) fn over(z: &[f32], [nx, ny]: [usize; 2], nodes: &[u32]) -> Self {
         let index = |n: usize| nodes.binary_search(&(n as u32)).ok();
         let mut rows = Vec::new();
         let mut add = |weight: f64, terms: &[(usize, f64)]| {
-            let mut row = Row { count: 0, unknown: [0; 4], coefficient: [0.0; 4], known: 0.0 };
+            let mut row = EnergyTerm { count: 0, unknown: [0; 4], coefficient: [0.0; 4], known: 0.0 };
             for &(n, coefficient) in terms {
                 match index(n) {
                     Some(unknown) => {
@@ -44,7 +45,7 @@ impl Plate {
                         row.count += 1;
                     }
                     None if z[n].is_finite() => row.known += weight * coefficient * f64::from(z[n]),
-                    // A node that is missing for good has no say, and neither has a stencil that needs it.
+                    // A node that stays missing, and every stencil that contains it, contributes nothing.
                     None => return,
                 }
             }
@@ -79,7 +80,7 @@ impl Plate {
         Self { rows, start }
     }
 
-    /// z of the unknown nodes.
+    /// Solves for z of the unknown nodes.
     pub(super) fn solve(&self, progress: &Progress) -> Result<Vec<f32>, Cancelled> {
         let count = self.start.len();
         let mut diagonal = vec![0.0f64; count];

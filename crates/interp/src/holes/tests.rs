@@ -56,7 +56,8 @@ fn a_plane_is_filled_with_itself() {
     assert_eq!(made, done.nodes);
 }
 
-/// x²·y is no minimum of the energy in general, but a harmonic or biharmonic polynomial is: x³ − 3xy² of both.
+/// x²·y is no minimum of the energy in general, but a harmonic or biharmonic polynomial is: x³ − 3xy² of
+/// both.
 #[test]
 fn a_biharmonic_surface_is_filled_with_itself() {
     let saddle = |x: f32, y: f32| {
@@ -70,7 +71,7 @@ fn a_biharmonic_surface_is_filled_with_itself() {
     }
 }
 
-/// Any other filling bends more.
+/// Any other filling has more curvature.
 #[test]
 fn the_filling_bends_least() {
     let rough = |x: f32, y: f32| 20.0 + (0.3 * x).sin() + (0.2 * x + 0.4 * y).cos();

@@ -1,17 +1,17 @@
-//! A model whose sheets and fault blocks are given as formulas.
+//! A model in closed form: formulas give its sheets and fault blocks.
 
-#![allow(dead_code, reason = "every test binary uses a part of it")]
+#![allow(dead_code, reason = "each test binary uses a part of this module")]
 
 use glam::{DMat3, Vec3};
 use param::{LayerModel, Region};
 use survey::HeightField;
 
-/// Voxels by which the sheets reach past the walls.
+/// Voxels by which the sheets continue past the outer boundary.
 const MARGIN: i32 = 24;
 
 type BlockRule = Box<dyn Fn(Vec3) -> u16 + Sync>;
 
-/// Layers between formulas; horizons youngest first, per block.
+/// A model of one sheet per horizon and block; horizons youngest first.
 pub struct ClosedForm {
     size: [usize; 3],
     metric: DMat3,
@@ -20,12 +20,12 @@ pub struct ClosedForm {
 }
 
 impl ClosedForm {
-    /// One block; `depth(h, x, y)` is the voxel z of horizon h.
+    /// A model of one block; `depth(h, x, y)` is the voxel z of horizon h.
     pub fn new(size: [usize; 3], horizons: usize, depth: impl Fn(usize, f64, f64) -> f64) -> Self {
         Self::faulted(size, horizons, 1, |h, _, x, y| depth(h, x, y), |_| 0)
     }
 
-    /// Several blocks; `depth(h, block, x, y)`.
+    /// A model of several blocks; `depth(h, block, x, y)` is the voxel z of horizon h in a block.
     pub fn faulted(
         size: [usize; 3],
         horizons: usize,
@@ -41,7 +41,7 @@ impl ClosedForm {
         Self { size, metric: DMat3::IDENTITY, sheets, block_at: Box::new(block_at) }
     }
 
-    /// The same with another voxel → metre matrix.
+    /// The same model with another voxel-to-metre matrix.
     pub fn with_metric(self, metric: DMat3) -> Self {
         Self { metric, ..self }
     }

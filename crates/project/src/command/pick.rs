@@ -3,9 +3,9 @@
 use super::{Effect, Noun, ProjectError};
 use crate::document::{Assembly, PickEntry};
 use crate::folder::Draft;
-use crate::interpretation::assembly::{self, AssemblyReport, rebuild};
+use crate::interpretation::assembly::{self, AssemblyReport, ReportedOverlap, rebuild};
 use crate::interpretation::candidates::Candidates;
-use interp::assembly::{ClimbSettings, Fingerprint, Fit, Operation, Overlap, Selection, highest_valid, node_above};
+use interp::assembly::{ClimbSettings, Fingerprint, NodeFit, Operation, Overlap, Selection, highest_valid, node_above};
 use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use survey::{Progress, SurveyGeometry};
@@ -98,9 +98,9 @@ pub struct Picked {
     pub levels: u32,
     /// Triangles of the node.
     pub triangles: u32,
-    /// Overlap of the next higher node, that ended the climb.
+    /// Overlap of the next higher node, which ended the climb.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub stopped_by: Option<Overlap>,
+    pub stopped_by: Option<ReportedOverlap>,
     /// The horizon now.
     pub result: AssemblyReport,
 }
@@ -135,7 +135,7 @@ pub struct ReplayedPick {
     /// Its number.
     pub pick: u32,
     /// How its node compares with what it was.
-    pub fit: Fit,
+    pub fit: NodeFit,
     /// Triangles it had and has.
     pub triangles: [u32; 2],
 }
@@ -143,9 +143,9 @@ pub struct ReplayedPick {
 impl std::fmt::Display for Replayed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let count = |fit| self.picks.iter().filter(|pick| pick.fit == fit).count();
-        write!(f, "{} picks are what they were, {} nearly", count(Fit::Same), count(Fit::Similar))?;
+        write!(f, "{} picks are what they were, {} nearly", count(NodeFit::Same), count(NodeFit::Similar))?;
         let dropped: Vec<String> =
-            self.picks.iter().filter(|p| p.fit == Fit::Different).map(|p| p.pick.to_string()).collect();
+            self.picks.iter().filter(|p| p.fit == NodeFit::Different).map(|p| p.pick.to_string()).collect();
         if !dropped.is_empty() {
             write!(f, "; no longer fit and are gone: {}", dropped.join(", "))?;
         }
@@ -176,7 +176,9 @@ impl PickNode {
         let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         let id = next_id(draft);
-        let stopped_by = self.enter(&mut log, id, draft.document.frame()?, &candidates, &blocks)?;
+        let geometry = draft.document.frame()?.clone();
+        let stopped_by = self.enter(&mut log, id, &geometry, &candidates, &blocks)?;
+        let stopped_by = stopped_by.and_then(|overlap| ReportedOverlap::new(overlap, &geometry));
         let PickEntry { leaf, up, node, .. } = log.picks[log.picks.len() - 1];
         let result = rebuild(draft, &candidates, &blocks, &self.horizon, log, progress)?;
         Ok(Effect::Picked(Box::new(Picked {
@@ -346,6 +348,8 @@ impl MovePick {
         rest.picks.remove(place);
         let beside = assembly::selection(&name, &rest, &candidates)?;
         let (node, up, stopped_by) = climbed(&candidates, leaf, climb, &beside, &blocks)?;
+        let geometry = draft.document.frame()?;
+        let stopped_by = stopped_by.and_then(|overlap| ReportedOverlap::new(overlap, geometry));
         let node = Fingerprint::of(&candidates.forest, node);
         (log.picks[place].up, log.picks[place].node) = (up, node);
         let result = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
@@ -386,10 +390,10 @@ impl ReplayPicks {
                 let before = pick.node.triangles;
                 let fit = again(pick, &candidates, &geometry);
                 done.picks.push(ReplayedPick { pick: pick.id, fit, triangles: [before, pick.node.triangles] });
-                if fit == Fit::Different {
+                if fit == NodeFit::Different {
                     unfit.push(pick.id);
                 }
-                fit != Fit::Different
+                fit != NodeFit::Different
             });
             if !unfit.is_empty() && (self.unfit == Unfit::Refuse || log.picks.is_empty()) {
                 return Err(ProjectError::UnfitPicks { horizon: name, picks: unfit });
@@ -402,14 +406,14 @@ impl ReplayPicks {
 }
 
 /// Makes one pick again: at its place, at the level whose node is most like what it was.
-fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> Fit {
-    let Ok(hit) = candidates.leaf_near(geometry, pick.at) else { return Fit::Different };
-    let rank = |fit: Fit| match fit {
-        Fit::Same => 0,
-        Fit::Similar => 1,
-        Fit::Different => 2,
+fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> NodeFit {
+    let Ok(hit) = candidates.leaf_near(geometry, pick.at) else { return NodeFit::Different };
+    let rank = |fit: NodeFit| match fit {
+        NodeFit::Same => 0,
+        NodeFit::Similar => 1,
+        NodeFit::Different => 2,
     };
-    let mut best: Option<(Fit, u32, Fingerprint)> = None;
+    let mut best: Option<(NodeFit, u32, Fingerprint)> = None;
     for up in 0..=candidates.levels(hit.leaf) {
         let Ok(node) = node_above(&candidates.forest, hit.leaf, up) else { break };
         let now = Fingerprint::of(&candidates.forest, node);
@@ -421,8 +425,8 @@ fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometr
             break;
         }
     }
-    let Some((fit, up, node)) = best else { return Fit::Different };
-    if fit != Fit::Different {
+    let Some((fit, up, node)) = best else { return NodeFit::Different };
+    if fit != NodeFit::Different {
         (pick.leaf, pick.up, pick.node) = (hit.leaf, up, node);
         pick.extraction.clone_from(&candidates.key);
     }

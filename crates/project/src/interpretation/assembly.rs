@@ -43,9 +43,9 @@ pub struct AssemblyReport {
     pub nodes: usize,
     /// Share of the survey's traces that have a node.
     pub share: f64,
-    /// Where sheets of one fault block lie over one another; places are inline, crossline, vertical value.
+    /// Where sheets of one fault block lie over one another.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub overlap: Option<Overlap>,
+    pub overlap: Option<ReportedOverlap>,
     /// Nodes left out because they were tracked past a fault, where the sheet of the other side runs.
     #[serde(skip_serializing_if = "is_zero")]
     pub past_faults: usize,
@@ -55,7 +55,91 @@ pub struct AssemblyReport {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filled: Option<Filled>,
     /// Contradictions with other horizons.
-    pub conflicts: Vec<Conflict>,
+    pub conflicts: Vec<ReportedConflict>,
+}
+
+/// An overlap ([`Overlap`]) at its place in line numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ReportedOverlap {
+    /// Count of vertices that share trace and fault block with an earlier vertex.
+    pub traces: usize,
+    /// Count of those that share it with a vertex that was selected before.
+    pub beside: usize,
+    /// The largest distance between two such vertices, samples.
+    pub apart: f32,
+    /// Inline number, crossline number and vertical value of the vertex with that distance.
+    pub at: [f64; 3],
+}
+
+impl ReportedOverlap {
+    /// The overlap in line numbers; `None` when nothing overlaps.
+    pub fn new(overlap: Overlap, geometry: &SurveyGeometry) -> Option<Self> {
+        let Overlap { traces, beside, apart, at_voxel: [x, y, z] } = overlap;
+        let lines = geometry.lines_from_voxel(glam::DVec2::new(f64::from(x), f64::from(y)));
+        let z = geometry.vertical.value_at(f64::from(z));
+        (traces > 0).then_some(Self { traces, beside, apart, at: [lines.x, lines.y, z] })
+    }
+}
+
+/// A conflict ([`Conflict`]) at its place in line numbers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "conflict", rename_all = "kebab-case")]
+pub enum ReportedConflict {
+    /// Both horizons contain triangles of the same leaves.
+    SharedLeaves {
+        /// The two horizons.
+        horizons: [String; 2],
+        /// Ids of the leaves.
+        leaves: Vec<u32>,
+        /// Count of triangles in both.
+        triangles: usize,
+    },
+    /// One horizon is above the other at some traces and below it at others.
+    Crossing {
+        /// The two horizons; the first is above at more traces.
+        horizons: [String; 2],
+        /// Count of traces at which the first is above.
+        above: usize,
+        /// Count of traces at which it is below.
+        below: usize,
+        /// The largest distance by which it is below, samples.
+        worst: f32,
+        /// Inline and crossline number of the trace with that distance.
+        at: [i32; 2],
+    },
+    /// The younger horizon lies below the older one.
+    Swapped {
+        /// The younger and the older horizon, by the stratigraphy.
+        horizons: [String; 2],
+        /// Count of traces at which the younger one is below.
+        traces: usize,
+    },
+}
+
+impl ReportedConflict {
+    /// The conflict in line numbers.
+    fn new(conflict: Conflict, geometry: &SurveyGeometry) -> Self {
+        match conflict {
+            Conflict::SharedLeaves { horizons, leaves, triangles } => {
+                Self::SharedLeaves { horizons, leaves, triangles }
+            }
+            Conflict::Crossing { horizons, above, below, worst, at_voxel: [x, y] } => {
+                let lines = geometry.lines_from_voxel(glam::DVec2::new(x as f64, y as f64));
+                let at = [lines.x.round() as i32, lines.y.round() as i32];
+                Self::Crossing { horizons, above, below, worst, at }
+            }
+            Conflict::Swapped { horizons, traces } => Self::Swapped { horizons, traces },
+        }
+    }
+
+    /// The two horizons.
+    pub fn horizons(&self) -> &[String; 2] {
+        match self {
+            Self::SharedLeaves { horizons, .. } | Self::Crossing { horizons, .. } | Self::Swapped { horizons, .. } => {
+                horizons
+            }
+        }
+    }
 }
 
 fn is_zero(count: &usize) -> bool {
@@ -111,16 +195,16 @@ impl std::fmt::Display for AssemblyReport {
 }
 
 /// A conflict in words.
-pub fn sentence(conflict: &Conflict) -> String {
+pub fn sentence(conflict: &ReportedConflict) -> String {
     match conflict {
-        Conflict::SharedLeaves { horizons: [a, b], leaves, triangles } => {
+        ReportedConflict::SharedLeaves { horizons: [a, b], leaves, triangles } => {
             format!("\"{a}\" and \"{b}\" share {triangles} triangles of {} leaves", leaves.len())
         }
-        Conflict::Crossing { horizons: [a, b], above, below, worst, at } => format!(
+        ReportedConflict::Crossing { horizons: [a, b], above, below, worst, at } => format!(
             "\"{a}\" lies above \"{b}\" at {above} traces and below it at {below}, by up to {worst:.1} samples at inline {}, crossline {}",
             at[0], at[1]
         ),
-        Conflict::Swapped { horizons: [a, b], traces } => {
+        ReportedConflict::Swapped { horizons: [a, b], traces } => {
             format!("\"{a}\" is younger than \"{b}\" but lies below it at {traces} traces")
         }
     }
@@ -210,18 +294,11 @@ pub(crate) fn rebuild(
     let mut report = report_on(&assembled.sheets, &geometry);
     report.filled = filled;
     report.past_faults = assembled.left_out;
-    report.overlap = overlap_in_lines(assembled.overlap, &geometry);
+    report.overlap = ReportedOverlap::new(assembled.overlap, &geometry);
     let horizon = to_horizon(name, &assembled.sheets, &geometry);
     put(draft, &horizon, Some(log), progress)?;
     report.conflicts = conflicts_with(draft, candidates, blocks, name, &assembled.sheets, progress)?;
     Ok(report)
-}
-
-/// An overlap, if there is one, at its place in line numbers.
-pub fn overlap_in_lines(overlap: Overlap, geometry: &SurveyGeometry) -> Option<Overlap> {
-    let at = geometry.lines_from_voxel(glam::DVec2::new(f64::from(overlap.at[0]), f64::from(overlap.at[1])));
-    let z = geometry.vertical.value_at(f64::from(overlap.at[2]));
-    (overlap.traces > 0).then_some(Overlap { at: [at.x as f32, at.y as f32, z as f32], ..overlap })
 }
 
 /// Counts and holes of sheets.
@@ -301,7 +378,7 @@ fn conflicts_with(
     name: &str,
     sheets: &[VoxelSheet],
     progress: &Progress,
-) -> Result<Vec<Conflict>, ProjectError> {
+) -> Result<Vec<ReportedConflict>, ProjectError> {
     let geometry = draft.document.frame()?;
     let mut all = Vec::new();
     for entry in &draft.document.horizons {
@@ -321,7 +398,7 @@ pub fn conflicts_of(
     document: &Document,
     candidates: Option<&Candidates>,
     sheets: &[&[VoxelSheet]],
-) -> Result<Vec<Conflict>, ProjectError> {
+) -> Result<Vec<ReportedConflict>, ProjectError> {
     let geometry = document.frame()?;
     let chosen: Vec<Option<Selection>> = document
         .horizons
@@ -337,15 +414,7 @@ pub fn conflicts_of(
     let may_cross = |young: usize, old: usize| rules.may_cross(young, old);
     let forest = candidates.map(|candidates| &candidates.forest);
     let found = conflicts(forest, [nx, ny], &named, may_cross, &ConflictSettings::default());
-    let in_lines = |conflict: Conflict| match conflict {
-        Conflict::Crossing { horizons, above, below, worst, at: [x, y] } => {
-            let lines = geometry.lines_from_voxel(glam::DVec2::new(x as f64, y as f64));
-            let at = [lines.x.round().max(0.0) as usize, lines.y.round().max(0.0) as usize];
-            Conflict::Crossing { horizons, above, below, worst, at }
-        }
-        other => other,
-    };
-    Ok(found.into_iter().map(in_lines).collect())
+    Ok(found.into_iter().map(|conflict| ReportedConflict::new(conflict, geometry)).collect())
 }
 
 /// Makes all assembled horizons anew, after the faults have changed. Those whose picks are of another extraction stay as they are; a warning says so.
@@ -383,4 +452,26 @@ pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
 pub(crate) fn log_of(draft: &Draft, name: &str) -> Result<Assembly, ProjectError> {
     let entry = &draft.document.horizons[draft.document.position(Noun::Horizon, name)?];
     entry.assembly.clone().ok_or_else(|| ProjectError::NotAssembled { horizon: name.to_owned() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::VerticalUnit;
+
+    #[test]
+    fn negative_line_numbers_are_kept() {
+        let mut geometry = SurveyGeometry::regular([32, 32, 32], 25.0, 10.0, VerticalUnit::Metres);
+        (geometry.inlines.first, geometry.inlines.step) = (-40, 2);
+        (geometry.crosslines.first, geometry.crosslines.step) = (-7, 1);
+        let horizons = ["a".to_owned(), "b".to_owned()];
+        let crossing = Conflict::Crossing { horizons, above: 9, below: 4, worst: 2.0, at_voxel: [3, 5] };
+        let reported = ReportedConflict::new(crossing, &geometry);
+        assert!(matches!(reported, ReportedConflict::Crossing { at: [-34, -2], .. }), "{reported:?}");
+        let json = serde_json::to_value(&reported).unwrap();
+        assert_eq!((&json["conflict"], &json["at"]), (&"crossing".into(), &serde_json::json!([-34, -2])));
+        let overlap = Overlap { traces: 1, beside: 0, apart: 3.0, at_voxel: [3.0, 5.0, 0.0] };
+        let at = ReportedOverlap::new(overlap, &geometry).unwrap().at;
+        assert_eq!([at[0], at[1]], [-34.0, -2.0]);
+    }
 }

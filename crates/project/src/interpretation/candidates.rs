@@ -9,7 +9,7 @@ use crate::error::ProjectError;
 use crate::weak_cache::WeakCache;
 use glam::DVec2;
 use interp::Forest;
-use interp::assembly::{AssemblyError, Hit, leaf_at};
+use interp::assembly::{AssemblyError, ClosestLeaf, leaf_at};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use store::StoredCandidates;
@@ -47,7 +47,7 @@ impl Candidates {
     ///
     /// # Errors
     /// The place lies outside the survey, or no candidate is near.
-    pub fn leaf_near(&self, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<Hit, ProjectError> {
+    pub fn leaf_near(&self, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<ClosestLeaf, ProjectError> {
         let place = geometry.voxel_from_lines(at[0], at[1]);
         let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
         leaf_at(&self.forest, voxel, self.max_distance).map_err(|error| match error {

@@ -10,7 +10,7 @@ use crate::{content, derived, memory_budget, styles};
 use glam::{DVec3, Vec3};
 use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
-use render::{Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox, WellPath};
+use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -420,12 +420,12 @@ impl Loaded {
     }
 
     /// The wells as renderers take them.
-    pub fn well_paths(&self) -> Vec<WellPath<'_>> {
-        self.wells.iter().map(|well| WellPath { name: &well.name, path: &well.path, tops: &well.tops }).collect()
+    pub fn well_paths(&self) -> Vec<DrawnWell<'_>> {
+        self.wells.iter().map(|well| DrawnWell { name: &well.name, path: &well.path, tops: &well.tops }).collect()
     }
 
     /// Everything as renderers take it.
-    pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>], wells: &'a [WellPath<'a>]) -> Inputs<'a> {
+    pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>], wells: &'a [DrawnWell<'a>]) -> Inputs<'a> {
         Inputs {
             geometry: &self.geometry,
             model: self.rock.as_ref().map(|rock| &rock.model),

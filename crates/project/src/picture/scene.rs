@@ -5,8 +5,8 @@ use crate::error::{Noun, ProjectError};
 use crate::styles;
 use render::media::{Colouring, LayerOpacity, MediumColour, white_ramp};
 use render::{
-    Background, FaceData, Faces, Ground, Interleaved, Isosurface, Medium, Occlusion, Outlines, Phong, PickedHorizon,
-    Scalar, Scene, Scope, Shading, Stroke,
+    Background, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource, Medium, Occlusion, Outlines, Phong,
+    PickedHorizon, Scene, Scope, Shading, Stroke,
 };
 use ttf::{Colour, ColourMap, RgbaFunction, RgbaStop};
 
@@ -98,7 +98,7 @@ pub struct ShownHorizon {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShownIsosurface {
     /// Of what.
-    pub of: Scalar,
+    pub of: IsosurfaceSource,
     /// The value.
     pub value: f32,
     /// Its colour; absent: one of its own.
@@ -144,7 +144,7 @@ impl SeeThrough {
             });
         }
         for (n, shown) in self.isosurfaces.iter().enumerate() {
-            if let Scalar::Volume(name) = &shown.of {
+            if let IsosurfaceSource::Volume(name) = &shown.of {
                 document.position(Noun::Volume, name)?;
             }
             scene.media.isosurfaces.push(Isosurface {

@@ -19,7 +19,7 @@ use interp::Forest;
 use interp::assembly::selected_leaves;
 use model::StructuralModel;
 use render::media::Colouring;
-use render::{Candidates, FaceData, Scene};
+use render::{CandidateVolume, FaceData, Scene};
 use std::collections::BTreeMap;
 use store::StoredCandidates;
 use survey::CandidateBox;
@@ -175,8 +175,8 @@ impl ShownCandidates {
     }
 
     /// As renderers take them.
-    pub fn candidates(&self) -> Candidates<'_> {
-        Candidates {
+    pub fn candidates(&self) -> CandidateVolume<'_> {
+        CandidateVolume {
             size: self.voxels.size,
             distance: &self.voxels.distance,
             leaf: &self.voxels.leaf,

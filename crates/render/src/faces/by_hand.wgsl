@@ -1,4 +1,4 @@
-// Trilinear samples by hand: where 32-bit floats cannot be filtered.
+// Trilinear interpolation in the shader, for devices that cannot filter 32-bit floats.
 
 fn filtered_volume(slot: u32, index: vec3<f32>, size: vec3<u32>) -> f32 {
     let low = min(floor(index), max(vec3<f32>(size) - 2.0, vec3(0.0)));

@@ -1,6 +1,8 @@
-// Faces of the block, cut-outs and the ground, by one ray per sample: the twin of `reference::render`.
+// Draws faces of the block and of cut-outs, the ground, media and wells, by one ray per sample: the twin of
+// `reference::render`.
 //
-// One invocation is one pixel of a tile; its samples are averaged on sRGB-encoded, alpha-weighted values. Voxel space.
+// One invocation draws one pixel of a tile. Its samples are averaged as sRGB-encoded values weighted by
+// alpha. Voxel space.
 
 struct FaceParams {
     // The ray through `reference_px`, and its change per pixel to the right (dx) and down (dy); w unused.
@@ -15,20 +17,21 @@ struct FaceParams {
     background: vec4<f32>,
     // Metres between voxels along x, y, z; w unused.
     voxel_m: vec4<f32>,
-    // Factor on the colour of faces across x, y, z; w unused.
+    // Factors on the colour of faces of constant x, y, z; w unused.
     tones: vec4<f32>,
     // Direction to the light in display space; w: strength of the hill shading.
     light: vec4<f32>,
-    // Columns of voxel covector → display covector; w unused.
+    // Columns of the map from voxel to display covectors; w unused.
     display_normal_x: vec4<f32>,
     display_normal_y: vec4<f32>,
     display_normal_z: vec4<f32>,
-    // Heights between which the ground lies (xy), steepest slope of the sheets (z), longest voxel edge in m (w).
+    // Range of the heights of the ground (xy), steepest slope of the sheets (z), longest voxel edge in m (w).
     relief: vec4<f32>,
     reference_px: vec2<f32>,
     samples: u32,
     cut_count: u32,
-    // The ground's coarse map: smallest x, y; cells along x and y; entries of `relief_map` before it.
+    // The coarse map of the ground: smallest x, y; cells along x and y; number of entries of `relief_map`
+    // before it.
     map_low: vec2<f32>,
     map_cells: vec2<u32>,
     ground_horizons: u32,
@@ -42,16 +45,16 @@ struct FaceParams {
 }
 
 @group(0) @binding(0) var<uniform> params: FaceParams;
-// RGBA8 a pixel of the tile, row by row, red in the lowest byte.
+// One RGBA8 word per pixel of the tile, row by row, red in the lowest byte.
 @group(0) @binding(1) var<storage, read_write> pixels: array<u32>;
 
-// What illustrates: 0 raw data alone, 1 the exact lookup, 2 the packed volume.
+// How flat coordinates are looked up: 0 not at all (raw data alone), 1 exact, 2 in the packed volume.
 override lookup: u32 = 1u;
 const LOOKUP_RAW: u32 = 0u;
 const LOOKUP_EXACT: u32 = 1u;
 const LOOKUP_PACKED: u32 = 2u;
 
-// 1 where the ground is shown, 2 where it lets light through.
+// 1 if the ground is shown, 2 if it is not opaque.
 override with_ground: u32 = 0u;
 
 // A ray with its change per sample step.
@@ -85,7 +88,7 @@ fn slide_on_plane(drift: vec3<f32>, direction: vec3<f32>, axis: u32) -> vec3<f32
 }
 
 fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
-    var point: FlatPoint;
+    var point: ShadePoint;
     if lookup != LOOKUP_RAW {
         var flat: FlatSample;
         if lookup == LOOKUP_EXACT {
@@ -108,7 +111,8 @@ fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
     return with_candidates(p, shade(point, axis, p)) * params.tones[axis];
 }
 
-// The first rock on a ray from a distance on, or with `faces_shown` = FACES_CUT_OUTS the first that does not begin at the roaming box; or the ground.
+// What stops a ray: the first rock at or after a distance, or the ground. With `faces_shown` =
+// FACES_CUT_OUTS, rock that begins at the roaming box does not count.
 struct Stop {
     span: SolidSpan,
     ground: GroundHit,
@@ -149,7 +153,8 @@ fn stopping_hit(ray: PixelRay, after: f32) -> Stop {
     return stop;
 }
 
-// What stops a ray with the media between `start` and it: straight colour; where the ground stopped it, else negative.
+// The straight colour of a ray: what stops it, with the media between `start` and there. `stop` is the
+// distance to the ground if the ground stopped it, else negative.
 struct Seen {
     colour: vec4<f32>,
     stop: f32,
@@ -186,11 +191,11 @@ fn seen(ray: PixelRay, after: f32, start: f32) -> Seen {
     var far = to_linear(behind.rgb);
     if shading == OCCLUSION && stop < HIGHEST {
         far *= light_at(ray.origin + ray.direction * stop);
-    } else if gathered.passes == 1.0 {
+    } else if gathered.transmittance == 1.0 {
         return result;
     }
-    let sum = gathered.colour + far * (behind.a * gathered.passes);
-    let alpha = 1.0 - gathered.passes * (1.0 - behind.a);
+    let sum = gathered.colour + far * (behind.a * gathered.transmittance);
+    let alpha = 1.0 - gathered.transmittance * (1.0 - behind.a);
     result.colour = vec4(to_encoded(sum / max(alpha, 1e-6)), alpha);
     return result;
 }

@@ -1,4 +1,4 @@
-// Trilinear samples by the hardware: where 32-bit floats can be filtered.
+// Trilinear interpolation by the hardware, for devices that can filter 32-bit floats.
 
 fn filtered_volume(slot: u32, index: vec3<f32>, size: vec3<u32>) -> f32 {
     let at = ((index + 0.5) / vec3<f32>(size)).zyx;

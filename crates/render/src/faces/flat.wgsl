@@ -1,4 +1,4 @@
-// Flat coordinates by the exact path: the twin of `param::RegionGrid::lookup`.
+// Flat coordinates by the exact lookup: the twin of `param::RegionGrid::lookup`.
 
 struct GridInfo {
     // Voxel column of grid column (0, 0).
@@ -7,7 +7,7 @@ struct GridInfo {
     levels: u32,
     // Entry of column (0, 0) in `columns`.
     first_column: u32,
-    // Horizons at v = 0 and v = 1, NONE for the plane z = 0; both shifted downwards.
+    // Horizons at v = 0 and v = 1, NONE for the plane z = 0; both are shifted downwards.
     bottom_horizon: u32,
     top_horizon: u32,
     bottom_shift: f32,
@@ -18,9 +18,10 @@ struct GridInfo {
 
 // Index block · layers + layer.
 @group(3) @binding(8) var<storage, read> grids: array<GridInfo>;
-// Per column, [x][y]: its first node in `offsets`; its first level, and the count of levels that are seen in the upper half.
+// Per column, [x][y]: its first node in `offsets`; in the second word its first level and, in the upper half,
+// the number of visible levels.
 @group(3) @binding(9) var<storage, read> columns: array<vec2<u32>>;
-// Three floats a node: dx, dy (voxels), dk.
+// Three floats per node: dx, dy (voxels), dk.
 @group(3) @binding(10) var<storage, read> offsets: array<f32>;
 
 // Layers thinner than this have no inside, voxels.
@@ -51,7 +52,8 @@ struct ColumnSample {
     rise: vec3<f32>,
 }
 
-// Catmull–Rom through four levels; beyond the ends, a level that continues the parabola through the last three.
+// Catmull–Rom interpolation through four levels. Beyond the ends, a level that continues the parabola through
+// the last three.
 fn grid_column(index: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
     let entry = columns[index];
     let first = entry.y & 0xffffu;
@@ -60,7 +62,7 @@ fn grid_column(index: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
     if count < 3u {
         return column;
     }
-    // Within what is there; what is seen is there.
+    // Clamped to the uploaded levels; all visible levels are uploaded.
     let at = (entry.x + clamp(cell, first, first + count - 2u) - first) * 3u;
     let b = grid_node(at);
     let c = grid_node(at + 3u);

@@ -1,63 +1,68 @@
-//! The part of the stratigraphic grids that a picture looks at, on the GPU.
+//! The visible part of the stratigraphic grids, on the GPU.
 //!
-//! Faces are planes and the ground is a surface, so of each column only the levels around them are asked for; a whole
-//! parameterization may be larger than what a device can bind. Each column has an entry in a table: its first node in the
-//! offsets, its first level and their count (0: not seen). Levels come with those that the cubic along a column needs
-//! beyond them, and windows around a horizontal plane or the ground are as wide as the neighbouring columns', because between
-//! columns the plane crosses other levels.
+//! Faces are planes and the ground is a surface, so of each column only the levels around them are needed; a
+//! whole parameterization may be larger than a device can bind. Each column has an entry in a table: its
+//! first node in the offsets, its first level, and their count (0: not visible). A range of levels includes
+//! those that the cubic interpolation along a column needs beyond it. Around a horizontal plane or the
+//! ground, a range covers those of the neighbouring columns, because the surface crosses other levels between
+//! columns.
 //!
-//! Memory: 8 bytes a column of each region, 12 a node that is seen: a few per cent of the parameterization.
+//! Memory: 8 bytes per column of each region and 12 per visible node: a few per cent of the parameterization.
 
 use super::layout::GridInfo;
 use crate::error::RenderError;
-use crate::frame::Frame;
-use crate::frame::shows_depths;
 use crate::gpu::Gpu;
-use crate::outline::{FaceRect, face_rects};
+use crate::outline::solid::{FaceRect, face_rects};
+use crate::resolved::{ResolvedScene, shows_depths};
 use glam::DVec3;
 use model::StructuralModel;
 use param::{Parameterization, RegionGrid, SheetRef};
 use rayon::prelude::*;
 use ttf::tables::NONE;
 
-/// Thickness below which a layer has no inside, voxels, as `param` and the shader have it.
+/// Thickness below which a layer has no inside, voxels, as in `param` and the shader.
 pub(super) const PINCHED: f32 = 1e-3;
-/// Levels beyond a window that are kept for rounding and for curved sheets between columns.
+/// Extra levels around a range, for rounding and for sheets that are curved between columns.
 const SPARE_LEVELS: f32 = 1.0;
-/// A plane this many levels outside a layer is not seen in it.
+/// A plane that is this many levels outside a layer is not visible in it.
 const FAR_LEVELS: f32 = 3.0;
 
-/// What of the grids is seen: faces towards the camera, and the ground of a box.
+/// The parts of the grids that are visible: faces towards the camera, and the ground of a box.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Seen {
+pub struct VisibleParts {
     faces: Vec<FaceRect>,
     ground: Option<[DVec3; 2]>,
-    /// Whether the inside of the block is looked at, all of it.
+    /// Whether all of the inside of the block is needed.
     inside: bool,
 }
 
-impl Seen {
-    /// What a frame looks at.
-    pub fn of(frame: &Frame) -> Self {
-        let mut faces = face_rects(&frame.solid, &frame.view);
+impl VisibleParts {
+    /// The visible parts of a scene.
+    pub fn of(resolved: &ResolvedScene) -> Self {
+        let mut faces = face_rects(&resolved.solid, &resolved.view);
         faces.retain(|face| face.faces_camera);
-        let ground = frame.relief.as_ref().map(|_| frame.solid.roaming_box.map(|corner| corner.as_dvec3()));
-        Self { faces, ground, inside: shows_depths(frame.scene) }
+        let ground = resolved.relief.as_ref().map(|_| resolved.solid.roaming_box.map(|corner| corner.as_dvec3()));
+        Self { faces, ground, inside: shows_depths(resolved.scene) }
     }
 }
 
-/// Seen parts of the grids on the GPU.
+/// The visible parts of the grids on the GPU.
 pub struct GridBuffers {
     pub infos: wgpu::Buffer,
     pub columns: wgpu::Buffer,
     pub offsets: wgpu::Buffer,
-    pub seen: Seen,
+    pub seen: VisibleParts,
 }
 
 impl GridBuffers {
-    /// Uploads what is seen.
-    pub fn new(gpu: &Gpu, model: &StructuralModel, param: &Parameterization, seen: Seen) -> Result<Self, RenderError> {
-        let windows: Vec<Vec<Window>> = param.grids.par_iter().map(|grid| windows(model, grid, &seen)).collect();
+    /// Uploads what is visible.
+    pub fn new(
+        gpu: &Gpu,
+        model: &StructuralModel,
+        param: &Parameterization,
+        seen: VisibleParts,
+    ) -> Result<Self, RenderError> {
+        let windows: Vec<Vec<LevelRange>> = param.grids.par_iter().map(|grid| windows(model, grid, &seen)).collect();
         let mut infos = Vec::new();
         let mut columns: Vec<[u32; 2]> = Vec::new();
         let mut offsets: Vec<[f32; 3]> = Vec::new();
@@ -82,7 +87,7 @@ impl GridBuffers {
         }
         if offsets.len() * 3 > gpu.buffer_floats || columns.len() * 2 > gpu.buffer_floats {
             return Err(RenderError::OutOfMemory {
-                reason: format!("the faces look at {} MiB of the parameterization", (offsets.len() * 12) >> 20),
+                reason: format!("the visible faces need {} MiB of the parameterization", (offsets.len() * 12) >> 20),
             });
         }
         Ok(Self {
@@ -94,14 +99,14 @@ impl GridBuffers {
     }
 }
 
-/// Levels of a column that are seen: `first..end`, none where they are equal.
+/// The visible levels of a column: `first..end`, none if they are equal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Window {
+struct LevelRange {
     first: u16,
     end: u16,
 }
 
-impl Window {
+impl LevelRange {
     const NONE: Self = Self { first: 0, end: 0 };
 
     fn join(&mut self, other: Self) {
@@ -113,14 +118,14 @@ impl Window {
     }
 }
 
-/// The window of each column of a grid, `[x][y]`.
-fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &Seen) -> Vec<Window> {
+/// The range of levels of each column of a grid, `[x][y]`.
+fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &VisibleParts) -> Vec<LevelRange> {
     let [nx, ny] = grid.size;
-    let mut windows = vec![Window::NONE; nx * ny];
+    let mut windows = vec![LevelRange::NONE; nx * ny];
     if windows.is_empty() || grid.offsets.is_empty() {
         return windows;
     }
-    let whole = Window { first: 0, end: grid.levels.min(usize::from(u16::MAX)) as u16 };
+    let whole = LevelRange { first: 0, end: grid.levels.min(usize::from(u16::MAX)) as u16 };
     if seen.inside {
         windows.fill(whole);
         return windows;
@@ -153,7 +158,7 @@ fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &Seen) -> Vec<Windo
     windows
 }
 
-/// The (unclamped) level at which a surface crosses each column; NaN where the layer has no inside.
+/// The level, not clamped, at which a surface crosses each column; NaN if the layer has no inside there.
 fn plane_levels(model: &StructuralModel, grid: &RegionGrid, z: impl Fn(f32, f32) -> f32) -> Vec<f32> {
     let [_, ny] = grid.size;
     let sheet = |sheet: SheetRef, x: f32, y: f32| sheet.z(model, grid.region.block, x, y);
@@ -168,9 +173,9 @@ fn plane_levels(model: &StructuralModel, grid: &RegionGrid, z: impl Fn(f32, f32)
         .collect()
 }
 
-/// Opens the windows of columns to the levels that a surface crosses in them and in their neighbours.
+/// Extends the ranges of columns to the levels that a surface crosses in them and in their neighbours.
 fn add_windows(
-    windows: &mut [Window],
+    windows: &mut [LevelRange],
     grid: &RegionGrid,
     levels: &[f32],
     xs: std::ops::RangeInclusive<usize>,
@@ -184,7 +189,7 @@ fn add_windows(
             for nx in x.saturating_sub(1)..=(x + 1).min(nx - 1) {
                 for ny_ in y.saturating_sub(1)..=(y + 1).min(ny - 1) {
                     let level = levels[nx * ny + ny_];
-                    // Where the layer has no inside, the lookup takes the middle.
+                    // Where the layer has no inside, the lookup uses the middle level.
                     let level = if level.is_nan() { 0.5 * last } else { level };
                     (low, high) = (low.min(level), high.max(level));
                 }
@@ -192,13 +197,13 @@ fn add_windows(
             if high < -FAR_LEVELS || low > last + FAR_LEVELS {
                 continue;
             }
-            // The cell, one level below it and two above.
+            // The cell, one level below it, and two above.
             let first = (low - SPARE_LEVELS).clamp(0.0, last).floor() - 1.0;
             let end = (high + SPARE_LEVELS).clamp(0.0, last).floor() + 3.0;
-            // At the ends the cubic leans on the three levels there.
+            // At the ends, the cubic needs the last three levels.
             let first = first.min(last - 2.0).max(0.0);
             let end = end.max(3.0).min(last + 1.0);
-            windows[x * ny + y].join(Window { first: first as u16, end: end as u16 });
+            windows[x * ny + y].join(LevelRange { first: first as u16, end: end as u16 });
         }
     }
 }

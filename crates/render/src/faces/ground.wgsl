@@ -1,4 +1,4 @@
-// The ground along a ray: the twin of `ground::Relief` (P-illus 5).
+// The ground, intersected by a ray: the twin of `ground::Relief` (P-illus 5).
 
 const SHORTEST_STEP: f32 = 0.5;
 const BISECTIONS: u32 = 7u;
@@ -7,7 +7,7 @@ const CELL: f32 = 4.0;
 const INTO_CELL: f32 = 0.01;
 const INTO_ROCK: f32 = 0.05;
 
-// First the horizons that form the ground, then the cells' tops as the bits of floats, [x][y].
+// First the horizons that form the ground, then the tops of the cells as the bits of floats, [x][y].
 @group(0) @binding(2) var<storage, read> relief_map: array<u32>;
 
 struct Probe {
@@ -73,7 +73,7 @@ fn probe_at(p: vec3<f32>) -> Probe {
     return probe;
 }
 
-// The first distance from t on at which the coarse map does not rule rock out.
+// The first distance at or after t at which the coarse map does not exclude rock.
 fn skip_air(origin: vec3<f32>, direction: vec3<f32>, start: f32, end: f32) -> f32 {
     var t = start;
     let last = vec2<f32>(params.map_cells) - 1.0;
@@ -101,6 +101,58 @@ fn skip_air(origin: vec3<f32>, direction: vec3<f32>, start: f32, end: f32) -> f3
     return t;
 }
 
+// Refines a step from air at `air_at` to rock at `rock_at`. The block of `before` is NONE if the air was skipped.
+fn refine(
+    origin: vec3<f32>,
+    direction: vec3<f32>,
+    air_at: f32,
+    before: Probe,
+    rock_at: f32,
+    behind: Probe,
+) -> GroundHit {
+    var air_t = air_at;
+    var air = before;
+    var t = rock_at;
+    var inside = behind;
+    var hit: GroundHit;
+    hit.found = true;
+    if air.block == inside.block && air.horizon == inside.horizon {
+        t = air_t + (t - air_t) * air.gap / max(air.gap + inside.gap, 1e-12);
+    } else {
+        if air.block == NONE {
+            air.block = probe_at(origin + direction * air_t).block;
+        }
+        var n = 0u;
+        loop {
+            let middle = 0.5 * (air_t + t);
+            let here = probe_at(origin + direction * middle);
+            if here.is_rock {
+                t = middle;
+                inside = here;
+            } else {
+                air_t = middle;
+                air.block = here.block;
+            }
+            continuing {
+                n += 1u;
+                break if n >= BISECTIONS;
+            }
+        }
+    }
+    hit.point = origin + direction * t;
+    hit.block = inside.block;
+    hit.layer = layer_at(hit.point + vec3(0.0, 0.0, INTO_ROCK), hit.block);
+    if air.block == inside.block {
+        let slope = sheet_sample(sheets[inside.horizon * model.blocks + inside.block], hit.point.xy).yz;
+        hit.normal = vec3(slope, -1.0);
+    } else {
+        let normal = faults[inside.fault].w.xyz;
+        hit.normal = select(normal, -normal, dot(normal, direction) > 0.0);
+    }
+    return hit;
+}
+
+// The first hit of the ground along a ray between distances `enter` (in the air) and `leave`.
 fn march(origin: vec3<f32>, direction: vec3<f32>, enter: f32, leave: f32) -> GroundHit {
     var hit: GroundHit;
     var start = enter;
@@ -145,42 +197,8 @@ fn march(origin: vec3<f32>, direction: vec3<f32>, enter: f32, leave: f32) -> Gro
             break if done || step >= MAX_STEPS;
         }
     }
-    hit.found = inside.is_rock;
-    if !hit.found {
-        return hit;
-    }
-    if air.block == inside.block && air.horizon == inside.horizon {
-        t = air_t + (t - air_t) * air.gap / max(air.gap + inside.gap, 1e-12);
-    } else {
-        if air.block == NONE {
-            air.block = probe_at(origin + direction * air_t).block;
-        }
-        var n = 0u;
-        loop {
-            let middle = 0.5 * (air_t + t);
-            let here = probe_at(origin + direction * middle);
-            if here.is_rock {
-                t = middle;
-                inside = here;
-            } else {
-                air_t = middle;
-                air.block = here.block;
-            }
-            continuing {
-                n += 1u;
-                break if n >= BISECTIONS;
-            }
-        }
-    }
-    hit.point = origin + direction * t;
-    hit.block = inside.block;
-    hit.layer = layer_at(hit.point + vec3(0.0, 0.0, INTO_ROCK), hit.block);
-    if air.block == inside.block {
-        let slope = sheet_sample(sheets[inside.horizon * model.blocks + inside.block], hit.point.xy).yz;
-        hit.normal = vec3(slope, -1.0);
-    } else {
-        let normal = faults[inside.fault].w.xyz;
-        hit.normal = select(normal, -normal, dot(normal, direction) > 0.0);
+    if inside.is_rock {
+        hit = refine(origin, direction, air_t, air, t, inside);
     }
     return hit;
 }

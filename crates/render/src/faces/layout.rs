@@ -1,13 +1,16 @@
-//! The structs that Rust and the shader share, field by field in the shader's order and names.
+//! The structs that Rust and the shader share, field by field in the order and with the names of the shader.
 //!
-//! A test reads the WGSL with naga and compares every offset; nothing else keeps them together.
+//! A test reads the WGSL with naga and compares every offset.
 
-use crate::frame::Frame;
+use crate::resolved::ResolvedScene;
 use crate::scene::MAX_CUT_OUTS;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
 
-/// What changes with every picture and tile.
+/// Side of a workgroup, pixels or cells.
+pub const WORKGROUP: u32 = 8;
+
+/// Parameters of a picture and a tile.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct FaceParams {
@@ -49,7 +52,7 @@ pub struct SheetInfo {
     pub padding: [u32; 3],
 }
 
-/// A fault surface: rows of its frame relative to the model's centre, and its height field.
+/// A fault surface: the rows of its frame relative to the centre of the model, and its height field.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct FaultInfo {
@@ -87,7 +90,7 @@ pub struct GridInfo {
     pub padding: [u32; 2],
 }
 
-/// The packed volume's place and ranges.
+/// Size, scale and value ranges of the packed volume.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
 pub struct PackedInfo {
@@ -100,23 +103,23 @@ pub struct PackedInfo {
     pub padding: [u32; 2],
 }
 
-/// The ground's horizons and coarse map, as the shader has them.
-pub fn relief_map(frame: &Frame) -> Vec<u32> {
-    let Some(relief) = &frame.relief else { return Vec::new() };
+/// The horizons and the coarse map of the ground, as 32-bit words for the shader.
+pub fn relief_map(resolved: &ResolvedScene) -> Vec<u32> {
+    let Some(relief) = &resolved.relief else { return Vec::new() };
     let horizons = relief.horizons.iter().map(|&h| h as u32);
     horizons.chain(relief.map_tops.iter().map(|top| top.to_bits())).collect()
 }
 
 impl FaceParams {
     /// The parameters of a picture, without its tile.
-    pub fn of(frame: &Frame) -> Self {
-        let [width, height] = frame.scene.size_px;
+    pub fn of(resolved: &ResolvedScene) -> Self {
+        let [width, height] = resolved.scene.size_px;
         let reference = DVec2::new(f64::from(width), f64::from(height)) * 0.5;
-        let ray = frame.view.ray(reference);
+        let ray = resolved.view.ray(reference);
         let four = |v: DVec3| v.as_vec3().extend(0.0).to_array();
         let plain = |v: Vec3| v.extend(0.0).to_array();
         let mut cut_outs = [[0.0; 4]; 2 * MAX_CUT_OUTS];
-        for (to, corner) in cut_outs.iter_mut().zip(frame.solid.cut_outs.iter().flatten()) {
+        for (to, corner) in cut_outs.iter_mut().zip(resolved.solid.cut_outs.iter().flatten()) {
             *to = plain(*corner);
         }
         let mut params = Self {
@@ -126,19 +129,19 @@ impl FaceParams {
             direction: four(ray.direction),
             direction_dx: four(ray.direction_step[0]),
             direction_dy: four(ray.direction_step[1]),
-            box_low: plain(frame.solid.roaming_box[0]),
-            box_high: plain(frame.solid.roaming_box[1]),
-            background: frame.background,
-            voxel_m: plain(frame.voxel_m),
-            tones: Vec3::from_array(frame.tones).extend(1.0).to_array(),
+            box_low: plain(resolved.solid.roaming_box[0]),
+            box_high: plain(resolved.solid.roaming_box[1]),
+            background: resolved.background,
+            voxel_m: plain(resolved.voxel_m),
+            tones: Vec3::from_array(resolved.tones).extend(1.0).to_array(),
             light: [0.0; 4],
             display_normal_x: [0.0; 4],
             display_normal_y: [0.0; 4],
             display_normal_z: [0.0; 4],
             relief: [0.0; 4],
             reference_px: reference.as_vec2().to_array(),
-            samples: frame.scene.samples,
-            cut_count: frame.solid.cut_outs.len() as u32,
+            samples: resolved.scene.samples,
+            cut_count: resolved.solid.cut_outs.len() as u32,
             map_low: [0.0; 2],
             map_cells: [1; 2],
             ground_horizons: 0,
@@ -147,7 +150,7 @@ impl FaceParams {
             tile: [0; 4],
             cut_outs,
         };
-        if let Some(relief) = &frame.relief {
+        if let Some(relief) = &resolved.relief {
             params.light = relief.light.extend(relief.hill_shade).to_array();
             params.display_normal_x = plain(relief.display_normal_from_voxel.x_axis);
             params.display_normal_y = plain(relief.display_normal_from_voxel.y_axis);

@@ -1,4 +1,4 @@
-// Colours of leaves and what faces show of horizon candidates: the twin of `leaves`.
+// Colours of leaves, and horizon candidates on faces: the twin of `leaves`.
 
 // What faces show: 0 rock, 1 leaves, 2 distances.
 override face_data: u32 = 0u;
@@ -22,7 +22,7 @@ fn leaf_colour(id: u32) -> vec3<f32> {
     return value - value * saturation * clamp(min(k, 4.0 - k), vec3(0.0), vec3(1.0));
 }
 
-// The number that a leaf is coloured by; 0 = not shown.
+// The group of a leaf; 0 if it is not shown.
 fn leaf_group(leaf: u32) -> u32 {
     if media.leaves.w == NONE {
         return leaf;
@@ -39,8 +39,9 @@ fn sample_at(p: vec3<f32>) -> vec3<u32> {
     return min(vec3<u32>(max(p + 0.5, vec3(0.0))), media.candidates.xyz - 1u);
 }
 
-// The sample of a trace nearest to its surface, of those at most `reach` above and below one and of one group unless `only` is NONE, and its group; NO_GROUP
-// where all are far from theirs.
+// The sample of a trace that is nearest to its surface, and the group of that surface; NO_GROUP if all
+// samples are too far from their surfaces. Considers samples at most `reach` above and below z, and one group
+// unless `only` is NONE.
 fn surface_sample(place: vec3<u32>, reach: u32, only: u32) -> vec2<u32> {
     var nearest = BORDER_REACH;
     var found = NO_GROUP;
@@ -57,7 +58,7 @@ fn surface_sample(place: vec3<u32>, reach: u32, only: u32) -> vec2<u32> {
     return found;
 }
 
-// What a surface goes on as on a neighbouring trace: itself where it can, else another group.
+// The group as which a surface continues on a neighbouring trace: its own if possible, else another.
 fn group_aside(p: vec3<f32>, z: u32, own: u32) -> u32 {
     let place = vec3(sample_at(p).xy, z);
     let goes_on = surface_sample(place, 2u * BORDER_STEP, own);
@@ -82,7 +83,7 @@ fn is_border(p: vec3<f32>) -> bool {
         || differ(group_aside(p + y, z, own), group_aside(p - y, z, own));
 }
 
-// The colour of a face with the candidates it is to show.
+// The colour of a face, with horizon candidates if the scene shows them.
 fn with_candidates(p: vec3<f32>, rock: vec3<f32>) -> vec3<f32> {
     if face_data == FACES_DISTANCE {
         return vec3(clamp(1.0 - distance_at(p) / BLACK_AT, 0.0, 1.0));

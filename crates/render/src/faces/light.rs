@@ -1,6 +1,7 @@
-//! The pass that carries occlusion and emission from slice to slice: one dispatch a slice, the light volume as its result.
+//! The pass that propagates occlusion and emission from slice to slice: one dispatch per slice. Its result is
+//! the light volume.
 
-use super::WORKGROUP;
+use super::layout::WORKGROUP;
 use super::media::texture;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
@@ -8,7 +9,7 @@ use crate::media::light_grid::LightGrid;
 use bytemuck::{Pod, Zeroable};
 use survey::Progress;
 
-/// A slice, as the shader has it.
+/// A slice, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct Slice {
@@ -17,16 +18,16 @@ pub struct Slice {
     pub padding: [u32; 2],
 }
 
-/// Slices that one submission carries light through: a fraction of a second on the software driver.
+/// Number of slices in one submission: a fraction of a second on the software driver.
 const SLICES_AT_ONCE: usize = 64;
 
-/// The light volume's format: half floats, good to a two-thousandth of a value, which any device can write.
+/// Format of the light volume: half floats with a relative error of 1/2000, which every device can write.
 pub const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
-/// Buffers of the pass, kept while the grid's size stays the same.
+/// Buffers of the pass. They are kept while the size of the grid stays the same.
 pub struct LightBuffers {
     size: [usize; 3],
-    /// The result.
+    /// The light volume.
     pub volume: wgpu::Texture,
     carried: wgpu::Buffer,
     slices: wgpu::Buffer,
@@ -34,13 +35,13 @@ pub struct LightBuffers {
 }
 
 impl LightBuffers {
-    /// Makes room for a grid.
+    /// Allocates buffers for a grid.
     pub fn new(gpu: &Gpu, size: [usize; 3]) -> Result<Self, RenderError> {
         let [nu, nv, slices] = size;
         let limits = gpu.device.limits();
         if [nu, nv, slices + 1].into_iter().any(|n| n > limits.max_texture_dimension_3d as usize) {
             return Err(RenderError::OutOfMemory {
-                reason: format!("{nu} x {nv} x {slices} cells of light are too many"),
+                reason: format!("a light volume of {nu} x {nv} x {slices} cells exceeds the texture size"),
             });
         }
         let extent = wgpu::Extent3d { width: nu as u32, height: nv as u32, depth_or_array_layers: slices as u32 + 1 };
@@ -66,12 +67,12 @@ impl LightBuffers {
         })
     }
 
-    /// Whether it has this size.
+    /// Whether the buffers have this size.
     pub fn fits(&self, size: [usize; 3]) -> bool {
         self.size == size
     }
 
-    /// Carries the light front to back. `groups` are those of the picture from the second on.
+    /// Propagates the light front to back. `groups` are the bind groups of the picture from the second on.
     pub fn carry(
         &self,
         gpu: &Gpu,
@@ -131,7 +132,7 @@ impl LightBuffers {
     }
 }
 
-/// The first group of the pass.
+/// Layout of the first bind group of the pass.
 pub fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let entry =
         |binding, ty| wgpu::BindGroupLayoutEntry { binding, visibility: wgpu::ShaderStages::COMPUTE, ty, count: None };

@@ -1,4 +1,5 @@
-// Occlusion and emission carried from slice to slice: the twin of `media::light`. One invocation is one cell of a slice.
+// Propagates occlusion and emission from slice to slice: the twin of `media::light`. One invocation computes
+// one cell of a slice.
 
 struct Slice {
     index: u32,
@@ -9,25 +10,25 @@ struct Slice {
 }
 
 @group(0) @binding(3) var<uniform> slice: Slice;
-// Emission (xyz) and occlusion (w) of two slices in turn.
+// Emission (xyz) and occlusion (w) of two slices, which alternate.
 @group(0) @binding(4) var<storage, read_write> carried: array<vec4<f32>>;
 @group(0) @binding(5) var light_out: texture_storage_3d<rgba16float, write>;
 
-// What a slice adds: light given off (xyz), occlusion (w), and its opacity.
+// What a slice adds: emitted light (xyz), occlusion (w), and its opacity.
 struct Added {
     light: vec4<f32>,
     alpha: f32,
 }
 
-fn add_stretch(before: Added, origin: vec3<f32>, per_depth: vec3<f32>, depths: vec2<f32>, place: u32) -> Added {
+fn add_stretch(before: Added, origin: vec3<f32>, per_depth: vec3<f32>, depths: vec2<f32>, zone: u32) -> Added {
     var added = before;
     let p = origin + per_depth * (0.5 * (depths.x + depths.y));
     let content = brick_word(brick_at(p));
-    if (content >> (8u * place) & 255u) != 0u {
+    if (content >> (8u * zone) & 255u) != 0u {
         return added;
     }
     let units = media.slice_units * (depths.y - depths.x) / media.cells_low.w;
-    let matter = matter_at(p, place, content, vec3(0.0, 0.0, 1.0));
+    let matter = matter_at(p, zone, content, vec3(0.0, 0.0, 1.0));
     let alpha = 1.0 - exp(-matter.extinction * units);
     added.light += vec4(matter.emission * alpha, (1.0 - exp(-matter.extinction)) * units);
     added.alpha += alpha * (1.0 - added.alpha);
@@ -67,18 +68,18 @@ fn slice_adds(cell: vec2<u32>) -> Added {
         }
         let span = next_span(origin, direction, t);
         var to = outer.exit;
-        var place = CUT_OUT;
+        var zone = CUT_OUT;
         if span.found {
             if span.t <= t + TOUCH {
-                place = SURROUNDINGS;
+                zone = SURROUNDINGS;
                 to = min(span.end, outer.exit);
             } else {
                 to = min(span.t, outer.exit);
             }
         }
         let depths = vec2(max(t / norm, near), min(to / norm, far));
-        if (place == CUT_OUT || faces_shown != FACES_ALL) && depths.y > depths.x {
-            added = add_stretch(added, origin, per_depth, depths, place);
+        if (zone == CUT_OUT || faces_shown != FACES_ALL) && depths.y > depths.x {
+            added = add_stretch(added, origin, per_depth, depths, zone);
         }
         t = max(to, t + 0.5 * TOUCH);
     }

@@ -1,24 +1,24 @@
-//! The media on the GPU: numbers, words and textures of `media.wgsl`.
+//! The media on the GPU: parameters, words and textures of `media.wgsl`.
 //!
-//! Everything of variable length (tables, opacities, bricks, styles) lies in the one buffer of words that the ground's map is in, since
-//! storage bindings are few on some adapters.
+//! Everything of variable length (tables, opacities, bricks, styles) lies in the buffer of 32-bit words that
+//! also holds the map of the ground, since some adapters have few storage bindings.
 
 use crate::camera::View;
 use crate::error::RenderError;
-use crate::frame::Frame;
 use crate::gpu::Gpu;
-use crate::inputs::Candidates;
+use crate::inputs::CandidateVolume;
 use crate::leaves::FaceData;
-use crate::media::field::Field;
+use crate::media::field::MediaField;
 use crate::media::light_grid::{LightGrid, cells_from_voxel};
-use crate::media::medium::{FieldMedium, Place};
-use crate::media::table::{ENTRIES, Table};
+use crate::media::medium::{FieldMedium, Zone};
+use crate::media::table::{ENTRIES, FunctionTable};
 use crate::media::{Faces, MAX_MEDIA, Scope, Shading};
+use crate::resolved::ResolvedScene;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Mat3, Vec3};
 use ttf::tables::NONE;
 
-/// A medium, as the shader has it.
+/// A medium, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
 pub struct MediumInfo {
@@ -27,12 +27,12 @@ pub struct MediumInfo {
     pub slot: u32,
     pub table: u32,
     pub layers: u32,
-    pub place: u32,
+    pub zone: u32,
     pub coloured: u32,
     pub padding: u32,
 }
 
-/// The media of a scene, as the shader has them.
+/// The media of a scene, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct MediaParams {
@@ -66,10 +66,10 @@ pub struct MediaParams {
     pub media: [MediumInfo; MAX_MEDIA],
 }
 
-/// Words of a horizon's record.
+/// Number of words in the record of a horizon.
 pub const HORIZON_WORDS: usize = 12;
 
-/// A pipeline's constants about media.
+/// The constants of a pipeline that depend on media.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash)]
 pub struct MediaVariant {
     with_media: u32,
@@ -84,20 +84,22 @@ pub struct MediaVariant {
 }
 
 impl MediaVariant {
-    /// What a frame needs.
-    pub fn of(frame: &Frame) -> Self {
-        let faces_shown = match frame.scene.media.faces {
+    /// The constants for a scene.
+    pub fn of(resolved: &ResolvedScene) -> Self {
+        let faces_shown = match resolved.scene.media.faces {
             Faces::All => 0,
             Faces::CutOuts => 1,
             Faces::None => 2,
         };
-        let face_data = match (frame.scene.face_data, frame.candidates.is_some()) {
+        let face_data = match (resolved.scene.face_data, resolved.candidates.is_some()) {
             (FaceData::Leaves, true) => 1,
             (FaceData::Distance, true) => 2,
             _ => 0,
         };
-        let with_wells = u32::from(frame.tubes.is_some());
-        let Some(field) = &frame.field else { return Self { faces_shown, face_data, with_wells, ..Self::default() } };
+        let with_wells = u32::from(resolved.tubes.is_some());
+        let Some(field) = &resolved.field else {
+            return Self { faces_shown, face_data, with_wells, ..Self::default() };
+        };
         Self {
             face_data,
             with_wells,
@@ -105,7 +107,7 @@ impl MediaVariant {
             with_media: 1,
             shading: match field.shading {
                 Shading::Unshaded => 0,
-                // Each stripe is drawn as its own scene.
+                // The two shadings are drawn as separate scenes.
                 Shading::Phong(_) | Shading::Interleaved(_) => 1,
                 Shading::Occlusion(_) => 2,
             },
@@ -116,7 +118,7 @@ impl MediaVariant {
         }
     }
 
-    /// Names and values of the overrides.
+    /// Names and values of the override constants.
     pub fn constants(&self) -> [(&'static str, f64); 9] {
         [
             ("face_data", f64::from(self.face_data)),
@@ -132,28 +134,28 @@ impl MediaVariant {
     }
 }
 
-/// The horizon candidates that a picture looks at.
-pub fn candidates_of<'f, 'a>(frame: &'f Frame<'a>) -> Option<&'f Candidates<'a>> {
-    let of_field = frame.field.as_ref().and_then(|field| field.horizons.as_ref()).map(|h| &h.candidates);
-    frame.candidates.as_ref().or(of_field)
+/// The horizon candidates that a picture shows.
+pub fn candidates_of<'f, 'a>(resolved: &'f ResolvedScene<'a>) -> Option<&'f CandidateVolume<'a>> {
+    let of_field = resolved.field.as_ref().and_then(|field| field.horizons.as_ref()).map(|h| &h.candidates);
+    resolved.candidates.as_ref().or(of_field)
 }
 
-/// Where light is carried for a frame, if it is.
-pub fn light_grid(frame: &Frame) -> Option<LightGrid> {
-    let field = frame.field.as_ref()?;
+/// The grid in which light is propagated, if the scene has occlusion.
+pub fn light_grid(resolved: &ResolvedScene) -> Option<LightGrid> {
+    let field = resolved.field.as_ref()?;
     let Shading::Occlusion(occlusion) = field.shading else { return None };
-    Some(LightGrid::new(&occlusion, &frame.view, &frame.roaming_box, f64::from(field.unit_m)))
+    Some(LightGrid::new(&occlusion, &resolved.view, &resolved.roaming_box, f64::from(field.unit_m)))
 }
 
-/// Appends the media to the words and says where they are.
-pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32>) -> MediaParams {
+/// Appends the media to the words, and returns parameters with their positions.
+pub fn media_params(resolved: &ResolvedScene, grid: Option<&LightGrid>, words: &mut Vec<u32>) -> MediaParams {
     let mut params = MediaParams::zeroed();
     let plain = |v: Vec3| v.extend(0.0).to_array();
     let columns = |m: Mat3| [plain(m.x_axis), plain(m.y_axis), plain(m.z_axis)];
-    [params.display_x, params.display_y, params.display_z] = columns(frame.view.display_from_voxel().as_mat3());
+    [params.display_x, params.display_y, params.display_z] = columns(resolved.view.display_from_voxel().as_mat3());
     params.scales[3] = 1.0;
     params.leaves[3] = NONE;
-    if let Some(candidates) = candidates_of(frame) {
+    if let Some(candidates) = candidates_of(resolved) {
         let [x, y, z] = candidates.size.map(|n| n as u32);
         params.candidates = [x, y, z, 0];
         params.scales[3] = candidates.voxels_per_step;
@@ -163,7 +165,7 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
             words.extend_from_slice(groups);
         }
     }
-    if let Some(tubes) = &frame.tubes {
+    if let Some(tubes) = &resolved.tubes {
         params.wells = words.len() as u32;
         params.capsules = tubes.capsules.len() as u32;
         for capsule in &tubes.capsules {
@@ -172,7 +174,7 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
             add(words, &[a.x, a.y, a.z, capsule.radius, b.x, b.y, b.z, red, green, blue]);
         }
     }
-    let Some(field) = &frame.field else { return params };
+    let Some(field) = &resolved.field else { return params };
     [params.covector_x, params.covector_y, params.covector_z] = columns(field.display_normal_from_voxel);
     params.light = field.light.extend(1.0).to_array();
     if let Shading::Phong(phong) = field.shading {
@@ -180,30 +182,30 @@ pub fn media_params(frame: &Frame, grid: Option<&LightGrid>, words: &mut Vec<u32
         params.phong = [phong.ambient, phong.diffuse, phong.specular, 0.0];
     }
     if let Some(grid) = grid {
-        set_light(&mut params, &frame.view, grid);
+        set_light(&mut params, &resolved.view, grid);
     }
     params.scales = [field.samples_per_unit, field.unit_m, field.reach, params.scales[3]];
     for (info, medium) in params.media.iter_mut().zip(&field.media) {
         let table = add_table(words, &medium.table);
-        let layers = medium.layers.as_ref().map_or(NONE, |looks| add(words, looks.entries.as_flattened()));
+        let layers = medium.layers.as_ref().map_or(NONE, |appearance| add(words, appearance.entries.as_flattened()));
         *info = MediumInfo {
             low: medium.table.low,
             scale: medium.table.scale,
-            slot: slot(frame, medium),
+            slot: slot(resolved, medium),
             table,
             layers,
-            place: u32::from(medium.place == Place::CutOut),
-            coloured: u32::from(medium.layers.as_ref().is_some_and(|looks| looks.colours)),
+            zone: u32::from(medium.zone == Zone::CutOut),
+            coloured: u32::from(medium.layers.as_ref().is_some_and(|appearance| appearance.colours)),
             padding: 0,
         };
     }
     let [x, y, z] = field.bricks.size.map(|n| n as u32);
     params.bricks = [x, y, z, words.len() as u32];
     words.extend_from_slice(&field.bricks.words);
-    add_horizons(frame, field, words, &mut params);
+    add_horizons(resolved, field, words, &mut params);
     params.cells[3] = words.len() as u32;
     for surface in &field.isosurfaces {
-        let slot = surface.medium.as_ref().map_or(NONE, |medium| slot(frame, medium));
+        let slot = surface.medium.as_ref().map_or(NONE, |medium| slot(resolved, medium));
         let [r, g, b] = surface.colour.to_array();
         add(words, &[r, g, b, surface.extinction, surface.thickness, surface.value]);
         words.extend([slot, 0]);
@@ -233,9 +235,9 @@ fn set_light(params: &mut MediaParams, view: &View, grid: &LightGrid) {
     params.slice_units = grid.slice_units;
 }
 
-fn slot(frame: &Frame, medium: &FieldMedium) -> u32 {
-    let position = frame.tables.volumes.iter().position(|name| name == medium.volume.name);
-    position.map_or(NONE, |slot| slot as u32)
+fn slot(resolved: &ResolvedScene, medium: &FieldMedium) -> u32 {
+    let position = resolved.tables.volumes.iter().position(|name| name == medium.volume.name);
+    position.expect("the volumes of all media have a slot") as u32
 }
 
 fn add(words: &mut Vec<u32>, values: &[f32]) -> u32 {
@@ -244,12 +246,12 @@ fn add(words: &mut Vec<u32>, values: &[f32]) -> u32 {
     first
 }
 
-fn add_table(words: &mut Vec<u32>, table: &Table) -> u32 {
+fn add_table(words: &mut Vec<u32>, table: &FunctionTable) -> u32 {
     debug_assert_eq!(table.entries.len(), ENTRIES);
     add(words, table.entries.as_flattened())
 }
 
-fn add_horizons(frame: &Frame, field: &Field, words: &mut Vec<u32>, params: &mut MediaParams) {
+fn add_horizons(resolved: &ResolvedScene, field: &MediaField, words: &mut Vec<u32>, params: &mut MediaParams) {
     let scope = match field.scope {
         Scope::Everywhere => 0,
         Scope::NearHorizons => 1,
@@ -279,7 +281,7 @@ fn add_horizons(frame: &Frame, field: &Field, words: &mut Vec<u32>, params: &mut
         record[6] = NONE;
         record[10] = u32::from(horizon.by_leaf);
         if let (Some(medium), Some(table)) = (&horizon.paint, paint) {
-            record[6] = slot(frame, medium);
+            record[6] = slot(resolved, medium);
             record[7] = table;
             record[8] = medium.table.low.to_bits();
             record[9] = medium.table.scale.to_bits();
@@ -288,21 +290,23 @@ fn add_horizons(frame: &Frame, field: &Field, words: &mut Vec<u32>, params: &mut
     }
 }
 
-/// Distances and leaves on the GPU.
+/// Distances and leaves of candidates on the GPU.
 pub struct CandidateTextures {
     pub distances: wgpu::Texture,
     pub leaves: wgpu::Texture,
 }
 
 impl CandidateTextures {
-    /// Uploads them; `None` makes textures of one texel, to bind where nothing is read.
-    pub fn new(gpu: &Gpu, candidates: Option<&Candidates>) -> Result<Self, RenderError> {
+    /// Uploads candidates. `None` creates textures of one texel, which are bound if nothing is read.
+    pub fn new(gpu: &Gpu, candidates: Option<&CandidateVolume>) -> Result<Self, RenderError> {
         let [nx, ny, nz] = candidates.map_or([1; 3], |c| c.size);
         let limit = gpu.device.limits().max_texture_dimension_3d as usize;
         if [nx, ny, nz].into_iter().any(|n| n > limit) {
             return Err(RenderError::Unsuitable {
                 adapter: gpu.adapter_name.clone(),
-                reason: format!("the candidates have {nx} x {ny} x {nz} samples, its limit is {limit} a side"),
+                reason: format!(
+                    "the candidates have {nx} x {ny} x {nz} samples, but its limit is {limit} along each axis"
+                ),
             });
         }
         let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };
@@ -320,7 +324,7 @@ impl CandidateTextures {
     }
 }
 
-/// A 3D texture that shaders read.
+/// A 3D texture that shaders can read.
 pub fn texture(
     gpu: &Gpu,
     label: &str,
@@ -340,7 +344,7 @@ pub fn texture(
     })
 }
 
-/// The sampler of all filtered volumes.
+/// The sampler of all volumes that the hardware interpolates.
 pub fn filtering(gpu: &Gpu) -> wgpu::Sampler {
     gpu.device.create_sampler(&wgpu::SamplerDescriptor {
         label: Some("filtering"),

@@ -1,25 +1,24 @@
-// The media of a scene at any point, and a ray through them: the twin of `media::field` and `media::march`.
-//
-// Voxel space; extinction per unit of length, colours linear. One flat loop over samples: brick by brick as on the CPU would leave
-// lanes idle.
+// The media of a scene at any point: the twin of `media::field`. Voxel space; extinction per unit of length,
+// linear colours.
 
 struct MediumInfo {
-    // Value of the first entry of its table, entries per unit of value.
+    // Value of the first entry of its table, and entries per unit of value.
     low: f32,
     scale: f32,
     slot: u32,
-    // First word of its table, and of the looks by layer (r, g, b, factor on the opacity; NONE: layers do nothing).
+    // First words of its table, and of its appearance by layer (r, g, b, factor on the opacity; NONE: layers
+    // do not change it).
     table: u32,
     layers: u32,
     // 0 surroundings, 1 cut-outs.
-    place: u32,
-    // 1 where layers colour it.
+    zone: u32,
+    // 1 if layers colour it.
     coloured: u32,
     padding_0: u32,
 }
 
 struct MediaParams {
-    // Columns of voxel → display and of voxel covector → display covector; w unused.
+    // Columns of the maps from voxel to display space and from voxel to display covectors; w unused.
     display_x: vec4<f32>,
     display_y: vec4<f32>,
     display_z: vec4<f32>,
@@ -30,32 +29,36 @@ struct MediaParams {
     light: vec4<f32>,
     // Ambient, diffuse, specular; w unused.
     phong: vec4<f32>,
-    // Columns and shift of voxel → cell and slice, see `light_grid::cells_from_voxel`; shift.w = 1 in a perspective.
+    // Columns and shift of the map from voxels to cells and slices, see `light_grid::cells_from_voxel`;
+    // shift.w = 1 in a perspective.
     cells_x: vec4<f32>,
     cells_y: vec4<f32>,
     cells_z: vec4<f32>,
     cells_shift: vec4<f32>,
     // Lower left corner in cells + ½; depth of the first slice, m; thickness of a slice, m.
     cells_low: vec4<f32>,
-    // Voxel position of a place in view coordinates (x, y) at depth d: back + d · forward + (x · right + y · up), times d in a perspective.
+    // Voxel position of view coordinates (x, y) at depth d: back + d · forward + (x · right + y · up), the
+    // last term times d in a perspective.
     back: vec4<f32>,
     right: vec4<f32>,
     up: vec4<f32>,
     forward: vec4<f32>,
     // Lower left corner and side of a cell in view coordinates; factor on the occlusion.
     grid: vec4<f32>,
-    // Cells right and up, slices; first word of the isosurfaces.
+    // Cells to the right and upwards, slices; first word of the isosurfaces.
     cells: vec4<u32>,
     // Bricks along x, y, z, and their first word.
     bricks: vec4<u32>,
-    // Samples per unit, unit in m, reach in voxels, voxels per step of distance.
+    // Samples per unit of length, unit in m, distance that counts as near a horizon in voxels, voxels per
+    // step of distance.
     scales: vec4<f32>,
-    // Samples of the candidates along x, y, z; w: leaf ids that have a style.
+    // Samples of the candidates along x, y, z; w: number of leaf ids that have a style.
     candidates: vec4<u32>,
-    // First words of the styles by leaf and of the horizons; scope; first word of the groups by leaf, NONE: leaves are their own.
+    // First words of the styles by leaf and of the horizons; scope; first word of the groups by leaf (NONE:
+    // each leaf is a group of its own).
     leaves: vec4<u32>,
     slice_units: f32,
-    // Leaf ids that have a group; first word of the wells, and their pieces.
+    // Number of leaf ids that have a group; first word of the wells, and number of their capsules.
     groups: u32,
     wells: u32,
     capsules: u32,
@@ -64,13 +67,14 @@ struct MediaParams {
 
 @group(2) @binding(7) var<uniform> media: MediaParams;
 @group(2) @binding(8) var filtering: sampler;
-// Texels as of volumes: (x, y, z) is sample (z, y, x).
+// Texels are ordered as those of volumes: (x, y, z) is sample (z, y, x).
 @group(2) @binding(9) var distances: texture_3d<f32>;
 @group(2) @binding(10) var leaf_ids: texture_3d<u32>;
-// Emission (xyz) and λ (w) of cells; z runs over the fronts of slices.
+// Emission (xyz) and λ (w) of cells; z is the front of a slice.
 @group(2) @binding(11) var light_volume: texture_3d<f32>;
 
-// 1 where anything is seen through; how it is lit; which faces stop a ray; how many media; whether leaves and layers matter.
+// Whether there are media; their shading; which faces stop a ray; how many media; whether leaves and layers
+// matter; how many isosurfaces.
 override with_media: u32 = 0u;
 override shading: u32 = 0u;
 override faces_shown: u32 = 0u;
@@ -117,7 +121,7 @@ fn extinction_of(opacity: f32) -> f32 {
     return -log(1.0 - max(opacity, 0.0));
 }
 
-// Trilinear value; below NO_DATA_BELOW where there is none.
+// Value interpolated trilinearly; below NO_DATA_BELOW if there is none.
 fn medium_value(slot: u32, p: vec3<f32>) -> f32 {
     let info = volume_infos[slot];
     let index = p * info.scale.xyz + info.offset.xyz;
@@ -184,10 +188,10 @@ fn of_medium(n: u32, p: vec3<f32>, brick: u32, towards: vec3<f32>) -> Matter {
         if layer == MIXED {
             layer = layer_at(p, block_at(p));
         }
-        let looks = info.layers + 4u * layer;
-        let opacity = word(looks + 3u);
+        let appearance = info.layers + 4u * layer;
+        let opacity = word(appearance + 3u);
         if info.coloured == 1u {
-            matter.colour = vec3(word(looks), word(looks + 1u), word(looks + 2u));
+            matter.colour = vec3(word(appearance), word(appearance + 1u), word(appearance + 2u));
         }
         if opacity != 1.0 {
             matter.extinction = extinction_of((1.0 - exp(-matter.extinction)) * opacity);
@@ -216,7 +220,8 @@ fn leaf_at(p: vec3<f32>) -> u32 {
     return textureLoad(leaf_ids, at.zyx, 0).r;
 }
 
-// Distance to the nearest candidate, voxels; by hand, since bytes are filtered with weights of 8 bits.
+// Distance to the nearest candidate, voxels. Interpolated here, since the hardware filters bytes with weights
+// of 8 bits.
 fn distance_at(p: vec3<f32>) -> f32 {
     let last = vec3<f32>(media.candidates.xyz) - 1.0;
     let clamped = clamp(p, vec3(0.0), last);
@@ -277,7 +282,7 @@ fn horizon_at(p: vec3<f32>) -> HorizonAt {
     return found;
 }
 
-// The share of a place that an isosurface takes (w), and the gradient there.
+// The fraction of a point that an isosurface covers (w), and the gradient there.
 fn isosurface_at(record: u32, p: vec3<f32>) -> vec4<f32> {
     var value = 0.0;
     var gradient = vec3(0.0);
@@ -299,8 +304,9 @@ fn isosurface_at(record: u32, p: vec3<f32>) -> vec4<f32> {
     return vec4(gradient, clamp((word(record + 4u) - distance) / (2.0 * SOFT) + 0.5, 0.0, 1.0));
 }
 
-// One medium takes the way of several: a way of its own, with its returns, crashes Mesa 22.3's software driver where faces of rock stop rays.
-fn matter_at(p: vec3<f32>, place: u32, brick: u32, towards: vec3<f32>) -> Matter {
+// A single medium takes the same path as several: a path of its own, with early returns, crashes the software
+// driver of Mesa 22.3 if faces of rock stop rays.
+fn matter_at(p: vec3<f32>, zone: u32, brick: u32, towards: vec3<f32>) -> Matter {
     var horizon: HorizonAt;
     horizon.distance = 1e9;
     if with_leaves == 1u {
@@ -327,7 +333,7 @@ fn matter_at(p: vec3<f32>, place: u32, brick: u32, towards: vec3<f32>) -> Matter
     }
     if rest > 0.0 && in_scope {
         for (var n = 0u; n < media_count; n += 1u) {
-            if media.media[n].place == place {
+            if media.media[n].zone == zone {
                 let one = of_medium(n, p, brick, towards);
                 sum.extinction += one.extinction * rest;
                 sum.colour += one.colour * (one.extinction * rest);
@@ -345,119 +351,4 @@ fn matter_at(p: vec3<f32>, place: u32, brick: u32, towards: vec3<f32>) -> Matter
         sum.emission /= sum.extinction;
     }
     return sum;
-}
-
-fn brick_at(p: vec3<f32>) -> vec3<i32> {
-    return clamp(vec3<i32>(p / BRICK), vec3(0), vec3<i32>(media.bricks.xyz) - 1);
-}
-
-fn brick_word(brick: vec3<i32>) -> u32 {
-    let at = vec3<u32>(brick);
-    return relief_map[media.bricks.w + (at.x * media.bricks.y + at.y) * media.bricks.z + at.z];
-}
-
-// λ + E at a voxel position.
-fn light_at(p: vec3<f32>) -> vec3<f32> {
-    var q = media.cells_x.xyz * p.x + media.cells_y.xyz * p.y + media.cells_z.xyz * p.z + media.cells_shift.xyz;
-    if media.cells_shift.w == 1.0 {
-        let depth = max(q.z * media.cells_low.w + media.cells_low.z, 1e-9);
-        q = vec3(q.xy / depth - media.cells_low.xy, q.z);
-    }
-    let size = vec3<f32>(media.cells.xyz) + vec3(0.0, 0.0, 1.0);
-    let at = (clamp(q, vec3(0.0), size - 1.0) + 0.5) / size;
-    let value = textureSampleLevel(light_volume, filtering, at, 0.0);
-    return value.xyz + vec3(value.w);
-}
-
-struct Gathered {
-    colour: vec3<f32>,
-    passes: f32,
-}
-
-fn through(
-    origin: vec3<f32>, direction: vec3<f32>, t_from: f32, t_to: f32, place: u32, towards: vec3<f32>, units: f32, before: Gathered,
-) -> Gathered {
-    var gathered = before;
-    let length = (t_to - t_from) * units;
-    let steps = max(ceil(length * media.scales.x), 1.0);
-    let step_t = (t_to - t_from) / steps;
-    let step = length / steps;
-    let shift = 8u * place;
-    let inverse = 1.0 / select(direction, vec3(1e-6), abs(direction) < vec3(1e-6));
-    var n = 0.0;
-    loop {
-        let p = origin + direction * (t_from + (n + 0.5) * step_t);
-        let brick = brick_at(p);
-        let content = brick_word(brick);
-        let distance = content >> shift & 255u;
-        if distance == 0u {
-            let matter = matter_at(p, place, content, towards);
-            if matter.extinction > 0.0 {
-                let alpha = 1.0 - exp(-matter.extinction * step);
-                var colour = matter.colour;
-                if shading == OCCLUSION {
-                    colour *= light_at(p);
-                }
-                gathered.colour += (colour + matter.emission) * (alpha * gathered.passes);
-                gathered.passes *= 1.0 - alpha;
-            }
-            n += 1.0;
-        } else {
-            let around = i32(distance) - 1;
-            let border = select(vec3<f32>(brick - around), vec3<f32>(brick + 1 + around), direction > vec3(0.0)) * BRICK;
-            let out = (border - origin) * inverse;
-            let reached = select(out, vec3(HIGHEST), abs(direction) < vec3(1e-6));
-            let exit = min(reached.x, min(reached.y, reached.z));
-            n = max(n + 1.0, ceil((exit - t_from) / step_t + 0.5) );
-        }
-        continuing {
-            break if n >= steps || gathered.passes <= SPENT;
-        }
-    }
-    return gathered;
-}
-
-// What a ray meets in the roaming box between two distances.
-fn gather(origin: vec3<f32>, direction: vec3<f32>, start: f32, stop: f32) -> Gathered {
-    var gathered: Gathered;
-    gathered.passes = 1.0;
-    let outer = cross_box(origin, direction, params.box_low.xyz, params.box_high.xyz);
-    if outer.exit <= outer.enter {
-        return gathered;
-    }
-    let along = to_display(direction);
-    let metres = length(along);
-    let towards = -along / metres;
-    let units = metres / media.scales.y;
-    let last = min(outer.exit, stop);
-    if params.cut_count == 0u {
-        let first = max(outer.enter, start);
-        if last > first + TOUCH && faces_shown != FACES_ALL {
-            gathered = through(origin, direction, first, last, SURROUNDINGS, towards, units, gathered);
-        }
-        return gathered;
-    }
-    // Each round takes a cut-out's stretch, then the rock behind it: two stretches a round.
-    var t = max(outer.enter, start);
-    for (var round = 0u; round < 2u * (params.cut_count + 1u); round += 1u) {
-        if t + TOUCH >= last || gathered.passes <= SPENT {
-            break;
-        }
-        let span = next_span(origin, direction, t);
-        var to = last;
-        var place = CUT_OUT;
-        if span.found {
-            if span.t <= t + TOUCH {
-                place = SURROUNDINGS;
-                to = min(span.end, last);
-            } else {
-                to = min(span.t, last);
-            }
-        }
-        if to > t + TOUCH && (place == CUT_OUT || faces_shown != FACES_ALL) {
-            gathered = through(origin, direction, t, to, place, towards, units, gathered);
-        }
-        t = max(to, t + 0.5 * TOUCH);
-    }
-    return gathered;
 }

@@ -1,11 +1,12 @@
-//! The GPU pass that draws faces, cut-outs and the ground, without a window.
+//! The GPU renderer, without a window: draws faces, cut-outs, the ground, media and wells.
 //!
-//! One compute shader, assembled from the pass and the snippets it uses; each has a CPU twin that it names. A picture is drawn in
-//! tiles, so that no dispatch runs long enough for a driver's watchdog, cancelling is quick, and an image may be larger than any
-//! limit of the device. Everything uploaded is kept while [`Inputs::version`] stays the same; of the parameterization only what is seen is there.
+//! There is one compute shader, assembled from the file of the pass and the files that it uses; each names
+//! its CPU twin. A picture is drawn in tiles, so that no dispatch runs long enough for the watchdog of a
+//! driver, cancelling is quick, and an image may exceed the limits of the device. Uploaded data are kept
+//! while [`Inputs::version`] stays the same. Of the parameterization only the visible part is uploaded.
 //!
-//! Compute, not fragments: on data-centre cards compute has been seen far faster, and on the software driver both are the
-//! same.
+//! A compute shader instead of a fragment shader: on data-centre cards it was found to be far faster, and on
+//! the software driver there is no difference.
 
 mod grids;
 mod layout;
@@ -18,16 +19,16 @@ mod textures;
 mod volumes;
 
 use crate::error::RenderError;
-use crate::frame::{Flat, Frame, MAX_VOLUMES};
 use crate::gpu::Gpu;
 use crate::inputs::Inputs;
 use crate::media::interleaved::{halves, interleave};
 use crate::media::prepared::Preparations;
-use crate::outline;
+use crate::outline::draw::draw as draw_outlines;
+use crate::resolved::{Flat, MAX_VOLUMES, ResolvedScene};
 use crate::scene::Scene;
-use grids::{GridBuffers, Seen};
+use grids::{GridBuffers, VisibleParts};
 use image::RgbaImage;
-use layout::FaceParams;
+use layout::{FaceParams, WORKGROUP};
 use light::LightBuffers;
 use media::{CandidateTextures, MediaVariant};
 use model::{ModelBuffers, POOL_BUFFERS, PackedTexture};
@@ -35,9 +36,9 @@ use std::collections::HashMap;
 use survey::Progress;
 use textures::TextureBuffers;
 use ttf::tables::NONE;
-use volumes::{VolumeInfo, no_volume, upload_volume};
+use volumes::{VolumePlacement, no_volume, upload_volume};
 
-/// The shader: the pass first, so that its error lines are true, then the snippets.
+/// The shader: the file of the pass first, so that line numbers in its errors are right, then the others.
 pub(crate) const SHADER: &str = concat!(
     include_str!("faces.wgsl"),
     include_str!("visible.wgsl"),
@@ -49,29 +50,28 @@ pub(crate) const SHADER: &str = concat!(
     include_str!("texture.wgsl"),
     include_str!("volume.wgsl"),
     include_str!("media.wgsl"),
+    include_str!("march.wgsl"),
     include_str!("light.wgsl"),
     include_str!("leaves.wgsl"),
     include_str!("wells.wgsl"),
 );
 
-/// The shader with the way to filter volumes that a device has.
+/// The shader with the volume interpolation that a device supports.
 pub(crate) fn shader(filters_floats: bool) -> String {
     let filter = if filters_floats { include_str!("filtered.wgsl") } else { include_str!("by_hand.wgsl") };
     [SHADER, filter].concat()
 }
 
-/// Samples that one dispatch computes at most: a tenth of a second on the software driver.
+/// Largest number of samples in one dispatch: a tenth of a second on the software driver.
 const SAMPLES_PER_TILE: u32 = 1 << 17;
-/// Side of a workgroup, pixels.
-const WORKGROUP: u32 = 8;
 
-/// Draws scenes on the GPU, keeping what it uploaded.
+/// Draws scenes on the GPU. Keeps what it has uploaded.
 pub struct Renderer {
     gpu: Gpu,
     module: wgpu::ShaderModule,
     layouts: [wgpu::BindGroupLayout; 4],
     pipeline_layout: wgpu::PipelineLayout,
-    pipelines: HashMap<(Variant, Pass), wgpu::ComputePipeline>,
+    pipelines: HashMap<(Variant, EntryPoint), wgpu::ComputePipeline>,
     version: Option<u64>,
     model: Option<ModelBuffers>,
     grids: Option<GridBuffers>,
@@ -90,7 +90,7 @@ pub struct Renderer {
     filtering: wgpu::Sampler,
 }
 
-/// A pipeline's constants.
+/// The constants of a pipeline.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 struct Variant {
     lookup: u32,
@@ -105,9 +105,9 @@ struct Variant {
     media: MediaVariant,
 }
 
-/// The entry points.
+/// The entry points of the shader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-enum Pass {
+enum EntryPoint {
     Draw,
     Carry,
 }
@@ -116,14 +116,15 @@ impl Renderer {
     /// Opens a device and compiles the shader.
     ///
     /// # Errors
-    /// [`RenderError::NoAdapter`] without a Vulkan driver, [`RenderError::Unsuitable`] for one that is too small.
+    /// [`RenderError::NoAdapter`] without a Vulkan driver; [`RenderError::Unsuitable`] if its limits are too
+    /// low.
     pub fn headless() -> Result<Self, RenderError> {
         let gpu = Gpu::headless()?;
         let make = gpu.guarded(|| Self::with(&gpu))?;
         Ok(make(gpu))
     }
 
-    /// Makes what stays the same for all pictures.
+    /// Creates what is the same for all pictures.
     fn with(gpu: &Gpu) -> Result<impl FnOnce(Gpu) -> Self + use<>, RenderError> {
         let module = gpu.device.create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some("faces"),
@@ -176,15 +177,15 @@ impl Renderer {
         &self.gpu.adapter_name
     }
 
-    /// Gives the device up, as a driver does that is restarted: what follows is the same, so that it can be tried out.
+    /// Loses the device, as if its driver were restarted, so that recovery can be tested.
     pub fn lose_device(&self) {
         self.gpu.device.destroy();
     }
 
-    /// Draws the scene. A device that is lost is opened anew, once, with all that it held.
+    /// Draws the scene. If the device is lost, it is opened again, once, and all data are uploaded again.
     ///
     /// # Errors
-    /// A scene without a picture, missing inputs, cancellation, or what the device says.
+    /// A scene that cannot be drawn, missing inputs, cancellation, or an error of the device.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
         match self.render_once(scene, inputs, progress) {
             Err(RenderError::DeviceLost { .. }) => {
@@ -200,15 +201,15 @@ impl Renderer {
             let first = self.render(&first, inputs, progress)?;
             return Ok(interleave(first, &self.render(&second, inputs, progress)?, stripes));
         }
-        let frame = Frame::new(scene, inputs, &mut self.kept)?;
-        self.upload(&frame, inputs)?;
-        let mut image = self.draw(&frame, progress)?;
-        outline::draw(&frame, &mut image);
+        let resolved = ResolvedScene::new(scene, inputs, &mut self.kept)?;
+        self.upload(&resolved, inputs)?;
+        let mut image = self.draw(&resolved, progress)?;
+        draw_outlines(&resolved, &mut image);
         Ok(image)
     }
 
-    /// Brings the device's copies up to date.
-    fn upload(&mut self, frame: &Frame, inputs: &Inputs) -> Result<(), RenderError> {
+    /// Uploads what the device does not hold yet.
+    fn upload(&mut self, resolved: &ResolvedScene, inputs: &Inputs) -> Result<(), RenderError> {
         if self.version != Some(inputs.version) {
             self.model = None;
             self.grids = None;
@@ -217,32 +218,15 @@ impl Renderer {
             self.volumes.clear();
             self.version = Some(inputs.version);
         }
+        self.upload_interpretation(resolved)?;
         let gpu = &self.gpu;
-        let flat = frame.rock.filter(|_| frame.illustrated).map(|rock| rock.flat);
-        if let Some(rock) = frame.rock
-            && self.model.is_none()
-        {
-            self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, rock.model))?);
+        if !self.textures.as_ref().is_some_and(|held| held.hold(&resolved.tables.textures)) {
+            self.textures = Some(gpu.guarded(|| Ok(TextureBuffers::new(gpu, &resolved.tables.textures)))?);
         }
-        if let (Some(rock), Some(Flat::Exact(param))) = (frame.rock, flat) {
-            let seen = Seen::of(frame);
-            if !self.grids.as_ref().is_some_and(|grids| grids.seen == seen) {
-                self.grids = None;
-                self.grids = Some(gpu.guarded(|| GridBuffers::new(gpu, rock.model, param, seen))?);
-            }
-        }
-        if let Some(Flat::Packed(packed)) = flat
-            && self.packed.is_none()
-        {
-            self.packed = Some(gpu.guarded(|| PackedTexture::new(gpu, Some(packed)))?);
-        }
-        if !self.textures.as_ref().is_some_and(|held| held.hold(&frame.tables.textures)) {
-            self.textures = Some(gpu.guarded(|| Ok(TextureBuffers::new(gpu, &frame.tables.textures)))?);
-        }
-        if let (Some(candidates), None) = (media::candidates_of(frame), &self.candidates) {
+        if let (Some(candidates), None) = (media::candidates_of(resolved), &self.candidates) {
             self.candidates = Some(gpu.guarded(|| CandidateTextures::new(gpu, Some(candidates)))?);
         }
-        for volume in frame.volumes.iter().flatten() {
+        for volume in resolved.volumes.iter().flatten() {
             if !self.volumes.contains_key(volume.name) {
                 let texture = gpu.guarded(|| upload_volume(gpu, volume))?;
                 self.volumes.insert(volume.name.to_owned(), texture);
@@ -251,61 +235,93 @@ impl Renderer {
         Ok(())
     }
 
-    fn variant(&self, frame: &Frame) -> Variant {
+    /// Uploads the model, and the grids or the packed volume, as the scene needs them.
+    fn upload_interpretation(&mut self, resolved: &ResolvedScene) -> Result<(), RenderError> {
+        let gpu = &self.gpu;
+        let flat = resolved.interpretation.filter(|_| resolved.illustrated).map(|interpretation| interpretation.flat);
+        if let Some(interpretation) = resolved.interpretation
+            && self.model.is_none()
+        {
+            self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, interpretation.model))?);
+        }
+        if let (Some(interpretation), Some(Flat::Exact(param))) = (resolved.interpretation, flat) {
+            let seen = VisibleParts::of(resolved);
+            if !self.grids.as_ref().is_some_and(|grids| grids.seen == seen) {
+                self.grids = None;
+                self.grids = Some(gpu.guarded(|| GridBuffers::new(gpu, interpretation.model, param, seen))?);
+            }
+        }
+        if let Some(Flat::Packed(packed)) = flat
+            && self.packed.is_none()
+        {
+            self.packed = Some(gpu.guarded(|| PackedTexture::new(gpu, Some(packed)))?);
+        }
+        Ok(())
+    }
+
+    fn variant(&self, resolved: &ResolvedScene) -> Variant {
         Variant {
-            lookup: match frame.rock.filter(|_| frame.illustrated).map(|rock| rock.flat) {
+            lookup: match resolved
+                .interpretation
+                .filter(|_| resolved.illustrated)
+                .map(|interpretation| interpretation.flat)
+            {
                 None => 0,
                 Some(Flat::Exact(_)) => 1,
                 Some(Flat::Packed(_)) => 2,
             },
-            with_ground: frame.relief.as_ref().map_or(0, |relief| if relief.opacity < 1.0 { 2 } else { 1 }),
-            with_raw: u32::from(frame.tables.globals.raw_volume != NONE),
-            with_scalars: u32::from(frame.illustrated && !frame.tables.scalars.is_empty()),
-            volume_count: frame.volumes.len() as u32,
-            has_faults: frame.rock.map_or(0, |rock| u32::from(!rock.model.faults().surfaces().is_empty())),
-            has_horizons: frame.rock.map_or(0, |rock| u32::from(!rock.model.stratigraphy().horizons.is_empty())),
+            with_ground: resolved.relief.as_ref().map_or(0, |relief| if relief.opacity < 1.0 { 2 } else { 1 }),
+            with_raw: u32::from(resolved.tables.globals.raw_volume != NONE),
+            with_scalars: u32::from(resolved.illustrated && !resolved.tables.scalars.is_empty()),
+            volume_count: resolved.volumes.len() as u32,
+            has_faults: resolved
+                .interpretation
+                .map_or(0, |interpretation| u32::from(!interpretation.model.faults().surfaces().is_empty())),
+            has_horizons: resolved
+                .interpretation
+                .map_or(0, |interpretation| u32::from(!interpretation.model.stratigraphy().horizons.is_empty())),
             pool_chunk: self.model.as_ref().map_or(1, |m| m.pool_chunk),
             pool_chunks: self.model.as_ref().map_or(1, |m| m.pool_chunks() as u32),
-            media: MediaVariant::of(frame),
+            media: MediaVariant::of(resolved),
         }
     }
 
-    fn draw(&mut self, frame: &Frame, progress: &Progress) -> Result<RgbaImage, RenderError> {
-        let variant = self.variant(frame);
-        let grid = media::light_grid(frame);
-        self.make_pipeline(variant, Pass::Draw)?;
+    fn draw(&mut self, resolved: &ResolvedScene, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        let variant = self.variant(resolved);
+        let grid = media::light_grid(resolved);
+        self.make_pipeline(variant, EntryPoint::Draw)?;
         if let Some(grid) = &grid {
-            self.make_pipeline(variant, Pass::Carry)?;
+            self.make_pipeline(variant, EntryPoint::Carry)?;
             if !self.light.as_ref().is_some_and(|held| held.fits(grid.size)) {
                 self.light = None;
                 self.light = Some(self.gpu.guarded(|| LightBuffers::new(&self.gpu, grid.size))?);
             }
         }
-        let pipeline = &self.pipelines[&(variant, Pass::Draw)];
-        let [width, height] = frame.scene.size_px;
-        let side = tile_side(frame.scene.samples);
+        let pipeline = &self.pipelines[&(variant, EntryPoint::Draw)];
+        let [width, height] = resolved.scene.size_px;
+        let side = tile_side(resolved.scene.samples);
         let mut image = RgbaImage::new(width, height);
         let tiles: Vec<[u32; 4]> = (0..height.div_ceil(side))
             .flat_map(|row| (0..width.div_ceil(side)).map(move |column| [column * side, row * side]))
             .map(|[x, y]| [x, y, side.min(width - x), side.min(height - y)])
             .collect();
         self.gpu.guarded(|| {
-            let target = Target::new(&self.gpu, side);
-            let mut params = FaceParams::of(frame);
+            let target = TileTarget::new(&self.gpu, side);
+            let mut params = FaceParams::of(resolved);
             let params_buffer = self.gpu.uniform("params", bytemuck::bytes_of(&params));
-            let mut words = layout::relief_map(frame);
-            let media = media::media_params(frame, grid.as_ref(), &mut words);
+            let mut words = layout::relief_map(resolved);
+            let media = media::media_params(resolved, grid.as_ref(), &mut words);
             let media = self.gpu.uniform("media", bytemuck::bytes_of(&media));
             let words = self.gpu.storage("words", bytemuck::cast_slice(&words));
             let buffers = [&params_buffer, &target.pixels, &words, &media];
             if let (Some(grid), Some(light)) = (&grid, &self.light) {
-                let groups = self.bind_groups(frame, buffers, &self.no_light);
-                let pipeline = &self.pipelines[&(variant, Pass::Carry)];
+                let groups = self.bind_groups(resolved, buffers, &self.no_light);
+                let pipeline = &self.pipelines[&(variant, EntryPoint::Carry)];
                 let own = (&self.light_layout, &params_buffer, &words);
                 light.carry(&self.gpu, pipeline, own, &groups[1..], grid, progress)?;
             }
             let carried = self.light.as_ref().filter(|_| grid.is_some()).map_or(&self.no_light, |light| &light.volume);
-            let groups = self.bind_groups(frame, buffers, carried);
+            let groups = self.bind_groups(resolved, buffers, carried);
             progress.begin("render", tiles.len() as u64);
             for tile in tiles {
                 params.tile = tile;
@@ -318,7 +334,7 @@ impl Renderer {
         Ok(image)
     }
 
-    fn make_pipeline(&mut self, variant: Variant, pass: Pass) -> Result<(), RenderError> {
+    fn make_pipeline(&mut self, variant: Variant, pass: EntryPoint) -> Result<(), RenderError> {
         if !self.pipelines.contains_key(&(variant, pass)) {
             let pipeline = self.gpu.guarded(|| Ok(on_a_large_stack(|| self.pipeline(variant, pass))))?;
             self.pipelines.insert((variant, pass), pipeline);
@@ -326,7 +342,7 @@ impl Renderer {
         Ok(())
     }
 
-    fn pipeline(&self, variant: Variant, pass: Pass) -> wgpu::ComputePipeline {
+    fn pipeline(&self, variant: Variant, pass: EntryPoint) -> wgpu::ComputePipeline {
         let mut constants = vec![
             ("lookup", f64::from(variant.lookup)),
             ("with_ground", f64::from(variant.with_ground)),
@@ -340,8 +356,8 @@ impl Renderer {
         ];
         constants.extend(variant.media.constants());
         let (label, layout) = match pass {
-            Pass::Draw => ("draw", &self.pipeline_layout),
-            Pass::Carry => ("carry", &self.light_pipeline_layout),
+            EntryPoint::Draw => ("draw", &self.pipeline_layout),
+            EntryPoint::Carry => ("carry", &self.light_pipeline_layout),
         };
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(label),
@@ -356,18 +372,23 @@ impl Renderer {
         })
     }
 
-    /// `buffers`: parameters, pixels, words, media.
-    fn bind_groups(&self, frame: &Frame, buffers: [&wgpu::Buffer; 4], light: &wgpu::Texture) -> [wgpu::BindGroup; 4] {
+    /// The bind groups of a picture. `buffers`: parameters, pixels, words, media.
+    fn bind_groups(
+        &self,
+        resolved: &ResolvedScene,
+        buffers: [&wgpu::Buffer; 4],
+        light: &wgpu::Texture,
+    ) -> [wgpu::BindGroup; 4] {
         let [params, pixels, words, media] = buffers;
         let gpu = &self.gpu;
-        let tables = &frame.tables;
+        let tables = &resolved.tables;
         let storage = |label: &str, bytes: &[u8]| gpu.storage(label, bytes);
         let globals = gpu.uniform("ttf", bytemuck::bytes_of(&tables.globals));
         let layers = storage("layers", bytemuck::cast_slice(&tables.layers));
         let intervals = storage("intervals", bytemuck::cast_slice(&tables.intervals));
         let mut entries = tables.scalars.clone();
         for entry in &mut entries {
-            // Shaders may not rely on infinities.
+            // WGSL does not guarantee infinities.
             entry.range = entry.range.map(|end| end.clamp(f32::MIN, f32::MAX));
         }
         let scalars = storage("scalar entries", bytemuck::cast_slice(&entries));
@@ -379,13 +400,13 @@ impl Renderer {
             Some(textures) => (textures.infos.as_entire_binding(), textures.texels.as_entire_binding()),
             None => (none(), none()),
         };
-        let mut volume_infos = [VolumeInfo::default(); MAX_VOLUMES];
+        let mut volume_infos = [VolumePlacement::default(); MAX_VOLUMES];
         let views: Vec<wgpu::TextureView> = (0..MAX_VOLUMES)
             .map(|slot| {
-                let volume = frame.volumes.get(slot).copied().flatten();
+                let volume = resolved.volumes.get(slot).copied().flatten();
                 let texture = volume.and_then(|v| self.volumes.get(v.name)).unwrap_or(&self.no_volume);
                 if let Some(volume) = volume {
-                    volume_infos[slot] = VolumeInfo::of(&volume);
+                    volume_infos[slot] = VolumePlacement::of(&volume);
                 }
                 texture.create_view(&wgpu::TextureViewDescriptor::default())
             })
@@ -430,10 +451,11 @@ impl Renderer {
     }
 }
 
-/// Stack for compiling shaders, bytes: the software driver's compiler recurses deeply, and threads of tests and pools are small.
+/// Stack for compiling shaders, bytes. The compiler of the software driver recurses deeply, and the threads
+/// of tests and pools have small stacks.
 const COMPILER_STACK: usize = 64 << 20;
 
-/// Runs something on a thread with a large stack, or here where no thread can be had.
+/// Runs work on a thread with a large stack, or on this thread if none can be started.
 fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     let (sender, receiver) = std::sync::mpsc::channel();
     let mut work = Some(work);
@@ -455,19 +477,19 @@ fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// Side of a tile at so many samples a pixel along each axis: a multiple of the workgroup.
+/// Side of a tile for a number of samples per pixel along each axis: a multiple of the side of a workgroup.
 fn tile_side(samples: u32) -> u32 {
     let pixels = SAMPLES_PER_TILE / (samples * samples);
     (pixels.isqrt() / WORKGROUP * WORKGROUP).clamp(4 * WORKGROUP, 1024)
 }
 
-/// A tile's pixels on the device and their way back.
-struct Target {
+/// The pixels of a tile on the device, and the buffer in which they are read back.
+struct TileTarget {
     pixels: wgpu::Buffer,
     readback: wgpu::Buffer,
 }
 
-impl Target {
+impl TileTarget {
     fn new(gpu: &Gpu, side: u32) -> Self {
         let buffer = |label, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -506,7 +528,7 @@ impl Target {
         gpu.queue.submit([encoder.finish()]);
         let (sender, receiver) = std::sync::mpsc::channel();
         self.readback.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
-            // The receiver waits below; it is gone only when this function has failed already.
+            // The receiver waits below. It is gone only if this function has already failed.
             let _ = sender.send(result);
         });
         gpu.wait()?;
@@ -527,7 +549,7 @@ impl Target {
     }
 }
 
-/// The four groups: picture, textures and tables, volumes, model.
+/// The layouts of the four bind groups: picture, textures and tables, volumes, model.
 fn bind_group_layouts(gpu: &Gpu) -> [wgpu::BindGroupLayout; 4] {
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let uniform = buffer(wgpu::BufferBindingType::Uniform);

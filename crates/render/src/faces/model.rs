@@ -1,7 +1,7 @@
-//! The interpretation on the GPU: sheets, fault surfaces, blocks and contact rules; and the packed volume.
+//! The interpretation on the GPU: sheets, fault surfaces, blocks and contact rules, and the packed volume.
 //!
-//! All heights lie in one *pool* of floats, split over two storage buffers where a binding is small (128 MiB on the software
-//! driver). Memory: what the CPU holds, once more.
+//! All heights lie in a *pool* of floats, which is split over two storage buffers if bindings are small (128
+//! MiB on the software driver). Memory: the same as on the CPU.
 
 use super::layout::{FaultInfo, ModelInfo, PackedInfo, SheetInfo};
 use crate::error::RenderError;
@@ -12,7 +12,7 @@ use param::PackedVolume;
 use survey::HeightField;
 use survey::stratigraphy::Contact;
 
-/// Buffers the pool may be split over.
+/// Number of buffers over which the pool may be split.
 pub const POOL_BUFFERS: usize = 2;
 
 /// A model on the GPU.
@@ -22,11 +22,11 @@ pub struct ModelBuffers {
     pub faults: wgpu::Buffer,
     pub rules: wgpu::Buffer,
     pub pool: Vec<wgpu::Buffer>,
-    /// Floats in each of the pool's buffers.
+    /// Number of floats in each buffer of the pool.
     pub pool_chunk: u32,
 }
 
-/// Gathers floats; addresses are 32-bit.
+/// Collects floats; addresses have 32 bits.
 #[derive(Default)]
 struct Pool {
     floats: Vec<f32>,
@@ -39,9 +39,10 @@ impl Pool {
         offset
     }
 
-    /// A height field that answers between `low` and `high` (its own x, y) without leaving its grid.
+    /// Adds a height field, padded so that it can be evaluated between `low` and `high` (its own x, y)
+    /// without leaving its grid.
     fn sheet(&mut self, field: &HeightField, low: [f32; 2], high: [f32; 2]) -> SheetInfo {
-        // The patch around a place reaches one node back and two ahead.
+        // The patch around a position reaches one node back and two ahead.
         let first = [0, 1].map(|n| field.origin[n].min(low[n].floor() as i32 - 1));
         let last = [0, 1].map(|n| (field.origin[n] + field.size[n] as i32 - 1).max(high[n].floor() as i32 + 2));
         let size = [0, 1].map(|n| (last[n] - first[n] + 1) as usize);
@@ -97,13 +98,13 @@ impl ModelBuffers {
         })
     }
 
-    /// Buffers of the pool that hold something.
+    /// Number of buffers of the pool that hold data.
     pub fn pool_chunks(&self) -> usize {
         self.pool.len()
     }
 }
 
-/// Smallest and largest (u, v) that a fault's frame has in the volume.
+/// Smallest and largest (u, v) of a fault's frame in the volume.
 fn frame_range(fault: &FaultSurface, last: [f32; 3]) -> [[f32; 2]; 2] {
     let corners = (0..8).map(|n| {
         let pick = |axis: usize| if n >> axis & 1 == 0 { 0.0 } else { f64::from(last[axis]) };
@@ -114,7 +115,8 @@ fn frame_range(fault: &FaultSurface, last: [f32; 3]) -> [[f32; 2]; 2] {
     [[low.x as f32, low.y as f32], [high.x as f32, high.y as f32]]
 }
 
-/// The frame's rows with the constants for positions relative to `centre`, where single precision is at its best.
+/// The rows of the frame of a fault, with constants for positions relative to `centre`, where single
+/// precision is most accurate.
 fn fault_info(fault: &FaultSurface, centre: DVec3, surface: SheetInfo) -> FaultInfo {
     let at_centre = fault.frame_from_voxel * centre + fault.frame_offset;
     let row = |n: usize| fault.frame_from_voxel.row(n).extend(at_centre[n]).as_vec4().to_array();
@@ -144,7 +146,7 @@ fn split_pool(gpu: &Gpu, floats: &[f32]) -> Result<(Vec<wgpu::Buffer>, u32), Ren
     let chunk = gpu.buffer_floats;
     if floats.len() > chunk.saturating_mul(POOL_BUFFERS) || floats.len() > u32::MAX as usize {
         return Err(RenderError::OutOfMemory {
-            reason: format!("the interpretation takes {} MiB", (floats.len() * 4) >> 20),
+            reason: format!("the interpretation needs {} MiB", (floats.len() * 4) >> 20),
         });
     }
     let buffers: Vec<_> = floats.chunks(chunk).map(|part| gpu.storage("pool", bytemuck::cast_slice(part))).collect();
@@ -159,14 +161,17 @@ pub struct PackedTexture {
 }
 
 impl PackedTexture {
-    /// Uploads a packed volume: texel (x, y, z) is sample (z, y, x). `None` fills the binding.
+    /// Uploads a packed volume: texel (x, y, z) is sample (z, y, x). `None` creates one texel, which is bound
+    /// if nothing is read.
     pub fn new(gpu: &Gpu, packed: Option<&PackedVolume>) -> Result<Self, RenderError> {
         let [nx, ny, nz] = packed.map_or([1; 3], |p| p.size);
         let limit = gpu.device.limits().max_texture_dimension_3d as usize;
         if [nx, ny, nz].into_iter().any(|n| n > limit) {
             return Err(RenderError::Unsuitable {
                 adapter: gpu.adapter_name.clone(),
-                reason: format!("the packed volume has {nx} x {ny} x {nz} samples, its limit is {limit} a side"),
+                reason: format!(
+                    "the packed volume has {nx} x {ny} x {nz} samples, but its limit is {limit} along each axis"
+                ),
             });
         }
         let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };

@@ -1,9 +1,10 @@
 // Which layer and fault block a voxel position lies in: the twin of `StructuralModel::region_at`.
 //
-// Sheets and fault surfaces are height fields, evaluated as `HeightField` does: Catmull–Rom bicubic through the nodes.
+// Sheets and fault surfaces are height fields, evaluated as `HeightField` does: Catmull–Rom bicubic
+// interpolation through the nodes.
 //
-// Loops whose body is dear test at the end: the software driver runs both sides of every branch and a loop's body once more
-// than it counts when the test comes first.
+// Loops with an expensive body test at the end. The software driver executes both sides of every branch, and
+// if the test comes first it executes the body once more than needed.
 
 struct SheetInfo {
     // Voxel (or fault cell) position of node (0, 0).
@@ -16,7 +17,8 @@ struct SheetInfo {
     padding_2: u32,
 }
 
-// A fault as w = g(u, v): each row gives one of u, v (cells) and w (m) from (x, y, z, 1) relative to `model.centre`.
+// A fault as w = g(u, v). Each row gives one of u, v (cells) and w (m) from (x, y, z, 1) relative to
+// `model.centre`.
 struct FaultInfo {
     u: vec4<f32>,
     v: vec4<f32>,
@@ -41,17 +43,17 @@ struct ModelInfo {
 // Index horizon · blocks + block.
 @group(3) @binding(1) var<storage, read> sheets: array<SheetInfo>;
 @group(3) @binding(2) var<storage, read> faults: array<FaultInfo>;
-// Blocks first: side bits (low, high) and care bits (low, high); then horizons: contact in x.
+// Blocks first: side bits (low, high) and care bits (low, high). Then horizons: contact in x.
 @group(3) @binding(3) var<storage, read> rules: array<vec4<u32>>;
-// One address space of floats over two buffers, because a binding may be as small as 128 MiB.
+// One address space of floats over two buffers, because a binding may be limited to 128 MiB.
 @group(3) @binding(4) var<storage, read> pool_0: array<f32>;
 @group(3) @binding(5) var<storage, read> pool_1: array<f32>;
 
-// Floats in the first of the pool's buffers.
+// Number of floats in the first buffer of the pool.
 override pool_chunk: u32 = 0xffffffffu;
 override pool_chunks: u32 = 1u;
 
-// 1 where the model has any.
+// 1 if the model has any.
 override has_faults: u32 = 1u;
 override has_horizons: u32 = 1u;
 
@@ -76,7 +78,8 @@ fn cubic_slopes(t: f32) -> vec4<f32> {
     return 0.5 * vec4(-3.0 * t2 + 4.0 * t - 1.0, 9.0 * t2 - 10.0 * t, -9.0 * t2 + 8.0 * t + 1.0, 3.0 * t2 - 2.0 * t);
 }
 
-// First node of the 4 × 4 patch around a place. Grids are padded on upload to cover the volume; the clamp only keeps strays in.
+// First node of the 4 × 4 patch around a position. Grids are padded on upload to cover the volume; the clamp
+// only guards against positions outside it.
 fn patch_start(info: SheetInfo, cell: vec2<f32>) -> u32 {
     let corner = clamp(vec2<i32>(cell) - 1 - info.origin, vec2(0), vec2<i32>(info.size) - 4);
     return info.offset + u32(corner.x) * info.size.y + u32(corner.y);
@@ -167,7 +170,8 @@ fn block_at(p: vec3<f32>) -> u32 {
     return block_of(bits);
 }
 
-// The layer of a place whose bit h says that it lies at or below the sheet of horizon h: `ContactRules::layer`.
+// The layer of a point; bit h says that the point lies at or below the sheet of horizon h. The twin of
+// `ContactRules::layer`.
 fn layer_of(below: vec2<u32>) -> u32 {
     let n = model.horizons;
     for (var h = 0u; h < n; h += 1u) {

@@ -1,7 +1,7 @@
 // The paper's packed volume with extrapolated corners: the twin of `param::PackedVolume` (P-illus 3.3, 3.4).
 
 struct PackedInfo {
-    // Voxel position → sample index; w unused.
+    // Scale from voxel positions to sample indices; w unused.
     scale: vec4<f32>,
     // Counts of samples; w unused.
     size: vec4<u32>,

@@ -1,5 +1,5 @@
-// The colour of a point on a cut face: the twin of `ttf::shade` (P-illus 4, figure 7) and of
-// `ttf::FaceFrame` for faces of constant x, y or z.
+// The colour of a point on a cut face: the twin of `ttf::shade` (P-illus 4, figure 7) and of `ttf::FaceFrame`
+// for faces of constant x, y or z.
 
 struct TtfGlobals {
     no_data: vec4<f32>,
@@ -25,7 +25,7 @@ struct IntervalEntry {
     k: vec2<f32>,
     frequency: vec2<f32>,
     texture: u32,
-    // Three numbers, not a vec3, which would be aligned to 16 bytes.
+    // Three numbers, since a vec3 would be aligned to 16 bytes.
     padding_0: u32,
     padding_1: u32,
     padding_2: u32,
@@ -56,7 +56,7 @@ struct StopEntry {
 @group(1) @binding(5) var<storage, read> scalar_entries: array<ScalarEntry>;
 @group(1) @binding(6) var<storage, read> stops: array<StopEntry>;
 
-// 1 where raw data are blended in, and where there are scalar textures.
+// 1 if raw data are blended in; 1 if there are scalar textures.
 override with_raw: u32 = 1u;
 override with_scalars: u32 = 1u;
 
@@ -67,7 +67,7 @@ const ACROSS_ONLY_SHARE: f32 = 0.35;
 const ALONG_ONLY_SHARE: f32 = 0.65;
 
 // A point of a face in flat space, and how flat space changes there.
-struct FlatPoint {
+struct ShadePoint {
     ijk: vec3<f32>,
     // Change of (i, j, k) per sample step to the right and down the image.
     dx: vec3<f32>,
@@ -75,7 +75,7 @@ struct FlatPoint {
     // Gradient of k in metric space.
     grad_k: vec3<f32>,
     layer: u32,
-    // 1 where (i, j, k) are defined.
+    // 1 if (i, j, k) are defined.
     defined: u32,
 }
 
@@ -132,10 +132,10 @@ fn map_flat(mappings: Mappings, mapping: u32, flat: vec3<f32>) -> vec2<f32> {
     return vec2(i, j);
 }
 
-fn sample_mapped(texture: u32, frequency: vec2<f32>, point: FlatPoint, mappings: Mappings) -> vec4<f32> {
+fn sample_mapped(texture: u32, frequency: vec2<f32>, point: ShadePoint, mappings: Mappings) -> vec4<f32> {
     let scale = frequency * ttf.global_frequency;
     var sum = vec4(0.0);
-    // As many rounds as mappings have a weight: mostly one.
+    // One round per mapping with a weight: usually one.
     var left = mappings.weights;
     loop {
         let mapping = select(select(2u, 1u, left.y > 0.0), 0u, left.x > 0.0);
@@ -194,7 +194,7 @@ fn raw_colour(value: f32) -> vec4<f32> {
     return colour;
 }
 
-// Blends from the illustration to the raw colour at a voxel position.
+// Blends an illustrated colour with the raw colour at a voxel position.
 fn blend_raw(colour: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
     if with_raw == 0u {
         return colour;
@@ -207,7 +207,7 @@ fn blend_raw(colour: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
 }
 
 // The colour of a point of a face of constant x, y or z at voxel position p.
-fn shade(point: FlatPoint, axis: u32, p: vec3<f32>) -> vec3<f32> {
+fn shade(point: ShadePoint, axis: u32, p: vec3<f32>) -> vec3<f32> {
     let layer = layers[point.layer];
     var colour = layer.colour.rgb;
     var frequency = layer.frequency;
@@ -239,7 +239,7 @@ fn shade(point: FlatPoint, axis: u32, p: vec3<f32>) -> vec3<f32> {
     return blend_raw(colour, p);
 }
 
-// The opaque average colour of a layer at k (P-illus 5): the colour of the ground above it.
+// The opaque average colour of a layer at k: the colour of the ground above it (P-illus 5).
 fn average_colour(layer_index: u32, k: f32) -> vec3<f32> {
     let layer = layers[layer_index];
     let covering = interval_at(layer, k);

@@ -4,9 +4,9 @@ use super::layout::{FaceParams, FaultInfo, GridInfo, ModelInfo, PackedInfo, Shee
 use super::light::Slice;
 use super::media::{HORIZON_WORDS, MediaParams, MediumInfo};
 use super::textures::TextureInfo;
-use super::volumes::VolumeInfo;
+use super::volumes::VolumePlacement;
 use super::{Renderer, shader};
-use crate::media::{march, table};
+use crate::media::{march, samples, table};
 use crate::{Inputs, RenderError, Scene, ground, inputs, leaves, visible, wells};
 use model::{ModelSettings, StructuralModel};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
@@ -38,7 +38,8 @@ fn the_shader_is_valid() {
     }
 }
 
-/// Compares a struct's members with Rust's fields: same names, same order, same offsets, same size. Padding is Rust's own business.
+/// Compares the members of a struct with Rust's fields: same names, order, offsets and size. Padding is
+/// ignored.
 fn same_layout(module: &naga::Module, name: &str, size: usize, fields: &[(&str, usize)]) {
     let found = module.types.iter().find(|(_, ty)| ty.name.as_deref() == Some(name));
     let Some((_, naga::Type { inner: naga::TypeInner::Struct { members, span }, .. })) = found else {
@@ -76,14 +77,14 @@ fn structs_have_the_same_layout() {
     check!(m, GridInfo: origin, size, levels, first_column, bottom_horizon, top_horizon, bottom_shift, top_shift);
     check!(m, PackedInfo: scale, size, i_range, j_range, layers, blocks);
     check!(m, TextureInfo: mean, offset, side, levels);
-    check!(m, VolumeInfo: scale, offset, size);
+    check!(m, VolumePlacement: scale, offset, size);
     check!(m, TtfGlobals: no_data, raw_domain, blend, global_frequency, aspect_j, raw_volume, scalar_count, stop_count);
     check!(m, LayerEntry: colour, frequency, first_interval, interval_count);
     check!(m, IntervalEntry: colour, ink, k, frequency, texture);
     check!(m, ScalarEntry: colour, ink, range, factor, texture, volume, opacity);
     check!(m, StopEntry: colour, at);
     check!(m, Slice: index, side);
-    check!(m, MediumInfo: low, scale, slot, table, layers, place, coloured);
+    check!(m, MediumInfo: low, scale, slot, table, layers, zone, coloured);
     check!(m, MediaParams: display_x, display_y, display_z, covector_x, covector_y, covector_z, light, phong, cells_x,
         cells_y, cells_z, cells_shift, cells_low, back, right, up, forward, grid, cells, bricks, scales, candidates,
         leaves, slice_units, groups, wells, capsules, media);
@@ -128,10 +129,10 @@ fn constants_are_the_same() {
         ("NONE", f64::from(ttf::tables::NONE)),
         ("ENTRIES", table::ENTRIES as f64),
         ("OPAQUE", f64::from(table::OPAQUE)),
-        ("NO_DATA", f64::from(table::NO_DATA)),
-        ("NO_DATA_BELOW", f64::from(table::NO_DATA_BELOW)),
+        ("NO_DATA", f64::from(samples::NO_DATA)),
+        ("NO_DATA_BELOW", f64::from(samples::NO_DATA_BELOW)),
         ("SPENT", f64::from(march::SPENT)),
-        ("SOFT", f64::from(crate::media::medium::SOFT)),
+        ("SOFT", f64::from(crate::media::shell::SOFT)),
         ("BRICK", crate::media::prepared::BRICK as f64),
         ("MIXED", f64::from(crate::media::bricks::MIXED)),
         ("HORIZON_WORDS", HORIZON_WORDS as f64),
@@ -147,7 +148,7 @@ fn constants_are_the_same() {
     }
 }
 
-/// A model that does not fit one buffer is split over two, and refused when it does not fit those.
+/// A model that does not fit into one buffer is split over two, and refused if it does not fit into those.
 #[test]
 fn a_split_pool_draws_the_same() {
     if std::env::var("PETROGLYPH_GPU_TESTS").is_ok_and(|value| value == "skip") {
@@ -195,7 +196,7 @@ fn a_split_pool_draws_the_same() {
     let pool: usize = (0..4).map(|n| model.sheet(n / 2, (n % 2) as u16).z.len()).sum();
     renderer.gpu.buffer_floats = pool * 5 / 8;
     renderer.model = None;
-    // The grids stay where they are.
+    // The grids are not uploaded again.
     let split = renderer.render(&scene, &inputs, &quiet).unwrap();
     assert!(renderer.model.as_ref().is_some_and(|model| model.pool_chunks() == 2));
     assert!(split == whole);

@@ -1,4 +1,4 @@
-// Filtered texture sampling: the twin of `ttf::Texture::sample`, whose module text states the rule.
+// Filtered texture sampling: the twin of `ttf::Texture::sample`, whose module documentation states the rule.
 
 struct TextureInfo {
     // Mean of all texels, premultiplied.
@@ -19,7 +19,7 @@ const MAX_TAPS: f32 = 8.0;
 
 fn bilinear_texel(info: TextureInfo, uv: vec2<f32>, level: u32) -> vec4<f32> {
     let side = info.side >> level;
-    // Texels of the levels before: the sum of a geometric series.
+    // Number of texels of the levels before: the sum of a geometric series.
     let start = info.offset + (info.side * info.side - side * side) / 3u * 4u;
     let place = fract(uv) * f32(side) - 0.5;
     let low = floor(place);

@@ -1,14 +1,14 @@
 //! Pattern tiles with their mip levels in one storage buffer.
 //!
-//! A buffer instead of a texture array, so that tiles of different sizes (users bring their own) lie side by side, and
-//! because the anisotropic filter of `ttf::Texture` is computed by hand anyway.
+//! A buffer instead of a texture array, so that tiles of different sizes (users add their own) can be
+//! adjacent, and because the anisotropic filter of `ttf::Texture` is computed in the shader anyway.
 
 use crate::gpu::Gpu;
 use bytemuck::{Pod, Zeroable};
 use std::sync::Arc;
 use ttf::Texture;
 
-/// Where a tile lies in the texel buffer, as the shader has it.
+/// The position of a tile in the texel buffer, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct TextureInfo {
@@ -16,7 +16,7 @@ pub struct TextureInfo {
     pub mean: [f32; 4],
     /// First texel of level 0.
     pub offset: u32,
-    /// Texels a side at level 0.
+    /// Texels per side at level 0.
     pub side: u32,
     /// Count of mip levels.
     pub levels: u32,
@@ -55,7 +55,7 @@ impl TextureBuffers {
         }
     }
 
-    /// Whether exactly these tiles are uploaded already.
+    /// Whether exactly these tiles have been uploaded.
     pub fn hold(&self, textures: &[Arc<Texture>]) -> bool {
         self.uploaded.len() == textures.len() && self.uploaded.iter().zip(textures).all(|(a, b)| Arc::ptr_eq(a, b))
     }

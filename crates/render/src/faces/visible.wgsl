@@ -6,7 +6,7 @@ const LOWEST: f32 = -3.0e38;
 const HIGHEST: f32 = 3.0e38;
 
 // The interval of t over which a ray is inside a box, and the axes of the planes at its ends.
-struct Crossing {
+struct BoxCrossing {
     enter: f32,
     exit: f32,
     enter_axis: u32,
@@ -21,8 +21,8 @@ struct SolidSpan {
     found: bool,
 }
 
-fn cross_box(origin: vec3<f32>, direction: vec3<f32>, low: vec3<f32>, high: vec3<f32>) -> Crossing {
-    var crossing = Crossing(LOWEST, HIGHEST, 0u, 0u);
+fn cross_box(origin: vec3<f32>, direction: vec3<f32>, low: vec3<f32>, high: vec3<f32>) -> BoxCrossing {
+    var crossing = BoxCrossing(LOWEST, HIGHEST, 0u, 0u);
     for (var axis = 0u; axis < 3u; axis += 1u) {
         let d = select(direction[axis], PARALLEL, abs(direction[axis]) < PARALLEL);
         let a = (low[axis] - origin[axis]) / d;

@@ -1,6 +1,6 @@
 // Scalar volumes on their own lattices and extents: the twin of `NamedVolume::sample`.
 
-struct VolumeInfo {
+struct VolumePlacement {
     // Sample index = voxel position · scale + offset; w unused.
     scale: vec4<f32>,
     offset: vec4<f32>,
@@ -8,7 +8,7 @@ struct VolumeInfo {
     size: vec4<u32>,
 }
 
-@group(2) @binding(0) var<uniform> volume_infos: array<VolumeInfo, 6>;
+@group(2) @binding(0) var<uniform> volume_infos: array<VolumePlacement, 6>;
 // Texel (x, y, z) of a texture is sample (z, y, x) of the volume, so that z stays fastest in memory.
 @group(2) @binding(1) var volume_0: texture_3d<f32>;
 @group(2) @binding(2) var volume_1: texture_3d<f32>;
@@ -17,7 +17,7 @@ struct VolumeInfo {
 @group(2) @binding(5) var volume_4: texture_3d<f32>;
 @group(2) @binding(6) var volume_5: texture_3d<f32>;
 
-// Stands for NaN and for dead traces, which shaders may not rely on.
+// Value of NaN and of dead traces, since WGSL does not guarantee NaN.
 const NO_DATA: f32 = -3.0e38;
 const NO_WEIGHT: f32 = 1e-5;
 const SLACK: f32 = 1e-3;
@@ -26,7 +26,7 @@ fn is_no_data(value: f32) -> bool {
     return value < -1.0e38;
 }
 
-// Volumes in use, so that nothing is read from the others.
+// Number of volumes in use; nothing is read from the others.
 override volume_count: u32 = 6u;
 
 fn load_volume(slot: u32, at: vec3<u32>) -> f32 {

@@ -1,20 +1,20 @@
 //! Scalar volumes as 3D textures (P-illus 5.1).
 //!
-//! 32-bit floats, read texel by texel: on the software driver the fastest format, and interpolation by hand agrees with the CPU
-//! where hardware weights have 8 bits.
+//! Texels are 32-bit floats and are read one by one: this is the fastest format on the software driver, and
+//! interpolation in the shader agrees with the CPU, where hardware interpolation has weights of 8 bits.
 
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use crate::inputs::NamedVolume;
 use bytemuck::{Pod, Zeroable};
 
-/// Stands for NaN and for dead traces on the GPU.
+/// Value of NaN and of dead traces on the GPU.
 const NO_DATA: f32 = -3.0e38;
 
-/// Where a volume lies, as the shader has it.
+/// The position and size of a volume, in the layout of the shader.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
-pub struct VolumeInfo {
+pub struct VolumePlacement {
     /// Sample index = voxel position · scale + offset; w unused.
     pub scale: [f32; 4],
     /// See `scale`.
@@ -23,8 +23,8 @@ pub struct VolumeInfo {
     pub size: [u32; 4],
 }
 
-impl VolumeInfo {
-    /// The place of this volume.
+impl VolumePlacement {
+    /// The position of this volume.
     pub fn of(volume: &NamedVolume) -> Self {
         let (scale, offset) = volume.index_from_voxel();
         let [x, y, z] = volume.volume.size().map(|n| n as u32);
@@ -32,14 +32,17 @@ impl VolumeInfo {
     }
 }
 
-/// Uploads a volume: texel (x, y, z) is sample (z, y, x). Takes one plane of memory beside the texture.
+/// Uploads a volume: texel (x, y, z) is sample (z, y, x). Needs memory for one plane beside the texture.
 pub fn upload_volume(gpu: &Gpu, volume: &NamedVolume) -> Result<wgpu::Texture, RenderError> {
     let [nx, ny, nz] = volume.volume.size();
     let limit = gpu.device.limits().max_texture_dimension_3d as usize;
     if [nx, ny, nz].into_iter().any(|n| n > limit) {
         return Err(RenderError::Unsuitable {
             adapter: gpu.adapter_name.clone(),
-            reason: format!("the volume `{}` has {nx} x {ny} x {nz} samples, its limit is {limit} a side", volume.name),
+            reason: format!(
+                "the volume `{}` has {nx} x {ny} x {nz} samples, but its limit is {limit} along each axis",
+                volume.name
+            ),
         });
     }
     let size = wgpu::Extent3d { width: nz as u32, height: ny as u32, depth_or_array_layers: nx as u32 };

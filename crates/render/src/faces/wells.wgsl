@@ -1,12 +1,12 @@
 // Wells as chains of capsules: the twin of `wells`. Display space relative to voxel 0, m.
 
-// 1 where there are any.
+// 1 if there are wells.
 override with_wells: u32 = 0u;
 
 const RIM_LIGHT: f32 = 0.35;
 const CAPSULE_WORDS: u32 = 10u;
 
-// The first well on a ray before `stop`: its colour, and where (w, voxels; HIGHEST: none).
+// The first well on a ray before `stop`: its colour, and its distance (w, voxels; HIGHEST: none).
 fn well_hit(voxel_origin: vec3<f32>, voxel_direction: vec3<f32>, stop: f32) -> vec4<f32> {
     let along = to_display(voxel_direction);
     let metres = length(along);

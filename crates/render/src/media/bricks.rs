@@ -1,12 +1,15 @@
-//! Which bricks of space show something, and how far the nearest such brick is.
+//! Empty-space skipping: which bricks are visible, and how far the nearest visible brick is.
 //!
-//! A brick shows a medium if its function is visible somewhere in the range of the volume's samples there *and* some layer that can be there
-//! lets it through; it shows a horizon if a sample near enough belongs to one of its leaves. Every brick then gets the distance to the
-//! nearest brick that shows something, in bricks and by the largest axis, up to [`FARTHEST`]: a ray may jump to the border of that cube of bricks. One
-//! pass of a 3D distance transform takes the place of an octree: any jump is one lookup.
+//! A brick is visible for a medium if the medium's function has an opacity somewhere in the range of the
+//! volume's samples in the brick, *and* some layer that may be in the brick is not transparent. It is visible
+//! for a horizon if a sample close enough to the horizon belongs to one of its leaves. Every brick stores the
+//! distance to the nearest visible brick, in bricks and by the largest axis, up to [`FARTHEST`]; a ray may
+//! skip to the border of that cube of bricks. This distance transform replaces an octree: every skip takes a
+//! single lookup.
 //!
-//! Voxel space of the survey; brick (bx, by, bz) spans [8·bx, 8·bx + 8] along x and so on. A brick's word: distance for the surroundings in
-//! bits 0–7, for the cut-outs in bits 8–15, and in bits 16–23 the layer if the brick lies wholly in one, else [`MIXED`].
+//! Voxel space of the survey; brick (bx, by, bz) spans [8·bx, 8·bx + 8] along x, and so on. Each brick is one
+//! 32-bit word: the distance for the surroundings in bits 0–7, for the cut-outs in bits 8–15, and in bits
+//! 16–23 the layer if the brick lies in a single one, else [`MIXED`].
 
 use super::prepared::BRICK;
 use super::{LayerOpacity, Medium, MediumColour};
@@ -18,29 +21,30 @@ use ttf::{TtfTables, linear_from_srgb};
 
 /// Largest distance stored, bricks.
 pub const FARTHEST: u8 = 15;
-/// Stands for "several layers, or unknown".
+/// Stands for several layers, or an unknown layer.
 pub const MIXED: u8 = 255;
 
-/// What is in a brick, before distances.
+/// The content of a brick, before distances are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BrickContent {
-    /// Whether the surroundings and the cut-outs show something there.
+    /// Whether the brick is visible in the surroundings, and in the cut-outs.
     pub shows: [bool; 2],
-    /// The layer if it is one.
+    /// The layer if there is a single one, else [`MIXED`].
     pub layer: u8,
 }
 
 /// The bricks of a survey.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bricks {
-    /// Bricks along each axis.
+    /// Number of bricks along each axis.
     pub size: [usize; 3],
-    /// Their words, `[x][y][z]`.
+    /// Words of the bricks, `[x][y][z]`.
     pub words: Vec<u32>,
 }
 
 impl Bricks {
-    /// The bricks of a survey of so many samples; `content` is asked for each, with its number along each axis.
+    /// The bricks of a survey with these numbers of samples; `content` gives the content of the brick at an
+    /// index along each axis.
     pub fn new(samples: [usize; 3], content: impl Fn([usize; 3]) -> BrickContent + Sync) -> Self {
         let size = samples.map(|n| n.saturating_sub(1).div_ceil(BRICK).max(1));
         let contents: Vec<BrickContent> = (0..size.iter().product::<usize>())
@@ -56,22 +60,23 @@ impl Bricks {
         Self { size, words }
     }
 
-    /// The brick around a voxel position.
+    /// The brick that contains a voxel position.
     #[inline(always)]
     pub fn at(&self, p: Vec3) -> [i32; 3] {
         let along = |v: f32, axis: usize| ((v * (1.0 / BRICK as f32)) as i32).clamp(0, self.size[axis] as i32 - 1);
         [along(p.x, 0), along(p.y, 1), along(p.z, 2)]
     }
 
-    /// Its word.
+    /// The word of a brick.
     #[inline(always)]
     pub fn word(&self, [x, y, z]: [i32; 3]) -> u32 {
         self.words[(x as usize * self.size[1] + y as usize) * self.size[2] + z as usize]
     }
 
-    /// The first of some places in a brick that shows something, in the surroundings (`shift` 0) or in the cut-outs (8), from place `n` on; `end` where there is none.
+    /// The first sample of a line, at or after number `n`, that lies in a visible brick of the surroundings
+    /// (`shift` 0) or of the cut-outs (`shift` 8); `end` if there is none.
     #[inline(always)]
-    pub fn first_shown(&self, line: &Line, mut n: u32, end: u32, shift: u32) -> u32 {
+    pub fn first_shown(&self, line: &SampleLine, mut n: u32, end: u32, shift: u32) -> u32 {
         while n < end {
             let brick = self.at(line.at + line.per * n as f32);
             let distance = (self.word(brick) >> shift & 255) as i32;
@@ -83,36 +88,36 @@ impl Bricks {
         end
     }
 
-    /// Voxel positions of its corners.
+    /// Voxel positions of the smallest and largest corner of a brick.
     pub fn corners(brick: [usize; 3]) -> [Vec3; 2] {
         let low = Vec3::from_array(brick.map(|n| (n * BRICK) as f32));
         [low, low + BRICK as f32]
     }
 }
 
-/// Evenly spaced places on a straight line, voxels.
+/// Evenly spaced samples on a straight line, voxels.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Line {
-    /// The first.
+pub struct SampleLine {
+    /// The first sample.
     pub at: Vec3,
-    /// The way to the next.
+    /// The offset from one sample to the next.
     pub per: Vec3,
     inverse: Vec3,
 }
 
-impl Line {
-    /// From the first place, and the way to the next.
+impl SampleLine {
+    /// A line from its first sample and the offset to the next.
     pub fn new(at: Vec3, per: Vec3) -> Self {
         Self { at, per, inverse: per.recip() }
     }
 
-    /// The first place behind a brick grown by `around` bricks to every side.
+    /// Number of the first sample behind a brick that is grown by `around` bricks on every side.
     #[inline(always)]
     fn leaves(&self, [x, y, z]: [i32; 3], around: i32) -> u32 {
         let along = |first: i32, at: f32, per: f32, inverse: f32| {
             let border = if per > 0.0 { first + 1 + around } else { first - around };
             let places = ((border * BRICK as i32) as f32 - at) * inverse;
-            // Not so where the line is parallel to the border.
+            // A negative number or NaN means that the line is parallel to the border or leaves it behind.
             if places >= 0.0 { places } else { f32::MAX }
         };
         let (at, per, inverse) = (self.at, self.per, self.inverse);
@@ -121,10 +126,11 @@ impl Line {
     }
 }
 
-/// Distance to the nearest marked brick by the largest axis: three passes of a running minimum.
+/// Distance to the nearest marked brick by the largest axis.
 fn distances(size: [usize; 3], marked: Vec<bool>) -> Vec<u8> {
     let mut field: Vec<u8> = marked.into_iter().map(|m| if m { 0 } else { FARTHEST }).collect();
-    // Growing the marked set by one cube at a time is separable: along each axis a brick within one of the set joins it.
+    // Growing the marked set by one brick is separable: along each axis, a brick next to one of the set joins
+    // it.
     for reached in 1..FARTHEST {
         let before = field.clone();
         let mut grown: Vec<bool> = before.iter().map(|d| *d < reached).collect();
@@ -150,22 +156,23 @@ fn distances(size: [usize; 3], marked: Vec<bool>) -> Vec<u8> {
     field
 }
 
-/// Where layers can be, brick by brick, without asking the model at every voxel.
+/// The layer of each brick, found without a lookup of every voxel in the model.
 #[derive(Debug)]
 pub struct LayerMap {
     size: [usize; 3],
     layers: Vec<u8>,
 }
 
-/// Columns asked along a brick's side.
+/// Number of columns along a side of a brick at which sheets are evaluated.
 const ASKED: usize = 5;
-/// How much faster than distance the offset from a fault may grow.
+/// Largest ratio by which the offset from a fault may grow faster than distance.
 const FAULT_SLOPE: f64 = 1.25;
-/// What a sheet may bend between two of them, voxels.
+/// Largest deviation of a sheet from straight lines between two of these columns, voxels.
 const BEND: f32 = 0.75;
 
 impl LayerMap {
-    /// Asks a model: a brick lies in one layer if one block does (no fault within reach) and no sheet of it crosses.
+    /// The layers of a model: a brick lies in a single layer if it lies in a single block (no fault is within
+    /// reach) and no sheet of that block crosses it.
     pub fn new(model: &StructuralModel) -> Self {
         let size = model.size().map(|n| n.saturating_sub(1).div_ceil(BRICK).max(1));
         let metric = model.metric();
@@ -197,7 +204,7 @@ impl LayerMap {
         Self { size, layers }
     }
 
-    /// The layer that a brick lies in, or [`MIXED`].
+    /// The layer of a brick, or [`MIXED`].
     pub fn layer(&self, [x, y, z]: [usize; 3]) -> u8 {
         self.layers[(x * self.size[1] + y) * self.size[2] + z]
     }
@@ -221,17 +228,18 @@ fn sheet_spans(model: &StructuralModel, [bx, by]: [usize; 2]) -> Vec<Vec<[f32; 2
     (0..model.block_count()).map(|block| (0..horizons).map(|h| spans(block, h)).collect()).collect()
 }
 
-/// What layers do to a medium, bottom up.
+/// How layers change the appearance of a medium, bottom to top.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LayerLooks {
+pub struct LayerAppearance {
     /// Linear colour, and the factor on the opacity.
     pub entries: Vec<[f32; 4]>,
-    /// Whether the colour replaces the medium's.
+    /// Whether the colour replaces that of the medium.
     pub colours: bool,
 }
 
-impl LayerLooks {
-    /// What a medium asks of the styles; nothing shows in the air above a shown ground. `None` where layers do not matter.
+impl LayerAppearance {
+    /// The appearance that a medium takes from the layer styles. The air above a visible ground is
+    /// transparent. `None` if layers do not change the medium.
     pub fn new(
         medium: &Medium,
         tables: &TtfTables,

@@ -1,48 +1,52 @@
-//! Many rays through one volume side by side: the case that has to be quick.
+//! Marches many rays through one volume side by side. This is the most frequent case, so it must be fast.
 //!
-//! What [`super::march::gather`] gathers, where one medium is all there is ([`super::field::Field::alone`]). A bundle of neighbouring rays advances
-//! together, eight samples of each at a time, so that they find in the cache what their neighbours read, and each stage is a short loop over
-//! [`BATCH`] samples of several rays, without a branch: places, values, extinctions. Only then does each ray take up what it met, sample by sample.
+//! The result is that of [`super::march::gather`] if there is only one medium
+//! ([`super::field::MediaField::only_medium`]). The neighbouring rays of a bundle advance together, eight
+//! samples of each at a time, so that they find in the cache what their neighbours have read. Each stage is a
+//! short loop without branches over [`BATCH`] samples of several rays: positions, values, extinctions. Only
+//! then does each ray composite its samples one by one.
 //!
-//! Empty space is asked for once per ray and eight samples. Where the medium has one colour c and no light falls on it, a ray is a sum:
+//! Empty space is looked up once per ray and eight samples. If the medium has a single colour c and is not
+//! shaded, the result is a closed expression of a sum:
 //!
 //! ```text
 //! T = exp(−Σ κᵢ·Δ)      C = c·(1 − T)
 //! ```
 //!
-//! Otherwise samples that show something are first collected, then lit. Voxel space and index space; every sample is placed by its number alone, so that the
-//! picture does not depend on what was skipped.
+//! Otherwise the visible samples are first collected and then shaded. Voxel space and index space. The
+//! position of a sample depends on its number alone, so the picture does not depend on what was skipped.
 
 use super::Faces;
 use super::Shading;
-use super::bricks::{Bricks, Line};
-use super::field::Field;
+use super::bricks::{Bricks, SampleLine};
+use super::field::MediaField;
 use super::light::LightVolume;
-use super::lit::{Surfaces, half_way};
+use super::lit::{LitSurfaces, half_way};
 use super::march::{Gathered, SPENT, gather};
-use super::medium::{FieldMedium, Place};
-use super::samples::{BATCH, Places, Samples};
+use super::medium::{FieldMedium, Zone};
+use super::samples::{BATCH, IndexPositions, NO_DATA_BELOW, VolumeSamples};
 use super::stretches::stretches;
-use super::table::{NO_DATA_BELOW, absorbed};
+use super::table::absorbed;
 use super::wide::{Loops, widest};
 use crate::visible::{Ray, Solid};
 use glam::{Mat3, Vec3};
 
-/// Rays of a bundle.
+/// Number of rays in a bundle.
 pub const RAYS: usize = 64;
-/// Samples that a ray takes at a time.
+/// Number of samples that a ray takes at a time.
 const LANES: usize = 8;
 const NUMBERS: [f32; LANES] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
-/// Gathers what rays meet between two distances each; quick where neighbours in the list are neighbours in the picture.
+/// Integrates the media along rays, each between two distances. Fast if neighbours in the list are neighbours
+/// in the picture.
 pub fn gather_all(
-    field: &Field,
+    field: &MediaField,
     light: Option<&LightVolume>,
     solid: &Solid,
     rays: &[(Ray, [f32; 2])],
 ) -> Vec<Gathered> {
-    // Places are counted in 32 bits.
-    match field.alone().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize) {
+    // Samples are addressed with 32 bits.
+    match field.only_medium().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize) {
         None => rays.iter().map(|(ray, between)| gather(field, light, solid, ray, *between)).collect(),
         Some(medium) => {
             let mut gathered = Vec::with_capacity(rays.len());
@@ -56,26 +60,26 @@ pub fn gather_all(
     }
 }
 
-/// A few rays on their way.
+/// The rays of a bundle, and what they march through.
 struct Bundle<'b> {
     bricks: &'b Bricks,
     medium: &'b FieldMedium<'b>,
-    samples: Samples<'b>,
+    samples: VolumeSamples<'b>,
     light: Option<&'b LightVolume>,
     shading: Shading,
-    /// The direction to the light of surfaces, in display space.
+    /// Direction to the light, in display space.
     towards_light: Vec3,
-    /// The medium's colour, where that is all there is to know of a sample.
+    /// The colour of the medium, if a sample needs nothing else.
     plain: Option<Vec3>,
-    /// Differences per sample → normal in display space.
+    /// Map from differences per sample to normals in display space.
     normal: Mat3,
-    /// Where in a brick's word the medium's distance is.
+    /// Position in the word of a brick of the distance for this medium.
     shift: u32,
     walkers: Vec<Walker>,
     legs: Vec<Leg>,
 }
 
-/// A bundle's way.
+/// The march of a bundle, as a loop for wide registers.
 struct March<'m, 'b>(&'m mut Bundle<'b>);
 
 impl Loops for March<'_, '_> {
@@ -89,60 +93,60 @@ impl Loops for March<'_, '_> {
 
 /// A stretch of a ray through the medium.
 struct Leg {
-    /// Voxel position of the first sample and the way to the next.
+    /// Voxel position of the first sample, and the offset to the next.
     at: Vec3,
     per: Vec3,
-    /// Samples, and their optical length.
+    /// Number of samples, and the optical length of each.
     steps: u32,
     step: f32,
 }
 
-/// A ray and how far it is.
+/// The state of a ray.
 struct Walker {
-    /// Between the directions to the light and to the viewer.
+    /// Half-way direction between those to the light and to the viewer.
     half: Vec3,
-    /// Its legs that are still to come.
+    /// Its remaining legs.
     legs: std::ops::Range<usize>,
-    /// Voxel positions of the leg's samples.
-    line: Line,
-    /// The first and the way to the next in index space.
+    /// Voxel positions of the samples of the current leg.
+    line: SampleLine,
+    /// The first sample and the offset to the next, in index space.
     index: Vec3,
     index_per: Vec3,
-    /// Next sample, samples of the leg, and their optical length.
+    /// Number of the next sample, number of samples of the leg, and the optical length of each.
     n: u32,
     steps: u32,
     step: f32,
-    /// Optical depth so far, where the medium is plain.
+    /// Optical depth so far, if the medium has a single colour.
     depth: f32,
     gathered: Gathered,
 }
 
-/// Samples of several rays.
+/// Samples of several rays that are processed together.
 struct Batch {
-    places: Places,
+    places: IndexPositions,
     values: [f32; BATCH],
     entries: [u32; BATCH],
     extinctions: [f32; BATCH],
-    /// The rays they are of, [`LANES`] samples each, and how many of those count.
+    /// The rays of the samples, [`LANES`] samples each, and how many of those are valid.
     walkers: [(usize, usize); BATCH / LANES],
     filled: usize,
-    seen: [Seen; BATCH],
-    surfaces: Surfaces,
+    seen: [VisibleSample; BATCH],
+    surfaces: LitSurfaces,
 }
 
-/// A sample that shows something.
+/// A visible sample.
 #[derive(Clone, Copy, Default)]
-struct Seen {
+struct VisibleSample {
     walker: usize,
     n: f32,
     entry: usize,
-    /// What of its light arrives.
+    /// Its weight in the colour of the ray.
     weight: f32,
 }
 
 impl<'b> Bundle<'b> {
     fn new(
-        field: &'b Field,
+        field: &'b MediaField,
         medium: &'b FieldMedium,
         light: Option<&'b LightVolume>,
         solid: &Solid,
@@ -157,8 +161,8 @@ impl<'b> Bundle<'b> {
             let units = metres / field.unit_m;
             let first = legs.len();
             stretches(solid, ray, *between, |stretch| {
-                // Rock that is drawn as faces is not looked into.
-                if stretch.place == medium.place && (stretch.place == Place::CutOut || field.faces != Faces::All) {
+                // The inside of rock whose faces are drawn is not visible.
+                if stretch.zone == medium.zone && (stretch.zone == Zone::CutOut || field.faces != Faces::All) {
                     let [from, to] = stretch.t;
                     let steps = ((to - from) * units * field.samples_per_unit).ceil().max(1.0);
                     let step_t = (to - from) / steps;
@@ -179,7 +183,7 @@ impl<'b> Bundle<'b> {
             towards_light: field.light,
             plain: plain.map(Vec3::from_array),
             normal: field.display_normal_from_voxel * Mat3::from_diagonal(medium.index_from_voxel().0 * 0.5),
-            shift: if medium.place == Place::CutOut { 8 } else { 0 },
+            shift: if medium.zone == Zone::CutOut { 8 } else { 0 },
             walkers,
             legs,
         }
@@ -190,12 +194,12 @@ impl<'b> Bundle<'b> {
             None => walker.gathered,
             Some(colour) => {
                 let covers = absorbed(walker.depth);
-                Gathered { colour: colour * covers, passes: 1.0 - covers }
+                Gathered { colour: colour * covers, transmittance: 1.0 - covers }
             }
         }
     }
 
-    /// Follows all rays to their ends.
+    /// Marches all rays to their ends.
     #[inline(always)]
     fn march(&mut self) {
         let mut batch = Batch::new();
@@ -228,10 +232,10 @@ impl<'b> Bundle<'b> {
         }
     }
 
-    /// Adds up optical depths.
+    /// Adds optical depths.
     #[inline(always)]
     fn sum(&mut self, batch: &Batch, on: &mut Vec<usize>) {
-        // The depth behind which less than the last light arrives.
+        // The optical depth at which a ray ends.
         let spent = -SPENT.ln();
         for (extinctions, &(index, count)) in batch.extinctions.chunks_exact(LANES).zip(&batch.walkers[..batch.filled])
         {
@@ -243,7 +247,7 @@ impl<'b> Bundle<'b> {
                 depth += if lane < count { extinction * walker.step } else { 0.0 };
                 depths[lane] = depth;
             }
-            // A ray ends at the first sample behind which nothing is seen.
+            // A ray ends at the first sample behind which nothing is visible.
             let ended = depth >= spent;
             walker.depth =
                 if ended { depths.into_iter().find(|depth| *depth >= spent).unwrap_or(depth) } else { depth };
@@ -253,7 +257,7 @@ impl<'b> Bundle<'b> {
         }
     }
 
-    /// Collects what shows, and lights it.
+    /// Collects the visible samples and shades them.
     #[inline(always)]
     fn collect(&mut self, batch: &mut Batch, on: &mut Vec<usize>) {
         let mut found = 0;
@@ -262,28 +266,28 @@ impl<'b> Bundle<'b> {
             let lanes = slot * LANES..(slot + 1) * LANES;
             let mut alphas = [0.0f32; LANES];
             for (alpha, extinction) in alphas.iter_mut().zip(&batch.extinctions[lanes.clone()]) {
-                // Exactly nothing where nothing shows, whatever is skipped.
+                // Exactly 0 for invisible samples, so that the result does not depend on what is skipped.
                 *alpha = if *extinction > 0.0 { absorbed(extinction * walker.step) } else { 0.0 };
             }
-            let mut passes = walker.gathered.passes;
+            let mut transmittance = walker.gathered.transmittance;
             let mut ended = false;
             for (lane, alpha) in alphas[..count].iter().enumerate() {
-                let weight = alpha * passes;
-                // Written in any case, counted if it shows: no branch.
-                batch.seen[found] = Seen {
+                let weight = alpha * transmittance;
+                // Always written but only counted if visible, to avoid a branch.
+                batch.seen[found] = VisibleSample {
                     walker: index,
                     n: (walker.n + lane as u32) as f32,
                     entry: batch.entries[lanes.start + lane] as usize,
                     weight,
                 };
                 found += usize::from(batch.extinctions[lanes.start + lane] > 0.0);
-                passes *= 1.0 - alpha;
-                if passes <= SPENT {
+                transmittance *= 1.0 - alpha;
+                if transmittance <= SPENT {
                     ended = true;
                     break;
                 }
             }
-            walker.gathered.passes = passes;
+            walker.gathered.transmittance = transmittance;
             walker.n += count as u32;
             if !ended {
                 on.push(index);
@@ -322,7 +326,7 @@ impl Walker {
         Self {
             half,
             legs,
-            line: Line::default(),
+            line: SampleLine::default(),
             index: Vec3::ZERO,
             index_per: Vec3::ZERO,
             n: 0,
@@ -333,7 +337,7 @@ impl Walker {
         }
     }
 
-    /// Goes on to the next sample in a brick that shows something; false where there is none.
+    /// Advances to the next sample in a visible brick; returns false if there is none.
     #[inline(always)]
     fn advance(&mut self, bricks: &Bricks, shift: u32, medium: &FieldMedium, legs: &[Leg]) -> bool {
         loop {
@@ -348,7 +352,7 @@ impl Walker {
 
     fn begin(&mut self, leg: &Leg, medium: &FieldMedium) {
         let (scale, offset) = medium.index_from_voxel();
-        self.line = Line::new(leg.at, leg.per);
+        self.line = SampleLine::new(leg.at, leg.per);
         self.index = leg.at * scale + offset;
         self.index_per = leg.per * scale;
         self.n = 0;
@@ -360,18 +364,18 @@ impl Walker {
 impl Batch {
     fn new() -> Self {
         Self {
-            places: Places::default(),
+            places: IndexPositions::default(),
             values: [0.0; BATCH],
             entries: [0; BATCH],
             extinctions: [0.0; BATCH],
             walkers: [(0, 0); BATCH / LANES],
             filled: 0,
-            seen: [Seen::default(); BATCH],
-            surfaces: Surfaces::new(),
+            seen: [VisibleSample::default(); BATCH],
+            surfaces: LitSurfaces::new(),
         }
     }
 
-    /// The next samples of a ray.
+    /// Adds the next samples of a ray.
     #[inline(always)]
     fn push(&mut self, index: usize, walker: &Walker) {
         let start = self.filled * LANES;
@@ -386,9 +390,9 @@ impl Batch {
         self.filled += 1;
     }
 
-    /// Values and extinctions of its samples.
+    /// Reads the values and extinctions of the samples.
     #[inline(always)]
-    fn read(&mut self, samples: &Samples, medium: &FieldMedium) {
+    fn read(&mut self, samples: &VolumeSamples, medium: &FieldMedium) {
         let count = self.filled * LANES;
         samples.values(&self.places, count, &mut self.values);
         let table = &medium.table;

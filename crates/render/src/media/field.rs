@@ -1,74 +1,50 @@
-//! The media of a scene at any point: extinction, colour, emission.
+//! The media of a scene, evaluated at any point: extinction, colour and emission.
 //!
-//! Voxel space; extinction per unit of length ([`Field::unit_m`] metres of display space), colours linear.
+//! Voxel space; extinction per unit of length ([`MediaField::unit_m`] metres of display space), colours
+//! linear.
 
-use super::bricks::{BrickContent, Bricks, LayerLooks, LayerMap, MIXED};
-use super::isosurface::{Depths, FieldIsosurface, Scalar};
+use super::bricks::{BrickContent, Bricks, LayerAppearance, LayerMap, MIXED};
+use super::horizons::FieldHorizons;
+use super::isosurface::{FieldIsosurface, StratigraphicDepth};
 use super::lit::Lit;
-use super::medium::{FieldMedium, Place, SOFT};
+use super::medium::{FieldMedium, Zone};
 use super::prepared::Preparations;
-use super::table::{NO_DATA_BELOW, Table, extinction};
-use super::{Colouring, EmptySpace, Faces, Media, Phong, Scope, Shading, white_ramp};
+use super::samples::NO_DATA_BELOW;
+use super::table::{FunctionTable, extinction};
+use super::{EmptySpace, Faces, IsosurfaceSource, Media, Phong, Scope, Shading, white_ramp};
 use crate::camera::View;
-use crate::error::{NO_CANDIDATES, NO_DEPTHS, RenderError};
-use crate::inputs::{Candidates, Inputs};
-use crate::leaves::{BORDER_TONE, leaf_colour};
+use crate::error::RenderError;
+use crate::inputs::{Inputs, NamedVolume};
 use glam::{Mat3, Vec3};
 use model::StructuralModel;
-use ttf::{TtfTables, linear_from_srgb};
+use ttf::TtfTables;
 
-/// What is at a point.
+/// The optical properties of a point.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Matter {
-    /// Extinction per unit of length; 0 = nothing.
+    /// Extinction per unit of length; 0: the point is transparent.
     pub extinction: f32,
-    /// Linear colour, lit by Phong's model if the scene asks.
+    /// Linear colour, shaded by Phong's model if the scene asks for it.
     pub colour: Vec3,
-    /// Linear light given off.
+    /// Linear emitted light.
     pub emission: Vec3,
 }
 
-/// A horizon's looks.
-pub struct FieldHorizon<'a> {
-    /// Linear colour.
-    pub colour: Vec3,
-    /// Extinction inside.
-    pub extinction: f32,
-    /// Half of its thickness, voxels.
-    pub thickness: f32,
-    /// Factor on its colour for the light it gives off.
-    pub emission: f32,
-    /// Whether its leaves are told apart by colour.
-    pub by_leaf: bool,
-    /// What is painted on it.
-    pub paint: Option<FieldMedium<'a>>,
-}
-
-/// The horizons shown by their leaves.
-pub struct FieldHorizons<'a> {
-    /// Distances and ids.
-    pub candidates: Candidates<'a>,
-    /// Number of the horizon by leaf id, from 1; 0 = none.
-    pub styles: Vec<u8>,
-    /// The horizons.
-    pub horizons: Vec<FieldHorizon<'a>>,
-}
-
-/// The media of a scene, resolved.
-pub struct Field<'a> {
-    /// Those of the surroundings first.
+/// The media of a scene, with names resolved.
+pub struct MediaField<'a> {
+    /// The media; those of the surroundings first.
     pub media: Vec<FieldMedium<'a>>,
-    /// Horizons by their leaves.
+    /// Horizons shown by their leaves.
     pub horizons: Option<FieldHorizons<'a>>,
-    /// Surfaces of one value.
+    /// Isosurfaces.
     pub isosurfaces: Vec<FieldIsosurface<'a>>,
-    /// Space that shows nothing.
+    /// Bricks for empty-space skipping.
     pub bricks: Bricks,
-    /// How the media are lit.
+    /// The shading.
     pub shading: Shading,
     /// Which faces stop rays.
     pub faces: Faces,
-    /// Where media are shown.
+    /// Where media are visible.
     pub scope: Scope,
     /// Distance that counts as near a horizon, voxels.
     pub reach: f32,
@@ -76,21 +52,22 @@ pub struct Field<'a> {
     pub samples_per_unit: f32,
     /// Unit of length, m of display space.
     pub unit_m: f32,
-    /// Linear part of voxel → display.
+    /// Linear map from voxel to display space.
     pub display_from_voxel: Mat3,
-    /// Voxel covector → display covector.
+    /// Map from voxel covectors to display covectors.
     pub display_normal_from_voxel: Mat3,
     /// Direction to the light in display space, unit.
     pub light: Vec3,
     model: Option<&'a StructuralModel>,
-    depths: Option<Depths<'a>>,
+    depths: Option<StratigraphicDepth<'a>>,
 }
 
-impl<'a> Field<'a> {
-    /// The media of a scene; `None` when it has none.
+impl<'a> MediaField<'a> {
+    /// The media of a scene; `None` if it has none.
     ///
     /// # Errors
-    /// Functions that cannot be evaluated; horizons without candidates.
+    /// Functions that cannot be evaluated; unknown volumes; horizons without candidates; surfaces of k'
+    /// without an interpretation.
     pub fn new(
         media: &Media,
         inputs: &Inputs<'a>,
@@ -102,67 +79,37 @@ impl<'a> Field<'a> {
         if media.is_empty() {
             return Ok(None);
         }
-        let mut resolve = |name: &str, function: &ttf::RgbaFunction, place: Place| {
+        let mut resolve = |name: &str, function: &ttf::RgbaFunction, zone: Zone| {
             function.validate(&format!("the medium `{name}`"))?;
-            let volume = *inputs.volumes.iter().find(|v| v.name == name).ok_or_else(|| RenderError::UnknownVolume {
-                name: name.to_owned(),
-                present: inputs.volumes.iter().map(|v| v.name.to_owned()).collect(),
-            })?;
+            let volume = NamedVolume::find(inputs.volumes, name)?;
             let prepared = kept.of(inputs.version, &volume);
-            Ok::<_, RenderError>(FieldMedium::new(volume, prepared, Table::new(function), place))
+            Ok::<_, RenderError>(FieldMedium::new(volume, prepared, FunctionTable::new(function), zone))
         };
         let model = inputs.model;
         let mut resolved = Vec::new();
-        let places = [(&media.surroundings, Place::Surroundings), (&media.cut_outs, Place::CutOut)];
-        for (medium, place) in places.into_iter().flat_map(|(list, place)| list.iter().map(move |m| (m, place))) {
-            let mut made = resolve(&medium.volume, &medium.function, place)?;
-            made.layers = LayerLooks::new(medium, tables, model, ground_is_shown);
+        let zones = [(&media.surroundings, Zone::Surroundings), (&media.cut_outs, Zone::CutOut)];
+        for (medium, zone) in zones.into_iter().flat_map(|(list, zone)| list.iter().map(move |m| (m, zone))) {
+            let mut made = resolve(&medium.volume, &medium.function, zone)?;
+            made.layers = LayerAppearance::new(medium, tables, model, ground_is_shown);
             resolved.push(made);
         }
         let depths = match (inputs.model, inputs.param) {
-            (Some(model), Some(param)) => Some(Depths { model, param }),
+            (Some(model), Some(param)) => Some(StratigraphicDepth { model, param }),
             _ => None,
         };
-        let mut isosurfaces = Vec::new();
-        for surface in &media.isosurfaces {
+        let isosurfaces = media.isosurfaces.iter().map(|surface| {
             let medium = match &surface.of {
-                Scalar::Volume(name) => Some(resolve(name, &white_ramp(1.0, 0.0), Place::Surroundings)?),
-                Scalar::Depth if depths.is_none() => return Err(NO_DEPTHS),
-                Scalar::Depth => None,
+                IsosurfaceSource::Volume(name) => Some(resolve(name, &white_ramp(1.0, 0.0), Zone::Surroundings)?),
+                IsosurfaceSource::Depth if depths.is_none() => return Err(RenderError::NO_DEPTHS),
+                IsosurfaceSource::Depth => None,
             };
-            isosurfaces.push(FieldIsosurface::new(surface, medium));
-        }
+            Ok(FieldIsosurface::new(surface, medium))
+        });
+        let isosurfaces = isosurfaces.collect::<Result<_, _>>()?;
         let horizons = match (media.horizons.is_empty(), inputs.candidates) {
             (true, _) => None,
-            (false, None) => {
-                return Err(NO_CANDIDATES);
-            }
-            (false, Some(candidates)) => {
-                candidates.validate()?;
-                let mut styles = vec![0u8; candidates.leaf.iter().copied().max().unwrap_or(0) as usize + 1];
-                let mut list = Vec::new();
-                for (n, horizon) in media.horizons.iter().enumerate() {
-                    if horizon.leaves.is_empty() {
-                        styles[1..].fill(n as u8 + 1);
-                    }
-                    for &leaf in &horizon.leaves {
-                        if let Some(style) = styles.get_mut(leaf as usize).filter(|_| leaf != 0) {
-                            *style = n as u8 + 1;
-                        }
-                    }
-                    let paint = horizon.paint.as_ref();
-                    let paint = paint.map(|p| resolve(&p.volume, &p.function, Place::Surroundings)).transpose()?;
-                    list.push(FieldHorizon {
-                        colour: Vec3::from_array(horizon.colour.to_unit().map(linear_from_srgb)),
-                        extinction: extinction(horizon.opacity),
-                        thickness: horizon.thickness,
-                        emission: horizon.emission,
-                        by_leaf: horizon.colouring == Colouring::ByLeaf,
-                        paint,
-                    });
-                }
-                Some(FieldHorizons { candidates, styles, horizons: list })
-            }
+            (false, None) => return Err(RenderError::NO_CANDIDATES),
+            (false, Some(candidates)) => Some(FieldHorizons::new(&media.horizons, candidates, &mut resolve)?),
         };
         let display_from_voxel = view.display_from_voxel();
         let light = match media.shading {
@@ -190,11 +137,12 @@ impl<'a> Field<'a> {
         Ok(Some(field))
     }
 
-    /// The one medium, where there is nothing else to see and nothing to ask but its function.
-    pub fn alone(&self) -> Option<&FieldMedium<'a>> {
+    /// The single medium, if the scene has no horizons, isosurfaces or further media, and layers do not
+    /// change that medium.
+    pub fn only_medium(&self) -> Option<&FieldMedium<'a>> {
         let [medium] = &self.media[..] else { return None };
-        let alone = self.horizons.is_none() && self.isosurfaces.is_empty() && medium.layers.is_none();
-        alone.then_some(medium)
+        let only = self.horizons.is_none() && self.isosurfaces.is_empty() && medium.layers.is_none();
+        only.then_some(medium)
     }
 
     fn fill_bricks(&self, samples: [usize; 3], empty_space: EmptySpace) -> Bricks {
@@ -205,25 +153,26 @@ impl<'a> Field<'a> {
             let layer = map.as_ref().map_or(MIXED, |map| map.layer(brick));
             let [low, high] = Bricks::corners(brick);
             let near = self.horizons.as_ref().map(|h| h.nearest(low, high));
-            let shows = |place: Place| {
+            let shows = |zone: Zone| {
                 empty_space == EmptySpace::Sampled
                     || near.is_some_and(|near| near.shows)
                     || self.isosurfaces.iter().any(|surface| surface.shows(low, high, layer))
                     || (self.scope != Scope::NearHorizons || near.is_some_and(|near| near.distance <= self.reach + 1.0))
-                        && self.media.iter().any(|m| m.place == place && m.shows(low, high, layer))
+                        && self.media.iter().any(|m| m.zone == zone && m.shows(low, high, layer))
             };
-            BrickContent { shows: [shows(Place::Surroundings), shows(Place::CutOut)], layer }
+            BrickContent { shows: [shows(Zone::Surroundings), shows(Zone::CutOut)], layer }
         })
     }
 
-    /// What is at a point of a place, in a brick with this word. `towards` points to the viewer, unit, in display space.
+    /// The optical properties of a point in a zone, in a brick with this word. `towards` is the unit
+    /// direction to the viewer in display space.
     #[inline(always)]
-    pub fn at(&self, p: Vec3, place: Place, word: u32, towards: Vec3) -> Matter {
+    pub fn at(&self, p: Vec3, zone: Zone, word: u32, towards: Vec3) -> Matter {
         if self.media.len() == 1 && self.horizons.is_none() && self.isosurfaces.is_empty() {
             let medium = &self.media[0];
-            return if medium.place == place { self.of_medium(medium, p, word, towards) } else { Matter::default() };
+            return if medium.zone == zone { self.of_medium(medium, p, word, towards) } else { Matter::default() };
         }
-        self.mixed(p, place, word, towards)
+        self.mixed(p, zone, word, towards)
     }
 
     #[inline(always)]
@@ -237,9 +186,9 @@ impl<'a> Field<'a> {
             return Matter::default();
         }
         let mut colour = Vec3::new(r, g, b);
-        if let Some(looks) = &medium.layers {
-            let [r, g, b, opacity] = self.layer_entry(looks, p, word);
-            if looks.colours {
+        if let Some(appearance) = &medium.layers {
+            let [r, g, b, opacity] = self.layer_entry(appearance, p, word);
+            if appearance.colours {
                 colour = Vec3::new(r, g, b);
             }
             extinction = thinned(extinction, opacity);
@@ -252,18 +201,18 @@ impl<'a> Field<'a> {
         Matter { extinction, colour, emission: Vec3::ZERO }
     }
 
-    /// The looks of the layer at a place: known for the brick, or asked of the model.
-    fn layer_entry(&self, looks: &LayerLooks, p: Vec3, word: u32) -> [f32; 4] {
+    /// The appearance of the layer at a point. The layer is known for the brick, or looked up in the model.
+    fn layer_entry(&self, appearance: &LayerAppearance, p: Vec3, word: u32) -> [f32; 4] {
         let hint = (word >> 16 & 255) as u8;
         let layer = match (hint, self.model) {
             (MIXED, Some(model)) => usize::from(model.region_at(p).layer),
             (hint, _) => usize::from(hint),
         };
-        looks.entries.get(layer).copied().unwrap_or_default()
+        *appearance.entries.get(layer).expect("every layer of the model has an appearance")
     }
 
-    /// Several media and horizons at one place.
-    fn mixed(&self, p: Vec3, place: Place, word: u32, towards: Vec3) -> Matter {
+    /// Several media, horizons and isosurfaces at a point.
+    fn mixed(&self, p: Vec3, zone: Zone, word: u32, towards: Vec3) -> Matter {
         let horizon = self.horizons.as_ref().map(|h| h.at(p)).unwrap_or_default();
         let mut rest = 1.0 - horizon.cover;
         let in_scope = match self.scope {
@@ -286,7 +235,7 @@ impl<'a> Field<'a> {
             }
         }
         if rest > 0.0 && in_scope {
-            for medium in self.media.iter().filter(|m| m.place == place) {
+            for medium in self.media.iter().filter(|m| m.zone == zone) {
                 let one = self.of_medium(medium, p, word, towards);
                 sum.extinction += one.extinction * rest;
                 sum.colour += one.colour * (one.extinction * rest);
@@ -305,99 +254,17 @@ impl<'a> Field<'a> {
         sum
     }
 
-    /// A colour under Phong's light.
+    /// A colour shaded by Phong's model.
     fn lit(&self, phong: Phong, gradient: Vec3, colour: Vec3, towards: Vec3) -> Vec3 {
         Lit::new(phong, self.light, towards).on(self.display_normal_from_voxel * gradient, colour)
     }
 }
 
-/// The extinction whose opacity is that of `kappa` times a factor.
+/// The extinction whose opacity is that of `kappa` multiplied by a factor.
 fn thinned(kappa: f32, opacity: f32) -> f32 {
     match opacity {
         1.0 => kappa,
         0.0 => 0.0,
         opacity => extinction((1.0 - (-kappa).exp()) * opacity),
-    }
-}
-
-/// A horizon's part at a point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HorizonAt {
-    /// Share of the place it takes.
-    pub cover: f32,
-    /// Distance to the nearest horizon shown, voxels; large where there is none.
-    pub distance: f32,
-    /// Its extinction.
-    pub extinction: f32,
-    /// Its colour.
-    pub colour: Vec3,
-    /// Factor for the light it gives off.
-    pub emission: f32,
-}
-
-impl Default for HorizonAt {
-    fn default() -> Self {
-        Self { cover: 0.0, distance: 1e9, extinction: 0.0, colour: Vec3::ZERO, emission: 0.0 }
-    }
-}
-
-/// What a brick has of horizons.
-#[derive(Debug, Clone, Copy)]
-struct Near {
-    shows: bool,
-    distance: f32,
-}
-
-impl FieldHorizons<'_> {
-    /// The horizon at a point: distance by trilinear interpolation, leaf by the nearest sample.
-    pub fn at(&self, p: Vec3) -> HorizonAt {
-        let leaf = self.candidates.leaf_at(p);
-        let style = self.styles.get(leaf as usize).copied().unwrap_or(0);
-        if style == 0 {
-            return HorizonAt::default();
-        }
-        let horizon = &self.horizons[usize::from(style) - 1];
-        let distance = self.candidates.distance_at(p);
-        let cover = ((horizon.thickness - distance) / (2.0 * SOFT) + 0.5).clamp(0.0, 1.0);
-        let mut colour = horizon.colour;
-        if horizon.by_leaf {
-            let group = self.candidates.group(leaf);
-            if group == 0 {
-                return HorizonAt::default();
-            }
-            let tone = if cover > 0.0 && self.candidates.is_border(p) { BORDER_TONE } else { 1.0 };
-            colour = Vec3::from_array((leaf_colour(group) * tone).to_array().map(linear_from_srgb));
-        }
-        if let Some(paint) = &horizon.paint
-            && cover > 0.0
-        {
-            let value = paint.sample(p);
-            if value > NO_DATA_BELOW {
-                let [r, g, b, _] = paint.table.entries[paint.table.index(value)];
-                colour = Vec3::new(r, g, b);
-            }
-        }
-        HorizonAt { cover, distance, extinction: horizon.extinction, colour, emission: horizon.emission }
-    }
-
-    fn nearest(&self, low: Vec3, high: Vec3) -> Near {
-        let c = &self.candidates;
-        let from = low.to_array().map(|v| v as usize);
-        let mut near = Near { shows: false, distance: 1e9 };
-        for x in from[0]..=(high.x as usize).min(c.size[0] - 1) {
-            for y in from[1]..=(high.y as usize).min(c.size[1] - 1) {
-                let start = (x * c.size[1] + y) * c.size[2];
-                for n in start + from[2]..=start + (high.z as usize).min(c.size[2] - 1) {
-                    let style = self.styles[c.leaf[n] as usize];
-                    if style != 0 {
-                        let distance = f32::from(c.distance[n]) * c.voxels_per_step;
-                        near.distance = near.distance.min(distance);
-                        // Between samples the interpolated distance is less than at all of them by less than a voxel.
-                        near.shows |= distance <= self.horizons[usize::from(style) - 1].thickness + 1.0 + SOFT;
-                    }
-                }
-            }
-        }
-        near
     }
 }

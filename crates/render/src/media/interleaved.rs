@@ -1,32 +1,14 @@
-//! Two kinds of light side by side in one picture (P-horiz, figure 5): stripes by gradients and without them in turn, so that an eye compares them on the same
-//! structure.
+//! Two shadings side by side in one picture (P-horiz, figure 5): stripes shaded by gradients alternate with
+//! stripes shaded by occlusion, so that the two can be compared on the same structure.
 //!
-//! Both pictures are drawn whole and then interleaved: nothing in one depends on the other, and every renderer draws them alike.
+//! Both pictures are drawn completely and then interleaved. Neither depends on the other, and every renderer
+//! draws them in the same way.
 
-use super::{Occlusion, Phong, Shading};
+use super::Shading;
 use crate::scene::Scene;
 use image::RgbaImage;
-use serde::{Deserialize, Serialize};
 
-/// Stripes by gradients and by occlusion in turn.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields)]
-pub struct Interleaved {
-    /// The light of the first stripe from the left, and of every other.
-    pub phong: Phong,
-    /// The light of those between.
-    pub occlusion: Occlusion,
-    /// Upright stripes over the width of the picture. Default 8.
-    pub stripes: u32,
-}
-
-impl Default for Interleaved {
-    fn default() -> Self {
-        Self { phong: Phong::default(), occlusion: Occlusion::default(), stripes: 8 }
-    }
-}
-
-/// The two pictures of an interleaved scene.
+/// The two scenes of an interleaved scene, and the number of stripes.
 pub(crate) fn halves(scene: &Scene) -> Option<([Scene; 2], u32)> {
     let Shading::Interleaved(settings) = scene.media.shading else { return None };
     let with = |shading| {
@@ -37,7 +19,7 @@ pub(crate) fn halves(scene: &Scene) -> Option<([Scene; 2], u32)> {
     Some(([with(Shading::Phong(settings.phong)), with(Shading::Occlusion(settings.occlusion))], settings.stripes))
 }
 
-/// Every other stripe from the second picture.
+/// Takes every second stripe from the second picture.
 pub(crate) fn interleave(mut first: RgbaImage, second: &RgbaImage, stripes: u32) -> RgbaImage {
     let width = u64::from(first.width().max(1));
     for (x, y, pixel) in first.enumerate_pixels_mut() {

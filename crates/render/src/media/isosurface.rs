@@ -1,56 +1,30 @@
-//! Surfaces of one value: of a volume, or of k', the layer's number from the bottom plus k (P-illus 5).
+//! Isosurfaces of a volume, or of k', the layer number from the bottom plus k (P-illus 5).
 //!
-//! A surface v = c is shown as a shell of half thickness h about it, like a horizon by its leaves. The distance of a point is, to first order,
+//! An isosurface v = c is drawn as a shell of half thickness h around it, as horizons are. The distance of a
+//! point from it is, to first order,
 //!
 //! ```text
 //! d ≈ |v − c| / |∇v|
 //! ```
 //!
-//! which is exact where v is linear. k' is continuous across horizons inside a fault block, so its surfaces end at faults and nowhere else; its gradient is the
-//! Jacobian's. Gradients are per voxel, distances in voxels.
+//! which is exact where v is linear. k' is continuous across horizons inside a fault block, so its
+//! isosurfaces end at faults and nowhere else; its gradient comes from the Jacobian. Gradients are per voxel,
+//! distances in voxels.
 
+use super::Isosurface;
 use super::bricks::MIXED;
-use super::medium::{FieldMedium, SOFT};
-use super::table::{NO_DATA_BELOW, extinction};
-use super::{MAX_ISOSURFACES, Media};
-use crate::error::SceneError;
+use super::medium::FieldMedium;
+use super::samples::NO_DATA_BELOW;
+use super::shell::{SOFT, shell_cover};
+use super::table::extinction;
 use glam::Vec3;
 use model::StructuralModel;
 use param::Parameterization;
-use serde::{Deserialize, Serialize};
-use ttf::{Colour, linear_from_srgb};
+use ttf::linear_from_srgb;
 
-/// A surface of one value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Isosurface {
-    /// Of what.
-    pub of: Scalar,
-    /// The value, in the volume's unit; for k' the layer from the bottom, counted from 0, plus k.
-    pub value: f32,
-    /// Its colour.
-    pub colour: Colour,
-    /// Opacity of one unit of length inside the shell. Default 1.
-    #[serde(default = "super::one")]
-    pub opacity: f32,
-    /// Half of its thickness, voxels, at most 9. Default 1.
-    #[serde(default = "super::one")]
-    pub thickness: f32,
-}
-
-/// What has isosurfaces.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scalar {
-    /// A volume, by its name.
-    Volume(String),
-    /// k'.
-    Depth,
-}
-
-/// An isosurface, resolved.
+/// An isosurface, with its volume resolved.
 pub struct FieldIsosurface<'a> {
-    /// Its volume; absent for k'.
+    /// Its volume. Absent for k'.
     pub medium: Option<FieldMedium<'a>>,
     /// The value.
     pub value: f32,
@@ -62,47 +36,17 @@ pub struct FieldIsosurface<'a> {
     pub thickness: f32,
 }
 
-/// The interpretation that k' is of.
+/// The interpretation, from which k' is computed.
 #[derive(Clone, Copy)]
-pub struct Depths<'a> {
-    /// Where regions are.
+pub struct StratigraphicDepth<'a> {
+    /// The structural model, which has the regions.
     pub model: &'a StructuralModel,
-    /// k in them.
+    /// The parameterization, which has k.
     pub param: &'a Parameterization,
 }
 
-impl Isosurface {
-    pub(super) fn validate(&self) -> Result<(), SceneError> {
-        let number = |what: &'static str, found: f32, low: f64, high: f64| {
-            let found = f64::from(found);
-            if found >= low && found <= high { Ok(()) } else { Err(SceneError::OutOfRange { what, found, low, high }) }
-        };
-        number("an isosurface's value", self.value, -1e30, 1e30)?;
-        number("an isosurface's opacity", self.opacity, 0.0, 1.0)?;
-        number("an isosurface's thickness", self.thickness, 0.0, 9.0)
-    }
-}
-
-impl Media {
-    /// The volumes that isosurfaces are of.
-    pub fn isosurface_volumes(&self) -> impl Iterator<Item = &String> {
-        self.isosurfaces.iter().filter_map(|surface| match &surface.of {
-            Scalar::Volume(name) => Some(name),
-            Scalar::Depth => None,
-        })
-    }
-
-    pub(super) fn validate_isosurfaces(&self) -> Result<(), SceneError> {
-        let found = self.isosurfaces.len();
-        if found > MAX_ISOSURFACES {
-            return Err(SceneError::TooMany { what: "isosurfaces", found, limit: MAX_ISOSURFACES });
-        }
-        self.isosurfaces.iter().try_for_each(Isosurface::validate)
-    }
-}
-
 impl<'a> FieldIsosurface<'a> {
-    /// A surface of a volume made ready, or of k'.
+    /// An isosurface of a prepared volume, or of k'.
     pub fn new(surface: &Isosurface, medium: Option<FieldMedium<'a>>) -> Self {
         Self {
             medium,
@@ -113,8 +57,8 @@ impl<'a> FieldIsosurface<'a> {
         }
     }
 
-    /// The share of a place that it takes, and the gradient there.
-    pub fn at(&self, p: Vec3, depths: Option<Depths>) -> (f32, Vec3) {
+    /// The fraction of a point that it covers, and the gradient there.
+    pub fn at(&self, p: Vec3, depths: Option<StratigraphicDepth>) -> (f32, Vec3) {
         let (value, gradient) = match (&self.medium, depths) {
             (Some(medium), _) => {
                 let value = medium.sample(p);
@@ -123,23 +67,23 @@ impl<'a> FieldIsosurface<'a> {
                 }
                 (value, medium.gradient(p))
             }
-            (None, Some(Depths { model, param })) => {
+            (None, Some(StratigraphicDepth { model, param })) => {
                 let region = model.region_at(p);
                 let (flat, jacobian) = param.lookup_in(model, p, region);
                 (f32::from(region.layer) + flat.k, Vec3::from_array(jacobian[2]))
             }
-            (None, None) => return (0.0, Vec3::ZERO),
+            (None, None) => unreachable!("without an interpretation, a field with surfaces of k' is refused"),
         };
         let distance = (value - self.value).abs() / gradient.length().max(1e-12);
-        (((self.thickness - distance) / (2.0 * SOFT) + 0.5).clamp(0.0, 1.0), gradient)
+        (shell_cover(self.thickness, distance), gradient)
     }
 
-    /// Whether a brick can show it.
+    /// Whether the isosurface may be visible in a brick.
     pub fn shows(&self, low: Vec3, high: Vec3, layer: u8) -> bool {
         let reach = Vec3::splat(self.thickness + SOFT);
         match &self.medium {
             Some(medium) => {
-                // The shell follows the first-order distance, whose gradient reaches a sample to either side.
+                // The shell uses the first-order distance, whose gradient takes one sample on either side.
                 let range = medium.range(low - reach - 1.0, high + reach + 1.0);
                 range.is_some_and(|[a, b]| a <= self.value && self.value <= b)
             }

@@ -1,25 +1,29 @@
-//! Occlusion and emission carried through the media from slice to slice (P-horiz 5.1, DESIGN 3.5).
+//! Occlusion shading: occlusion and emission propagated through the media from slice to slice (P-horiz 5.1).
 //!
-//! Slices are planes of equal depth, front to back, Δ apart, each a grid of *cells* of fixed size; on slice i
+//! Slices are planes of equal depth, Δ apart, front to back. Each is a grid of *cells* of a fixed size. On
+//! slice i
 //!
 //! ```text
 //! Oᵢ = G∗Oᵢ₋₁ + aᵢ              λᵢ = 1/(1 + s·G∗Oᵢ₋₁)
 //! Eᵢ = G∗Eᵢ₋₁·(1 − αᵢ) + eᵢ     eᵢ = αᵢ · emitted colour
 //! ```
 //!
-//! where G is a Gaussian of variance σ₀²·Δ/Δ₀, αᵢ = 1 − (1 − α₀)^(Δ/Δ₀). The paper composites each slice as it is made. We keep
-//! λ and E of every slice in a *light volume* and draw the picture by rays through it ([`super::march`]). So light is computed at the resolution of the
-//! data, whatever the picture's, rays may be supersampled, tiled, skip empty space and end early, and faces behind the media are lit as well.
-//! The stored value belongs to the front of a slice and is interpolated in depth.
+//! where G is a Gaussian of variance σ₀²·Δ/Δ₀ and αᵢ = 1 − (1 − α₀)^(Δ/Δ₀). The paper composites each slice
+//! as it is computed. We keep λ and E of every slice in a *light volume* and draw the picture by rays through
+//! it ([`super::march`]). So light is computed at the resolution of the data, whatever that of the picture.
+//! Rays may be supersampled, drawn in tiles, skip empty space and end early, and faces behind the media are
+//! lit as well. A value belongs to the front of its slice and is interpolated in depth.
 //!
-//! **Departure**: aᵢ = α₀·Δ/Δ₀ where the paper has αᵢ. Both agree at one slice a unit. With αᵢ the occlusion behind something opaque grows with
-//! the number of slices in it, since each adds 1; the linear form adds the same for any number.
+//! **Departure**: aᵢ = α₀·Δ/Δ₀ where the paper has αᵢ. Both agree at one slice per unit. With αᵢ, the
+//! occlusion behind something opaque grows with the number of slices in it, since each adds 1; the linear
+//! form adds the same for any number.
 //!
-//! G is the 3 × 3 kernel [v/2, 1 − v, v/2] squared, v its variance in cells, at most ½ by the choice of the cell; variances add, so that after a few
-//! slices it is a Gaussian. Nothing comes in from outside the grid. How it is carried on the processor: the module `slices`.
+//! G is the 3 × 3 kernel [v/2, 1 − v, v/2] squared, where v is its variance in cells, at most ½ by the choice
+//! of the cell. Variances add, so the kernel approaches a Gaussian after a few slices. No light enters from
+//! outside the grid. The module `slices` computes this on the CPU.
 
 use super::Shading;
-use super::field::Field;
+use super::field::MediaField;
 use super::light_grid::{Asked, LightGrid, cells_from_voxel};
 use super::slices::{Carried, carry};
 use crate::camera::View;
@@ -28,22 +32,23 @@ use crate::voxel_box::VoxelBox;
 use glam::{Mat3, Vec2, Vec3};
 use survey::{Cancelled, Progress};
 
-/// λ and E of the cells that matter at the front of every slice.
+/// λ and E at the front of every slice, for the cells that matter.
 pub struct LightVolume {
     grid: LightGrid,
     carried: Carried,
-    /// Cell coordinates and slice from voxel positions, before the division by depth in a perspective.
+    /// Map from voxel positions to cell coordinates and slices, before the division by depth in a
+    /// perspective.
     linear: Mat3,
     shift: Vec3,
 }
 
 impl LightVolume {
-    /// Carries the light of a scene; `None` for one without occlusion.
+    /// Propagates the light of a scene; `None` for a scene without occlusion.
     ///
     /// # Errors
-    /// Cancelled.
+    /// [`Cancelled`].
     pub fn new(
-        field: &Field,
+        field: &MediaField,
         view: &View,
         solid: &Solid,
         roaming_box: &VoxelBox,
@@ -57,7 +62,7 @@ impl LightVolume {
         Ok(Some(Self { grid, carried, linear, shift }))
     }
 
-    /// λ + E at a voxel position: the light that falls there.
+    /// λ + E at a voxel position: the light that arrives there.
     #[inline(always)]
     pub fn at(&self, p: Vec3) -> Vec3 {
         let mut q = self.linear * p + self.shift;
@@ -69,7 +74,7 @@ impl LightVolume {
         let [nu, nv, slices] = self.grid.size;
         let last = Vec3::new((nu - 1) as f32, (nv - 1) as f32, slices as f32);
         let q = q.clamp(Vec3::ZERO, last);
-        // Cut to integers: these are not negative, and rounding down would be a call.
+        // Truncated, since the numbers are not negative and `floor` would be a library call.
         let slice = (q.z as i32).min((last.z as i32 - 1).max(0));
         let depth = q.z - slice as f32;
         let front = self.corners(slice as usize, q.x, q.y);
@@ -92,7 +97,7 @@ impl LightVolume {
         }
     }
 
-    /// The cells around a place at the front of a slice; windows are at least two cells wide and high.
+    /// The cells around a position at the front of a slice. Windows are at least two cells wide and high.
     #[inline(always)]
     fn corners(&self, slice: usize, x: f32, y: f32) -> Corners {
         let (window, start) = (&self.carried.windows[slice], self.carried.starts[slice]);
@@ -106,7 +111,7 @@ impl LightVolume {
     }
 }
 
-/// Where the four cells around a place begin in the lists, row by row, and its place between them.
+/// Indices of the first of the two cells in each row around a position, and the fractions between the cells.
 struct Corners {
     rows: [usize; 2],
     f: Vec2,

@@ -1,17 +1,18 @@
-//! The grid of slices and cells in which light is carried ([`super::light`]).
+//! The grid of slices and cells in which light is propagated, and its position in voxel space.
 
 use super::Occlusion;
 use crate::camera::View;
 use crate::voxel_box::VoxelBox;
-use glam::{DVec2, DVec3, Mat3, Vec3};
+use glam::{DMat3, DVec2, DVec3, Mat3, Vec3};
 
-/// Cells kept free around the block, so that light may leave it sideways.
+/// Width of the free border around the block, cells, so that light can leave it sideways.
 const MARGIN: f64 = 3.0;
 
-/// Where slices and cells lie, and how much light spreads between them.
+/// The positions of slices and cells, and the variance of the blur between slices.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LightGrid {
-    /// Cells to the right, up, and slices; there is one value more than slices in depth.
+    /// Number of cells to the right, of cells upwards, and of slices. In depth there is one value more than
+    /// slices.
     pub size: [usize; 3],
     /// View coordinates of the lower left corner of the first cell, m or tangents.
     pub low: DVec2,
@@ -21,11 +22,11 @@ pub struct LightGrid {
     pub near: f64,
     /// Thickness of a slice, m.
     pub slice: f64,
-    /// The same in units of length.
+    /// Thickness of a slice in units of length.
     pub slice_units: f32,
-    /// Variance of the blur over a slice at the first depth, cells².
+    /// Variance of the blur over a slice at the nearest depth, cells².
     pub variance: f32,
-    /// Whether cells grow with depth.
+    /// Whether cells grow with depth, as they do in a perspective.
     pub perspective: bool,
     /// Factor on the occlusion.
     pub strength: f32,
@@ -45,7 +46,8 @@ impl LightGrid {
         let slices = ((far - near) / unit_m * f64::from(occlusion.slices_per_voxel)).ceil().max(1.0);
         let slice = (far - near) / slices;
         let spread_m = f64::from(occlusion.spread) * unit_m;
-        // A cell is a unit or more, and wide enough for the widest slice that is asked for: half of its variance.
+        // A cell is at least one unit wide, and wide enough for the variance of the thickest slice to be at
+        // most half of its square.
         let nearest = if perspective { near.max(1e-9) } else { 1.0 };
         let wanted = unit_m.max(spread_m * (2.0 * (slice / unit_m).max(1.0)).sqrt()) / nearest;
         let widest = (high - low).max_element();
@@ -80,14 +82,14 @@ impl LightGrid {
 /// Where the light volume will be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Asked {
-    /// In the roaming box.
+    /// Only in the roaming box.
     Block,
-    /// Beside it too, as at wells that come out of it.
+    /// Beside the roaming box too, as for wells that come out of it.
     Everywhere,
 }
 
-/// The map from voxel positions to cell coordinates (integers at cell centres) and slice fronts; in a perspective x and y are in cells times depth, counted
-/// from the axis.
+/// The map from voxel positions to cell coordinates (integers at cell centres) and fronts of slices. In a
+/// perspective, x and y are in cells times depth, measured from the axis.
 pub fn cells_from_voxel(view: &View, grid: &LightGrid) -> (Mat3, Vec3) {
     let (linear, shift) = view.eye_from_voxel();
     let scale = DVec3::new(1.0 / grid.cell, 1.0 / grid.cell, 1.0 / grid.slice);
@@ -96,6 +98,6 @@ pub fn cells_from_voxel(view: &View, grid: &LightGrid) -> (Mat3, Vec3) {
     } else {
         DVec3::new(grid.low.x + 0.5 * grid.cell, grid.low.y + 0.5 * grid.cell, grid.near)
     };
-    let linear = glam::DMat3::from_diagonal(scale) * linear;
+    let linear = DMat3::from_diagonal(scale) * linear;
     (linear.as_mat3(), ((shift - origin) * scale).as_vec3())
 }

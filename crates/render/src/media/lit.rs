@@ -1,10 +1,11 @@
-//! Phong's light on a surface of equal value, two-sided: `ambient + diffuse·|n·l|` on the colour, and `specular·|n·h|^shininess` of white.
+//! Phong's reflection model on an isosurface, two-sided: `ambient + diffuse·|n·l|` multiplies the colour, and
+//! `specular·|n·h|^shininess` of white is added.
 
 use super::Phong;
 use super::samples::BATCH;
 use glam::Vec3;
 
-/// The light on what one ray meets.
+/// The reflection model for the points of one ray.
 #[derive(Clone, Copy)]
 pub struct Lit {
     phong: Phong,
@@ -12,30 +13,30 @@ pub struct Lit {
     half: Vec3,
 }
 
-/// Surfaces in the same light, component by component.
-pub struct Surfaces {
+/// Many surface points under the same light, component by component.
+pub struct LitSurfaces {
     /// Their normals, of any length, in display space.
     pub normals: [[f32; BATCH]; 3],
-    /// [`half_way`] of their rays.
+    /// The [`half_way`] directions of their rays.
     pub halves: [[f32; BATCH]; 3],
-    /// The factor on their colour.
+    /// Result: the factor on their colour.
     pub factor: [f32; BATCH],
-    /// The white that is added.
+    /// Result: the white that is added.
     pub white: [f32; BATCH],
 }
 
-/// The direction between those to the light and to the viewer.
+/// The direction half-way between those to the light and to the viewer.
 pub fn half_way(light: Vec3, towards: Vec3) -> Vec3 {
     (light + towards).normalize_or_zero()
 }
 
 impl Lit {
-    /// Directions to the light and to the viewer, unit, in display space.
+    /// The model for these unit directions to the light and to the viewer, in display space.
     pub fn new(phong: Phong, light: Vec3, towards: Vec3) -> Self {
         Self { phong, light, half: half_way(light, towards) }
     }
 
-    /// A colour under it, on a surface with this normal of any length, in display space.
+    /// Shades a colour on a surface with this normal, of any length, in display space.
     pub fn on(&self, normal: Vec3, colour: Vec3) -> Vec3 {
         let [diffuse, specular] = cosines(normal.to_array(), self.light.to_array(), self.half.to_array());
         let mut specular = [specular];
@@ -44,13 +45,13 @@ impl Lit {
     }
 }
 
-impl Surfaces {
-    /// None yet.
+impl LitSurfaces {
+    /// An empty batch.
     pub fn new() -> Self {
         Self { normals: [[0.0; BATCH]; 3], halves: [[0.0; BATCH]; 3], factor: [0.0; BATCH], white: [0.0; BATCH] }
     }
 
-    /// Lights all of them.
+    /// Shades all of them.
     #[inline(always)]
     pub fn light(&mut self, phong: &Phong, light: Vec3) {
         let light = light.to_array();
@@ -68,7 +69,7 @@ impl Surfaces {
     }
 }
 
-/// |n·l| and |n·h| for the normal made unit; nothing for none.
+/// |n·l| and |n·h| for the normalised normal; 0 if it has no length.
 #[inline(always)]
 fn cosines(normal: [f32; 3], light: [f32; 3], half: [f32; 3]) -> [f32; 2] {
     let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -77,7 +78,7 @@ fn cosines(normal: [f32; 3], light: [f32; 3], half: [f32; 3]) -> [f32; 2] {
     [dot(normal, light).abs() * inverse, dot(normal, half).abs() * inverse]
 }
 
-/// Numbers to a power: by squaring where the exponent is a whole number, as it mostly is.
+/// Raises numbers to a power: by squaring if the exponent is an integer, as it usually is.
 #[inline(always)]
 fn raise<const N: usize>(numbers: &mut [f32; N], exponent: f32) {
     let mut left = exponent as u32;
@@ -115,7 +116,7 @@ mod tests {
     #[test]
     fn many_surfaces_are_lit_as_each_is() {
         let phong = Phong { shininess: 7.0, ..Phong::default() };
-        let (light, mut surfaces) = (Vec3::new(0.6, 0.0, 0.8), Surfaces::new());
+        let (light, mut surfaces) = (Vec3::new(0.6, 0.0, 0.8), LitSurfaces::new());
         let vector = |n: usize| Vec3::new((n as f32).sin(), (n as f32 * 1.7).cos(), (n as f32 * 0.3).sin());
         for n in 0..BATCH {
             // The first has no normal.

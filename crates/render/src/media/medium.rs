@@ -1,84 +1,82 @@
-//! A volume with its function, made ready to be asked at any point.
-//!
-//! Voxel space.
+//! A volume with its transfer function, prepared for a scene. Voxel space; extinction per unit of length,
+//! linear colours.
 
-use super::bricks::{LayerLooks, MIXED};
+use super::bricks::{LayerAppearance, MIXED};
 use super::prepared::Prepared;
-use super::samples::Samples;
-use super::table::Table;
+use super::samples::VolumeSamples;
+use super::table::FunctionTable;
 use crate::inputs::NamedVolume;
 use glam::Vec3;
 use std::sync::Arc;
 
-/// Half of the border over which a horizon fades, voxels.
-pub const SOFT: f32 = 0.25;
-
-/// Where a medium fills space.
+/// A part of the roaming box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Place {
+pub enum Zone {
     /// The roaming box outside the cut-outs.
     Surroundings,
     /// The cut-outs.
     CutOut,
 }
 
-/// A volume with its function.
+/// A volume with its transfer function.
 pub struct FieldMedium<'a> {
     /// The volume.
     pub volume: NamedVolume<'a>,
     prepared: Arc<Prepared>,
-    /// Its baked function.
-    pub table: Table,
-    /// Where it shows.
-    pub place: Place,
-    /// What layers do to it; absent where they do nothing.
-    pub layers: Option<LayerLooks>,
+    /// The tabulated transfer function.
+    pub table: FunctionTable,
+    /// The zone in which it is visible.
+    pub zone: Zone,
+    /// How layers change it. Absent if they do not.
+    pub layers: Option<LayerAppearance>,
     scale: Vec3,
     offset: Vec3,
 }
 
 impl<'a> FieldMedium<'a> {
-    /// A volume made ready.
-    pub fn new(volume: NamedVolume<'a>, prepared: Arc<Prepared>, table: Table, place: Place) -> Self {
+    /// A prepared volume.
+    pub fn new(volume: NamedVolume<'a>, prepared: Arc<Prepared>, table: FunctionTable, zone: Zone) -> Self {
         let (scale, offset) = volume.index_from_voxel();
-        Self { volume, prepared, table, place, layers: None, scale, offset }
+        Self { volume, prepared, table, zone, layers: None, scale, offset }
     }
 
-    /// Trilinear value at a voxel position; below [`NO_DATA_BELOW`] where there is none.
+    /// Value at a voxel position, interpolated trilinearly; below [`super::samples::NO_DATA_BELOW`] if there
+    /// is none.
     #[inline(always)]
     pub fn sample(&self, p: Vec3) -> f32 {
         self.samples().value(p * self.scale + self.offset)
     }
 
-    /// Central differences over one sample to either side, per voxel of the survey; zero where a neighbour is missing.
+    /// Gradient per voxel of the survey, by central differences over one sample on either side; 0 along an
+    /// axis if a neighbour is missing.
     #[inline]
     pub fn gradient(&self, p: Vec3) -> Vec3 {
         self.samples().differences(p * self.scale + self.offset) * 0.5 * self.scale
     }
 
-    /// Scale and offset from voxel positions to sample numbers.
+    /// Scale and offset from voxel positions to sample indices.
     pub(super) fn index_from_voxel(&self) -> (Vec3, Vec3) {
         (self.scale, self.offset)
     }
 
-    /// Its samples.
+    /// The samples.
     #[inline(always)]
-    pub(super) fn samples(&self) -> Samples<'_> {
-        Samples::new(self.prepared.samples(&self.volume), self.volume.volume.size())
+    pub(super) fn samples(&self) -> VolumeSamples<'_> {
+        VolumeSamples::new(self.prepared.samples(&self.volume), self.volume.volume.size())
     }
 
-    /// Smallest and largest sample between two voxel positions; `None` where there is none.
+    /// Smallest and largest sample between two voxel positions; `None` if there is none.
     pub fn range(&self, low: Vec3, high: Vec3) -> Option<[f32; 2]> {
         self.prepared.range(&self.volume, low, high)
     }
 
-    /// Whether a brick can show it.
+    /// Whether the medium may be visible in a brick.
     pub(super) fn shows(&self, low: Vec3, high: Vec3, layer: u8) -> bool {
         let Some([a, b]) = self.prepared.range(&self.volume, low, high) else { return false };
         let lets_through = match &self.layers {
             None => true,
-            Some(looks) if layer == MIXED => looks.entries.iter().any(|entry| entry[3] > 0.0),
-            Some(looks) => looks.entries.get(usize::from(layer)).is_some_and(|entry| entry[3] > 0.0),
+            Some(appearance) if layer == MIXED => appearance.entries.iter().any(|entry| entry[3] > 0.0),
+            Some(appearance) => appearance.entries.get(usize::from(layer)).is_some_and(|entry| entry[3] > 0.0),
         };
         lets_through && self.table.shows(a, b)
     }

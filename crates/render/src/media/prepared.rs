@@ -1,29 +1,30 @@
-//! Volumes made ready to be marched through: no sample is NaN, and each brick knows its range.
+//! Volumes prepared for ray marching: no sample is NaN, and the range of every brick is known.
 //!
-//! The ranges are what space is skipped by; they depend on the data alone and are kept while the data stay the same.
+//! The ranges serve empty-space skipping. They depend on the data alone and are kept while the data stay the
+//! same.
 
-use super::table::{NO_DATA, NO_DATA_BELOW};
+use super::samples::{NO_DATA, NO_DATA_BELOW};
 use crate::inputs::NamedVolume;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Voxels along a brick's side. A brick of 8 holds 9 samples along each axis: neighbours share their border.
+/// Side of a brick, voxels. A brick has 9 samples along each axis, since neighbours share their border.
 pub const BRICK: usize = 8;
 
-/// What is known of one volume.
+/// The preparation of one volume.
 #[derive(Debug)]
 pub struct Prepared {
-    /// A copy with [`NO_DATA`] where samples are missing; absent where none is.
+    /// A copy of the samples with [`NO_DATA`] where they are missing. Absent if none is.
     patched: Option<Vec<f32>>,
-    /// Bricks along each axis.
+    /// Number of bricks along each axis.
     bricks: [usize; 3],
-    /// Smallest and largest sample of each brick, `[x][y][z]`; turned round where there is none.
+    /// Smallest and largest sample of each brick, `[x][y][z]`; in reverse order if it has none.
     ranges: Vec<[f32; 2]>,
 }
 
-/// Prepared volumes by name, of one version of the data.
+/// A cache of prepared volumes by name, for one version of the data.
 #[derive(Debug, Default)]
 pub struct Preparations {
     version: Option<u64>,
@@ -31,7 +32,7 @@ pub struct Preparations {
 }
 
 impl Preparations {
-    /// That of a volume of these inputs; made when it is not there yet.
+    /// The preparation of a volume of these inputs; it is computed if it is not in the cache.
     pub fn of(&mut self, version: u64, volume: &NamedVolume) -> Arc<Prepared> {
         if self.version != Some(version) {
             self.volumes.clear();
@@ -69,12 +70,13 @@ impl Prepared {
         Self { patched, bricks, ranges }
     }
 
-    /// The samples without NaN.
+    /// The samples, without NaN.
     pub fn samples<'s>(&'s self, volume: &NamedVolume<'s>) -> &'s [f32] {
         self.patched.as_deref().unwrap_or(volume.volume.samples())
     }
 
-    /// Smallest and largest sample that a place between two voxel positions can show; `None` where there is none.
+    /// Smallest and largest value that interpolation can give between two voxel positions; `None` if there is
+    /// none.
     pub fn range(&self, volume: &NamedVolume, low: Vec3, high: Vec3) -> Option<[f32; 2]> {
         let (scale, offset) = volume.index_from_voxel();
         let (low, high) = (low * scale + offset, high * scale + offset);

@@ -1,47 +1,51 @@
-//! Reading a volume between its samples: trilinear values and central differences.
+//! Interpolation of a volume: trilinear values and central differences.
 //!
 //! ```text
 //! v(i) = Σ w·s    over the 8 samples of the cell around i    Δₓ(i) = v(i + x) − v(i − x)
 //! ```
 //!
-//! The two neighbours of a sample in depth lie side by side in memory, so a cell is four pairs: eight numbers in two registers, mixed along x
-//! first, then y, then depth, each step halving them. Differences come from the 4 × 4 × 4 neighbourhood of the same cell, of which 32 samples in twelve short rows
-//! are needed; three interpolated values ahead and three behind are mixed from them.
+//! The two neighbours of a sample in depth are adjacent in memory. A cell is therefore four pairs, eight
+//! numbers in two registers, which are interpolated first along x, then y, then depth; each step halves them.
+//! Differences use the 4 × 4 × 4 neighbourhood of the cell, of which 32 samples in twelve short rows are
+//! needed. Three interpolated values ahead and three behind are computed from them.
 //!
-//! Index space: the volume's own sample numbers. A value that needs a missing sample ([`NO_DATA`]) is so far below [`NO_DATA_BELOW`] that it
-//! shows; places outside are missing, and a difference whose either end is missing counts as zero.
+//! Index space: the sample indices of the volume. A value that needs a missing sample ([`NO_DATA`]) lies far
+//! below [`NO_DATA_BELOW`]. Positions outside the volume are missing, and a difference with a missing end
+//! counts as zero.
 
-use super::table::{NO_DATA, NO_DATA_BELOW};
-use super::wide::whole;
 use crate::inputs::SLACK;
 use glam::{Vec2, Vec3, Vec4};
 
-/// Places that are read at once.
+/// Values below this stand for missing data (NaN and dead traces).
+pub const NO_DATA_BELOW: f32 = -1.0e30;
+/// Value of missing samples.
+pub const NO_DATA: f32 = -3.0e38;
+/// Number of positions that are read at once.
 pub const BATCH: usize = 64;
 
-/// A volume's samples, z fastest, missing ones as [`NO_DATA`].
+/// The samples of a volume, z fastest, with [`NO_DATA`] where they are missing.
 #[derive(Clone, Copy)]
-pub struct Samples<'s> {
+pub struct VolumeSamples<'s> {
     values: &'s [f32],
     size: [usize; 3],
-    /// From a sample to the next along each axis; nothing along an axis of one sample.
+    /// Offset from a sample to the next along each axis; 0 along an axis with a single sample.
     steps: [usize; 3],
     last: Vec3,
 }
 
-/// Places in index space, coordinate by coordinate.
-pub struct Places {
+/// Positions in index space, coordinate by coordinate.
+pub struct IndexPositions {
     /// x, y and z.
     pub axes: [[f32; BATCH]; 3],
 }
 
-impl Default for Places {
+impl Default for IndexPositions {
     fn default() -> Self {
         Self { axes: [[0.0; BATCH]; 3] }
     }
 }
 
-impl<'s> Samples<'s> {
+impl<'s> VolumeSamples<'s> {
     /// Samples of a volume of this size.
     pub fn new(values: &'s [f32], size: [usize; 3]) -> Self {
         let step = |axis: usize, stride: usize| if size[axis] > 1 { stride } else { 0 };
@@ -53,26 +57,26 @@ impl<'s> Samples<'s> {
         }
     }
 
-    /// The value at a place; below [`NO_DATA_BELOW`] where there is none.
+    /// The value at a position; below [`NO_DATA_BELOW`] if there is none.
     #[inline(always)]
     pub fn value(&self, index: Vec3) -> f32 {
         if !self.contains(index) {
             return NO_DATA;
         }
         let clamped = index.clamp(Vec3::ZERO, self.last);
-        // Cut to integers: these are not negative, and rounding down would be a call.
+        // Truncated, since the numbers are not negative and `floor` would be a library call.
         let cell = |axis: usize| (clamped[axis] as i32).min(self.size[axis].saturating_sub(2) as i32);
         let [x, y, z] = [cell(0), cell(1), cell(2)];
         let f = clamped - Vec3::new(x as f32, y as f32, z as f32);
         self.mix_of((x as usize * self.size[1] + y as usize) * self.size[2] + z as usize, f)
     }
 
-    /// The values at the first `count` places.
+    /// The values at the first `count` positions.
     #[inline(always)]
-    pub fn values(&self, places: &Places, count: usize, values: &mut [f32; BATCH]) {
+    pub fn values(&self, places: &IndexPositions, count: usize, values: &mut [f32; BATCH]) {
         let mut starts = [0u32; BATCH];
         let mut fractions = [[0.0f32; BATCH]; 3];
-        // What a value is at most: all there is inside, nothing outside.
+        // Upper limit of each value: none inside the volume, [`NO_DATA`] outside.
         let mut most = [f32::MAX; BATCH];
         for (axis, (places, fractions)) in places.axes.iter().zip(&mut fractions).enumerate() {
             let (last, rows) = (self.last[axis], self.size[axis] as u32);
@@ -89,7 +93,7 @@ impl<'s> Samples<'s> {
             }
         }
         let values = &mut values[..count.min(BATCH)];
-        // Two calls, so that the neighbours in depth are known to lie side by side in the first: one load.
+        // Two calls, so that in the first the neighbours in depth are known to be adjacent and take one load.
         match self.steps {
             [dx, dy, 1] => self.mix([dx, dy, 1], &starts, &fractions, values),
             steps => self.mix(steps, &starts, &fractions, values),
@@ -99,10 +103,11 @@ impl<'s> Samples<'s> {
         }
     }
 
-    /// Mixes of the corners of many cells.
+    /// Interpolates between the corners of many cells.
     #[inline(always)]
     fn mix(&self, [dx, dy, dz]: [usize; 3], starts: &[u32; BATCH], f: &[[f32; BATCH]; 3], values: &mut [f32]) {
-        // The samples at each corner by the cell's first, lists of one length: a cell that is in one is in all.
+        // The samples at each corner, indexed by the first sample of the cell. All slices have the same
+        // length, so one bounds check serves all.
         let cells = self.values.len() - (dx + dy + dz);
         let corner = |offset: usize| &self.values[offset..offset + cells];
         let [a, b] = [corner(0), corner(dz)];
@@ -116,7 +121,7 @@ impl<'s> Samples<'s> {
         }
     }
 
-    /// The mix of a cell's corners.
+    /// Interpolates between the corners of a cell.
     #[inline(always)]
     fn mix_of(&self, start: usize, f: Vec3) -> f32 {
         let [dx, dy, dz] = self.steps;
@@ -127,7 +132,7 @@ impl<'s> Samples<'s> {
         mixed(square(start), square(start + dx), f)
     }
 
-    /// v ahead minus v behind, one sample to either side along each axis.
+    /// Central differences: the value one sample ahead minus the value one sample behind, along each axis.
     #[inline(always)]
     pub fn differences(&self, index: Vec3) -> Vec3 {
         let cell = |axis: usize| index[axis] as i32;
@@ -159,14 +164,26 @@ impl<'s> Samples<'s> {
         )
     }
 
-    /// Whether a place is in the volume.
+    /// Whether a position is in the volume.
     #[inline(always)]
     fn contains(&self, index: Vec3) -> bool {
         index.cmpge(Vec3::splat(-SLACK)).all() && index.cmple(self.last + SLACK).all()
     }
 }
 
-/// The mix of eight numbers: the four of the near side, those of one row side by side, and of the far.
+/// A number from 0 to 2²² rounded down, as a float and as an integer. Avoids the conversion instruction,
+/// which has no vector form that is defined for every number.
+#[inline(always)]
+pub fn whole(number: f32) -> (f32, u32) {
+    // From 2²³ on, floats are integers: adding 2²³ rounds, and the result is in the last bits.
+    const INTEGERS: f32 = 8_388_608.0;
+    let nearest = (number + INTEGERS) - INTEGERS;
+    let below = if nearest > number { nearest - 1.0 } else { nearest };
+    (below, (below + INTEGERS).to_bits() & 0x7f_ffff)
+}
+
+/// Interpolates between eight numbers: the four of the near side, those of one row side by side, and the four
+/// of the far side.
 #[inline(always)]
 fn mixed(near: Vec4, far: Vec4, f: Vec3) -> f32 {
     let square = near + (far - near) * f.x;
@@ -203,7 +220,7 @@ mod tests {
         }
     }
 
-    /// Values by the volume's own reading, from outside to outside, some samples missing.
+    /// Compared with the volume's own interpolation, inside and outside, with some samples missing.
     #[test]
     fn values_are_those_of_the_volume() {
         for size in [[9, 7, 12], [2, 2, 2], [1, 5, 3], [4, 1, 6], [5, 4, 1], [1, 1, 1]] {
@@ -217,12 +234,12 @@ mod tests {
             let covers = VoxelBox { min: [0.0; 3], max: size.map(|n| n.max(2) as f64 - 1.0) };
             let named = NamedVolume { name: "v", volume: &volume, covers };
             let patched: Vec<f32> = volume.samples().iter().map(|v| if v.is_finite() { *v } else { NO_DATA }).collect();
-            let samples = Samples::new(&patched, size);
-            let (mut missing, mut places, mut expected) = (0, Places::default(), [0.0; BATCH]);
+            let samples = VolumeSamples::new(&patched, size);
+            let (mut missing, mut places, mut expected) = (0, IndexPositions::default(), [0.0; BATCH]);
             for n in 0..40 * BATCH {
                 let place = |axis: usize| (size[axis] as f32 + 1.0) * noise(3 * n + axis) - 1.0;
                 let (p, lane) = (Vec3::new(place(0), place(1), place(2)), n % BATCH);
-                // An axis of one sample has one place.
+                // An axis with one sample has one position.
                 let p = Vec3::from_array([0, 1, 2].map(|a| if size[a] == 1 { 0.0 } else { p[a] }));
                 let (value, by_volume) = (samples.value(p), named.sample(p));
                 missing += usize::from(by_volume.is_nan());
@@ -247,7 +264,7 @@ mod tests {
         let size = [8, 9, 10];
         let mut all: Vec<f32> = (0..720).map(noise).collect();
         all[345] = NO_DATA;
-        let samples = Samples::new(&all, size);
+        let samples = VolumeSamples::new(&all, size);
         for n in 0..3000 {
             let place = |axis: usize| (size[axis] as f32 - 1.0) * noise(7 * n + axis);
             let p = Vec3::new(place(0), place(1), place(2));

@@ -1,21 +1,22 @@
-//! Light carried from slice to slice on the processor: what [`super::light::LightVolume`] keeps of each.
+//! Propagates light from slice to slice on the CPU, and stores what [`super::light::LightVolume`] reads.
 //!
-//! One pass over a slice blurs what comes from the slice before, keeps λ and E of it, and adds what the slice itself occludes and gives off: in the slice's
-//! window ([`super::windows`]) alone.
+//! One pass over a slice blurs the light of the slice before, stores λ and E, and adds what the slice itself
+//! occludes and emits. Only the window of the slice ([`super::windows`]) is computed.
 //!
-//! Where one medium is all there is, a row of cells is a line through the volume: cells whose whole slice is in the block are taken in runs that skip bricks with nothing to
-//! show, and their values are read [`BATCH`] at a time. Cells at which a stretch of the medium begins or ends inside the slice are placed one by one.
+//! If there is only one medium, a row of cells is a line through the volume. Cells whose whole slice lies in
+//! the medium are processed in runs that skip empty bricks, and their values are read [`BATCH`] at a time.
+//! Cells in which a stretch of the medium begins or ends inside the slice are processed one by one.
 
 use super::Faces;
-use super::bricks::Line;
-use super::field::{Field, Matter};
+use super::bricks::SampleLine;
+use super::field::{Matter, MediaField};
 use super::light_grid::{Asked, LightGrid};
-use super::medium::{FieldMedium, Place};
-use super::samples::{BATCH, Places, Samples};
+use super::medium::{FieldMedium, Zone};
+use super::samples::{BATCH, IndexPositions, NO_DATA_BELOW, VolumeSamples};
 use super::stretches::stretches;
-use super::table::{NO_DATA_BELOW, absorbed};
+use super::table::absorbed;
 use super::wide::{Loops, widest};
-use super::windows::{Window, windows};
+use super::windows::{CellWindow, windows};
 use crate::camera::View;
 use crate::visible::{Ray, Solid};
 use crate::voxel_box::VoxelBox;
@@ -23,38 +24,38 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
 
-/// λ and E of every slice's front, in its window, row by row, slice by slice.
+/// λ and E at the front of every slice, in its window: row by row, slice by slice.
 pub(super) struct Carried {
-    pub windows: Vec<Window>,
-    /// Where in the lists below each window begins.
+    pub windows: Vec<CellWindow>,
+    /// Index in the lists below at which each window begins.
     pub starts: Vec<usize>,
     pub lambda: Vec<f32>,
     pub emission: Option<Vec<Vec3>>,
 }
 
-/// A stretch of a cell's ray in one place, in slices.
+/// A stretch of the ray through a cell that lies in one zone; distances in slices.
 #[derive(Debug, Clone, Copy)]
 struct Passage {
     between: [f32; 2],
-    place: Place,
+    zone: Zone,
 }
 
-const NOTHING: Passage = Passage { between: [0.0; 2], place: Place::Surroundings };
+const NOTHING: Passage = Passage { between: [0.0; 2], zone: Zone::Surroundings };
 
-/// What lies where in the grid.
-struct Block<'c> {
-    field: &'c Field<'c>,
+/// The media in the grid.
+struct BlockPassages<'c> {
+    field: &'c MediaField<'c>,
     view: &'c View,
     grid: &'c LightGrid,
-    /// The medium and its samples, where that is all there is.
-    alone: Option<(&'c FieldMedium<'c>, Samples<'c>)>,
-    /// The cells' first stretches of matter, their second ones and so on.
+    /// The single medium and its samples, if there is only one.
+    alone: Option<(&'c FieldMedium<'c>, VolumeSamples<'c>)>,
+    /// The first stretch of each cell, then the second of each cell, and so on.
     passages: Vec<Vec<Passage>>,
 }
 
-/// Carries light through a block.
+/// Propagates light through a block.
 pub(super) fn carry(
-    field: &Field,
+    field: &MediaField,
     view: &View,
     solid: &Solid,
     roaming_box: &VoxelBox,
@@ -64,7 +65,7 @@ pub(super) fn carry(
 ) -> Result<Carried, Cancelled> {
     let [nu, nv, slices] = grid.size;
     let emits = field.horizons.as_ref().is_some_and(|h| h.horizons.iter().any(|one| one.emission > 0.0));
-    let block = Block::new(field, view, solid, grid);
+    let block = BlockPassages::new(field, view, solid, grid);
     let windows = windows(grid, view, roaming_box, asked);
     let mut starts = Vec::with_capacity(windows.len());
     let mut count = 0;
@@ -72,10 +73,10 @@ pub(super) fn carry(
         starts.push(count);
         count += window.size()[0] * window.size()[1];
     }
-    // Every value is written below, by the threads: zeros cost nothing until then.
+    // Every value is written below, by several threads; zeroed memory costs nothing until then.
     let mut lambda = vec![0.0f32; count];
     let mut emission = emits.then(|| vec![Vec3::ZERO; count]);
-    // Slices with an empty cell to every side.
+    // Slices with a border of empty cells.
     let pitch = nu + 2;
     let padded = pitch * (nv + 2);
     let (mut before, mut after) = (vec![0.0f32; padded], vec![0.0f32; padded]);
@@ -84,7 +85,8 @@ pub(super) fn carry(
     progress.begin("light", slices as u64);
     for (front, (window, start)) in windows.iter().zip(&starts).enumerate() {
         let [width, height] = window.size();
-        let pass = Pass { block: &block, window: *window, front, pitch, before: &before, glow_before: &glow_before };
+        let pass =
+            SlicePass { block: &block, window: *window, front, pitch, before: &before, glow_before: &glow_before };
         let rows = |first: usize| first * pitch..;
         let kept = &mut lambda[*start..start + width * height];
         let carried = &mut after[rows(window.low[1] + 1)][..height * pitch];
@@ -113,13 +115,13 @@ pub(super) fn carry(
     Ok(Carried { windows, starts, lambda, emission })
 }
 
-/// Rows that one task computes.
+/// Number of rows that one task computes.
 const ROWS: usize = 16;
 
-impl<'c> Block<'c> {
-    fn new(field: &'c Field<'c>, view: &'c View, solid: &Solid, grid: &'c LightGrid) -> Self {
+impl<'c> BlockPassages<'c> {
+    fn new(field: &'c MediaField<'c>, view: &'c View, solid: &Solid, grid: &'c LightGrid) -> Self {
         let [nu, nv, _] = grid.size;
-        let alone = field.alone().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize);
+        let alone = field.only_medium().filter(|medium| medium.volume.volume.samples().len() < u32::MAX as usize);
         let most = solid.cut_outs.len() * 2 + 1;
         let rows: Vec<Vec<Vec<Passage>>> = (0..nv)
             .into_par_iter()
@@ -132,13 +134,13 @@ impl<'c> Block<'c> {
                     let slice = |t: f32| ((f64::from(t) / norm - grid.near) / grid.slice) as f32;
                     let mut rank = 0;
                     stretches(solid, &ray, [f32::MIN, f32::INFINITY], |stretch| {
-                        let seen_into = stretch.place == Place::CutOut || field.faces != Faces::All;
-                        let asked = alone.is_none_or(|medium| medium.place == stretch.place);
+                        let seen_into = stretch.zone == Zone::CutOut || field.faces != Faces::All;
+                        let asked = alone.is_none_or(|medium| medium.zone == stretch.zone);
                         if seen_into && asked && rank < most {
                             if rank == ranks.len() {
                                 ranks.push(vec![NOTHING; nu]);
                             }
-                            ranks[rank][u] = Passage { between: stretch.t.map(slice), place: stretch.place };
+                            ranks[rank][u] = Passage { between: stretch.t.map(slice), zone: stretch.zone };
                             rank += 1;
                         }
                     });
@@ -154,30 +156,30 @@ impl<'c> Block<'c> {
         Self { field, view, grid, alone: alone.map(|medium| (medium, medium.samples())), passages }
     }
 
-    /// The voxel position of a cell's middle at a depth in slices.
+    /// Voxel position of the middle of a cell at a depth in slices.
     fn voxel(&self, u: usize, v: usize, slice: f64) -> DVec3 {
         let (origin, direction) = self.view.depth_ray(cell_middle(self.grid, u, v));
         origin + direction * (self.grid.near + slice * self.grid.slice)
     }
 
-    /// What a slice of a cell adds, whatever is there: occlusion, opacity, and light given off.
+    /// What a slice adds in a cell, for any media: occlusion, opacity and emitted light.
     fn slice(&self, u: usize, v: usize, slice: usize) -> (f32, f32, Vec3) {
         let mut sum = (0.0, 0.0, Vec3::ZERO);
         for passages in &self.passages {
-            let Passage { between: [from, to], place } = passages[v * self.grid.size[0] + u];
+            let Passage { between: [from, to], zone } = passages[v * self.grid.size[0] + u];
             let (from, to) = (from.max(slice as f32), to.min((slice + 1) as f32));
             if to <= from {
                 continue;
             }
             let p = self.voxel(u, v, f64::from(0.5 * (from + to))).as_vec3();
             let word = self.field.bricks.word(self.field.bricks.at(p));
-            let shift = if place == Place::CutOut { 8 } else { 0 };
+            let shift = if zone == Zone::CutOut { 8 } else { 0 };
             if word >> shift & 255 != 0 {
                 continue;
             }
             let (_, direction) = self.view.depth_ray(cell_middle(self.grid, u, v));
             let towards = -(self.field.display_from_voxel * direction.as_vec3()).normalize_or_zero();
-            let Matter { extinction, emission, .. } = self.field.at(p, place, word, towards);
+            let Matter { extinction, emission, .. } = self.field.at(p, zone, word, towards);
             if extinction <= 0.0 {
                 continue;
             }
@@ -195,18 +197,19 @@ fn cell_middle(grid: &LightGrid, u: usize, v: usize) -> DVec2 {
     grid.low + DVec2::new(u as f64 + 0.5, v as f64 + 0.5) * grid.cell
 }
 
-/// One slice.
-struct Pass<'p> {
-    block: &'p Block<'p>,
-    window: Window,
+/// The pass over one slice.
+struct SlicePass<'p> {
+    block: &'p BlockPassages<'p>,
+    window: CellWindow,
     front: usize,
     pitch: usize,
     before: &'p [f32],
     glow_before: &'p [Vec3],
 }
 
-impl Pass<'_> {
-    /// Blurs some rows of the window, from row `first` on: λ of what comes out is kept, and itself is what the slice adds to.
+impl SlicePass<'_> {
+    /// Blurs rows of the window from row `first` on, stores λ, and leaves the blurred occlusion in `carried`
+    /// for the slice to add to.
     fn rows(&self, first: usize, kept: &mut [f32], carried: &mut [f32]) {
         widest(Blurring { pass: self, first, kept, carried });
     }
@@ -228,7 +231,7 @@ impl Pass<'_> {
         }
     }
 
-    /// The same for scenes with light given off.
+    /// Blurs emission and adds both emission and occlusion, for scenes with emission.
     fn glowing_rows(&self, first: usize, kept: &mut [Vec3], carried: &mut [f32], glow: &mut [Vec3]) {
         let [low, high] = [self.window.low[0], self.window.high[0]];
         let side = self.block.grid.side_weight(self.front);
@@ -248,9 +251,9 @@ impl Pass<'_> {
     }
 }
 
-/// Some rows of a slice being blurred.
+/// Blurs rows of a slice.
 struct Blurring<'p> {
-    pass: &'p Pass<'p>,
+    pass: &'p SlicePass<'p>,
     first: usize,
     kept: &'p mut [f32],
     carried: &'p mut [f32],
@@ -274,7 +277,8 @@ impl Loops for Blurring<'_> {
     }
 }
 
-/// Cells of a row blurred by the 3 × 3 kernel with this weight to either side; rows and slices have an empty cell to every side.
+/// Blurs a row of cells with the 3 × 3 kernel that has this weight on either side. Rows and slices have a
+/// border of empty cells.
 #[inline(always)]
 fn blur_row<T>(from: &[T], to: &mut [T], pitch: usize, row: usize, [low, high]: [usize; 2], side: f32)
 where
@@ -283,7 +287,7 @@ where
     let middle = 1.0 - 2.0 * side;
     let cells = |row: usize| &from[row * pitch + low..][..high - low + 2];
     let (below, here, above) = (cells(row), cells(row + 1), cells(row + 2));
-    // A part at a time, so that the mixed columns stay at hand.
+    // A part at a time, so that the blurred columns stay in the cache.
     const PART: usize = 128;
     let mut mixed = [T::default(); PART + 2];
     for start in (0..high - low).step_by(PART) {
@@ -300,19 +304,19 @@ where
     }
 }
 
-/// Some rows of a slice taking up what one medium occludes.
+/// Adds what a single medium occludes in rows of a slice.
 struct Occluding<'p> {
-    pass: &'p Pass<'p>,
+    pass: &'p SlicePass<'p>,
     medium: &'p FieldMedium<'p>,
-    samples: &'p Samples<'p>,
+    samples: &'p VolumeSamples<'p>,
     first: usize,
     carried: &'p mut [f32],
 }
 
-/// Cells that wait for their values.
+/// Cells whose values are to be read together.
 struct Waiting {
-    places: Places,
-    /// Where each cell is among those carried, and the length of its medium in the slice.
+    places: IndexPositions,
+    /// Index of each cell in the row buffer, and the length of the medium in the slice.
     cells: [usize; BATCH],
     lengths: [f32; BATCH],
     filled: usize,
@@ -323,20 +327,21 @@ impl Loops for Occluding<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let mut waiting = Waiting { places: Places::default(), cells: [0; BATCH], lengths: [0.0; BATCH], filled: 0 };
+        let mut waiting =
+            Waiting { places: IndexPositions::default(), cells: [0; BATCH], lengths: [0.0; BATCH], filled: 0 };
         let Self { pass, medium, samples, first, carried } = self;
         let (block, slice) = (pass.block, pass.front as f32);
         let [low, high] = [pass.window.low[0], pass.window.high[0]];
         let (nu, units) = (block.grid.size[0], block.grid.slice_units);
         let (scale, offset) = medium.index_from_voxel();
-        let shift = if medium.place == Place::CutOut { 8 } else { 0 };
+        let shift = if medium.zone == Zone::CutOut { 8 } else { 0 };
         let bricks = &block.field.bricks;
         for row in 0..carried.len() / pass.pitch {
             let v = pass.window.low[1] + first + row;
             let start = row * pass.pitch + 1;
             let middle = f64::from(slice) + 0.5;
             let at = block.voxel(low, v, middle);
-            let line = Line::new(at.as_vec3(), (block.voxel(low + 1, v, middle) - at).as_vec3());
+            let line = SampleLine::new(at.as_vec3(), (block.voxel(low + 1, v, middle) - at).as_vec3());
             let (index, index_per) = (line.at * scale + offset, line.per * scale);
             for passages in &block.passages {
                 let passages = &passages[v * nu..(v + 1) * nu];
@@ -375,7 +380,7 @@ impl Loops for Occluding<'_> {
     }
 }
 
-/// Cells of a run that are taken without asking for empty space between them.
+/// Number of cells of a run between two lookups of empty space.
 const LANES: u32 = 8;
 
 impl Waiting {
@@ -389,14 +394,14 @@ impl Waiting {
 
     /// Makes room for a run.
     #[inline(always)]
-    fn settle(&mut self, medium: &FieldMedium, samples: &Samples, carried: &mut [f32]) {
+    fn settle(&mut self, medium: &FieldMedium, samples: &VolumeSamples, carried: &mut [f32]) {
         if self.filled + LANES as usize > BATCH {
             self.read(medium, samples, carried);
         }
     }
 
     #[inline(always)]
-    fn read(&mut self, medium: &FieldMedium, samples: &Samples, carried: &mut [f32]) {
+    fn read(&mut self, medium: &FieldMedium, samples: &VolumeSamples, carried: &mut [f32]) {
         let (mut values, mut entries) = ([0.0; BATCH], [0; BATCH]);
         samples.values(&self.places, self.filled, &mut values);
         medium.table.entries_of(&values, &mut entries);

@@ -1,17 +1,16 @@
-//! The stretches of a ray through the block: in its surroundings, in cut-outs, and again.
-//!
-//! Voxel space; t in voxels along the ray.
+//! Divides a ray into stretches inside and outside cut-outs (P-illus 5.1, figure 10). Voxel space; t in
+//! voxels along the ray.
 
-use super::medium::Place;
+use super::medium::Zone;
 use crate::visible::{Ray, Solid, TOUCH};
 
-/// A stretch of a ray in one place.
+/// A part of a ray that lies in one zone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stretch {
-    /// Where it begins and ends.
+    /// The distances at which it begins and ends.
     pub t: [f32; 2],
-    /// What it is in.
-    pub place: Place,
+    /// The zone.
+    pub zone: Zone,
 }
 
 /// Calls `found` for each stretch of a ray in the roaming box between `start` and `stop`, front to back.
@@ -19,13 +18,13 @@ pub fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: i
     let Some([enter, exit]) = solid.box_interval(ray) else { return };
     let last = exit.min(stop);
     let mut t = enter.max(start);
-    let mut add = |from: f32, to: f32, place: Place| {
+    let mut add = |from: f32, to: f32, zone: Zone| {
         if to > from + TOUCH {
-            found(Stretch { t: [from, to], place });
+            found(Stretch { t: [from, to], zone });
         }
     };
     if solid.cut_outs.is_empty() {
-        add(t, last, Place::Surroundings);
+        add(t, last, Zone::Surroundings);
         return;
     }
     for _ in 0..=solid.cut_outs.len() {
@@ -33,11 +32,11 @@ pub fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: i
             return;
         }
         let Some(span) = solid.next_span(ray, t) else {
-            add(t, last, Place::CutOut);
+            add(t, last, Zone::CutOut);
             return;
         };
-        add(t, span.entry.t.min(last), Place::CutOut);
-        add(span.entry.t, span.end.min(last), Place::Surroundings);
+        add(t, span.entry.t.min(last), Zone::CutOut);
+        add(span.entry.t, span.end.min(last), Zone::Surroundings);
         t = span.end;
     }
 }
@@ -59,7 +58,7 @@ mod tests {
         let ray = Ray { origin: Vec3::new(-5.0, 5.0, 5.0), direction: Vec3::X };
         let all = |stop: f32| {
             let mut list = Vec::new();
-            stretches(&solid, &ray, [f32::MIN, stop], |s| list.push((s.t[0], s.t[1], s.place == Place::CutOut)));
+            stretches(&solid, &ray, [f32::MIN, stop], |s| list.push((s.t[0], s.t[1], s.zone == Zone::CutOut)));
             list
         };
         let whole = [(5.0, 7.0, false), (7.0, 9.0, true), (9.0, 13.0, false), (13.0, 15.0, true)];

@@ -1,45 +1,48 @@
-//! RGBA functions baked for a medium: linear colour and extinction at evenly spaced values.
+//! RGBA functions of media as tables: linear colour and extinction at evenly spaced values.
 //!
-//! The nearest of [`ENTRIES`] entries is taken, so that a lookup is one load on the GPU; the value's error is 1/4096 of the domain.
+//! A lookup takes the nearest of [`ENTRIES`] entries, so that it is a single load on the GPU. The error in
+//! the value is at most 1/4096 of the domain.
 
-use super::wide::whole;
+use super::samples::whole;
 use ttf::{RgbaFunction, linear_from_srgb};
 
-/// Entries of a table.
+/// Number of entries.
 pub const ENTRIES: usize = 2048;
-/// Values below stand for "no data" (NaN and dead traces).
-pub const NO_DATA_BELOW: f32 = -1.0e30;
-/// What stands for "no data" among samples.
-pub const NO_DATA: f32 = -3.0e38;
-/// Extinction of an opaque value: one ten-thousandth of a unit lets less than half pass.
+/// Extinction of an opaque value: a ten-thousandth of a unit transmits less than half.
 pub const OPAQUE: f32 = 1.0e4;
 
-/// −ln(1 − α₀), finite.
+/// −ln(1 − α₀), limited to [`OPAQUE`].
+///
+/// ```
+/// use render::media::table::{absorbed, extinction};
+/// assert!((extinction(0.5) - std::f32::consts::LN_2).abs() < 1e-6);
+/// assert!((absorbed(extinction(0.3)) - 0.3).abs() < 1e-5);
+/// ```
 pub fn extinction(opacity: f32) -> f32 {
     if opacity >= 0.9999 { OPAQUE } else { -(-opacity.max(0.0)).ln_1p() }
 }
 
-/// A baked function.
+/// A tabulated function.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Table {
-    /// Linear red, green, blue and extinction by entry.
+pub struct FunctionTable {
+    /// Linear red, green, blue, and extinction.
     pub entries: Vec<[f32; 4]>,
-    /// The extinctions alone: what most samples ask for, small enough to stay at hand.
+    /// The extinctions alone. Most samples need nothing else, and they fit into the cache.
     pub extinctions: Vec<f32>,
-    /// The opacity of one unit by entry.
+    /// The opacity of one unit of length.
     pub opacities: Vec<f32>,
-    /// The colour of all entries, where they have the same.
+    /// The colour of all entries, if they have the same.
     pub uniform: Option<[f32; 3]>,
     /// Value of the first entry.
     pub low: f32,
     /// Entries per unit of value.
     pub scale: f32,
-    /// Entries with extinction before each index.
+    /// Number of entries with extinction before each index.
     visible_before: Vec<u32>,
 }
 
-impl Table {
-    /// Bakes a valid function.
+impl FunctionTable {
+    /// Tabulates a function, which must be valid.
     pub fn new(function: &RgbaFunction) -> Self {
         let entries: Vec<[f32; 4]> = function
             .bake(ENTRIES)
@@ -70,13 +73,13 @@ impl Table {
         }
     }
 
-    /// The entry of a value that is data.
+    /// The index of the entry of a value; the value must not be missing.
     #[inline(always)]
     pub fn index(&self, value: f32) -> usize {
         ((value - self.low) * self.scale + 0.5).clamp(0.0, (ENTRIES - 1) as f32) as i32 as usize
     }
 
-    /// The entries of many values; of no meaning for those that are not data.
+    /// The indices of the entries of many values; meaningless for missing values.
     #[inline(always)]
     pub fn entries_of(&self, values: &[f32], entries: &mut [u32]) {
         const LAST: f32 = (ENTRIES - 1) as f32;
@@ -87,16 +90,17 @@ impl Table {
         }
     }
 
-    /// Whether any value between two is visible.
+    /// Whether any value between two values is visible.
     pub fn shows(&self, low: f32, high: f32) -> bool {
         low <= high && self.visible_before[self.index(high) + 1] > self.visible_before[self.index(low)]
     }
 }
 
-/// The share that is absorbed over an optical depth x ≥ 0: 1 − e^(−x), to about 10⁻⁶ and quicker than the library's.
+/// The fraction that is absorbed over an optical depth x ≥ 0: 1 − e^(−x), to about 10⁻⁶, faster than the
+/// library function.
 #[inline(always)]
 pub fn absorbed(x: f32) -> f32 {
-    // e^(−x) = 2^(−n) · 2^(−f), the latter by its series around ½.
+    // e^(−x) = 2^(−n) · 2^(−f), where the second factor is a series around ½.
     let y = (x * std::f32::consts::LOG2_E).min(126.0);
     let n = y as i32;
     let f = (y - n as f32 - 0.5) * -std::f32::consts::LN_2;
@@ -123,7 +127,7 @@ mod tests {
     #[test]
     fn entries_are_linear_colour_and_extinction() {
         let stop = |at: f32, opacity: f32| RgbaStop { at, colour: Colour::new(188, 255, 0), opacity };
-        let table = Table::new(&RgbaFunction {
+        let table = FunctionTable::new(&RgbaFunction {
             domain: [0.0, 2.0],
             stops: vec![stop(0.0, 0.0), stop(0.5, 0.0), stop(1.0, 1.0)],
         });

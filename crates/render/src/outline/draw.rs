@@ -1,70 +1,70 @@
-//! Lines gathered from sections and edges, and drawn over a picture.
+//! Collects the lines of a picture from sections and edges, and strokes them.
 
 use super::hidden::{ASIDE, IN_FRONT, covered_by, is_seen, seen_parts};
 use super::relief::relief_lines;
 use super::solid::{EdgeLine, FaceRect, edge_lines, face_rects};
 use super::stroke::stroke_lines;
-use super::underlay::{has_underlay, underlay};
-use crate::frame::{Frame, Rock};
+use super::underlay::underlay;
 use crate::ground::{air_layer, is_air};
 use crate::media::Faces;
+use crate::resolved::{Interpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::section::{LineKind, Section, SectionPlane};
 use rayon::prelude::*;
 
-/// Seen lines by what they are, pixels.
+/// Visible lines by kind, pixels.
 #[derive(Debug, Default)]
-pub(crate) struct Lines {
+pub(crate) struct OutlineLines {
     pub edges: Vec<Vec<DVec2>>,
     pub horizons: Vec<Vec<DVec2>>,
     pub faults: Vec<Vec<DVec2>>,
 }
 
-impl Lines {
+impl OutlineLines {
     /// All lines of a picture.
-    pub fn of(frame: &Frame) -> Self {
-        let wanted = frame.scene.outlines;
+    pub fn of(resolved: &ResolvedScene) -> Self {
+        let wanted = resolved.scene.outlines;
         let mut lines = Self::default();
         if wanted.edges.width_px > 0.0 {
-            let edges = edge_lines(&frame.solid, &frame.view);
-            lines.edges = edges.par_iter().flat_map_iter(|edge| seen_edge(frame, edge)).collect();
+            let edges = edge_lines(&resolved.solid, &resolved.view);
+            lines.edges = edges.par_iter().flat_map_iter(|edge| seen_edge(resolved, edge)).collect();
         }
-        if let (Some(rock), Faces::All) = (frame.rock, frame.scene.media.faces) {
-            for rect in face_rects(&frame.solid, &frame.view) {
-                lines.add_face(frame, rock, &rect);
+        if let (Some(interpretation), Faces::All) = (resolved.interpretation, resolved.scene.media.faces) {
+            for rect in face_rects(&resolved.solid, &resolved.view) {
+                lines.add_face(resolved, interpretation, &rect);
             }
-            let relief = relief_lines(frame);
+            let relief = relief_lines(resolved);
             lines.faults.extend(relief.faults);
             lines.horizons.extend(relief.crests);
         }
         lines
     }
 
-    /// The section's lines on one face.
-    fn add_face(&mut self, frame: &Frame, rock: Rock, rect: &FaceRect) {
-        if !rect.faces_camera && (frame.relief.is_none() || rect.axis == 2) {
+    /// Adds the lines of the section on one face.
+    fn add_face(&mut self, resolved: &ResolvedScene, interpretation: Interpretation, rect: &FaceRect) {
+        if !rect.faces_camera && (resolved.relief.is_none() || rect.axis == 2) {
             return;
         }
         let plane = rect.plane();
-        let section = Section::new(rock.model, &plane);
+        let section = Section::new(interpretation.model, &plane);
         let seen = |points: &[DVec2]| {
             let points: Vec<DVec3> = points.iter().map(|&st| plane.voxel(st)).collect();
-            seen_parts(&frame.view, &points, |p| match rect.faces_camera {
-                true => seen_on_face(frame, rect, p),
-                false => seen_over_rim(frame, rock, rect, p),
+            seen_parts(&resolved.view, &points, |p| match rect.faces_camera {
+                true => seen_on_face(resolved, rect, p),
+                false => seen_over_rim(resolved, interpretation, rect, p),
             })
         };
         for line in section.lines.iter().filter(|_| rect.faces_camera) {
             match line.kind {
                 LineKind::Fault { real: true, .. } => self.faults.extend(seen(&line.points)),
-                // Beyond a tip nothing was interpreted, but different layers meet.
+                // Beyond its tip a fault is not interpreted, but different layers meet there.
                 LineKind::Horizon { .. } | LineKind::Fault { .. } => self.horizons.extend(seen(&line.points)),
                 LineKind::Frame => {}
             }
         }
-        if frame.relief.is_some() {
-            let air = section.layers.iter().filter(|area| area.layer == air_layer(rock.model));
+        if resolved.relief.is_some() {
+            let air = section.layers.iter().filter(|area| area.layer == air_layer(interpretation.model));
             for ring in air.flat_map(|area| &area.rings) {
                 for rim in rim_parts(ring, plane.extent) {
                     self.edges.extend(seen(&rim));
@@ -84,7 +84,7 @@ impl FaceRect {
     }
 }
 
-/// The runs of a ring that do not lie on the border of its rectangle: where air meets rock.
+/// The parts of a ring that do not lie on the border of its rectangle: where air meets rock.
 fn rim_parts(ring: &[DVec2], extent: [f64; 2]) -> Vec<Vec<DVec2>> {
     const ON: f64 = 1e-6;
     let on_border = |a: DVec2, b: DVec2| {
@@ -107,50 +107,50 @@ fn rim_parts(ring: &[DVec2], extent: [f64; 2]) -> Vec<Vec<DVec2>> {
     parts
 }
 
-/// Whether a point of a line on a face is seen: the face itself, on one side of the line at least.
-fn seen_on_face(frame: &Frame, rect: &FaceRect, p: DVec3) -> bool {
+/// Whether a point of a line on a face is visible: the face itself is, on at least one side of the line.
+fn seen_on_face(resolved: &ResolvedScene, rect: &FaceRect, p: DVec3) -> bool {
     let (u, v) = (DVec3::AXES[(rect.axis + 1) % 3], DVec3::AXES[(rect.axis + 2) % 3]);
-    // Downwards first: with the ground shown, rock lies there.
+    // Downwards first, since rock lies there if the ground is shown.
     let beside =
         if rect.axis == 2 { [u, -u, v, -v] } else { [DVec3::Z, -DVec3::Z, u + v - DVec3::Z, DVec3::Z - u - v] };
     beside.into_iter().any(|aside| {
         let q = (p + aside * ASIDE).clamp(rect.low, rect.high);
-        is_seen(frame, q)
+        is_seen(resolved, q)
     })
 }
 
-/// Whether a point of the ground's rim on a face that looks away is seen: nothing in front, and rock beside it (not so for a fault
-/// between air and air).
-fn seen_over_rim(frame: &Frame, rock: Rock, rect: &FaceRect, p: DVec3) -> bool {
+/// Whether a point of the ground's edge is visible on a face that looks away from the camera: nothing is in
+/// front of it, and there is rock beside it (not so for a fault between air and air).
+fn seen_over_rim(resolved: &ResolvedScene, interpretation: Interpretation, rect: &FaceRect, p: DVec3) -> bool {
     let along = DVec3::AXES[1 - rect.axis];
     let into_rock = DVec3::AXES[rect.axis] * rect.rock;
     let is_rock = |aside: DVec3| {
         let q = (p + (aside + into_rock) * ASIDE).as_vec3();
-        frame.solid.contains(q) && !is_air(rock.model, q)
+        resolved.solid.contains(q) && !is_air(interpretation.model, q)
     };
-    [DVec3::Z, along, -along].into_iter().any(is_rock) && covered_by(frame, p) < IN_FRONT
+    [DVec3::Z, along, -along].into_iter().any(is_rock) && covered_by(resolved, p) < IN_FRONT
 }
 
-/// The seen parts of an edge: where one of its faces is seen right beside it.
-fn seen_edge(frame: &Frame, edge: &EdgeLine) -> Vec<Vec<DVec2>> {
-    // Not from the very ends, where the ray could pass the block.
+/// The visible parts of an edge: where one of its faces is visible right beside it.
+fn seen_edge(resolved: &ResolvedScene, edge: &EdgeLine) -> Vec<Vec<DVec2>> {
+    // Not at the very ends, where the ray could miss the block.
     let inset = (edge.ends[1] - edge.ends[0]).normalize_or_zero() * ASIDE;
     let along = |p: DVec3| {
         let length = (edge.ends[1] - edge.ends[0]).length();
         let t = (p - edge.ends[0]).length().clamp(ASIDE.min(0.5 * length), (length - ASIDE).max(0.5 * length));
         edge.ends[0] + inset * (t / ASIDE)
     };
-    let seen = |p: DVec3| edge.faces.iter().flatten().any(|into| is_seen(frame, along(p) + *into * ASIDE));
-    seen_parts(&frame.view, &edge.ends, seen)
+    let seen = |p: DVec3| edge.faces.iter().flatten().any(|into| is_seen(resolved, along(p) + *into * ASIDE));
+    seen_parts(&resolved.view, &edge.ends, seen)
 }
 
-/// Strokes a picture's outlines over it, anti-aliased, on sRGB-encoded values.
-pub(crate) fn draw(frame: &Frame, image: &mut RgbaImage) {
-    let outlines = frame.scene.outlines;
-    if has_underlay(frame.scene) {
-        underlay(frame, image);
+/// Strokes the outlines of a picture over it, anti-aliased, on sRGB-encoded values.
+pub(crate) fn draw(resolved: &ResolvedScene, image: &mut RgbaImage) {
+    let outlines = resolved.scene.outlines;
+    if resolved.scene.has_back_edges() {
+        underlay(resolved, image);
     }
-    let lines = Lines::of(frame);
+    let lines = OutlineLines::of(resolved);
     for (stroke, lines) in
         [(outlines.horizons, &lines.horizons), (outlines.faults, &lines.faults), (outlines.edges, &lines.edges)]
     {

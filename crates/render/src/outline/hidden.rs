@@ -1,53 +1,54 @@
-//! Which parts of a line on the block are seen.
+//! Hidden-line removal: which parts of a line on the block are visible.
 //!
-//! A point is seen if the ray through its pixel meets the block there. Faces are analytic, so this needs no depth buffer and is
-//! exact at any resolution; a point is asked a little beside the line, inside the surface it belongs to, because a ray through an
-//! edge itself may pass on either side.
+//! A point is visible if the ray through its pixel meets the block there. Faces are analytic, so this needs
+//! no depth buffer and is exact at any resolution. The ray is cast a little beside the line, inside the
+//! surface to which it belongs, because a ray through an edge itself may pass on either side.
 
 use crate::camera::View;
-use crate::frame::Frame;
 use crate::media::march::gather;
+use crate::resolved::ResolvedScene;
 use crate::shade::first_hit;
 use crate::visible::Ray;
 use glam::{DVec2, DVec3};
 
-/// How far beside a line its surface is asked for, voxels.
+/// How far beside a line its surface is tested, voxels.
 pub(super) const ASIDE: f64 = 0.02;
-/// Points nearer than this along a ray are the same, voxels.
+/// Points closer than this along a ray are the same, voxels.
 const SAME: f64 = 0.05;
-/// How far in front of a line on the ground another part of it must be to hide it, voxels: lines touch what they lie on.
+/// How far in front of a line on the ground another part of the ground must be to hide it, voxels; a line
+/// touches the surface on which it lies.
 pub(super) const IN_FRONT: f64 = 0.6;
-/// Pixels between two points of a line that are asked.
+/// Distance between two tested points of a line, pixels.
 const STEP_PX: f64 = 2.0;
-/// Halvings of the last step to where a line disappears: 1/64 pixel.
+/// Bisections of the last step before a line disappears: 1/64 pixel.
 const BISECTIONS: usize = 7;
 
-/// How far in front of a point the first hit of the ray through its pixel lies, voxels; negative when the ray meets nothing
-/// until behind the point.
-pub(super) fn covered_by(frame: &Frame, p: DVec3) -> f64 {
-    let view_ray = frame.view.ray(frame.view.project(p));
+/// How far in front of a point the first hit of the ray through its pixel lies, voxels. Negative if the ray
+/// meets nothing in front of the point.
+pub(super) fn covered_by(resolved: &ResolvedScene, p: DVec3) -> f64 {
+    let view_ray = resolved.view.ray(resolved.view.project(p));
     let t = (p - view_ray.origin).dot(view_ray.direction);
-    t - f64::from(first_hit(frame, &Ray::from(view_ray), f32::MIN).t())
+    t - f64::from(first_hit(resolved, &Ray::from(view_ray), f32::MIN).t())
 }
 
-/// Whether the media in front of a point hide lines there: less than half of the light passes.
-fn is_veiled(frame: &Frame, p: DVec3) -> bool {
-    let view_ray = frame.view.ray(frame.view.project(p));
+/// Whether media or wells in front of a point hide lines there: the transmittance is below one half.
+fn is_veiled(resolved: &ResolvedScene, p: DVec3) -> bool {
+    let view_ray = resolved.view.ray(resolved.view.project(p));
     let t = (p - view_ray.origin).dot(view_ray.direction) - SAME;
     let ray = Ray::from(view_ray);
-    if frame.tubes.as_ref().is_some_and(|tubes| tubes.hit(&ray, t as f32).is_some()) {
+    if resolved.tubes.as_ref().is_some_and(|tubes| tubes.hit(&ray, t as f32).is_some()) {
         return true;
     }
-    let Some(field) = &frame.field else { return false };
-    gather(field, None, &frame.solid, &ray, [f32::MIN, t as f32]).passes < 0.5
+    let Some(field) = &resolved.field else { return false };
+    gather(field, None, &resolved.solid, &ray, [f32::MIN, t as f32]).transmittance < 0.5
 }
 
-/// Whether the block's surface is at `p` and nothing is in front of it.
-pub(super) fn is_seen(frame: &Frame, p: DVec3) -> bool {
-    covered_by(frame, p).abs() < SAME && !is_veiled(frame, p)
+/// Whether the surface of the block is at `p` and nothing is in front of it.
+pub(super) fn is_seen(resolved: &ResolvedScene, p: DVec3) -> bool {
+    covered_by(resolved, p).abs() < SAME && !is_veiled(resolved, p)
 }
 
-/// The parts of a polyline (voxel) for which `seen` holds, in pixels.
+/// The parts of a polyline (voxels) for which `seen` holds, in pixels.
 pub(super) fn seen_parts(view: &View, points: &[DVec3], seen: impl Fn(DVec3) -> bool) -> Vec<Vec<DVec2>> {
     let mut parts = Vec::new();
     let mut part: Vec<DVec2> = Vec::new();
@@ -69,7 +70,7 @@ pub(super) fn seen_parts(view: &View, points: &[DVec3], seen: impl Fn(DVec3) -> 
                     parts.push(std::mem::take(&mut part));
                 }
             }
-            // Straight runs need their ends only.
+            // A straight part needs its ends only.
             if here.1 && step == steps {
                 part.push(view.project(p));
             }
@@ -82,7 +83,7 @@ pub(super) fn seen_parts(view: &View, points: &[DVec3], seen: impl Fn(DVec3) -> 
     parts
 }
 
-/// The last seen point between a seen and a hidden one.
+/// The last visible point between a visible and a hidden one.
 fn bisect(mut visible: DVec3, mut hidden: DVec3, seen: &impl Fn(DVec3) -> bool) -> DVec3 {
     for _ in 0..BISECTIONS {
         let middle = (visible + hidden) * 0.5;

@@ -1,38 +1,43 @@
-//! Lines drawn over the faces: horizons and faults from the exact sections of the model, and the block's own edges.
+//! Lines drawn over the faces: horizons and faults from exact sections of the model, and the edges of the
+//! block.
 //!
-//! Lines are polylines in voxel space, cut to what is seen by casting rays, and stroked over the finished picture on the CPU,
-//! the same for both renderers.
+//! Lines are polylines in voxel space. Rays decide which parts of them are visible, and these are stroked
+//! over the finished picture on the CPU, in the same way for both renderers.
 //!
-//! Widths are pixels of an image 1000 pixels wide or high (the smaller side) and scale with it, so that a figure looks the same at
-//! any resolution.
+//! Widths are in pixels of an image whose smaller side has 1000 pixels, and scale with the image, so that a
+//! figure looks the same at any resolution.
 
-mod draw;
+pub(crate) mod draw;
 mod hidden;
 mod relief;
-mod solid;
+pub(crate) mod solid;
 mod stroke;
 mod underlay;
-
-pub(crate) use draw::draw;
-pub(crate) use solid::{FaceRect, face_rects};
-pub(crate) use underlay::has_underlay;
 
 use crate::error::SceneError;
 use serde::{Deserialize, Serialize};
 use ttf::Colour;
 
-/// Image side at which line widths are as stated, pixels.
+/// Smaller side of an image in which line widths are as stated, pixels.
 pub const NOMINAL_SIDE_PX: f32 = 1000.0;
 
-/// Which lines are drawn over the faces, and how.
+/// The lines that are drawn over the faces.
+///
+/// ```
+/// let outlines = render::Outlines::default();
+/// assert_eq!(outlines.faults.width_px, 3.0);
+/// assert!(outlines.validate().is_ok());
+/// assert_eq!(render::Outlines::none().edges.width_px, 0.0);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Outlines {
-    /// Edges of the block and its cut-outs, and the rim of the ground. Default 2.2 px, near black.
+    /// Edges of the block and its cut-outs, and the edge of the ground on side faces. Default 2.2 px, near
+    /// black.
     pub edges: Stroke,
     /// Horizons. Default 1.3 px, near black.
     pub horizons: Stroke,
-    /// Faults, where they are real. Default 3 px, near black.
+    /// Faults within their interpreted extent. Default 3 px, near black.
     pub faults: Stroke,
 }
 
@@ -40,7 +45,7 @@ pub struct Outlines {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stroke {
-    /// Width, pixels at a nominal image side of 1000; 0 = not drawn.
+    /// Width in pixels at a nominal image side of 1000; 0: not drawn.
     pub width_px: f32,
     /// Colour.
     pub colour: Colour,
@@ -66,7 +71,7 @@ impl Outlines {
         Self { edges: off, horizons: off, faults: off }
     }
 
-    /// Refuses widths that cannot be drawn.
+    /// Checks that the widths can be drawn.
     ///
     /// # Errors
     /// The first [`SceneError`] found.
@@ -76,10 +81,7 @@ impl Outlines {
             ("the width of horizons", self.horizons),
             ("the width of faults", self.faults),
         ] {
-            let found = f64::from(stroke.width_px);
-            if !(0.0..=200.0).contains(&found) {
-                return Err(SceneError::OutOfRange { what, found, low: 0.0, high: 200.0 });
-            }
+            SceneError::check_range(what, f64::from(stroke.width_px), 0.0, 200.0)?;
         }
         Ok(())
     }

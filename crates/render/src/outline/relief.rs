@@ -1,36 +1,39 @@
-//! Lines on the ground: fault traces and the crests behind which it disappears.
+//! Lines on the ground: fault traces, and the crests behind which the ground disappears.
 //!
-//! Both are zero lines over the map of one block's ground h(x, y): of the fault's side at (x, y, h), and of
-//! (∂h/∂x, ∂h/∂y, −1)·d, d the viewing direction. They are found on cells of a voxel by linear interpolation (marching squares).
+//! Both are zero contours on the map of the ground h(x, y) of one block: of the signed distance to the fault
+//! at (x, y, h), and of (∂h/∂x, ∂h/∂y, −1)·d, where d is the viewing direction. They are found by linear
+//! interpolation in cells of one voxel (marching squares).
 
 use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
-use crate::frame::{Frame, Rock};
 use crate::ground::is_air;
+use crate::resolved::{Interpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// How far from a fault its block's ground is asked for, voxels: far enough that the rock below an overhanging scarp is met.
+/// How far from a fault the ground of its block is tested, voxels: far enough to meet the rock below an
+/// overhanging scarp.
 const INTO_BLOCK: f64 = 0.3;
-/// How far beside a line its blocks are told apart, voxels: beyond the sagitta that a bowed fault has over one cell.
+/// How far beside a line the blocks on its sides are looked up, voxels: farther than a curved fault deviates
+/// from its chord over one cell.
 const ACROSS: f64 = 0.12;
 
-/// Shortest crest that is drawn, line widths.
+/// Shortest crest that is drawn, in line widths.
 const SHORTEST_CREST: f64 = 24.0;
-/// Ends of lines nearer than about this meet, pixels: they are computed once from either cell.
+/// Ends of lines closer than about this are joined, pixels; each cell computes them once.
 const MEETING_PX: f64 = 0.5;
 
-/// Seen parts of the ground's lines, pixels.
+/// Visible parts of the lines on the ground, pixels.
 #[derive(Debug, Default)]
 pub(super) struct ReliefLines {
     pub faults: Vec<Vec<DVec2>>,
     pub crests: Vec<Vec<DVec2>>,
 }
 
-/// Heights of one block's ground at the corners of cells.
+/// Heights of the ground of one block at the corners of cells.
 struct Map<'a> {
-    rock: Rock<'a>,
+    interpretation: Interpretation<'a>,
     block: u16,
     low: DVec3,
     counts: [usize; 2],
@@ -44,11 +47,11 @@ impl Map<'_> {
 
     fn ground(&self, node: DVec2) -> DVec3 {
         let xy = self.xy(node);
-        let z = self.rock.model.horizon_z(0, self.block, xy.x as f32, xy.y as f32);
+        let z = self.interpretation.model.horizon_z(0, self.block, xy.x as f32, xy.y as f32);
         xy.extend(f64::from(z))
     }
 
-    /// Segments on which a function of the map is zero, as points of the ground.
+    /// Segments on which a function on the map is zero, as points on the ground.
     fn zero_lines(&self, f: impl Fn(DVec2) -> f64 + Sync) -> Vec<[DVec3; 2]> {
         let [nx, ny] = self.counts;
         let values: Vec<f64> = (0..(nx + 1) * (ny + 1))
@@ -76,36 +79,40 @@ impl Map<'_> {
     }
 }
 
-/// The lines of the frame's ground.
-pub(super) fn relief_lines(frame: &Frame) -> ReliefLines {
+/// The lines on the ground of a scene.
+pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
     let mut lines = ReliefLines::default();
-    let (Some(_), Some(rock)) = (&frame.relief, frame.rock) else { return lines };
-    let [low, high] = frame.solid.roaming_box.map(|c| c.as_dvec3());
+    let (Some(_), Some(interpretation)) = (&resolved.relief, resolved.interpretation) else { return lines };
+    let [low, high] = resolved.solid.roaming_box.map(|c| c.as_dvec3());
     let counts = [0, 1].map(|axis: usize| (high[axis] - low[axis]).ceil().max(1.0) as usize);
     let step = (high - low).truncate() / DVec2::new(counts[0] as f64, counts[1] as f64);
-    for block in 0..rock.model.block_count() as u16 {
-        let map = Map { rock, block, low, counts, step };
-        for fault in 0..rock.model.faults().surfaces().len() {
-            let side = |node: DVec2| f64::from(rock.model.faults().side(fault, map.ground(node).as_vec3()));
+    for block in 0..interpretation.model.block_count() as u16 {
+        let map = Map { interpretation, block, low, counts, step };
+        for fault in 0..interpretation.model.faults().surfaces().len() {
+            let side = |node: DVec2| f64::from(interpretation.model.faults().side(fault, map.ground(node).as_vec3()));
             let segments = map.zero_lines(side);
-            lines.faults.extend(seen(frame, rock, &segments, |p| beside_fault(rock, fault, block, p)));
+            lines
+                .faults
+                .extend(seen(resolved, interpretation, &segments, |p| beside_fault(interpretation, fault, block, p)));
         }
         let facing = |node: DVec2| {
             let p = map.ground(node);
             let (dx, dy) = (map.ground(node + DVec2::X) - p, map.ground(node + DVec2::Y) - p);
-            dx.cross(dy).dot(frame.view.towards_camera(p))
+            dx.cross(dy).dot(resolved.view.towards_camera(p))
         };
         let segments = map.zero_lines(facing);
-        lines.crests.extend(seen(frame, rock, &segments, |p| (rock.model.block_at(p.as_vec3()) == block).then_some(p)));
+        lines.crests.extend(seen(resolved, interpretation, &segments, |p| {
+            (interpretation.model.block_at(p.as_vec3()) == block).then_some(p)
+        }));
     }
-    let scale = frame.scene.size_px.into_iter().min().map_or(0.0, f64::from) / f64::from(NOMINAL_SIDE_PX);
-    let shortest = SHORTEST_CREST * f64::from(frame.scene.outlines.horizons.width_px) * scale;
+    let scale = f64::from(resolved.scene.size_px[0].min(resolved.scene.size_px[1])) / f64::from(NOMINAL_SIDE_PX);
+    let shortest = SHORTEST_CREST * f64::from(resolved.scene.outlines.horizons.width_px) * scale;
     lines.crests = without_specks(lines.crests, shortest);
     lines
 }
 
-/// Leaves out lines that, with all that meet them, are shorter than `shortest` pixels: a relief that is rough by less than a line is wide
-/// has crests that only look like dirt.
+/// Removes lines that are, together with all lines that meet them, shorter than `shortest` pixels. If the
+/// relief is rough on a scale finer than the line width, its crests look like dirt.
 fn without_specks(lines: Vec<Vec<DVec2>>, shortest: f64) -> Vec<Vec<DVec2>> {
     let length = |line: &Vec<DVec2>| line.windows(2).map(|ends| (ends[1] - ends[0]).length()).sum::<f64>();
     let mut group: Vec<usize> = (0..lines.len()).collect();
@@ -126,7 +133,7 @@ fn without_specks(lines: Vec<Vec<DVec2>>, shortest: f64) -> Vec<Vec<DVec2>> {
     lines.into_iter().zip(whole).filter_map(|(line, whole)| whole.then_some(line)).collect()
 }
 
-/// The first line of a line's group; the way there is shortened.
+/// The first line of the group of a line; shortens the path to it (union–find).
 fn first_of(group: &mut [usize], mut index: usize) -> usize {
     while group[index] != index {
         group[index] = group[group[index]];
@@ -135,45 +142,46 @@ fn first_of(group: &mut [usize], mut index: usize) -> usize {
     index
 }
 
-/// A point of the block's own ground right beside a real fault; `None` where the fault does not end that ground.
-fn beside_fault(rock: Rock, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
-    let faults = rock.model.faults();
+/// A point on the ground of the block right beside the interpreted part of a fault; `None` if the fault does
+/// not end that ground.
+fn beside_fault(interpretation: Interpretation, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
+    let faults = interpretation.model.faults();
     if !faults.is_real(fault, p.as_vec3()) {
         return None;
     }
     let normal = faults.surfaces()[fault].frame_from_voxel.row(2).normalize();
-    let holds_block = |aside: f64| rock.model.block_at((p + normal * aside).as_vec3()) == block;
+    let holds_block = |aside: f64| interpretation.model.block_at((p + normal * aside).as_vec3()) == block;
     let inwards = match (holds_block(ACROSS), holds_block(-ACROSS)) {
         (true, false) => normal,
         (false, true) => -normal,
         _ => return None,
     };
     let q = p + inwards * INTO_BLOCK;
-    Some(q.with_z(rock.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
+    Some(q.with_z(interpretation.model.horizon_z(0, block, q.x as f32, q.y as f32).into()))
 }
 
-/// The parts of segments that lie on drawn ground and have nothing in front. `ground` gives the point of the block's ground that a
-/// point of the line stands for.
+/// The parts of segments that lie on ground that is drawn, with nothing in front. `ground` returns the point
+/// on the ground of the block for a point of the line.
 fn seen(
-    frame: &Frame,
-    rock: Rock,
+    resolved: &ResolvedScene,
+    interpretation: Interpretation,
     segments: &[[DVec3; 2]],
     ground: impl Fn(DVec3) -> Option<DVec3> + Sync,
 ) -> Vec<Vec<DVec2>> {
-    let [low, high] = frame.solid.roaming_box.map(|c| c.as_dvec3());
+    let [low, high] = resolved.solid.roaming_box.map(|c| c.as_dvec3());
     let is_seen = |p: DVec3| {
         p.z >= low.z
             && p.z <= high.z
-            && !cut_away(frame, p)
-            && ground(p).is_some_and(|q| !is_air(rock.model, (q + DVec3::Z * 0.1).as_vec3()))
-            && covered_by(frame, p) < IN_FRONT
+            && !cut_away(resolved, p)
+            && ground(p).is_some_and(|q| !is_air(interpretation.model, (q + DVec3::Z * 0.1).as_vec3()))
+            && covered_by(resolved, p) < IN_FRONT
     };
-    segments.par_iter().flat_map_iter(|segment| seen_parts(&frame.view, segment, is_seen)).collect()
+    segments.par_iter().flat_map_iter(|segment| seen_parts(&resolved.view, segment, is_seen)).collect()
 }
 
-fn cut_away(frame: &Frame, p: DVec3) -> bool {
+fn cut_away(resolved: &ResolvedScene, p: DVec3) -> bool {
     let p = p.as_vec3();
-    frame.solid.cut_outs.iter().any(|[low, high]| p.cmpge(*low).all() && p.cmple(*high).all())
+    resolved.solid.cut_outs.iter().any(|[low, high]| p.cmpge(*low).all() && p.cmple(*high).all())
 }
 
 #[cfg(test)]
@@ -183,7 +191,7 @@ mod tests {
     #[test]
     fn specks_go_and_lines_in_pieces_stay() {
         let at = |x: f64| DVec2::new(x, 7.25);
-        // Ten pieces of four pixels that meet, one alone, and two that meet beside it.
+        // Ten pieces of four pixels that meet, a single one, and two that meet beside it.
         let chain = (0..10).map(|n| vec![at(4.0 * f64::from(n)), at(4.0 * f64::from(n) + 4.0)]);
         let alone = vec![at(100.0), at(109.0)];
         let pair = [vec![at(200.0), at(205.0)], vec![at(209.0), at(205.0)]];

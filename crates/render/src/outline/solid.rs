@@ -1,33 +1,34 @@
-//! Faces and edges of the block: the roaming box without its cut-outs.
+//! Faces and edges of the solid block: the roaming box minus its cut-outs.
 //!
-//! The planes of all boxes cut space into cells that are rock or not. A face rectangle is a side of a box with rock behind it; an edge is a
-//! stretch of a line where two planes meet and the four cells around it are neither all alike nor a flat face.
+//! The planes of all boxes divide space into cells, each of which is rock or not. A face rectangle is a side
+//! of a box with rock behind it. An edge is a part of a line in which two planes meet, if the four cells
+//! around it are neither all alike nor form a flat face.
 
 use crate::camera::View;
 use crate::visible::Solid;
 use glam::{DVec3, Vec3};
 
-/// A side of the box or a wall of a cut-out. Parts of it may be cut away or hidden.
+/// A side of the box, or a back face of a cut-out. Parts of it may be cut away or hidden.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct FaceRect {
     /// Axis of its normal.
     pub axis: usize,
-    /// Smallest corner, voxel.
+    /// Smallest corner, voxels.
     pub low: DVec3,
     /// Largest corner; equal to `low` along `axis`.
     pub high: DVec3,
-    /// Where the rock is: +1 at larger, −1 at smaller coordinates along `axis`.
+    /// Direction to the rock along `axis`: +1 or −1.
     pub rock: f64,
-    /// Whether it faces the camera; of the others only the rim of the ground can be seen.
+    /// Whether it faces the camera. Of other faces only the edge of the ground can be visible.
     pub faces_camera: bool,
 }
 
-/// A stretch of an edge of the block.
+/// A part of an edge of the block.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct EdgeLine {
-    /// Ends, voxel.
+    /// Ends, voxels.
     pub ends: [DVec3; 2],
-    /// Directions from the edge into its faces that face the camera, unit and along an axis.
+    /// Unit directions along an axis from the edge into those of its faces that face the camera.
     pub faces: [Option<DVec3>; 4],
 }
 
@@ -40,7 +41,8 @@ pub(crate) fn face_rects(solid: &Solid, view: &View) -> Vec<FaceRect> {
             let normal = unit(axis) * if end == 0 { -1.0 } else { 1.0 };
             rects.push(face_rect(view, axis, outer, end, normal));
             for cut in &solid.cut_outs {
-                // A wall on the box's own side has no rock behind it. Its normal points into the cut-out.
+                // A face of the cut-out on the side of the roaming box has no rock behind it. The normal of
+                // the others points into the cut-out.
                 if cut[end][axis] != outer[end][axis] {
                     rects.push(face_rect(view, axis, *cut, end, -normal));
                 }
@@ -61,7 +63,7 @@ fn unit(axis: usize) -> DVec3 {
     DVec3::AXES[axis]
 }
 
-/// All stretches of edges with a face towards the camera.
+/// All parts of edges with a face towards the camera.
 pub(super) fn edge_lines(solid: &Solid, view: &View) -> Vec<EdgeLine> {
     let planes: [Vec<f64>; 3] = std::array::from_fn(|axis| {
         let boxes = std::iter::once(&solid.roaming_box).chain(&solid.cut_outs);
@@ -86,14 +88,14 @@ pub(super) fn edge_lines(solid: &Solid, view: &View) -> Vec<EdgeLine> {
     edges
 }
 
-/// The edge on a stretch where planes across `u` and `v` meet, if there is one.
+/// The edge in which planes of constant `u` and `v` meet, if there is one.
 fn edge(solid: &Solid, view: &View, ends: [DVec3; 2], u: DVec3, v: DVec3) -> Option<EdgeLine> {
     let middle = (ends[0] + ends[1]) * 0.5;
-    // Far enough for f32, nearer than any cell is wide that matters.
+    // Far enough for f32, and less than the width of any cell that matters.
     const ASIDE: f64 = 1e-3;
     let quadrants = [u + v, v - u, -u - v, u - v];
     let rock = quadrants.map(|q| is_rock(solid, (middle + q * ASIDE).as_vec3()));
-    // Between quadrant n and n + 1 lies the half-plane in direction v, −u, −v, u.
+    // Between quadrants n and n + 1 lies the half-plane in direction v, −u, −v, u.
     let between = [v, -u, -v, u];
     let mut faces = [None; 4];
     let mut count = 0;
@@ -111,7 +113,7 @@ fn edge(solid: &Solid, view: &View, ends: [DVec3; 2], u: DVec3, v: DVec3) -> Opt
     (count > 0 && !flat && faces.iter().any(Option::is_some)).then_some(EdgeLine { ends, faces })
 }
 
-/// Whether a point that lies on no plane is rock.
+/// Whether a point, which must not lie on a plane, is rock.
 fn is_rock(solid: &Solid, p: Vec3) -> bool {
     let inside = |[low, high]: &[Vec3; 2]| p.cmpgt(*low).all() && p.cmplt(*high).all();
     inside(&solid.roaming_box) && !solid.cut_outs.iter().any(inside)
@@ -145,23 +147,24 @@ mod tests {
     }
 
     #[test]
-    fn a_corner_cut_adds_two_walls_and_no_edge_in_a_flat_face() {
+    fn a_corner_cut_adds_two_faces_and_no_edge_in_a_flat_face() {
         let block = VoxelBox::of_size([11, 11, 11]);
         let corner = view(&block).nearest_corner(&block);
         assert_eq!(corner, Corner::MinMin);
         let solid = Solid::new(&block, &[block.corner_cut(corner, [0.4, 0.3])]);
         assert_eq!(facing(&solid, &block), 5);
-        // 3 × 10 at the back of the top and the side and bottom rims, shortened by the cut, plus its own rims: the outline
-        // of an L on top (40), the same at the bottom but for the two hidden sides (40 − 20), verticals: 3 of the cut, 2 outer ones.
+        // The edges at the back of the top and the left and right side edges, shortened by the cut, plus
+        // those of the cut: the outline of an L on top (40), the same at the bottom without its two hidden
+        // sides (40 − 20), and five vertical edges: 3 of the cut, 2 outer ones.
         assert!((length(&edge_lines(&solid, &view(&block))) - (40.0 + 20.0 + 50.0)).abs() < 1e-3);
     }
 
     #[test]
-    fn a_stair_has_an_edge_where_a_wall_meets_the_next_floor() {
+    fn a_stair_has_an_edge_where_a_face_meets_the_next_floor() {
         let block = VoxelBox::of_size([11, 11, 11]);
         let solid = Solid::new(&block, &block.stair(Corner::MinMin, [0.6, 0.6], 0.8, 2));
         let edges = edge_lines(&solid, &view(&block));
-        // The lower step's wall x = 3 begins at the upper step's floor z = 4.
+        // The back face x = 3 of the lower step begins at the floor z = 4 of the upper step.
         let meets = |e: &EdgeLine| e.ends.iter().all(|p| (p.x - 3.0).abs() < 1e-5 && (p.z - 4.0).abs() < 1e-5);
         assert!(edges.iter().any(meets));
     }

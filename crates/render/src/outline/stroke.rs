@@ -1,11 +1,11 @@
-//! Polylines stroked over a picture, anti-aliased, on sRGB-encoded values.
+//! Strokes polylines over a picture.
 
 use super::{NOMINAL_SIDE_PX, Stroke};
 use glam::DVec2;
 use image::RgbaImage;
 use tiny_skia::{LineCap, LineJoin, Paint, PathBuilder, Pixmap, Transform};
 
-/// Strokes polylines as one shape, so that crossings do not darken.
+/// Strokes polylines as a single shape, so that crossings are not darker.
 pub(super) fn stroke_lines(image: &mut RgbaImage, stroke: &Stroke, lines: &[Vec<DVec2>]) {
     let (width, height) = image.dimensions();
     let scale = width.min(height) as f32 / NOMINAL_SIDE_PX;
@@ -36,7 +36,7 @@ pub(super) fn stroke_lines(image: &mut RgbaImage, stroke: &Stroke, lines: &[Vec<
     }
 }
 
-/// An opaque colour at a coverage over a straight RGBA pixel.
+/// Composites an opaque colour at a coverage over a straight RGBA pixel.
 fn over(below: [u8; 4], colour: [u8; 3], coverage: f32) -> [u8; 4] {
     let alpha_below = f32::from(below[3]) / 255.0;
     let alpha = coverage + alpha_below * (1.0 - coverage);

@@ -1,46 +1,41 @@
-//! Edges of a block that is seen through: those at its back are drawn behind what the rays gathered, those at its front over it.
+//! Edges of a block that is rendered as a volume: those at the back are drawn behind the media, those at the
+//! front over them.
 //!
-//! The picture is made without a background; background and back edges are put under it afterwards, in linear light as the media are.
+//! The picture is drawn without a background. Background and back edges are composited below it afterwards,
+//! in linear light as the media are.
 
 use super::stroke::stroke_lines;
-use crate::frame::Frame;
-use crate::media::Faces;
-use crate::scene::Scene;
+use crate::resolved::ResolvedScene;
 use crate::shade::{encoded, linear};
 use glam::{DVec2, DVec3, Vec3};
 use image::{Rgba, RgbaImage};
 
-/// Whether a scene's back edges are drawn behind its media.
-pub(crate) fn has_underlay(scene: &Scene) -> bool {
-    scene.media.faces == Faces::None && scene.outlines.edges.width_px > 0.0
-}
-
-/// Puts the background and the back edges under a picture.
-pub(super) fn underlay(frame: &Frame, image: &mut RgbaImage) {
-    let background = frame.scene.background.rgba().map(|c| (c * 255.0 + 0.5) as u8);
+/// Composites the background and the back edges below a picture.
+pub(super) fn underlay(resolved: &ResolvedScene, image: &mut RgbaImage) {
+    let background = resolved.scene.background.rgba().map(|c| (c * 255.0 + 0.5) as u8);
     let mut below = RgbaImage::from_pixel(image.width(), image.height(), Rgba(background));
-    stroke_lines(&mut below, &frame.scene.outlines.edges, &back_edges(frame));
+    stroke_lines(&mut below, &resolved.scene.outlines.edges, &back_edges(resolved));
     for (pixel, below) in image.pixels_mut().zip(below.pixels()) {
         pixel.0 = over(pixel.0, below.0);
     }
 }
 
 /// The edges of the roaming box that meet at the corner farthest from the camera, pixels.
-fn back_edges(frame: &Frame) -> Vec<Vec<DVec2>> {
-    let block = frame.roaming_box;
-    let towards = frame.view.towards_camera(block.centre());
+fn back_edges(resolved: &ResolvedScene) -> Vec<Vec<DVec2>> {
+    let block = resolved.roaming_box;
+    let towards = resolved.view.towards_camera(block.centre());
     let farthest = DVec3::select(towards.cmpgt(DVec3::ZERO), block.low(), block.high());
     let nearest = DVec3::select(towards.cmpgt(DVec3::ZERO), block.high(), block.low());
     (0..3)
         .map(|axis| {
             let mut end = farthest;
             end[axis] = nearest[axis];
-            vec![frame.view.project(farthest), frame.view.project(end)]
+            vec![resolved.view.project(farthest), resolved.view.project(end)]
         })
         .collect()
 }
 
-/// Straight RGBA over straight RGBA in linear light.
+/// Composites straight RGBA over straight RGBA in linear light.
 fn over(above: [u8; 4], below: [u8; 4]) -> [u8; 4] {
     match (above[3], below[3]) {
         (255, _) => return above,

@@ -1,4 +1,4 @@
-//! Small models to draw in tests.
+//! Small models that tests draw.
 
 use glam::DVec3;
 use model::{ModelSettings, StructuralModel};
@@ -8,7 +8,7 @@ use survey::{Fault, Horizon, Progress, Stratigraphy, SurveyGeometry};
 use synth::closed_form::ClosedForm;
 use ttf::{BlockExtent, LayerExtent, TextureLibrary, TransferFunctions, TtfTables};
 
-/// A model with everything derived from it.
+/// A model with all data derived from it.
 pub struct Block {
     pub geometry: SurveyGeometry,
     pub model: StructuralModel,

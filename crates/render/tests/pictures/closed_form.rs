@@ -1,4 +1,4 @@
-//! Pictures whose every pixel is known.
+//! Pictures in which the colour of every pixel is known.
 
 use crate::block::Block;
 use glam::{DVec2, DVec3, Vec3};
@@ -24,14 +24,14 @@ fn geometry() -> SurveyGeometry {
     SurveyGeometry::regular([41, 31, 41], 25.0, 10.0, VerticalUnit::Metres)
 }
 
-/// Layers of plain colours, deepest first.
+/// Layers of plain colours, the deepest first.
 fn plain(closed: &ClosedForm, colours: &[Colour]) -> TransferFunctions {
     let names = closed.stratigraphy.layer_names_bottom_up();
     let styles = names.iter().zip(colours).map(|(name, &colour)| LayerStyle::plain(name, colour)).collect();
     TransferFunctions { layers: LayerTtf { styles }, ..TransferFunctions::default() }
 }
 
-/// Straight at the face of smallest y from the south.
+/// A view from the south, at right angles to the face of smallest y.
 fn from_the_side(size_px: [u32; 2]) -> Scene {
     let camera = Camera { azimuth_deg: Some(0.0), elevation_deg: 0.0, margin: 0.1, ..Camera::default() };
     Scene { size_px, samples: 4, camera, outlines: Outlines::none(), ..Scene::default() }
@@ -50,7 +50,7 @@ fn flat_layers_lie_where_the_projection_says() {
     let image = draw(&scene, &block.inputs(&[]));
     let view = scene.view(&closed.geometry);
     let row = |z: f64| view.project(DVec3::new(20.0, 0.0, z)).y;
-    // 25 m bins against 10 m samples, exaggerated.
+    // Bins of 25 m and samples of 10 m, with exaggeration.
     let per_sample = (row(40.0) - row(0.0)) / 40.0;
     let per_inline = (view.project(DVec3::new(40.0, 0.0, 0.0)) - view.project(DVec3::ZERO)).x / 40.0;
     assert!((per_sample / per_inline - 10.0 * 1.7 / 25.0).abs() < 1e-9);
@@ -137,7 +137,7 @@ fn a_cut_out_shows_its_back_faces() {
     let volume = ramp_along_x(&geometry);
     let volumes = [NamedVolume::whole("ramp", &volume)];
     let inputs = Inputs::raw(&geometry, &volumes);
-    // From the west one looks at faces of constant x: one grey each.
+    // The view from the west shows faces of constant x: each has one grey.
     let camera = Camera { azimuth_deg: Some(90.0), elevation_deg: 0.0, ..Camera::default() };
     let whole = VoxelBox::of_size(geometry.size());
     let mut scene = Scene {
@@ -155,7 +155,7 @@ fn a_cut_out_shows_its_back_faces() {
     // The map runs from white to black.
     let grey_of = |x: f32| ((1.0 - x / 40.0) * 255.0 + 0.5) as u8;
     assert_eq!([at(&scene, 7.0), at(&scene, 22.0)], [grey_of(10.0), grey_of(0.0)]);
-    // A second one behind the first: the wall moves back.
+    // A second cut-out behind the first moves the back face.
     scene.cut_outs.push(VoxelBox { min: [10.0, 0.0, 0.0], max: [30.0, 10.0, 40.0] });
     assert_eq!([at(&scene, 7.0), at(&scene, 12.0)], [grey_of(30.0), grey_of(10.0)]);
 }
@@ -200,7 +200,7 @@ fn boundaries_at_four_pixels_a_voxel_are_within_a_tenth_of_a_voxel() {
     let [low, high] = [DVec3::new(4.0, 11.3, 4.0), DVec3::new(36.0, 11.3, 36.0)];
     let plane = SectionPlane::crossline(11.3, low, high);
     let truth = |p: DVec3| u32::from(closed.layer_at(p)) | u32::from(closed.block_at(p)) << 16;
-    // Blocks of the model may be numbered the other way round.
+    // The blocks of the model may be numbered in the opposite order.
     let swap = block.model.block_at(Vec3::new(36.0, 11.0, 4.0)) != closed.block_at(DVec3::new(36.0, 11.0, 4.0));
     let label = |layer: u16, b: u16| u32::from(layer) | u32::from(if swap { 1 - b } else { b }) << 16;
     let exact = |p: DVec3| {
@@ -218,7 +218,7 @@ fn boundaries_at_four_pixels_a_voxel_are_within_a_tenth_of_a_voxel() {
     assert!(papers.worst > 0.3, "{papers:?}");
 }
 
-/// The same in a picture: the fault's place in each row of pixels, from their coverage.
+/// The same in a picture: the position of the fault in each row of pixels follows from their coverage.
 #[test]
 fn boundaries_of_folds_and_of_the_synthetic_survey_are_within_a_tenth_of_a_voxel() {
     let quiet = Progress::silent();
@@ -246,7 +246,8 @@ fn a_fault_in_a_picture_is_where_it_is_in_truth() {
     let closed = ClosedForm::flat(&geometry(), &[20.0]).with_fault(60.0, 19.0);
     let library = TextureLibrary::builtin().unwrap();
     let block = Block::of(&closed, &plain(&closed, &[RED, GREEN]), &library);
-    // Red rock of the footwall on the left, green of the hanging wall on the right; nothing else at these depths.
+    // Red rock of the footwall on the left, green rock of the hanging wall on the right; nothing else at
+    // these depths.
     let roaming_box = VoxelBox { min: [14.0, 0.0, 24.0], max: [30.0, 30.0, 38.0] };
     let mut scene = Scene { roaming_box: Some(roaming_box), samples: 8, ..from_the_side([64, 64]) };
     scene.camera.margin = 0.0;

@@ -1,6 +1,7 @@
-//! The GPU draws what the CPU reference draws: at most 2/255 apart off the edges (DESIGN 6).
+//! The GPU draws what the CPU reference draws: at most 2/255 apart off the edges.
 //!
-//! `PETROGLYPH_GPU_TESTS=skip` leaves these out; without it a machine that has no graphics driver fails.
+//! `PETROGLYPH_GPU_TESTS=skip` leaves these tests out; otherwise they fail on a machine without a graphics
+//! driver.
 
 use crate::block::Block;
 use glam::DVec3;
@@ -107,13 +108,13 @@ fn gpu_and_cpu_agree() {
         }
         earlier.push(picture);
     }
-    // The same from what is already uploaded, pixel for pixel.
+    // The same picture from data that are already uploaded, pixel for pixel.
     let (_, first) = scenes(&base, &whole, corner).swap_remove(0);
     assert!(renderer.render(&first, &inputs, &quiet).unwrap() == earlier[0]);
     cancelled_and_new_data(&mut renderer, &base, &inputs, &synthetic);
 }
 
-/// Cancelling ends a picture, and a new version of the data is uploaded.
+/// Cancelling ends the drawing of a picture, and a new version of the data is uploaded.
 fn cancelled_and_new_data(renderer: &mut Renderer, base: &Scene, inputs: &Inputs, synthetic: &Synthetic) {
     let quiet = Progress::silent();
     quiet.cancel();

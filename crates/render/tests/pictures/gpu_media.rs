@@ -1,12 +1,13 @@
-//! The GPU sees through media as the CPU reference does: at most 2/255 apart off the edges.
+//! The GPU renders media as the CPU reference does: at most 2/255 apart off the edges.
 
 use crate::block::Block;
 use crate::media::medium;
 use render::compare::compare;
 use render::media::{Colouring, LayerOpacity, MediumColour, Paint, white_ramp};
 use render::{
-    Background, Camera, Candidates, FaceData, Faces, Ground, Interleaved, Isosurface, Media, Medium, NamedVolume,
-    Occlusion, Outlines, Phong, PickedHorizon, Projection, Renderer, Scalar, Scene, Scope, Shading, VoxelBox, WellPath,
+    Background, Camera, CandidateVolume, DrawnWell, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource,
+    Media, Medium, NamedVolume, Occlusion, Outlines, Phong, PickedHorizon, Projection, Renderer, Scene, Scope, Shading,
+    VoxelBox,
 };
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
@@ -15,17 +16,17 @@ use ttf::{
     symmetric_clip,
 };
 
-/// Distances to a few of the horizons that the synthetic survey has, as an extraction would give them.
-struct Made {
+/// Distances to some horizons of the synthetic survey, as an extraction would give them.
+struct MadeCandidates {
     distance: Vec<u8>,
     leaf: Vec<u32>,
 }
 
 const STEP: f32 = 0.04;
 
-fn candidates_of(block: &Block) -> Made {
+fn candidates_of(block: &Block) -> MadeCandidates {
     let [nx, ny, nz] = block.geometry.size();
-    let mut made = Made { distance: vec![255; nx * ny * nz], leaf: vec![0; nx * ny * nz] };
+    let mut made = MadeCandidates { distance: vec![255; nx * ny * nz], leaf: vec![0; nx * ny * nz] };
     for n in 0..nx * ny * nz {
         let p = glam::Vec3::new((n / (ny * nz)) as f32, (n / nz % ny) as f32, (n % nz) as f32);
         let fault_block = block.model.block_at(p);
@@ -41,7 +42,29 @@ fn candidates_of(block: &Block) -> Made {
     made
 }
 
-fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> {
+/// The media from which scenes are composed.
+struct Parts {
+    base: Scene,
+    ramp: Medium,
+    colours: Medium,
+    impedance: Medium,
+    horizons: Vec<PickedHorizon>,
+}
+
+fn picked(first: u32, colour: Colour, emission: f32) -> PickedHorizon {
+    PickedHorizon {
+        name: None,
+        leaves: (first..first + 10).collect(),
+        colour,
+        colouring: Colouring::Own,
+        opacity: 0.9,
+        thickness: 1.0,
+        emission,
+        paint: None,
+    }
+}
+
+fn parts(base: &Scene, clip: f32) -> Parts {
     let ramp = medium("seismic", white_ramp(clip, 0.1));
     let colours = Medium {
         layers: LayerOpacity::Followed,
@@ -58,25 +81,6 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
             RgbaFunction { domain: [2000.0, 9000.0], stops: vec![stop(0.0, 0.0), stop(0.3, 0.05), stop(1.0, 0.3)] },
         )
     };
-    let perspective = Camera {
-        projection: Projection::Perspective { fov_deg: 45.0 },
-        azimuth_deg: Some(130.0),
-        elevation_deg: 40.0,
-        ..Camera::default()
-    };
-    let none =
-        |surroundings: Vec<Medium>, shading| Media { faces: Faces::None, surroundings, shading, ..Media::default() };
-    let occlusion = Shading::Occlusion(Occlusion::default());
-    let picked = |first: u32, colour: Colour, emission: f32| PickedHorizon {
-        name: None,
-        leaves: (first..first + 10).collect(),
-        colour,
-        colouring: Colouring::Own,
-        opacity: 0.9,
-        thickness: 1.0,
-        emission,
-        paint: None,
-    };
     let painted = PickedHorizon {
         paint: Some(Paint {
             volume: "impedance".into(),
@@ -85,9 +89,23 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
         ..picked(21, Colour::WHITE, 0.0)
     };
     let horizons = vec![picked(1, Colour::new(240, 60, 150), 0.0), picked(11, Colour::new(250, 200, 30), 1.5), painted];
+    Parts { base: base.clone(), ramp, colours, impedance, horizons }
+}
+
+/// Scenes of volumes without cut-outs, and of candidates on faces.
+fn volume_scenes(parts: &Parts, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> {
+    let Parts { base, ramp, impedance, horizons, .. } = parts;
+    let occlusion = Shading::Occlusion(Occlusion::default());
+    let perspective = Camera {
+        projection: Projection::Perspective { fov_deg: 45.0 },
+        azimuth_deg: Some(130.0),
+        elevation_deg: 40.0,
+        ..Camera::default()
+    };
+    let none =
+        |surroundings: Vec<Medium>, shading| Media { faces: Faces::None, surroundings, shading, ..Media::default() };
     let clear = Scene { background: Background::Colour(Colour::new(40, 50, 60)), ..base.clone() };
     let with = |media: Media| Scene { media, ..clear.clone() };
-    let cut_outs = vec![cut];
     let by_leaf = PickedHorizon { leaves: Vec::new(), colouring: Colouring::ByLeaf, ..picked(1, Colour::WHITE, 0.0) };
     vec![
         ("leaves on faces", Scene { face_data: FaceData::Leaves, ..clear.clone() }),
@@ -107,6 +125,35 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 ..none(vec![ramp.clone()], occlusion)
             }),
         ),
+        ("isosurfaces", {
+            let surface = |of: IsosurfaceSource, value: f32, opacity: f32| Isosurface {
+                of,
+                value,
+                colour: Colour::new(230, 180, 90),
+                opacity,
+                thickness: 1.0,
+            };
+            let surfaces = vec![
+                surface(IsosurfaceSource::Volume("seismic".into()), 0.4 * clip, 0.5),
+                surface(IsosurfaceSource::Depth, 2.5, 1.0),
+                surface(IsosurfaceSource::Volume("impedance".into()), 5000.0, 1.0),
+            ];
+            let shading = Shading::Phong(Phong::default());
+            with(Media { isosurfaces: surfaces, samples_per_voxel: 4.0, ..none(vec![ramp.clone()], shading) })
+        }),
+        ("interleaved", {
+            let both = Interleaved { stripes: 3, ..Interleaved::default() };
+            with(none(vec![ramp.clone()], Shading::Interleaved(both)))
+        }),
+    ]
+}
+
+/// Scenes of media in cut-outs and around them.
+fn cut_out_scenes(parts: &Parts, cut: VoxelBox) -> Vec<(&'static str, Scene)> {
+    let Parts { base, colours, impedance, horizons, .. } = parts;
+    let occlusion = Shading::Occlusion(Occlusion::default());
+    let cut_outs = vec![cut];
+    vec![
         (
             "extruding",
             Scene {
@@ -119,26 +166,6 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 ..base.clone()
             },
         ),
-        ("isosurfaces", {
-            let surface = |of: Scalar, value: f32, opacity: f32| Isosurface {
-                of,
-                value,
-                colour: Colour::new(230, 180, 90),
-                opacity,
-                thickness: 1.0,
-            };
-            let surfaces = vec![
-                surface(Scalar::Volume("seismic".into()), 0.4 * clip, 0.5),
-                surface(Scalar::Depth, 2.5, 1.0),
-                surface(Scalar::Volume("impedance".into()), 5000.0, 1.0),
-            ];
-            let shading = Shading::Phong(Phong::default());
-            with(Media { isosurfaces: surfaces, samples_per_voxel: 4.0, ..none(vec![ramp.clone()], shading) })
-        }),
-        ("interleaved", {
-            let both = Interleaved { stripes: 3, ..Interleaved::default() };
-            with(none(vec![ramp], Shading::Interleaved(both)))
-        }),
         (
             "ground that lets light through",
             Scene {
@@ -159,7 +186,7 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
                 cut_outs: cut_outs.clone(),
                 media: Media {
                     faces: Faces::CutOuts,
-                    surroundings: vec![impedance],
+                    surroundings: vec![impedance.clone()],
                     cut_outs: vec![colours.clone()],
                     shading: occlusion,
                     ..Media::default()
@@ -179,15 +206,25 @@ fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> 
             "horizons in a cut-out",
             Scene {
                 cut_outs,
-                media: Media { cut_outs: vec![colours], horizons, shading: occlusion, ..Media::default() },
+                media: Media {
+                    cut_outs: vec![colours.clone()],
+                    horizons: horizons.clone(),
+                    shading: occlusion,
+                    ..Media::default()
+                },
                 ..base.clone()
             },
         ),
     ]
 }
 
+fn scenes(base: &Scene, cut: VoxelBox, clip: f32) -> Vec<(&'static str, Scene)> {
+    let parts = parts(base, clip);
+    [volume_scenes(&parts, cut, clip), cut_out_scenes(&parts, cut)].concat()
+}
+
 #[test]
-fn gpu_and_cpu_see_through_the_same() {
+fn gpu_and_cpu_render_media_alike() {
     if std::env::var("PETROGLYPH_GPU_TESTS").is_ok_and(|value| value == "skip") {
         eprintln!("skipped: PETROGLYPH_GPU_TESTS=skip");
         return;
@@ -224,10 +261,10 @@ fn gpu_and_cpu_see_through_the_same() {
     let groups: Vec<u32> = (0..64).map(|leaf| if leaf == 12 { 0 } else { leaf / 2 }).collect();
     let path =
         [glam::DVec3::new(20.0, 14.0, -5.0), glam::DVec3::new(22.0, 13.0, 20.0), glam::DVec3::new(27.0, 10.0, 44.0)];
-    let wells = [WellPath { name: "A-1", path: &path, tops: &path[1..2] }];
+    let wells = [DrawnWell { name: "A-1", path: &path, tops: &path[1..2] }];
     let mut inputs = block.inputs(&volumes);
     inputs.wells = &wells;
-    inputs.candidates = Some(Candidates {
+    inputs.candidates = Some(CandidateVolume {
         size: synthetic.geometry.size(),
         distance: &made.distance,
         leaf: &made.leaf,

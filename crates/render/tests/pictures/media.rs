@@ -1,4 +1,4 @@
-//! Media whose pictures are known in closed form: absorption, layers, occlusion, light given off.
+//! Media whose pictures are known in closed form: absorption, layers, occlusion, emission.
 
 use crate::block::Block;
 use glam::{DVec2, DVec3};
@@ -6,14 +6,14 @@ use image::RgbaImage;
 use render::media::{Colouring, EmptySpace, LayerOpacity, MediumColour, white_ramp};
 use render::reference::render;
 use render::{
-    Background, Camera, Candidates, Faces, Ground, Inputs, Isosurface, Media, Medium, NamedVolume, Occlusion, Outlines,
-    Picked, PickedHorizon, Projection, Scalar, Scene, Scope, Shading, VoxelBox, WellPath, pick,
+    Background, Camera, CandidateVolume, DrawnWell, Faces, Ground, Inputs, Isosurface, IsosurfaceSource, Media, Medium,
+    NamedVolume, Occlusion, Outlines, PickedHorizon, PickedObject, Projection, Scene, Scope, Shading, VoxelBox, pick,
 };
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use synth::closed_form::ClosedForm;
 use ttf::{Colour, LayerStyle, LayerTtf, RgbaFunction, RgbaStop, TextureLibrary, TransferFunctions, srgb_from_linear};
 
-/// One colour and opacity for every value.
+/// A function with one colour and opacity for every value.
 pub fn constant(colour: Colour, opacity: f32) -> RgbaFunction {
     let stop = |at: f32| RgbaStop { at, colour, opacity };
     RgbaFunction { domain: [0.0, 1.0], stops: vec![stop(0.0), stop(1.0)] }
@@ -27,7 +27,7 @@ fn cubic(side: usize) -> SurveyGeometry {
     SurveyGeometry::regular([side; 3], 10.0, 10.0, VerticalUnit::Metres)
 }
 
-/// Looking along y from its small end: a pixel shows one x and one z, the way is as long as the block.
+/// A view along y from its small end: a pixel shows one x and one z, and the path is as long as the block.
 fn head_on(size_px: [u32; 2], media: Media) -> Scene {
     let camera = Camera { azimuth_deg: Some(0.0), elevation_deg: 0.0, margin: 0.0, ..Camera::default() };
     Scene {
@@ -99,13 +99,13 @@ fn a_cut_out_and_its_surroundings_have_their_own_functions_and_its_back_face_sto
     let both = 1.0 - before + before * inside * (1.0 - after);
     near(pixel(Faces::None), [both, before * (1.0 - inside), 0.0]);
     near(pixel(Faces::All), [0.0, 0.0, 1.0]);
-    // With the cut-out open to the viewer, the faces of rock are seen through its medium.
+    // With the cut-out open to the viewer, the medium in it is in front of the faces.
     let open = VoxelBox { min: [0.0; 3], max: [24.0, 16.0, 24.0] };
     let scene =
         Scene { cut_outs: vec![open], blend: 1.0, raw: Some(raw.clone()), ..head_on([8, 8], media(Faces::All)) };
     let passes = 0.9f64.powi(16);
     near(draw(&scene, &inputs).get_pixel(4, 4).0.map(f64::from), [0.0, 1.0 - passes, passes]);
-    // The same with one medium alone.
+    // The same with a single medium.
     let alone = Scene { media: Media { surroundings: Vec::new(), ..scene.media.clone() }, ..scene };
     near(draw(&alone, &inputs).get_pixel(4, 4).0.map(f64::from), [0.0, 1.0 - passes, passes]);
 }
@@ -196,7 +196,8 @@ fn a_layer_extrudes_into_the_cut_out_and_air_does_not() {
     }
 }
 
-/// A medium in which all is clear but a thin plane across y at `at`, opaque for x below `edge`.
+/// A medium that is transparent except in a thin plane of constant y at `at`, which is opaque for x below
+/// `edge`.
 fn half_plane(side: usize, at: usize, edge: usize, wall: usize) -> Volume<f32> {
     let mut volume = Volume::filled([side; 3], 0.0f32);
     for x in 0..side {
@@ -212,7 +213,7 @@ fn half_plane(side: usize, at: usize, edge: usize, wall: usize) -> Volume<f32> {
     volume
 }
 
-/// In a homogeneous medium O grows by α₀ a unit, so that the light at depth s is 1/(1 + α₀·s).
+/// In a homogeneous medium O grows by α₀ per unit, so the light at depth s is 1/(1 + α₀·s).
 #[test]
 fn occlusion_in_a_homogeneous_medium_is_linear_in_depth() {
     let geometry = cubic(65);
@@ -247,7 +248,8 @@ fn occlusion_in_a_homogeneous_medium_is_linear_in_depth() {
     }
 }
 
-/// Behind the edge of a plane that adds o, the occlusion at distance d is o·½·erfc(x/√(2d)·σ₀), as of any blurred step.
+/// Behind the edge of a plane that adds o, the occlusion at distance d is o·½·erfc(x/√(2d)·σ₀), as of any
+/// blurred step.
 #[test]
 fn a_known_occluder_casts_a_known_shadow() {
     let side = 81;
@@ -256,7 +258,7 @@ fn a_known_occluder_casts_a_known_shadow() {
     let volumes = [NamedVolume::whole("v", &volume)];
     let inputs = Inputs::raw(&geometry, &volumes);
     let stop = |at: f32, opacity: f32| RgbaStop { at, colour: Colour::WHITE, opacity };
-    // Values up to 1 are faint, those of the wall (2) opaque.
+    // Values up to 1 have a low opacity; those of the background plane (2) are opaque.
     let function = RgbaFunction {
         domain: [0.0, 2.0],
         stops: vec![
@@ -294,10 +296,11 @@ fn a_known_occluder_casts_a_known_shadow() {
         (0..n).map(|k| (-((f64::from(k) + 0.5) * h).powi(2)).exp() * h).sum::<f64>() * std::f64::consts::FRAC_2_SQRT_PI
     };
     let places = [40.6, 41.5, 43.0, 46.0, 50.0, 55.0, 60.0];
-    // The wall shades itself as well, the same everywhere: far from the edge that is all.
+    // The background plane also shades itself, equally everywhere; far from the edge there is nothing else.
     let own = 1.0 / light(78.0) - 1.0;
     let found = places.map(|x| 1.0 / light(x) - 1.0 - own);
-    // Where exactly the edge is, a cell of the slices cannot say: the best edge within one, and what the plane adds, are fitted, the width is not.
+    // A cell of the slices cannot resolve the exact position of the edge. The best position within one cell
+    // and the amount that the plane adds are fitted; the width is not.
     let worst = |sigma: f64| {
         let edges = (0..60).map(|n| 38.6 + 0.03 * f64::from(n));
         let residual = |edge: f64| {
@@ -318,7 +321,7 @@ fn a_known_occluder_casts_a_known_shadow() {
     );
 }
 
-/// The light of an emitter, on a white wall behind it, is in its colour; without a blur it is that colour exactly.
+/// The light of an emitter on a white plane behind it has its colour; without blur it is exactly that colour.
 #[test]
 fn an_emitter_lights_a_white_wall_in_its_colour() {
     let side = 65;
@@ -336,7 +339,7 @@ fn an_emitter_lights_a_white_wall_in_its_colour() {
         }
     }
     let candidates =
-        Candidates { size: [side; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
+        CandidateVolume { size: [side; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
     let inputs = Inputs { candidates: Some(candidates), ..Inputs::raw(&geometry, &volumes) };
     let glowing = Colour::new(255, 128, 0);
     let media = |emission: f32, scope: Scope| Media {
@@ -362,22 +365,25 @@ fn an_emitter_lights_a_white_wall_in_its_colour() {
         image.get_pixel(x, 65).0.map(|byte| f64::from(ttf::linear_from_srgb(f32::from(byte) / 255.0)))
     };
     let (dark, lit) = (picture(0.0, Scope::Everywhere), picture(0.5, Scope::Everywhere));
-    // On the emitter itself: its colour, and half of it once more.
+    // On the emitter itself: its colour, plus half of it again.
     let (own, glow) = (linear(&dark, 20), linear(&lit, 20));
     assert!((own[0] - 1.0).abs() < 0.02 && own[2] == 0.0, "{own:?}");
     assert!(glow[1] > 1.4 * own[1], "{glow:?} {own:?}");
-    // Beside it on the wall the added light has the emitter's hue: linear green over red as in its colour.
+    // Beside it on the plane, the added light has the hue of the emitter: linear green over red as in its
+    // colour.
     let hue = f64::from(ttf::linear_from_srgb(128.0 / 255.0));
     for x in [66, 70, 76] {
         let (before, after) = (linear(&dark, x), linear(&lit, x));
         let added = [0, 1, 2].map(|c| after[c] - before[c]);
-        // Occlusion is the same, so red and green differ by the light alone; blue by nothing.
+        // Occlusion is the same, so red and green differ by the emitted light alone, and blue does not
+        // differ.
         assert!(added[2].abs() < 0.01, "{added:?}");
         if after[0] < 0.99 {
             assert!(added[0] > 0.02 && (added[1] / added[0] - hue).abs() < 0.1, "{x}: {added:?}");
         }
     }
-    // Near horizons only: the wall is 20 voxels behind and gone; away from them: the horizon stays, the wall too.
+    // Near horizons only: the plane is 20 voxels behind and disappears. Away from them: both the horizon and
+    // the plane stay.
     let near = picture(0.0, Scope::NearHorizons);
     assert_eq!(near.get_pixel(100, 65).0[0], 0);
     assert_eq!(picture(0.0, Scope::AwayFromHorizons).get_pixel(100, 65).0, dark.get_pixel(100, 65).0);
@@ -415,7 +421,8 @@ fn an_opaque_slice_hides_what_is_behind_and_shows_its_colour() {
             ..Media::default()
         };
         let [r, g, b, a] = draw(&head_on([16, 16], media), &inputs).get_pixel(8, 8).0;
-        // Nothing lies in front of the first opaque sample: λ = 1 but for the half step that the sample itself is deep.
+        // Nothing lies in front of the first opaque sample: λ = 1, except for the half step that is the depth
+        // of the sample itself.
         assert!(r.abs_diff(90) <= 25 && g.abs_diff(160) <= 40 && b < 40 && a == 255, "{shading:?} {r} {g} {b}");
         if shading == Shading::Unshaded {
             assert_eq!([r, g, b], front.rgb);
@@ -436,9 +443,9 @@ fn what_is_under_a_pixel_is_what_shows_there() {
     let leaf: Vec<u32> = (0..33 * 33 * 33).map(|n| if n / 33 % 33 >= 11 { 9 } else { 0 }).collect();
     let distance = vec![25u8; leaf.len()];
     let candidates =
-        Candidates { size: [33; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
+        CandidateVolume { size: [33; 3], distance: &distance, leaf: &leaf, voxels_per_step: 0.04, groups: None };
     let path = [DVec3::new(4.0, 3.0, -9.0), DVec3::new(4.0, 3.0, 40.0)];
-    let wells = [WellPath { name: "A", path: &path, tops: &path[..0] }];
+    let wells = [DrawnWell { name: "A", path: &path, tops: &path[..0] }];
     let inputs = Inputs { candidates: Some(candidates), wells: &wells, ..Inputs::raw(&geometry, &volumes) };
     let media = Media {
         faces: Faces::None,
@@ -450,24 +457,25 @@ fn what_is_under_a_pixel_is_what_shows_there() {
     let view = scene.view(&geometry);
     let at = |x: f64| pick(&scene, &inputs, view.project(DVec3::new(x, 0.0, 16.0))).unwrap();
     let seen = at(20.0).unwrap();
-    // Between the samples at 11 (clear) and 12 (opaque) the value passes ½.
-    assert_eq!(seen.what, Picked::Medium);
+    // Between the samples at 11 (transparent) and 12 (opaque) the value passes ½.
+    assert_eq!(seen.what, PickedObject::Medium);
     assert!((seen.voxel.y - 11.6).abs() < 0.2 && (seen.voxel.x - 20.0).abs() < 0.3, "{seen:?}");
     assert_eq!((seen.leaf, seen.region), (Some(9), None));
     assert!((seen.leaf_distance.unwrap() - 1.0).abs() < 1e-4 && seen.values[0] > 0.5);
     let well = at(4.0).unwrap();
-    assert_eq!((well.what, well.leaf), (Picked::Well(0), None));
+    assert_eq!((well.what, well.leaf), (PickedObject::Well(0), None));
     assert!((2.0..3.0).contains(&well.voxel.y), "{well:?}");
     assert_eq!(pick(&scene, &inputs, DVec2::new(-30.0, 5.0)).unwrap(), None);
     let raw = ttf::RawColour::new("v", white_ramp(1.0, 0.5));
     let faces = Scene { media: Media::default(), blend: 1.0, raw: Some(raw), ..scene.clone() };
     let face = pick(&faces, &inputs, view.project(DVec3::new(20.0, 0.0, 16.0))).unwrap().unwrap();
-    assert_eq!((face.what, face.voxel.y, face.values[0]), (Picked::Face, 0.0, 0.0));
+    assert_eq!((face.what, face.voxel.y, face.values[0]), (PickedObject::Face, 0.0, 0.0));
 }
 
 #[test]
 fn an_isosurface_is_where_its_value_is_and_hides_what_is_behind() {
-    // v = y: the surface v = 12 is the plane y = 12, seen head on after an absorbing stretch of known length.
+    // v = y: the isosurface v = 12 is the plane y = 12, seen at right angles behind an absorbing stretch of
+    // known length.
     let side = 33;
     let geometry = cubic(side);
     let mut volume = Volume::filled([side; 3], 0.0f32);
@@ -479,8 +487,13 @@ fn an_isosurface_is_where_its_value_is_and_hides_what_is_behind() {
     let volumes = [NamedVolume::whole("v", &volume)];
     let inputs = Inputs::raw(&geometry, &volumes);
     let colour = Colour::new(200, 120, 40);
-    let surface =
-        |opacity: f32| Isosurface { of: Scalar::Volume("v".into()), value: 12.0, colour, opacity, thickness: 1.0 };
+    let surface = |opacity: f32| Isosurface {
+        of: IsosurfaceSource::Volume("v".into()),
+        value: 12.0,
+        colour,
+        opacity,
+        thickness: 1.0,
+    };
     let media = |opacity: f32| Media {
         faces: Faces::None,
         samples_per_voxel: 8.0,
@@ -489,15 +502,15 @@ fn an_isosurface_is_where_its_value_is_and_hides_what_is_behind() {
     };
     let opaque = draw(&head_on([33, 33], media(1.0)), &inputs);
     assert_eq!(opaque.get_pixel(16, 16).0, [200, 120, 40, 255]);
-    // A shell of two voxels, whose soft borders add half a border to each side: 1 − (1 − α₀)².
+    // A shell of two voxels, whose soft edges add half of their width on each side: 1 − (1 − α₀)².
     let thin = draw(&head_on([33, 33], media(0.3)), &inputs);
     let expected = byte((1.0 - 0.7f64.powi(2)) * f64::from(ttf::linear_from_srgb(200.0 / 255.0)));
     assert!((f64::from(thin.get_pixel(16, 16).0[0]) - expected).abs() < 2.0, "{:?} {expected}", thin.get_pixel(16, 16));
     let found = pick(&head_on([33, 33], media(1.0)), &inputs, DVec2::splat(16.5)).unwrap().unwrap();
-    assert!((found.voxel.y - 11.0).abs() < 0.5 && found.what == Picked::Medium, "{found:?}");
+    assert!((found.voxel.y - 11.0).abs() < 0.5 && found.what == PickedObject::Medium, "{found:?}");
     let sparse = Media { empty_space: EmptySpace::Sampled, ..media(0.3) };
     assert_eq!(draw(&head_on([33, 33], sparse), &inputs), thin);
-    let missing = Media { isosurfaces: vec![Isosurface { of: Scalar::Depth, ..surface(1.0) }], ..media(1.0) };
+    let missing = Media { isosurfaces: vec![Isosurface { of: IsosurfaceSource::Depth, ..surface(1.0) }], ..media(1.0) };
     let error = render(&head_on([9, 9], missing), &inputs, &Progress::silent()).unwrap_err();
     assert!(error.to_string().contains("k'"), "{error}");
 }
@@ -507,15 +520,20 @@ fn a_surface_of_k_lies_between_its_horizons() {
     let geometry = SurveyGeometry::regular([41, 31, 41], 25.0, 10.0, VerticalUnit::Metres);
     let closed = ClosedForm::dipping(&geometry, &[14.0, 27.0], 12.0, 30.0);
     let block = Block::of(&closed, &TransferFunctions::default(), &TextureLibrary::builtin().unwrap());
-    let surface =
-        Isosurface { of: Scalar::Depth, value: 1.5, colour: Colour::new(250, 250, 250), opacity: 1.0, thickness: 1.0 };
+    let surface = Isosurface {
+        of: IsosurfaceSource::Depth,
+        value: 1.5,
+        colour: Colour::new(250, 250, 250),
+        opacity: 1.0,
+        thickness: 1.0,
+    };
     let media = Media { faces: Faces::None, isosurfaces: vec![surface], ..Media::default() };
     let scene = Scene { media, outlines: Outlines::none(), size_px: [60, 45], samples: 1, ..Scene::default() };
     let inputs = block.inputs(&[]);
     let mut found = 0;
     for n in 0..40 {
         let Some(hit) = pick(&scene, &inputs, DVec2::new(10.0 + f64::from(n), 22.0)).unwrap() else { continue };
-        // Halfway between the two planes, and the shell's half thickness and half a step of the ray off.
+        // Halfway between the two planes, within the half thickness of the shell and half a step of the ray.
         let z = |h: usize| block.model.horizon_z(h, 0, hit.voxel.x, hit.voxel.y);
         let away = (hit.voxel.z - 0.5 * (z(0) + z(1))).abs();
         assert!(away < 1.6, "{away} samples off at {}", hit.voxel);
@@ -542,7 +560,7 @@ fn ground_lets_as_much_light_through_as_its_opacity_says() {
         let pixel = draw(&with(opacity), &block.inputs(&[])).get_pixel(10, 8).0;
         f64::from(ttf::linear_from_srgb(f32::from(pixel[1]) / 255.0))
     };
-    // Before a black background the light that is left is the opacity's share.
+    // In front of a black background the remaining light is the fraction given by the opacity.
     let (opaque, half, none) = (at(1.0), at(0.5), at(0.0));
     assert!(opaque > 0.05 && (half - 0.5 * opaque).abs() < 0.01 && none == 0.0, "{opaque} {half} {none}");
 }

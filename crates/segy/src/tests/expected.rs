@@ -1,6 +1,6 @@
 //! Real files against the table of what an independent reader finds in them.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::super::{FileUnit, SegyFile, SegyOptions, SegyProblem, read, scan};
 use survey::progress::Progress;

@@ -5,7 +5,8 @@ use crate::tile::{Dice, Point, Tile};
 const THIN: f32 = 0.55;
 const LINE: f32 = 0.65;
 
-/// Rows of dashes, each row shifted against the last; the dashes' left ends and lengths go to `each`.
+/// Rows of dashes, each row shifted against the one before. `each` is called with the left end and the length
+/// of every dash.
 fn dashes(
     tile: &mut Tile,
     dice: &mut Dice,
@@ -55,7 +56,7 @@ pub fn marl() -> Tile {
     tile
 }
 
-/// 624: fine partings close together, some of them broken.
+/// 624: fine bedding planes close together, some of them broken.
 pub fn shale_carbonaceous() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(624));
     for row in 0..24 {
@@ -73,7 +74,7 @@ pub fn shale_carbonaceous() -> Tile {
     tile
 }
 
-/// 625: bands of all thicknesses, lens-like, as kerogen lies in its shale.
+/// 625: lens-shaped bands of different thickness, as kerogen lies in shale.
 pub fn oil_shale() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(6252));
     let mut y = 2.0;
@@ -108,7 +109,8 @@ fn lens(tile: &mut Tile, centre: Point, radii: [f32; 2]) {
     tile.filled_polygon(&outline);
 }
 
-/// Courses of a wall: head joints by `joint` (called with each joint's foot, its height and its course).
+/// Courses of bricks. `joint` draws a head joint: it is called with the foot, the height and the course of
+/// each.
 struct Wall {
     courses: usize,
     bricks: usize,
@@ -147,7 +149,7 @@ pub fn dolostone() -> Tile {
     tile
 }
 
-/// 641: upright and leaning joints in turn.
+/// 641: upright and leaning joints alternate.
 pub fn limestone_dolomitic() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(641));
     Wall { courses: 10, bricks: 5, width: LINE }.draw(&mut tile, &mut dice, |tile, foot, height, index| {
@@ -198,7 +200,7 @@ pub fn limestone_shaly() -> Tile {
     tile
 }
 
-/// The bricks of each course of [`limestone_cherty`] that hold a nodule: no two above each other.
+/// The bricks of each course of [`limestone_cherty`] that hold a nodule; no two lie above each other.
 const NODULES: [&[usize]; 10] = [&[0, 2], &[3], &[1], &[0, 2], &[3], &[2], &[0, 1], &[3], &[0, 2], &[1]];
 
 /// 639: bricks with black nodules of chert.
@@ -213,7 +215,7 @@ pub fn limestone_cherty() -> Tile {
     tile
 }
 
-/// 626: soft chalk: pieces of bed and joint with much white between.
+/// 626: soft chalk: fragments of bedding planes and joints with much white between.
 pub fn chalk() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(626));
     for course in 0..10 {
@@ -252,7 +254,7 @@ pub fn chert() -> Tile {
     tile
 }
 
-/// 658: black; only thin partings and cleats stay open.
+/// 658: black, except for thin partings and cleats.
 pub fn coal() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(658));
     let tops = [0.0, 6.5, 9.5, 17.0, 21.0, 30.0, 33.5, 41.0, 48.5, 52.0, 60.0];
@@ -313,7 +315,7 @@ pub fn salt() -> Tile {
     tile
 }
 
-/// 677: a course of bricks and a bed of shale in turn.
+/// 677: courses of bricks and beds of shale alternate.
 pub fn limestone_shale() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(677));
     for bed in 0..4 {

@@ -6,7 +6,7 @@ const DOT: f32 = 0.45;
 const THIN: f32 = 0.55;
 const LINE: f32 = 0.65;
 
-/// Radii from large to small, `count` of each class with some spread.
+/// Radii in falling order, `count` of each class, with some variation.
 fn radii(dice: &mut Dice, classes: &[(usize, f32)]) -> Vec<f32> {
     let mut radii = Vec::new();
     for &(count, radius) in classes {
@@ -59,7 +59,7 @@ pub fn breccia() -> Tile {
     tile
 }
 
-/// 606: fragments of all sizes that nearly fit together: the cells of a power diagram, drawn in.
+/// 606: fragments of all sizes that nearly fit together: the cells of a power diagram, shrunk.
 pub fn breccia_packed() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(606));
     let sizes = radii(&mut dice, &[(9, 4.6), (22, 2.9), (45, 1.7), (60, 1.1)]);
@@ -81,8 +81,8 @@ pub fn breccia_packed() -> Tile {
     tile
 }
 
-/// The part of a convex cell around the origin that belongs to it rather than to `neighbour` in the
-/// power diagram (`power` = difference of the squared radii), less `gap`.
+/// The part of a convex cell around the origin that belongs to the origin and not to `neighbour` in the power
+/// diagram (`power` = difference of the squared radii), less `gap`.
 fn nearer_part(cell: &[Point], neighbour: Point, power: f32, gap: f32) -> Vec<Point> {
     let length = neighbour[0].hypot(neighbour[1]);
     let limit = (length * length + power) * 0.5 - gap * length;
@@ -121,7 +121,7 @@ pub fn sand() -> Tile {
     tile
 }
 
-/// Dots in a row with a hand's irregularity.
+/// Dots in a row, placed irregularly as by hand.
 fn dotted_row(tile: &mut Tile, dice: &mut Dice, y: f32, count: usize, height: impl Fn(f32) -> f32) {
     let step = tile.side / count as f32;
     let start = dice.between(0.0, step);
@@ -146,7 +146,8 @@ pub fn sandstone_bedded() -> Tile {
     tile
 }
 
-/// 609: trough cross-bedding; each trough cuts those below it and holds dotted foresets parallel to its floor.
+/// 609: trough cross-bedding. Each trough cuts those below it and holds dotted foresets parallel to its
+/// floor.
 pub fn sandstone_crossbedded() -> Tile {
     let mut tile = Tile::new(90.0);
     let mut dice = Dice::new(6093);
@@ -168,8 +169,8 @@ pub fn sandstone_crossbedded() -> Tile {
         (t.abs() < 1.0).then(|| centre[1] + depth * (1.0 - t * t))
     };
     for (index, &trough) in troughs.iter().enumerate() {
-        // Younger troughs took away all that lay above their floors. The stack repeats upwards: those
-        // of the tile above are younger than all of this one.
+        // Younger troughs removed all that lay above their floors. The stack repeats upwards: the troughs of
+        // the tile above are younger than all of this one.
         let cut = |point: Point, margin: f32| {
             troughs.iter().enumerate().any(|(other, &younger)| {
                 (0..=1).filter(|lap| other + lap * troughs.len() > index).any(|lap| {
@@ -220,7 +221,7 @@ fn draw_run(tile: &mut Tile, run: &mut Vec<Point>) {
     run.clear();
 }
 
-/// 610: planar sets; foresets of dots that flatten towards the base of their set.
+/// 610: planar sets, with foresets of dots that flatten towards the base of their set.
 pub fn sandstone_crossbedded_planar() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(610));
     let bases = [(15.0, 15.0, 1.0), (33.0, 18.0, -1.0), (46.0, 13.0, 1.0), (60.0, 14.0, -1.0)];
@@ -298,7 +299,7 @@ pub fn siltstone() -> Tile {
     tile
 }
 
-/// 670: beds of stipple and beds of shale in turn.
+/// 670: beds of stipple and beds of shale alternate.
 pub fn sandstone_shale() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(670));
     for bed in 0..3 {
@@ -326,7 +327,7 @@ pub fn sandstone_shale() -> Tile {
     tile
 }
 
-/// 681: stones of all sizes and short strokes in a dotted ground, without order.
+/// 681: stones of all sizes and short strokes, unsorted, in a dotted matrix.
 pub fn till() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(681));
     let sizes = radii(&mut dice, &[(4, 3.9), (8, 2.5), (12, 1.35)]);

@@ -8,7 +8,8 @@ const LINE: f32 = 0.65;
 /// 703: steep cleavage in close broken lines, crossed by faint bedding.
 pub fn slate() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(703));
-    // The cleavage leans 60 points to the right over 120 down: twelve lines, two tiles long, close it.
+    // The cleavage leans 60 points to the right over 120 down: twelve lines, each two tiles long, close the
+    // tile.
     for index in 0..12 {
         let x = index as f32 * 2.5;
         let mut y = dice.between(0.0, 120.0);
@@ -97,7 +98,7 @@ pub fn serpentinite() -> Tile {
     tile
 }
 
-/// 711: chips of glass, little v's in all directions but mostly upright.
+/// 711: chips of glass: small v's in all directions, most of them upright.
 pub fn tuff() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(711));
     let points = tile.scatter(&mut dice, 5.2, &[], 0.0);
@@ -168,7 +169,7 @@ pub fn granite() -> Tile {
     tile
 }
 
-/// 718: granite's other sign: crosses turned at random among dots.
+/// 718: granite, second pattern: crosses turned at random among dots.
 pub fn granite_crosses() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(718));
     let points = tile.scatter(&mut dice, 6.4, &[], 0.0);
@@ -186,7 +187,7 @@ pub fn granite_crosses() -> Tile {
     tile
 }
 
-/// 729: large crystals in a fine ground.
+/// 729: large crystals in a fine matrix.
 pub fn porphyry() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(729));
     let crystals: Vec<(Point, f32)> =

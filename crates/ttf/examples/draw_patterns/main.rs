@@ -1,8 +1,8 @@
 //! Draws the built-in lithology patterns: `cargo run -p petroglyph-ttf --example draw_patterns textures`.
 //!
-//! Numbers and names follow section 37 of the FGDC Digital Cartographic Standard
-//! (FGDC-STD-013-2006); every line here is our own geometry. Each pattern is a wrapped tile of ink
-//! ([`tile::Tile`]), at printed size in points, from a fixed seed: the same bytes on every run.
+//! Numbers and names follow section 37 of the FGDC Digital Cartographic Standard (FGDC-STD-013-2006); the
+//! geometry is our own. Each pattern is a tile of ink ([`tile::Tile`]) that wraps around, at printed size in
+//! points. Its random numbers start from a fixed seed, so every run writes the same bytes.
 
 mod chemical;
 mod clastic;

@@ -1,4 +1,4 @@
-//! A square tile of ink that wraps around: whatever crosses an edge is drawn again on the opposite one.
+//! A square tile of ink that wraps around: what crosses an edge is drawn again at the opposite edge.
 //!
 //! Unit: points at printed size (1 pt = 25.4/72 mm); x right, y **down** as in SVG.
 
@@ -7,19 +7,19 @@ use std::fmt::Write;
 /// A point in the tile, in points.
 pub type Point = [f32; 2];
 
-/// The one ink all patterns are drawn in: a warm black.
+/// The ink of all patterns: a warm black.
 const INK: &str = "#231f1b";
 
 /// Deterministic pseudo-random numbers (SplitMix64, Steele, Lea and Flood 2014).
 pub struct Dice(u64);
 
 impl Dice {
-    /// A stream of its own for each pattern.
+    /// A sequence of its own for each pattern.
     pub fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
 
-    /// Evenly distributed in [low, high).
+    /// A number that is uniformly distributed in [low, high).
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;
@@ -29,12 +29,12 @@ impl Dice {
         low + (high - low) * ((z >> 40) as f32 / (1_u64 << 24) as f32)
     }
 
-    /// Any angle.
+    /// A uniformly distributed angle.
     pub fn turn(&mut self) -> f32 {
         self.between(0.0, std::f32::consts::TAU)
     }
 
-    /// Evenly distributed around zero.
+    /// A number that is uniformly distributed in [−size, size).
     pub fn jitter(&mut self, size: f32) -> f32 {
         self.between(-size, size)
     }
@@ -47,7 +47,7 @@ enum Style {
 
 struct Element {
     style: Style,
-    /// Path data as a function of the offset: points with the command before each.
+    /// The commands of the path, each with its points.
     commands: Vec<(char, Vec<Point>)>,
 }
 
@@ -127,19 +127,19 @@ impl Tile {
         self.elements.push(Element { style: Style::Fill, commands });
     }
 
-    /// The shortest way from one point to another over the edges.
+    /// The shortest offset from one point to another, across the edges of the tile.
     pub fn offset(&self, from: Point, to: Point) -> Point {
         [to[0] - from[0], to[1] - from[1]].map(|part| part - (part / self.side).round() * self.side)
     }
 
-    /// Distance over the edges.
+    /// Distance of two points across the edges of the tile.
     pub fn distance(&self, a: Point, b: Point) -> f32 {
         let [x, y] = self.offset(a, b);
         x.hypot(y)
     }
 
-    /// Poisson-disc points at least `gap` apart, none closer than `clearance` to an obstacle (centre, radius),
-    /// as many as go in: even density without rows or rivers.
+    /// Poisson-disc points: at least `gap` apart, none closer than `clearance` to an obstacle (centre,
+    /// radius), as many as 40 000 attempts place. Their density is even, without rows or gaps.
     pub fn scatter(&self, dice: &mut Dice, gap: f32, obstacles: &[(Point, f32)], clearance: f32) -> Vec<Point> {
         let mut points: Vec<Point> = Vec::new();
         for _ in 0..40_000 {
@@ -153,7 +153,8 @@ impl Tile {
         points
     }
 
-    /// Discs of the given radii, largest first, `gap` apart: each placed where a dart first finds room.
+    /// Discs of the given radii, largest first, at least `gap` apart. Each lies where a random attempt first
+    /// finds room; a disc that finds none is left out.
     pub fn pack(&self, dice: &mut Dice, radii: &[f32], gap: f32) -> Vec<(Point, f32)> {
         let mut discs: Vec<(Point, f32)> = Vec::new();
         for &radius in radii {
@@ -168,7 +169,7 @@ impl Tile {
         discs
     }
 
-    /// The drawing as SVG; elements that reach over an edge are repeated on the other side.
+    /// The drawing as SVG. Elements that cross an edge are repeated at the opposite edge.
     pub fn to_svg(&self) -> String {
         let side = self.side;
         let mut groups: Vec<(String, String)> = Vec::new();
@@ -252,7 +253,7 @@ fn closed_curve(points: &[Point]) -> Vec<(char, Vec<Point>)> {
 }
 
 fn circle([x, y]: Point, [a, b]: [f32; 2]) -> Vec<(char, Vec<Point>)> {
-    // The cubic that follows a quarter circle to 0.03 %.
+    // A cubic that approximates a quarter circle to 0.03 %.
     let (p, q) = (a * 0.552_285, b * 0.552_285);
     vec![
         ('M', vec![[x + a, y]]),
@@ -283,7 +284,7 @@ pub fn pebble(dice: &mut Dice, centre: Point, radius: f32, flat: f32, tilt: f32)
         .collect()
 }
 
-/// A broken piece with corners.
+/// An angular fragment.
 pub fn shard(dice: &mut Dice, centre: Point, radius: f32) -> Vec<Point> {
     let corners = [3, 4, 4, 5][dice.between(0.0, 4.0) as usize];
     let turn = dice.turn();

@@ -148,7 +148,7 @@ impl HorizonList {
                 format!("Overlaps itself at {} traces, by up to {:.0} samples.", overlap.traces, overlap.apart),
             );
             if ui.small_button("Show the overlap").clicked() {
-                go(geometry, overlap.at.map(f64::from), actions);
+                go(geometry, overlap.at, actions);
             }
         }
         for conflict in &facts.conflicts {

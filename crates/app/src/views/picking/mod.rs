@@ -129,7 +129,7 @@ fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &Survey
             format!("Lies twice over {} traces, up to {:.0} samples apart: descend.", overlap.traces, overlap.apart),
         );
         if ui.small_button("Show where").clicked() {
-            go(geometry, overlap.at.map(f64::from), actions);
+            go(geometry, overlap.at, actions);
         }
     }
     ui.horizontal_wrapped(|ui| {

@@ -7,7 +7,7 @@ use interp::reassembly::reassemble;
 use model::FaultNetwork;
 use project::document::Document;
 use project::error::ProjectError;
-use project::interpretation::assembly::{self, overlap_in_lines};
+use project::interpretation::assembly::{self, ReportedOverlap};
 use project::interpretation::candidates::Candidates;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -59,7 +59,7 @@ impl Followed {
         let overlap = occupancy.overlap();
         let (vertices, traces) = (occupancy.vertices() - before.0, overlap.traces - before.1);
         let is_wrong = traces as f64 > ClimbSettings::default().tolerated_share * vertices as f64;
-        let overlap = overlap_in_lines(Overlap { traces, ..overlap }, &self.geometry);
+        let overlap = ReportedOverlap::new(Overlap { traces, ..overlap }, &self.geometry);
         let leaves = forest.leaves_under(node).collect();
         Ok(Some(ShownPick { pick, sheets, triangles: range.len(), leaves, overlap, is_wrong }))
     }

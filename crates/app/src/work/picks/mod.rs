@@ -15,7 +15,7 @@ use figure::interpretation::{FaultMesh, Interpretation, PickedSheets, SheetHole,
 use followed::Followed;
 use glam::DVec3;
 use interp::ExtractReport;
-use interp::assembly::{ClimbSettings, Overlap, highest_valid, selected_leaves};
+use interp::assembly::{ClimbSettings, highest_valid, selected_leaves};
 use interp::faults::Proposal;
 use interp::holes::{Hole, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble};
@@ -25,7 +25,7 @@ use project::content;
 use project::document::Document;
 use project::document::{Assembly, HorizonEntry};
 use project::error::ProjectError;
-use project::interpretation::assembly::{self, AssemblyReport, conflicts_of, overlap_in_lines, report_on, sentence};
+use project::interpretation::assembly::{self, AssemblyReport, ReportedOverlap, conflicts_of, report_on, sentence};
 use project::interpretation::candidates::Candidates;
 use project::interpretation::{extraction, proposals};
 use std::collections::HashMap;
@@ -131,7 +131,7 @@ pub struct ShownPick {
     /// Its leaves.
     pub leaves: Vec<u32>,
     /// Where it would lie over the horizon or itself, in line numbers.
-    pub overlap: Option<Overlap>,
+    pub overlap: Option<ReportedOverlap>,
     /// Whether that is more than noise makes.
     pub is_wrong: bool,
 }
@@ -393,7 +393,7 @@ impl Keeper {
             let chosen = log.zip(candidates).and_then(|(log, c)| assembly::selection(&entry.name, log, c).ok());
             let overlap = chosen.as_ref().zip(candidates).and_then(|(chosen, candidates)| {
                 let found = reassemble(&candidates.forest, chosen, &seeds(log, candidates), blocks).overlap;
-                overlap_in_lines(found, geometry)
+                ReportedOverlap::new(found, geometry)
             });
             let mine = conflicts.iter().filter(|conflict| conflict.horizons().contains(&entry.name));
             ShownHorizon {
@@ -448,6 +448,6 @@ fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec
 }
 
 /// Voxel position of a place where an overlap is worst.
-pub fn voxel_of_overlap(geometry: &SurveyGeometry, overlap: &Overlap) -> DVec3 {
-    voxel_of(geometry, overlap.at.map(f64::from))
+pub fn voxel_of_overlap(geometry: &SurveyGeometry, overlap: &ReportedOverlap) -> DVec3 {
+    voxel_of(geometry, overlap.at)
 }

@@ -1,17 +1,17 @@
-//! A bundle of rays gathers what each would alone.
+//! A bundle of rays gives the same result as each ray alone.
 
 use super::*;
-use crate::frame::Frame;
 use crate::inputs::{Inputs, NamedVolume};
 use crate::media::light_grid::Asked;
 use crate::media::prepared::Preparations;
 use crate::media::{EmptySpace, LayerOpacity, Media, Medium, MediumColour, Occlusion, Phong};
+use crate::resolved::ResolvedScene;
 use crate::{Camera, Projection, Scene, VoxelBox};
 use glam::DVec2;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use ttf::{Colour, RgbaFunction, RgbaStop};
 
-/// Smooth with noise, without pattern; some samples and a corner of traces missing.
+/// A smooth volume with noise; some samples and the traces of a corner are missing.
 fn volume(size: [usize; 3]) -> Volume<f32> {
     let count: usize = size.iter().product();
     let value = |n: usize| {
@@ -39,29 +39,33 @@ fn function(colours: [Colour; 2]) -> RgbaFunction {
     }
 }
 
-/// The largest difference in colour or light, and the most that was covered.
+/// The largest difference in colour or transmittance, and the largest opacity.
 fn apart(scene: &Scene, inputs: &Inputs) -> (f32, f32) {
     let mut kept = Preparations::default();
-    let frame = Frame::new(scene, inputs, &mut kept).unwrap();
-    let field = frame.field.as_ref().unwrap();
+    let resolved = ResolvedScene::new(scene, inputs, &mut kept).unwrap();
+    let field = resolved.field.as_ref().unwrap();
     let quiet = Progress::silent();
-    let light = LightVolume::new(field, &frame.view, &frame.solid, &frame.roaming_box, Asked::Block, &quiet).unwrap();
+    let light =
+        LightVolume::new(field, &resolved.view, &resolved.solid, &resolved.roaming_box, Asked::Block, &quiet).unwrap();
     let [width, height] = scene.size_px;
     let rays: Vec<(Ray, [f32; 2])> = (0..width * height)
         .map(|n| {
             let pixel = DVec2::new(f64::from(n % width), f64::from(n / width));
-            // Some end early.
+            // Some rays end early.
             let end = if n % 5 == 0 { 3.0 * f64::from(width) as f32 } else { f32::INFINITY };
-            (Ray::from(frame.view.ray(pixel)), [f32::MIN, end])
+            (Ray::from(resolved.view.ray(pixel)), [f32::MIN, end])
         })
         .collect();
-    let all = gather_all(field, light.as_ref(), &frame.solid, &rays);
+    let all = gather_all(field, light.as_ref(), &resolved.solid, &rays);
     assert_eq!(all.len(), rays.len());
     let mut most = (0.0f32, 0.0f32);
     for ((ray, between), found) in rays.iter().zip(&all) {
-        let alone = gather(field, light.as_ref(), &frame.solid, ray, *between);
+        let alone = gather(field, light.as_ref(), &resolved.solid, ray, *between);
         let colour = (alone.colour - found.colour).abs().max_element();
-        most = (most.0.max(colour).max((alone.passes - found.passes).abs()), most.1.max(1.0 - found.passes));
+        most = (
+            most.0.max(colour).max((alone.transmittance - found.transmittance).abs()),
+            most.1.max(1.0 - found.transmittance),
+        );
     }
     most
 }

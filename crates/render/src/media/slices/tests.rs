@@ -1,12 +1,13 @@
-//! Light is the same whatever is left out and by whichever way it is computed.
+//! The light does not depend on what is skipped or on the code path that computes it.
 
 use super::*;
-use crate::frame::Frame;
 use crate::inputs::{Inputs, NamedVolume};
 use crate::media::light::LightVolume;
+use crate::media::light_grid::Asked;
 use crate::media::prepared::Preparations;
 use crate::media::{LayerOpacity, MediumColour};
 use crate::media::{Media, Medium, Occlusion, Shading, white_ramp};
+use crate::resolved::ResolvedScene;
 use crate::{Camera, Projection, Scene};
 use survey::{SurveyGeometry, VerticalUnit, Volume};
 
@@ -37,7 +38,8 @@ fn a_part_wider_than_the_buffer_is_blurred_as_a_whole() {
     assert_eq!(row[1..301], parts[1..301]);
 }
 
-/// A block with a volume, with a cut-out or without; a second medium that never shows makes the general way be taken.
+/// A block with a volume, with or without a cut-out. A second medium that is never visible selects the
+/// general code path.
 fn scene(projection: Projection, cut: bool, unseen: bool) -> Scene {
     let medium = |function| Medium {
         volume: "v".into(),
@@ -83,10 +85,12 @@ fn light_in_the_block_does_not_depend_on_windows_or_runs() {
         for cut in [false, true] {
             let light = |unseen: bool, asked: Asked| {
                 let (scene, mut kept) = (scene(projection, cut, unseen), Preparations::default());
-                let frame = Frame::new(&scene, &inputs, &mut kept).unwrap();
-                let field = frame.field.as_ref().unwrap();
-                assert_eq!(field.alone().is_none(), unseen);
-                LightVolume::new(field, &frame.view, &frame.solid, &frame.roaming_box, asked, &quiet).unwrap().unwrap()
+                let resolved = ResolvedScene::new(&scene, &inputs, &mut kept).unwrap();
+                let field = resolved.field.as_ref().unwrap();
+                assert_eq!(field.only_medium().is_none(), unseen);
+                LightVolume::new(field, &resolved.view, &resolved.solid, &resolved.roaming_box, asked, &quiet)
+                    .unwrap()
+                    .unwrap()
             };
             let whole = light(false, Asked::Everywhere);
             let (windowed, general) = (light(false, Asked::Block), light(true, Asked::Block));

@@ -1,14 +1,13 @@
-//! A scene and its inputs, checked and resolved: what both renderers start from.
+//! A scene and its inputs, checked and with all names resolved: the starting point of both renderers.
 
 use crate::camera::View;
-use crate::error::{NO_CANDIDATES, RenderError};
+use crate::error::RenderError;
 use crate::ground::Relief;
-use crate::inputs::{Candidates, Inputs, NamedVolume};
+use crate::inputs::{CandidateVolume, Inputs, NamedVolume};
 use crate::leaves::FaceData;
-use crate::media::field::Field;
+use crate::media::field::MediaField;
 use crate::media::prepared::Preparations;
-use crate::media::{Faces, Scalar};
-use crate::outline;
+use crate::media::{Faces, IsosurfaceSource};
 use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
@@ -19,65 +18,64 @@ use param::{PackedVolume, Parameterization};
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
 use ttf::{RawColour, TtfTables};
 
-/// Volumes that a picture can show.
+/// Largest number of volumes in a picture.
 pub const MAX_VOLUMES: usize = 6;
-/// Colour under raw data where there is nothing else.
+/// Colour below raw data if there is no interpretation.
 const PLAIN: [f32; 4] = [0.86, 0.86, 0.855, 0.0];
 
-/// Everything a picture needs, with names resolved.
-pub(crate) struct Frame<'a> {
+/// Everything that a picture needs, with names resolved.
+pub(crate) struct ResolvedScene<'a> {
     pub scene: &'a Scene,
     pub view: View,
     pub solid: Solid,
     /// The part of the survey shown.
     pub roaming_box: VoxelBox,
-    /// The transfer functions with the scene's blend, frequency and raw data.
+    /// The transfer functions with the blend, global frequency and raw data of the scene.
     pub tables: TtfTables,
-    /// One per entry of `tables.volumes`; `None` where the picture does not need it.
+    /// One volume per entry of `tables.volumes`; `None` where the picture does not need it.
     pub volumes: Vec<Option<NamedVolume<'a>>>,
-    /// What illustrates; `None` shows raw data alone.
-    pub rock: Option<Rock<'a>>,
-    /// Whether textures show at all: there is an interpretation and the blend is not wholly raw.
+    /// The interpretation. `None`: the picture shows raw data alone.
+    pub interpretation: Option<Interpretation<'a>>,
+    /// Whether textures are visible at all: there is an interpretation, and the blend is not entirely raw.
     pub illustrated: bool,
     /// The ground, if the scene has one.
     pub relief: Option<Relief>,
     /// Metres between voxels along x, y, z.
     pub voxel_m: Vec3,
-    /// Factor on the colour of faces across x, y, z.
+    /// Factors on the colour of faces of constant x, y, z.
     pub tones: [f32; 3],
-    /// Behind everything, straight: nothing where edges are to be drawn behind what is seen through.
+    /// Background, straight RGBA. Transparent if edges are drawn behind the media: then they and the
+    /// background are added at the end.
     pub background: [f32; 4],
-    /// Horizon candidates, where faces show them.
-    pub candidates: Option<Candidates<'a>>,
+    /// Horizon candidates, if faces show them.
+    pub candidates: Option<CandidateVolume<'a>>,
     /// Wells.
     pub tubes: Option<Tubes>,
-    /// What is seen through.
-    pub field: Option<Field<'a>>,
+    /// The media (volume rendering).
+    pub field: Option<MediaField<'a>>,
 }
 
-/// The interpretation and the map to flat space.
+/// The interpretation, and the map to flat space.
 #[derive(Clone, Copy)]
-pub(crate) struct Rock<'a> {
+pub(crate) struct Interpretation<'a> {
     pub model: &'a StructuralModel,
     pub flat: Flat<'a>,
 }
 
-/// The two lookups.
+/// The two ways to look up flat coordinates.
 #[derive(Clone, Copy)]
 pub(crate) enum Flat<'a> {
     Exact(&'a Parameterization),
     Packed(&'a PackedVolume),
 }
 
-impl<'a> Frame<'a> {
-    /// Checks the scene against the inputs.
+impl<'a> ResolvedScene<'a> {
+    /// Checks the scene against the inputs and resolves its names.
     pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Preparations) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
-        let rock = resolve_rock(scene, inputs)?;
-        let tables = resolve_tables(scene, inputs, rock.is_some())?;
-        let mut tables = tables;
-        let media: Vec<&String> =
-            scene.media.all().map(|m| &m.volume).chain(paints(scene)).chain(scene.media.isosurface_volumes()).collect();
+        let interpretation = resolve_interpretation(scene, inputs)?;
+        let mut tables = resolve_tables(scene, inputs, interpretation.is_some())?;
+        let media = media_volumes(scene);
         for name in &media {
             if !tables.volumes.contains(name) {
                 tables.volumes.push((*name).clone());
@@ -85,35 +83,18 @@ impl<'a> Frame<'a> {
         }
         let volumes = resolve_volumes(&tables, &media, inputs.volumes)?;
         let roaming_box = scene.box_in(inputs.geometry);
-        let relief = match (&scene.ground, rock) {
-            (None, _) => None,
-            (Some(ground), Some(rock)) => Some(Relief::new(ground, scene, inputs.geometry, rock.model)),
-            (Some(_), None) => {
-                return Err(RenderError::Missing {
-                    what: "horizons for the ground",
-                    remedy: "add horizons, or leave `ground` out of the scene",
-                });
-            }
-        };
+        let relief = resolve_relief(scene, inputs, interpretation)?;
         let hidden =
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
         let view = scene.view(inputs.geometry);
-        let field = Field::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
-        let candidates = match (scene.face_data, inputs.candidates) {
-            (FaceData::Rock, _) => None,
-            (_, None) => return Err(NO_CANDIDATES),
-            (_, Some(candidates)) => {
-                candidates.validate()?;
-                Some(candidates)
-            }
-        };
+        let field = MediaField::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
         let solid = Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry));
         let longest_m = (0..3).map(|axis| metric.col(axis).length() * roaming_box.extent()[axis]).fold(0.0, f64::max);
-        let background = if outline::has_underlay(scene) { [0.0; 4] } else { scene.background.rgba() };
+        let background = if scene.has_back_edges() { [0.0; 4] } else { scene.background.rgba() };
         Ok(Self {
             background,
-            candidates,
+            candidates: resolve_candidates(scene, inputs)?,
             tubes: Tubes::new(inputs.wells, &scene.wells, &view, longest_m, solid.roaming_box),
             field,
             roaming_box,
@@ -123,16 +104,16 @@ impl<'a> Frame<'a> {
             solid,
             tables,
             volumes,
-            rock,
-            illustrated: rock.is_some() && (!hidden || shows_depths(scene)),
+            interpretation,
+            illustrated: interpretation.is_some() && (!hidden || shows_depths(scene)),
             relief,
             voxel_m: DVec3::new(metric.x_axis.length(), metric.y_axis.length(), metric.z_axis.length()).as_vec3(),
         })
     }
 }
 
-/// The model and the lookup that the scene asks for; `None` when there is nothing to illustrate with.
-fn resolve_rock<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Rock<'a>>, RenderError> {
+/// The model and the lookup that the scene asks for; `None` if there is no interpretation.
+fn resolve_interpretation<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Interpretation<'a>>, RenderError> {
     let (Some(model), Some(tables)) = (inputs.model, inputs.tables) else { return Ok(None) };
     if tables.layers.len() < model.layer_count() {
         return Err(RenderError::LayerCount { styled: tables.layers.len(), layers: model.layer_count() });
@@ -148,10 +129,38 @@ fn resolve_rock<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Rock<'a
         },
         remedy: "parameterize the project first",
     })?;
-    Ok(Some(Rock { model, flat }))
+    Ok(Some(Interpretation { model, flat }))
 }
 
-/// The transfer functions as this scene uses them.
+/// The ground, if the scene shows it.
+fn resolve_relief(
+    scene: &Scene,
+    inputs: &Inputs,
+    interpretation: Option<Interpretation>,
+) -> Result<Option<Relief>, RenderError> {
+    match (&scene.ground, interpretation) {
+        (None, _) => Ok(None),
+        (Some(ground), Some(interpretation)) => {
+            Ok(Some(Relief::new(ground, scene, inputs.geometry, interpretation.model)))
+        }
+        (Some(_), None) => Err(RenderError::Missing {
+            what: "horizons for the ground",
+            remedy: "add horizons, or leave `ground` out of the scene",
+        }),
+    }
+}
+
+/// The horizon candidates, if faces show them.
+fn resolve_candidates<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<CandidateVolume<'a>>, RenderError> {
+    if scene.face_data == FaceData::Rock {
+        return Ok(None);
+    }
+    let candidates = inputs.candidates.ok_or(RenderError::NO_CANDIDATES)?;
+    candidates.validate()?;
+    Ok(Some(candidates))
+}
+
+/// The transfer functions with the settings of the scene.
 fn resolve_tables(scene: &Scene, inputs: &Inputs, illustrated: bool) -> Result<TtfTables, RenderError> {
     let mut tables = inputs.tables.cloned().unwrap_or_else(no_tables);
     tables.globals.blend = scene.blend;
@@ -200,7 +209,7 @@ fn no_tables() -> TtfTables {
     }
 }
 
-/// Puts the scene's raw data in place of the transfer functions'.
+/// Replaces the raw data of the transfer functions by those of the scene.
 fn set_raw(tables: &mut TtfTables, raw: &RawColour) {
     let slot = tables.volumes.iter().position(|name| *name == raw.volume).unwrap_or_else(|| {
         tables.volumes.push(raw.volume.clone());
@@ -222,17 +231,18 @@ fn set_raw(tables: &mut TtfTables, raw: &RawColour) {
     tables.globals.no_data = raw.no_data.map_or([0.0; 4], |colour| rgba(colour, 1.0));
 }
 
-/// Whether flat coordinates are looked up inside the block.
+/// Whether flat coordinates are needed inside the block and not only on faces.
 pub(crate) fn shows_depths(scene: &Scene) -> bool {
-    scene.media.isosurfaces.iter().any(|surface| surface.of == Scalar::Depth)
+    scene.media.isosurfaces.iter().any(|surface| surface.of == IsosurfaceSource::Depth)
 }
 
-/// Volumes painted on horizons.
-fn paints(scene: &Scene) -> impl Iterator<Item = &String> {
-    scene.media.horizons.iter().filter_map(|horizon| horizon.paint.as_ref()).map(|paint| &paint.volume)
+/// Names of the volumes of all media, painted horizons and isosurfaces.
+fn media_volumes(scene: &Scene) -> Vec<&String> {
+    let painted = scene.media.horizons.iter().filter_map(|horizon| horizon.paint.as_ref()).map(|paint| &paint.volume);
+    scene.media.all().map(|m| &m.volume).chain(painted).chain(scene.media.isosurface_volumes()).collect()
 }
 
-/// The volumes behind the slots that are in use.
+/// The volumes of the slots that are in use.
 fn resolve_volumes<'a>(
     tables: &TtfTables,
     media: &[&String],
@@ -246,16 +256,13 @@ fn resolve_volumes<'a>(
             || tables.scalars.iter().any(|s| s.volume == slot)
             || media.contains(&&tables.volumes[slot as usize])
     };
-    let find = |name: &String| {
-        volumes.iter().find(|v| v.name == *name).copied().ok_or_else(|| RenderError::UnknownVolume {
-            name: name.clone(),
-            present: volumes.iter().map(|v| v.name.to_owned()).collect(),
-        })
-    };
-    (0u32..).zip(&tables.volumes).map(|(slot, name)| is_used(slot).then(|| find(name)).transpose()).collect()
+    (0u32..)
+        .zip(&tables.volumes)
+        .map(|(slot, name)| is_used(slot).then(|| NamedVolume::find(volumes, name)).transpose())
+        .collect()
 }
 
-/// Darkens the vertical faces by how far they turn to the viewer's right.
+/// Factors that darken one pair of vertical faces: the pair whose visible face points farther to the right.
 fn tones(view: &View, centre: &DVec3, face_tone: f32) -> [f32; 3] {
     let here = view.project(*centre);
     let towards = view.towards_camera(*centre);
