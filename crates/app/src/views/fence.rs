@@ -7,7 +7,7 @@ use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use super::{canvas, texture};
 use crate::state::{Action, Panel, Session};
-use crate::work::fence::FenceWish;
+use crate::work::fence::FenceRequest;
 use crate::work::{Rocks, Slices};
 use eframe::egui::{Button, Context, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
 use figure::cut::{CutLine, FenceCut, length_m, place, stations};
@@ -26,7 +26,7 @@ const MARGIN: Vec2 = vec2(52.0, 20.0);
 pub struct FenceView {
     texture: Option<TextureHandle>,
     shown: Option<Shown>,
-    wished: Option<(Vec<DVec2>, u64, FaceData)>,
+    requested: Option<(Vec<DVec2>, u64, FaceData)>,
 }
 
 /// A fence as figures take it.
@@ -63,10 +63,10 @@ impl FenceView {
         let is_interpreting = session.view.panel == Panel::Interpret;
         let show = if is_interpreting { session.view.picking.show } else { FaceData::Rock };
         if let Some((rocks, version)) = rocks {
-            let wished = (corners.clone(), version, show);
-            if self.wished.as_ref() != Some(&wished) {
-                slices.cut_fence(FenceWish { corners: corners.clone(), rocks: rocks.clone(), show });
-                self.wished = Some(wished);
+            let requested = (corners.clone(), version, show);
+            if self.requested.as_ref() != Some(&requested) {
+                slices.cut_fence(FenceRequest { corners: corners.clone(), rocks: rocks.clone(), show });
+                self.inbox = Some(inbox);
             }
         }
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());

@@ -2,7 +2,7 @@
 
 use super::{canvas, texture};
 use crate::state::{Action, Session};
-use crate::work::map::{MapData, MapWish, Maps};
+use crate::work::map::{MapData, MapRequest, Maps};
 use eframe::egui::{ComboBox, Context, Rect, Role, Sense, TextWrapMode, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
 use figure::draw::map::{self as drawing, MapFrame};
 use figure::map::{HorizonMap, Mapped};
@@ -16,7 +16,7 @@ const ZOOM: [f32; 2] = [0.8, 40.0];
 pub struct MapView {
     texture: Option<TextureHandle>,
     shown: Option<HorizonMap>,
-    wished: Option<(Mapped, u64, bool)>,
+    requested: Option<(Mapped, u64, bool)>,
     thickness: bool,
     zoom: Option<f32>,
     shift: Vec2,
@@ -48,10 +48,10 @@ impl MapView {
         self.header(ui, session, upper, lower, actions);
         let mapped = self.mapped(session);
         if let Some((data, version)) = data {
-            let wished = Some((mapped, version, matches!(data, MapData::Rocks(_))));
-            if self.wished != wished {
-                self.wished = wished;
-                maps.map(MapWish { mapped, data });
+            let requested = Some((mapped, version, matches!(data, MapData::Rocks(_))));
+            if self.requested != requested {
+                self.requested = requested;
+                maps.map(MapRequest { mapped, data });
             }
         }
         let (rect, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());

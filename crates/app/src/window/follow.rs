@@ -1,4 +1,4 @@
-//! What the window wishes from the workers, and what it makes of their answers.
+//! What the window asks of the workers, and what it makes of their answers.
 
 use super::Window;
 use crate::hold::{Hold, Taken};
@@ -168,12 +168,12 @@ impl Window {
         }
         let Picking { pick, horizon, accepted, .. } = &session.view.picking;
         // What was just accepted is shown until the project has it.
-        let wished = pick.clone().or_else(|| accepted.clone()).map(|pick| (pick, horizon.clone()));
+        let requested = pick.clone().or_else(|| accepted.clone()).map(|pick| (pick, horizon.clone()));
         let number = self.overlay.interpreted().map_or(0, |shown| shown.number);
-        let selected = Some((wished, number));
+        let selected = Some((inbox, number));
         if self.selected != selected && number > 0 {
-            if let Some((wished, _)) = &selected {
-                self.work.picks.draw(wished.clone());
+            if let Some((inbox, _)) = &selected {
+                self.work.picks.draw(inbox.clone());
             }
             self.selected = selected;
         }

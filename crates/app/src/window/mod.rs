@@ -65,7 +65,7 @@ pub fn run(project: Option<PathBuf>, frame_times: Option<&Path>) -> Result<(), W
 }
 
 /// A selection, the horizon it is for, and the interpretation it is to be seen in.
-type Wished = (Option<(Pick, Option<String>)>, u64);
+type Inbox = (Option<(Pick, Option<String>)>, u64);
 
 /// The window's content.
 pub struct Window {
@@ -93,7 +93,7 @@ pub struct Window {
     /// The revision whose interpretation was asked for.
     followed: Option<u64>,
     /// Selection that was last asked for, and the interpretation it was asked of.
-    selected: Option<Wished>,
+    selected: Option<Inbox>,
     tiles: Tiles,
     swatches: Swatches,
     chooser: Chooser,

@@ -3,7 +3,7 @@
 //! A change of style alone compiles the tables anew and leaves model, parameterization and volumes as they are.
 
 use super::running::Running;
-use super::wishes::{Wished, Wishes};
+use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Outbox};
 use crate::state::{Notice, Place};
 use model::ModelSettings;
@@ -94,20 +94,20 @@ struct Next {
     forget: bool,
 }
 
-/// The thread that loads, and the wish it works on next.
+/// The thread that loads, and the request it works on next.
 pub(super) struct Loader {
-    wishes: Wishes<Next>,
+    worker: LatestValueWorker<Next>,
 }
 
 impl Loader {
     pub(super) fn start(outbox: Outbox, running: Running) -> Self {
         let told = outbox.clone();
-        Self { wishes: Wishes::start("what the pictures need", &told, move |wished| work(wished, &outbox, &running)) }
+        Self { worker: LatestValueWorker::start("what the pictures need", &told, move |inbox| work(inbox, &outbox, &running)) }
     }
 
     /// Loads this next; what is being loaded for another state is given up.
     pub(super) fn load(&self, wanted: Wanted) {
-        self.wishes.change(|next| {
+        self.worker.change(|next| {
             next.wanted = Some(wanted);
             next.progress.iter().for_each(Progress::cancel);
         });
@@ -115,7 +115,7 @@ impl Loader {
 
     /// Lets go of everything.
     pub(super) fn forget(&self) {
-        self.wishes.change(|next| {
+        self.worker.change(|next| {
             next.wanted = None;
             next.forget = true;
             next.progress.iter().for_each(Progress::cancel);
@@ -125,7 +125,7 @@ impl Loader {
 
 impl Drop for Loader {
     fn drop(&mut self) {
-        self.wishes.change(|next| next.progress.iter().for_each(Progress::cancel));
+        self.worker.change(|next| next.progress.iter().for_each(Progress::cancel));
     }
 }
 
@@ -138,10 +138,10 @@ struct Kept {
     rocks: Rocks,
 }
 
-fn work(wished: &Wished<Next>, outbox: &Outbox, running: &Running) {
+fn work(inbox: &Inbox<Next>, outbox: &Outbox, running: &Running) {
     let mut kept: Option<Kept> = None;
     loop {
-        let next = wished.next(|next| {
+        let next = inbox.next(|next| {
             if std::mem::take(&mut next.forget) {
                 return Some(None);
             }

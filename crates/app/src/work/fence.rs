@@ -1,4 +1,4 @@
-//! Sections along a line, to be cut for the latest wish.
+//! Sections along a line, to be cut for the latest request.
 
 use super::Rocks;
 use super::slice::source;
@@ -7,9 +7,9 @@ use glam::DVec2;
 use project::picture::load::Loaded;
 use render::FaceData;
 
-/// A fence to be seen.
+/// A fence that is asked for.
 #[derive(Clone)]
-pub struct FenceWish {
+pub struct FenceRequest {
     /// Its corners, voxel x and y; two at least.
     pub corners: Vec<DVec2>,
     /// What it is cut from.
@@ -19,7 +19,7 @@ pub struct FenceWish {
 }
 
 /// Cuts what is loaded.
-pub(super) fn cut(loaded: &Loaded, wish: &FenceWish) -> FenceCut {
+pub(super) fn cut(loaded: &Loaded, request: &FenceRequest) -> FenceCut {
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
-    FenceCut::new(&source(loaded, &volumes, &wells), &wish.corners, wish.show)
+    FenceCut::new(&source(loaded, &volumes, &wells), &request.corners, request.show)
 }

@@ -1,6 +1,6 @@
-//! Maps of horizons and thicknesses, drawn on a thread for the latest wish.
+//! Maps of horizons and thicknesses, drawn on a thread for the latest request.
 
-use super::wishes::{Wished, Wishes};
+use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Interpreted, Outbox, Rocks};
 use figure::map::{HorizonMap, MapSource, Mapped};
 use std::sync::{Arc, PoisonError};
@@ -15,18 +15,18 @@ pub enum MapData {
     Interpreted(Arc<Interpreted>, Box<SurveyGeometry>),
 }
 
-/// A map to be seen.
+/// A map that is asked for.
 #[derive(Clone)]
-pub struct MapWish {
+pub struct MapRequest {
     /// Of what.
     pub mapped: Mapped,
     /// What it is made from.
     pub data: MapData,
 }
 
-/// The thread that maps, and the wish it works on next.
+/// The thread that maps, and the request it works on next.
 pub struct Maps {
-    wishes: Wishes<Option<MapWish>>,
+    worker: LatestValueWorker<Option<MapRequest>>,
 }
 
 impl Maps {
@@ -34,9 +34,9 @@ impl Maps {
     pub fn start(outbox: Outbox) -> Self {
         let told = outbox.clone();
         Self {
-            wishes: Wishes::start("the map", &told, move |wished: &Wished<Option<MapWish>>| {
-                while let Some(wish) = wished.next(Option::take) {
-                    if let Some(map) = draw(&wish) {
+            worker: LatestValueWorker::start("the map", &told, move |inbox: &Inbox<Option<MapRequest>>| {
+                while let Some(request) = inbox.next(Option::take) {
+                    if let Some(map) = draw(&request) {
                         outbox.send(Event::Mapped(map));
                     }
                 }
@@ -45,20 +45,20 @@ impl Maps {
     }
 
     /// Maps this next.
-    pub fn map(&self, wish: MapWish) {
-        self.wishes.change(|next| *next = Some(wish));
+    pub fn map(&self, request: MapRequest) {
+        self.worker.change(|next| *next = Some(request));
     }
 }
 
-/// Maps what is wished; `None` when there is nothing of it.
-fn draw(wish: &MapWish) -> Option<HorizonMap> {
-    match &wish.data {
+/// Maps what is asked for; `None` when there is nothing of it.
+fn draw(request: &MapRequest) -> Option<HorizonMap> {
+    match &request.data {
         MapData::Rocks(rocks) => {
             let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
-            HorizonMap::new(&loaded.geometry, MapSource::Model(&loaded.rock.as_ref()?.model), wish.mapped)
+            HorizonMap::new(&loaded.geometry, MapSource::Model(&loaded.rock.as_ref()?.model), request.mapped)
         }
         MapData::Interpreted(shown, geometry) => {
-            HorizonMap::new(geometry, MapSource::Sheets(&shown.horizons_seen()), wish.mapped)
+            HorizonMap::new(geometry, MapSource::Sheets(&shown.horizons_seen()), request.mapped)
         }
     }
 }

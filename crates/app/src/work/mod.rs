@@ -2,7 +2,7 @@
 //!
 //! [`Work`] hands orders to threads and collects their [`Event`]s; [`Running`] lists what is under way, with progress and a way to stop it.
 //! Commands on the project go one after the other (`orders`); data are read and models built by [`data`]; pictures
-//! ([`picture`]) and sections ([`mod@slice`]) are drawn for the latest wish only.
+//! ([`picture`]) and sections ([`mod@slice`]) are drawn for the latest request only.
 //!
 //! Invariant: no call from the window's thread waits.
 
@@ -20,14 +20,14 @@ pub mod scan;
 pub mod slice;
 pub mod swatches;
 mod threads;
-mod wishes;
+mod latest_value;
 
 pub use data::{Purpose, Rocks, Seen, Wanted};
 pub use map::Maps;
 pub use picks::{Interpreted, Picks, ShownFault, ShownHorizon, ShownPick, sheet};
-pub use picture::{Drawing, Drawn, PictureWish, Touch};
+pub use picture::{Drawing, Drawn, PictureRequest, Touch};
 pub use running::{Running, RunningLine};
-pub use slice::{SliceWish, Slices};
+pub use slice::{SliceRequest, Slices};
 pub use swatches::Swatches;
 
 use super::state::{Notice, PickingStep, Place, Snapshot, Task};

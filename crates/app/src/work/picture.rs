@@ -1,9 +1,9 @@
-//! Pictures of the block for the screen: coarse at once, then full, then smooth, always for the latest wish.
+//! Pictures of the block for the screen: coarse at once, then full, then smooth, always for the latest request.
 //!
 //! The time that one ray took last time decides how coarse the first picture is, so that it comes within `COARSE_S` on any machine. A
-//! coarse picture is always finished, or nothing would be seen while the camera moves; finer ones are given up for a newer wish.
+//! coarse picture is always finished, or nothing would be seen while the camera moves; finer ones are given up for a newer request.
 
-use super::wishes::{Wished, Wishes};
+use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Outbox, Rocks};
 use crate::state::{How, Notice, PickingStep, Place};
 use glam::DVec2;
@@ -26,10 +26,10 @@ const SMOOTH_SAMPLES: u32 = 2;
 /// Weight of the latest measurement of the time a ray takes.
 const LATEST: f64 = 0.5;
 
-/// What is to be seen.
+/// What is that is asked for.
 #[derive(Clone)]
-pub struct PictureWish {
-    /// Unlike that of any other wish, and growing.
+pub struct PictureRequest {
+    /// Unlike that of any other request, and growing.
     pub number: u64,
     /// The pictures, each with its size on the screen.
     pub scenes: Vec<Scene>,
@@ -58,7 +58,7 @@ pub struct Touch {
 
 /// A picture.
 pub struct Drawn {
-    /// Of which wish.
+    /// Of which request.
     pub number: u64,
     /// Which of its scenes.
     pub pane: usize,
@@ -72,7 +72,7 @@ pub struct Drawn {
 
 #[derive(Default)]
 struct Wanted {
-    wish: Option<PictureWish>,
+    request: Option<PictureRequest>,
     touch: Option<Touch>,
     /// Of the picture being drawn, if it may be given up.
     progress: Option<Progress>,
@@ -81,45 +81,45 @@ struct Wanted {
 /// What is done next: a click waits for no picture.
 enum Next {
     Touch(Box<Touch>),
-    Draw(PictureWish),
+    Draw(PictureRequest),
 }
 
 impl Wanted {
     fn take(&mut self) -> Option<Next> {
         self.progress = None;
-        self.touch.take().map(|touch| Next::Touch(Box::new(touch))).or_else(|| self.wish.take().map(Next::Draw))
+        self.touch.take().map(|touch| Next::Touch(Box::new(touch))).or_else(|| self.request.take().map(Next::Draw))
     }
 }
 
-/// The thread that draws, and the wish it works on next.
+/// The thread that draws, and the request it works on next.
 pub struct Drawing {
-    wishes: Wishes<Wanted>,
+    worker: LatestValueWorker<Wanted>,
 }
 
 impl Drawing {
     /// Starts the thread.
     pub fn start(outbox: Outbox) -> Self {
         let told = outbox.clone();
-        Self { wishes: Wishes::start("the picture", &told, move |wished| Artist::new(outbox.clone()).work(wished)) }
+        Self { worker: LatestValueWorker::start("the picture", &told, move |inbox| Artist::new(outbox.clone()).work(inbox)) }
     }
 
-    /// Draws this next, instead of what was wished before.
-    pub fn draw(&self, wish: PictureWish) {
-        self.wishes.change(|wanted| {
-            wanted.wish = Some(wish);
+    /// Draws this next, instead of an earlier one.
+    pub fn draw(&self, request: PictureRequest) {
+        self.worker.change(|wanted| {
+            wanted.request = Some(request);
             wanted.progress.iter().for_each(Progress::cancel);
         });
     }
 
     /// Finds what is seen at a place of a picture, and picks it.
     pub fn touch(&self, touch: Touch) {
-        self.wishes.change(|wanted| wanted.touch = Some(touch));
+        self.worker.change(|wanted| wanted.touch = Some(touch));
     }
 }
 
 impl Drop for Drawing {
     fn drop(&mut self) {
-        self.wishes.change(|wanted| wanted.progress.iter().for_each(Progress::cancel));
+        self.worker.change(|wanted| wanted.progress.iter().for_each(Progress::cancel));
     }
 }
 
@@ -149,12 +149,12 @@ impl Artist {
         Self { outbox, painter: None, ray_s: 1.5e-6 }
     }
 
-    fn work(mut self, wished: &Wished<Wanted>) {
-        while let Some(next) = wished.next(Wanted::take) {
+    fn work(mut self, inbox: &Inbox<Wanted>) {
+        while let Some(next) = inbox.next(Wanted::take) {
             match next {
                 Next::Touch(touch) => self.find(&touch),
-                Next::Draw(wish) => {
-                    if let Err(error) = self.satisfy(&wish, wished) {
+                Next::Draw(request) => {
+                    if let Err(error) = self.satisfy(&request, requested) {
                         self.outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
                     }
                 }
@@ -177,33 +177,33 @@ impl Artist {
         }
     }
 
-    /// Draws the wish ever finer until it is smooth or a newer one is there.
-    fn satisfy(&mut self, wish: &PictureWish, wished: &Wished<Wanted>) -> Result<(), RenderError> {
-        let rays: f64 = wish.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();
+    /// Draws the requested picture ever finer until it is smooth or a newer one is there.
+    fn satisfy(&mut self, request: &PictureRequest, inbox: &Inbox<Wanted>) -> Result<(), RenderError> {
+        let rays: f64 = request.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();
         let divisor = ((rays * self.ray_s / COARSE_S).sqrt().ceil() as u32).clamp(1, COARSEST);
         let mut passes = Vec::new();
-        if !wish.begins_fine {
+        if !request.begins_fine {
             passes.push((divisor, 1));
         }
-        if !wish.is_moving {
-            if divisor > 1 || wish.begins_fine {
+        if !request.is_moving {
+            if divisor > 1 || request.begins_fine {
                 passes.push((1, 1));
             }
             passes.push((1, SMOOTH_SAMPLES));
         }
         for (index, (divisor, samples)) in passes.iter().copied().enumerate() {
             let progress = Progress::silent();
-            if index > 0 || wish.begins_fine {
-                let may_go_on = wished.look(|wanted| {
+            if index > 0 || request.begins_fine {
+                let may_go_on = requested.look(|wanted| {
                     wanted.progress = Some(progress.clone());
-                    wanted.wish.is_none()
+                    wanted.request.is_none()
                 });
                 if may_go_on != Some(true) {
                     return Ok(());
                 }
             }
-            for pane in 0..wish.scenes.len() {
-                match self.draw(wish, pane, divisor, samples, index + 1 == passes.len(), &progress) {
+            for pane in 0..request.scenes.len() {
+                match self.draw(request, pane, divisor, samples, index + 1 == passes.len(), &progress) {
                     Err(RenderError::Cancelled(_)) => return Ok(()),
                     other => other?,
                 }
@@ -214,7 +214,7 @@ impl Artist {
 
     fn draw(
         &mut self,
-        wish: &PictureWish,
+        request: &PictureRequest,
         pane: usize,
         divisor: u32,
         samples: u32,
@@ -225,17 +225,17 @@ impl Artist {
             Some(painter) => painter,
             none => none.insert(Painter::new(Device::Auto, progress)?),
         };
-        let scene = &wish.scenes[pane];
+        let scene = &request.scenes[pane];
         let size_px = scene.size_px.map(|side| side.div_ceil(divisor).max(1));
         let scene = Scene { size_px, samples, media: media_for(&scene.media, divisor), ..scene.clone() };
-        let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
+        let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
         let start = Instant::now();
         let (image, _) = super::compute(|| painter.draw(&scene, &loaded, progress))?;
         drop(loaded);
         let rays = f64::from(size_px[0]) * f64::from(size_px[1]) * f64::from(samples * samples);
         self.ray_s += (start.elapsed().as_secs_f64() / rays - self.ray_s) * LATEST;
         let device = painter.device().to_owned();
-        self.outbox.send(Event::Drawn(Drawn { number: wish.number, pane, image, is_final, device }));
+        self.outbox.send(Event::Drawn(Drawn { number: request.number, pane, image, is_final, device }));
         Ok(())
     }
 }

@@ -1,7 +1,7 @@
-//! Sections along the lattice, cut on a thread for the latest wish of each kind.
+//! Sections along the lattice, cut on a thread for the latest request of each kind.
 
-use super::fence::{self, FenceWish};
-use super::wishes::{Wished, Wishes};
+use super::fence::{self, FenceRequest};
+use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Outbox, Rocks};
 use crate::state::SectionKind;
 use figure::cut::{SectionCut, Source};
@@ -10,9 +10,9 @@ use render::{DrawnWell, FaceData, NamedVolume};
 use std::collections::HashMap;
 use std::sync::PoisonError;
 
-/// A section to be seen.
+/// A section that is asked for.
 #[derive(Clone)]
-pub struct SliceWish {
+pub struct SliceRequest {
     /// Along what.
     pub kind: SectionKind,
     /// Where, voxel.
@@ -26,14 +26,14 @@ pub struct SliceWish {
 /// What is to be cut: the latest of each kind.
 #[derive(Default)]
 struct Wanted {
-    slices: HashMap<SectionKind, SliceWish>,
-    fence: Option<FenceWish>,
+    slices: HashMap<SectionKind, SliceRequest>,
+    fence: Option<FenceRequest>,
 }
 
 /// What is cut next.
 enum Next {
-    Slice(SliceWish),
-    Fence(FenceWish),
+    Slice(SliceRequest),
+    Fence(FenceRequest),
 }
 
 impl Wanted {
@@ -43,9 +43,9 @@ impl Wanted {
     }
 }
 
-/// The thread that cuts, and the wishes it works on next.
+/// The thread that cuts, and the requests it works on next.
 pub struct Slices {
-    wishes: Wishes<Wanted>,
+    worker: LatestValueWorker<Wanted>,
 }
 
 impl Slices {
@@ -53,16 +53,16 @@ impl Slices {
     pub fn start(outbox: Outbox) -> Self {
         let told = outbox.clone();
         Self {
-            wishes: Wishes::start("sections", &told, move |wished: &Wished<Wanted>| {
-                while let Some(next) = wished.next(Wanted::take) {
+            worker: LatestValueWorker::start("sections", &told, move |inbox: &Inbox<Wanted>| {
+                while let Some(next) = inbox.next(Wanted::take) {
                     outbox.send(match next {
-                        Next::Slice(wish) => {
-                            let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                            Event::Sliced(cut(&loaded, &wish))
+                        Next::Slice(request) => {
+                            let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
+                            Event::Sliced(cut(&loaded, &request))
                         }
-                        Next::Fence(wish) => {
-                            let loaded = wish.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                            Event::Fenced(fence::cut(&loaded, &wish))
+                        Next::Fence(request) => {
+                            let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
+                            Event::Fenced(fence::cut(&loaded, &request))
                         }
                     });
                 }
@@ -70,14 +70,14 @@ impl Slices {
         }
     }
 
-    /// Cuts this next, instead of what was wished of its kind before.
-    pub fn cut(&self, wish: SliceWish) {
-        self.wishes.change(|wanted| drop(wanted.slices.insert(wish.kind, wish)));
+    /// Cuts this next, instead of an earlier one of its kind.
+    pub fn cut(&self, request: SliceRequest) {
+        self.worker.change(|wanted| drop(wanted.slices.insert(request.kind, request)));
     }
 
     /// Cuts this fence next, instead of another.
-    pub fn cut_fence(&self, wish: FenceWish) {
-        self.wishes.change(|wanted| wanted.fence = Some(wish));
+    pub fn cut_fence(&self, request: FenceRequest) {
+        self.worker.change(|wanted| wanted.fence = Some(request));
     }
 }
 
@@ -87,7 +87,7 @@ pub(super) fn source<'a>(loaded: &'a Loaded, volumes: &'a [NamedVolume<'a>], wel
 }
 
 /// Cuts what is loaded.
-fn cut(loaded: &Loaded, wish: &SliceWish) -> SectionCut {
+fn cut(loaded: &Loaded, request: &SliceRequest) -> SectionCut {
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
-    SectionCut::new(&source(loaded, &volumes, &wells), wish.kind, wish.at, wish.show)
+    SectionCut::new(&source(loaded, &volumes, &wells), request.kind, request.at, request.show)
 }

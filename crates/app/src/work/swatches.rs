@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use ttf::{LayerStyle, Pattern, TextureLibrary};
 
 /// A swatch asked for.
-struct Wish {
+struct Request {
     key: String,
     style: LayerStyle,
     size_px: [u32; 2],
@@ -21,7 +21,7 @@ struct Wish {
 
 enum Order {
     Project(PathBuf, Box<Document>),
-    Draw(Wish),
+    Draw(Request),
 }
 
 #[derive(Default)]
@@ -54,7 +54,7 @@ impl Swatches {
                         }
                         list(&theirs, library.as_ref());
                     }
-                    Order::Draw(Wish { key, style, size_px, px_per_mm }) => {
+                    Order::Draw(Request { key, style, size_px, px_per_mm }) => {
                         let drawn =
                             library.as_ref().and_then(|library| swatch::draw(&style, library, size_px, px_per_mm).ok());
                         let mut done = theirs.lock().unwrap_or_else(PoisonError::into_inner);
@@ -92,7 +92,7 @@ impl Swatches {
             return (key, known.clone());
         }
         done.images.insert(key.clone(), None);
-        let _ = self.orders.send(Order::Draw(Wish { key: key.clone(), style: nameless, size_px, px_per_mm }));
+        let _ = self.orders.send(Order::Draw(Request { key: key.clone(), style: nameless, size_px, px_per_mm }));
         (key, None)
     }
 }

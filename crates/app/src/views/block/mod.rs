@@ -15,7 +15,7 @@ use super::texture;
 use crate::state::faces::{self, Handle};
 use crate::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, showing};
 use crate::theme;
-use crate::work::{Drawing, Drawn, PictureWish, Rocks, Touch};
+use crate::work::{Drawing, Drawn, PictureRequest, Rocks, Touch};
 use compare::fitted;
 use eframe::egui::{Color32, ColorImage, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2};
 use glam::DVec2;
@@ -35,10 +35,10 @@ pub struct BlockView {
     panes: Vec<Option<TextureHandle>>,
     /// The pictures' pixels, left to right.
     pixels: Vec<Option<ColorImage>>,
-    wished: Option<(Vec<Scene>, u64, bool)>,
+    requested: Option<(Vec<Scene>, u64, bool)>,
     /// The scenes on the screen, if they are drawn in all their pixels.
     fine: Option<Vec<Scene>>,
-    /// Whether the picture that is wished, and the one on the screen, lie on a dark ground.
+    /// Whether the picture that is asked for, and the one on the screen, lie on a dark ground.
     dark: [bool; 2],
     number: u64,
     shown: u64,
@@ -54,7 +54,7 @@ impl BlockView {
         &self.device
     }
 
-    /// Whether the picture shown is the last word on what is wished.
+    /// Whether the picture shown is the final one of what is asked for.
     pub fn is_settled(&self) -> bool {
         self.is_final && self.shown == self.number
     }
@@ -78,7 +78,7 @@ impl BlockView {
         self.shown = drawn.number;
         self.is_final = drawn.is_final;
         self.device = drawn.device;
-        if let Some((scenes, ..)) = self.wished.as_ref().filter(|_| drawn.number == self.number) {
+        if let Some((scenes, ..)) = self.requested.as_ref().filter(|_| drawn.number == self.number) {
             self.dark[1] = self.dark[0];
             if scenes.get(drawn.pane).is_none_or(|scene| scene.size_px != [drawn.image.width(), drawn.image.height()]) {
                 self.fine = None;
@@ -143,7 +143,7 @@ impl BlockView {
         // While they are being changed nobody knows what they hold; the next frame asks again.
         if let Some((rocks, version)) = rocks.filter(|_| is_known) {
             self.dark[0] = is_dark(session);
-            self.wish(scenes, rocks, version, drawing);
+            self.request(scenes, rocks, version, drawing);
         }
         self.paint(ui, session, compare, &rects, rect);
         // Where the block is seen through, the picture shows the horizons itself, once it is drawn.
@@ -177,28 +177,28 @@ impl BlockView {
     }
 
     /// Asks for other pictures when something that shows has changed.
-    fn wish(&mut self, scenes: Vec<Scene>, rocks: &Rocks, version: u64, drawing: &Drawing) {
+    fn request(&mut self, scenes: Vec<Scene>, rocks: &Rocks, version: u64, drawing: &Drawing) {
         let is_moving = self.hand.is_closed();
-        let wished = (scenes, version, is_moving);
-        if self.wished.as_ref() == Some(&wished) {
+        let requested = (scenes, version, is_moving);
+        if self.requested.as_ref() == Some(&requested) {
             return;
         }
-        self.panes.resize_with(wished.0.len(), || None);
+        self.panes.resize_with(inbox.0.len(), || None);
         self.number += 1;
         // Surfaces are laid over the picture at once: it can stay until one with them in it is there.
         let is_alike = |fine: &Vec<Scene>| {
-            fine.len() == wished.0.len()
-                && fine.iter().zip(&wished.0).all(|(fine, scene)| is_but_for_horizons(fine, scene))
+            fine.len() == requested.0.len()
+                && fine.iter().zip(&requested.0).all(|(fine, scene)| is_but_for_horizons(fine, scene))
         };
         let begins_fine = !is_moving && self.fine.as_ref().is_some_and(is_alike);
-        drawing.draw(PictureWish {
+        drawing.draw(PictureRequest {
             number: self.number,
-            scenes: wished.0.clone(),
+            scenes: requested.0.clone(),
             rocks: rocks.clone(),
             is_moving,
             begins_fine,
         });
-        self.wished = Some(wished);
+        self.inbox = Some(inbox);
     }
 
     fn paint(&self, ui: &Ui, session: &Session, compare: Compare, rects: &[Rect], whole: Rect) {

@@ -12,7 +12,7 @@ use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
 use super::{canvas, texture};
 use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, Session};
-use crate::work::{Rocks, SliceWish, Slices};
+use crate::work::{Rocks, SliceRequest, Slices};
 use eframe::egui::{Context, DragValue, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
 use figure::cut::SectionCut;
 use figure::cut::{CutLine, value_at};
@@ -38,7 +38,7 @@ struct Pane {
     texture: Option<TextureHandle>,
     /// The picture as figures take it, with its lines.
     shown: Option<(Arc<RgbaImage>, Vec<CutLine>)>,
-    wished: Option<(f64, u64, FaceData)>,
+    requested: Option<(f64, u64, FaceData)>,
     zoom: f32,
     /// Which part of the section is in the middle, shares.
     middle: Vec2,
@@ -52,7 +52,7 @@ impl Default for Pane {
         Self {
             texture: None,
             shown: None,
-            wished: None,
+            requested: None,
             zoom: 1.0,
             middle: vec2(0.5, 0.5),
             wheel: 0.0,
@@ -93,10 +93,10 @@ impl Sections {
         let is_interpreting = session.view.panel == Panel::Interpret;
         let show = if is_interpreting { session.view.picking.show } else { FaceData::Rock };
         if let Some((rocks, version)) = rocks
-            && pane.wished != Some((at, version, show))
+            && pane.requested != Some((at, version, show))
         {
-            pane.wished = Some((at, version, show));
-            slices.cut(SliceWish { kind, at, rocks: rocks.clone(), show });
+            pane.requested = Some((at, version, show));
+            slices.cut(SliceRequest { kind, at, rocks: rocks.clone(), show });
         }
         header(ui, session, kind, geometry, actions);
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());

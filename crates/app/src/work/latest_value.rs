@@ -1,10 +1,11 @@
-//! A thread that works on the latest wishes: what is wished while it works replaces what was wished before.
+//! A latest-value worker: a thread that works on the latest value it was given. A value that arrives while it works replaces one that
+//! still waits; nothing is queued.
 
 use super::{Outbox, keep_working};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 struct Slot<W> {
-    wishes: W,
+    values: W,
     ended: bool,
 }
 
@@ -19,61 +20,61 @@ impl<W> Shared<W> {
     }
 }
 
-/// Where wishes are left; when it is dropped, the thread ends with the wish it works on.
-pub(super) struct Wishes<W> {
+/// Where requests are left; when it is dropped, the thread ends with the value it works on.
+pub(super) struct LatestValueWorker<W> {
     shared: Arc<Shared<W>>,
 }
 
-impl<W: Default + Send + 'static> Wishes<W> {
+impl<W: Default + Send + 'static> LatestValueWorker<W> {
     /// Starts a thread of this name; `work` is called again after a panic, which is told.
-    pub(super) fn start(name: &'static str, outbox: &Outbox, mut work: impl FnMut(&Wished<W>) + Send + 'static) -> Self {
-        let slot = Mutex::new(Slot { wishes: W::default(), ended: false });
+    pub(super) fn start(name: &'static str, outbox: &Outbox, mut work: impl FnMut(&Inbox<W>) + Send + 'static) -> Self {
+        let slot = Mutex::new(Slot { values: W::default(), ended: false });
         let shared = Arc::new(Shared { slot, changed: Condvar::new() });
-        let theirs = Wished { shared: shared.clone() };
+        let theirs = Inbox { shared: shared.clone() };
         keep_working(name, outbox, move || work(&theirs));
         Self { shared }
     }
 }
 
-impl<W> Wishes<W> {
-    /// Changes what is wished.
+impl<W> LatestValueWorker<W> {
+    /// Changes what is asked for.
     pub(super) fn change(&self, change: impl FnOnce(&mut W)) {
-        change(&mut self.shared.lock().wishes);
+        change(&mut self.shared.lock().values);
         self.shared.changed.notify_one();
     }
 }
 
-impl<W> Drop for Wishes<W> {
+impl<W> Drop for LatestValueWorker<W> {
     fn drop(&mut self) {
         self.shared.lock().ended = true;
         self.shared.changed.notify_one();
     }
 }
 
-/// The wishes as the thread sees them.
-pub(super) struct Wished<W> {
+/// The requests as the thread sees them.
+pub(super) struct Inbox<W> {
     shared: Arc<Shared<W>>,
 }
 
-impl<W> Wished<W> {
-    /// Waits until `take` finds something to do; `None` when nothing more will be wished.
+impl<W> Inbox<W> {
+    /// Waits until `take` finds something to do; `None` when nothing more will be asked.
     pub(super) fn next<T>(&self, mut take: impl FnMut(&mut W) -> Option<T>) -> Option<T> {
         let mut slot = self.shared.lock();
         loop {
             if slot.ended {
                 return None;
             }
-            if let Some(found) = take(&mut slot.wishes) {
+            if let Some(found) = take(&mut slot.values) {
                 return Some(found);
             }
             slot = self.shared.changed.wait(slot).unwrap_or_else(PoisonError::into_inner);
         }
     }
 
-    /// Looks at what is wished now; `None` when nothing more will be.
+    /// Looks at what is asked for now; `None` when nothing more will be.
     pub(super) fn look<T>(&self, look: impl FnOnce(&mut W) -> T) -> Option<T> {
         let mut slot = self.shared.lock();
-        (!slot.ended).then(|| look(&mut slot.wishes))
+        (!slot.ended).then(|| look(&mut slot.values))
     }
 }
 
@@ -83,26 +84,26 @@ mod tests {
     use std::sync::mpsc::channel;
 
     #[test]
-    fn only_the_latest_wish_is_worked_on_and_the_thread_ends_with_its_owner() {
+    fn only_the_latest_value_is_worked_on_and_the_thread_ends_with_its_owner() {
         let (begun, is_begun) = channel();
         let (go, may_go) = channel();
         let (done, is_done) = channel();
         let outbox = Outbox { sender: channel().0, wake: Arc::new(|| {}) };
-        let wishes = Wishes::start("test", &outbox, move |wished: &Wished<Option<u32>>| {
-            while let Some(wish) = wished.next(Option::take) {
-                begun.send(wish).unwrap();
+        let worker = LatestValueWorker::start("test", &outbox, move |inbox: &Inbox<Option<u32>>| {
+            while let Some(request) = inbox.next(Option::take) {
+                begun.send(request).unwrap();
                 may_go.recv().unwrap();
             }
-            done.send(wished.look(|_| ())).unwrap();
+            done.send(inbox.look(|_| ())).unwrap();
         });
-        wishes.change(|wish| *wish = Some(1));
+        values.change(|request| *request = Some(1));
         assert_eq!(is_begun.recv(), Ok(1));
         for n in 2..5 {
-            wishes.change(|wish| *wish = Some(n));
+            values.change(|request| *request = Some(n));
         }
         go.send(()).unwrap();
         assert_eq!(is_begun.recv(), Ok(4));
-        drop(wishes);
+        drop(values);
         go.send(()).unwrap();
         assert_eq!(is_done.recv(), Ok(None));
     }
