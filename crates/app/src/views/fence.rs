@@ -66,7 +66,7 @@ impl FenceView {
             let requested = (corners.clone(), version, show);
             if self.requested.as_ref() != Some(&requested) {
                 slices.cut_fence(FenceRequest { corners: corners.clone(), rocks: rocks.clone(), show });
-                self.inbox = Some(inbox);
+                self.requested = Some(requested);
             }
         }
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click());

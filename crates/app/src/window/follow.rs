@@ -170,10 +170,10 @@ impl Window {
         // What was just accepted is shown until the project has it.
         let requested = pick.clone().or_else(|| accepted.clone()).map(|pick| (pick, horizon.clone()));
         let number = self.overlay.interpreted().map_or(0, |shown| shown.number);
-        let selected = Some((inbox, number));
+        let selected = Some((requested, number));
         if self.selected != selected && number > 0 {
-            if let Some((inbox, _)) = &selected {
-                self.work.picks.draw(inbox.clone());
+            if let Some((requested, _)) = &selected {
+                self.work.picks.draw(requested.clone());
             }
             self.selected = selected;
         }

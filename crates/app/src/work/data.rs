@@ -2,8 +2,8 @@
 //!
 //! A change of style alone compiles the tables anew and leaves model, parameterization and volumes as they are.
 
-use super::running::Running;
 use super::latest_value::{Inbox, LatestValueWorker};
+use super::running::Running;
 use super::{Event, Outbox};
 use crate::state::{Notice, Place};
 use model::ModelSettings;
@@ -102,7 +102,11 @@ pub(super) struct Loader {
 impl Loader {
     pub(super) fn start(outbox: Outbox, running: Running) -> Self {
         let told = outbox.clone();
-        Self { worker: LatestValueWorker::start("what the pictures need", &told, move |inbox| work(inbox, &outbox, &running)) }
+        Self {
+            worker: LatestValueWorker::start("what the pictures need", &told, move |inbox| {
+                work(inbox, &outbox, &running)
+            }),
+        }
     }
 
     /// Loads this next; what is being loaded for another state is given up.

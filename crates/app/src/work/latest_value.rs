@@ -96,14 +96,14 @@ mod tests {
             }
             done.send(inbox.look(|_| ())).unwrap();
         });
-        values.change(|request| *request = Some(1));
+        worker.change(|request| *request = Some(1));
         assert_eq!(is_begun.recv(), Ok(1));
         for n in 2..5 {
-            values.change(|request| *request = Some(n));
+            worker.change(|request| *request = Some(n));
         }
         go.send(()).unwrap();
         assert_eq!(is_begun.recv(), Ok(4));
-        drop(values);
+        drop(worker);
         go.send(()).unwrap();
         assert_eq!(is_done.recv(), Ok(None));
     }

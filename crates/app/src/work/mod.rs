@@ -11,6 +11,7 @@ pub mod fence;
 pub mod folder;
 mod lasso;
 pub mod latest;
+mod latest_value;
 pub mod map;
 mod orders;
 pub mod picks;
@@ -20,7 +21,6 @@ pub mod scan;
 pub mod slice;
 pub mod swatches;
 mod threads;
-mod latest_value;
 
 pub use data::{Purpose, Rocks, Seen, Wanted};
 pub use map::Maps;
@@ -35,10 +35,10 @@ use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
 use project::command::PickNode;
 use std::path::PathBuf;
-use threads::{keep_working, spawn, spawn_quietly};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
 use survey::Progress;
+use threads::{keep_working, spawn, spawn_quietly};
 
 /// An answer.
 pub enum Event {

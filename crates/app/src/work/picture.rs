@@ -100,7 +100,11 @@ impl Drawing {
     /// Starts the thread.
     pub fn start(outbox: Outbox) -> Self {
         let told = outbox.clone();
-        Self { worker: LatestValueWorker::start("the picture", &told, move |inbox| Artist::new(outbox.clone()).work(inbox)) }
+        Self {
+            worker: LatestValueWorker::start("the picture", &told, move |inbox| {
+                Artist::new(outbox.clone()).work(inbox)
+            }),
+        }
     }
 
     /// Draws this next, instead of an earlier one.
@@ -154,7 +158,7 @@ impl Artist {
             match next {
                 Next::Touch(touch) => self.find(&touch),
                 Next::Draw(request) => {
-                    if let Err(error) = self.satisfy(&request, requested) {
+                    if let Err(error) = self.satisfy(&request, inbox) {
                         self.outbox.send(Event::Told(Notice::failure(Place::Block, &error)));
                     }
                 }
@@ -179,7 +183,8 @@ impl Artist {
 
     /// Draws the requested picture ever finer until it is smooth or a newer one is there.
     fn satisfy(&mut self, request: &PictureRequest, inbox: &Inbox<Wanted>) -> Result<(), RenderError> {
-        let rays: f64 = request.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();
+        let rays: f64 =
+            request.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();
         let divisor = ((rays * self.ray_s / COARSE_S).sqrt().ceil() as u32).clamp(1, COARSEST);
         let mut passes = Vec::new();
         if !request.begins_fine {
@@ -194,7 +199,7 @@ impl Artist {
         for (index, (divisor, samples)) in passes.iter().copied().enumerate() {
             let progress = Progress::silent();
             if index > 0 || request.begins_fine {
-                let may_go_on = requested.look(|wanted| {
+                let may_go_on = inbox.look(|wanted| {
                     wanted.progress = Some(progress.clone());
                     wanted.request.is_none()
                 });

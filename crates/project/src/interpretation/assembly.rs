@@ -1,6 +1,5 @@
 //! From a horizon's log of picks to its sheets: what every command on picks ends with.
 
-use figure::style::horizon_colour;
 use super::order;
 use crate::content;
 use crate::derived;
@@ -10,6 +9,7 @@ use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::candidates::Candidates;
 use crate::weak_cache::WeakCache;
+use figure::style::horizon_colour;
 use interp::Forest;
 use interp::assembly::{
     AssemblyError, Conflict, ConflictSettings, NamedSheets, Overlap, Selection, assemble, conflicts, node_above,

@@ -1,9 +1,9 @@
 //! Which view of a project is drawn when nothing else is said.
 
-use figure::style::horizon_colour;
 use crate::document::Document;
 use crate::error::{Noun, ProjectError};
 use crate::styles;
+use figure::style::horizon_colour;
 use render::media::{Colouring, LayerOpacity, MediumColour, white_ramp};
 use render::{
     Background, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource, Medium, Occlusion, Outlines, Phong,

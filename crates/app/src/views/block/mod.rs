@@ -183,7 +183,7 @@ impl BlockView {
         if self.requested.as_ref() == Some(&requested) {
             return;
         }
-        self.panes.resize_with(inbox.0.len(), || None);
+        self.panes.resize_with(requested.0.len(), || None);
         self.number += 1;
         // Surfaces are laid over the picture at once: it can stay until one with them in it is there.
         let is_alike = |fine: &Vec<Scene>| {
@@ -198,7 +198,7 @@ impl BlockView {
             is_moving,
             begins_fine,
         });
-        self.inbox = Some(inbox);
+        self.requested = Some(requested);
     }
 
     fn paint(&self, ui: &Ui, session: &Session, compare: Compare, rects: &[Rect], whole: Rect) {
