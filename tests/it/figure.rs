@@ -22,13 +22,13 @@ fn every_figure_is_a_page_of_its_own_in_its_printed_size() {
     let folder = project();
     let at = folder.path();
     let asked = [
-        "--inline 20",
-        "--crossline 20 --legend",
+        "--inline 120",
+        "--crossline 520 --legend",
         "--slice 200 --scale-bar",
         "--map Bravo --scale-bar",
         "--map Alpha --thickness-to Bravo",
         "--technique map",
-        "--interpretation --inline 20",
+        "--interpretation --inline 120",
         "--block --map Bravo --legend",
         "--compare 0,1 --wipe 0.4",
         "--compare 0,1",
@@ -42,7 +42,7 @@ fn every_figure_is_a_page_of_its_own_in_its_printed_size() {
         assert!(pages.iter().all(|other| *other != page), "{options} is as one before");
         pages.push(page);
     }
-    let fence = run_in(at, &format!("render p.petro a.png {SMALL} --fence 5,5 20,30 40,35 --json")).done().json();
+    let fence = run_in(at, &format!("render p.petro a.png {SMALL} --fence 105,505 120,530 140,535 --json")).done().json();
     assert_eq!((fence["size_px"][0].as_u64(), fence["parts"].as_u64()), (Some(283), Some(1)));
 }
 
@@ -50,8 +50,8 @@ fn every_figure_is_a_page_of_its_own_in_its_printed_size() {
 fn a_figure_from_a_file_is_the_one_that_is_typed() {
     let folder = project();
     let at = folder.path();
-    let typed = picture(at, "--inline 20 --scale-bar");
-    let text = "size = { cm = [12.0, 9.0] }\ndpi = 60.0\nscale_bar = true\n[[parts]]\nsection = { kind = 'inline', at = 20.0 }\n";
+    let typed = picture(at, "--inline 120 --scale-bar");
+    let text = "size = { cm = [12.0, 9.0] }\ndpi = 60.0\nscale_bar = true\n[[parts]]\nsection = { kind = 'inline', at = 120.0 }\n";
     std::fs::write(at.join("figure.toml"), text).unwrap();
     run_in(at, "render p.petro b.png --figure figure.toml --device cpu").done();
     assert!(image::open(at.join("b.png")).unwrap().to_rgb8() == typed);
@@ -65,14 +65,14 @@ fn what_is_not_there_is_said_with_what_helps() {
         run_in(at, &format!("render p.petro a.png {options}")).failed(words);
         assert!(!at.join("a.png").exists(), "{options}");
     };
-    refused("--inline 4711", &["inline 4711", "outside the survey", "1 to 48"]);
+    refused("--inline 4711", &["inline 4711", "outside the survey", "101 to 148"]);
     refused("--slice -5", &["outside the survey"]);
     refused("--map Omega", &["no map of horizon Omega"]);
     refused("--map Bravo --thickness-to Alpha", &["no map of the thickness from Bravo down to Alpha"]);
-    refused("--fence 5,5 5,5", &["two corners"]);
-    refused("--inline 20 --size-cm 0.5x0.5 --dpi 60", &["no room"]);
-    refused("--inline 20 --size-cm 500x500 --dpi 1200", &["pixels"]);
-    let usage = run_in(at, "render p.petro a.png --fence 5,5 5");
+    refused("--fence 105,505 105,505", &["two corners"]);
+    refused("--inline 120 --size-cm 0.5x0.5 --dpi 60", &["no room"]);
+    refused("--inline 120 --size-cm 500x500 --dpi 1200", &["pixels"]);
+    let usage = run_in(at, "render p.petro a.png --fence 105,505 5");
     assert_eq!(usage.code, 2, "{}", usage.stderr);
     assert_eq!(run_in(at, "render p.petro a.png --compare 0,1 --wipe 2").code, 2);
 }

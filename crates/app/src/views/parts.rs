@@ -1,4 +1,4 @@
-//! What fills the middle of the window, and a printed page: which views, and where.
+//! What fills the middle of the window: which views, and where.
 
 use crate::state::{Layout, SectionKind};
 use eframe::egui::Rect;
