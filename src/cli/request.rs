@@ -318,7 +318,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
     })
 }
 
-/// NAME[,#RRGGBB[,OPACITY[,LIGHT]]]
+/// `NAME[,#RRGGBB[,OPACITY[,LIGHT]]]`
 fn shown_horizon(text: &str) -> Result<ShownHorizon, Usage> {
     let mut parts = text.split(',');
     let name = parts.next().unwrap_or_default().to_owned();
@@ -334,7 +334,7 @@ fn shown_horizon(text: &str) -> Result<ShownHorizon, Usage> {
     Ok(ShownHorizon { name, colour, opacity, emission })
 }
 
-/// NAME,VALUE[,#RRGGBB[,OPACITY]]
+/// `NAME,VALUE[,#RRGGBB[,OPACITY]]`
 fn shown_isosurface(text: &str) -> Result<ShownIsosurface, Usage> {
     let usage = || format!("--isosurface {text}: expected NAME,VALUE[,#RRGGBB[,OPACITY]]");
     let parts: Vec<&str> = text.split(',').collect();

@@ -104,7 +104,7 @@ impl Loader {
         let told = outbox.clone();
         Self {
             worker: LatestValueWorker::start("what the pictures need", &told, move |inbox| {
-                work(inbox, &outbox, &running)
+                work(inbox, &outbox, &running);
             }),
         }
     }

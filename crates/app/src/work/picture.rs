@@ -102,7 +102,7 @@ impl Drawing {
         let told = outbox.clone();
         Self {
             worker: LatestValueWorker::start("the picture", &told, move |inbox| {
-                Artist::new(outbox.clone()).work(inbox)
+                Artist::new(outbox.clone()).work(inbox);
             }),
         }
     }

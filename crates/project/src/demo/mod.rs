@@ -159,7 +159,7 @@ fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> Resul
         };
         project.apply(&Command::AddFault(command), progress)?;
     }
-    Ok(new.publish()?)
+    new.publish()
 }
 
 /// Parts of a horizon with fewer traces are not picked.
@@ -197,7 +197,7 @@ fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> 
                     Ok(Effect::Picked(_)) => picks += 1,
                     // A part that noise has swallowed, or that another pick has reached.
                     Err(ProjectError::NoCandidate { .. } | ProjectError::AlreadyPicked { .. }) | Ok(_) => {}
-                    Err(error) => return Err(error.into()),
+                    Err(error) => return Err(error),
                 }
             }
             let document = project.document();
