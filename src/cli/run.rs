@@ -74,7 +74,8 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             }
         }
         Request::ExportCandidates { project, out } => {
-            let count = extraction::export_points(&Project::open(&project)?, &out, &progress)?;
+            let project = Project::open(&project)?;
+            let count = extraction::export_points(project.root(), project.document(), &out, &progress)?;
             let mut report = Report::line(format!("{}: {count} points of horizon candidates", out.display()));
             report.field("file", &out).field("points", count);
             report

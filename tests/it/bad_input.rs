@@ -176,8 +176,8 @@ fn pictures_that_there_are_none_of() {
     assert!(sizes.code == 2 && sizes.stderr.contains("--size 0x0"), "{}", sizes.stderr);
     refused(at, "render p.petro a.png --size 40000x20", &["40000", "32768"]);
     // The box and cut-outs of no size, and a cut-out beside the box.
-    refused(at, "render p.petro a.png --box 110,110,510,520,40,80", &["roaming box has no volume"]);
-    refused(at, "render p.petro a.png --cut-box 110,120,510,510,40,80", &["cut-out 1 has no volume"]);
+    refused(at, "render p.petro a.png --box 110,110,510,520,40,80", &["the roaming box is empty"]);
+    refused(at, "render p.petro a.png --cut-box 110,120,510,510,40,80", &["cut-out 1 is empty"]);
     refused(at, "render p.petro a.png --cut-box 9000,9100,9000,9100,1,2", &["cut-out 1", "outside the roaming box"]);
     refused(at, "render p.petro a.png --technique volume --medium nothing", &["no volume named \"nothing\""]);
     // A texture that is in use and gone.

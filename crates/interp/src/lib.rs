@@ -37,6 +37,7 @@ pub mod grow;
 pub mod holes;
 mod lanes;
 pub mod reassembly;
+mod sheet;
 pub mod surfaces;
 
 pub use distance::{CandidateColumns, DistanceSettings, LeafDistances};

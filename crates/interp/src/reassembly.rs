@@ -11,34 +11,12 @@
 
 use crate::assembly::{Overlap, Selection};
 use crate::forest::Forest;
+pub use crate::sheet::VoxelSheet;
 use crate::surfaces::Vertex;
 use glam::Vec3;
 use model::FaultNetwork;
 use std::collections::{HashSet, VecDeque};
 use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry};
-
-/// A sheet on the survey's lattice.
-#[derive(Debug, Clone, PartialEq)]
-pub struct VoxelSheet {
-    /// The fault block in which it lies.
-    pub block: u16,
-    /// Fractional sample of each trace `[inline][crossline]`; NaN in a hole.
-    pub z: Vec<f32>,
-    /// Quality of each node, in the same order.
-    pub quality: Vec<Quality>,
-}
-
-impl VoxelSheet {
-    /// A sheet without nodes.
-    pub fn empty(block: u16, traces: usize) -> Self {
-        Self { block, z: vec![f32::NAN; traces], quality: vec![Quality::Hole; traces] }
-    }
-
-    /// Count of nodes.
-    pub fn nodes(&self) -> usize {
-        self.z.iter().filter(|z| z.is_finite()).count()
-    }
-}
 
 /// The result of [`reassemble`].
 #[derive(Debug, Clone, PartialEq)]

@@ -10,6 +10,9 @@ mod dialogue;
 pub mod faces;
 mod notice;
 pub mod picking;
+mod picking_steps;
+#[cfg(test)]
+mod picking_tests;
 pub mod remembered;
 mod session;
 pub mod showing;

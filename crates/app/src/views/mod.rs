@@ -9,7 +9,6 @@ pub mod controls;
 pub mod data;
 pub mod dropped;
 pub mod export;
-pub mod faults;
 pub mod fence;
 pub mod form;
 pub mod functions;

@@ -5,7 +5,6 @@
 //! inlines are read at a time is not among them. Candidates lie on the project's own lattice, so that a voxel of theirs is one of the
 //! project's.
 
-use crate::Project;
 use crate::derived::{Scratch, folder, key_of, revision};
 use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
@@ -208,9 +207,9 @@ pub(crate) fn compute(
 ///
 /// # Errors
 /// No candidates, damaged data, a file that cannot be written, or cancelled.
-pub fn export_points(project: &Project, out: &Path, progress: &Progress) -> Result<usize, ProjectError> {
-    let forest = forest(&open(project.root(), project.document())?, progress)?;
-    let frame = project.document().frame()?;
+pub fn export_points(root: &Path, document: &Document, out: &Path, progress: &Progress) -> Result<usize, ProjectError> {
+    let forest = forest(&open(root, document)?, progress)?;
+    let frame = document.frame()?;
     let mut leaf_of = vec![0u32; forest.surfaces.vertices.len()];
     for (n, &node) in forest.leaves.iter().enumerate() {
         let range = &forest.nodes[node as usize].triangles;

@@ -1,15 +1,16 @@
 //! Interpreting: candidates, what is selected, horizons with their picks, faults.
 
+mod faults;
 mod horizons;
 mod palette;
 
 use super::candidates::CandidatesPanel;
-use super::faults::FaultsPanel;
 use super::{notices, overlay::Overlay};
 use crate::state::picking::voxel_of;
 use crate::state::{Action, Look, PickingStep, Place, Session, State, Tool};
 use crate::work::RunningLine;
 use eframe::egui::{Button, ScrollArea, Ui};
+use faults::FaultsPanel;
 use horizons::HorizonList;
 use render::FaceData;
 use std::sync::Arc;

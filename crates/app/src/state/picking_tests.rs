@@ -1,8 +1,10 @@
 //! Steps of the interpretation without a window.
 
-use super::*;
-use crate::state::tests::open;
-use crate::state::{Action, Notice, Place, State};
+use super::picking::*;
+use super::tests::open;
+use super::{Action, Notice, Place, State, Task};
+use glam::DVec3;
+use project::command::{Climb, Command};
 
 fn picking(state: &State) -> &Picking {
     &state.session.as_ref().unwrap().view.picking

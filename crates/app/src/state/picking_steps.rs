@@ -1,14 +1,14 @@
 //! What each step does to the state, and what others are to do.
 
-use super::{How, PickingStep, PickingTask, Tool, free_name, place_of};
-use crate::state::{Place, State, Task};
+use super::picking::{How, PickingStep, PickingTask, Tool, free_name, place_of};
+use super::{Place, State, Task};
 use interp::assembly::Operation;
 use project::command::{Climb, Command, PickFault, PickNode};
 use project::error::Noun;
 
 impl State {
     /// Takes a step of the interpretation.
-    pub(in crate::state) fn pick(&mut self, step: PickingStep) -> Vec<Task> {
+    pub(super) fn pick(&mut self, step: PickingStep) -> Vec<Task> {
         let Some(session) = &mut self.session else { return Vec::new() };
         let Some(geometry) = session.document.geometry.clone() else { return Vec::new() };
         let document = &session.document;
@@ -128,7 +128,7 @@ impl State {
     }
 
     /// A command of the interpretation failed: what it was to accept is selected again.
-    pub(in crate::state) fn reselect(&mut self) {
+    pub(super) fn reselect(&mut self) {
         let Some(session) = &mut self.session else { return };
         let picking = &mut session.view.picking;
         if let Some(pick) = picking.accepted.take()

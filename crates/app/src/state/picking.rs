@@ -4,10 +4,6 @@
 //! `petroglyph pick` gives. What is not accepted yet belongs to the view, so it is written down with it and outlives a crash. Places are line numbers
 //! and vertical values, as commands take them; (s, t) and voxels are converted here.
 
-mod steps;
-#[cfg(test)]
-mod tests;
-
 use super::{SectionKind, Task};
 use glam::{DVec2, DVec3};
 use interp::ExtractSettings;
@@ -256,13 +252,13 @@ impl Picking {
         known.or(self.colour).unwrap_or_else(|| next_colour(document))
     }
 
-    fn accept(&mut self) -> Option<Task> {
+    pub(super) fn accept(&mut self) -> Option<Task> {
         let command = self.command()?;
         self.accepted = self.pick.take();
         Some(Task::Apply(Box::new(Command::Pick(command))))
     }
 
-    fn end_stick(&mut self) {
+    pub(super) fn end_stick(&mut self) {
         if self.stick.len() > 1 {
             self.sticks.push(std::mem::take(&mut self.stick));
         }

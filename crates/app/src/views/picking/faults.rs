@@ -1,6 +1,6 @@
 //! Faults: drawn by sticks, looked for, accepted.
 
-use super::picking::go;
+use super::go;
 use crate::state::{Action, PickingStep, Session, Tool};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Button, TextEdit, Ui};
