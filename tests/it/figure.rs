@@ -42,7 +42,8 @@ fn every_figure_is_a_page_of_its_own_in_its_printed_size() {
         assert!(pages.iter().all(|other| *other != page), "{options} is as one before");
         pages.push(page);
     }
-    let fence = run_in(at, &format!("render p.petro a.png {SMALL} --fence 105,505 120,530 140,535 --json")).done().json();
+    let fence =
+        run_in(at, &format!("render p.petro a.png {SMALL} --fence 105,505 120,530 140,535 --json")).done().json();
     assert_eq!((fence["size_px"][0].as_u64(), fence["parts"].as_u64()), (Some(283), Some(1)));
 }
 

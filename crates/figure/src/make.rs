@@ -218,7 +218,7 @@ impl<'a> Maker<'a> {
             marks: self.marks_on(kind)?,
             on: SeenOn::Section(kind, at),
         };
-        self.panel(panel, Arc::new(cut.image), &cut.lines, room)
+        self.panel(panel, &Arc::new(cut.image), &cut.lines, room)
     }
 
     fn fence(&self, part: &FencePart, room: Rect) -> Result<Group, FigureError> {
@@ -240,13 +240,13 @@ impl<'a> Maker<'a> {
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
             on: SeenOn::Fence(&corners),
         };
-        self.panel(panel, Arc::new(cut.image), &cut.lines, room)
+        self.panel(panel, &Arc::new(cut.image), &cut.lines, room)
     }
 
     fn panel(
         &self,
         panel: Panel,
-        image: Arc<image::RgbaImage>,
+        image: &Arc<image::RgbaImage>,
         lines: &[crate::cut::CutLine],
         room: Rect,
     ) -> Result<Group, FigureError> {
@@ -257,7 +257,7 @@ impl<'a> Maker<'a> {
         let drawn = SectionPanel {
             title: panel.title,
             contents: SectionContents {
-                image: &image,
+                image,
                 extent: panel.extent,
                 lines,
                 horizons: self.inputs.horizons,

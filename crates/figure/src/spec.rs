@@ -91,13 +91,19 @@ pub enum PageSize {
 #[serde(rename_all = "kebab-case")]
 pub enum Part {
     /// A block, or two compared.
-    Block(BlockPart),
+    Block(Box<BlockPart>),
     /// A section along the lattice.
     Section(SectionPart),
     /// A section along a line.
     Fence(FencePart),
     /// A map.
     Map(MapPart),
+}
+
+impl From<BlockPart> for Part {
+    fn from(part: BlockPart) -> Self {
+        Self::Block(Box::new(part))
+    }
 }
 
 /// A block.
@@ -157,7 +163,7 @@ mod tests {
         let figure = Figure {
             size: PageSize::Px([800, 600]),
             parts: vec![
-                Part::Block(BlockPart { comparison: Comparison::Wipe([0.0, 1.0], 0.4), ..BlockPart::default() }),
+                BlockPart { comparison: Comparison::Wipe([0.0, 1.0], 0.4), ..BlockPart::default() }.into(),
                 Part::Fence(FencePart { corners: vec![[1.0, 2.0], [3.0, 4.0]], show: FaceData::Leaves }),
                 Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
             ],

@@ -58,7 +58,8 @@ impl<'a> Sampler<'a> {
     fn new(picture: &'a Picture, scale: f64) -> Option<Self> {
         let size = DVec2::new(f64::from(picture.pixels.width()), f64::from(picture.pixels.height()));
         let page_from_image = DMat2::from_cols(picture.right * scale / size.x, picture.down * scale / size.y);
-        if !(page_from_image.determinant().abs() > 1e-12) {
+        let area = page_from_image.determinant().abs();
+        if area.is_nan() || area <= 1e-12 {
             return None;
         }
         let image_from_page = page_from_image.inverse();

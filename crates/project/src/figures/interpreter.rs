@@ -84,7 +84,7 @@ impl<'a> Picks<'a> {
         let open = proposals::open(root, document).into_iter().filter(|proposal| view.shows(proposal));
         let open = open.map(|proposal| {
             let triangles = content::fault_triangles(&proposal.fault(&proposal.name), geometry);
-            Mesh { name: proposal.name.clone(), triangles }
+            Mesh { name: proposal.name, triangles }
         });
         let made = document.sticks.iter().flat_map(|fault| &fault.sticks).map(|stick| (stick, STICK));
         let drawn = view.sticks.iter().map(|(stick, colour)| (stick, *colour));
