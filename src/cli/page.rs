@@ -99,7 +99,7 @@ impl PageRequest {
         }
         if self.has_block || parts.is_empty() {
             let scene = if self.is_interpretation { interpreted(scene) } else { scene.clone() };
-            parts.insert(0, Part::Block(BlockPart { scene, comparison: self.comparison }));
+            parts.insert(0, BlockPart { scene, comparison: self.comparison }.into());
         }
         Ok(Figure {
             size: self.size_cm.map_or(PageSize::Px(scene.size_px), PageSize::Cm),

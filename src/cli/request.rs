@@ -161,7 +161,7 @@ impl TryFrom<Action> for Request {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;
                 Self::Parameterize { project: typed.project, size }
             }
-            Action::Render(typed) => Self::Render(render_request(typed)?),
+            Action::Render(typed) => Self::Render(render_request(*typed)?),
             Action::Patterns { out, project } => Self::Patterns { out, project },
             Action::Bench(typed) => {
                 let sizes = if typed.quick { bench::Sizes::Quick } else { bench::Sizes::Full };

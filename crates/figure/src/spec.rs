@@ -92,13 +92,19 @@ pub enum PageSize {
 #[expect(clippy::large_enum_variant, reason = "a page has a handful, never in bulk")]
 pub enum Part {
     /// A block, or two compared.
-    Block(BlockPart),
+    Block(Box<BlockPart>),
     /// A section along the lattice.
     Section(SectionPart),
     /// A section along a line.
     Fence(FencePart),
     /// A map.
     Map(MapPart),
+}
+
+impl From<BlockPart> for Part {
+    fn from(part: BlockPart) -> Self {
+        Self::Block(Box::new(part))
+    }
 }
 
 /// A block.
@@ -158,7 +164,7 @@ mod tests {
         let figure = Figure {
             size: PageSize::Px([800, 600]),
             parts: vec![
-                Part::Block(BlockPart { comparison: Comparison::Wipe([0.0, 1.0], 0.4), ..BlockPart::default() }),
+                BlockPart { comparison: Comparison::Wipe([0.0, 1.0], 0.4), ..BlockPart::default() }.into(),
                 Part::Fence(FencePart { corners: vec![[1.0, 2.0], [3.0, 4.0]], show: FaceData::Leaves }),
                 Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
             ],

@@ -127,7 +127,7 @@ fn the_same_figure_is_the_same_page_and_the_same_bytes() {
 #[test]
 fn a_wipe_shows_one_blend_on_each_side() {
     let part = BlockPart { scene: Scene::default(), comparison: Comparison::Wipe([0.0, 1.0], 0.25) };
-    let page = Figure { legend: false, scale_bar: false, ..figure(vec![Part::Block(part)]) };
+    let page = Figure { legend: false, scale_bar: false, ..figure(vec![part.into()]) };
     let image = raster(&made(&page).unwrap(), 150.0).unwrap();
     let quarter = image.width() / 4;
     assert_eq!(image.get_pixel(quarter - 20, 400).0[0], 0);

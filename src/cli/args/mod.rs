@@ -146,7 +146,7 @@ pub(super) enum Action {
     #[command(
         after_help = "Examples:\n  petroglyph render north.petro block.png\n  petroglyph render north.petro half.png --blend 0.5 --cut nearest,0.5,0.4 --azimuth 30 --size 2400x1800 --dpi 300\n  petroglyph render north.petro figure.png --legend --scale-bar --size-cm 16x11\n  petroglyph render north.petro compared.png --compare 0,1 --wipe 0.5 --scale-bar\n  petroglyph render north.petro section.png --inline 1250 --size-cm 16x9 --scale-bar\n  petroglyph render north.petro four.png --block --inline 1250 --crossline 1302 --slice 948 --legend\n  petroglyph render north.petro fence.png --fence 1200,1300 1250,1340 1290,1310 --interpretation\n  petroglyph render north.petro map.png --map \"Top Chalk\" --scale-bar\n  petroglyph render north.petro isochore.png --map \"Top Chalk\" --thickness-to \"Base Chalk\""
     )]
-    Render(RenderArgs),
+    Render(Box<RenderArgs>),
     /// Open the window: the whole work, from volume to picture
     #[command(after_help = "Examples:\n  petroglyph view\n  petroglyph view north.petro")]
     View {

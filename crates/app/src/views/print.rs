@@ -89,7 +89,7 @@ fn parts(
         let at = value_at(geometry, kind.axis(), view.slices[kind.axis()]);
         Part::Section(SectionPart { kind, at, show, zoom: sections.zoom(kind) })
     };
-    let block = || Part::Block(block_part(session, overlay));
+    let block = || Part::from(block_part(session, overlay));
     match view.layout {
         Layout::Block => vec![block()],
         Layout::Sections => {

@@ -8,6 +8,8 @@ use glam::DVec2;
 
 /// Least distance between numbers along the upper and the left edge, points.
 const EVERY_PT: [f64; 2] = [44.0, 26.0];
+/// The same where there would be fewer numbers than this many, as a share of it: one number alone is no scale.
+const FEW: (usize, f64) = (3, 0.6);
 /// Room between a tick and its number, points.
 const GAP_PT: f64 = 1.8;
 
@@ -69,6 +71,12 @@ impl Axis {
     }
 }
 
+/// Round values along an edge, closer together where there is little room.
+fn edge_ticks(axis: &Axis, seen: [f64; 2], every: f64) -> Vec<Tick> {
+    let ticks = axis.ticks(seen, every);
+    if ticks.len() < FEW.0 { axis.ticks(seen, every * FEW.1) } else { ticks }
+}
+
 /// Room that the numbers and the name of an axis take left of a section.
 pub fn left_margin(axis: &Axis) -> f64 {
     let longest = axis.ends.iter().map(|value| width_of(&format!("{value:.0}"), NUMBER_PT)).fold(0.0, f64::max);
@@ -86,7 +94,7 @@ pub fn drawn(whole: Rect, body: Rect, [across, down]: [&Axis; 2]) -> Group {
     let hair = || Stroke::new(FRAME_PT, QUIET_INK);
     let mut marks = Path::default();
     let number = |at: DVec2, text: String| Text::new(at, text).sized(NUMBER_PT).inked(QUIET_INK);
-    for tick in across.ticks([body.min.x, body.max.x], EVERY_PT[0]) {
+    for tick in edge_ticks(across, [body.min.x, body.max.x], EVERY_PT[0]) {
         let foot = DVec2::new(tick.at, body.min.y);
         marks.add_line(&[foot, foot - DVec2::new(0.0, TICK_PT)]);
         let half = 0.5 * width_of(&tick.text, NUMBER_PT);
@@ -94,7 +102,7 @@ pub fn drawn(whole: Rect, body: Rect, [across, down]: [&Axis; 2]) -> Group {
         let at = DVec2::new(x, body.min.y - TICK_PT - GAP_PT);
         group.push(number(at, tick.text).anchored(Across::Middle, Upright::Baseline));
     }
-    for tick in down.ticks([body.min.y, body.max.y], EVERY_PT[1]) {
+    for tick in edge_ticks(down, [body.min.y, body.max.y], EVERY_PT[1]) {
         let foot = DVec2::new(body.min.x, tick.at);
         marks.add_line(&[foot, foot - DVec2::new(TICK_PT, 0.0)]);
         let at = foot - DVec2::new(TICK_PT + GAP_PT, 0.0);
