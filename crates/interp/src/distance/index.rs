@@ -195,7 +195,7 @@ impl CellIndex {
             return Cell::default();
         };
         let start = y / BRICK * self.counts[2] * CELLS + (x % BRICK) * BRICK + y % BRICK;
-        // The slice also contains later bricks; nobody asks for those.
+        // The slice continues into later bricks, which are never requested.
         Cell { starts: row.starts.get(start..).unwrap_or_default(), triangles: &row.triangles }
     }
 

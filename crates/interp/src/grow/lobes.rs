@@ -10,8 +10,8 @@
 //! `a_i = r_i ± c(z_i − z_{i−1})·r_{i−1} ± c(z_{i+1} − z_i)·r_{i+1}`, + between a peak and a trough, −
 //! between two of a kind,
 //!
-//! with c the relative height of a lobe at a distance: the Ricker wavelet, negated where it is negative and 0
-//! elsewhere, scaled to the distance and relative height at which the survey's strong extrema have their
+//! with c the relative height of a lobe at a distance: the negative part of the Ricker wavelet, negated (0
+//! elsewhere), scaled to the distance and relative height at which the survey's strong extrema have their
 //! neighbours (medians). The system is tridiagonal, and well-posed because c < ½. Over the extremum and those
 //! linked to it, Σr/Σa is near 1 on reflectors and near 0 on lobes; noise between reflectors is no lobe, but
 //! low. An extremum that is neither a lobe nor low belongs to a reflector. A link between such an extremum

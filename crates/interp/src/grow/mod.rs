@@ -10,7 +10,7 @@
 //! | extrema, refined between samples | [`crate::extrema`] |
 //! | mutual best links between neighbouring traces, guided by the dip | `links`, `dip` |
 //! | evidence of each link for a break, relative to the volume's noise and to the surroundings | `evidence`, `surroundings` |
-//! | side lobes are told from reflectors by the extrema above and below; links between the two are breaks | `lobes` |
+//! | side lobes are distinguished from reflectors by the extrema above and below; links between the two are breaks | `lobes` |
 //! | fault planes: planes along which many links show breaks; they cut links | `planes` |
 //! | closed cells, morphological opening by the least width, connected windows | `cells` |
 //! | extrema left over go to the surface that fits best | `flood` |
