@@ -89,7 +89,6 @@ pub enum PageSize {
 /// A part of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-#[expect(clippy::large_enum_variant, reason = "a page has a handful, never in bulk")]
 pub enum Part {
     /// A block, or two compared.
     Block(Box<BlockPart>),

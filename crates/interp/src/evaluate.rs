@@ -131,7 +131,7 @@ pub struct Evaluation {
 /// ```
 /// use interp::{EvaluateSettings, Surfaces, evaluate};
 /// use survey::Progress;
-/// use survey::synth::{SynthSettings, Synthetic};
+/// use synth::{SynthSettings, Synthetic};
 ///
 /// // Without surfaces nothing is covered, and nothing is wrong either.
 /// let settings = SynthSettings { size: [24, 24, 48], snr: None, ..SynthSettings::default() };

@@ -39,7 +39,6 @@ pub(super) struct Arguments {
 }
 
 #[derive(Debug, Subcommand)]
-#[expect(clippy::large_enum_variant, reason = "one is typed at a time")]
 pub(super) enum Action {
     /// From a synthetic survey to finished pictures: the whole chain
     #[command(after_help = "Example:\n  petroglyph demo --out out/demo")]
