@@ -1,9 +1,10 @@
 //! What each step does to the state, and what others are to do.
 
-use super::picking::{How, PickingStep, PickingTask, Tool, free_name, place_of};
+use super::picking::{How, Picking, PickingStep, PickingTask, Tool, free_name, place_of};
 use super::{Place, State, Task};
 use interp::assembly::Operation;
 use project::command::{Climb, Command, PickFault, PickNode};
+use project::document::Document;
 use project::error::Noun;
 
 impl State {
@@ -18,23 +19,7 @@ impl State {
             self.notices.retain(|notice| notice.place != Place::Interpret);
         }
         match step {
-            PickingStep::At(voxel, how) => {
-                let at = place_of(&geometry, voxel);
-                let mut tasks = Vec::new();
-                if how == How::Remove {
-                    let Some(horizon) = picking.horizon.clone() else { return tasks };
-                    let operation = Operation::Remove;
-                    let command = PickNode { at, horizon, operation, colour: None, climb: Climb::Levels(0) };
-                    tasks.extend(picking.accept());
-                    tasks.push(Task::Apply(Box::new(Command::Pick(command))));
-                    return tasks;
-                }
-                if how == How::Extend {
-                    tasks.extend(picking.accept());
-                }
-                tasks.push(Task::Picking(PickingTask::Find(at)));
-                return tasks;
-            }
+            PickingStep::At(voxel, how) => return picking.click(place_of(&geometry, voxel), how),
             PickingStep::Found(pick) => {
                 if picking.horizon.is_none() {
                     picking.horizon = Some(free_name(document, Noun::Horizon, "Horizon"));
@@ -65,25 +50,8 @@ impl State {
                 picking.stick.clear();
                 picking.pick = None;
             }
-            PickingStep::Begin | PickingStep::Choose(_) => {
-                // What is selected belongs to the horizon it was selected for.
-                let tasks: Vec<Task> = picking.accept().into_iter().collect();
-                let taken = picking.horizon.clone().filter(|_| !tasks.is_empty());
-                picking.horizon = Some(match step {
-                    PickingStep::Choose(name) => name,
-                    _ => {
-                        let mut name = free_name(document, Noun::Horizon, "Horizon");
-                        if taken.as_ref() == Some(&name) {
-                            let number = name.rsplit(' ').next().and_then(|n| n.parse::<u32>().ok()).unwrap_or(0);
-                            name = format!("Horizon {}", number + 1);
-                        }
-                        name
-                    }
-                });
-                picking.colour = None;
-                picking.tool = Tool::Pick;
-                return tasks;
-            }
+            PickingStep::Begin => return picking.turn_to(None, document),
+            PickingStep::Choose(name) => return picking.turn_to(Some(name), document),
             PickingStep::Name(name) => picking.horizon = Some(name),
             PickingStep::Tint(colour) => picking.colour = Some(colour),
             PickingStep::Use(tool) => {
@@ -111,16 +79,7 @@ impl State {
                 picking.stick.pop();
             }
             PickingStep::NameFault(name) => picking.fault = name,
-            PickingStep::MakeFault => {
-                picking.end_stick();
-                let sticks = std::mem::take(&mut picking.sticks);
-                if sticks.is_empty() {
-                    return Vec::new();
-                }
-                let name = std::mem::take(&mut picking.fault);
-                picking.tool = Tool::Pick;
-                return vec![Task::Apply(Box::new(Command::PickFault(PickFault { name, sticks })))];
-            }
+            PickingStep::MakeFault => return picking.make_fault().into_iter().collect(),
             PickingStep::Dismiss(id) => picking.dismissed.push(id),
             PickingStep::Minor(minor) => picking.minor = minor,
         }
@@ -136,5 +95,55 @@ impl State {
         {
             picking.pick = Some(pick);
         }
+    }
+}
+
+impl Picking {
+    /// A click at a place in line numbers: selects there, after accepting what was selected where it extends, or takes out.
+    fn click(&mut self, at: [f64; 3], how: How) -> Vec<Task> {
+        let mut tasks = Vec::new();
+        if how == How::Remove {
+            let Some(horizon) = self.horizon.clone() else { return tasks };
+            let operation = Operation::Remove;
+            let command = PickNode { at, horizon, operation, colour: None, climb: Climb::Levels(0) };
+            tasks.extend(self.accept());
+            tasks.push(Task::Apply(Box::new(Command::Pick(command))));
+            return tasks;
+        }
+        if how == How::Extend {
+            tasks.extend(self.accept());
+        }
+        tasks.push(Task::Picking(PickingTask::Find(at)));
+        tasks
+    }
+
+    /// Lets the next picks go to another horizon: the one chosen, or else a new one.
+    fn turn_to(&mut self, chosen: Option<String>, document: &Document) -> Vec<Task> {
+        // What is selected belongs to the horizon it was selected for.
+        let tasks: Vec<Task> = self.accept().into_iter().collect();
+        let taken = self.horizon.clone().filter(|_| !tasks.is_empty());
+        self.horizon = Some(chosen.unwrap_or_else(|| {
+            let name = free_name(document, Noun::Horizon, "Horizon");
+            if taken.as_ref() != Some(&name) {
+                return name;
+            }
+            let number = name.rsplit(' ').next().and_then(|n| n.parse::<u32>().ok()).unwrap_or(0);
+            format!("Horizon {}", number + 1)
+        }));
+        self.colour = None;
+        self.tool = Tool::Pick;
+        tasks
+    }
+
+    /// A fault of the sticks drawn; nothing without any.
+    fn make_fault(&mut self) -> Option<Task> {
+        self.end_stick();
+        let sticks = std::mem::take(&mut self.sticks);
+        if sticks.is_empty() {
+            return None;
+        }
+        let name = std::mem::take(&mut self.fault);
+        self.tool = Tool::Pick;
+        Some(Task::Apply(Box::new(Command::PickFault(PickFault { name, sticks }))))
     }
 }
