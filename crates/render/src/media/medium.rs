@@ -44,7 +44,7 @@ impl<'a> FieldMedium<'a> {
         Self { volume, prepared, table, place, layers: None, scale, offset }
     }
 
-    /// Trilinear value at a voxel position; below [`NO_DATA_BELOW`] where there is none.
+    /// Trilinear value at a voxel position; below [`NO_DATA_BELOW`](super::table::NO_DATA_BELOW) where there is none.
     #[inline(always)]
     pub fn sample(&self, p: Vec3) -> f32 {
         self.samples().value(p * self.scale + self.offset)
