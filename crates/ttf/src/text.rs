@@ -102,10 +102,11 @@ pub enum TextCurve {
 ///
 /// ```
 /// use ttf::text::{TextCurve, outline_text};
-/// // The letter l of this face is one upright rectangle.
-/// let stem = outline_text(100.0, "l");
-/// assert_eq!(stem.len(), 4);
+/// // The letter I of this face is one upright stem: straight lines that end where they begin.
+/// let stem = outline_text(100.0, "I");
 /// assert!(stem.iter().all(|curve| matches!(curve, TextCurve::Line(_))));
+/// let (TextCurve::Line([begin, _]), TextCurve::Line([_, end])) = (stem[0], stem[stem.len() - 1]) else { panic!() };
+/// assert_eq!(begin, end);
 /// ```
 pub fn outline_text(size_px: f32, text: &str) -> Vec<TextCurve> {
     let face = face();
