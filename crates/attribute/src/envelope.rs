@@ -34,10 +34,10 @@ const MIRRORED: usize = 64;
 /// use std::f32::consts::TAU;
 /// use survey::{progress::Progress, volume::Volume};
 ///
-/// let cosine: Vec<f32> = (0..96).map(|z| 3.0 * (TAU * z as f32 / 12.0).cos()).collect();
-/// let volume = Volume::from_samples([1, 1, 96], cosine)?;
+/// let cosine: Vec<f32> = (0..240).map(|z| 3.0 * (TAU * z as f32 / 12.0).cos()).collect();
+/// let volume = Volume::from_samples([1, 1, 240], cosine)?;
 /// let strength = attribute::envelope(&volume, &Progress::silent())?;
-/// assert!(strength.trace(0, 0)[24..72].iter().all(|a| (a - 3.0).abs() < 0.05));
+/// assert!(strength.trace(0, 0)[80..160].iter().all(|a| (a - 3.0).abs() < 0.06));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn envelope(volume: &Volume<f32>, progress: &Progress) -> Result<Volume<f32>, AttributeError> {
