@@ -70,7 +70,7 @@ pub(in crate::cli) struct ReplayArgs {
     pub(in crate::cli) project: PathBuf,
     /// Horizon [default: all that were assembled]
     pub(in crate::cli) name: Option<String>,
-    /// Remove picks that no longer fit from the log
+    /// Remove from the log the picks that no longer fit
     #[arg(long)]
     pub(in crate::cli) drop_unfit: bool,
 }
@@ -79,7 +79,7 @@ pub(in crate::cli) struct ReplayArgs {
 pub(in crate::cli) struct FaultPickArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// Name of the fault; if it has sticks already, these are added
+    /// Name of the fault; if it exists already, the sticks are added to it
     #[arg(long)]
     pub(in crate::cli) name: String,
     #[command(flatten)]

@@ -139,7 +139,7 @@ pub(in crate::cli) struct HorizonAddArgs {
     pub(in crate::cli) reading: ReadingArgs,
 }
 
-/// What the user states about a horizon or fault file that the file itself does not say.
+/// What the user states about a horizon or fault file.
 #[derive(Debug, Default, Args)]
 pub(in crate::cli) struct ReadingArgs {
     /// Format of the file [default: recognised]
