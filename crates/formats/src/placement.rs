@@ -34,7 +34,7 @@ pub(super) fn voxel_xy(geometry: &SurveyGeometry, world: DVec2) -> DVec2 {
 /// Places every point.
 ///
 /// A point with both line numbers and X, Y is placed by its lines when most such points agree to half a bin.
-/// When they do not, the reading that lies over the survey is taken, and said so; when both do, the user is
+/// When they do not, the reading that lies over the survey is taken and reported; when both do, the user is
 /// asked.
 ///
 /// # Errors

@@ -209,8 +209,8 @@ pub(super) fn split(values: &NodeValues, neighbours: &dyn Fn(usize) -> Vec<usize
     pack(&mut groups, &mut label)
 }
 
-/// Packs groups into sheets, the largest first, and answers the sheet of every value; values no group reaches
-/// go to the first sheet.
+/// Packs groups into sheets, the largest first, and returns the sheet of every value; values that no group
+/// reaches go to the first sheet.
 fn pack(groups: &mut Groups, label: &mut [u32]) -> Vec<u16> {
     let mut sizes: HashMap<u32, usize> = HashMap::new();
     for l in label.iter_mut().filter(|l| **l != NO_GROUP) {

@@ -314,7 +314,7 @@ impl Lines {
         Self { columns: [numbers(0), numbers(1)], counts: [extent(0), extent(1)] }
     }
 
-    /// Places that hold a trace.
+    /// Lattice positions that hold a trace.
     fn filled(&self, indices: &[I64Vec2]) -> usize {
         let mut places: Vec<(i64, i64)> = indices.iter().map(|index| (index.x, index.y)).collect();
         places.sort_unstable();

@@ -153,7 +153,7 @@ pub struct SegyInfo {
     pub vertical_unit: FileUnit,
     /// Format of the samples.
     pub sample_format: SampleFormat,
-    /// Its code at byte 3225.
+    /// Code of the format at byte 3225.
     pub format_code: u16,
     /// Traces in the file.
     pub traces: usize,

@@ -53,7 +53,7 @@ pub struct Statistics {
     pub zero_traces: usize,
     /// Samples that are NaN or infinite; they are read as 0.
     pub non_finite: u64,
-    /// Samples that equal the smallest or largest one. Many of them: the data are clipped.
+    /// Samples that equal the smallest or largest one. If there are many, the data are clipped.
     pub at_limits: u64,
     /// Histogram between the outer percentiles, symmetric about 0 if there are both signs.
     pub histogram: Histogram,

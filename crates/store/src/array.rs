@@ -191,7 +191,7 @@ impl<T: StoredSample> ArrayWriter<T> {
         Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, of: std::marker::PhantomData })
     }
 
-    /// How it is cut up.
+    /// The division into chunks and shards.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }

@@ -369,7 +369,7 @@ impl Ingest<'_> {
     }
 }
 
-/// Memory that threads use in turn: fresh memory costs more than what is done in it.
+/// Buffers that threads reuse: allocating fresh memory costs more than the work done in it.
 struct Rooms<R>(Mutex<Vec<R>>);
 
 impl<R> Default for Rooms<R> {

@@ -20,7 +20,7 @@ pub(super) struct Samples<'a, T> {
 
 impl<T: StoredSample> Samples<'_, T> {
     /// Least and greatest live sample of each brick of the box from `start` of size `part`, with the brick's
-    /// number in a volume of `volume` voxels; `start` is a multiple of the brick. NaN is passed over.
+    /// number in a volume of `volume` voxels; `start` is a multiple of the brick. NaN is ignored.
     pub fn ranges(&self, start: [usize; 3], part: [usize; 3], mask: &[bool], volume: [usize; 3]) -> IndexedRanges {
         let counts = volume.map(|n| n.div_ceil(BRICK));
         let inside = part.map(|n| n.div_ceil(BRICK));

@@ -186,8 +186,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Metres in one unit of a length column: as its name says, else as told, else metres, said so in
-    /// `notes`.
+    /// Metres in one unit of a length column: as its name says, else as the user states, else metres,
+    /// reported in `notes`.
     pub fn length_to_m(&self, at: usize, told: Option<ZUnit>, notes: &mut Vec<Note>) -> Result<f64, WellFileError> {
         let unit = self.units[at].or(told);
         if unit.is_none() {
