@@ -1,7 +1,7 @@
-//! Attributes of volumes of any size: computed block by block, each with as many lines around it as its answer depends
-//! on, so that the result is the same as that of the whole volume at once.
+//! Attributes of volumes of any size. They are computed block by block, each with as many lines around it as
+//! its answer depends on, so that the result is the same as that of the whole volume at once.
 //!
-//! Nothing is computed before a block is asked for, by whoever writes the volume.
+//! Nothing is computed before the writer of the volume asks for a block.
 
 use super::dip::{self, DipSettings, DipVolumes};
 use super::envelope::envelope;
@@ -16,10 +16,10 @@ use survey::sample::{SampleType, SamplesMut};
 use survey::source::{Block, BlockSource, BoxSource, SourceError};
 use survey::volume::Volume;
 
-/// Float32 volumes of a block's size that are held while it is computed.
+/// Number of float32 volumes of a block's size that are held while the block is computed.
 const VOLUMES_HELD: u64 = 7;
 
-/// Those of an angle: two dips, and what becomes of them.
+/// The same for an angle: the two dips and what is computed from them.
 const ANGLE_VOLUMES_HELD: u64 = 6;
 
 type Fill<'a> = dyn Fn(&Block, &mut [f32], &Progress) -> Result<(), SourceError> + 'a;
@@ -33,8 +33,8 @@ pub struct AttributeBlocks<'a> {
 }
 
 impl AttributeBlocks<'_> {
-    /// What a writer may use of `memory_bytes`, so that computing has the rest. Half of what the writer is given is its
-    /// block.
+    /// What a writer may use of `memory_bytes`, so that computing has the rest. Half of what the writer is
+    /// given is its block.
     pub fn writer_memory(&self, memory_bytes: u64) -> u64 {
         memory_bytes * 2 / self.volumes_held
     }
@@ -109,8 +109,22 @@ pub fn dip_angle_blocks<'a>(
     AttributeBlocks { size, live: inline.live(), volumes_held: ANGLE_VOLUMES_HELD, fill: Box::new(fill) }
 }
 
-/// Angle of the reflections from the horizontal in degrees: atan |∇z|, where ∇z in metres a metre solves ∇z·a = p, ∇z·b
-/// = q for the metric vectors a, b of a bin. Time becomes depth through the geometry's velocity.
+/// Angle of the reflections from the horizontal in degrees: atan |∇z|, where ∇z in metres per metre solves
+/// ∇z·a = p, ∇z·b = q for the metric vectors a, b of a bin. Time becomes depth through the geometry's
+/// velocity.
+///
+/// # Examples
+/// Reflections that deepen by one sample of 10 m per bin of 10 m have an angle of 45 degrees:
+/// ```
+/// use attribute::DipVolumes;
+/// use attribute::blocks::dip_angle;
+/// use survey::geometry::{SurveyGeometry, VerticalUnit};
+/// use survey::volume::Volume;
+///
+/// let geometry = SurveyGeometry::regular([2, 2, 2], 10.0, 10.0, VerticalUnit::Metres);
+/// let dips = DipVolumes { inline: Volume::filled([2; 3], 1.0), crossline: Volume::filled([2; 3], 0.0) };
+/// assert!((dip_angle(&dips, &geometry).at(0, 0, 0) - 45.0).abs() < 1e-4);
+/// ```
 pub fn dip_angle(dips: &DipVolumes, geometry: &SurveyGeometry) -> Volume<f32> {
     let metric = geometry.metric_from_voxel();
     let (a, b, sample_m) = (metric.x_axis, metric.y_axis, geometry.sample_m());

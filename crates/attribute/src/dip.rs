@@ -1,4 +1,5 @@
-//! Dip of the reflections at every sample: how many samples deeper they are one inline, and one crossline, further on.
+//! Dip of the reflections at every sample: how many samples deeper they are on the next inline, and on the
+//! next crossline.
 //!
 //! Three neighbouring traces u₋, u, u₊ are compared along a straight line of slope l through the sample,
 //!
@@ -6,16 +7,18 @@
 //! n(l) = Σ_w u(z+w)·(u₊(z+w+l) + u₋(z+w−l)),   coherence(l) = 2 n(l) / Σ_w (2u² + u₊² + u₋²)
 //! ```
 //!
-//! over a window of samples w and the neighbouring lines; the integer l of greatest coherence wins. On a plane wave of slope p,
-//! the coherence is 1 at l = p and an even function of l − p, since the two neighbours mirror each other, close to a cosine; the cosine
-//! through its values at l−1, l, l+1 gives the fraction (Céspedes and others 1995, on time delays of ultrasound). Correlation over
-//! whole samples is not aliased by steep dips as the gradients of a structure tensor are: what counts is that a reflection moves by less than
-//! half a wavelength from trace to trace.
+//! over a window of samples w and the neighbouring lines; the integer l of greatest coherence wins. On a
+//! plane wave of slope p the coherence is 1 at l = p. It is an even function of l − p, because the two
+//! neighbours mirror each other, and close to a cosine. The cosine through its values at l−1, l and l+1 gives
+//! the fraction (Céspedes and others 1995, on time delays of ultrasound). Unlike the gradients of a structure
+//! tensor, correlation over whole samples is not aliased by steep dips, as long as a reflection moves by less
+//! than half a wavelength from trace to trace.
 //!
-//! Products of what is missing (a dead trace, a NaN, beyond the walls) are left out of both sums. A sample that is NaN has a NaN dip, a
-//! dead trace 0; so has what has no amplitude, or the same amplitude everywhere.
+//! Products with a missing value (a dead trace, a NaN, or outside the volume) are left out of both sums. A
+//! sample that is NaN has a NaN dip. The dip is 0 on a dead trace, and where the amplitude is zero or
+//! constant.
 //!
-//! Dips are in samples a line (voxel space): positive where reflections deepen with the line's index.
+//! Dips are in samples per line (voxel space) and positive where reflections deepen with the line's index.
 
 use super::error::{AttributeError, check};
 use super::window::WindowSum;
@@ -24,16 +27,17 @@ use serde::{Deserialize, Serialize};
 use survey::progress::Progress;
 use survey::volume::Volume;
 
-/// How dips are found.
+/// How the dips of a volume are found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct DipSettings {
-    /// Steepest dip looked for, samples a line (1 to 32). More costs time and lets steep noise win; it should stay below half a wavelength.
-    /// Default 4.
+    /// Steepest dip looked for, samples per line (1 to 32). A larger value costs time and lets steep noise
+    /// win; it should stay below half a wavelength. Default 4.
     pub max_dip: usize,
-    /// Samples of the window above and below (1 to 64): about half a wavelength. More is steadier and blurs. Default 6.
+    /// Samples of the window above and below (1 to 64): about half a wavelength. A larger window is steadier
+    /// and blurs more. Default 6.
     pub half_window: usize,
-    /// Lines of the window to either side across the direction (0 to 4). Default 1.
+    /// Lines of the window to either side, perpendicular to the direction of the dip (0 to 4). Default 1.
     pub half_width: usize,
 }
 
@@ -59,16 +63,38 @@ impl DipSettings {
 /// Dips of a volume, on its lattice and with its mask.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DipVolumes {
-    /// Samples deeper one inline further on.
+    /// Samples by which the reflections are deeper on the next inline.
     pub inline: Volume<f32>,
-    /// Samples deeper one crossline further on.
+    /// Samples by which the reflections are deeper on the next crossline.
     pub crossline: Volume<f32>,
 }
 
-/// Finds the dips of a volume, lines in parallel; the same on any number of threads. Memory: three volumes of float32 beside the input.
+/// Finds the dips of a volume. Lines are computed in parallel, and the result is the same on any number of
+/// threads. Memory: three volumes of float32 beside the input.
 ///
 /// # Errors
 /// [`AttributeError::Setting`], [`AttributeError::Cancelled`].
+///
+/// # Examples
+/// Plane reflections that deepen by 1.5 samples per inline:
+/// ```
+/// use attribute::{DipSettings, dip};
+/// use std::f32::consts::TAU;
+/// use survey::{progress::Progress, volume::Volume};
+///
+/// let mut volume = Volume::filled([5, 5, 64], 0.0f32);
+/// for x in 0..5 {
+///     for y in 0..5 {
+///         for (z, sample) in volume.trace_mut(x, y).iter_mut().enumerate() {
+///             *sample = (TAU * (z as f32 - 1.5 * x as f32) / 12.0).cos();
+///         }
+///     }
+/// }
+/// let dips = dip(&volume, &DipSettings::default(), &Progress::silent())?;
+/// assert!((dips.inline.at(2, 2, 32) - 1.5).abs() < 0.02);
+/// assert!(dips.crossline.at(2, 2, 32).abs() < 0.02);
+/// # Ok::<(), attribute::AttributeError>(())
+/// ```
 pub fn dip(volume: &Volume<f32>, settings: &DipSettings, progress: &Progress) -> Result<DipVolumes, AttributeError> {
     settings.validate()?;
     let [nx, ny, _] = volume.size();
@@ -132,7 +158,8 @@ pub(super) fn along_crosslines(
     Ok(dips)
 }
 
-/// Dips across the line `here` at all of its traces; `trace(along, across)` gives the live ones, of `[along, across]` in all.
+/// Dips across the line `here` at all of its traces; `trace(along, across)` gives the live ones, of `[along,
+/// across]` in all.
 fn scan_line<'a>(
     settings: &DipSettings,
     [along_count, across_count]: [usize; 2],
@@ -264,7 +291,8 @@ impl Scan {
         let length = self.samples + 2 * self.half_window;
         let (u, m) = (&here.values[reach..reach + length], &here.there[reach..reach + length]);
         for lag in 0..self.lags {
-            // The lag is `lag − reach`: the trace after is read that much deeper, the one before that much shallower.
+            // The lag is `lag − reach`: the trace after is read that much deeper, the one before that much
+            // shallower.
             let (down, up) = (lag, 2 * reach - lag);
             let (p, pm) = (&after.values[down..down + length], &after.there[down..down + length]);
             let (q, qm) = (&before.values[up..up + length], &before.there[up..up + length]);

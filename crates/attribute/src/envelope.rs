@@ -1,11 +1,14 @@
-//! Envelope: the strength of the reflections whatever their phase.
+//! Envelope: the strength of the reflections, whatever their phase.
 //!
-//! The analytic signal a = u + iH(u) has the trace as its real part and its Hilbert transform as the imaginary one (Taner, Koehler and
-//! Sheriff 1979); its size is the envelope: A(z) for A(z)·cos(kz + φ) as long as A varies slowly beside the cosine. In
-//! frequencies, H doubles the positive ones and removes the negative ones. The trace is mirrored beyond both ends (over 64 samples, or
-//! its length) before the transform takes it for periodic, so that its two ends do not touch.
+//! The analytic signal a = u + iH(u) has the trace as its real part and its Hilbert transform as the
+//! imaginary one (Taner, Koehler and Sheriff 1979); its magnitude is the envelope, which is A(z) for
+//! A(z)·cos(kz + φ) as long as A varies slowly compared with the cosine. In the frequency domain, a doubles
+//! the positive frequencies of u and removes the negative ones. The trace is mirrored beyond both ends (over
+//! 64 samples, or its length) before the transform, which treats it as periodic, so that the two ends of the
+//! trace do not touch.
 //!
-//! Samples that are NaN count as 0 and have a NaN envelope. A constant trace c has the envelope |c|.
+//! Samples that are NaN count as 0 in the transform and have a NaN envelope. A constant trace c has the
+//! envelope |c|.
 
 use super::dip::like;
 use super::error::AttributeError;
@@ -16,13 +19,27 @@ use std::sync::Arc;
 use survey::progress::Progress;
 use survey::volume::Volume;
 
-/// Samples mirrored at each end at most.
+/// Largest number of samples that are mirrored at each end.
 const MIRRORED: usize = 64;
 
-/// The envelope of every trace, traces in parallel. Memory: two volumes of float32 beside the input.
+/// Computes the envelope of every trace, inlines in parallel. Memory: two volumes of float32 beside the
+/// input.
 ///
 /// # Errors
 /// [`AttributeError::Cancelled`].
+///
+/// # Examples
+/// The envelope of a cosine is its amplitude:
+/// ```
+/// use std::f32::consts::TAU;
+/// use survey::{progress::Progress, volume::Volume};
+///
+/// let cosine: Vec<f32> = (0..240).map(|z| 3.0 * (TAU * z as f32 / 12.0).cos()).collect();
+/// let volume = Volume::from_samples([1, 1, 240], cosine)?;
+/// let strength = attribute::envelope(&volume, &Progress::silent())?;
+/// assert!(strength.trace(0, 0)[80..160].iter().all(|a| (a - 3.0).abs() < 0.06));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn envelope(volume: &Volume<f32>, progress: &Progress) -> Result<Volume<f32>, AttributeError> {
     let [nx, ny, nz] = volume.size();
     let mut out = vec![0.0f32; nx * ny * nz];

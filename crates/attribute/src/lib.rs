@@ -1,15 +1,17 @@
-//! Attributes: volumes computed from a volume of amplitudes, each on its lattice and with its mask.
+//! Attributes: volumes that are computed from a volume of amplitudes. Each has the lattice and the mask of
+//! its source.
 //!
 //! | attribute | says |
 //! |---|---|
-//! | [`dip()`] | how many samples deeper the reflections are one line further on |
-//! | [`semblance()`] | how alike neighbouring traces are along the reflections: low at faults |
+//! | [`dip()`] | how many samples deeper the reflections are on the next line |
+//! | [`semblance()`] | how similar neighbouring traces are along the reflections: low at faults |
 //! | [`envelope()`] | how strong the reflections are, whatever their phase |
 //!
-//! These work on a volume in memory; [`blocks`] does the same to a volume of any size, part by part, wherever its parts
-//! come from and go to.
+//! These functions work on a volume in memory. [`blocks`] computes the same attributes of a volume of any
+//! size, part by part, wherever its parts come from and go to.
 //!
-//! Deliberately absent: files, the store, what an attribute is used for. No other crate knows the Fourier transform.
+//! Deliberately absent: files, the store, what an attribute is used for. No other crate uses the Fourier
+//! transform.
 
 pub mod blocks;
 mod dip;

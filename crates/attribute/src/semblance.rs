@@ -1,17 +1,19 @@
-//! Dip-steered semblance: how alike neighbouring traces are along the reflections. 1 on any plane wave, low where a fault or a channel's edge
-//! breaks the reflections.
+//! Dip-steered semblance: how similar neighbouring traces are along the reflections. It is 1 on any plane
+//! wave and low where a fault or the edge of a channel breaks the reflections.
 //!
 //! ```text
 //! S = Σ_w (Σ_t u_t(z+w))² / Σ_w M Σ_t u_t(z+w)²,      u_t(z) = u(x+i, y+j, z + p·i + q·j)
 //! ```
 //!
-//! over the M live traces t = (i, j) of a square about the sample and a window of samples w (Marfurt, Kirlin, Farmer and Bahorich
-//! 1998, with the dips p, q of [`super::dip()`] instead of a search). We depart in that every sample of the window is steered by its own dip: the
-//! stack over traces is made once a sample and then summed over the window, at a seventh of the cost.
+//! over the M live traces t = (i, j) of a square around the sample, and over a window of samples w (Marfurt,
+//! Kirlin, Farmer and Bahorich 1998, with the dips p, q of [`super::dip()`] instead of a search). We depart
+//! from the paper in that every sample of the window is steered by its own dip: the stack over traces is made
+//! once per sample and then summed over the window, at a seventh of the cost.
 //!
-//! Between samples traces are interpolated by cubics through four samples. What is missing (a dead trace, a NaN, beyond the walls) is
-//! left out of both sums, so that the edge of the survey is no fault. Where there is no amplitude, and on a volume of one
-//! trace, nothing differs: 1. A sample that is NaN has a NaN semblance; a dead trace 0.
+//! Between samples, traces are interpolated by cubics through four samples. Missing values (a dead trace, a
+//! NaN, or outside the volume) are left out of both sums, so that the edge of the survey does not look like a
+//! fault. Where there is no amplitude, and on a volume of one trace, the semblance is 1. A sample that is NaN
+//! has a NaN semblance, a dead trace has 0.
 
 use super::dip::{DipVolumes, like};
 use super::error::{AttributeError, check};
@@ -21,13 +23,14 @@ use serde::{Deserialize, Serialize};
 use survey::progress::Progress;
 use survey::volume::Volume;
 
-/// How semblance is computed.
+/// How the semblance of a volume is computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SemblanceSettings {
     /// Traces to either side along both axes (1 to 8): 1 is a square of 3×3. Default 1.
     pub half_width: usize,
-    /// Samples of the window above and below (0 to 64). Less is sharper, more is steadier at zero crossings. Default 4.
+    /// Samples of the window above and below (0 to 64). A smaller window is sharper, a larger one is steadier
+    /// at zero crossings. Default 4.
     pub half_window: usize,
 }
 
@@ -37,11 +40,27 @@ impl Default for SemblanceSettings {
     }
 }
 
-/// Semblance of a volume along its dips, inlines in parallel; the same on any number of threads. Memory: two volumes of float32 beside
-/// the input.
+/// Computes the semblance of a volume along its dips. Inlines are computed in parallel, and the result is the
+/// same on any number of threads. Memory: two volumes of float32 beside the input.
 ///
 /// # Errors
-/// [`AttributeError::Setting`], [`AttributeError::Lattice`] when the dips are another volume's, [`AttributeError::Cancelled`].
+/// [`AttributeError::Setting`], [`AttributeError::Lattice`] when the dips belong to another volume,
+/// [`AttributeError::Cancelled`].
+///
+/// # Examples
+/// Flat reflections are the same on all traces, so that their semblance is 1:
+/// ```
+/// use attribute::{DipSettings, SemblanceSettings, dip, semblance};
+/// use survey::{progress::Progress, volume::Volume};
+///
+/// let flat: Vec<f32> = (0..25 * 64).map(|n| ((n % 64) as f32 * 0.5).cos()).collect();
+/// let volume = Volume::from_samples([5, 5, 64], flat)?;
+/// let progress = Progress::silent();
+/// let dips = dip(&volume, &DipSettings::default(), &progress)?;
+/// let found = semblance(&volume, &dips, &SemblanceSettings::default(), &progress)?;
+/// assert!((found.at(2, 2, 32) - 1.0).abs() < 1e-3);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub fn semblance(
     volume: &Volume<f32>,
     dips: &DipVolumes,
@@ -157,7 +176,8 @@ impl Stack {
     }
 }
 
-/// A trace `shift` samples below sample `z`, by the cubic through the four samples around; NaN beyond its ends, and where the dip is.
+/// A trace `shift` samples below sample `z`, by the cubic through the four samples around; NaN beyond its
+/// ends, and where the dip is.
 fn value_at(trace: &[f32], z: usize, shift: f32) -> f32 {
     let whole = shift.floor();
     let t = shift - whole;

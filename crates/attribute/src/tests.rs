@@ -24,7 +24,7 @@ fn semblance_of(volume: &Volume<f32>) -> Volume<f32> {
     semblance(volume, &dips_of(volume), &SemblanceSettings::default(), &Progress::silent()).unwrap()
 }
 
-/// Largest |value − expected| away from the walls by `x`, `y` and `z`.
+/// Largest |value − expected| away from the outer boundary by `x`, `y` and `z`.
 fn worst(volume: &Volume<f32>, expected: f32, margin: [usize; 3]) -> f32 {
     let [nx, ny, nz] = volume.size();
     let mut worst = 0.0f32;

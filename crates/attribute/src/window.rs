@@ -1,8 +1,9 @@
 //! Sums over a sliding window of samples.
 //!
-//! A window of n samples is the sum of windows whose lengths are the powers of two in n, each the sum of two windows of half its
-//! length: log₂ n additions a sample, all of them between arrays, which the compiler turns into vector instructions. Unlike a running
-//! sum it forgets: strong samples leave no rounding error behind in the quiet ones below them.
+//! A window of n samples is the sum of windows whose lengths are the powers of two in n, each the sum of two
+//! windows of half its length: log₂ n additions a sample, all of them between arrays, which the compiler
+//! turns into vector instructions. Unlike a running sum it forgets: strong samples leave no rounding error
+//! behind in the quiet ones below them.
 
 /// Work space of [`WindowSum::sum_into`], kept between calls.
 #[derive(Debug, Default)]

@@ -1,4 +1,5 @@
-//! A survey around an interpretation without seismic: bounds of files, rounded outwards, on a lattice of a size given.
+//! A survey around an interpretation without seismic data: the bounds of files, rounded outwards, on a
+//! lattice of a given size.
 
 use super::options::ImportOptions;
 use super::raw::{RawShape, RawSurface};
@@ -16,7 +17,7 @@ pub struct InterpretationFile {
     pub path: PathBuf,
     /// Horizon or fault.
     pub kind: SurfaceKind,
-    /// What the user says about it.
+    /// What the user states about it.
     pub options: ImportOptions,
 }
 
@@ -30,8 +31,9 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The bounds rounded outwards to a round number about a fortieth of each side, after the vertical grew by 15 % both ways
-    /// (never above 0 when all values are below it), so that the outer layers have a thickness.
+    /// The bounds rounded outwards to a round number about a fortieth of each side, after the vertical grew
+    /// by 15 % both ways (never above 0 when all values are below it), so that the outer layers have a
+    /// thickness.
     ///
     /// ```
     /// # use formats::Bounds;
@@ -79,7 +81,8 @@ impl Bounds {
 /// The bounds of files in X, Y and the vertical unit of the survey to be, after conversion.
 ///
 /// # Errors
-/// [`FormatError`] when a file cannot be read or has no X, Y (line numbers alone place nothing without a survey).
+/// [`FormatError`] when a file cannot be read or has no X, Y (line numbers alone place nothing without a
+/// survey).
 pub fn bounds_of(files: &[InterpretationFile], unit: VerticalUnit) -> Result<Bounds, FormatError> {
     let mut bounds = Bounds { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
     for file in files {

@@ -1,7 +1,8 @@
 //! Charisma: 3D horizon lines and fault sticks.
 //!
-//! Horizon: `INLINE : il XLINE : xl x y z`. Sticks: `INLINE- il xl x y z name stick` (or `CROSSLINE-`); il and xl may be 0 where they are
-//! not known: the point is then placed by X, Y. The format says nothing of unit or sign.
+//! Horizon: `INLINE : il XLINE : xl x y z`. Sticks: `INLINE- il xl x y z name stick` (or `CROSSLINE-`); il
+//! and xl may be 0 where they are not known: the point is then placed by X, Y. The format says nothing of
+//! unit or sign.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::table::UNDEFINED;

@@ -1,9 +1,9 @@
-//! What a column of a table holds, by its name.
+//! The content of a table's column, from the name of the column.
 
 use super::unit::{Domain, ZPositive, ZUnit};
 use serde::{Deserialize, Serialize};
 
-/// What a column of a table holds.
+/// The content of a table's column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Column {
@@ -32,10 +32,11 @@ pub enum Column {
 }
 
 impl Column {
-    /// Reads a column list as an option has it, `inline,crossline,z`; `-` or `_` for a column that is not read.
+    /// Reads a column list as an option has it, `inline,crossline,z`; `-` or `_` for a column that is not
+    /// read.
     ///
     /// # Errors
-    /// The word that is no column.
+    /// The word that names no column.
     ///
     /// ```
     /// # use formats::Column;
@@ -55,7 +56,7 @@ impl Column {
     }
 }
 
-/// What a column's name tells.
+/// What the name of a column states.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct NamedColumn {
     pub column: Column,

@@ -1,4 +1,4 @@
-//! Which column of a table is what: by the names in its header, or by what fits the survey.
+//! Assigns the columns of a table: by the names in its header, or by the reading that fits the survey.
 
 use super::column::{Column, NamedColumn, of_name};
 use super::raw::ReadContext;
@@ -28,7 +28,7 @@ pub(super) fn quality_of(word: &str) -> Option<Quality> {
     QUALITIES.iter().find(|(_, w)| w.eq_ignore_ascii_case(word)).map(|(q, _)| *q)
 }
 
-/// Columns settled, with what their names say of the vertical.
+/// The assigned columns, with what their names state about the vertical axis.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ColumnLayout {
     pub columns: Vec<Column>,
@@ -139,7 +139,8 @@ pub(super) fn by_fit(
     Ok(layout)
 }
 
-/// Whether a row read in this order lies over the survey; with lines and X, Y, also whether both agree to a bin.
+/// Whether a row read in this order lies over the survey; with lines and X, Y, also whether both agree to a
+/// bin.
 fn fits_survey(columns: &[Column], row: &[f64], geometry: &SurveyGeometry) -> bool {
     let at = |c| columns.iter().position(|&k| k == c).map(|n| row[n]);
     let voxel_of_lines = at(Column::Inline).zip(at(Column::Crossline)).map(|(i, x)| geometry.voxel_from_lines(i, x));

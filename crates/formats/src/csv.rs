@@ -1,9 +1,9 @@
 //! CSV and XYZ: a table with or without a header line.
 //!
-//! The header names the columns (`inline`, `crossline`, `x`, `y`, `z`, `twt_ms`, `depth (ft)` …, in any order and case);
-//! fields are cut by `;`, tab, comma or blanks. Without a header the columns are those under which the points fall
-//! into the survey; when two readings do, the user is asked. Lines beginning with `#`, `!`, `%`, `@` or `//` are
-//! comments; the last one before the data may be the header.
+//! The header names the columns (`inline`, `crossline`, `x`, `y`, `z`, `twt_ms`, `depth (ft)` …, in any order
+//! and case); fields are separated by `;`, tab, comma or blanks. Without a header, the reading is taken under
+//! which the points fall into the survey; when two readings do, the user must state the columns. Lines
+//! beginning with `#`, `!`, `%`, `@` or `//` are comments; the last one before the data may be the header.
 //!
 //! Written: `inline,crossline,x,y,twt_ms,sheet,quality` (or `depth_m`), a row per node with a depth.
 
@@ -42,7 +42,7 @@ fn detect(source: &SourceFile) -> Option<String> {
     Some(if is_header(first.text, cut) { "a table with a header line" } else { "a table of numbers" }.into())
 }
 
-/// How a table is cut: the delimiter shows in its first line, a decimal comma only in its numbers.
+/// The delimiter of a table, from its first line, and the decimal comma, from its numbers.
 fn cut_of(first: &str, second: &str) -> Cut {
     let cut = Cut::of(first);
     let comma = cut.delimiter != Some(',') && Cut { delimiter: cut.delimiter, ..Cut::of(second) }.decimal_comma;

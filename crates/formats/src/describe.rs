@@ -1,4 +1,4 @@
-//! What a horizon or fault file holds, before it is imported: for `petroglyph info`.
+//! The description of a horizon or fault file before its import, for `petroglyph info`.
 
 use super::options::ImportOptions;
 use super::raw::{RawShape, RawSurface};
@@ -32,7 +32,7 @@ pub struct FileDescription {
     pub surfaces: Vec<SurfaceDescription>,
 }
 
-/// A surface of a file, its numbers as they stand there.
+/// A surface of a file, with its numbers as they are in the file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SurfaceDescription {
     /// Its name there.
@@ -53,9 +53,9 @@ pub struct SurfaceDescription {
     pub crosslines: Option<[f64; 2]>,
     /// Lowest and highest value.
     pub range: Option<[f64; 2]>,
-    /// The vertical unit, and who says so.
+    /// The vertical unit, and where it comes from.
     pub unit: String,
-    /// The sign, and who says so.
+    /// The sign, and where it comes from.
     pub positive: String,
     /// Counts of values in equal parts of the range.
     pub histogram: Vec<usize>,

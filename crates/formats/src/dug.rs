@@ -1,8 +1,9 @@
 //! DUG Insight horizons: rows of `inline crossline z` or `x y z`.
 //!
-//! `#` comments come first, among them `# subgrid=il:1272-3492[10]+cl:1320-3520[10]` and `# vertical_dimension=time`. The extension
-//! names the columns (`.ilclt`, `.ilclz`, `.xyt`, `.xyz`). Under another name they are inline and crossline when all rows are whole numbers within the
-//! subgrid, else those that fit the survey.
+//! `#` comments come first, among them `# subgrid=il:1272-3492[10]+cl:1320-3520[10]` and
+//! `# vertical_dimension=time`. The extension names the columns (`.ilclt`, `.ilclz`, `.xyt`, `.xyz`). With
+//! another extension, the first two columns are inline and crossline if all of their numbers are whole and
+//! within the subgrid; otherwise the reading that fits the survey is taken.
 
 use super::column::Column;
 use super::columns::ColumnLayout;

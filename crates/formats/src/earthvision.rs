@@ -1,6 +1,7 @@
 //! EarthVision ASCII: points, scattered or from a grid.
 //!
-//! `# Field: n name unit` lines list the columns, `# Null_value:` the null, `# Z_units:` the unit; `# End:` ends the header.
+//! `# Field: n name unit` lines list the columns, `# Null_value:` the null, `# Z_units:` the unit; `# End:`
+//! ends the header.
 
 use super::column::{self, Column};
 use super::columns::ColumnLayout;

@@ -1,4 +1,4 @@
-//! What can go wrong with a horizon or fault file, with the facts a user needs to put it right.
+//! Errors of horizon and fault files, with the facts that a user needs to correct them.
 
 use super::{Format, SurfaceKind};
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ impl Extent {
     }
 }
 
-/// Why a horizon or fault file was not read or written. Nothing is left half-written.
+/// Why a horizon or fault file was not read or written. No partly written file remains.
 #[derive(Debug, thiserror::Error)]
 pub enum FormatError {
     /// The file cannot be opened, read or written.

@@ -1,8 +1,8 @@
-//! What the user says about a file that is written, and what was done.
+//! Options for writing a file, and the report of what was written.
 
 use serde::{Deserialize, Serialize};
 
-/// What happens to a rotated grid in a format that holds none.
+/// How a rotated grid is written in a format that cannot represent it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum WhenRotated {
@@ -13,15 +13,15 @@ pub enum WhenRotated {
     Refuse,
 }
 
-/// What the user says about a file that is written.
+/// Options for writing a file.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ExportOptions {
-    /// What happens to a rotated grid in a format that holds none (ZMAP+, CPS-3).
+    /// How a rotated grid is written in a format that cannot represent it (ZMAP+, CPS-3).
     pub when_rotated: WhenRotated,
 }
 
-/// What was written.
+/// The report of what was written.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct ExportReport {
     /// Nodes with a depth.

@@ -1,7 +1,8 @@
-//! A surface as read to a [`Fault`]: converted, placed in the world, made a triangulated surface, checked against the survey.
+//! Makes a [`Fault`] from a surface as read: converts it, places it in the world, triangulates it and checks
+//! it against the survey.
 //!
-//! Points with stick numbers are sticks; so are points whose lines stand in runs of equal inline, or else crossline. Other
-//! points are fitted with a surface.
+//! Points with stick numbers are sticks; so are points whose lines stand in runs of equal inline, or else
+//! crossline. Other points are fitted with a surface.
 
 use super::columns::is_inside;
 use super::options::ImportOptions;
@@ -109,8 +110,8 @@ pub(super) fn build(
     Ok((Fault { name, mesh, truncated_by: None }, report))
 }
 
-/// The mesh without triangles that are degenerate or have a corner without a vertical value, and without unused vertices;
-/// the order stays.
+/// The mesh without triangles that are degenerate or have a corner without a vertical value, and without
+/// unused vertices; the order stays.
 fn clean(mesh: &TriangleMesh) -> TriangleMesh {
     let has_area = |t: usize| {
         let [a, b, c] = mesh.corners(t);

@@ -1,4 +1,5 @@
-//! A surface as read to a [`Horizon`]: converted, placed on nodes, split into sheets, checked against the survey.
+//! Makes a [`Horizon`] from a surface as read: converts it, places it on nodes, splits it into sheets and
+//! checks it against the survey.
 
 use super::columns::is_inside;
 use super::lattice::{self, Lattice};
@@ -18,7 +19,7 @@ use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::mesh::TriangleMesh;
 use survey::remedy::Note;
 
-/// Depths at one node closer than this, in samples, are one depth given twice.
+/// Depths at one node that differ by less than this, in samples, are the same depth given twice.
 const SAME_DEPTH: f64 = 0.05;
 
 /// Sheets, and how they came about.
@@ -163,7 +164,8 @@ fn from_points(
     Ok(Nodes { sheets, gridding, outside: placed.outside, multivalued, notes, warnings: Vec::new() })
 }
 
-/// Points on their nodes; with several depths at a node, several sheets. Also counts such nodes, and repeated depths.
+/// Points on their nodes; with several depths at a node, several sheets. Also counts such nodes, and repeated
+/// depths.
 fn on_lattice(lattice: &Lattice, points: &[RawPoint], tolerance: f32) -> (Vec<Sheet>, usize, usize) {
     let [nu, nv] = lattice.grid.count;
     let own: Vec<(usize, &RawPoint)> = lattice

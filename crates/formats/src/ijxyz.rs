@@ -1,4 +1,5 @@
-//! IJXYZ of OpenWorks and DecisionSpace: `inline crossline x y z` a line, in any order, under `@` and `#` comments.
+//! IJXYZ of OpenWorks and DecisionSpace: `inline crossline x y z` a line, in any order, under `@` and `#`
+//! comments.
 //!
 //! `#Horizon_name___-> name` and `#Export_Z_Unit___-> unit` state name and unit.
 

@@ -1,7 +1,8 @@
 //! Irap (RMS) binary: the same rotated grid as Irap ASCII, in big-endian Fortran records.
 //!
-//! Records `[length][payload][length]`: 32 bytes `i −996, i NROW, f XORI, XMAX, YORI, YMAX, XINC, YINC`; 16 bytes
-//! `i NCOL, f ROTATION, X0, Y0`; 28 bytes of zeros; then values as f32, i fastest, in records of any length. Undefined from 1e30 on.
+//! Records `[length][payload][length]`: 32 bytes `i −996, i NROW, f XORI, XMAX, YORI, YMAX, XINC, YINC`; 16
+//! bytes `i NCOL, f ROTATION, X0, Y0`; 28 bytes of zeros; then values as f32, i fastest, in records of any
+//! length. Undefined from 1e30 on.
 
 use super::irap::{Header, transposed};
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};

@@ -1,11 +1,13 @@
-//! Finds the regular lattice that points lie on: a decimation of the survey's traces, or one of its own, rotated at will.
+//! Finds the regular lattice that points lie on: a decimation of the survey's traces, or one of its own,
+//! rotated at will.
 //!
-//! **Of the survey**: all points within 0.03 bins of traces; the step is the greatest common divisor of their indices.
-//! **Own**: the most frequent vector to the nearest neighbour is the first axis, the most frequent to the nearest one not
-//! in line with it the second. Integer coordinates are then given outwards from the middle, with the axes fitted anew by
-//! least squares each time the number of points has doubled; every point must end within 0.1 of a node.
-//! Either way the points must fill the lattice: on average at least half of a point's four neighbours exist. Points thinned
-//! at random lie on a lattice too, but as nodes between holes they would be of no use: they count as scattered.
+//! **Of the survey**: all points within 0.03 bins of traces; the step is the greatest common divisor of their
+//! indices. **Own**: the most frequent vector to the nearest neighbour is the first axis, the most frequent
+//! to the nearest one not in line with it the second. Integer coordinates are then given outwards from the
+//! middle, with the axes fitted anew by least squares each time the number of points has doubled; every point
+//! must end within 0.1 of a node. Either way the points must fill the lattice: on average at least half of a
+//! point's four neighbours exist. Points thinned at random lie on a lattice too, but as nodes between holes
+//! they would be of no use: they count as scattered.
 
 use glam::{DMat2, DVec2};
 use std::collections::{HashMap, HashSet};
@@ -193,7 +195,8 @@ fn basis(points: &[DVec2]) -> Option<(DVec2, DVec2)> {
     Some((a, b))
 }
 
-/// The mean of the largest group of vectors equal up to sign and a tenth of their length; at least 40 % of all.
+/// The mean of the largest group of vectors equal up to sign and a tenth of their length; at least 40 % of
+/// all.
 fn most_frequent(vectors: &[DVec2], of: usize) -> Option<DVec2> {
     let upward =
         |d: DVec2| if d.y < -1e-3 * d.length() || (d.y.abs() <= 1e-3 * d.length() && d.x < 0.0) { -d } else { d };
@@ -259,7 +262,8 @@ fn fit(points: &[DVec2], a: DVec2, b: DVec2) -> Option<(DVec2, DMat2)> {
     }
 }
 
-/// Turns the axes so that u runs most like the survey's inline index and v like its crossline index, and starts nodes at 0.
+/// Turns the axes so that u runs most like the survey's inline index and v like its crossline index, and
+/// starts nodes at 0.
 fn turned(origin: DVec2, axes: DMat2, nodes: &[[i64; 2]], geometry: &SurveyGeometry) -> (DVec2, DMat2, Vec<[i64; 2]>) {
     let along = |axis: DVec2, like: DVec2| (axis.dot(like) / (axis.length() * like.length())).abs();
     let swap = along(axes.x_axis, geometry.inline_vector) + along(axes.y_axis, geometry.crossline_vector)

@@ -1,15 +1,39 @@
-//! Files of horizons and faults, in and out, and of wells ([`well`]).
+//! Reads and writes files of horizons and faults, and reads files of wells ([`well`]).
 //!
-//! SEG-Y is read by the crate `segy`: the two share nothing but the nouns of [`survey`] and what can be stated about a
-//! file ([`survey::remedy`]).
+//! SEG-Y is read by the crate `segy`; the two crates share only the types of [`survey`].
 //!
 //! Deliberately absent: volumes, the store, projects.
 //!
-//! A file goes through the same steps whatever its format: its signature names the format ([`Format`], with the evidence in
-//! the report), its reader hands over numbers as they are, these are converted ([`ImportOptions`] states the order), placed on
-//! nodes, split into single-valued sheets, and checked against the survey. The [`ImportReport`] says what was read, assumed
-//! and left out. A surface beside the survey, above or below it, or with a unit or sign that cannot be right is an
-//! error, never a surprise; nothing is returned or written then.
+//! Files of every format go through the same steps:
+//!
+//! 1. The signature of the file determines its [`Format`]; the report has the evidence.
+//! 2. The reader of the format returns the numbers as they are in the file.
+//! 3. The numbers are converted, in the order that [`ImportOptions`] states.
+//! 4. They are placed on nodes and split into single-valued sheets.
+//! 5. The result is checked against the survey.
+//!
+//! The [`ImportReport`] says what was read, assumed and left out. A surface beside, above or below the
+//! survey, or one with an implausible unit or sign, is an error, and nothing is imported.
+//!
+//! ```
+//! use formats::{Format, ImportOptions};
+//! use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry, VerticalUnit};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("chalk.csv");
+//! let geometry = SurveyGeometry::regular([3, 3, 101], 25.0, 4.0, VerticalUnit::Metres);
+//! let depths = vec![100.0, 110.0, 120.0, 105.0, 115.0, 125.0, 110.0, 120.0, 130.0];
+//! let sheet = Sheet::new(NodeGrid::of_survey(&geometry), depths, Quality::Picked);
+//! let chalk = Horizon { name: "chalk".into(), sheets: vec![sheet] };
+//! let written = formats::write_horizon(&path, &chalk, &geometry, Format::Csv)?;
+//! assert_eq!(written.nodes, 9);
+//!
+//! let read = formats::read_horizons(&path, &geometry, &ImportOptions::default())?;
+//! let (horizon, report) = &read[0];
+//! assert_eq!(horizon.sheets[0].depth, chalk.sheets[0].depth);
+//! assert_eq!(report.format.value, Format::Csv);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 //!
 //! | format | horizon in | fault in | horizon out | fault out |
 //! |---|---|---|---|---|
@@ -93,6 +117,12 @@ use text::SourceFile;
 mod tests;
 
 /// A file format of horizons or faults.
+///
+/// ```
+/// # use formats::Format;
+/// assert_eq!(Format::from_name("TSurf"), Some(Format::Tsurf));
+/// assert!(Format::all().all(|format| Format::from_name(format.name()) == Some(format)));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
@@ -129,7 +159,7 @@ pub enum Format {
     ZmapPoints,
 }
 
-/// What a file holds, or is wanted to hold.
+/// The kind of surface that a file holds, or that is to be read from it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SurfaceKind {
@@ -152,7 +182,7 @@ type Reader = fn(&SourceFile, &ReadContext<'_>) -> Result<Vec<RawSurface>, Forma
 type HorizonWriter = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::Failure>;
 type FaultWriter = fn(&mut dyn Write, &Fault, &SurveyGeometry) -> Result<(), write::Failure>;
 
-/// What the program knows of a format.
+/// The capabilities of a format.
 struct Codec {
     format: Format,
     /// The word of the `--format` option.
@@ -188,7 +218,7 @@ const CODECS: &[Codec] = &[
 
 impl Format {
     fn codec(self) -> &'static Codec {
-        // Every variant has its line in the table; a test makes sure.
+        // Every variant has its line in the table, which a test verifies.
         CODECS.iter().find(|c| c.format == self).unwrap_or(&csv::CODEC)
     }
 
@@ -223,7 +253,7 @@ fn names(select: impl Fn(&Codec) -> bool) -> String {
     CODECS.iter().filter(|c| select(c)).map(|c| c.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Opens a file, settles its format and reads its surfaces as they are, of those asked for.
+/// Opens a file, determines its format and reads the selected surfaces without conversion.
 fn read_raw(
     path: &Path,
     geometry: Option<&SurveyGeometry>,
@@ -235,7 +265,7 @@ fn read_raw(
     Ok((source, format, surfaces))
 }
 
-/// Settles the format of a file in memory and reads its surfaces as they are, of those asked for.
+/// Determines the format of a file in memory and reads the selected surfaces without conversion.
 fn read_source(
     source: &SourceFile,
     geometry: Option<&SurveyGeometry>,
@@ -274,7 +304,7 @@ fn read_source(
     Ok((format, surfaces))
 }
 
-/// The surfaces asked for: of the name selected; of several, the one of the name given; else all.
+/// The surfaces to import: those of the selected name; of several, the one of the given name; otherwise all.
 fn selected(
     source: &SourceFile,
     surfaces: Vec<RawSurface>,
@@ -299,19 +329,20 @@ fn selected(
     Ok(found)
 }
 
-/// The name of a surface: the one given, else its own, else the file's.
+/// The name of a surface: the one given, or else its own, or else the file name without its extension.
 fn name_of(raw: &RawSurface, source: &SourceFile, options: &ImportOptions) -> String {
     let own = raw.name.as_deref().map(str::trim).filter(|n| !n.is_empty());
     options.name.clone().or_else(|| own.map(String::from)).unwrap_or_else(|| source.stem())
 }
 
-/// Reads the horizons of a file onto nodes over the survey.
+/// Reads the horizons of a file and places them on nodes over the survey.
 ///
 /// # Errors
-/// [`FormatError`] when the file cannot be read, does not fit the survey, or is unclear; the text says what to do.
+/// [`FormatError`] when the file cannot be read, does not fit the survey, or is ambiguous. Its text says what
+/// to do.
 ///
 /// # Cost
-/// O(n log n) in points or nodes; the file is held in memory.
+/// O(n log n) in the count of points or nodes. The file is held in memory.
 pub fn read_horizons(
     path: &Path,
     geometry: &SurveyGeometry,
@@ -320,7 +351,18 @@ pub fn read_horizons(
     horizons_of(&SourceFile::open(path)?, geometry, options)
 }
 
-/// As [`read_horizons`], of bytes in memory; `path` gives the extension and is named in errors.
+/// As [`read_horizons`], from bytes in memory; `path` gives the extension and is named in errors.
+///
+/// ```
+/// # use formats::{ImportOptions, parse_horizons};
+/// # use survey::{SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry::regular([2, 2, 101], 25.0, 4.0, VerticalUnit::Metres);
+/// let table = b"inline,crossline,z\n1,1,100\n1,2,110\n2,1,120\n2,2,130\n";
+/// let read = parse_horizons("top.csv".as_ref(), table, &geometry, &ImportOptions::default())?;
+/// assert_eq!(read[0].0.name, "top");
+/// assert_eq!(read[0].0.sheets[0].depth, [100.0, 110.0, 120.0, 130.0]);
+/// # Ok::<(), formats::FormatError>(())
+/// ```
 ///
 /// # Errors
 /// As [`read_horizons`].
@@ -348,10 +390,12 @@ fn horizons_of(
         .collect()
 }
 
-/// Writes a horizon; beside the target first, then renamed. A rotated grid is resampled for formats that hold none.
+/// Writes a horizon under a temporary name, then renames the file. A rotated grid is resampled for formats
+/// that cannot represent it.
 ///
 /// # Errors
-/// [`FormatError::NotRepresentable`] when the format cannot hold it, [`FormatError::Io`].
+/// [`FormatError::Unsupported`] and [`FormatError::NotRepresentable`] when the format cannot hold the
+/// surface; [`FormatError::Io`] when the file cannot be written.
 pub fn write_horizon(
     path: &Path,
     horizon: &Horizon,
@@ -361,7 +405,7 @@ pub fn write_horizon(
     write_horizon_as(path, horizon, geometry, format, &ExportOptions::default())
 }
 
-/// As [`write_horizon`], as told.
+/// As [`write_horizon`], with options.
 ///
 /// # Errors
 /// As [`write_horizon`].
@@ -384,7 +428,8 @@ pub fn write_horizon_as(
     Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum(), notes })
 }
 
-/// Reads the faults of a file as triangulated surfaces: TSurf as it is, sticks joined by triangles, points fitted.
+/// Reads the faults of a file as triangulated surfaces: triangles of a TSurf file are kept, sticks are joined
+/// by triangles, and a surface is fitted to points.
 ///
 /// # Errors
 /// As [`read_horizons`].
@@ -396,7 +441,7 @@ pub fn read_fault(
     faults_of(&SourceFile::open(path)?, geometry, options)
 }
 
-/// As [`read_fault`], of bytes in memory; `path` gives the extension and is named in errors.
+/// As [`read_fault`], from bytes in memory; `path` gives the extension and is named in errors.
 ///
 /// # Errors
 /// As [`read_horizons`].
@@ -424,7 +469,18 @@ fn faults_of(
         .collect()
 }
 
-/// The surface through sticks (world X, Y and vertical value) of at least two places each; `None` when they span no area.
+/// The fault surface through sticks (world X, Y and vertical value). It needs two sticks of at least two
+/// nodes each; `None` when there are fewer, or when they span no area.
+///
+/// ```
+/// # use glam::DVec3;
+/// # use survey::{SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry::regular([11, 11, 101], 25.0, 4.0, VerticalUnit::Metres);
+/// let stick = |y: f64| vec![DVec3::new(50.0, y, 100.0), DVec3::new(60.0, y, 300.0)];
+/// let fault = formats::fault_of_sticks("F1", &[stick(0.0), stick(200.0)], &geometry).unwrap();
+/// assert_eq!((fault.mesh.vertices.len(), fault.mesh.triangles.len()), (4, 2));
+/// assert!(formats::fault_of_sticks("F2", &[stick(0.0)], &geometry).is_none());
+/// ```
 pub fn fault_of_sticks(name: &str, sticks: &[Vec<DVec3>], geometry: &SurveyGeometry) -> Option<Fault> {
     if sticks.len() < 2 || sticks.iter().any(|stick| stick.len() < 2) {
         return None;
@@ -438,7 +494,7 @@ pub fn fault_of_sticks(name: &str, sticks: &[Vec<DVec3>], geometry: &SurveyGeome
     any.then(|| Fault { name: name.to_owned(), mesh, truncated_by: None })
 }
 
-/// Writes a fault; beside the target first, then renamed.
+/// Writes a fault under a temporary name, then renames the file.
 ///
 /// # Errors
 /// As [`write_horizon`].

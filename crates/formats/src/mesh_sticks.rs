@@ -7,10 +7,11 @@ use survey::mesh::TriangleMesh;
 /// Most sticks that are cut.
 const MAX_STICKS: usize = 60;
 
-/// Cuts a mesh (world X, Y in m, vertical value; `metres` per vertical unit) into sticks, top first, ordered along strike.
+/// Cuts a mesh (world X, Y in m, vertical value; `metres` per vertical unit) into sticks, top first, ordered
+/// along strike.
 ///
-/// The planes are about as far apart as the mesh's edges are long, the outermost a hundredth of that within its ends. Where
-/// the mesh has two parts on a plane, the stick is the longer one.
+/// The planes are about as far apart as the mesh's edges are long, the outermost a hundredth of that within
+/// its ends. Where the mesh has two parts on a plane, the stick is the longer one.
 pub(super) fn cut(mesh: &TriangleMesh, metres: f64) -> Vec<Vec<DVec3>> {
     let Some(strike) = strike(mesh) else { return Vec::new() };
     let along: Vec<f64> = mesh.vertices.iter().map(|v| v.truncate().dot(strike)).collect();

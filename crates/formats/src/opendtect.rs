@@ -1,9 +1,10 @@
 //! OpendTect ASCII: horizons and fault sticks.
 //!
-//! The columns are listed on one line (`# "X" "Y" "Inline" "Crossline" "Z" …`), one a line (`# 1: X`), or nowhere; a line of
-//! dashes ends the header. Rows are cut by tabs; a bulk export has the quoted name of the horizon or fault before the
-//! columns, so one file may hold several. Magnitudes from 1e29 on are undefined (the default is 1e30). Z is in the unit the
-//! exporter chose, which the file does not state. Fault sticks have the stick's and the node's number after Z.
+//! The columns are listed on one line (`# "X" "Y" "Inline" "Crossline" "Z" …`), one a line (`# 1: X`), or
+//! nowhere; a line of dashes ends the header. Rows are cut by tabs; a bulk export has the quoted name of the
+//! horizon or fault before the columns, so one file may hold several. Magnitudes from 1e29 on are undefined
+//! (the default is 1e30). Z is in the unit the exporter chose, which the file does not state. Fault sticks
+//! have the stick's and the node's number after Z.
 
 use super::columns::{self, ColumnLayout};
 use super::mesh_sticks;

@@ -1,4 +1,4 @@
-//! What the user says about a file: format, vertical unit, sign, factor, null, name and columns.
+//! What the user states about a file: format, vertical unit, sign, factor, null value, name and columns.
 //!
 //! A vertical value of the file becomes one of the survey in this order:
 //!
@@ -16,7 +16,7 @@ use super::column::Column;
 use super::unit::{ZPositive, ZUnit};
 use serde::{Deserialize, Serialize};
 
-/// What places a point that has both line numbers and coordinates.
+/// Whether line numbers or coordinates place a point that has both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PlaceBy {
@@ -37,7 +37,13 @@ pub enum ValueOrder {
     Rows,
 }
 
-/// What the user says about a file; everything has a default.
+/// What the user states about a file; everything has a default.
+///
+/// ```
+/// # use formats::{ImportOptions, ZUnit};
+/// let in_feet = ImportOptions { z_unit: Some(ZUnit::Feet), ..ImportOptions::default() };
+/// assert_eq!((in_feet.z_factor, in_feet.z_positive), (1.0, None));
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct ImportOptions {
@@ -51,15 +57,19 @@ pub struct ImportOptions {
     pub z_factor: f64,
     /// A value that marks nodes without data, as it is in the file.
     pub null: Option<f64>,
-    /// Name of the surface; `None` = the file's own, else the file name without extension. When the file holds several, it chooses the one of this name.
+    /// Name of the surface; `None` = the file's own, else the file name without extension. When the file
+    /// holds several surfaces, the one of this name is read.
     pub name: Option<String>,
     /// Name of the one to read when the file holds several; `None` = all.
     pub select: Option<String>,
-    /// The columns of a table, in order, instead of what its header says; `None` = by the header or by what fits the survey.
+    /// The columns of a table, in order, instead of what its header says; `None` = by the header or by what
+    /// fits the survey.
     pub columns: Option<Vec<Column>>,
-    /// What places points that have both line numbers and X, Y; `None` = lines, after a check that both agree.
+    /// What places points that have both line numbers and X, Y; `None` = lines, after a check that both
+    /// agree.
     pub place_by: Option<PlaceBy>,
-    /// Scattered points: where no circle smaller than this, m, reaches three of them, the surface has a hole; `None` = twice the typical distance of neighbouring points.
+    /// Scattered points: a triangle whose circumcircle has a larger radius than this, m, becomes a hole.
+    /// `None` = twice the typical distance of neighbouring points.
     pub gap_m: Option<f64>,
     /// CPS-3: the order of the values; `None` = the smoother of the two, with the evidence in the report.
     pub value_order: Option<ValueOrder>,

@@ -1,8 +1,10 @@
-//! Fault polygons: closed outlines of the gap a fault leaves in a horizon, one after the other in a file of points.
+//! Fault polygons: closed outlines of the gap a fault leaves in a horizon, one after the other in a file of
+//! points.
 //!
-//! The two long sides are where the fault cuts the horizon in its footwall and its hanging wall, so the surface that the outline
-//! bounds is a strip of the fault itself. It is triangulated in map view (Delaunay triangles with their middle inside the outline):
-//! exact for every fault that is not overhanging. Each outline is a fault of its own, as nothing in the file says which belong together.
+//! The two long sides are where the fault cuts the horizon in its footwall and its hanging wall, so the
+//! surface that the outline bounds is a strip of the fault itself. It is triangulated in map view (Delaunay
+//! triangles with their middle inside the outline): exact for every fault that is not overhanging. Each
+//! outline becomes a separate fault, because the file does not say which outlines belong together.
 
 use super::raw::{RawPoint, RawShape, RawSurface};
 use super::scatter;

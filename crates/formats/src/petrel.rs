@@ -1,7 +1,8 @@
 //! Petrel points with attributes, and well tops as points.
 //!
-//! `# Unit in depth: ms`, `VERSION 1`, `BEGIN HEADER`, a column name a line (some with a type, `INT,Inline`), `END HEADER`, rows.
-//! Petrel usually writes Z negative downwards, which the file does not state: the sign is an option. −999 is its null.
+//! `# Unit in depth: ms`, `VERSION 1`, `BEGIN HEADER`, a column name per line (some with a type,
+//! `INT,Inline`), `END HEADER`, rows. Petrel usually writes Z negative downwards, which the file does not
+//! state: the sign is an option. −999 is its null.
 
 use super::columns;
 use super::raw::{RawSurface, ReadContext};

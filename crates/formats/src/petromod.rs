@@ -1,8 +1,9 @@
 //! PetroMod binary maps: a rotated regular grid.
 //!
-//! Four bytes `23 03 19 64`, then `Key=value` pairs cut by commas and ended by a zero byte (`GridNoX`, `GridStepX`, `OriginX`,
-//! `RotationAngle`, `RotationOriginX`, `Undefined` …), then GridNoX·GridNoY big-endian f32, Y fastest. The origin is turned about the rotation origin
-//! by the angle, degrees anticlockwise. `DataUnitZ` is a code of the program's own and not interpreted.
+//! Four bytes `23 03 19 64`, then `Key=value` pairs cut by commas and ended by a zero byte (`GridNoX`,
+//! `GridStepX`, `OriginX`, `RotationAngle`, `RotationOriginX`, `Undefined` …), then GridNoX·GridNoY
+//! big-endian f32, Y fastest. The origin is turned about the rotation origin by the angle, degrees
+//! anticlockwise. `DataUnitZ` is a code of the program's own and not interpreted.
 
 use super::irap::Header;
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};

@@ -1,4 +1,5 @@
-//! Points to voxel x, y: by their line numbers, by their coordinates, or by whichever of the two is right.
+//! Places points at voxel x, y: by their line numbers, by their coordinates, or by whichever of the two fits
+//! the survey.
 
 use super::FormatError;
 use super::columns::is_inside;
@@ -32,8 +33,9 @@ pub(super) fn voxel_xy(geometry: &SurveyGeometry, world: DVec2) -> DVec2 {
 
 /// Places every point.
 ///
-/// A point with both line numbers and X, Y is placed by its lines when most such points agree to half a bin. When they
-/// do not, the reading that lies over the survey is taken, and said so; when both do, the user is asked.
+/// A point with both line numbers and X, Y is placed by its lines when most such points agree to half a bin.
+/// When they do not, the reading that lies over the survey is taken and reported; when both do, the user is
+/// asked.
 ///
 /// # Errors
 /// [`FormatError::OutsideSurvey`] when no point lies over the survey, [`FormatError::LinesDisagree`].
@@ -108,7 +110,8 @@ fn corners(geometry: &SurveyGeometry) -> [DVec2; 4] {
     [(0.0, 0.0), (x, 0.0), (0.0, y), (x, y)].map(|(x, y)| world_xy(geometry, DVec2::new(x, y)))
 }
 
-/// The error for a surface that lies beside the survey in world coordinates, with a hint at what would bring it there.
+/// The error for a surface that lies beside the survey in world coordinates, with a hint at what would bring
+/// it there.
 pub(super) fn outside_by_world(
     file: &Path,
     name: &str,

@@ -1,10 +1,11 @@
-//! Scattered fault points to a triangulated surface: the best plane, and a smoothed height over it.
+//! Fits a triangulated surface to scattered fault points: the best plane, and a smoothed height above it.
 //!
-//! The plane is that of the two largest principal axes of the points in metric space. Points are averaged in square cells of
-//! it (at most 40 along the longer side, none smaller than the points are apart); the height at a cell's mean is that
-//! of the plane fitted there by least squares with Gaussian weights (moving least squares, σ = 1 cell), which keeps planes
-//! exact and averages noise. The cells are joined by Delaunay triangles; those with a side over three times the
-//! median are left out, so that the surface ends where the points do.
+//! The plane is that of the two largest principal axes of the points in metric space. Points are averaged in
+//! square cells of it (at most 40 along the longer side, none smaller than the points are apart); the height
+//! at a cell's mean is that of the plane fitted there by least squares with Gaussian weights (moving least
+//! squares, σ = 1 cell), which keeps planes exact and averages noise. The cells are joined by Delaunay
+//! triangles; those with a side over three times the median are left out, so that the surface ends where the
+//! points do.
 
 use super::scatter;
 use glam::{DMat3, DVec2, DVec3};
@@ -67,7 +68,8 @@ fn eigen(mut m: DMat3) -> ([f64; 3], [DVec3; 3]) {
     ([m.x_axis.x, m.y_axis.y, m.z_axis.z], [v.x_axis, v.y_axis, v.z_axis])
 }
 
-/// Fits a surface to points (world, vertical value; `metres` per vertical unit); also the RMS distance of the points from it, m.
+/// Fits a surface to points (world, vertical value; `metres` per vertical unit); also the RMS distance of the
+/// points from it, m.
 ///
 /// `None` for fewer than three points and for points along a line.
 pub(super) fn fit(points: &[DVec3], metres: f64) -> Option<(TriangleMesh, f64)> {

@@ -2,12 +2,13 @@
 
 use glam::{DVec2, DVec3};
 
-/// Nodes this far outside a triangle still belong to it: coordinates in files are rounded, and a mesh from a grid has its
-/// rim exactly on nodes.
+/// Nodes this far outside a triangle still belong to it: coordinates in files are rounded, and a mesh from a
+/// grid has its rim exactly on nodes.
 const RIM: f64 = 1e-3;
 
-/// Calls `visit(u, v, z)` for every node of a grid of `count` that lies in the triangle's projection along z, its rim
-/// included; z is interpolated linearly. Corners are in node units. Triangles that are vertical or degenerate have no nodes.
+/// Calls `visit(u, v, z)` for every node of a grid of `count` that lies in the triangle's projection along z,
+/// its rim included; z is interpolated linearly. Corners are in node units. Triangles that are vertical or
+/// degenerate have no nodes.
 ///
 /// # Cost
 /// The nodes of the triangle's bounding box that lie in the grid.
@@ -30,7 +31,8 @@ pub(super) fn triangle(corners: [DVec3; 3], count: [usize; 2], visit: &mut dyn F
         // Both may be far outside; comparing as floats keeps the casts in range.
         if first > last { 0..0 } else { first as usize..last as usize + 1 }
     };
-    // A weight falls by 1 over the corner's height above the opposite side; in a sliver that is soon, so it is limited.
+    // A weight falls by 1 over the corner's height above the opposite side; in a sliver that is soon, so it
+    // is limited.
     let share = |side: DVec2| (RIM * side.length() / area.abs()).min(0.05);
     let (slack_a, slack_b, slack_c) = (share(ac - ab), share(ac), share(ab));
     for u in range(low.x, high.x, count[0]) {

@@ -1,4 +1,4 @@
-//! What a format's reader hands over: names and numbers as they are in the file, before any conversion.
+//! The result of a format's reader: names and numbers as they are in the file, before any conversion.
 
 use super::SurfaceKind;
 use super::options::ImportOptions;
@@ -9,7 +9,7 @@ use survey::horizon::{NodeGrid, Quality};
 use survey::mesh::TriangleMesh;
 use survey::remedy::Note;
 
-/// What a reader may look at beside its file.
+/// What a reader may use besides its file.
 pub(super) struct ReadContext<'a> {
     /// The survey, when there is one; only to tell columns apart.
     pub geometry: Option<&'a SurveyGeometry>,

@@ -1,4 +1,4 @@
-//! What was read, what was assumed and what was left out: shown to the user after every import.
+//! The report that the user sees after every import: what was read, what was assumed and what was left out.
 
 use super::unit::{ZPositive, ZUnit};
 use super::{Format, SurfaceKind};
@@ -12,11 +12,11 @@ use survey::remedy::Note;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Provenance {
-    /// The user said so.
+    /// The user stated it.
     Option,
-    /// The file says so, with the words that say it.
+    /// The file states it, in these words.
     File(String),
-    /// Nobody said so.
+    /// It was assumed.
     Assumed,
 }
 
@@ -50,7 +50,7 @@ impl Provenance {
     }
 }
 
-/// How the values came onto nodes.
+/// How values were placed on nodes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Gridding {

@@ -1,15 +1,16 @@
-//! Scattered points onto the survey's traces, over the Delaunay triangles of the points.
+//! Interpolates scattered points onto the survey's traces, over the Delaunay triangles of the points.
 //!
-//! Inside a triangle the surface is the cubic with the values and gradients of its corners (Bézier form; the middle
-//! coefficient ¼ of the edges' sum − ⅙ of the corners' keeps quadratics exact). It is continuous everywhere and smooth at the points, so
-//! that no facets show. A point's gradient is the plane through it that fits its neighbours best by the sum of distances
-//! (weighted 1/d², reweighted by the residual): neighbours beyond a fault are outvoted instead of averaged in.
-//! Planes are reproduced exactly.
+//! Inside a triangle the surface is the cubic with the values and gradients of its corners (Bézier form; the
+//! middle coefficient ¼ of the edges' sum − ⅙ of the corners' keeps quadratics exact). It is continuous
+//! everywhere and smooth at the points, so that no facets show. A point's gradient is the plane through it
+//! that fits its neighbours best by the sum of distances (weighted 1/d², reweighted by the residual):
+//! neighbours beyond a fault are outvoted instead of averaged in. Planes are reproduced exactly.
 //!
-//! A triangle whose circumcircle is larger than `gap` in radius is left out (an alpha shape; Edelsbrunner, Kirkpatrick & Seidel
-//! 1983): so are bays of the points' outline, and gaps in their middle, and the slivers along their convex hull. Nothing is
-//! extrapolated. A trace with a point within half a bin is `Picked`, others are `Filled`.
-//! The default gap is twice the median length of a triangle's side, which bridges random thinning and keeps real gaps.
+//! A triangle whose circumcircle is larger than `gap` in radius is left out (an alpha shape; Edelsbrunner,
+//! Kirkpatrick & Seidel 1983): so are bays of the points' outline, and gaps in their middle, and the slivers
+//! along their convex hull. Nothing is extrapolated. A trace with a point within half a bin is `Picked`,
+//! others are `Filled`. The default gap is twice the median length of a triangle's side, which bridges random
+//! thinning and keeps real gaps.
 
 use super::placement::world_xy;
 use super::raster;
@@ -21,8 +22,8 @@ use std::collections::HashMap;
 use survey::geometry::{SurveyGeometry, VerticalUnit};
 use survey::horizon::{NodeGrid, Quality, Sheet};
 
-/// How far the surface may leave the range of a triangle's corners, as a share of that range: enough for the crest of a fold, and
-/// no ringing beside a fault.
+/// How far the surface may leave the range of a triangle's corners, as a share of that range: enough for the
+/// crest of a fold, and no ringing beside a fault.
 const OVERSHOOT: f64 = 0.25;
 
 /// Points gridded onto the survey's traces.
@@ -62,7 +63,8 @@ impl Outliers {
 /// How many times the usual deviation (1.4826 · median |residual|) an outlier stands out.
 const OUTLIER: f64 = 10.0;
 
-/// Points further from the median of their neighbours than [`OUTLIER`] times what is usual; also than ten tolerances.
+/// Points further from the median of their neighbours than [`OUTLIER`] times what is usual; also than ten
+/// tolerances.
 fn outliers(world: &[DVec2], values: &NodeValues, neighbours: &[Vec<usize>], tolerance: f32) -> Option<Outliers> {
     let z = |n: usize| f64::from(values.z[values.offsets[n] as usize]);
     let residual = |n: usize| {
@@ -167,7 +169,8 @@ pub(super) fn grid(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: Op
     Gridded { sheets, gap_m, multivalued: values.multivalued(), repeated, outliers }
 }
 
-/// A gradient per point, m⁻¹, from its neighbours along triangle sides no longer than `gap_m`; 0 without neighbours.
+/// A gradient per point, m⁻¹, from its neighbours along triangle sides no longer than `gap_m`; 0 without
+/// neighbours.
 fn gradients(world: &[DVec2], z: &[f32], triangles: &[[usize; 3]], gap_m: f64) -> Vec<DVec2> {
     let mut neighbours: Vec<Vec<usize>> = vec![Vec::new(); world.len()];
     for t in triangles {
@@ -194,7 +197,8 @@ fn gradients(world: &[DVec2], z: &[f32], triangles: &[[usize; 3]], gap_m: f64) -
                 normal += DMat2::from_cols(*d * d.x, *d * d.y) * *weight;
                 right += *d * (*rise * *weight);
             }
-            // Weights of 1/d² make the sum of squares about the count of neighbours; along a line the slope across stays 0.
+            // Weights of 1/d² make the sum of squares about the count of neighbours; along a line the slope
+            // across stays 0.
             if normal.determinant() <= 1e-4 * (normal.x_axis.x + normal.y_axis.y).powi(2) {
                 return DVec2::ZERO;
             }
@@ -318,7 +322,8 @@ mod tests {
 
     #[test]
     fn a_step_does_not_ring() {
-        // A fault at x = 50 with a throw of 30: only the triangles across it may leave the two levels, by a quarter of the throw.
+        // A fault at x = 50 with a throw of 30: only the triangles across it may leave the two levels, by a
+        // quarter of the throw.
         let step = |x: f64, _: f64| if x < 50.0 { 400.0 } else { 430.0 };
         let geometry = SurveyGeometry::regular([100, 100, 100], 10.0, 1.0, VerticalUnit::Metres);
         let points: Vec<_> = random_points(900).into_iter().map(|p| (p, step(p.x, p.y) as f32)).collect();

@@ -1,10 +1,11 @@
-//! Several depths at one node to single-valued sheets, each continuous in itself.
+//! Splits several depths at one node into single-valued sheets, each of which is continuous.
 //!
-//! Across a reverse fault a horizon has two depths at one trace. Which of the two goes on into which neighbour is decided by
-//! continuity: (a) values at nodes with several depths are joined with their neighbours' in order of growing
-//! depth difference, never so that one group has two values at a node; (b) every other node goes to the group it is reached
-//! from over the smallest sum of depth differences (Dijkstra); (c) groups that meet are joined again, smoothest contact
-//! first, when they have no node in common; (d) what is left is packed into as few sheets as possible, the largest first.
+//! Across a reverse fault a horizon has two depths at one trace. Which of the two goes on into which
+//! neighbour is decided by continuity: (a) values at nodes with several depths are joined with their
+//! neighbours' in order of growing depth difference, never so that one group has two values at a node; (b)
+//! every other node goes to the group it is reached from over the smallest sum of depth differences
+//! (Dijkstra); (c) groups that meet are joined again, smoothest contact first, when they have no node in
+//! common; (d) what is left is packed into as few sheets as possible, the largest first.
 
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap, HashSet};
@@ -17,8 +18,8 @@ pub(super) struct NodeValues {
 }
 
 impl NodeValues {
-    /// Groups (node, value) pairs by node; values of a node closer than `tolerance` become their mean. Returns, for every
-    /// pair, the index of its value in `z`.
+    /// Groups (node, value) pairs by node; values of a node closer than `tolerance` become their mean.
+    /// Returns, for every pair, the index of its value in `z`.
     pub fn group(nodes: usize, pairs: &[(usize, f32)], tolerance: f32) -> (Self, Vec<u32>) {
         let mut order: Vec<u32> = (0..pairs.len() as u32).collect();
         order.sort_by(|&a, &b| {
@@ -99,7 +100,8 @@ struct Claim {
 
 impl Ord for Claim {
     fn cmp(&self, other: &Self) -> Ordering {
-        // The heap's greatest is the cheapest; ties by number, so that the result does not depend on the heap.
+        // The heap's greatest is the cheapest; ties by number, so that the result does not depend on the
+        // heap.
         other.cost.total_cmp(&self.cost).then(other.element.cmp(&self.element)).then(other.group.cmp(&self.group))
     }
 }
@@ -207,8 +209,8 @@ pub(super) fn split(values: &NodeValues, neighbours: &dyn Fn(usize) -> Vec<usize
     pack(&mut groups, &mut label)
 }
 
-/// Packs groups into sheets, the largest first, and answers the sheet of every value; values no group reaches go to the
-/// first sheet.
+/// Packs groups into sheets, the largest first, and returns the sheet of every value; values that no group
+/// reaches go to the first sheet.
 fn pack(groups: &mut Groups, label: &mut [u32]) -> Vec<u16> {
     let mut sizes: HashMap<u32, usize> = HashMap::new();
     for l in label.iter_mut().filter(|l| **l != NO_GROUP) {
@@ -257,7 +259,8 @@ pub(super) fn grid_neighbours(count: [usize; 2]) -> impl Fn(usize) -> Vec<usize>
 mod tests {
     use super::*;
 
-    /// A ramp overthrust onto itself: for u < 12 the footwall at 100 + u, for u ≥ 8 the hanging wall at 60 + u.
+    /// A ramp overthrust onto itself: for u < 12 the footwall at 100 + u, for u ≥ 8 the hanging wall at 60 +
+    /// u.
     fn overthrust() -> (NodeValues, Vec<u32>, Vec<(usize, f32)>) {
         let count = [20, 6];
         let mut pairs = Vec::new();

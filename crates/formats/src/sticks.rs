@@ -1,10 +1,11 @@
-//! Fault sticks to a triangulated surface.
+//! Joins fault sticks to a triangulated surface.
 //!
-//! Sticks are ordered along strike: of the order in the file, the order along the main axis of their middles and the
-//! chains of nearest neighbours from either end, the one with the shortest way through the middles is taken (the file's own
-//! when it is as good). Each is turned to run like the one before. Between two neighbours the triangles are those whose
-//! sides across have the smallest total length (dynamic programming over the two node counts), which copes with
-//! any difference in count, length and spacing. All lengths are metric.
+//! Sticks are ordered along strike: of the order in the file, the order along the main axis of their middles
+//! and the chains of nearest neighbours from either end, the one with the shortest way through the middles is
+//! taken (the file's own when it is as good). Each is turned to run like the one before. Between two
+//! neighbours the triangles are those whose sides across have the smallest total length (dynamic programming
+//! over the two node counts), which copes with any difference in count, length and spacing. All lengths are
+//! metric.
 
 use glam::DVec3;
 use survey::mesh::TriangleMesh;
@@ -95,7 +96,8 @@ fn strip(a: &[DVec3], b: &[DVec3], a0: u32, b0: u32, triangles: &mut Vec<[u32; 3
     triangles.extend(made.into_iter().rev());
 }
 
-/// For each triangle from the near end: whether it has its base on a. The sum of |a_i b_j| over all rungs is least.
+/// For each triangle from the near end: whether it has its base on a. The sum of |a_i b_j| over all rungs is
+/// least.
 fn shortest_steps(a: &[DVec3], b: &[DVec3]) -> Vec<bool> {
     let (n, m) = (a.len(), b.len());
     let mut row = vec![0.0; m];

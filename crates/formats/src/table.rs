@@ -1,4 +1,4 @@
-//! Rows of a text table to points, once its columns are known.
+//! Reads the rows of a text table as points, once its columns are known.
 
 use super::FormatError;
 use super::column::Column;
@@ -63,7 +63,8 @@ pub(crate) fn is_comment(line: &str) -> bool {
     line.starts_with(['#', '!', '%', '@']) || line.starts_with("//") || matches!(line, "END" | "EOD" | "EOB" | "EOF")
 }
 
-/// The numbers of up to 2000 rows spread over the table, to tell columns apart, and whether a name stands before them.
+/// The numbers of up to 2000 rows spread over the table, to tell columns apart, and whether a name stands
+/// before them.
 pub(super) fn sample_rows(rows: &[Line<'_>], cut: Cut) -> (Vec<Vec<f64>>, bool) {
     let stride = (rows.len() / 2000).max(1);
     let mut named = false;

@@ -1,7 +1,7 @@
 //! A file in memory, its lines and its numbers.
 //!
-//! Lines may end in LF, CRLF or CR and in blanks; text that is not UTF-8 is read with replacement characters, so
-//! that a stray byte in a comment does no harm and one in a number is reported with its line.
+//! Lines may end in LF, CRLF or CR and in blanks; text that is not UTF-8 is read with replacement characters,
+//! so that a stray byte in a comment does no harm and one in a number is reported with its line.
 
 use super::FormatError;
 use std::borrow::Cow;

@@ -1,9 +1,9 @@
 //! GOCAD TSurf: triangulated surfaces.
 //!
-//! One or more objects `GOCAD TSurf 1 … END`; in each a `HEADER { name: … }`, an optional coordinate system block
-//! (`AXIS_UNIT` and `ZPOSITIVE` state unit and sign), then `TFACE` parts of `VRTX id x y z` or `PVRTX id x y z p…`,
-//! `ATOM id ref` (a vertex at the place of another) and `TRGL a b c`. Ids may start anywhere. Everything else
-//! (`BSTONE`, `BORDER`, properties, colours) is passed over.
+//! One or more objects `GOCAD TSurf 1 … END`; in each a `HEADER { name: … }`, an optional coordinate system
+//! block (`AXIS_UNIT` and `ZPOSITIVE` state unit and sign), then `TFACE` parts of `VRTX id x y z` or
+//! `PVRTX id x y z p…`, `ATOM id ref` (a vertex at the place of another) and `TRGL a b c`. Ids may start
+//! anywhere. Everything else (`BSTONE`, `BORDER`, properties, colours) is passed over.
 //!
 //! Written with ZPOSITIVE Depth, a TFACE per sheet, and CNXYZ at each vertex, which strict readers ask for.
 

@@ -1,4 +1,4 @@
-//! What a file's vertical values are: their unit, time or depth, and which way they grow.
+//! The vertical values of a file: their unit, time or depth, and the direction in which they grow.
 
 use serde::{Deserialize, Serialize};
 use survey::geometry::VerticalUnit;
@@ -50,7 +50,7 @@ impl ZUnit {
     }
 }
 
-/// Which way vertical values grow.
+/// The direction in which vertical values grow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ZPositive {

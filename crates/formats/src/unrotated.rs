@@ -1,8 +1,9 @@
-//! A horizon on an unrotated grid, for formats that hold no other: ZMAP+ and CPS-3.
+//! Resamples a horizon onto an unrotated grid for the formats that need one: ZMAP+ and CPS-3.
 //!
-//! A grid whose axes run along X and Y is kept node for node, turned or mirrored as the format wants. Any other is sampled
-//! bilinearly at square nodes as far apart as its own are at least, over the box around its nodes with a depth; a new node beside a hole is
-//! a hole. On a plane that is exact; between nodes the surface is what the picture shows too.
+//! A grid whose axes run along X and Y is kept node for node, turned or mirrored as the format wants. Any
+//! other is sampled bilinearly at square nodes as far apart as its own are at least, over the box around its
+//! nodes with a depth; a new node beside a hole is a hole. Resampling is exact on a plane; between nodes it
+//! follows the surface that pictures show.
 
 use super::Format;
 use super::error::FormatError;

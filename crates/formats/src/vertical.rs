@@ -1,8 +1,10 @@
-//! Vertical values of a file to those of the survey: null, factor, sign, unit; and whether the result is plausible.
+//! Converts vertical values of a file to those of the survey (null value, factor, sign, unit) and checks that
+//! the result is plausible.
 //!
-//! `survey value = sign · unit · (file value · z_factor)`. Nothing is guessed: unit and sign come from the options,
-//! else from the file's own words, else they are assumed (survey's unit, positive down) and the report says so. A result
-//! outside the survey's range is refused, with the option that would make it fit when one would.
+//! `survey value = sign · unit · (file value · z_factor)`. Nothing is guessed: unit and sign come from the
+//! options, else from the file's own words, else they are assumed (survey's unit, positive down) and the
+//! report says so. A result outside the survey's range is refused, with the option that would make it fit
+//! when one would.
 
 use super::options::ImportOptions;
 use super::raw::{RawShape, VerticalFacts};

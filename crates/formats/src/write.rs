@@ -1,4 +1,5 @@
-//! Writing: beside the target, then renamed, so that a full disk or a crash leaves the old file as it was.
+//! Writes to a temporary file beside the target, then renames it, so that a full disk or a crash leaves the
+//! old file unchanged.
 
 use super::{Format, FormatError};
 use glam::DVec2;
@@ -41,7 +42,7 @@ pub(super) fn beside(
         Ok(())
     });
     written.map_err(|failure| {
-        // Nothing may be left behind; that it cannot be removed either is no news to the user.
+        // No partial file may remain. A failure to remove it is not reported: the user sees the first error.
         let _ = fs::remove_file(&part);
         match failure {
             Failure::Io(source) => io(source),

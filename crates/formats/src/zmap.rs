@@ -1,9 +1,11 @@
 //! ZMAP+ grids: unrotated, column by column from the west, each from the north down.
 //!
-//! `@ NAME, GRID, n` / `width, null, null text, decimals, start column` / `NROW, NCOL, XMIN, XMAX, YMIN, YMAX` / `0, 0, 0` / `@`, then
-//! values. Lines beginning with `!` or `+` are comments. Values are cut by blanks; where fields of full width touch, by width.
+//! `@ NAME, GRID, n` / `width, null, null text, decimals, start column` /
+//! `NROW, NCOL, XMIN, XMAX, YMIN, YMAX` / `0, 0, 0` / `@`, then values. Lines beginning with `!` or `+` are
+//! comments. Values are cut by blanks; where fields of full width touch, by width.
 //!
-//! Written with fields of 20 characters and 7 decimals, null −99999 (or, where depths come near it, −9.99e+29).
+//! Written with fields of 20 characters and 7 decimals, null −99999 (or, where depths come near it,
+//! −9.99e+29).
 
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};

@@ -1,8 +1,8 @@
 //! ZMAP+ points and polygons.
 //!
-//! `@FREE POINT , DATA, 80, 1`, a line per column with its name first and its first and last character after four numbers
-//! (`X (EASTING) , 1, 1, 1, 1, 20,, 1.0E+30,,, 4, 0`), `@`, then rows. A new `SEG I.D.` begins a new polygon. Lines beginning with `!` or
-//! `+` are comments.
+//! `@FREE POINT , DATA, 80, 1`, a line per column with its name first and its first and last character after
+//! four numbers (`X (EASTING) , 1, 1, 1, 1, 20,, 1.0E+30,,, 4, 0`), `@`, then rows. A new `SEG I.D.` begins a
+//! new polygon. Lines beginning with `!` or `+` are comments.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::table::UNDEFINED;

@@ -34,7 +34,8 @@ impl ClosedForm {
         Self { geometry: SurveyGeometry::regular(size, 25.0, 10.0, VerticalUnit::Metres), faults, contacts, sheet }
     }
 
-    /// Sides of the faults at a voxel position; a fault that does not exist there counts as on its negative side.
+    /// Sides of the faults at a voxel position; a fault that does not exist there counts as on its negative
+    /// side.
     pub fn bits(&self, p: DVec3) -> u32 {
         let raw = |f: &FaultForm| p.x >= (f.at)(p.y, p.z);
         let exists = |f: &FaultForm| f.truncated_by.is_none_or(|(by, side)| raw(&self.faults[by]) == side);

@@ -1,19 +1,37 @@
-//! Which horizon ends at which: contact rules applied to sheets that are themselves never cut.
+//! Contact rules: which horizon ends at which other one. The rules are applied to sheets that are themselves
+//! never cut.
 //!
-//! Every rule is a boolean function of one bit per horizon, "this place is below the sheet of h":
+//! Every rule is a boolean function of one bit per horizon, which says "this place is below the sheet of h":
 //!
-//! - erosional h: an older horizon rising above h ends there, z_g = max(z_g, z_h);
-//! - conformable or onlap h: ends where it meets an older horizon, z_h = min(z_h, z_g). Between conformable horizons this
-//!   happens only within the crossing tolerance, or where sheets are extrapolated; against an older erosional or onlap surface it is
-//!   the lap of the younger layers;
-//! - intrusive h: what is below it belongs to its layer, whatever else is there; every other horizon ends where it meets it. List an
-//!   intrusion below all the horizons it cuts, so that the layer it closes is its own.
+//! - erosional h: an older horizon that rises above h ends there, z_g = max(z_g, z_h);
+//! - conformable or onlap h: it ends where it meets an older horizon, z_h = min(z_h, z_g). Between
+//!   conformable horizons this happens only within the crossing tolerance, or where sheets are extrapolated.
+//!   Against an older erosional or onlap surface it is how the younger layers lap on;
+//! - intrusive h: everything below it belongs to its layer, and every other horizon ends where it meets it.
+//!   List an intrusion below all the horizons it cuts, so that the layer it closes is its own.
 //!
-//! Because the bits suffice, a section is cut by the smooth, unclipped sheets, and junctions are exact intersections of two of them.
+//! Because the bits suffice, a section is cut by the smooth, unclipped sheets, and junctions are exact
+//! intersections of two of them.
 
 use survey::stratigraphy::{Contact, Stratigraphy};
 
-/// The contacts of a stratigraphy, youngest first, ready to be applied.
+/// The contacts of a stratigraphy, youngest first, ready to be applied to the sheets of a model.
+///
+/// # Examples
+/// An erosion surface at 20 cuts an older horizon that rises to 10:
+/// ```
+/// use model::ContactRules;
+/// use survey::stratigraphy::{Contact, Stratigraphy, StratigraphicHorizon};
+///
+/// let horizon = |name: &str, contact| StratigraphicHorizon { name: name.into(), contact };
+/// let rules = ContactRules::new(&Stratigraphy {
+///     horizons: vec![horizon("erosion", Contact::Erosional), horizon("older", Contact::Conformable)],
+///     layer_names: Vec::new(),
+/// });
+/// let mut z = [20.0, 10.0];
+/// rules.clip(&mut z);
+/// assert_eq!(z, [20.0, 20.0]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ContactRules {
     contacts: Vec<Contact>,
@@ -25,7 +43,7 @@ impl ContactRules {
         Self { contacts: stratigraphy.horizons.iter().map(|h| h.contact).collect() }
     }
 
-    /// Contacts, youngest first.
+    /// The contacts, youngest horizon first.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
@@ -34,7 +52,7 @@ impl ContactRules {
     pub fn layer(&self, below: u64) -> u16 {
         let n = self.contacts.len();
         let is_below = |h: usize| below >> h & 1 == 1;
-        // The youngest intrusion that holds the place has it.
+        // The place belongs to the youngest intrusion that contains it.
         let intrusion = (0..n).find(|&h| self.contacts[h] == Contact::Intrusive && is_below(h));
         if let Some(h) = intrusion {
             return (n - 1 - h) as u16;
@@ -52,7 +70,8 @@ impl ContactRules {
         deepest.map_or(n, |h| n - 1 - h) as u16
     }
 
-    /// Cuts the heights of all sheets at one place, youngest first, in place: a horizon that has ended lies on the one it ended at.
+    /// Cuts the heights of all sheets at one place, youngest first, in place: a horizon that has ended lies
+    /// on the one it ended at.
     pub fn clip(&self, z: &mut [f32]) {
         let n = self.contacts.len();
         let mut older: Option<usize> = None;
@@ -86,7 +105,8 @@ impl ContactRules {
         }
     }
 
-    /// Whether younger horizon `h` and older horizon `g` may cross: one of them, or one between them, ends the other.
+    /// Whether younger horizon `h` and older horizon `g` may cross: one of them, or one between them, ends
+    /// the other.
     pub fn may_cross(&self, h: usize, g: usize) -> bool {
         self.contacts[h] == Contact::Erosional
             || self.contacts[h] == Contact::Intrusive

@@ -1,4 +1,4 @@
-//! The lattice that a model is built on, and an interpreted node of it.
+//! The lattice that a model is built on, and an interpreted node on it.
 
 use glam::Vec3;
 use survey::horizon::Quality;
@@ -24,7 +24,7 @@ impl Lattice {
         [self.origin[0] + (n / self.size[1]) as i32, self.origin[1] + (n % self.size[1]) as i32]
     }
 
-    /// Whether node `n` lies over the volume, not in the margin.
+    /// Whether node `n` lies over the volume rather than in the margin.
     pub fn is_inside(&self, n: usize) -> bool {
         self.voxel(n).iter().zip(self.size).zip(self.origin).all(|((&c, n), o)| c >= 0 && c < n as i32 + 2 * o)
     }
@@ -45,10 +45,11 @@ pub(super) struct Node {
     pub z: f32,
     pub quality: Quality,
     pub block: u16,
-    /// Side of every fault.
+    /// On which side of every fault it lies.
     pub bits: u64,
     /// Faults that are virtual beside it: it lies beyond their tip.
     pub beyond: u64,
-    /// Close enough to a real fault that it may have been picked on its other side.
+    /// Whether it lies so close to the interpreted part of a fault that it may have been picked for the other
+    /// side.
     pub doubtful: bool,
 }

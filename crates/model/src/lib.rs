@@ -1,34 +1,43 @@
-//! The interpretation made solid: which layer and which fault block is at any place of the volume.
+//! A solid model of an interpretation: it answers which layer and which fault block any place in the volume
+//! belongs to.
 //!
-//! [`StructuralModel`] holds, for each horizon and fault block, an *extended* sheet (a [`survey::HeightField`] defined everywhere), and a
-//! [`FaultNetwork`] whose surfaces cut the volume into blocks. From them [`StructuralModel::region_at`] is exact at any zoom: nothing
-//! is looked up in a voxel grid.
+//! [`StructuralModel`] holds one *extended* sheet for each horizon in each fault block (a
+//! [`survey::HeightField`] that is defined everywhere) and a [`FaultNetwork`] whose surfaces divide the
+//! volume into blocks. [`StructuralModel::region_at`] evaluates these surfaces directly and looks nothing up
+//! in a voxel grid, so that its answer is exact at any zoom.
 //!
 //! # What happens where an interpretation ends
 //!
-//! - **A wall of the volume.** Sheets go on linearly for a margin of nodes, with the slope of their last nodes; beyond the margin they
-//!   continue the border cell. Data that reaches into the margin is used.
-//! - **A hole** is filled by a thin plate that takes up height and slope at its rim. Data nodes are never changed.
-//! - **A fault, real part.** Each side is continued under the other by itself: the two sheets of a horizon do not know of one another, and two
-//!   depths at one trace are normal.
-//! - **A fault's tip.** Beyond the tip the fault's surface is continued, because blocks need a boundary, but it is virtual: nodes of one side are data
-//!   for the other, both sheets are the same surface there, and nothing is drawn. The tip is the rim of the fault's mesh; a rim that ends
-//!   within a tolerance of a wall, or of the fault it is truncated by, reaches it.
-//! - **A truncated fault** exists on one side of the fault it ends at; behind that one it divides nothing.
-//! - **A pinch-out.** Conformable horizons may meet, and cross within a tolerance (half a sample); the younger ends at the older, the layer between them has no
-//!   thickness there. Picks that cross by more are an error; continued parts that would cross are pulled together, and the report says so.
-//! - **An unconformity** ([`ContactRules`]) cuts what it cuts at the exact intersection of two uncut sheets: older sheets go on above an erosion
-//!   surface as if nothing had happened, so that what is textured between them is cut off and not squeezed.
-//! - **A block in which a horizon has no, or hardly any, node:** it is placed there by the thickness it has in another block (or by its share of the interval
-//!   between its neighbours), and where the block has no horizon at all, as a surface through all other blocks' nodes.
-//! - **A node on the wrong side of a fault,** or closer to it than the setback, is left out.
+//! - **The outer boundary of the volume.** Sheets continue linearly over a margin of nodes, with the slope of
+//!   their last nodes. Beyond the margin they continue the border cell. Data that reaches into the margin is
+//!   used.
+//! - **A hole** is filled by a thin plate that matches the height and slope of the data at the rim of the
+//!   hole. Data nodes are never changed.
+//! - **The interpreted part of a fault.** The sheet of each side is continued beyond the fault independently
+//!   of the other, so that a horizon may have two depths at one trace.
+//! - **A fault's tip.** Beyond the tip the fault's surface is continued, because blocks need a boundary, but
+//!   it is virtual: the nodes of one side are data for the other, the two sheets coincide there, and nothing
+//!   is drawn. The tip is the rim of the fault's mesh. A rim that ends within a tolerance of the volume's
+//!   outer boundary, or of the fault it is truncated by, is taken to reach it.
+//! - **A truncated fault** exists only on one side of the fault it ends at. On the other side it divides
+//!   nothing.
+//! - **A pinch-out.** Conformable horizons may meet, and may cross by up to a tolerance (half a sample): the
+//!   younger one ends at the older, and the layer between them has no thickness there. Picks that cross by
+//!   more are an error. Continued parts that would cross are pulled together, and the report says so.
+//! - **An unconformity** ([`ContactRules`]) cuts other horizons at the exact intersection of two uncut
+//!   sheets. Older sheets continue above an erosion surface as if it were not there, so that the texture of
+//!   the layers between them is cut off, not squeezed.
+//! - **A block in which a horizon has no node, or hardly any.** The horizon is placed by its distance to its
+//!   neighbours in another block, or by its share of the interval between them. In a block without any
+//!   horizon it is placed as a surface through the nodes of all other blocks.
+//! - **A node on the wrong side of a fault,** or closer to the fault than the setback, is left out.
 //!
-//! [`section`] cuts the model on any plane.
+//! [`section`] cuts the model along any plane.
 //!
 //! Deliberately absent: files, pictures, flat space.
 //!
 //! # Spaces
-//! Positions are voxel (x, y, z), z down. Distances to faults are metric (m).
+//! Positions are voxel coordinates (x, y, z) with z down. Distances to faults are metric (m).
 
 #[cfg(test)]
 pub(crate) mod closed_form;

@@ -1,7 +1,8 @@
-//! What was interpreted, on the voxel lattice: the nodes of a horizon with the fault block each belongs to.
+//! The interpreted nodes of a horizon on the voxel lattice, each with the fault block it belongs to.
 //!
-//! Sheets on other grids are resampled by the Catmull–Rom bicubic of their own nodes; a cell takes part only when its four corners are of one
-//! block, so that nothing is interpolated across a fault. Nodes too close to a fault, or picked on the wrong side of it, are left out.
+//! Sheets on other grids are resampled by the Catmull–Rom bicubic of their own nodes; a cell takes part only
+//! when its four corners belong to one block, so that nothing is interpolated across a fault. Nodes too close
+//! to a fault, or picked on the wrong side of it, are left out.
 
 use super::lattice::{Lattice, Node};
 use super::network::FaultNetwork;
@@ -12,7 +13,8 @@ use glam::{DMat2, DVec2};
 use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, Quality, Sheet};
 
-/// Nodes within this many voxels of a real fault are doubtful when the interpretation does not say which block they belong to.
+/// When the interpretation does not say which block a node belongs to, the node is doubtful within this many
+/// voxels of the interpreted part of a fault.
 const DOUBTFUL_VOXELS: f64 = 4.0;
 
 /// All nodes of one horizon, at most one per block and lattice node; by block, then lattice node.
@@ -66,7 +68,8 @@ pub(super) fn gather(
     if set_back > 0 {
         report.notes.push(ModelNote::SetBack { horizon: horizon.name.clone(), nodes: set_back });
     }
-    // Picks before what programs made of them; otherwise the order of the sheets.
+    // Picked sheets come before sheets that were computed from picks; otherwise the order of the sheets is
+    // kept.
     out.nodes.sort_by_key(|n| (n.block, n.at, n.quality));
     let (mut nodes, mut worst) = (0, 0.0f32);
     for pair in out.nodes.windows(2) {
@@ -95,7 +98,7 @@ struct Native<'a> {
     node_origin: DVec2,
 }
 
-/// A position within this of a node, nodes, is the node.
+/// A position closer to a node than this, in node spacings, counts as that node.
 const SNAP: f64 = 1e-3;
 
 impl<'a> Native<'a> {
@@ -108,7 +111,7 @@ impl<'a> Native<'a> {
     ) -> Self {
         let grid = &sheet.grid;
         let samples = geometry.vertical.count as f32;
-        // Farther off the volume than its own height, a depth cannot be meant.
+        // A depth farther outside the volume than the volume is high cannot be meant.
         let range = [-samples, 2.0 * samples];
         let z: Vec<f32> = sheet
             .depth
@@ -128,7 +131,8 @@ impl<'a> Native<'a> {
                 }
             }
             if let Some(given) = sheet.block {
-                // Block numbers come from the faults; a sheet made with other faults carries stale ones.
+                // Block numbers follow from the faults. A sheet that was made with other faults carries stale
+                // ones.
                 let most = (0..count.len()).max_by_key(|&b| (count[b], usize::MAX - b)).unwrap_or(0);
                 let agree = count.get(usize::from(given)).copied().unwrap_or(0);
                 let used = if 2 * agree >= count[most] { given } else { most as u16 };
@@ -214,7 +218,8 @@ impl<'a> Native<'a> {
     }
 }
 
-/// Catmull–Rom between `at(0)` and `at(1)`; both must exist, their outer neighbours are continued linearly when missing.
+/// Catmull–Rom between `at(0)` and `at(1)`; both must exist, their outer neighbours are continued linearly
+/// when missing.
 fn between(t: f32, at: impl Fn(i64) -> Option<f32>) -> Option<f32> {
     let p = at(0)?;
     if t == 0.0 {

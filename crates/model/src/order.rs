@@ -1,8 +1,9 @@
 //! Keeps conformable horizons in order.
 //!
-//! Where the picks of two horizons that must not cross do so by more than a tolerance, the user is told. Where continued parts cross,
-//! they are pulled back: a continued node to the picked one, two continued nodes to their mean. Crossings within the tolerance are left in the
-//! sheets and resolved by the contact rules (the younger horizon ends at the older).
+//! It is an error when the picks of two horizons that must not cross do so by more than a tolerance. Where
+//! continued parts cross, they are moved: a continued node to the picked one, two continued nodes to their
+//! mean. Crossings within the tolerance are left in the sheets and resolved by the contact rules (the younger
+//! horizon ends at the older).
 
 use super::contacts::ContactRules;
 use super::lattice::Lattice;
@@ -12,7 +13,8 @@ use super::settings::ModelSettings;
 use super::sheets::ExtendedSheet;
 use survey::geometry::SurveyGeometry;
 
-/// Checks the picks and pulls back continued nodes, `[horizon][block]`; `faults` tell where a moved node matters.
+/// Checks the picks and moves continued nodes that cross, `[horizon][block]`. `faults` tells where a moved
+/// node is inside its block.
 pub(super) fn keep_order(
     geometry: &SurveyGeometry,
     lattice: Lattice,

@@ -1,4 +1,4 @@
-//! What can go wrong when a model is built, and what was decided on the way.
+//! The errors that can prevent a model from being built, and the decisions that were made while building it.
 
 use std::fmt;
 use survey::geometry::GeometryError;
@@ -21,7 +21,7 @@ pub enum ModelError {
         /// Name in the stratigraphy.
         name: String,
     },
-    /// Two horizons or two faults have one name.
+    /// Two horizons or two faults have the same name.
     #[error("two {what} are named \"{name}\"; rename one of them")]
     DuplicateName {
         /// "horizons" or "faults".
@@ -41,7 +41,7 @@ pub enum ModelError {
         /// Nodes without a depth.
         holes: usize,
     },
-    /// More horizons or faults than can be told apart.
+    /// There are more horizons or faults than the model can hold.
     #[error("{found} {what} were given, at most {limit} can be used")]
     TooMany {
         /// "horizons" or "faults".
@@ -59,7 +59,7 @@ pub enum ModelError {
         /// Name of the fault.
         name: String,
     },
-    /// A fault passes twice over one place of its own best-fit plane.
+    /// A fault folds over itself: it passes twice over one place of its own best-fit plane.
     #[error(
         "fault \"{name}\" folds back over itself by up to {offset_m:.0} m near X {:.0}, Y {:.0}, vertical {:.0}; split it into two faults there and let one be truncated by the other",
         world[0], world[1], world[2]
@@ -72,7 +72,7 @@ pub enum ModelError {
         /// Distance between the two branches there, m.
         offset_m: f64,
     },
-    /// A fault is truncated by one that is not there.
+    /// A fault is truncated by a fault that was not given.
     #[error(
         "fault \"{name}\" is truncated by \"{by}\", which is not among the faults; add it or remove the truncation"
     )]
@@ -110,7 +110,7 @@ pub enum ModelError {
     },
 }
 
-/// How a horizon came into a block where nothing of it was picked.
+/// How a horizon was placed in a block in which it was not picked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Placement {
     /// By its thickness, or its share of the interval, between its neighbours in another block.
@@ -122,7 +122,7 @@ pub enum Placement {
     OtherBlocks,
 }
 
-/// One decision that the user should know of.
+/// A decision that the user should know about.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ModelNote {
     /// A horizon is not in the stratigraphy and was left out.
@@ -160,7 +160,7 @@ pub enum ModelNote {
         /// How many.
         nodes: usize,
     },
-    /// Two sheets of one block lie over one another; the better one was used.
+    /// Two sheets of one block overlap. The better one was used.
     Overlap {
         /// Name of the horizon.
         horizon: String,
@@ -246,9 +246,9 @@ impl fmt::Display for ModelNote {
     }
 }
 
-/// What was filled, extended, placed and clamped.
+/// What was filled, extended, placed and pulled together while a model was built.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ModelReport {
-    /// In the order of the build.
+    /// The notes, in the order in which the decisions were made.
     pub notes: Vec<ModelNote>,
 }

@@ -1,8 +1,10 @@
 //! The extended sheets: one height field for each horizon and fault block, defined everywhere.
 //!
-//! A block's data are its own nodes and, where the fault between them is virtual (beyond its tip), those of its neighbours: there
-//! both sheets are the same surface, so nothing shows. Beside the real part the other side is ignored. The rest is continued
-//! ([`super::extension`]). A horizon without data in a block is placed by the thickness or proportion it has elsewhere.
+//! The data of a block are its own nodes and, where the fault between them is virtual (beyond its tip), the
+//! nodes of its neighbours: both sheets are the same surface there, so that no step is visible. Beside the
+//! interpreted part of a fault the nodes of the other side are ignored. The rest of the sheet is continued
+//! ([`super::extension`]). A horizon without data in a block is placed by the thickness or proportion it has
+//! elsewhere.
 
 use super::extension::{Extension, Plane};
 use super::lattice::{Lattice, Node};
@@ -17,10 +19,10 @@ use survey::progress::{Cancelled, Progress};
 
 /// A deviation from the local fit below this is never an outlier, voxels.
 const NOISE: f32 = 0.25;
-/// Up to so many nodes beyond its data a sheet is as good as the data beside it: it meets faults there.
+/// Up to this many nodes beyond its data, where it meets faults, a sheet is as good as the data beside it.
 const SOLID_NODES: usize = 4;
 
-/// One extended sheet and where it comes from.
+/// One extended sheet, and which of its nodes come from data.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct ExtendedSheet {
     pub field: HeightField,
@@ -28,7 +30,7 @@ pub(super) struct ExtendedSheet {
     pub quality: Vec<Quality>,
     /// Which nodes are data, its own or shared.
     pub known: Vec<bool>,
-    /// Count of its own nodes.
+    /// Number of its own nodes.
     pub own: usize,
 }
 
@@ -66,7 +68,8 @@ pub(super) fn extend_all(
 ) -> Result<(Vec<Vec<ExtendedSheet>>, Vec<ModelNote>), Cancelled> {
     let blocks = faults.block_count();
     progress.begin("sheets", (nodes.len() * blocks) as u64);
-    // A horizon as if there were no faults: its mean slope, and the last resort for a block without any data.
+    // The horizon as if there were no faults: it gives the mean slope, and it is the last resort for a block
+    // without any data.
     let wholes: Vec<(Vec<f32>, Extension)> = nodes
         .iter()
         .map(|n| {
@@ -145,8 +148,8 @@ fn extend_one(
     Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })
 }
 
-/// Gives the nodes without data a quality: as their neighbours close to data, filled in enclosed holes, extrapolated elsewhere. Nodes
-/// filled between close picks count as picked.
+/// Gives the nodes without data a quality: as their neighbours close to data, filled in enclosed holes,
+/// extrapolated elsewhere. Nodes filled between close picks count as picked.
 fn grade(size: [usize; 2], quality: &mut [Quality]) {
     let [nx, ny] = size;
     let rank = |q: Quality| if q == Quality::Hole { u8::MAX } else { q as u8 };

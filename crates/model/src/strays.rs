@@ -1,15 +1,17 @@
 //! Finds nodes that were picked on the wrong side of a fault.
 //!
-//! A fault and a horizon are seldom interpreted so consistently that every node lies on its own side; one that does not would stand
-//! out as a spike as high as the throw. A node close to a real fault is a stray when it is off the continuation of its own block's undoubted
-//! nodes by more than 1.5 voxels, and that of another block fits it at least four times as well.
+//! A fault and a horizon are seldom interpreted so consistently that every node lies on its own side of the
+//! fault. A node that does not would stand out as a spike as high as the throw. A node close to the
+//! interpreted part of a fault is a stray when it lies more than 1.5 voxels off the surface continued from
+//! the undoubted nodes of its own block, and the surface continued from another block fits it at least four
+//! times as well.
 
 use super::extension::LocalFits;
 use super::lattice::{Lattice, Node};
 
 /// Undoubted nodes are looked for within this many nodes.
 const REACH: i32 = 8;
-/// What a node must be off by at least, voxels.
+/// Smallest misfit of a stray, voxels.
 const LEAST: f32 = 1.5;
 /// Noise floor of the fits, voxels.
 const NOISE: f32 = 0.25;
@@ -21,7 +23,8 @@ pub(super) fn take_out(lattice: Lattice, nodes: &mut Vec<Node>, radius: f32) -> 
         return 0;
     }
     let doubtful: Vec<(usize, Node)> = nodes.iter().copied().enumerate().filter(|(_, n)| n.doubtful).collect();
-    // How far each doubtful node is off each block's continuation; infinite where that block is not near.
+    // Misfit of each doubtful node to the surface continued from each block; infinite where that block is not
+    // near.
     let mut off = vec![vec![f32::INFINITY; blocks]; doubtful.len()];
     for of_block in nodes.chunk_by(|a, b| a.block == b.block) {
         let mut z = vec![f32::NAN; lattice.len()];

@@ -17,10 +17,10 @@ use survey::horizon::{Horizon, Quality};
 use survey::progress::Progress;
 use survey::stratigraphy::Stratigraphy;
 
-/// Most horizons: one bit each.
+/// Largest number of horizons: each takes one bit of a mask.
 const MOST_HORIZONS: usize = 64;
 
-/// A layer inside a fault block.
+/// The part of a layer that lies inside one fault block.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Region {
     /// Layer, 0 = deepest.
@@ -29,7 +29,36 @@ pub struct Region {
     pub block: u16,
 }
 
-/// Sheets, faults and contact rules: what is where, exactly.
+/// A structural model: the extended sheets of the horizons, the faults and the contact rules. It names the
+/// layer and the fault block at any position.
+///
+/// # Examples
+/// Two parallel horizons, 10 and 20 samples deep in the middle of the survey, that dip by 20 degrees:
+/// ```
+/// use glam::Vec3;
+/// use model::{ModelSettings, Region, StructuralModel};
+/// use survey::geometry::{SurveyGeometry, VerticalUnit};
+/// use survey::progress::Progress;
+/// use synth::closed_form::ClosedForm;
+///
+/// let geometry = SurveyGeometry::regular([11, 11, 40], 25.0, 10.0, VerticalUnit::Metres);
+/// let form = ClosedForm::dipping(&geometry, &[10.0, 20.0], 20.0, 0.0);
+/// let model = StructuralModel::build(
+///     &geometry,
+///     &form.stratigraphy,
+///     &form.horizons,
+///     &form.faults,
+///     &ModelSettings::default(),
+///     &Progress::silent(),
+/// )?;
+/// assert_eq!((model.layer_count(), model.block_count()), (3, 1));
+/// // Between the horizons lies layer 1; layers are counted from the deepest.
+/// assert_eq!(model.region_at(Vec3::new(5.0, 5.0, 15.0)), Region { layer: 1, block: 0 });
+/// // The plane is exact between nodes, too.
+/// let exact = form.sheet_z(0, 0, 7.5, 3.25) as f32;
+/// assert!((model.horizon_z(0, 0, 7.5, 3.25) - exact).abs() < 1e-3);
+/// # Ok::<(), model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct StructuralModel {
     size: [usize; 3],
@@ -46,7 +75,7 @@ impl StructuralModel {
     /// Builds the model of an interpretation. Horizons are looked up by the names in the stratigraphy.
     ///
     /// # Errors
-    /// [`ModelError`] says what to change.
+    /// [`ModelError`] says what is wrong and what to change.
     pub fn build(
         geometry: &SurveyGeometry,
         stratigraphy: &Stratigraphy,
@@ -100,27 +129,27 @@ impl StructuralModel {
         self.size
     }
 
-    /// The linear map voxel → metric, m per voxel.
+    /// The linear part of the map from voxel to metric space, m per voxel.
     pub fn metric(&self) -> DMat3 {
         self.metric
     }
 
-    /// Count of layers: one more than horizons.
+    /// Number of layers: one more than there are horizons.
     pub fn layer_count(&self) -> usize {
         self.stratigraphy.layer_count()
     }
 
-    /// Count of fault blocks, at least 1.
+    /// Number of fault blocks, at least 1.
     pub fn block_count(&self) -> usize {
         self.faults.block_count()
     }
 
-    /// The horizons' order and contacts.
+    /// The age order and the contacts of the horizons.
     pub fn stratigraphy(&self) -> &Stratigraphy {
         &self.stratigraphy
     }
 
-    /// The contact rules in a form that can be applied.
+    /// The contact rules, ready to be applied to sheets.
     pub fn rules(&self) -> &ContactRules {
         &self.rules
     }
@@ -135,7 +164,7 @@ impl StructuralModel {
         &self.sheets[horizon][usize::from(block)].field
     }
 
-    /// How the sheet of `horizon` in `block` came about at voxel (x, y).
+    /// Whether the sheet of `horizon` in `block` was picked, filled or extrapolated at voxel (x, y).
     pub fn quality_at(&self, horizon: usize, block: u16, x: f32, y: f32) -> Quality {
         let sheet = &self.sheets[horizon][usize::from(block)];
         let HeightField { origin, size, .. } = sheet.field;
@@ -143,7 +172,7 @@ impl StructuralModel {
         sheet.quality[node(x, 0) * size[1] + node(y, 1)]
     }
 
-    /// Count of interpreted nodes that `horizon` has in `block`; 0 when it was placed there.
+    /// Number of interpreted nodes that `horizon` has in `block`; 0 when it was placed there without data.
     pub fn own_nodes(&self, horizon: usize, block: u16) -> usize {
         self.sheets[horizon][usize::from(block)].own
     }
@@ -153,7 +182,7 @@ impl StructuralModel {
         self.faults.block_at(p)
     }
 
-    /// The layer at voxel position `p` by the sheets of `block`, contact rules applied.
+    /// The layer at voxel position `p` according to the sheets of `block`, with the contact rules applied.
     pub fn layer_at(&self, p: Vec3, block: u16) -> u16 {
         self.rules.layer(self.below_at(p, block))
     }
@@ -169,8 +198,8 @@ impl StructuralModel {
         Region { layer: self.layer_at(p, block), block }
     }
 
-    /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n, region)` for `depths[n]`. The sheets are
-    /// evaluated once a block instead of once a depth.
+    /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n,
+    /// region)` for `depths[n]`. The sheets are evaluated once per block instead of once per depth.
     pub fn regions_down(&self, x: f32, y: f32, depths: &[f32], mut found: impl FnMut(usize, Region)) {
         let mut sheets_z: Vec<Option<Vec<f32>>> = vec![None; self.block_count()];
         for (n, &z) in depths.iter().enumerate() {
@@ -182,8 +211,8 @@ impl StructuralModel {
         }
     }
 
-    /// Height of `horizon` in `block` as it is drawn, voxel z: cut by the contact rules, so that a horizon which has ended lies on
-    /// the one it ended at.
+    /// Height of `horizon` in `block` as it is drawn, voxel z: cut by the contact rules, so that a horizon
+    /// which has ended lies on the one it ended at.
     pub fn horizon_z(&self, horizon: usize, block: u16, x: f32, y: f32) -> f32 {
         let mut z: Vec<f32> = (0..self.sheets.len()).map(|h| self.sheet(h, block).z_at(x, y)).collect();
         self.rules.clip(&mut z);

@@ -10,7 +10,8 @@ use survey::progress::Progress;
 use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 use synth::{SynthSettings, Synthetic};
 
-/// Checks regions at random places more than `clear` voxels from any boundary; blocks may be numbered in any way.
+/// Checks regions at random places more than `clear` voxels from any boundary; blocks may be numbered in any
+/// way.
 fn check_regions(name: &str, form: &ClosedForm, model: &StructuralModel, at: impl Fn(DVec3) -> DVec3, clear: f64) {
     let mut random = Random(3);
     let mut block_of: BTreeMap<u32, u16> = BTreeMap::new();
@@ -90,7 +91,8 @@ fn both_sheets_agree_beyond_the_tip_of_a_dying_out_fault() {
 
 #[test]
 fn a_block_without_picks_is_placed_by_thickness() {
-    // H2 of the block between the faults of a Y lies below the place where they meet; H0 and H1 tell where it would be.
+    // H2 of the block between the faults of a Y lies below the place where they meet; H0 and H1 tell where it
+    // would be.
     let form = closed_form::truncated_y();
     let model = form.model();
     let block = model.block_at(Vec3::new(35.0, 24.0, 5.0));

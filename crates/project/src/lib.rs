@@ -1,8 +1,8 @@
-//! A project: what was imported and interpreted, how it is drawn, and everything that changes it.
+//! A project: what was imported and interpreted, how it is drawn, and the commands that change it.
 //!
-//! The command line, the window and scripts share this crate. A [`Project`] is a folder on disk; every change to it is a
-//! [`Command`], so that each can be undone, also by another process later. What is computed from a project is kept beside it,
-//! identified by what it was computed from.
+//! The command line, the window and scripts share this crate. A [`Project`] is a folder on disk; every change
+//! to it is a [`Command`], which can be undone, also by another process later. Results that are computed from
+//! a project are kept beside it under a key made of their input.
 //!
 //! The modules build on one another in this order:
 //!
@@ -20,8 +20,8 @@
 //! | [`figures`] | what a figure needs, loaded, and its page made |
 //! | [`demo`], [`segy_export`] | the demonstration; a volume written as SEG-Y |
 //!
-//! Deliberately absent: words of a command line or a window. An error says what is wrong and what helps; how an option or a
-//! field is called is known to whoever shows it.
+//! Deliberately absent: the words of a command line or a window. An error says what is wrong and what helps.
+//! The names of options and fields are known only to the program that shows the error.
 
 pub mod command;
 pub mod content;

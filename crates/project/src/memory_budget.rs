@@ -1,4 +1,4 @@
-//! How much memory there is.
+//! How much memory is available.
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 

@@ -1,8 +1,8 @@
 //! Where a volume with a lattice of its own lies in the project's voxel space.
 //!
-//! A volume of another size and extent can be shown when its lines run along the project's, in the same direction, and it
-//! covers a part of the same rock in the same vertical unit (P-illus 5.1: volumes of different size and extent). Then its first and
-//! last samples are the corners of a box in voxel space.
+//! A volume of another size and extent can be shown when its lines run along the project's, in the same
+//! direction, and it covers a part of the same rock in the same vertical unit (P-illus 5.1: volumes of
+//! different size and extent). Then its first and last samples are the corners of a box in voxel space.
 
 use glam::{DVec2, DVec3};
 use render::VoxelBox;
@@ -52,7 +52,8 @@ pub enum PlacementError {
 /// Largest difference of direction, as a shift at the far end of a line: a quarter of a bin would be seen.
 const MAX_SHIFT_BINS: f64 = 0.25;
 
-/// The voxel positions of the first and the last sample of a volume on the lattice `other`, in the project's `frame`.
+/// The voxel positions of the first and the last sample of a volume on the lattice `other`, in the project's
+/// `frame`.
 ///
 /// # Errors
 /// [`PlacementError`] when its lines do not run along the project's or it lies elsewhere.

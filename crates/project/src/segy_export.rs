@@ -1,4 +1,5 @@
-//! A volume of a project as a SEG-Y file: streamed, a shard's worth of inlines at a time, so that its size does not matter.
+//! A volume of a project as a SEG-Y file: streamed by as many inlines at a time as a shard holds, so that a
+//! volume of any size can be written.
 
 use crate::Project;
 use crate::error::{Noun, ProjectError};
@@ -26,7 +27,8 @@ pub struct VolumeWritten {
     pub bytes: u64,
     /// Code of the sample format.
     pub format_code: u16,
-    /// Samples beyond the range of an integer format, written as its limit; and samples that are no numbers, as 0.
+    /// Samples beyond the range of an integer format, written as its limit; and samples that are no numbers,
+    /// as 0.
     pub clipped: u64,
 }
 
@@ -51,7 +53,8 @@ impl std::fmt::Display for VolumeWritten {
 /// Writes the volume `name` of a project; `format` is by default the one its samples are stored in.
 ///
 /// # Errors
-/// No such volume, damaged data, what SEG-Y cannot hold, a full disk, or cancelled; `out` is then what it was before.
+/// No such volume, damaged data, what SEG-Y cannot hold, a full disk, or cancelled; `out` is then what it was
+/// before.
 pub fn write(
     project: &Project,
     out: &Path,

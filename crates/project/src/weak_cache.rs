@@ -1,4 +1,5 @@
-//! Values that several callers share without knowing of one another: the one made last is found again for as long as someone holds it.
+//! A weak cache: several independent callers share a value. The value made last is found again for as long as
+//! someone holds it.
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
@@ -11,7 +12,8 @@ impl<K: PartialEq, V> WeakCache<K, V> {
         Self(Mutex::new(None))
     }
 
-    /// The value made of `key` that someone holds, or else a new one. While it is being made nothing is locked: of two who ask at once, both make it.
+    /// The value made of `key` that someone holds, or else a new one. While it is being made nothing is
+    /// locked: of two who ask at once, both make it.
     pub(crate) fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
         let last = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let known = last().as_ref().filter(|(of, _)| *of == key).and_then(|(_, known)| known.upgrade());

@@ -1,14 +1,16 @@
-//! The lattice that X and Y make by themselves, for files whose headers number no lines.
+//! The lattice of bins found from X and Y alone, for files whose headers hold no line numbers.
 //!
-//! 1. The shortest step `a` is the typical difference between a trace and its nearest neighbour, the second `b` that to the
-//!    nearest one off the line along `a`: medians and means over thousands of traces, so that gaps, irregular outlines and
-//!    coordinates rounded to metres do not matter. The nearest lattice vectors make a reduced basis.
-//! 2. Traces near one in the middle get their indices by rounding, an affine map is fitted to them, and the region doubles
-//!    until it holds all: each fit is good enough to round the next ring.
-//! 3. The step that most traces make to the next one in the file runs along an inline; the shortest step that completes it to
-//!    a basis leads from one inline to the next. So skewed surveys get the axes they were stored by.
+//! 1. The shortest step `a` is the typical difference between a trace and its nearest neighbour, the second
+//!    `b` that to the nearest one off the line along `a`: medians and means over thousands of traces, so that
+//!    gaps, irregular outlines and coordinates rounded to metres do not matter. The nearest lattice vectors
+//!    make a reduced basis.
+//! 2. Traces near one in the middle get their indices by rounding, an affine map is fitted to them, and the
+//!    region doubles until it holds all: each fit is good enough to round the next ring.
+//! 3. The step that most traces make to the next one in the file runs along an inline; the shortest step that
+//!    completes it to a basis leads from one inline to the next. So skewed surveys get the axes they were
+//!    stored by.
 //!
-//! It is a lattice if nearly all traces lie within a quarter of a bin: places at random have one in four there.
+//! It is a lattice if nearly all traces lie within a quarter of a bin; of random positions, one in four does.
 
 use std::collections::HashMap;
 
@@ -21,22 +23,24 @@ use super::header::NO_INTEGER;
 use super::neighbours::Neighbours;
 use super::place::Affine;
 
-/// Least share of filled places when the user asks for this lattice.
+/// Least share of filled bins when the user asks for this lattice.
 pub(super) const MIN_FILL_STATED: f64 = 0.05;
 
-/// A trace within this many bins of a place is there.
+/// A trace within this many bins of a lattice position belongs to it.
 const NEAR_BINS: f64 = 0.25;
-/// Share of the traces that must be near their place.
+/// Share of the traces that must lie near their bin.
 const MIN_NEAR: f64 = 0.95;
-/// Traces that are asked for their neighbours: steps are then known to a hundredth of the rounding of coordinates.
+/// Count of traces whose neighbours are sought: the steps are then known to a hundredth of the rounding of
+/// coordinates.
 const MAX_QUERIES: usize = 4096;
 /// Differences within this many steps of the median one are the same step.
 const SAME_STEP: f64 = 0.25;
-/// A neighbour off the line by less than this many steps is on it. In a reduced basis the second vector is √3/2 off at least.
+/// A neighbour off the line by less than this many steps is on it. In a reduced basis the second vector is
+/// √3/2 off at least.
 const OFF_LINE: f64 = 0.5;
-/// Indices beyond are no indices.
+/// Indices beyond this are invalid.
 const MAX_INDEX: f64 = (1 << 30) as f64;
-/// A step over more bins than this is no step to the next trace.
+/// A longer step than this many bins does not lead to the next trace.
 const MAX_STEP: i64 = 1000;
 /// Radius in bins of the first region.
 const FIRST_REGION: f64 = 8.0;
@@ -171,7 +175,8 @@ impl Points {
         affine
     }
 
-    /// The index of every point, how many are near theirs, and the mean square distance in bins.
+    /// The index of every point, the count of points near their lattice position, and the mean square
+    /// distance in bins.
     fn indices(&self, affine: &Affine) -> (Vec<I64Vec2>, usize, f64) {
         let (mut near, mut sum_sq) = (0, 0.0);
         let indices = self
@@ -309,7 +314,7 @@ impl Lines {
         Self { columns: [numbers(0), numbers(1)], counts: [extent(0), extent(1)] }
     }
 
-    /// Places that hold a trace.
+    /// Lattice positions that hold a trace.
     fn filled(&self, indices: &[I64Vec2]) -> usize {
         let mut places: Vec<(i64, i64)> = indices.iter().map(|index| (index.x, index.y)).collect();
         places.sort_unstable();

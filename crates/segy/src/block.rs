@@ -1,5 +1,5 @@
-//! Parts of a SEG-Y file, for volumes that are larger than memory: traces are read in the order in which they lie in
-//! the file, whatever order the lattice has.
+//! Blocks of a SEG-Y file, for volumes that are larger than memory. Traces are read in file order, whatever
+//! the order of the lattice.
 
 use super::error::{SegyError, SegyProblem};
 use super::file::SegyFile;
@@ -10,12 +10,12 @@ use survey::progress::{Cancelled, Progress};
 use survey::sample::{Sample, SampleType, SamplesMut};
 use survey::source::{Block, BlockSource, LineOrder, SourceError};
 
-/// Traces that a thread reads one after the other.
+/// Count of consecutive traces that a thread reads.
 const TRACES_TOGETHER: usize = 128;
 
 impl SegyFile {
-    /// The smallest type that holds the samples exactly: integers of one and two bytes as they are, all others (IBM and
-    /// IEEE floats, wider integers as far as float32 holds them, weighted traces) as floats.
+    /// The smallest type that holds the samples exactly: integers of one and two bytes as they are, all
+    /// others (IBM and IEEE floats, wider integers as far as float32 holds them, weighted traces) as floats.
     pub fn sample_type(&self) -> SampleType {
         match self.info().sample_format {
             _ if self.is_weighted() => SampleType::Float32,
@@ -32,8 +32,8 @@ impl SegyFile {
         SegyBlocks { file: self, non_finite: 0 }
     }
 
-    /// Reads the samples of a block, `[inline][crossline][sample]`, 0 where there is no trace, by `read` of one trace;
-    /// answers how many of them were no numbers and became 0. Memory: 40 bytes a trace.
+    /// Reads the samples of a block, `[inline][crossline][sample]`, 0 where there is no trace, by `read` of
+    /// one trace; returns how many of them were NaN or infinite and became 0. Memory: 40 bytes per trace.
     fn read_traces<T: Sample>(
         &self,
         block: &Block,

@@ -6,7 +6,7 @@ use std::fmt;
 use survey::geometry::LineAxis;
 use survey::remedy::{Remedy, Setting};
 
-/// What a pair of fields turned out to be.
+/// The verdict on a pair of fields.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
@@ -41,13 +41,13 @@ pub struct Candidate {
     pub crossline_byte: u16,
     /// How both are stored.
     pub number_type: NumberType,
-    /// Who writes it so; empty if no convention known here does.
+    /// The programs that follow this convention; empty if no known convention has these bytes.
     pub convention: &'static str,
-    /// What it is.
+    /// The verdict.
     pub verdict: Verdict,
-    /// The inlines it would make.
+    /// The inlines that it would give.
     pub inlines: Option<LineSummary>,
-    /// The crosslines it would make.
+    /// The crosslines that it would give.
     pub crosslines: Option<LineSummary>,
     /// Share of the lattice's places that hold a trace.
     pub filled: f64,

@@ -1,9 +1,11 @@
 //! Trace header fields of all traces, read in one pass over the file.
 //!
-//! Memory: 4 bytes a trace for a field that varies within a block of traces, none for a block in which it is constant.
+//! Memory: 4 bytes per trace for a field that varies within a block of traces, none for a block in which it
+//! is constant.
 //!
-//! Headers lie a trace apart, each in memory that nothing has touched yet. They are first copied side by side: the copies do not depend
-//! on one another, so that the processor waits for many of them at once, and the fields are then picked from the cache.
+//! In the file, headers are a trace apart and not in the cache. They are first copied side by side: the
+//! copies are independent, so that the processor waits for many of them at once, and the fields are then read
+//! from the cache.
 
 use std::borrow::Cow;
 
@@ -129,7 +131,8 @@ impl Columns {
         self.absent.count
     }
 
-    /// Line numbers of any type, from the field that was read for it, or from the 4-byte field that starts there.
+    /// Line numbers of any type, from the field that was read for it, or from the 4-byte field that starts
+    /// there.
     pub fn numbers(&self, byte: u16, number_type: NumberType) -> Cow<'_, Column> {
         match number_type {
             NumberType::F64 => Cow::Borrowed(self.get(Field::F64(byte))),

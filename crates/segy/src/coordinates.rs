@@ -1,4 +1,5 @@
-//! X and Y of the traces: where they are in the trace headers, how they are stored, and the place they give the survey.
+//! X and Y of the traces: their bytes in the trace headers, their number type, and the position of the
+//! survey.
 
 use glam::DVec2;
 
@@ -14,7 +15,7 @@ use super::sample::f32_from_ibm;
 use super::vertical::scaled;
 use survey::remedy::{Note, Remedy, Setting};
 
-/// Known homes of X and Y: CDP (the standard's), source, receiver.
+/// Known positions of X and Y in the trace header: CDP (the standard's), source, receiver.
 const HOMES: [[u16; 2]; 3] = [[at::CDP_X, at::CDP_Y], [73, 77], [81, 85]];
 
 /// Bin size where a file has no coordinates, m.
@@ -107,8 +108,8 @@ impl<'a> Coordinates<'a> {
         (world.is_finite() && world != DVec2::ZERO).then_some(world)
     }
 
-    /// Whether the integers are too large for places on Earth, and would be reasonable as floats. A fit cannot tell:
-    /// between two powers of two the bits of floats are evenly spaced integers.
+    /// Whether the integers are too large for places on Earth, and would be reasonable as floats. A fit
+    /// cannot tell: between two powers of two the bits of floats are evenly spaced integers.
     fn look_like_floats(&self) -> bool {
         [self.x, self.y].iter().flat_map(|column| column.range).all(|bits| {
             let float = f32::from_bits(bits.cast_unsigned()).abs();
@@ -153,7 +154,7 @@ pub(super) fn coordinate_fields(options: &SegyOptions, header_bytes: usize) -> V
     fields
 }
 
-/// The first X and Y that vary, whatever they make.
+/// The first X and Y that vary, whatever lattice they give.
 pub(super) fn varying<'a>(columns: &'a Columns, options: &SegyOptions) -> Option<Coordinates<'a>> {
     homes(options, columns.header_bytes())
         .into_iter()
@@ -161,8 +162,8 @@ pub(super) fn varying<'a>(columns: &'a Columns, options: &SegyOptions) -> Option
         .find(|coordinates| coordinates.vary() && (0..columns.count()).any(|trace| coordinates.of(trace).is_some()))
 }
 
-/// The first home and storage whose X and Y are affine in the lattice; failing that, the first that spans an area.
-/// `lines` are the bytes of the line numbers, which are no coordinates.
+/// The first home and storage whose X and Y are affine in the lattice; failing that, the first that spans an
+/// area. `lines` are the bytes of the line numbers, which are no coordinates.
 pub(super) fn locate<'a>(
     lattice: &Lattice,
     lines: [u16; 2],

@@ -1,10 +1,11 @@
 //! Which trace header bytes hold the inline and crossline numbers.
 //!
-//! A pair of fields is a reading when its numbers make a lattice: both vary, (nearly) no place is held twice, and not
-//! too many places are empty; X and Y, where there are any, must then be affine in them. The standard's pair wins when
-//! it is a reading. Another known convention is taken when it is the only one, or when X and Y settle it. What is left
-//! is an error that lists the readings. Which of two axes is called inline cannot be seen in a file: the convention of
-//! the pair decides, and the swapped reading is shown beside it.
+//! A pair of fields is a reading when its numbers make a lattice: both vary, (nearly) no place is held twice,
+//! and not too many places are empty; X and Y, where there are any, must then be affine in them. The
+//! standard's pair wins when it is a reading. Another known convention is taken when it is the only one, or
+//! when X and Y settle it. What is left is an error that lists the readings. Which of two axes is called
+//! inline cannot be seen in a file: the convention of the pair decides, and the swapped reading is shown
+//! beside it.
 
 use std::borrow::Cow;
 
@@ -24,7 +25,7 @@ use super::options::LineSource;
 use super::refuse;
 use survey::remedy::{Note, Remedy, Setting};
 
-/// Known homes of inline and crossline numbers.
+/// Known positions of inline and crossline numbers in the trace header.
 const CONVENTIONS: [(u16, u16, &str); 5] = [
     (at::INLINE, at::CROSSLINE, "SEG-Y revision 1"),
     (at::FIELD_RECORD, at::CDP, "OpendTect, Seisworks"),
@@ -33,21 +34,22 @@ const CONVENTIONS: [(u16, u16, &str); 5] = [
     (221, 225, "header extension"),
 ];
 
-/// What a pair of bytes is called that the user stated.
+/// The name of a pair of bytes that the user stated.
 const STATED: &str = "stated";
 
-/// Fields that may hold line numbers outside the conventions. Not among them: trace counters (1, 5, 13), which make a
-/// lattice of any regular file, and coordinates.
+/// Fields that may hold line numbers outside the conventions. Not among them: trace counters (1, 5, 13),
+/// which make a lattice of any regular file, and coordinates.
 const OTHER_LINE_FIELDS: [u16; 15] = [9, 17, 21, 25, 189, 193, 197, 205, 209, 213, 217, 221, 225, 229, 233];
 
 /// Other types of number that writers use, and pairs of 2-byte fields.
 const OTHER_TYPES: [NumberType; 4] = [NumberType::I16, NumberType::U16, NumberType::F32, NumberType::Ibm32];
 const NARROW_PAIRS: [(u16, u16); 2] = [(189, 191), (181, 183)];
 
-/// No survey counts so far; the bits of floats, read as integers, do.
+/// No survey has larger line numbers. The bits of floats, read as integers, are larger.
 const MAX_LINE_NUMBER: u32 = 100_000_000;
 
-/// Repeated places beyond this share mean that the file is no post-stack volume, or the bytes no line numbers.
+/// Repeated places beyond this share mean that the file is no post-stack volume, or the bytes no line
+/// numbers.
 const MAX_DUPLICATES: f64 = 0.1;
 /// Least share of filled places for a known convention, and for a pair that no convention knows.
 const MIN_FILL: f64 = 0.05;

@@ -1,4 +1,4 @@
-//! What can be wrong with a SEG-Y file, said in one sentence with what to do about it.
+//! Problems of SEG-Y files, each described in one sentence that also says what the user can do.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ pub struct SegyError {
 /// What is wrong with a SEG-Y file.
 #[derive(Debug, thiserror::Error)]
 pub enum SegyProblem {
-    /// The system refused to open, read or write.
+    /// The operating system refused to open, read or write the file.
     #[error("cannot {doing} ({source}); {hint}")]
     Io {
         /// What was tried.
@@ -32,7 +32,7 @@ pub enum SegyProblem {
         /// The system's answer.
         source: io::Error,
     },
-    /// Whoever supplies the samples to write failed.
+    /// The source of the samples failed.
     #[error("the samples to write could not be supplied: {source}")]
     Source {
         /// The supplier's reason.
@@ -97,7 +97,7 @@ pub enum SegyProblem {
         present: u64,
         /// Bytes a whole trace takes, header included.
         trace_bytes: u64,
-        /// Samples a trace.
+        /// Samples per trace.
         samples: usize,
     },
     /// The file announces more traces than it holds.
@@ -167,7 +167,7 @@ pub enum SegyProblem {
     /// No header bytes hold line numbers.
     #[error("no trace header bytes hold usable inline and crossline numbers: {}", list(tried))]
     NoLineNumbers {
-        /// The pairs that were looked at.
+        /// The pairs that were examined.
         tried: Vec<Candidate>,
     },
     /// No header bytes hold line numbers, and X and Y make no lattice either.
@@ -178,10 +178,10 @@ pub enum SegyProblem {
     NoLattice {
         /// What is wrong with the lattice.
         reason: String,
-        /// The pairs that were looked at.
+        /// The pairs that were examined.
         tried: Vec<Candidate>,
     },
-    /// More than one reading, and nothing to decide by.
+    /// Several readings fit, and nothing decides between them.
     #[error(
         "inline and crossline numbers can be read in {} ways: {}",
         readings.len(),
@@ -196,7 +196,7 @@ pub enum SegyProblem {
     StatedBytes {
         /// What the stated bytes hold.
         stated: Box<Candidate>,
-        /// The other pairs that were looked at.
+        /// The other pairs that were examined.
         others: Vec<Candidate>,
     },
     /// Start times differ by a fraction of a sample.

@@ -1,4 +1,4 @@
-//! An open SEG-Y file: mapped into memory, its headers understood.
+//! An open SEG-Y file: mapped into memory, with its headers interpreted.
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -20,12 +20,13 @@ use survey::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
 use survey::progress::Progress;
 use survey::remedy::{Note, Setting};
 
-/// Trace weights beyond this are no weights.
+/// Trace weights beyond this are invalid and ignored.
 const MAX_WEIGHT: i32 = 50;
 
 /// An open SEG-Y file. Samples are read from the mapped file when they are asked for.
 ///
-/// Nobody may shorten the file while it is open: the system ends a program that reads beyond a mapped file's end.
+/// No other program may shorten the file while it is open: the system ends a program that reads beyond the
+/// end of a mapped file.
 #[derive(Debug)]
 pub struct SegyFile {
     pub(super) path: PathBuf,
@@ -42,7 +43,7 @@ pub struct SegyFile {
 }
 
 impl SegyFile {
-    /// Opens a file and understands its headers.
+    /// Opens a file and interprets its headers.
     ///
     /// # Errors
     /// [`SegyError`] when the file is not a post-stack 3D volume.
@@ -51,7 +52,7 @@ impl SegyFile {
         opened.map_err(|problem| problem.in_file(path))
     }
 
-    /// Understands a file that is held in memory; `path` is named in errors.
+    /// Interprets the headers of a file that is held in memory; `path` is named in errors.
     ///
     /// # Errors
     /// As [`SegyFile::open`].
@@ -107,22 +108,23 @@ impl SegyFile {
         self.weights.is_some()
     }
 
-    /// Gives back the memory of what was read of the file so far; it is read again when it is needed.
+    /// Releases the memory of the parts of the file that were read; they are read again when they are needed.
     pub fn release(&self) {
         #[expect(
             unsafe_code,
             reason = "the mapping is read-only and shared: the system drops its pages and reads them from the file again. \
                       Without it a file as large as memory is counted as held by this program"
         )]
-        // An advice: where the system does not take it, nothing is lost.
+        // This is only advice: where the system ignores it, nothing is lost.
         let release = |map: &Mmap| unsafe { map.unchecked_advise(memmap2::UncheckedAdvice::DontNeed) };
         if let Bytes::Mapped(map) = &self.bytes {
             let _ = release(map);
         }
     }
 
-    /// Decodes the trace at inline index `x`, crossline index `y` into `out`, whose length is the count of samples.
-    /// What the file does not hold is 0, and so are values that are no numbers, whose count is returned.
+    /// Decodes the trace at inline index `x`, crossline index `y` into `out`, whose length must be the count
+    /// of samples. Samples that the file does not hold become 0. So do NaN and infinite values, whose count
+    /// is returned.
     pub fn read_trace(&self, x: usize, y: usize, out: &mut [f32]) -> usize {
         let Some(trace) = self.trace_at(x, y) else {
             out.fill(0.0);
@@ -141,7 +143,8 @@ impl SegyFile {
             let factor = 2.0_f32.powi(self.factor_2 * weights.at(trace));
             values.iter_mut().for_each(|value| *value *= factor);
         }
-        // Without a branch, so that it becomes vector instructions; counting is for the few traces that have any.
+        // Without a branch, so that it becomes vector instructions; counting is for the few traces that have
+        // any.
         if !values.iter().fold(false, |found, value| found | !value.is_finite()) {
             return 0;
         }

@@ -1,6 +1,7 @@
-//! The frame of a file: byte order, sample format, where the traces begin, how long each is, how many there are.
+//! The frame of a file: its byte order and sample format, and the start, length and count of its traces.
 //!
-//! The file's length is the judge: of the readings that its headers allow, the first that makes a whole number of traces.
+//! The length of the file decides: of the readings that its headers allow, the first with a whole number of
+//! traces is taken.
 
 use super::SegyOptions;
 use super::error::SegyProblem;
@@ -20,7 +21,7 @@ pub(super) struct Frame {
     /// Lines of the extended textual headers.
     pub extended_text: Vec<String>,
     pub binary: BinaryHeader,
-    /// Samples a trace.
+    /// Samples per trace.
     pub samples: usize,
     /// Byte at which the traces begin, and the one after their end.
     pub data: [usize; 2],

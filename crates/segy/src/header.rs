@@ -1,4 +1,5 @@
-//! Fields of the binary and trace headers. Positions are the standard's: 1-based bytes of the file or trace header.
+//! Fields of the binary and trace headers. Positions are the standard's: 1-based bytes of the file or trace
+//! header.
 
 use super::number_type::NumberType;
 use super::sample::{ByteOrder, f32_from_ibm};

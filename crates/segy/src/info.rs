@@ -1,4 +1,4 @@
-//! What a SEG-Y file holds, for people and for `--json`.
+//! The description of a SEG-Y file, for the printed page and for `--json`.
 
 use std::path::PathBuf;
 
@@ -66,7 +66,7 @@ impl LengthUnit {
         }
     }
 
-    /// Metres in one of it.
+    /// Length of the unit in metres.
     pub fn metres(self) -> f64 {
         match self {
             Self::Metres => 1.0,
@@ -132,7 +132,7 @@ pub(super) fn corners(inlines: &LineAxis, crosslines: &LineAxis, place: &Geometr
     })
 }
 
-/// What a SEG-Y file holds, how that was found, and what had to be assumed.
+/// The description of a SEG-Y file: what it holds, how that was detected, and what had to be assumed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SegyInfo {
     /// The file.
@@ -153,7 +153,7 @@ pub struct SegyInfo {
     pub vertical_unit: FileUnit,
     /// Format of the samples.
     pub sample_format: SampleFormat,
-    /// Its code at byte 3225.
+    /// Code of the format at byte 3225.
     pub format_code: u16,
     /// Traces in the file.
     pub traces: usize,
@@ -187,13 +187,13 @@ pub struct SegyInfo {
     pub text: Vec<String>,
     /// Lines of the extended textual headers.
     pub extended_text: Vec<String>,
-    /// Readings of the line numbers that were looked at, the best first.
+    /// Readings of the line numbers that were examined, the best first.
     pub candidates: Vec<Candidate>,
-    /// How things were found.
+    /// The evidence for each detected property.
     pub evidence: Vec<Note>,
-    /// What the file does not say and was taken as usual; each with what states otherwise.
+    /// Usual values assumed for what the file does not say, each with the option that states another value.
     pub assumptions: Vec<Note>,
-    /// What does not fit together.
+    /// Inconsistencies of the file.
     pub warnings: Vec<Note>,
 }
 

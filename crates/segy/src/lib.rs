@@ -1,21 +1,23 @@
-//! SEG-Y, in and out, for post-stack 3D volumes: revisions 0 to 2, both byte orders.
+//! Reads and writes SEG-Y files of post-stack 3D volumes: revisions 0 to 2, both byte orders.
 //!
-//! The standard (SEG Technical Standards Committee, SEG-Y rev 0 1975, rev 1 2002, rev 2.0 2017) leaves much open and
-//! writers leave more, so everything is *found with evidence*: [`SegyInfo`] says what was read, where, why, what had to
-//! be assumed, and what does not fit together. [`SegyOptions`] states what the file does not say. What is not a
-//! post-stack volume is refused by a [`SegyProblem`] that says what it is.
+//! The standard (SEG Technical Standards Committee, SEG-Y rev 0 1975, rev 1 2002, rev 2.0 2017) leaves much
+//! open, and many files do not follow it. Everything is therefore *detected with evidence*: [`SegyInfo`]
+//! reports what was read, from which bytes and why, what had to be assumed, and what is inconsistent. The
+//! user states in [`SegyOptions`] what the file does not say. A file that is not a post-stack volume is
+//! refused with a [`SegyProblem`] that names what it is.
 //!
-//! Traces and samples are read here; horizons, faults and wells by the crate `formats`. The two share nothing but the
-//! nouns of [`survey`] and what can be stated about a file ([`survey::remedy`]), so they are two crates. A volume that
-//! does not fit into memory is handed over block by block ([`SegyFile::blocks`], a [`survey::source::BlockSource`]).
+//! A volume that does not fit into memory is handed over block by block ([`SegyFile::blocks`], a
+//! [`survey::source::BlockSource`]). Horizons, faults and wells are read by the crate `formats`; the two
+//! crates share only the types of [`survey`].
 //!
 //! Deliberately absent: the store, projects, pre-stack data and single lines.
 //!
-//! Our own reader, since the crates at hand read neither little-endian files nor several of the formats, and leave
-//! detection to the caller.
+//! This is an independent reader because the existing crates read neither little-endian files nor several of
+//! the sample formats, and leave detection to the caller.
 //!
 //! # Units
-//! [`SegyInfo`] speaks in the file's units (ms, m or ft); [`SurveyGeometry`](survey::SurveyGeometry) is in ms or m.
+//! [`SegyInfo`] is in the units of the file (ms, m or ft); [`SurveyGeometry`](survey::SurveyGeometry) is in
+//! ms or m.
 //!
 //! ```
 //! use segy::{SegyOptions, WriteOptions};
@@ -78,19 +80,34 @@ pub use write::{WriteFormat, WriteOptions, WriteReport};
 
 use survey::progress::Progress;
 
-/// Reads all headers of a file: what it holds, without its samples.
+/// Reads all headers of a file, without its samples, and reports what it holds.
+///
+/// ```
+/// use segy::{SegyOptions, WriteOptions};
+/// use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("volume.sgy");
+/// let geometry = SurveyGeometry::regular([3, 4, 5], 25.0, 4.0, VerticalUnit::Milliseconds);
+/// let volume = Volume::filled([3, 4, 5], 1.5_f32);
+/// segy::write(&path, &geometry, &volume, &WriteOptions::default(), &Progress::silent())?;
+/// let info = segy::scan(&path, &SegyOptions::default(), &Progress::silent())?;
+/// assert_eq!(info.traces, 12);
+/// assert_eq!(info.interval, 4.0);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// [`SegyError`] when the file is not a post-stack 3D volume. A single trace is described here, and refused by
-/// [`read`].
+/// [`SegyError`] when the file is not a post-stack 3D volume. A single trace is described here, and refused
+/// by [`read`].
 pub fn scan(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyInfo, SegyError> {
     Ok(SegyFile::open(path, options, progress)?.info().clone())
 }
 
-/// Reads a whole volume. Memory: 4 bytes a sample, and a few bytes a trace.
+/// Reads a whole volume. Memory: 4 bytes per sample, and a few bytes per trace.
 ///
 /// # Errors
-/// [`SegyError`] when the file is not a post-stack 3D volume, or on cancel.
+/// [`SegyError`] when the file is not a post-stack 3D volume, or when the user cancels.
 pub fn read(path: &Path, options: &SegyOptions, progress: &Progress) -> Result<SegyVolume, SegyError> {
     SegyFile::open(path, options, progress)?.read(progress)
 }

@@ -1,7 +1,8 @@
-//! Line numbers to a lattice: which trace stands at which inline and crossline.
+//! The lattice of line numbers: which trace lies at which inline and crossline.
 //!
-//! The step of an axis is the greatest common divisor of the differences of its numbers, so decimated and stepped
-//! lines need no hint and a missing line stays a gap. The direction is the order in which the file counts.
+//! The step of an axis is the greatest common divisor of the differences of its numbers, so decimated and
+//! stepped lines need no hint and a missing line remains a gap. The direction is the order in which the file
+//! counts.
 
 use glam::DVec2;
 
@@ -10,10 +11,10 @@ use super::header::NO_INTEGER;
 use super::options::KeptDuplicate;
 use survey::geometry::LineAxis;
 
-/// Marks a place of the lattice without a trace.
+/// Marks a lattice position without a trace.
 pub(super) const NO_TRACE: u32 = u32::MAX;
 
-/// A lattice may have this many places a trace; beyond, the numbers are no line numbers.
+/// A lattice has at most this many positions per trace; otherwise the numbers are not line numbers.
 const MAX_PLACES_PER_TRACE: u64 = 64;
 
 /// Traces on a lattice of line numbers.
@@ -27,13 +28,14 @@ pub(super) struct Lattice {
     pub duplicates: usize,
     /// An example of such a trace.
     pub first_duplicate: Option<usize>,
-    /// Traces without numbers (both 0 among others that are far from it, or no X and Y where those number them): not placed.
+    /// Traces without numbers (both 0 among others that are far from it, or no X and Y where those number
+    /// them): not placed.
     pub unnumbered: usize,
     /// Whether the inline number changes less often than the crossline number along the file.
     pub inline_sorted: bool,
 }
 
-/// Why two columns are no line numbers.
+/// Why two columns are not line numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Flaw {
     /// Both are 0 throughout.
@@ -255,7 +257,8 @@ impl Numbers {
             Self::Marked(low, marks) => marks[(i64::from(number) - i64::from(*low)) as usize] = true,
             Self::Listed(numbers) => {
                 numbers.push(number);
-                // Runs repeat for every line of the other axis: fold them now and then, so that memory stays small.
+                // Runs repeat for every line of the other axis: fold them now and then, so that memory stays
+                // small.
                 if numbers.len() >= 1 << 20 && numbers.len().is_power_of_two() {
                     numbers.sort_unstable();
                     numbers.dedup();

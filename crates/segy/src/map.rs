@@ -1,6 +1,7 @@
-//! A map of the live traces in characters, north up: what a survey's outline and its holes look like.
+//! A map of the live traces in characters, north up, which shows the outline of a survey and its gaps.
 //!
-//! A character is twice as tall as wide. Each is sampled at points spread over it, which are looked up in the lattice.
+//! A character is twice as tall as it is wide. Points spread over each character are looked up in the
+//! lattice.
 
 use glam::{DMat2, DVec2};
 

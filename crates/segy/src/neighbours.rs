@@ -2,10 +2,11 @@
 
 use glam::{DVec2, IVec2};
 
-/// Cells are looked at up to this many rings away: bins sixteen times as long as wide still find their long step.
+/// Cells are looked at up to this many rings away: bins sixteen times as long as wide still find their long
+/// step.
 const MAX_RINGS: i32 = 24;
 
-/// Points sorted into cells. Memory: 4 bytes a point and 4 bytes a cell.
+/// Points sorted into cells. Memory: 4 bytes per point and 4 bytes per cell.
 pub(super) struct Neighbours<'a> {
     points: &'a [DVec2],
     low: DVec2,

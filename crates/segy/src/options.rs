@@ -1,4 +1,4 @@
-//! What the user states about a file that the file itself does not say, or says wrongly.
+//! What the user states about a file because the file does not say it, or says it wrongly.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,8 +6,9 @@ use super::info::{FileUnit, LengthUnit};
 use super::number_type::NumberType;
 use super::sample::{ByteOrder, SampleFormat};
 
-/// What the trace weighting factor N at byte 169 does. The standard (revisions 1 and 2) calls it 2^−N volts for the
-/// least significant bit; some programs multiply by 2^N. Factors beyond ±50 are no weights and are ignored.
+/// What the trace weighting factor N at byte 169 does. The standard (revisions 1 and 2) calls it 2^−N volts
+/// for the least significant bit; some programs multiply by 2^N. Factors beyond ±50 are no weights and are
+/// ignored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TraceWeight {
@@ -44,7 +45,13 @@ pub enum KeptDuplicate {
     Last,
 }
 
-/// What the user states about a file. Everything left out is found in the file.
+/// What the user states about a file. Everything left out is detected in the file.
+///
+/// ```
+/// # use segy::SegyOptions;
+/// let stated = SegyOptions { inline_byte: Some(9), crossline_byte: Some(21), ..SegyOptions::default() };
+/// assert_eq!(stated.x_byte, None);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SegyOptions {
@@ -52,7 +59,8 @@ pub struct SegyOptions {
     pub inline_byte: Option<u16>,
     /// Trace header byte of the crossline number.
     pub crossline_byte: Option<u16>,
-    /// How line numbers are stored; 4-byte integers, or what is found where they are none.
+    /// Number type of line numbers. Default: 4-byte integers, or the type detected where these are not line
+    /// numbers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub line_type: Option<NumberType>,
     /// Where the line numbers come from.
@@ -62,18 +70,18 @@ pub struct SegyOptions {
     pub x_byte: Option<u16>,
     /// Trace header byte of Y.
     pub y_byte: Option<u16>,
-    /// How X and Y are stored; 4-byte integers, or floats where those are no places on Earth.
+    /// Number type of X and Y. Default: 4-byte integers, or floats where integers give no position on Earth.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coordinate_type: Option<NumberType>,
-    /// Trace header byte of the coordinate scalar, a 2-byte integer; 71.
+    /// Trace header byte of the coordinate scalar, a 2-byte integer. Default: 71.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scalar_byte: Option<u16>,
-    /// Coordinate scalar, whatever the file holds: multiplies if positive, divides if negative.
+    /// Coordinate scalar in place of the file's: it multiplies if positive and divides if negative.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coordinate_scalar: Option<i16>,
     /// Byte order of all numbers.
     pub byte_order: Option<ByteOrder>,
-    /// Sample format, whatever byte 3225 holds.
+    /// Sample format in place of the code at byte 3225.
     pub format: Option<SampleFormat>,
     /// Sample interval in the vertical unit.
     pub interval: Option<f64>,
@@ -83,11 +91,13 @@ pub struct SegyOptions {
     pub vertical_unit: Option<FileUnit>,
     /// Unit of X and Y.
     pub coordinate_unit: Option<LengthUnit>,
-    /// Ignore X and Y, and place the lattice at the origin with square bins of this size in metres.
+    /// Size of square bins in metres. When it is stated, X and Y are ignored and the lattice begins at the
+    /// origin.
     pub bin_m: Option<f64>,
-    /// What byte 169 does.
+    /// How the trace weighting factor at byte 169 is applied.
     pub trace_weight: TraceWeight,
-    /// Which of several traces at one place is kept. Stated, it also lets more than a tenth of the traces repeat.
+    /// Which of several traces at one place is kept. Stated, it also lets more than a tenth of the traces
+    /// repeat.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub duplicates: Option<KeptDuplicate>,
 }

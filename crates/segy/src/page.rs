@@ -1,4 +1,4 @@
-//! The page that `info` prints.
+//! The page that `petroglyph info` prints for a SEG-Y file.
 
 use std::fmt::{Result, Write as _};
 
@@ -14,7 +14,7 @@ const MAX_CANDIDATES: usize = 8;
 const ROWS: usize = 6;
 
 impl SegyInfo {
-    /// A page for people from the headers alone: what the file holds, how that was found, its textual header.
+    /// The page from the headers alone: what the file holds, how that was detected, and its textual header.
     pub fn page(&self) -> String {
         let mut page = String::new();
         // Writing to a string cannot fail.
@@ -123,7 +123,8 @@ impl SegyInfo {
 }
 
 impl SegyFile {
-    /// The whole page: that of [`SegyInfo::page`], with a map of the live traces and a histogram of the amplitudes.
+    /// The whole page: that of [`SegyInfo::page`], with a map of the live traces and a histogram of the
+    /// amplitudes.
     pub fn page(&self, statistics: &Statistics) -> String {
         let mut page = String::new();
         // Writing to a string cannot fail.

@@ -1,15 +1,17 @@
-//! The place of the lattice in the world: `[X Y]ᵀ = origin + i·a + j·b`, least squares over the traces' X and Y.
+//! The position of the lattice in the world: `[X Y]ᵀ = origin + i·a + j·b`, least squares over the traces' X
+//! and Y.
 //!
-//! With a bar for the mean, the deviations satisfy `S [a b] = [Σ(i-ī)(X-X̄) …]`, S the 2 × 2 matrix of second moments of
-//! i and j. Coordinates are stored as integers, so the fit is also finer than any single one of them. While
-//! some traces lie more than half a bin and three medians off, the fit is repeated without them.
+//! With a bar for the mean, the deviations satisfy `S [a b] = [Σ(i-ī)(X-X̄) …]`, S the 2 × 2 matrix of second
+//! moments of i and j. Coordinates are stored as integers, so the fit is also more precise than any single
+//! coordinate. While some traces lie more than half a bin and three medians off, the fit is repeated without
+//! them.
 
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
 use super::lines::{Lattice, NO_TRACE};
 
-/// Half a bin: beyond it a trace would be nearer to another place of the lattice.
+/// Half a bin: beyond it a trace would be nearer to another lattice position.
 pub(super) const MAX_RESIDUAL_BINS: f64 = 0.5;
 
 /// The fit takes every n-th trace of files that have more than this: 1 ‰ of a bin needs far fewer.
@@ -38,7 +40,8 @@ pub(super) struct Placement {
 }
 
 impl Placement {
-    /// Fits X and Y, as `world_of` gives them for a trace; none if those traces, or their coordinates, lie on a line.
+    /// Fits X and Y, as `world_of` gives them for a trace; none if those traces, or their coordinates, lie on
+    /// a line.
     pub fn fit(lattice: &Lattice, world_of: impl Fn(usize) -> Option<DVec2> + Sync) -> Option<Self> {
         // In runs of places whose results are put together in order: the same on any number of threads.
         let runs = || {

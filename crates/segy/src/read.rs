@@ -1,4 +1,4 @@
-//! A whole volume from a SEG-Y file, decoded in parallel from the mapped file into its place.
+//! Reads a whole volume from a SEG-Y file: traces are decoded in parallel from the mapped file.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -56,8 +56,9 @@ impl Sums {
     const NONE: Self =
         Self { min: f32::INFINITY, max: f32::NEG_INFINITY, sum: 0.0, sum_sq: 0.0, samples: 0, non_finite: 0 };
 
-    /// Adds in lanes, which the compiler turns into vector instructions; their order is fixed. Runs of 64 samples are
-    /// summed in `f32`, whose rounding averages out, where their squares are in its range; else in `f64`.
+    /// Adds in lanes, which the compiler turns into vector instructions; their order is fixed. Runs of 64
+    /// samples are summed in `f32`, whose rounding averages out, where their squares are in its range; else
+    /// in `f64`.
     fn add_trace(&mut self, trace: &[f32]) {
         const LANES: usize = 8;
         const RUN: usize = 64;
@@ -123,8 +124,9 @@ impl Sums {
 }
 
 impl SegyFile {
-    /// Decodes inlines `first_inline..` into `out`, `[inline][crossline][sample]`, as many as fit: for volumes that are
-    /// read in parts. Returns the amplitudes of that part; the same on any number of threads.
+    /// Decodes inlines `first_inline..` into `out`, `[inline][crossline][sample]`, as many as fit: for
+    /// volumes that are read in parts. Returns the amplitudes of that part; the same on any number of
+    /// threads.
     ///
     /// # Errors
     /// [`SegyProblem::Cancelled`].

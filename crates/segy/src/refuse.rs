@@ -1,4 +1,4 @@
-//! What is not a post-stack 3D volume, told by its trace headers.
+//! Recognises from trace headers files that are not post-stack 3D volumes.
 
 use super::SegyOptions;
 use super::candidate::{Candidate, Verdict};
@@ -7,7 +7,8 @@ use super::error::SegyProblem;
 use super::header::{Field, at};
 use super::lines::Lattice;
 
-/// Several traces a bin: the line numbers of the standard (or the stated ones) repeat, or gathers are numbered.
+/// Several traces a bin: the line numbers of the standard (or the stated ones) repeat, or gathers are
+/// numbered.
 pub(super) fn pre_stack(columns: &Columns, options: &SegyOptions, candidates: &[Candidate]) -> Result<(), SegyProblem> {
     let repeated = candidates.first().filter(|c| c.verdict == Verdict::Repeated);
     let Some(candidate) = repeated else { return Ok(()) };
@@ -41,7 +42,7 @@ fn offsets(columns: &Columns) -> (String, bool) {
     }
 }
 
-/// What makes traces at the same X and Y pre-stack.
+/// Evidence that traces at the same X and Y are pre-stack.
 pub(super) fn repeated_places(columns: &Columns, lattice: &Lattice) -> SegyProblem {
     let (offsets, may_repeat) = offsets(columns);
     let evidence = format!(

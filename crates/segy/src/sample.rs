@@ -1,8 +1,7 @@
 //! Sample formats: what the codes at byte 3225 mean, decoded to and encoded from `f32`.
 //!
-//! IBM float: `(-1)^s · 16^(e-64) · f/2^24`, s 1 bit, e 7 bits, f 24 bits, which fit those of `f32`: only values below its
-//! normal range are rounded.
-//! Integers of more than 24 bits and `f64` are rounded to `f32`.
+//! IBM float: `(-1)^s · 16^(e-64) · f/2^24`, s 1 bit, e 7 bits, f 24 bits, which fit those of `f32`: only
+//! values below its normal range are rounded. Integers of more than 24 bits and `f64` are rounded to `f32`.
 
 use serde::{Deserialize, Serialize};
 
@@ -96,11 +95,11 @@ const FORMATS: [(u16, usize, SampleFormat, &str); 13] = [
 ];
 
 impl SampleFormat {
-    /// The format of a code at byte 3225.
+    /// The sample format for a code at byte 3225.
     ///
     /// # Errors
-    /// [`SegyProblem::UnsupportedFormat`] for a code that the standard has and this reader has not; `Ok(None)` for one
-    /// that the standard has not.
+    /// [`SegyProblem::UnsupportedFormat`] for a code of the standard that is not supported here. A code that
+    /// is not in the standard gives `Ok(None)`.
     pub fn from_code(code: u16) -> Result<Option<Self>, SegyProblem> {
         match code {
             4 => Err(SegyProblem::UnsupportedFormat { code, name: "fixed point with gain, obsolete" }),
@@ -123,7 +122,7 @@ impl SampleFormat {
         self.row().0
     }
 
-    /// Bytes a sample.
+    /// Bytes per sample.
     pub fn bytes(self) -> usize {
         self.row().1
     }
@@ -167,8 +166,9 @@ fn each<const N: usize>(order: ByteOrder, bytes: &[u8], out: &mut [f32], convert
 
 /// The value of an IBM float; infinite where it exceeds the range of `f32`.
 ///
-/// In `f32` alone and without a branch, so that it becomes vector instructions: f · 2^(2e−140) · 2^(2e−140). f has 24 bits and
-/// is exact; the first product is exact or beyond the range for good; the second one rounds once. Below e = 7 every value is 0 in `f32`.
+/// In `f32` alone and without a branch, so that it becomes vector instructions: f · 2^(2e−140) · 2^(2e−140).
+/// f has 24 bits and is exact; the first product is exact or beyond the range for good; the second one rounds
+/// once. Below e = 7 every value is 0 in `f32`.
 ///
 /// ```
 /// assert_eq!(segy::f32_from_ibm(0xC276_A000), -118.625);
@@ -183,8 +183,13 @@ pub fn f32_from_ibm(bits: u32) -> f32 {
     f32::from_bits(magnitude.to_bits() | bits & 0x8000_0000)
 }
 
-/// The nearest IBM float: exact to 21 bits at least, since its leading hexadecimal digit may begin with three zeros.
-/// What is not a number becomes 0, and infinity the largest value.
+/// The nearest IBM float: exact to 21 bits at least, since its leading hexadecimal digit may begin with three
+/// zeros. NaN becomes 0, and infinity becomes the largest value.
+///
+/// ```
+/// assert_eq!(segy::ibm_from_f32(-118.625), 0xC276_A000);
+/// assert_eq!(segy::ibm_from_f32(f32::NAN), 0);
+/// ```
 pub fn ibm_from_f32(value: f32) -> u32 {
     if value == 0.0 || value.is_nan() {
         return 0;

@@ -1,5 +1,5 @@
-//! What the amplitudes of a file are like, from traces spread evenly over the survey: range, percentiles, histogram, and
-//! the signs of trouble (clipped, zero and missing numbers).
+//! Statistics of the amplitudes of a file, from traces spread evenly over the survey: range, percentiles and
+//! histogram, and counts that reveal problems (clipped samples, zeros, NaN).
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -8,7 +8,7 @@ use super::error::{SegyError, SegyProblem};
 use super::file::SegyFile;
 use survey::progress::{Cancelled, Progress};
 
-/// So many samples are looked at: percentiles to three digits, in a fraction of a second.
+/// Count of samples examined: enough for percentiles to three digits, in a fraction of a second.
 const SAMPLES: usize = 1 << 22;
 
 /// Columns of the histogram; odd, so that one of them holds zero.
@@ -28,14 +28,14 @@ pub struct Histogram {
     pub counts: Vec<u64>,
 }
 
-/// Amplitudes of the live traces that were looked at.
+/// Amplitudes of the live traces that were examined.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Statistics {
-    /// Live traces that were looked at.
+    /// Live traces that were examined.
     pub traces: usize,
     /// Live traces in the file.
     pub live_traces: usize,
-    /// Samples that were looked at.
+    /// Samples that were examined.
     pub samples: u64,
     /// Smallest.
     pub min: f32,
@@ -51,9 +51,9 @@ pub struct Statistics {
     pub zero: u64,
     /// Traces that are 0 throughout, though they are not flagged dead.
     pub zero_traces: usize,
-    /// Samples that are no numbers; they are read as 0.
+    /// Samples that are NaN or infinite; they are read as 0.
     pub non_finite: u64,
-    /// Samples that equal the smallest or largest one. Many of them: the data are clipped.
+    /// Samples that equal the smallest or largest one. If there are many, the data are clipped.
     pub at_limits: u64,
     /// Histogram between the outer percentiles, symmetric about 0 if there are both signs.
     pub histogram: Histogram,

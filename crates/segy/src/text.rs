@@ -47,7 +47,8 @@ impl TextEncoding {
         }
     }
 
-    /// The encoding under which more of `bytes` are letters, digits and blanks; EBCDIC, the standard's, if equal.
+    /// The encoding under which more of `bytes` are letters, digits and blanks; EBCDIC, the standard's, if
+    /// equal.
     ///
     /// The first byte alone ('C' is 0xC3 or 0x43) does not settle it: garbled and blank headers occur.
     pub fn of(bytes: &[u8]) -> Self {

@@ -1,7 +1,7 @@
 //! The vertical axis: sample interval, start, and whether it is time or depth.
 //!
-//! SEG-Y stores the interval in µs, and by usage in mm (or thousandths of a foot) for depth; it has no field that says
-//! which. The textual header usually does.
+//! SEG-Y stores the interval in µs, and by usage in mm (or thousandths of a foot) for depth; it has no field
+//! that says which. The textual header usually does.
 
 use super::SegyOptions;
 use super::columns::{Column, Columns};
@@ -128,7 +128,8 @@ fn interval_field(frame: &Frame, columns: &Columns, findings: &mut Findings) -> 
     Ok(f64::from(chosen))
 }
 
-/// The unit of the axis: stated; or written in the text next to the interval; or by words that mean time or depth.
+/// The unit of the axis: stated; or written in the text next to the interval; or by words that mean time or
+/// depth.
 fn unit(frame: &Frame, interval: f64, options: &SegyOptions, findings: &mut Findings) -> FileUnit {
     if let Some(unit) = options.vertical_unit {
         findings.evidence(format!("vertical axis: {}, as stated", unit.description()));
@@ -212,7 +213,7 @@ impl TextWords {
                     found.interval.get_or_insert((unit, line.clone()));
                 }
                 let is_time = matches!(*word, "TWT" | "TWTT" | "PSTM")
-                    // A form that was not filled in has units without numbers.
+                    // A template that was not filled in has units without numbers.
                     || (unit_word(word) == Some(FileUnit::Milliseconds) && previous.parse::<f64>().is_ok())
                     || (*word == "TIME" && (next.starts_with("MIGRAT") || next == "DOMAIN" || previous == "WAY"));
                 // Depths of the acquisition say nothing about the axis.

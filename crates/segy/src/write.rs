@@ -1,7 +1,8 @@
-//! SEG-Y revision 1, written: standard bytes, dead and missing traces left out. Unsigned integers need revision 2, which then is written.
+//! Writes SEG-Y revision 1 with the standard's byte positions, without dead and missing traces. Unsigned
+//! integers need revision 2, so files with them are of revision 2.
 //!
-//! The file is written under another name beside its target and renamed when it is complete, so that a full disk or a
-//! cancel leaves nothing behind.
+//! The file is written under a temporary name in the folder of its target and renamed when it is complete.
+//! When the disk is full or the user cancels, nothing is left behind.
 
 use std::borrow::Cow;
 use std::fs::{self, File, OpenOptions};
@@ -41,7 +42,7 @@ pub enum WriteFormat {
 }
 
 impl WriteFormat {
-    /// The format as a reader names it.
+    /// The same format as a [`SampleFormat`].
     pub fn sample_format(self) -> SampleFormat {
         match self {
             Self::Ieee32 => SampleFormat::Ieee32,
@@ -75,18 +76,18 @@ impl WriteFormat {
     }
 }
 
-/// How a volume is written.
+/// Options for writing a volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WriteOptions {
-    /// Sample format; IEEE float.
+    /// Sample format. Default: IEEE float.
     pub format: WriteFormat,
-    /// Byte order; big-endian, the standard's.
+    /// Byte order. Default: big-endian, the standard's.
     pub byte_order: ByteOrder,
-    /// Lines of the textual header, without `C 1`; empty for lines that describe the volume.
+    /// Lines of the textual header, without `C 1`. When empty, the lines describe the volume.
     pub text: Vec<String>,
-    /// Where the volume comes from, as a further line of the description; none.
+    /// The origin of the volume, as a further line of the description. Default: none.
     pub origin: Option<String>,
-    /// Samples are multiplied by this before integers are rounded and clipped; 1.
+    /// Factor on samples, applied before integers are rounded and clipped. Default: 1.
     pub gain: f32,
 }
 
@@ -103,19 +104,35 @@ pub struct WriteReport {
     pub traces: usize,
     /// Length of the file.
     pub bytes: u64,
-    /// Samples beyond the range of an integer format, written as its limit; and samples that are no numbers, as 0.
+    /// Count of samples outside the range of an integer or IBM format, written as its limit, and of NaN
+    /// samples, written as 0.
     pub clipped: u64,
 }
 
-/// What is asked for the samples of a range of inlines, `[inline][crossline][sample]`.
+/// Supplies the samples of a range of inlines, `[inline][crossline][sample]`.
 pub type SampleSource<'s> =
     dyn FnMut(Range<usize>) -> Result<Cow<'s, [f32]>, Box<dyn std::error::Error + Send + Sync>> + 's;
 
 /// Writes the live traces of a volume.
 ///
+/// ```
+/// use segy::{WriteFormat, WriteOptions};
+/// use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+///
+/// let folder = tempfile::tempdir()?;
+/// let geometry = SurveyGeometry::regular([2, 2, 3], 25.0, 4.0, VerticalUnit::Milliseconds);
+/// let mut volume = Volume::filled([2, 2, 3], 100.0_f32);
+/// volume.trace_mut(0, 0)[1] = 300.0; // An 8-bit integer ends at 127.
+/// let options = WriteOptions { format: WriteFormat::Int8, ..WriteOptions::default() };
+/// let report = segy::write(&folder.path().join("a.sgy"), &geometry, &volume, &options, &Progress::silent())?;
+/// assert_eq!((report.traces, report.clipped), (4, 1));
+/// assert_eq!(report.bytes, 3600 + 4 * (240 + 3));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
-/// [`SegyError`] when the volume does not match its geometry, when revision 1 cannot hold it, when the disk refuses, or
-/// on cancel. The target is then as it was before.
+/// [`SegyError`] when the volume does not match its geometry, when SEG-Y cannot represent it, when the file
+/// cannot be written, or when the user cancels. The target then remains as it was.
 pub fn write(
     path: &Path,
     geometry: &SurveyGeometry,
@@ -132,11 +149,11 @@ pub fn write(
     write_lines(path, geometry, volume.live(), options, geometry.inlines.count, &mut source, progress)
 }
 
-/// Writes the live traces of a volume that is larger than memory: `source` is asked for `together` inlines at a time. `live` is the
-/// mask of live traces, `None` = all.
+/// Writes the live traces of a volume that is larger than memory. `source` is asked for `together` inlines at
+/// a time. `live` is the mask of live traces; `None` means that all are live.
 ///
 /// # Errors
-/// As [`write()`], and [`SegyProblem::Source`] for what the source answers.
+/// As [`write()`], and [`SegyProblem::Source`] for an error of the source.
 pub fn write_lines(
     path: &Path,
     geometry: &SurveyGeometry,
@@ -153,7 +170,7 @@ pub fn write_lines(
         Ok(report)
     });
     if written.is_err() {
-        // The first error is the one to tell.
+        // The first error is the one to report.
         let _ = fs::remove_file(&temporary);
     }
     written.map_err(|problem| problem.in_file(path))
@@ -236,7 +253,7 @@ impl<'a> Plan<'a> {
             progress.step(crosslines as u64)?;
             let slab = x - x % together;
             if x == slab {
-                // What was read before is given back first.
+                // The memory of what was read before is released first.
                 drop(std::mem::take(&mut values));
                 values =
                     source(slab..(slab + together).min(inlines)).map_err(|source| SegyProblem::Source { source })?;

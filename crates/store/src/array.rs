@@ -1,8 +1,9 @@
-//! Zarr v3 arrays: the only place that knows the array library.
+//! Zarr v3 arrays. Only this module and `sample` use the array library.
 //!
-//! An array is cut into chunks (what is compressed, zstd with a checksum; chunks of volumes are not, see `shard`), and chunks are bundled
-//! into shards (what is a file), so that a large volume is neither millions of files nor one. Order is C: the last axis is fastest. Every shard is written, also
-//! where it holds nothing but the fill value, so that a missing file is noticed and not read as "nothing there".
+//! An array is divided into chunks, the unit of compression (zstd with a checksum; chunks of volumes are not
+//! compressed, see `shard`). Chunks are bundled into shards, each of which is a file, so that a large volume
+//! is neither millions of files nor a single one. The order is C: the last axis is fastest. Every shard is
+//! written, even if it holds only the fill value, so that a missing file is noticed and not read as empty.
 
 use super::error::StoreError;
 use super::layout::{Layout, gather, grid_index};
@@ -27,7 +28,7 @@ const ZSTD_LEVEL: i32 = 1;
 /// Attribute that says that every shard was written.
 const COMPLETE: &str = "complete";
 
-/// A failure of the library, sorted out.
+/// Converts an error of the library.
 fn explain(error: &ArrayError, action: &'static str, group: &Path, array: &str) -> StoreError {
     let storage = match error {
         ArrayError::StorageError(storage) | ArrayError::CodecError(CodecError::StorageError(storage)) => storage,
@@ -42,7 +43,7 @@ fn explain(error: &ArrayError, action: &'static str, group: &Path, array: &str) 
     explain_storage(storage, action, group, array)
 }
 
-/// A failure of the library's file store, sorted out.
+/// Converts an error of the library's file store.
 fn explain_storage(error: &StorageError, action: &'static str, group: &Path, array: &str) -> StoreError {
     match error {
         StorageError::IOError(source) => io_error(source, action, group, array),
@@ -56,7 +57,8 @@ fn explain_storage(error: &StorageError, action: &'static str, group: &Path, arr
     }
 }
 
-/// A shared system error as our own. What has no system code while reading comes from a decoder: the data do not fit.
+/// Converts a shared system error. An error without a system code while reading comes from a decoder: the
+/// data are damaged.
 fn io_error(source: &std::io::Error, action: &'static str, path: &Path, array: &str) -> StoreError {
     if let Some(code) = source.raw_os_error() {
         return StoreError::io(action, path, std::io::Error::from_raw_os_error(code));
@@ -182,14 +184,14 @@ pub struct ArrayWriter<T> {
 }
 
 impl<T: StoredSample> ArrayWriter<T> {
-    /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is what a reader finds where nothing
-    /// was written.
+    /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is what a reader finds
+    /// where nothing was written.
     pub fn create(group: &Path, name: &str, layout: Layout, fill: T) -> Result<Self, StoreError> {
         let array = create(group, name, &layout, fill, Arc::new(ZstdCodec::new(ZSTD_LEVEL, true)))?;
         Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, of: std::marker::PhantomData })
     }
 
-    /// How it is cut up.
+    /// The division into chunks and shards.
     pub fn layout(&self) -> &Layout {
         &self.layout
     }
@@ -197,8 +199,8 @@ impl<T: StoredSample> ArrayWriter<T> {
     /// Writes the shard at `index`, `[…]` of the file shape, filled up where it reaches beyond the array.
     pub fn write_shard(&self, index: &[usize], values: Vec<T>) -> Result<(), StoreError> {
         let index: Vec<u64> = index.iter().map(|&n| n as u64).collect();
-        // On one thread: the library puts a shard's chunks in the order in which its threads finish them, and the same input has to
-        // make the same bytes. Shards are written in parallel instead.
+        // On one thread: the library puts a shard's chunks in the order in which its threads finish them, and
+        // the same input has to make the same bytes. Shards are written in parallel instead.
         let options = CodecOptions::default().with_store_empty_chunks(true).with_concurrent_target(1);
         self.array
             .store_chunk_opt(&index, values, &options)
@@ -206,7 +208,8 @@ impl<T: StoredSample> ArrayWriter<T> {
     }
 }
 
-/// Writes a whole array, one file at a time on each thread. Memory: one file's elements a thread beside `values`.
+/// Writes a whole array, one file at a time on each thread. Memory: one file's elements per thread beside
+/// `values`.
 pub fn write_array<T: StoredSample>(
     group: &Path,
     name: &str,

@@ -10,11 +10,13 @@
 //! forest/nodes               uint32 [node][6]: parent, two children (all ones = none), surface, first triangle, end
 //! ```
 //!
-//! A voxel of a level stands for the 2 × 2 × 2 voxels of the level before and takes the least of their distances with its leaf (of equal
-//! ones the lesser), so that no surface is lost however coarse the level; distances remain voxels of level 0. What leaves and
-//! nodes mean is the business of those who made them; here they are tables.
+//! A voxel of a level stands for the 2 × 2 × 2 voxels of the level before and takes the least of their
+//! distances with its leaf (of equal ones the lesser), so that no surface is lost however coarse the level;
+//! distances remain voxels of level 0. What leaves and nodes mean is defined by the extraction; here they are
+//! tables.
 //!
-//! Memory while writing: an eighth of the volume's voxels, 5 bytes each, for the pyramid, and one file a thread.
+//! Memory while writing: an eighth of the volume's voxels at 5 bytes each for the pyramid, and one file per
+//! thread.
 
 use super::array::{ArrayWriter, StoredArray, write_array, write_group};
 use super::error::StoreError;
@@ -50,7 +52,7 @@ struct Level {
     leaf: Vec<u32>,
 }
 
-/// Candidates that are being written, slab by slab. Dropped without [`CandidateWriter::finish`], they leave nothing behind.
+/// Writes candidates slab by slab. If it is dropped without [`CandidateWriter::finish`], nothing is kept.
 pub struct CandidateWriter {
     replacement: Replacement,
     size: [usize; 3],
@@ -84,7 +86,8 @@ impl CandidateWriter {
         self.distance.layout().file_shape()[0]
     }
 
-    /// Writes the inlines from `first`, a multiple of [`CandidateWriter::slab_inlines`], `[inline][crossline][sample]`.
+    /// Writes the inlines from `first`, a multiple of [`CandidateWriter::slab_inlines`],
+    /// `[inline][crossline][sample]`.
     ///
     /// # Errors
     /// [`StoreError`], [`StoreError::SizeMismatch`] when it is not a slab.
@@ -117,7 +120,7 @@ impl CandidateWriter {
         Ok(())
     }
 
-    /// Writes pyramid, trees and facts, and gives it all its name.
+    /// Writes the pyramid, the trees and the facts, and renames everything to the target.
     ///
     /// # Errors
     /// [`StoreError`]; the target is then what it was before.

@@ -1,4 +1,4 @@
-//! What can go wrong with files of the store, with the path and what to do about it.
+//! Errors of the store, with the path and what the user can do.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -39,7 +39,7 @@ pub enum StoreError {
         /// The array looked for.
         array: String,
     },
-    /// What is there is of another kind.
+    /// The stored object is of another kind.
     #[error("{} is not {expected}: {reason}", path.display())]
     WrongKind {
         /// The group or file.
@@ -125,7 +125,7 @@ pub enum StoreError {
         /// The library's reason.
         reason: String,
     },
-    /// Whoever supplies the samples failed.
+    /// The source of the samples failed.
     #[error("the samples for {} could not be supplied", path.display())]
     Source {
         /// What was being written.

@@ -1,5 +1,5 @@
-//! Faults on disk: `NAME.json`, made to be read and compared: a line for each vertex (world X, Y in m and the vertical value) and a
-//! line for each triangle (indices of vertices from 0).
+//! Faults on disk: `NAME.json`, laid out to be read and compared as text. Each vertex (world X, Y in m and
+//! the vertical value) and each triangle (indices of vertices from 0) has a line of its own.
 
 use super::error::StoreError;
 use super::header::VERSION;
@@ -28,8 +28,20 @@ struct Document {
 
 /// Stores a fault.
 ///
+/// ```
+/// # use glam::DVec3;
+/// # use survey::{Fault, TriangleMesh};
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("F1.json");
+/// let mesh = TriangleMesh { vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Z], triangles: vec![[0, 1, 2]] };
+/// let fault = Fault { name: "F1".into(), mesh, truncated_by: None };
+/// store::write_fault(&path, &fault)?;
+/// assert_eq!(store::read_fault(&path)?, fault);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
-/// [`StoreError`]; `path` is then what it was before. A coordinate that is not a number is refused.
+/// [`StoreError`]; `path` then remains as it was. A coordinate that is not finite is refused.
 pub fn write_fault(path: &Path, fault: &Fault) -> Result<(), StoreError> {
     if let Some(vertex) = fault.mesh.vertices.iter().find(|vertex| !vertex.is_finite()) {
         return Err(StoreError::WrongKind {

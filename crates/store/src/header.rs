@@ -1,4 +1,4 @@
-//! What a file of the store says about itself: kind, version and facts, under one attribute of its Zarr group.
+//! The header of a stored object: its kind, version and facts, in one attribute of its Zarr group.
 
 use super::array::{read_group, write_group};
 use super::error::StoreError;

@@ -1,8 +1,9 @@
-//! Horizons on disk: `NAME.zarr`, a Zarr v3 group with a subgroup `0`, `1`, … for each sheet, each with the arrays `depth` (float32,
-//! vertical value, NaN = hole) and `quality` (uint8, the numbers of [`Quality`]). Sheets on the survey's lattice are
-//! `[inline][crossline]`; the native grid of every sheet is in the group's attribute `petroglyph`.
+//! Horizons on disk: `NAME.zarr`, a Zarr v3 group with a subgroup `0`, `1`, … for each sheet. Each subgroup
+//! has the arrays `depth` (float32, vertical value, NaN = hole) and `quality` (uint8, the numbers of
+//! [`Quality`]). Sheets on the survey's lattice are `[inline][crossline]`; the own grid of every sheet is in
+//! the group's attribute `petroglyph`.
 //!
-//! Memory: 9 bytes a node of the sheet at hand.
+//! Memory: 9 bytes per node of the sheet that is being read or written.
 
 use super::array::{StoredArray, write_array, write_group};
 use super::error::StoreError;
@@ -33,8 +34,20 @@ struct SheetHeader {
 
 /// Stores a horizon.
 ///
+/// ```
+/// # use survey::{Horizon, NodeGrid, Progress, Quality, Sheet, SurveyGeometry, VerticalUnit};
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("chalk.zarr");
+/// let geometry = SurveyGeometry::regular([2, 2, 50], 25.0, 4.0, VerticalUnit::Milliseconds);
+/// let sheet = Sheet::new(NodeGrid::of_survey(&geometry), vec![80.0, 84.0, 88.0, 92.0], Quality::Picked);
+/// let chalk = Horizon { name: "chalk".into(), sheets: vec![sheet] };
+/// store::write_horizon(&path, &chalk, &Progress::silent())?;
+/// assert_eq!(store::read_horizon(&path, &Progress::silent())?, chalk);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
 /// # Errors
-/// [`StoreError`]; `path` is then what it was before.
+/// [`StoreError`]; `path` then remains as it was.
 pub fn write_horizon(path: &Path, horizon: &Horizon, progress: &Progress) -> Result<(), StoreError> {
     let sheets = horizon.sheets.iter().map(|sheet| SheetHeader { block: sheet.block, grid: sheet.grid }).collect();
     let replacement = Replacement::of(path)?;

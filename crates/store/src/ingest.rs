@@ -1,10 +1,11 @@
-//! Writing volumes: level 0 block by block, then level after level, in memory that is bounded whatever the volume's
-//! size.
+//! Writing volumes: level 0 block by block, then level after level, in memory that is bounded whatever the
+//! volume's size.
 //!
-//! A block is a range of inlines and of crosslines with all their samples, whole shards of them, as many as half the
-//! memory holds; its shards are written by all threads. Each further level is made shard by shard from the level
-//! before. [`resume_blocks`] keeps the shards that an earlier call, ended by a kill or a power cut, left whole: shards
-//! get their names only when they are complete, and their checksums are verified before they are kept.
+//! A block is a range of inlines and of crosslines with all their samples, whole shards of them, as many as
+//! half the memory holds; its shards are written by all threads. Each further level is made shard by shard
+//! from the level before. [`resume_blocks`] keeps the shards that an earlier call, ended by a kill or a power
+//! cut, left whole: shards get their names only when they are complete, and their checksums are verified
+//! before they are kept.
 
 use super::array::{create_volume, write_array, write_group};
 use super::error::StoreError;
@@ -27,17 +28,17 @@ use survey::sample::SampleType;
 use survey::source::{Block, BlockSource, LineOrder, SourceError};
 use survey::volume::Volume;
 
-/// Says in a folder what is being written to it; gone when the volume is complete.
+/// The file that marks a folder as being written; it is removed when the volume is complete.
 const MARKER: &str = "unfinished";
 
-/// Bytes that making one shard of a further level takes at most: the mapped files of 262³ samples, and what they
-/// become.
+/// Bytes that making one shard of a further level takes at most: the mapped files of 262³ samples, and what
+/// they become.
 const LEVEL_BYTES: u64 = 160 << 20;
 
 /// Shards of a further level that a thread makes, at most, before files are unmapped.
 const SHARDS_TOGETHER: u64 = 4;
 
-/// Memory that a volume is written in where nobody says otherwise, bytes.
+/// Default memory for writing a volume, bytes.
 pub const MEMORY_BYTES: u64 = 2 << 30;
 
 /// How a volume is written.
@@ -49,12 +50,12 @@ struct WriteSettings {
     order: LineOrder,
 }
 
-/// What writing a volume did.
+/// The result of writing a volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ingested {
-    /// Shards of all levels.
+    /// Count of shards of all levels.
     pub files: usize,
-    /// Those of them that an earlier call had written.
+    /// Count of those that an earlier call had written.
     pub kept: usize,
 }
 
@@ -81,11 +82,11 @@ pub fn write_volume<T: StoredSample>(
     replacement.commit()
 }
 
-/// Stores what a source hands over block by block, in its own order and type, in at most `memory_bytes` (where a column
-/// of shards needs no more).
+/// Stores the volume of a source block by block, in its own order and type. It uses at most `memory_bytes`,
+/// unless a single column of shards needs more.
 ///
 /// # Errors
-/// [`StoreError`], [`StoreError::Source`] for what the source answers; `path` is then what it was before.
+/// [`StoreError`]; [`StoreError::Source`] for an error of the source. `path` then remains as it was.
 pub fn write_blocks(
     path: &Path,
     source: &mut dyn BlockSource,
@@ -99,14 +100,13 @@ pub fn write_blocks(
     Ok(done)
 }
 
-/// Stores what a source hands over as [`write_blocks`] does, but into `path` itself, and goes on where an earlier call
-/// with the same
-/// `fingerprint` was interrupted; what is there under another fingerprint is removed first. The fingerprint stands for the source and everything
-/// that was said about it.
+/// Stores the volume of a source as [`write_blocks`] does, but directly in `path`, and continues where an
+/// earlier call with the same `fingerprint` was interrupted. Content with another fingerprint is removed
+/// first. The fingerprint identifies the source and everything that was stated about it.
 ///
 /// # Errors
-/// [`StoreError`]; what was written then stays for the next call, and is no volume that [`super::StoredVolume::open`]
-/// opens.
+/// [`StoreError`]; what was written then remains for the next call. [`super::StoredVolume::open`] refuses to
+/// open it.
 pub fn resume_blocks(
     path: &Path,
     fingerprint: &str,
@@ -127,7 +127,8 @@ fn ingest_blocks(
     memory_bytes: u64,
     progress: &Progress,
 ) -> Result<Ingested, StoreError> {
-    // The type is chosen here, so that what is made for it is compiled with this crate's optimisations whoever calls.
+    // The type is chosen here, so that what is made for it is compiled with this crate's optimisations
+    // whoever calls.
     let ingest = match source.sample_type() {
         SampleType::Int8 => ingest_as::<i8>,
         SampleType::Uint8 => ingest_as::<u8>,
@@ -368,7 +369,7 @@ impl Ingest<'_> {
     }
 }
 
-/// Memory that threads use in turn: fresh memory costs more than what is done in it.
+/// Buffers that threads reuse: allocating fresh memory costs more than the work done in it.
 struct Rooms<R>(Mutex<Vec<R>>);
 
 impl<R> Default for Rooms<R> {
@@ -402,7 +403,8 @@ impl<T> Default for LevelRoom<T> {
 }
 
 impl<T: StoredSample> LevelRoom<T> {
-    /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, the masks likewise.
+    /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, the masks
+    /// likewise.
     fn fill(
         &mut self,
         source: &Shards,

@@ -1,4 +1,4 @@
-//! How arrays are cut into chunks and files.
+//! The division of arrays into chunks and files.
 
 use super::sample::StoredSample;
 
@@ -11,7 +11,7 @@ const BRICKS_IN_SHARD: usize = 2;
 /// Edge of a chunk of a map, nodes.
 const MAP_CHUNK: usize = 256;
 
-/// How an array is cut up.
+/// The division of an array into chunks and shards.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Layout {
     /// Elements along each axis.

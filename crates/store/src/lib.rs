@@ -1,4 +1,5 @@
-//! The store: volumes, horizons, faults and parameterizations on disk, in Zarr v3 that other programs open too.
+//! The store of a project on disk. Arrays (volumes, horizons, candidates, parameterizations) are in Zarr v3,
+//! which other programs can open; faults and wells are in JSON.
 //!
 //! ```text
 //! volumes/NAME.zarr               write_volume, write_blocks, resume_blocks, StoredVolume
@@ -9,15 +10,33 @@
 //! derived/candidates.zarr         CandidateWriter, StoredCandidates
 //! ```
 //!
-//! Everything is written under another name beside its place, synced and renamed at the very end ([`Replacement`]): a
-//! crash, a cancelled write or a full disk leaves what was there before.
+//! Everything is written under a temporary name in the same folder, synced, and renamed at the very end
+//! ([`Replacement`]). After a crash, a cancelled write or a full disk, the previous state is still there.
+//! [`resume_blocks`] is the exception: it writes in place, so that an interrupted write can be continued.
 //!
-//! Volumes that do not fit into memory come from whoever implements [`survey::source::BlockSource`], candidates through
-//! [`survey::candidates::CandidateSink`]; neither is known here by name. The array library (zarrs) is known to `array`
-//! and `sample` alone, and to no other crate.
+//! Volumes that do not fit into memory come from a [`survey::source::BlockSource`], and candidates arrive
+//! through [`survey::candidates::CandidateSink`]. Only the modules `array` and `sample` use the array library
+//! (zarrs); no other crate does.
 //!
-//! Deliberately absent: files of other programs, what a project is, any computation on what is stored but pyramids and
-//! their ranges.
+//! Deliberately absent: files of other programs, the notion of a project, and any computation on the stored
+//! data except pyramids and value ranges.
+//!
+//! ```
+//! use store::{StoredVolume, VolumeInfo};
+//! use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+//!
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("amplitude.zarr");
+//! let geometry = SurveyGeometry::regular([2, 3, 4], 25.0, 4.0, VerticalUnit::Milliseconds);
+//! let volume = Volume::from_samples([2, 3, 4], (0..24_u8).map(f32::from).collect())?;
+//! store::write_volume(&path, &volume, &VolumeInfo::of(geometry), &Progress::silent())?;
+//!
+//! let stored = StoredVolume::open(&path)?;
+//! assert_eq!(stored.read::<f32>(0, &Progress::silent())?, volume);
+//! assert_eq!(stored.read_box::<f32>(0, [1, 0, 0], [1, 1, 4])?.samples(), [12.0, 13.0, 14.0, 15.0]);
+//! assert_eq!(stored.brick_ranges(0)?, ([1, 1, 1], vec![[0.0, 23.0]]));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod array;
 mod candidates;

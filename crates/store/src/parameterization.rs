@@ -1,7 +1,9 @@
-//! Parameterizations on disk: `parameterization.zarr`, a Zarr v3 group with the arrays `i`, `j`, `k` (float32, unpacked, NaN outside) and
-//! `layer`, `block` (uint8, or uint16 where an id needs it; all ones = none), all `[inline][crossline][sample]`.
+//! Parameterizations on disk: `parameterization.zarr`, a Zarr v3 group. Its arrays are `i`, `j`, `k`
+//! (float32, unpacked, NaN outside) and `layer`, `block` (uint8, or uint16 where an id needs it; all ones =
+//! none), all `[inline][crossline][sample]`.
 //!
-//! Memory: 16 bytes a voxel for the volumes themselves, one shard a thread while writing, one layer of shards while reading.
+//! Memory: 16 bytes per voxel for the volumes themselves, one shard per thread while writing, and one layer
+//! of shards while reading.
 
 use super::array::{StoredArray, write_array};
 use super::error::StoreError;
@@ -44,7 +46,8 @@ pub struct ParameterizationVolumes {
 /// Stores a parameterization; `key` identifies the input that it was computed from.
 ///
 /// # Errors
-/// [`StoreError`], [`StoreError::SizeMismatch`] when the volumes differ in size; `path` is then what it was before.
+/// [`StoreError`], [`StoreError::SizeMismatch`] when the volumes differ in size; `path` is then what it was
+/// before.
 pub fn write_parameterization(
     path: &Path,
     volumes: &ParameterizationVolumes,

@@ -1,12 +1,14 @@
 //! Halving a volume without aliasing.
 //!
-//! Every axis is low-passed by the half-band filter (−1, 0, 9, 16, 9, 0, −1)/32 and every second sample is kept, so that voxel m of
-//! level L lies exactly at voxel m·2ᴸ of the full volume. What is missing (NaN: a dead trace, a sample beyond the wall) is left
-//! out and the remaining weights are normalised; where the middle itself is missing, the result is.
+//! Every axis is low-passed by the half-band filter (−1, 0, 9, 16, 9, 0, −1)/32 and every second sample is
+//! kept, so that voxel m of level L lies exactly at voxel m·2ᴸ of the full volume. Missing samples (NaN: a
+//! dead trace, a sample outside the outer boundary) are left out and the remaining weights are normalised;
+//! where the middle itself is missing, the result is.
 //!
-//! The axes are filtered one after the other, trace by trace and slab by slab (a slab is an inline of the box): what is between
-//! two steps fits the processor's cache. Traces are nearly always there or missing as a whole; rows of samples remember which, and the sums
-//! over whole rows are vector instructions. Every value is summed in the order of the lags, so that a box is bit by bit a part of the whole.
+//! The axes are filtered one after the other, trace by trace and slab by slab (a slab is an inline of the
+//! box): what is between two steps fits the processor's cache. Traces are nearly always there or missing as a
+//! whole; rows of samples remember which, and the sums over whole rows are vector instructions. Every value
+//! is summed in the order of the lags, so that a box is bit by bit a part of the whole.
 
 /// Lags whose weights are not 0, counted from −[`REACH`], and the weights.
 const TAPS: [(usize, f32); 5] = [(0, -1.0), (2, 9.0), (3, 16.0), (4, 9.0), (6, -1.0)];
@@ -99,8 +101,9 @@ pub(super) struct Halving {
 }
 
 impl Halving {
-    /// Makes `coarse` from `fine`, the box that [`needed`] names. `supply` fills in the trace at x, y of the finer box, NaN where it has no
-    /// sample, and answers whether there is any; `take` receives slab after slab of the coarser box.
+    /// Makes `coarse` from `fine`, the box that [`needed`] names. `supply` fills in the trace at x, y of the
+    /// finer box, NaN where it has no sample, and returns whether there is any; `take` receives slab after
+    /// slab of the coarser box.
     pub fn run(
         &mut self,
         fine: LevelBox,

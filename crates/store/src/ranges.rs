@@ -7,7 +7,8 @@ use super::sample::StoredSample;
 use std::path::Path;
 use survey::progress::Progress;
 
-/// Least and greatest value of bricks, by their index; the least is above the greatest where there is no value.
+/// Least and greatest value of bricks, by their index; the least is above the greatest where there is no
+/// value.
 pub(super) type IndexedRanges = Vec<(usize, [f32; 2])>;
 
 /// A box of samples whose first voxel is `first`.
@@ -18,8 +19,8 @@ pub(super) struct Samples<'a, T> {
 }
 
 impl<T: StoredSample> Samples<'_, T> {
-    /// Least and greatest live sample of each brick of the box from `start` of size `part`, with the brick's number in a volume of
-    /// `volume` voxels; `start` is a multiple of the brick. NaN is passed over.
+    /// Least and greatest live sample of each brick of the box from `start` of size `part`, with the brick's
+    /// number in a volume of `volume` voxels; `start` is a multiple of the brick. NaN is ignored.
     pub fn ranges(&self, start: [usize; 3], part: [usize; 3], mask: &[bool], volume: [usize; 3]) -> IndexedRanges {
         let counts = volume.map(|n| n.div_ceil(BRICK));
         let inside = part.map(|n| n.div_ceil(BRICK));

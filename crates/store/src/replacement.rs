@@ -1,16 +1,29 @@
 //! Replacing a file or a folder so that a crash or a full disk never costs the last good state.
 //!
-//! What is written lies in a hidden file or folder beside the target, `.NAME.partial-PROCESS-COUNT`, is synced, and takes the target's
-//! name by a rename at the very end. A file is thereby replaced in one step. A folder that is already there is first moved to
-//! `.NAME.replaced`, and removed when the new one has its name; should the program die between the two renames, [`settle`] moves
-//! it back. Nothing is ever recognised, or removed, by a part of its name.
+//! What is written lies in a hidden file or folder beside the target, `.NAME.partial-PROCESS-COUNT`, is
+//! synced, and takes the target's name by a rename at the very end. A file is thereby replaced in one step. A
+//! folder that is already there is first moved to `.NAME.replaced`, and removed when the new one has its
+//! name; should the program die between the two renames, [`settle`] moves it back. Nothing is ever
+//! recognised, or removed, by a part of its name.
 
 use super::error::StoreError;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A target that is being written anew. Dropped without [`Replacement::commit`], it leaves nothing behind.
+/// A target that is being replaced. If it is dropped without [`Replacement::commit`], the target remains as
+/// it was.
+///
+/// ```
+/// # use std::fs;
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("notes.txt");
+/// store::replace_file(&path, b"first")?;
+/// store::replace_file(&path, b"second")?;
+/// assert_eq!(fs::read(&path)?, b"second");
+/// assert_eq!(fs::read_dir(folder.path())?.count(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Replacement {
     target: PathBuf,
@@ -51,7 +64,7 @@ impl Replacement {
                 let _ = fs::rename(&replaced, &self.target);
                 return Err(fail(source));
             }
-            // The new state is complete; an old one that cannot be removed goes the next time.
+            // The new state is complete. An old state that cannot be removed now is removed the next time.
             let _ = fs::remove_dir_all(&replaced);
         } else {
             fs::rename(&self.partial, &self.target).map_err(fail)?;
@@ -113,7 +126,8 @@ fn sync_folders(path: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Brings back what a crash in the middle of a replacement left under another name. Called before anything is opened.
+/// Brings back what a crash in the middle of a replacement left under another name. Called before anything is
+/// opened.
 pub(super) fn settle(target: &Path) {
     if !target.exists() {
         // Where nothing was left, nothing is to be brought back.

@@ -1,4 +1,4 @@
-//! The numbers that arrays are made of.
+//! The numeric types of arrays.
 
 use survey::sample::Sample;
 use zarrs::array::{DataType, FillValue, data_type};
@@ -13,7 +13,7 @@ mod sealed {
     }
 }
 
-/// A number that arrays are made of.
+/// A numeric type that the elements of an array may have.
 pub trait StoredSample: Sample + sealed::Element + bytemuck::Pod {
     /// Value of what was never written: NaN, or 0 for integers.
     const FILL: Self;

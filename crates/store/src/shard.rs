@@ -1,16 +1,19 @@
-//! Shards of volumes as they lie on disk, written and read without copies: Zarr v3's `sharding_indexed` codec with the inner codecs
-//! `bytes` (little-endian) and `crc32c`, and the index, with a checksum of its own, at the end.
+//! Shards of volumes as they lie on disk, written and read without copies: Zarr v3's `sharding_indexed` codec
+//! with the inner codecs `bytes` (little-endian) and `crc32c`, and the index, with a checksum of its own, at
+//! the end.
 //!
 //! ```text
 //! chunk, crc32c, chunk, crc32c, …, (offset u64, length u64) for each place of the shard, crc32c
 //! ```
 //!
-//! Chunks that hold only the fill value are left out (offset and length all ones). Chunks are **not compressed**: zstd would take
-//! a tenth off real 16-bit volumes and a third off floats (`docs/performance.md`), but a section through a volume then costs the decoding of every chunk it touches,
-//! sixty-four times the data it needs. Uncompressed chunks are mapped into memory, and a section copies only its own samples.
+//! Chunks that hold only the fill value are left out (offset and length all ones). Chunks are **not
+//! compressed**: zstd would take a tenth off real 16-bit volumes and a third off floats
+//! (`docs/performance.md`), but a section through a volume then costs the decoding of every chunk it touches,
+//! sixty-four times the data it needs. Uncompressed chunks are mapped into memory, and a section copies only
+//! its own samples.
 //!
-//! A shard is written beside its place and renamed, so that a killed program leaves whole shards only. Reading a whole chunk checks its
-//! checksum; reading a part of one does not.
+//! A shard is written beside its place and renamed, so that a killed program leaves whole shards only.
+//! Reading a whole chunk checks its checksum; reading a part of one does not.
 
 use super::error::StoreError;
 use super::sample::StoredSample;
@@ -82,9 +85,10 @@ impl ShardGrid {
         Span { start, size: [0, 1, 2].map(|axis| self.chunk[axis].min(self.shape[axis] - start[axis])) }
     }
 
-    /// Writes the shard at `index` from `samples` of `size` whose first voxel is `first`; they hold at least what of the shard is inside
-    /// the volume. `bytes` is room, kept between calls. `visit` sees the first voxel and the size of every chunk just before its samples
-    /// are copied, which then are in the processor's cache.
+    /// Writes the shard at `index` from `samples` of `size` whose first voxel is `first`; they hold at least
+    /// what of the shard is inside the volume. `bytes` is room, kept between calls. `visit` sees the first
+    /// voxel and the size of every chunk just before its samples are copied, which then are in the
+    /// processor's cache.
     pub fn write<T: StoredSample>(
         &self,
         index: [usize; 3],
@@ -281,7 +285,8 @@ impl Shards {
         self.shard::<T>(index).is_ok_and(|shard| (0..shard.chunks.len()).all(|chunk| shard.is_whole(chunk)))
     }
 
-    /// The stored checksum of every chunk, shard by shard; 0 for those that hold only the fill value. They identify the data.
+    /// The stored checksum of every chunk, shard by shard; 0 for those that hold only the fill value. They
+    /// identify the data.
     pub fn checksums<T: StoredSample>(&self) -> Result<Vec<u32>, StoreError> {
         let [nx, ny, nz] = self.grid.counts();
         let mut sums = Vec::new();
@@ -308,7 +313,8 @@ impl Shards {
             self.copy::<T>(&whole, &whole, &mut out)?;
             return Ok(out);
         }
-        // The longest of the two slow axes is cut at the edges of chunks, so that a thread has chunks of its own.
+        // The longest of the two slow axes is cut at the edges of chunks, so that a thread has chunks of its
+        // own.
         let axis = if size[0] > 1 { 0 } else { 1 };
         let row: usize = size[axis + 1..].iter().product();
         let edge = self.grid.chunk[axis];
@@ -326,7 +332,8 @@ impl Shards {
         Ok(out)
     }
 
-    /// A box whose traces are read one by one from the mapped chunks; the checksums of chunks that are wholly inside are verified.
+    /// A box whose traces are read one by one from the mapped chunks; the checksums of chunks that are wholly
+    /// inside are verified.
     pub fn view<T: StoredSample>(&self, start: [usize; 3], size: [usize; 3]) -> Result<BoxView<'_, T>, StoreError> {
         let grid = &self.grid;
         let span = Span { start, size };

@@ -3,14 +3,16 @@
 //! | array | type | shape | what |
 //! |---|---|---|---|
 //! | `0` | the samples' own | `[inline][crossline][sample]` | the volume |
-//! | `1`, `2`, … | the same | each half the one before, rounded up | the volume without what would alias; voxel m lies at m·2ᴸ |
+//! | `1`, `2`, … | the same | each half the one before, rounded up | the volume, low-passed against aliasing; voxel m lies at m·2ᴸ |
 //! | `live` | uint8 | `[inline][crossline]` | 1 = the trace was recorded |
 //! | `minmax/0`, … | float32 | `[brick x][brick y][brick z][2]` | least and greatest sample of each 64³ brick, NaN where it has none |
 //!
-//! Geometry, quantity, unit, polarity and source are in the group's attribute `petroglyph`. The last level is the first that fits one brick.
+//! Geometry, quantity, unit, polarity and source are in the group's attribute `petroglyph`. The last level is
+//! the first that fits one brick.
 //!
-//! The live mask of level L is every 2ᴸth entry of `live`. Writing is `ingest`'s, how samples lie in files `shard`'s. Reading a box costs the box;
-//! files are mapped when they are first needed and stay so until [`StoredVolume::release`].
+//! The live mask of level L is every 2ᴸth entry of `live`. The module `ingest` writes volumes, and `shard`
+//! defines how samples are laid out in files. The cost of reading a box is proportional to its size. Files
+//! are mapped when they are first needed and remain mapped until [`StoredVolume::release`].
 
 use super::array::StoredArray;
 use super::error::StoreError;
@@ -37,7 +39,7 @@ pub struct StoredVolume {
 }
 
 impl StoredVolume {
-    /// Opens a volume; samples are read later. Memory: one byte a trace.
+    /// Opens a volume; samples are read later. Memory: one byte per trace.
     ///
     /// # Errors
     /// [`StoreError`] when it is missing, of another kind, newer than this program or damaged.
@@ -73,12 +75,12 @@ impl StoredVolume {
         Ok(Self { path: path.to_owned(), info, levels, live })
     }
 
-    /// What is known of it.
+    /// Facts about the volume.
     pub fn info(&self) -> &VolumeInfo {
         &self.info
     }
 
-    /// Where it is.
+    /// The path of the volume.
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -88,7 +90,7 @@ impl StoredVolume {
         self.levels.len()
     }
 
-    /// Voxels of a level.
+    /// Count of voxels of a level along each axis.
     ///
     /// # Panics
     /// When there is no such level.
@@ -168,7 +170,8 @@ impl StoredVolume {
         self.read_box_f32(level, [0; 3], self.size(level))
     }
 
-    /// Checksums of the samples of level 0, brick by brick: they change when the samples do. Read from the files' indices, not computed.
+    /// Checksums of the samples of level 0, brick by brick, which change when the samples do. They are read
+    /// from the files and not computed.
     ///
     /// # Errors
     /// [`StoreError`] when a file is missing or damaged.
@@ -187,7 +190,7 @@ impl StoredVolume {
         &self.live
     }
 
-    /// Gives back the memory of files that were read; they are mapped again when they are needed.
+    /// Unmaps the files that were read; they are mapped again when they are needed.
     pub fn release(&mut self) {
         self.levels.iter_mut().for_each(StoredArray::release);
     }

@@ -1,4 +1,4 @@
-//! What is known of a stored volume beside its samples.
+//! Facts about a stored volume, besides its samples.
 
 use serde::{Deserialize, Serialize};
 use survey::geometry::SurveyGeometry;
@@ -6,7 +6,7 @@ use survey::geometry::SurveyGeometry;
 /// Kind of the group.
 pub(super) const KIND: &str = "volume";
 
-/// What is known of a volume beside its samples.
+/// Facts about a volume, besides its samples.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct VolumeInfo {
     /// Its lattice.
@@ -26,7 +26,7 @@ pub struct VolumeInfo {
 }
 
 impl VolumeInfo {
-    /// Nothing known but the lattice.
+    /// The facts of a volume of which only the lattice is known.
     pub fn of(geometry: SurveyGeometry) -> Self {
         Self { geometry, quantity: None, unit: None, polarity: None, source: None }
     }

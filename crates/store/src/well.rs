@@ -1,4 +1,5 @@
-//! Wells on disk: `NAME.json`, made to be read and compared: a line for each station, top, checkshot and curve.
+//! Wells on disk: `NAME.json`, laid out to be read and compared as text. Each station, top, checkshot and
+//! curve has a line of its own.
 
 use super::error::StoreError;
 use super::header::VERSION;

@@ -1,11 +1,11 @@
-//! Horizon candidates as whoever finds them and whoever keeps them hand them to one another: for every voxel the
-//! distance to the closest surface and its leaf, and the surfaces and their trees as tables.
+//! Horizon candidates in the form in which they pass from the extraction to the store: the distance from
+//! every voxel to the closest surface, the leaf of that surface, and the surfaces and their trees as tables.
 
 use crate::progress::Progress;
 use crate::source::SourceError;
 use serde::{Deserialize, Serialize};
 
-/// The distance that means "farther than the greatest distance".
+/// The code for a distance greater than [`CandidateInfo::max_distance`].
 pub const BEYOND: u8 = u8::MAX;
 
 /// A box of candidates, `[inline][crossline][sample]`.
@@ -13,28 +13,28 @@ pub const BEYOND: u8 = u8::MAX;
 pub struct CandidateBox {
     /// Voxels along each axis.
     pub size: [usize; 3],
-    /// Coded distances; [`BEYOND`] = farther than the greatest.
+    /// Coded distances; [`BEYOND`] is farther than the greatest distance.
     pub distance: Vec<u8>,
-    /// Leaf ids, 0 = none.
+    /// Leaf ids; 0 means none.
     pub leaf: Vec<u32>,
 }
 
-/// What is known of candidates.
+/// Facts about a set of candidates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CandidateInfo<R> {
-    /// Identifies what they were computed from.
+    /// Identifies the input of the extraction.
     pub key: String,
     /// `[inlines, crosslines, samples]`.
     pub size: [usize; 3],
     /// The distance that code 254 stands for, voxels.
     pub max_distance: f32,
-    /// Leaves, which is the greatest leaf id.
+    /// Count of leaves, which is also the greatest leaf id.
     pub leaves: usize,
-    /// What the one who made them reports, settings and counts.
+    /// The report of the extraction: its settings and counts.
     pub report: R,
 }
 
-/// Surfaces and trees as tables. What leaves and nodes mean is the business of those who made them.
+/// Surfaces and trees as tables. The extraction defines what leaves and nodes mean.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ForestTables {
     /// Inline and crossline index of each vertex.
@@ -43,21 +43,23 @@ pub struct ForestTables {
     pub z: Vec<f32>,
     /// Vertices of each triangle.
     pub triangles: Vec<[u32; 3]>,
-    /// Kind, first vertex, end of vertices, first triangle, end of triangles of each surface.
+    /// Kind, first vertex, end of the vertices, first triangle and end of the triangles of each surface.
     pub surfaces: Vec<[u32; 5]>,
-    /// Parent, children, surface, first triangle, end of triangles of each node; all ones = none.
+    /// Parent, two children, surface, first triangle and end of the triangles of each node; all ones mean
+    /// none.
     pub nodes: Vec<[u32; 6]>,
 }
 
-/// Takes candidates slab by slab. Dropped without [`CandidateSink::finish`], it leaves nothing behind.
+/// Receives candidates slab by slab. If it is dropped without [`CandidateSink::finish`], nothing is kept.
 pub trait CandidateSink {
-    /// Inlines of a slab but for the last.
+    /// Count of inlines in every slab except the last.
     fn slab_inlines(&self) -> usize;
 
-    /// Takes the inlines from `first`, a multiple of [`CandidateSink::slab_inlines`], `[inline][crossline][sample]`.
+    /// Receives the slab that begins at inline `first`, a multiple of [`CandidateSink::slab_inlines`]. The
+    /// order is `[inline][crossline][sample]`.
     ///
     /// # Errors
-    /// What the sink says, or cancelled.
+    /// An error of the sink, or [`Cancelled`](crate::Cancelled).
     fn write_slab(
         &mut self,
         first: usize,
@@ -66,10 +68,10 @@ pub trait CandidateSink {
         progress: &Progress,
     ) -> Result<(), SourceError>;
 
-    /// Takes facts and trees, and ends.
+    /// Receives the facts and the trees, and completes the candidates.
     ///
     /// # Errors
-    /// What the sink says, or cancelled.
+    /// An error of the sink, or [`Cancelled`](crate::Cancelled).
     fn finish<R: Serialize>(
         self,
         info: &CandidateInfo<R>,

@@ -1,15 +1,16 @@
-//! A fault: the triangulated surface that was interpreted, and what cuts it off.
+//! A fault: the triangulated surface that was interpreted, and the fault that truncates it.
 
 use crate::mesh::TriangleMesh;
 use serde::{Deserialize, Serialize};
 
-/// An interpreted fault. Beyond its tip it is extended for the parameterization only, never drawn.
+/// An interpreted fault. The parameterization extends it beyond its tip line; the extension is never drawn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Fault {
     /// Unique within a project.
     pub name: String,
     /// The surface in world coordinates.
     pub mesh: TriangleMesh,
-    /// Name of the fault that this one ends at. This fault then exists only on the side of it on which most of its own vertices lie.
+    /// Name of the fault that truncates this one. This fault then exists only on the side on which most of
+    /// its own vertices lie.
     pub truncated_by: Option<String>,
 }

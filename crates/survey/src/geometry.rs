@@ -1,8 +1,8 @@
-//! Where a sample is: voxel indices, line numbers, world coordinates and metres.
+//! The position of a sample: voxel indices, line numbers, world coordinates and metres.
 //!
-//! The horizontal map is affine, `[X Y]ᵀ = origin + x·inline_vector + y·crossline_vector`, and may be rotated,
-//! skewed or mirrored. The vertical axis is TWT in ms or depth in m, positive down. [`SurveyGeometry`] is the only
-//! place that converts.
+//! The horizontal map is affine, `[X Y]ᵀ = origin + x·inline_vector + y·crossline_vector`, and may be
+//! rotated, skewed or mirrored. The vertical axis is TWT in ms or depth in m, positive down. All conversions
+//! are methods of [`SurveyGeometry`].
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -10,12 +10,20 @@ use serde::{Deserialize, Serialize};
 /// Velocity assumed for two-way time when the project states none, m/s.
 pub const DEFAULT_VELOCITY_M_S: f64 = 2000.0;
 
-/// Numbered lines at a constant step, ascending or descending.
+/// Line numbers with a constant step, ascending or descending.
+///
+/// ```
+/// # use survey::LineAxis;
+/// let inlines = LineAxis { first: 100, step: 2, count: 11 };
+/// assert_eq!(inlines.last(), 120);
+/// assert_eq!(inlines.number_at(2.0), 104.0);
+/// assert_eq!(inlines.index_of(105.0), 2.5);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LineAxis {
     /// Number of the line at index 0.
     pub first: i32,
-    /// Number difference between neighbouring lines; never 0, negative when the numbers descend.
+    /// Difference between the numbers of neighbouring lines; never 0, negative when the numbers descend.
     pub step: i32,
     /// Count of lines.
     pub count: usize,
@@ -24,7 +32,7 @@ pub struct LineAxis {
 impl LineAxis {
     /// Number of the last line.
     pub fn last(&self) -> i32 {
-        // The number itself fits; the way to it may not.
+        // The last number fits into an i32, but the product may not.
         let last = i64::from(self.first) + i64::from(self.step) * (self.count.max(1) as i64 - 1);
         last as i32
     }
@@ -95,7 +103,28 @@ impl VerticalAxis {
     }
 }
 
-/// The lattice of a survey and its place in the world.
+/// The lattice of a survey and its position in world coordinates.
+///
+/// ```
+/// # use glam::{DVec2, DVec3};
+/// # use survey::{LineAxis, SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry {
+///     inlines: LineAxis { first: 100, step: 2, count: 11 },
+///     crosslines: LineAxis { first: 500, step: -1, count: 21 },
+///     origin: DVec2::new(1000.0, 2000.0),
+///     ..SurveyGeometry::regular([11, 21, 31], 25.0, 4.0, VerticalUnit::Milliseconds)
+/// };
+/// let voxel = geometry.voxel_from_lines(104.0, 497.0);
+/// assert_eq!(voxel, DVec2::new(2.0, 3.0));
+/// assert_eq!(geometry.lines_from_voxel(voxel), DVec2::new(104.0, 497.0));
+///
+/// let world = geometry.world_from_voxel(voxel.extend(10.0));
+/// assert_eq!(world, DVec3::new(1050.0, 2075.0, 40.0));
+/// assert!(geometry.voxel_from_world(world).abs_diff_eq(DVec3::new(2.0, 3.0, 10.0), 1e-9));
+///
+/// // 4 ms of two-way time at 2000 m/s are 4 m of depth.
+/// assert_eq!(geometry.sample_m(), 4.0);
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SurveyGeometry {
     /// Inline numbers along x.
@@ -150,7 +179,8 @@ pub enum GeometryError {
 }
 
 impl SurveyGeometry {
-    /// An unrotated survey in metres: inline i at X = i·bin_m, crossline j at Y = j·bin_m, lines and samples counted from 1 and 0.
+    /// An unrotated survey with square bins. Inline index i lies at X = i·bin_m and crossline index j at Y =
+    /// j·bin_m. Line numbers start at 1 with step 1; the vertical axis starts at 0 with the step `interval`.
     ///
     /// ```
     /// # use survey::{SurveyGeometry, VerticalUnit};
@@ -169,7 +199,8 @@ impl SurveyGeometry {
         }
     }
 
-    /// Checks what every conversion relies on.
+    /// Checks that the axes are not empty, that steps, interval and velocity are valid, and that the bin has
+    /// an area. Every conversion relies on this.
     ///
     /// # Errors
     /// The first [`GeometryError`] found.
@@ -248,7 +279,8 @@ impl SurveyGeometry {
         self.vertical.interval * self.metres_per_vertical_unit()
     }
 
-    /// The linear part of voxel → metric (X and Y offset from the origin, depth), m per voxel.
+    /// The linear part of the map from voxel to metric space (X and Y offset from the origin, depth), m per
+    /// voxel.
     pub fn metric_from_voxel(&self) -> DMat3 {
         DMat3::from_cols(
             self.inline_vector.extend(0.0),

@@ -1,12 +1,14 @@
-//! A single-valued C¹ surface z = h(x, y) over the voxel lattice: what an extended horizon sheet is evaluated on.
+//! A single-valued C¹ surface z = h(x, y) over the voxel lattice, on which an extended horizon sheet is
+//! evaluated.
 //!
-//! Nodes lie at integer voxel (x, y); between them the surface is the Catmull–Rom bicubic through the nodes, so that the normal is
-//! continuous and planes and the nodes themselves are reproduced exactly. Everything that asks where a horizon is (regions,
-//! sections, the parameterization, the GPU) uses this one definition. Outside the grid the border cell is continued linearly.
+//! Nodes lie at integer voxel (x, y). Between them the surface is the Catmull–Rom bicubic through the nodes:
+//! its normal is continuous, and it reproduces planes and the nodes themselves exactly. Outside the grid the
+//! border cell is continued linearly. Everything that needs the position of a horizon (regions, sections, the
+//! parameterization, the GPU) uses this one definition.
 
 use glam::Vec2;
 
-/// Heights at integer lattice positions, `[x][y]`, in voxel z. Memory: 4 bytes a node.
+/// Heights in voxel z at integer lattice positions, `[x][y]`. Memory: 4 bytes per node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightField {
     /// Voxel (x, y) of node (0, 0); negative when the grid has a margin around the survey.
@@ -17,12 +19,12 @@ pub struct HeightField {
     pub z: Vec<f32>,
 }
 
-/// Value and derivatives of a height field at one place.
+/// Value and derivatives of a height field at one position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeightSample {
     /// h, voxel z.
     pub z: f32,
-    /// (∂h/∂x, ∂h/∂y), voxels a voxel.
+    /// (∂h/∂x, ∂h/∂y), voxels per voxel.
     pub gradient: Vec2,
     /// (∂²h/∂x², ∂²h/∂x∂y, ∂²h/∂y²); it jumps at cell borders.
     pub hessian: [f32; 3],
@@ -50,7 +52,7 @@ fn cubic(t: f32) -> [[f32; 4]; 3] {
 }
 
 impl HeightField {
-    /// Builds from a function of the integer voxel (x, y).
+    /// A height field whose nodes are the values of a function of the integer voxel (x, y).
     ///
     /// ```
     /// # use survey::HeightField;
@@ -74,7 +76,7 @@ impl HeightField {
         }
         let (cu, cv) = (u.clamp(0, nu - 1), v.clamp(0, nv - 1));
         let at = |u: i32, v: i32| self.z[u as usize * self.size[1] + v as usize];
-        // One step inwards from the border gives the slope to continue with.
+        // The slope between the border node and the next one inwards continues the surface.
         let iu = if u < 0 {
             1
         } else if u >= nu {
@@ -127,6 +129,15 @@ impl HeightField {
     }
 
     /// Height and its first and second derivatives at voxel (x, y).
+    ///
+    /// ```
+    /// # use survey::HeightField;
+    /// let dipping = HeightField::from_fn([0, 0], [8, 8], |x, y| 10.0 + 0.5 * x as f32 - 0.25 * y as f32);
+    /// let sample = dipping.sample(3.5, 2.0);
+    /// assert!((sample.z - 11.25).abs() < 1e-5);
+    /// assert!((sample.gradient - glam::Vec2::new(0.5, -0.25)).length() < 1e-5);
+    /// assert!(sample.hessian.iter().all(|second| second.abs() < 1e-5));
+    /// ```
     #[inline]
     pub fn sample(&self, x: f32, y: f32) -> HeightSample {
         let (patch, fx, fy) = self.patch(x, y);

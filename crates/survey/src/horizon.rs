@@ -1,13 +1,13 @@
-//! A horizon as a set of sheets, one for each fault block it was interpreted in.
+//! A horizon as a set of sheets, one for each fault block in which it was interpreted.
 //!
-//! Depths are vertical values (ms TWT or m, positive down) at the nodes of the sheet's native grid; NaN is a hole. Two
-//! sheets may lie over one trace: that is a reverse fault, and normal.
+//! Depths are vertical values (ms TWT or m, positive down) at the nodes of the sheet's own grid; NaN marks a
+//! hole. Two sheets may cover the same trace, as they do at a reverse fault.
 
 use crate::geometry::SurveyGeometry;
 use glam::{DMat2, DVec2};
 use serde::{Deserialize, Serialize};
 
-/// How the depth at a node came about.
+/// The origin of the depth at a node.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[repr(u8)]
 pub enum Quality {
@@ -48,23 +48,36 @@ impl NodeGrid {
         }
     }
 
-    /// World X, Y at a fractional node.
+    /// World X, Y of a fractional node index.
     pub fn world_at(&self, node: DVec2) -> DVec2 {
         self.origin + self.u_step * node.x + self.v_step * node.y
     }
 
-    /// Fractional node of world X, Y.
+    /// Fractional node index of world X, Y.
     pub fn node_at(&self, world: DVec2) -> DVec2 {
         DMat2::from_cols(self.u_step, self.v_step).inverse() * (world - self.origin)
     }
 }
 
-/// One connected-by-block part of a horizon.
+/// The part of a horizon that lies in one fault block.
+///
+/// ```
+/// # use glam::DVec2;
+/// # use survey::{NodeGrid, Quality, Sheet};
+/// let (u_step, v_step) = (DVec2::new(25.0, 0.0), DVec2::new(0.0, 25.0));
+/// let grid = NodeGrid { origin: DVec2::ZERO, u_step, v_step, count: [2, 2] };
+/// let sheet = Sheet::new(grid, vec![100.0, 110.0, 120.0, f32::NAN], Quality::Picked);
+/// assert_eq!(sheet.node_count(), 3);
+/// assert_eq!(sheet.quality[3], Quality::Hole);
+/// assert_eq!(sheet.depth_at_node(DVec2::new(0.0, 0.5)), 105.0);
+/// assert!(sheet.depth_at_node(DVec2::new(0.5, 0.5)).is_nan());
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sheet {
-    /// Fault block it belongs to; `None` while blocks are not known (each node then belongs to the block it lies in).
+    /// The fault block of the sheet. `None` while blocks are not known: each node then belongs to the block
+    /// in which it lies.
     pub block: Option<u16>,
-    /// Where its nodes are.
+    /// Positions of the nodes.
     pub grid: NodeGrid,
     /// Vertical value per node, `[u][v]`; NaN = hole.
     pub depth: Vec<f32>,
@@ -73,14 +86,18 @@ pub struct Sheet {
 }
 
 impl Sheet {
-    /// A sheet whose finite nodes all have `quality`.
+    /// A sheet whose nodes with a finite depth all have `quality`; the others are holes.
+    ///
+    /// # Panics
+    /// When the count of depths is not the count of nodes.
     pub fn new(grid: NodeGrid, depth: Vec<f32>, quality: Quality) -> Self {
         assert_eq!(depth.len(), grid.count[0] * grid.count[1], "one depth a node");
         let quality = depth.iter().map(|d| if d.is_finite() { quality } else { Quality::Hole }).collect();
         Self { block: None, grid, depth, quality }
     }
 
-    /// Depth by bilinear interpolation at a fractional node; NaN outside the grid or where a needed corner is a hole.
+    /// Depth by bilinear interpolation at a fractional node index. It is NaN outside the grid, and where a
+    /// corner that has a weight is a hole.
     pub fn depth_at_node(&self, node: DVec2) -> f32 {
         let [nu, nv] = self.grid.count;
         let (u, v) = (node.x, node.y);
@@ -94,7 +111,7 @@ impl Sheet {
         let (mut sum, mut weights) = (0.0, 0.0);
         for (du, wu) in [(0, 1.0 - fu), (1, fu)] {
             for (dv, wv) in [(0, 1.0 - fv), (1, fv)] {
-                // A node sampled exactly needs no neighbours, so holes beside it do not matter.
+                // A position exactly on a node needs no neighbours, so holes beside it do not matter.
                 let weight: f32 = wu * wv;
                 if weight.abs() > 1e-5 {
                     let (u, v) = ((u0 + du).min(nu - 1), (v0 + dv).min(nv - 1));
@@ -103,7 +120,7 @@ impl Sheet {
                 }
             }
         }
-        // What little weight was left out would pull a depth of 1000 by a hundredth.
+        // Dividing by the weights used matters: those left out would change a depth of 1000 by a hundredth.
         sum / weights
     }
 
@@ -114,11 +131,19 @@ impl Sheet {
 }
 
 /// An interpreted horizon: one or more sheets.
+///
+/// ```
+/// # use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry, VerticalUnit};
+/// let geometry = SurveyGeometry::regular([3, 4, 50], 25.0, 4.0, VerticalUnit::Milliseconds);
+/// let flat = Sheet::new(NodeGrid::of_survey(&geometry), vec![120.0; 12], Quality::Tracked);
+/// let horizon = Horizon { name: "Top chalk".into(), sheets: vec![flat] };
+/// assert_eq!(horizon.sheets[0].grid.world_at(glam::DVec2::new(2.0, 3.0)), glam::DVec2::new(50.0, 75.0));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Horizon {
     /// Unique within a project.
     pub name: String,
-    /// Its parts.
+    /// Its sheets.
     pub sheets: Vec<Sheet>,
 }
 

@@ -1,19 +1,21 @@
-//! Memory for a whole volume, in large pages where the system has them.
+//! Memory for a whole volume, in huge pages where the system has them.
 //!
-//! The first write to each page of fresh memory costs a fault: 131 072 pages of 4 KiB for a cube of 512³ floats, 256 of 2 MiB. Decoding a
-//! sample costs less than its share of the former.
+//! The first write to each page of fresh memory causes a page fault. A cube of 512³ floats has 131 072 pages
+//! of 4 KiB, or 256 pages of 2 MiB. With pages of 4 KiB, decoding a sample costs less than its share of the
+//! page faults.
 
-/// `count` zeros. The memory is first touched, and so placed, by the threads that write to it.
+/// `count` zeros. The threads that write to the memory touch it first, which decides where the system places
+/// it.
 pub fn zeroed(count: usize) -> Vec<f32> {
     let samples = vec![0.0_f32; count];
     advise(&samples);
     samples
 }
 
-/// Asks for large pages. A wish: where it is not granted, nothing is different.
+/// Asks the system for huge pages. Where it refuses, the program works as before.
 #[cfg(target_os = "linux")]
 fn advise(samples: &[f32]) {
-    /// No system's pages are smaller; the advice must begin at one.
+    /// The advice must begin at a page boundary; no system has smaller pages than this.
     const PAGE: usize = 4096;
     let start = samples.as_ptr() as usize;
     let first = start.next_multiple_of(PAGE);

@@ -1,12 +1,17 @@
 //! The nouns of a seismic survey and its interpretation.
 //!
-//! Everything the other crates share lives here: where a sample is ([`geometry`]), what was measured
-//! ([`volume`], [`well`]), what was interpreted ([`horizon`], [`fault`], [`stratigraphy`]), the surfaces they are
-//! evaluated on ([`height_field`], [`mesh`]), what was found in a volume ([`candidates`]), how long work reports and is
-//! cancelled ([`progress`]), what can be stated about a file ([`remedy`]), and how samples are handed on when they do
-//! not all fit into memory ([`source`]).
+//! The other crates share these types:
 //!
-//! Deliberately absent: files and formats, the store, any algorithm on more than one of these nouns.
+//! - the position of a sample: [`geometry`];
+//! - measurements: [`volume`], [`well`];
+//! - the interpretation: [`horizon`], [`fault`], [`stratigraphy`];
+//! - the surfaces on which it is evaluated: [`height_field`], [`mesh`];
+//! - horizon candidates extracted from a volume: [`candidates`];
+//! - progress and cancellation of long computations: [`progress`];
+//! - what a user can state about a file: [`remedy`];
+//! - volumes that do not fit into memory: [`source`].
+//!
+//! Deliberately absent: files and formats, the store, and any algorithm that combines several of these types.
 //!
 //! # Spaces
 //!

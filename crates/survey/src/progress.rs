@@ -1,15 +1,16 @@
-//! Progress of long work, with cancellation: every long call takes a [`Progress`] and asks it now and then.
+//! Progress and cancellation of long computations. Every long call takes a [`Progress`] and checks it
+//! regularly.
 
 use crate::remedy::Note;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// The work was cancelled by the user. Nothing was written.
+/// The user cancelled the work. Nothing was written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("cancelled")]
 pub struct Cancelled;
 
-/// What receives progress: a terminal bar, a window, or nothing.
+/// Receives progress: a bar in a terminal, a window, or nothing.
 pub trait ProgressSink: Send + Sync {
     /// A stage of `total` steps begins.
     fn begin(&self, stage: &str, total: u64);
@@ -28,7 +29,18 @@ impl ProgressSink for Silent {
     fn warn(&self, _note: &Note) {}
 }
 
-/// A handle shared by the one who works and the one who watches. Cheap to clone.
+/// A handle shared by the worker and its observer. It is cheap to clone.
+///
+/// ```
+/// # use survey::{Cancelled, Progress};
+/// let progress = Progress::silent();
+/// let inner = progress.muted();
+/// progress.begin("read traces", 100);
+/// assert_eq!(progress.step(10), Ok(()));
+/// progress.cancel();
+/// assert_eq!(progress.step(10), Err(Cancelled));
+/// assert_eq!(inner.check(), Err(Cancelled));
+/// ```
 #[derive(Clone)]
 pub struct Progress {
     sink: Arc<dyn ProgressSink>,
@@ -37,17 +49,18 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Reports to `sink`.
+    /// A handle that reports to `sink`.
     pub fn new(sink: Arc<dyn ProgressSink>) -> Self {
         Self { sink, cancelled: Arc::default(), done: Arc::default() }
     }
 
-    /// Reports to nobody; still cancellable.
+    /// A handle that reports to nobody. It can still be cancelled.
     pub fn silent() -> Self {
         Self::new(Arc::new(Silent))
     }
 
-    /// A handle that reports to nobody and is cancelled with this one: for work that is a part of a step.
+    /// A handle for work that is a part of one step: it reports to nobody and is cancelled together with this
+    /// one.
     pub fn muted(&self) -> Self {
         Self { sink: Arc::new(Silent), cancelled: self.cancelled.clone(), done: Arc::default() }
     }
@@ -58,7 +71,7 @@ impl Progress {
         self.sink.begin(stage, total);
     }
 
-    /// Adds `steps` finished steps; from any thread.
+    /// Adds `steps` finished steps. It may be called from any thread.
     ///
     /// # Errors
     /// [`Cancelled`] once [`Progress::cancel`] was called.
@@ -68,7 +81,7 @@ impl Progress {
         self.check()
     }
 
-    /// Asks whether to go on.
+    /// Checks whether the work may go on.
     ///
     /// # Errors
     /// [`Cancelled`] once [`Progress::cancel`] was called.

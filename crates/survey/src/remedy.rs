@@ -1,11 +1,13 @@
-//! What can be stated about a file that is silent, unclear or wrong about itself, as values: the way out that an error or a note points to.
+//! What a user can state about a file that is silent, ambiguous or wrong about itself. An error or a note
+//! carries these values as its suggested remedy.
 //!
-//! Whoever shows an error has words of its own for what can be stated: an option on the command line, a field in a window. `Display` gives the options.
+//! Each user interface has its own words for a setting: an option on the command line, a field in a window.
+//! `Display` gives the options of the command line.
 
 use serde::{Serialize, Serializer};
 use std::fmt;
 
-/// Something that can be stated about a file.
+/// A property of a file that the user can state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Setting {
     /// Format of a SEG-Y file's samples.
@@ -20,7 +22,7 @@ pub enum Setting {
     CoordinateUnit,
     /// How X and Y are stored.
     CoordinateType,
-    /// Size of square bins that take the place of X and Y.
+    /// Size of the square bins that replace X and Y.
     Bin,
     /// Header byte of the inline number.
     InlineByte,
@@ -38,21 +40,21 @@ pub enum Setting {
     ScalarByte,
     /// Which of several traces at one place is kept.
     Duplicates,
-    /// What the trace weight does.
+    /// How the trace weight is applied.
     TraceWeight,
     /// Format of a horizon or fault file.
     Format,
-    /// What a table's columns hold.
+    /// Content of a table's columns.
     Columns,
     /// Vertical unit of a horizon or fault.
     ZUnit,
-    /// Which way its vertical values grow.
+    /// Direction in which its vertical values grow.
     ZPositive,
-    /// Factor on them.
+    /// Factor on its vertical values.
     ZFactor,
     /// Value that marks nodes without data.
     Null,
-    /// What places points that have line numbers and X, Y.
+    /// Whether line numbers or X, Y place points that have both.
     PlaceBy,
     /// Order of a grid's values.
     ValueOrder,
@@ -69,7 +71,7 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// The option that states it.
+    /// The option of the command line that states it.
     pub fn option(self) -> &'static str {
         match self {
             Self::SampleFormat => "--sample-format",
@@ -104,7 +106,7 @@ impl Setting {
         }
     }
 
-    /// What follows the option on the command line, where that does not say it.
+    /// The placeholder for the value on the command line, for options whose name does not explain it.
     fn value_name(self) -> &'static str {
         match self {
             Self::Datum => " M",
@@ -115,40 +117,48 @@ impl Setting {
         }
     }
 
-    /// Stated, whatever the value.
+    /// The remedy of stating this setting, with a value that the user knows.
     pub fn stated(self) -> Remedy {
         Remedy { ways: vec![vec![Statement { setting: self, value: None }]] }
     }
 
-    /// Stated with a value, or with one of those that the words name.
+    /// The remedy of stating this setting with `value`, which may name several choices in words (`m or ft`).
     pub fn stated_as(self, value: impl fmt::Display) -> Remedy {
         Remedy { ways: vec![vec![Statement { setting: self, value: Some(value.to_string()) }]] }
     }
 }
 
-/// A setting and the value that would do, where it is known.
+/// A setting, and a suitable value where one is known.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Statement {
     /// What is stated.
     pub setting: Setting,
-    /// The value, in words that name the choice where there is one.
+    /// The value; words that name the choices where there are several.
     pub value: Option<String>,
 }
 
-/// What to state: any one of these ways will do, and each takes all of its statements.
+/// What the user can state: any one of these ways is enough, and each way needs all of its statements.
+///
+/// ```
+/// # use survey::{Remedy, Setting};
+/// let coordinates = Remedy::all([Setting::XByte.stated_as(73), Setting::YByte.stated_as(77)]);
+/// let either = Remedy::any([coordinates, Setting::Bin.stated()]);
+/// assert_eq!(either.ways.len(), 2);
+/// assert_eq!(either.to_string(), "--x-byte 73 --y-byte 77 or --bin");
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Remedy {
-    /// The ways; none where nothing that can be stated helps.
+    /// The ways; empty where no statement helps.
     pub ways: Vec<Vec<Statement>>,
 }
 
 impl Remedy {
-    /// All of these together.
+    /// A remedy that needs all of these statements.
     pub fn all(parts: impl IntoIterator<Item = Self>) -> Self {
         Self { ways: vec![parts.into_iter().flat_map(|part| part.ways.into_iter().flatten()).collect()] }
     }
 
-    /// Any of these.
+    /// A remedy that needs any one of these.
     pub fn any(parts: impl IntoIterator<Item = Self>) -> Self {
         Self { ways: parts.into_iter().flat_map(|part| part.ways).collect() }
     }
@@ -177,17 +187,24 @@ impl fmt::Display for Remedy {
     }
 }
 
-/// Something found or assumed, and what states otherwise.
+/// Something found or assumed, and what to state if it is wrong.
+///
+/// ```
+/// # use survey::{Note, Setting};
+/// let note = Note::unless("the interval is 4 ms", Setting::Interval.stated());
+/// assert_eq!(note.to_string(), "the interval is 4 ms (if not: --interval)");
+/// assert_eq!(Note::from("3 traces are dead").to_string(), "3 traces are dead");
+/// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Note {
     /// What was found, in one sentence.
     pub fact: String,
-    /// What to state if it is not so.
+    /// What to state if the fact is wrong.
     pub otherwise: Option<Remedy>,
 }
 
 impl Note {
-    /// Something that can be stated otherwise.
+    /// A fact that the user can correct.
     pub fn unless(fact: impl Into<String>, otherwise: Remedy) -> Self {
         Self { fact: fact.into(), otherwise: Some(otherwise) }
     }
@@ -207,7 +224,7 @@ impl fmt::Display for Note {
 }
 
 impl Serialize for Note {
-    /// The sentence, with the options.
+    /// Serializes the sentence with the options, as `Display` gives it.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }

@@ -1,6 +1,6 @@
-//! The numbers that volumes are made of.
+//! The numeric types of samples.
 
-/// A type of samples.
+/// The numeric type of the samples of a volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SampleType {
     /// Integers of one byte.
@@ -34,7 +34,7 @@ impl SampleType {
     }
 }
 
-/// Memory for samples of one of the types.
+/// A mutable slice of samples of one of the types.
 #[derive(Debug, PartialEq)]
 pub enum SamplesMut<'a> {
     /// Of [`SampleType::Int8`].
@@ -53,15 +53,23 @@ pub enum SamplesMut<'a> {
     Float32(&'a mut [f32]),
 }
 
-/// A number that volumes are made of.
+/// A numeric type that samples of a volume may have.
+///
+/// ```
+/// # use survey::sample::{Sample, SampleType};
+/// assert_eq!(<i8 as Sample>::TYPE, SampleType::Int8);
+/// assert_eq!(i8::from_f32(200.0), 127);
+/// assert_eq!(i16::from_f32(f32::NAN), 0);
+/// assert_eq!(u8::to_f32(7), 7.0);
+/// ```
 pub trait Sample: Copy + Send + Sync + PartialEq + 'static {
     /// Its type.
     const TYPE: SampleType;
     /// The value as float.
     fn to_f32(self) -> f32;
-    /// The nearest value to a float; NaN becomes 0 where there is none.
+    /// The value nearest to a float; NaN becomes 0 in types that have no NaN.
     fn from_f32(value: f32) -> Self;
-    /// Memory for such samples, with its type.
+    /// The slice, tagged with its type.
     fn slots(slots: &mut [Self]) -> SamplesMut<'_>;
 }
 

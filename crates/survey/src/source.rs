@@ -1,10 +1,11 @@
-//! Samples that are not all in memory: what reads them in parts, and what hands them over in parts.
+//! Volumes that do not fit into memory: sources that are read in parts, and sources that are handed over in
+//! parts.
 //!
-//! | trait | who asks | who answers |
+//! | trait | used by | implemented by |
 //! |---|---|---|
-//! | [`SlabSource`] | what reads a volume once, trace by trace | a volume in memory or on disk |
-//! | [`BoxSource`] | what computes a volume from parts of another | a volume in memory or on disk |
-//! | [`BlockSource`] | what writes a volume | a file, or a computation |
+//! | [`SlabSource`] | code that reads a volume once, trace by trace | a volume in memory or on disk |
+//! | [`BoxSource`] | code that computes a volume from parts of another | a volume in memory or on disk |
+//! | [`BlockSource`] | code that writes a volume | a file, or a computation |
 
 use crate::progress::Progress;
 use crate::sample::{SampleType, SamplesMut};
@@ -14,10 +15,10 @@ use std::convert::Infallible;
 use std::error::Error;
 use std::ops::Range;
 
-/// A failure of whoever supplies samples.
+/// A failure of a source or a sink of samples.
 pub type SourceError = Box<dyn Error + Send + Sync>;
 
-/// Where traces come from: a volume in memory, or a store that is read slab by slab.
+/// A source of traces: a volume in memory, or a store that is read slab by slab.
 pub trait SlabSource: Sync {
     /// Why a slab could not be read.
     type Error: Send;
@@ -28,7 +29,7 @@ pub trait SlabSource: Sync {
     /// Calls `visit(x, y, trace)` for every live trace with x in `inlines`, in the order (x, y).
     ///
     /// # Errors
-    /// What the source says.
+    /// An error of the source.
     fn read(&self, inlines: Range<usize>, visit: &mut dyn FnMut(usize, usize, &[f32])) -> Result<(), Self::Error>;
 }
 
@@ -52,6 +53,14 @@ impl SlabSource for Volume<f32> {
 }
 
 /// A volume of which any box can be read.
+///
+/// ```
+/// # use survey::{Volume, source::BoxSource};
+/// let volume = Volume::from_samples([1, 2, 3], vec![0.0, 1.0, 2.0, 10.0, 11.0, 12.0])?;
+/// let part = volume.read_box([0, 1, 1], [1, 1, 2])?;
+/// assert_eq!(part.samples(), [11.0, 12.0]);
+/// # Ok::<(), survey::source::SourceError>(())
+/// ```
 pub trait BoxSource: Sync {
     /// `[inlines, crosslines, samples]`.
     fn size(&self) -> [usize; 3];
@@ -62,7 +71,7 @@ pub trait BoxSource: Sync {
     /// The samples and the mask of a box that begins at the voxel `start`.
     ///
     /// # Errors
-    /// What the source says.
+    /// An error of the source.
     fn read_box(&self, start: [usize; 3], size: [usize; 3]) -> Result<Volume<f32>, SourceError>;
 }
 
@@ -86,7 +95,7 @@ impl BoxSource for Volume<f32> {
     }
 }
 
-/// Which lines a source holds together; blocks span as many of them as memory allows.
+/// The lines that a source stores contiguously. Blocks span as many of them as memory allows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum LineOrder {
     /// One inline after the other.
@@ -105,7 +114,7 @@ pub struct Block {
     pub crosslines: Range<usize>,
 }
 
-/// A volume that is handed over block by block, in the type in which it is to be kept.
+/// A volume that is handed over block by block, in the numeric type in which it will be stored.
 pub trait BlockSource {
     /// `[inlines, crosslines, samples]`.
     fn size(&self) -> [usize; 3];
@@ -113,7 +122,7 @@ pub trait BlockSource {
     /// The live-trace mask, `[inline][crossline]`; `None` means that every trace is live.
     fn live(&self) -> Option<Cow<'_, [bool]>>;
 
-    /// Which lines are read fastest together.
+    /// The lines that are read fastest together.
     fn order(&self) -> LineOrder {
         LineOrder::Inlines
     }
@@ -121,11 +130,11 @@ pub trait BlockSource {
     /// The type of the samples.
     fn sample_type(&self) -> SampleType;
 
-    /// Fills `out` with the samples of a block, `[inline][crossline][sample]`. What `out` holds before is anything, its
-    /// type is [`BlockSource::sample_type`].
+    /// Fills `out` with the samples of a block, `[inline][crossline][sample]`. The previous content of `out`
+    /// is undefined; its type is [`BlockSource::sample_type`].
     ///
     /// # Errors
-    /// What the source says, or cancelled.
+    /// An error of the source, or [`Cancelled`](crate::Cancelled).
     fn read_block(&mut self, block: &Block, out: SamplesMut<'_>, progress: &Progress) -> Result<(), SourceError>;
 }
 

@@ -1,62 +1,75 @@
-//! The order of horizons in age, their contacts, and the layers between them.
+//! The age order of horizons, their contacts, and the layers between them.
 //!
-//! Horizons are listed youngest first. With n of them there are n + 1 layers, indexed from the bottom: horizon h is
-//! the bottom of layer n − h and the top of layer n − 1 − h. Layers 0 and n are open.
+//! Horizons are listed youngest first. n horizons bound n + 1 layers, which are indexed from the bottom:
+//! horizon h is the bottom of layer n − h and the top of layer n − 1 − h. Layer 0 has no bottom and layer n
+//! has no top.
 
 use serde::{Deserialize, Serialize};
 
-/// What a horizon does to its neighbours where they would cross it.
+/// How a horizon meets the horizons that would cross it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Contact {
-    /// Deposited on the layer below; horizons thin towards one another but do not cut.
+    /// Deposited on the layer below: horizons converge but do not cut one another.
     #[default]
     Conformable,
     /// An erosion surface: cuts off the older horizons that would rise above it.
     Erosional,
     /// A surface that younger horizons end against where they would dip below it.
     Onlap,
-    /// The outline of an intrusion (salt, igneous): what is below it replaces everything, younger and older horizons are cut off.
+    /// The boundary of an intrusion (salt, igneous rock): the rock below it replaces everything, so it cuts
+    /// off younger and older horizons.
     Intrusive,
 }
 
-/// A horizon's place in the stratigraphy.
+/// A horizon in the stratigraphy.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct StratigraphicHorizon {
     /// Name of the horizon.
     pub name: String,
-    /// What it does to its neighbours.
+    /// How it meets other horizons.
     #[serde(default)]
     pub contact: Contact,
 }
 
 /// Horizons in age order, youngest first.
+///
+/// ```
+/// # use survey::{Contact, StratigraphicHorizon, Stratigraphy};
+/// let horizon = |name: &str| StratigraphicHorizon { name: name.into(), contact: Contact::Conformable };
+/// let stratigraphy = Stratigraphy { horizons: vec![horizon("chalk"), horizon("salt")], layer_names: Vec::new() };
+/// assert_eq!(stratigraphy.layer_count(), 3);
+/// assert_eq!(stratigraphy.layer_names_bottom_up(), ["below salt", "chalk - salt", "above chalk"]);
+/// assert_eq!((stratigraphy.top_of(1), stratigraphy.bottom_of(1)), (Some(0), Some(1)));
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stratigraphy {
     /// Youngest (topmost) first.
     pub horizons: Vec<StratigraphicHorizon>,
-    /// Names of the layers, youngest first (one more than horizons); layers without a name get one from their horizons.
+    /// Names of the layers, youngest first, one more than horizons. A layer without a name is named after its
+    /// horizons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
 }
 
 impl Stratigraphy {
-    /// Count of layers: one more than horizons.
+    /// Count of layers: one more than the count of horizons.
     pub fn layer_count(&self) -> usize {
         self.horizons.len() + 1
     }
 
-    /// Index of the horizon at the top of `layer`; `None` for the topmost, open layer.
+    /// Index of the horizon at the top of `layer`; `None` for the topmost layer, which has no top.
     pub fn top_of(&self, layer: usize) -> Option<usize> {
         (self.horizons.len()).checked_sub(layer + 1)
     }
 
-    /// Index of the horizon at the bottom of `layer`; `None` for layer 0, open below.
+    /// Index of the horizon at the bottom of `layer`; `None` for layer 0, which has no bottom.
     pub fn bottom_of(&self, layer: usize) -> Option<usize> {
         (layer > 0).then(|| self.horizons.len() - layer)
     }
 
-    /// The name of `layer` (0 = deepest): the one given, or "above A", "A - B", "below B" after its horizons.
+    /// The name of `layer` (0 = deepest): its own name, or else "above A", "A - B" or "below B" after its
+    /// horizons.
     pub fn layer_name(&self, layer: usize) -> String {
         let from_top = self.layer_count() - 1 - layer;
         if let Some(name) = self.layer_names.get(from_top).filter(|name| !name.is_empty()) {

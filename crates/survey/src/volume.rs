@@ -1,8 +1,21 @@
 //! A box of samples, trace-major: z fastest, then y, then x, i.e. `[inline][crossline][sample]`.
 //!
-//! A trace that was never recorded is not zero amplitude: the optional live-trace mask tells them apart.
+//! A trace that was never recorded differs from one of zero amplitude: the optional live-trace mask tells
+//! them apart.
 
-/// Samples on the survey lattice. Memory: `size_of::<T>()` bytes a voxel, and one byte a trace for the mask.
+/// Samples on the survey lattice. Memory: `size_of::<T>()` bytes per voxel, and one byte per trace for the
+/// mask.
+///
+/// ```
+/// # use survey::Volume;
+/// let mut volume = Volume::from_samples([1, 2, 3], vec![0, 1, 2, 10, 11, 12])?;
+/// assert_eq!(volume.trace(0, 1), [10, 11, 12]);
+/// assert_eq!(volume.at(0, 1, 2), 12);
+/// volume.set_live(Some(vec![true, false]))?;
+/// assert!(volume.is_live(0, 0) && !volume.is_live(0, 1));
+/// assert!(Volume::from_samples([1, 2, 3], vec![0; 5]).is_err());
+/// # Ok::<(), survey::volume::SizeMismatch>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Volume<T> {
     size: [usize; 3],
@@ -10,25 +23,25 @@ pub struct Volume<T> {
     live: Option<Vec<bool>>,
 }
 
-/// The samples do not fill the box.
+/// The count of samples does not match the size of the volume.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a volume of {size:?} needs {expected} values, found {found}")]
 pub struct SizeMismatch {
     /// `[inlines, crosslines, samples]`.
     pub size: [usize; 3],
-    /// Values the box holds.
+    /// Count of values that the volume needs.
     pub expected: usize,
-    /// Values given.
+    /// Count of values given.
     pub found: usize,
 }
 
 impl<T: Copy> Volume<T> {
-    /// A volume of one value, every trace live.
+    /// A volume in which every sample is `value` and every trace is live.
     pub fn filled(size: [usize; 3], value: T) -> Self {
         Self { size, samples: vec![value; size.iter().product()], live: None }
     }
 
-    /// Takes samples in memory order.
+    /// A volume of the given samples, in memory order; every trace is live.
     ///
     /// # Errors
     /// [`SizeMismatch`] when their count is not the product of `size`.
@@ -43,7 +56,7 @@ impl<T: Copy> Volume<T> {
     /// Sets the live-trace mask, `[inline][crossline]`; `None` means that every trace is live.
     ///
     /// # Errors
-    /// [`SizeMismatch`] when the mask has not one entry a trace.
+    /// [`SizeMismatch`] when the mask does not have one entry per trace.
     pub fn set_live(&mut self, live: Option<Vec<bool>>) -> Result<(), SizeMismatch> {
         let expected = self.size[0] * self.size[1];
         if let Some(mask) = &live
@@ -65,17 +78,17 @@ impl<T: Copy> Volume<T> {
         &self.samples
     }
 
-    /// All samples in memory order, without the volume.
+    /// Turns the volume into its samples, in memory order.
     pub fn into_samples(self) -> Vec<T> {
         self.samples
     }
 
-    /// All samples in memory order, to write.
+    /// All samples in memory order, for writing.
     pub fn samples_mut(&mut self) -> &mut [T] {
         &mut self.samples
     }
 
-    /// The live-trace mask, if some trace is missing.
+    /// The live-trace mask, if one is set.
     pub fn live(&self) -> Option<&[bool]> {
         self.live.as_deref()
     }
@@ -91,7 +104,7 @@ impl<T: Copy> Volume<T> {
         &self.samples[start..start + self.size[2]]
     }
 
-    /// The trace at (x, y), to write.
+    /// The trace at (x, y), for writing.
     pub fn trace_mut(&mut self, x: usize, y: usize) -> &mut [T] {
         let start = (x * self.size[1] + y) * self.size[2];
         &mut self.samples[start..start + self.size[2]]

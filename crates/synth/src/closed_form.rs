@@ -1,14 +1,16 @@
-//! Small models with exact answers, as input for tests of whatever is computed from an interpretation.
+//! Small models with exact answers, for testing whatever is computed from an interpretation.
 //!
-//! Horizons are planes, concentric cylinders or folded beds, optionally cut by an erosion surface and by one planar fault whose hanging
-//! wall is moved straight down. Where a layer's two horizons are parallel, the paper's f_z = d_bottom/(d_bottom + d_top)
-//! (P-illus 3.1) and the crossing of its isocurve with the middle surface are known:
+//! Horizons are planes, concentric cylinders or folded beds, optionally cut by an erosion surface and by one
+//! planar fault whose hanging wall is moved straight down. Where a layer's two horizons are parallel, the
+//! paper's f_z = d_bottom/(d_bottom + d_top) (P-illus 3.1) and the crossing of its isocurve with the middle
+//! surface are known:
 //!
 //! - parallel planes: k is the fraction of the distance; the isocurve is the common normal;
-//! - concentric cylinders with radii r_bottom < r_top: `k = (r − r_bottom)/(r_top − r_bottom)`; the isocurve is the radius.
+//! - concentric cylinders with radii r_bottom < r_top: `k = (r − r_bottom)/(r_top − r_bottom)`; the isocurve
+//!   is the radius.
 //!
-//! Positions are voxels; geometry in metric space (X and Y offset from the survey's origin, depth), m. Fold axes and the
-//! fault's strike follow the lattice as documented at each constructor.
+//! Positions are voxels; geometry in metric space (X and Y offset from the survey's origin, depth), m. Fold
+//! axes and the fault's strike follow the lattice as documented at each constructor.
 
 use super::fold::{FoldedBeds, Undulation, Wave};
 use glam::{DVec2, DVec3};
@@ -27,7 +29,8 @@ const FAULT_NODES: [usize; 2] = [17, 17];
 enum Surface {
     /// depth = at_origin + slope · (u, v).
     Plane { at_origin: f64, slope: DVec2 },
-    /// The upper half of a cylinder: depth = axis.depth − √(radius² − across²), across = (u, v) · direction − axis.
+    /// The upper half of a cylinder: depth = axis.depth − √(radius² − across²), across = (u, v) · direction −
+    /// axis.
     Cylinder { direction: DVec2, axis: f64, axis_depth: f64, radius: f64 },
     /// A bed of a fold.
     Bed { beds: FoldedBeds, strat_m: f64 },
@@ -62,7 +65,7 @@ impl PlanarFault {
     }
 }
 
-/// Exact flat-space position.
+/// An exact position in flat space.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExactPoint {
     /// x/(Nx − 1) of the isocurve's crossing with the middle surface.
@@ -77,16 +80,34 @@ pub struct ExactPoint {
     pub block: u16,
 }
 
-/// An interpretation with exact answers.
+/// A small interpretation whose layers, blocks and coordinates are known exactly.
+///
+/// # Examples
+/// Planes that dip by 45 degrees towards world +X deepen by one bin width, 25 m or 2.5 samples, per inline:
+/// ```
+/// use glam::DVec3;
+/// use survey::geometry::{SurveyGeometry, VerticalUnit};
+/// use synth::closed_form::ClosedForm;
+///
+/// let geometry = SurveyGeometry::regular([11, 21, 61], 25.0, 10.0, VerticalUnit::Metres);
+/// let form = ClosedForm::dipping(&geometry, &[20.0, 40.0], 45.0, 0.0);
+/// assert!((form.sheet_z(0, 0, 5.0, 10.0) - 20.0).abs() < 1e-9);
+/// assert!((form.sheet_z(0, 0, 6.0, 10.0) - 22.5).abs() < 1e-9);
+/// // Half-way between the horizons k is 1/2.
+/// let middle = DVec3::new(5.0, 10.0, 30.0);
+/// assert_eq!(form.layer_at(middle), 1);
+/// assert!(form.exact_at(middle).is_some_and(|exact| (exact.k - 0.5).abs() < 1e-9));
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClosedForm {
     /// The lattice.
     pub geometry: SurveyGeometry,
     /// Horizons "H1" (youngest), "H2", … and their contacts.
     pub stratigraphy: Stratigraphy,
-    /// One sheet without a fault, else one for each block, on the survey's lattice; holes where the horizon is not.
+    /// The horizons on the survey's lattice: one sheet without a fault, else one for each block. Nodes where
+    /// a horizon does not exist are holes.
     pub horizons: Vec<Horizon>,
-    /// None, or the planar fault "F", from wall to wall.
+    /// Empty, or the planar fault "F", which reaches from one side face of the volume to the other.
     pub faults: Vec<Fault>,
     surfaces: Vec<Surface>,
     erosional: Option<usize>,
@@ -99,7 +120,8 @@ impl ClosedForm {
         Self::dipping(geometry, samples, 0.0, 0.0)
     }
 
-    /// Parallel planes, at the given samples in the survey's middle, that dip `dip_deg` towards `direction_deg` from world +X to +Y.
+    /// Parallel planes that lie at the given samples in the middle of the survey and dip by `dip_deg` towards
+    /// `direction_deg`, measured from world +X to +Y.
     pub fn dipping(geometry: &SurveyGeometry, samples: &[f64], dip_deg: f64, direction_deg: f64) -> Self {
         let slope = DVec2::from_angle(direction_deg.to_radians()) * dip_deg.to_radians().tan();
         let plane = |sample: &f64| Surface::Plane {
@@ -109,8 +131,8 @@ impl ClosedForm {
         Self::of(geometry, samples.iter().map(plane).collect(), None)
     }
 
-    /// Concentric cylinders along crosslines' direction y, their crests over the survey's middle at the given samples, youngest
-    /// first; the deepest dips `dip_deg` at the first and last inline.
+    /// Concentric cylinders along crosslines' direction y, their crests over the survey's middle at the given
+    /// samples, youngest first; the deepest dips `dip_deg` at the first and last inline.
     pub fn dome(geometry: &SurveyGeometry, samples: &[f64], dip_deg: f64) -> Self {
         // The horizontal direction across the axis: normal to the crossline vector.
         let direction = geometry.crossline_vector.normalize().perp();
@@ -126,8 +148,8 @@ impl ClosedForm {
         Self::of(geometry, samples.iter().map(cylinder).collect(), None)
     }
 
-    /// Folded beds at the given mean samples: two waves across each other, of which the first dips up to `dip_deg`, and
-    /// beds that are thinner and thicker by the fraction `thickening`. Has no exact k.
+    /// Folded beds at the given mean samples: two waves across each other, of which the first dips up to
+    /// `dip_deg`, and beds that are thinner and thicker by the fraction `thickening`. Has no exact k.
     pub fn folded(geometry: &SurveyGeometry, samples: &[f64], dip_deg: f64, thickening: f64) -> Self {
         let width = geometry.inline_vector.length() * (geometry.inlines.count as f64 - 1.0);
         let wave = |wavelength: f64, angle: f64, phase: f64, amplitude: &dyn Fn(f64) -> f64| {
@@ -147,7 +169,8 @@ impl ClosedForm {
         Self::of(geometry, samples.iter().map(bed).collect(), None)
     }
 
-    /// Planes that dip as in [`ClosedForm::dipping`] under a horizontal erosion surface at `base_sample`, "H1", which cuts them off.
+    /// Planes that dip as in [`ClosedForm::dipping`] under a horizontal erosion surface at `base_sample`,
+    /// "H1", which cuts them off.
     pub fn unconformity(
         geometry: &SurveyGeometry,
         base_sample: f64,
@@ -160,8 +183,9 @@ impl ClosedForm {
         Self::of(geometry, surfaces, Some(0))
     }
 
-    /// The same model with a planar fault through the survey's middle, striking along y and dipping `dip_deg` towards +x (of a survey
-    /// with perpendicular lines); its hanging wall is moved down by `throw` samples, up when negative.
+    /// The same model with a planar fault through the survey's middle, striking along y and dipping `dip_deg`
+    /// towards +x (of a survey with perpendicular lines); its hanging wall is moved down by `throw` samples,
+    /// up when negative.
     pub fn with_fault(&self, dip_deg: f64, throw: f64) -> Self {
         let size = self.geometry.size();
         let run = self.geometry.sample_m() / dip_deg.to_radians().tan() / self.geometry.inline_vector.length();
@@ -226,8 +250,8 @@ impl ClosedForm {
         (self.surfaces.len() - above) as u16
     }
 
-    /// i, j, k at voxel `p`, where the layer's two horizons are parallel; `None` in open layers and between other surfaces. An
-    /// eroded layer is measured between its horizons as they were before erosion.
+    /// i, j, k at voxel `p`, where the layer's two horizons are parallel; `None` in open layers and between
+    /// other surfaces. An eroded layer is measured between its horizons as they were before erosion.
     pub fn exact_at(&self, p: DVec3) -> Option<ExactPoint> {
         let (block, layer) = (self.block_at(p), self.layer_at(p));
         let top = &self.surfaces[self.stratigraphy.top_of(layer.into())?];
@@ -411,7 +435,8 @@ mod tests {
             };
             (count(0), count(2))
         };
-        // Heave of a normal fault: 60 m of throw at 60° is 1.4 bins wide; the reverse fault overlaps by 60 m at 45°.
+        // Heave of a normal fault: 60 m of throw at 60° is 1.4 bins wide; the reverse fault overlaps by 60 m
+        // at 45°.
         let (gap, double) = holes(&normal);
         assert!(gap >= 31 && double == 0);
         let (gap, double) = holes(&flat.with_fault(45.0, -6.0));

@@ -1,13 +1,14 @@
 //! The stratigraphic column: where the reflectors are and what the beds between them are made of.
 //!
-//! Reflectivity is that of acoustic impedance Z at normal incidence, `r = (Z_below − Z_above)/(Z_below + Z_above)`; beds
-//! alternate between soft and hard, so polarity alternates. A wavelength is 1/f of the Ricker wavelet's peak frequency f.
+//! Reflectivity is that of acoustic impedance Z at normal incidence, `r = (Z_below − Z_above)/(Z_below +
+//! Z_above)`; beds alternate between soft and hard, so polarity alternates. A wavelength is 1/f of the Ricker
+//! wavelet's peak frequency f.
 
 use super::random::Draws;
 use serde::{Deserialize, Serialize};
 
-/// Spacing of reflectors in wavelengths where beds have their mean thickness. With beds between 1/4 thinner and 1/4
-/// thicker than that, neighbours are one to two wavelengths apart.
+/// Spacing of reflectors in wavelengths where beds have their mean thickness. With beds between 1/4 thinner
+/// and 1/4 thicker than that, neighbours are one to two wavelengths apart.
 const SPACING: [f64; 2] = [1.36, 1.58];
 
 /// Half the relative difference in impedance between a soft and a hard bed.
@@ -23,8 +24,8 @@ pub struct Column {
 }
 
 impl Column {
-    /// Lays beds from `first_m` on, downwards to beyond `last_m` or, when that is smaller, upwards; the bed before the
-    /// first reflector is soft. `trend` gives the mean impedance at a stratigraphic depth.
+    /// Lays beds from `first_m` on, downwards to beyond `last_m` or, when that is smaller, upwards; the bed
+    /// before the first reflector is soft. `trend` gives the mean impedance at a stratigraphic depth.
     pub(super) fn laid(
         first_m: f64,
         last_m: f64,
@@ -40,7 +41,8 @@ impl Column {
             reached += if downwards { step } else { -step };
             reflectors_m.push(reached);
         }
-        // Bed 0 touches the first reflector on the side where laying began; the others follow in the direction of laying.
+        // Bed 0 touches the first reflector on the side where laying began; the others follow in the
+        // direction of laying.
         let mut impedance = Vec::with_capacity(reflectors_m.len() + 1);
         for bed in 0..=reflectors_m.len() {
             let strat_m = reflectors_m[bed.saturating_sub(1)];

@@ -1,8 +1,9 @@
-//! Chooses the parameters of the model: folds, faults, beds and named horizons that fit a volume of any shape.
+//! Chooses the parameters of the model: folds, faults, beds and named horizons that fit a volume of any
+//! shape.
 //!
-//! Depths are fractions of the volume's depth D; wavelengths of folds are fractions of L = min(width, 2·D), and amplitudes
-//! follow from slopes, so that dips in metric space are the same at any size. The seed turns directions and phases, shifts
-//! faults a little and draws beds.
+//! Depths are fractions of the volume's depth D; wavelengths of folds are fractions of L = min(width, 2·D),
+//! and amplitudes follow from slopes, so that dips in metric space are the same at any size. The seed turns
+//! directions and phases, shifts faults a little and draws beds.
 
 use super::column::Column;
 use super::faulting::{Tip, TruthFault};
@@ -19,8 +20,8 @@ const YOUNG_HORIZONS: [(&str, f64); 3] = [("Alpha", 0.20), ("Bravo", 0.31), ("Un
 /// Depth of the unconformity as a fraction of D.
 const UNCONFORMITY: f64 = 0.43;
 
-/// Depth of the first named horizon below the unconformity, in largest reliefs of the old beds: the crests of its folds
-/// are eroded, its troughs are whole.
+/// Depth of the first named horizon below the unconformity, in largest reliefs of the old beds: the crests of
+/// its folds are eroded, its troughs are whole.
 const CHARLIE_BELOW: f64 = 0.6;
 
 /// From there to the last named horizon, a fraction of D.
@@ -35,7 +36,8 @@ const WAVELENGTHS_IN_DEPTH: f64 = 12.0;
 /// Fewest inlines and crosslines: folds and heaves must span a few traces.
 const MIN_LINES: usize = 24;
 
-/// A wave of `slope` (relief) or `amplitude` (thickening) in a direction, with a random phase and a little turned.
+/// A wave of `slope` (relief) or `amplitude` (thickening) in a direction, with a random phase and a little
+/// turned.
 struct WaveDesign {
     /// Fraction of L.
     wavelength: f64,
@@ -145,7 +147,8 @@ fn wave(design: &WaveDesign, relief: Relief, scale: f64, draws: &mut Draws) -> W
     Wave { amplitude, wave_vector: DVec2::from_angle(angle) * number, phase: draws.between(0.0, TAU) }
 }
 
-/// A normal fault, one that dies out and a reverse fault, from low to high u; they do not meet inside the volume.
+/// A normal fault, one that dies out and a reverse fault, from low to high u; they do not meet inside the
+/// volume.
 fn faults(extent: DVec3, draws: &mut Draws) -> Vec<TruthFault> {
     struct FaultDesign {
         name: &'static str,

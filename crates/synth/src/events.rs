@@ -1,7 +1,9 @@
-//! The reflectors of the synthetic survey along a vertical line, each with its name: sequence and place in the column.
+//! The reflectors of the synthetic survey along a vertical line. Each is named by its sequence and its place
+//! in the column.
 //!
-//! A vertical line leaves hanging walls from high x to low x on its way down; in each block its reflectors are those of the column,
-//! folded, moved by the faults, and cut at the unconformity. Positions are fractional voxels.
+//! A vertical line leaves hanging walls from high x to low x on its way down; in each block its reflectors
+//! are those of the column, folded, moved by the faults, and cut at the unconformity. Positions are
+//! fractional voxels.
 
 use super::column::reflectivity;
 use super::truth::{Sequence, SynthTruth};
@@ -38,7 +40,8 @@ impl SynthTruth {
         Reflector { old, index: column.nearest(horizon.strat_m) as u16 }
     }
 
-    /// The reflectors along a vertical line, from 1.5 wavelengths above the volume to as far below: (voxel z, reflectivity), top first.
+    /// The reflectors along a vertical line, from 1.5 wavelengths above the volume to as far below: (voxel z,
+    /// reflectivity), top first.
     pub fn reflectors(&self, x: f64, y: f64) -> Vec<(f64, f64)> {
         self.events(x, y).iter().map(|event| (event.z, event.reflectivity)).collect()
     }

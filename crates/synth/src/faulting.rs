@@ -4,13 +4,14 @@
 //!
 //! `u = X(v, depth) = position + strike·η + bow·η² + run·ζ + listric·ζ²`
 //!
-//! It dips towards +u; what has u > X is the hanging wall. The hanging wall is moved straight down (a reverse fault: up) by
+//! It dips towards +u; the hanging wall is where u > X. The hanging wall is moved straight down (a reverse
+//! fault: up) by
 //!
 //! `throw(u, v) = throw_m · taper(v) · exp(−((u − X(v, middle depth))/reach)²)`
 //!
-//! which dies away from the fault and along its dip, as measured faults do, and to exactly 0 at a tip. Since throw does
-//! not depend on depth, a faulted bed stays a height field and undoing the fault is one subtraction. Spaces: metric
-//! (u along inline index, v along crossline index, depth down), m.
+//! which dies away from the fault and along its dip, as measured faults do, and to exactly 0 at a tip. Since
+//! throw does not depend on depth, a faulted bed stays a height field and undoing the fault is one
+//! subtraction. Spaces: metric (u along inline index, v along crossline index, depth down), m.
 
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
@@ -65,15 +66,16 @@ impl TruthFault {
         self.trace_u(v) + (self.run + self.listric * zeta) * zeta
     }
 
-    /// Offset of a point from the extended surface, m, positive in the hanging wall: exact sign, distance to first order.
+    /// Offset of a point from the extended surface, m, positive in the hanging wall: exact sign, distance to
+    /// first order.
     pub fn side_m(&self, p: DVec3) -> f64 {
         let slope_v = self.strike + 2.0 * self.bow * (p.y - self.middle_m.x);
         let slope_depth = self.run + 2.0 * self.listric * (p.z - self.middle_m.y);
         (p.x - self.surface_u(p.y, p.z)) / (1.0 + slope_v * slope_v + slope_depth * slope_depth).sqrt()
     }
 
-    /// Depth at which a vertical line crosses the extended surface, m: above it is the hanging wall. −∞ where the line
-    /// passes beside the surface, all of it in the footwall.
+    /// Depth at which a vertical line crosses the extended surface, m: above it is the hanging wall. −∞ where
+    /// the line passes beside the surface, all of it in the footwall.
     pub fn crossing_m(&self, place: DVec2) -> f64 {
         let q = place.x - self.trace_u(place.y);
         let root = self.run * self.run + 4.0 * self.listric * q;
@@ -109,7 +111,8 @@ impl TruthFault {
         self.tip.is_none_or(|tip| v <= tip.end_m)
     }
 
-    /// The interpreted fault: triangles over a grid of v and depth, from wall to wall or to the tip.
+    /// The interpreted fault: triangles over a grid of v and depth, which reach the side faces of the volume
+    /// or the tip.
     pub(super) fn interpreted(&self, geometry: &SurveyGeometry, cells: [usize; 2]) -> Fault {
         let step = geometry.metric_from_voxel();
         let [_, ny, nz] = geometry.size();

@@ -4,9 +4,9 @@
 //!
 //! `depth(s, u, v) = s + A(u, v) + (s − s₀)·B(u, v)`
 //!
-//! with the relief A (metres) and the thickening B (a fraction, |B| < 1), both sums of sines of different wavelength
-//! and direction. It is linear in s, hence `s = (depth − A + s₀·B)/(1 + B)`; the thickness of a bed varies by 1 + B.
-//! u, v and all depths are metric.
+//! with the relief A (metres) and the thickening B (a fraction, |B| < 1), both sums of sines of different
+//! wavelength and direction. It is linear in s, hence `s = (depth − A + s₀·B)/(1 + B)`; the thickness of a
+//! bed varies by 1 + B. u, v and all depths are metric.
 
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
@@ -63,7 +63,8 @@ impl FoldedBeds {
         strat_m + self.relief.at(place) + (strat_m - self.pivot_m) * self.thickening.at(place)
     }
 
-    /// Stratigraphic depth of what lies at `depth_m` before faulting, m: the inverse of [`FoldedBeds::depth_m`].
+    /// Stratigraphic depth of what lies at `depth_m` before faulting, m: the inverse of
+    /// [`FoldedBeds::depth_m`].
     pub fn strat_m(&self, depth_m: f64, place: DVec2) -> f64 {
         let thickening = self.thickening.at(place);
         (depth_m - self.relief.at(place) + self.pivot_m * thickening) / (1.0 + thickening)

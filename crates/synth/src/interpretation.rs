@@ -1,4 +1,5 @@
-//! The interpretation an exact interpreter would deliver: horizons and faults on the survey's lattice, from the truth.
+//! The interpretation that an exact interpreter would deliver: horizons and faults on the survey's lattice,
+//! computed from the truth.
 
 use super::truth::SynthTruth;
 use rayon::prelude::*;
@@ -22,8 +23,9 @@ pub(super) fn stratigraphy(truth: &SynthTruth) -> Stratigraphy {
     Stratigraphy { horizons: horizons.collect(), layer_names: LAYER_NAMES.map(str::to_owned).into() }
 }
 
-/// One horizon as a sheet for each block, in block order. A node has a depth where the horizon exists: outside its
-/// block, where it is eroded and beyond the volume it is a hole. Blocks are left for the fault network to name.
+/// One horizon as a sheet for each block, in block order. A node has a depth where the horizon exists:
+/// outside its block, where it is eroded and beyond the volume it is a hole. The blocks are left for the
+/// fault network to number.
 pub(super) fn horizon(truth: &SynthTruth, geometry: &SurveyGeometry, horizon: usize) -> Horizon {
     let grid = NodeGrid::of_survey(geometry);
     let [_, ny] = grid.count;

@@ -1,5 +1,6 @@
-//! A synthetic survey with exact truth: folds, an angular unconformity, a normal, a reverse and a dying-out fault,
-//! seismic with noise, and an acoustic impedance volume of another size and a smaller extent (P-illus 5.1).
+//! A synthetic survey whose truth is known exactly. It has folds, an angular unconformity, a normal, a
+//! reverse and a dying-out fault, seismic with noise, and an acoustic impedance volume of another size and a
+//! smaller extent (P-illus 5.1).
 //!
 //! | part | where |
 //! |---|---|
@@ -9,9 +10,9 @@
 //! | horizons and faults an exact interpreter would pick | `interpretation` |
 //! | small models with exact k for tests | [`closed_form`] |
 //!
-//! Everything depends on the settings alone: the same bytes at any number of threads.
+//! The result depends on the settings alone: it is the same, byte for byte, on any number of threads.
 //!
-//! Deliberately absent: files; a survey is made in memory, in the nouns of [`survey`].
+//! Deliberately absent: files. A survey is made in memory, in the types of [`survey`].
 
 pub mod closed_form;
 mod column;
@@ -42,23 +43,24 @@ use survey::progress::{Cancelled, Progress};
 use survey::stratigraphy::Stratigraphy;
 use survey::volume::Volume;
 
-/// What to make.
+/// The settings of a synthetic survey.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct SynthSettings {
     /// `[inlines, crosslines, samples]`; default 128 × 128 × 128, at least 24 × 24 × 48.
     pub size: [usize; 3],
-    /// Changes directions, phases, beds and noise; default 1.
+    /// Seed of the random numbers that choose directions, phases, beds and noise; default 1.
     pub seed: u64,
     /// RMS signal / RMS noise; `None` for no noise. Default 4.
     pub snr: Option<f64>,
     /// Distance between lines, m; default 25.
     pub bin_m: f64,
-    /// Unit of the vertical axis; default metres: a block diagram then needs no velocity.
+    /// Unit of the vertical axis; default metres, because a block diagram then needs no velocity.
     pub vertical: VerticalUnit,
     /// Distance between samples in that unit; default 10, for a volume 2.5 times as wide as deep.
     pub interval: f64,
-    /// 1/f of the wavelet's peak frequency, samples; default 8. It is shortened where the depth holds less than twelve.
+    /// Wavelength of the wavelet, 1/f of its peak frequency, samples; default 8. It is shortened where the
+    /// volume's depth holds fewer than twelve wavelengths.
     pub wavelength_samples: f64,
 }
 
@@ -86,15 +88,15 @@ impl SynthSettings {
     }
 }
 
-/// Why no survey could be made.
+/// Why a synthetic survey could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SynthError {
     /// Too few lines or samples.
     #[error("a synthetic survey of {size:?} is too small for its folds and faults; ask for at least {least:?}")]
     TooSmall {
-        /// Asked for.
+        /// The size that was asked for.
         size: [usize; 3],
-        /// The least possible.
+        /// The smallest possible size.
         least: [usize; 3],
     },
     /// A setting is not a positive number.
@@ -113,7 +115,7 @@ pub enum SynthError {
     Cancelled(#[from] Cancelled),
 }
 
-/// A volume on a lattice of its own inside the survey.
+/// An attribute volume on a lattice of its own inside the survey.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Attribute {
     /// Acoustic impedance, kg/(m²·s).
@@ -126,22 +128,39 @@ pub struct Attribute {
     pub extent: DVec3,
 }
 
-/// A synthetic survey. Memory: 4 bytes a voxel of the seismic (8 while it is made), 4 a voxel of the attribute.
+/// A synthetic survey. Memory: 4 bytes per voxel of the seismic (8 while it is made) and 4 per voxel of the
+/// attribute.
+///
+/// # Examples
+/// ```
+/// use survey::progress::Progress;
+/// use synth::{SynthSettings, Synthetic};
+///
+/// let settings = SynthSettings { size: [24, 24, 48], snr: None, ..SynthSettings::default() };
+/// let made = Synthetic::generate(&settings, &Progress::silent())?;
+/// assert_eq!(made.seismic.size(), [24, 24, 48]);
+/// // A normal, a reverse and a dying-out fault; the horizons are those of the stratigraphy.
+/// assert_eq!(made.faults.len(), 3);
+/// assert_eq!(made.horizons.len(), made.stratigraphy.horizons.len());
+/// // The same settings give the same samples.
+/// assert_eq!(made.seismic, Synthetic::generate(&settings, &Progress::silent())?.seismic);
+/// # Ok::<(), synth::SynthError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Synthetic {
     /// The lattice of the seismic.
     pub geometry: SurveyGeometry,
     /// Seismic amplitudes; SEG normal polarity: more impedance below is a positive peak.
     pub seismic: Volume<f32>,
-    /// Acoustic impedance in a part of the survey, at half the density of lines.
+    /// Acoustic impedance of a part of the survey, on every second line.
     pub attribute: Attribute,
-    /// Age order and contacts.
+    /// Age order and contacts of the horizons.
     pub stratigraphy: Stratigraphy,
-    /// Horizons, youngest first, a sheet for each block that has it.
+    /// Horizons, youngest first, with one sheet for each block in which the horizon exists.
     pub horizons: Vec<Horizon>,
-    /// Faults up to their tips.
+    /// The faults, up to their tips.
     pub faults: Vec<Fault>,
-    /// The closed form behind it all.
+    /// The closed form that everything was made from.
     pub truth: SynthTruth,
 }
 

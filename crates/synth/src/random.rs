@@ -1,7 +1,8 @@
-//! Counter-based random numbers: the value at a counter depends on seed and counter alone, never on who asks first,
-//! so that any number of threads makes the same survey.
+//! Counter-based random numbers: the value at a counter depends on seed and counter alone, never on who asks
+//! first, so that any number of threads makes the same survey.
 //!
-//! The mixer is SplitMix64's finaliser (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators").
+//! The mixer is SplitMix64's finaliser (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number
+//! generators").
 
 /// Golden-ratio increment of SplitMix64.
 const STEP: u64 = 0x9E37_79B9_7F4A_7C15;
@@ -19,8 +20,8 @@ pub(super) fn key(seed: u64, purpose: u64) -> u64 {
     mix(mix(seed, purpose), purpose)
 }
 
-/// Zero mean, unit variance, close to normal: the sum of four uniform numbers (16 bits each). Its tails end at ± 3.46,
-/// which the filtering of the noise makes up for.
+/// Zero mean, unit variance, close to normal: the sum of four uniform numbers (16 bits each). Its tails end
+/// at ± 3.46, which the filtering of the noise makes up for.
 pub(super) fn normal_at(key: u64, counter: u64) -> f32 {
     let bits = mix(key, counter);
     let sum = (bits & 0xFFFF) + ((bits >> 16) & 0xFFFF) + ((bits >> 32) & 0xFFFF) + (bits >> 48);

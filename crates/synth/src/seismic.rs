@@ -1,13 +1,15 @@
 //! The seismic and impedance volumes of a model.
 //!
-//! Convolutional model, evaluated analytically: trace(z) = Σ rᵢ·w(z − zᵢ) over the reflectors of the vertical line, with the Ricker
-//! wavelet `w(t) = (1 − 2π²t²)·exp(−π²t²)`, t in wavelengths. Fault planes themselves do not reflect. The wavelet is
-//! zero-phase and not stretched by dip, so that an isolated reflector is an extremum at exactly its depth.
+//! The seismic is a convolutional model that is evaluated analytically: trace(z) = Σ rᵢ·w(z − zᵢ) over the
+//! reflectors of the vertical line, with the Ricker wavelet `w(t) = (1 − 2π²t²)·exp(−π²t²)`, t in
+//! wavelengths. Fault planes themselves do not reflect. The wavelet is zero-phase and not stretched by dip,
+//! so that an isolated reflector is an extremum at exactly its depth.
 //!
-//! Noise: white, convolved with the same wavelet along z (so band-limited to it), then smoothed across
-//! inlines and crosslines by a Gaussian, and scaled so that RMS signal / RMS noise is the ratio asked for, over the whole volume.
+//! The noise is white, convolved with the same wavelet along z (and so limited to its band), then smoothed
+//! across inlines and crosslines by a Gaussian, and scaled so that RMS signal / RMS noise is the ratio asked
+//! for, over the whole volume.
 //!
-//! Memory: 8 bytes a voxel while noise is made, 4 after.
+//! Memory: 8 bytes per voxel while noise is made, 4 afterwards.
 
 use super::random::{key, normal_at};
 use super::truth::SynthTruth;
@@ -100,7 +102,7 @@ fn lateral_weights() -> Vec<f32> {
     (-reach..=reach).map(|lag| (-0.5 * (f64::from(lag) / LATERAL_SIGMA).powi(2)).exp() as f32).collect()
 }
 
-/// Index of a neighbour, mirrored at the walls.
+/// Index of a neighbour, mirrored at the outer boundary of the volume.
 fn mirrored(index: usize, lag: usize, reach: usize, count: usize) -> usize {
     let last = count as i64 - 1;
     let mut at = index as i64 + lag as i64 - reach as i64;
@@ -162,8 +164,8 @@ fn across_slabs(noise: &[f32], slab: usize, nx: usize, x: usize, weights: &[f32]
     sum
 }
 
-/// Acoustic impedance on a lattice of its own; `voxel_at` gives the seismic voxel of a lattice point and `cell` the height of
-/// one of its samples in seismic voxels, over which the blocky truth is averaged.
+/// Acoustic impedance on a lattice of its own; `voxel_at` gives the seismic voxel of a lattice point and
+/// `cell` the height of one of its samples in seismic voxels, over which the blocky truth is averaged.
 pub(super) fn impedance(
     truth: &SynthTruth,
     size: [usize; 3],

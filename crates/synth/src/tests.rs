@@ -232,7 +232,8 @@ fn the_measured_signal_to_noise_ratio_is_the_one_asked_for() {
         let measured = signal / rms(&mut noise.iter().copied());
         assert!((measured / snr - 1.0).abs() < 0.02, "{measured} instead of {snr}");
 
-        // Neighbouring traces are alike (lateral smoothing), samples half a wavelength apart opposed (band limit).
+        // Neighbouring traces are alike (lateral smoothing), samples half a wavelength apart opposed (band
+        // limit).
         let nz = settings.size[2];
         let product = |lag: usize| noise.iter().zip(&noise[lag..]).map(|(a, b)| a * b).sum::<f64>();
         let correlation = |lag: usize| product(lag) / product(0);

@@ -1,12 +1,13 @@
 //! The truth behind the synthetic survey: where every bed, fault and block is, in closed form.
 //!
-//! A point is brought back to where it was laid down by subtracting the throws of the faults in whose hanging wall it
-//! lies (they do not depend on depth, so their order does not matter), comparing with the unconformity, and
-//! undoing the folds of its sequence. The other way round gives every horizon of every block as an explicit height function.
+//! A point is brought back to where it was deposited in three steps: the throws of the faults in whose
+//! hanging wall it lies are subtracted (they do not depend on depth, so their order does not matter), the
+//! result is compared with the unconformity, and the folds of its sequence are undone. In the other
+//! direction, the same steps give every horizon of every block as an explicit height function.
 //!
-//! Blocks are numbered from low x to high x: block b lies in the hanging walls of faults 0 … b − 1, which do not meet inside
-//! the volume. Beyond its tip a fault is extended (with throw 0), so the blocks on both sides keep their numbers there.
-//! Positions are fractional voxels; quantities that end in `_m` are metric.
+//! Blocks are numbered from low x to high x: block b lies in the hanging walls of faults 0 … b − 1, which do
+//! not meet inside the volume. Beyond its tip a fault is extended (with throw 0), so the blocks on both sides
+//! keep their numbers there. Positions are fractional voxels; quantities that end in `_m` are metric.
 
 use super::column::Column;
 use super::faulting::TruthFault;
@@ -14,7 +15,7 @@ use super::fold::FoldedBeds;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// Which beds a horizon belongs to.
+/// The sequence of beds that a horizon belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sequence {
@@ -29,18 +30,18 @@ pub enum Sequence {
 pub struct TruthHorizon {
     /// Unique name.
     pub name: String,
-    /// Beds it belongs to.
+    /// The sequence it belongs to.
     pub sequence: Sequence,
     /// Stratigraphic depth, m.
     pub strat_m: f64,
 }
 
-/// The closed-form model.
+/// The closed form of a synthetic survey.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SynthTruth {
     /// Voxels, `[inlines, crosslines, samples]`.
     pub size: [usize; 3],
-    /// Metres a voxel along each axis.
+    /// Metres per voxel along each axis.
     pub step_m: DVec3,
     /// 1/f of the wavelet, m.
     pub wavelength_m: f64,
@@ -119,7 +120,8 @@ impl SynthTruth {
         self.beds(horizon.sequence).slope(horizon.strat_m, place) + throws
     }
 
-    /// Whether a horizon really exists in `block` over (x, y): inside the block and the volume, and not eroded.
+    /// Whether a horizon really exists in `block` over (x, y): inside the block and the volume, and not
+    /// eroded.
     pub fn exists(&self, horizon: usize, block: u16, x: f64, y: f64) -> bool {
         let z = self.sheet_z(horizon, block, x, y);
         let eroded =

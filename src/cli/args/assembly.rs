@@ -1,4 +1,4 @@
-//! What can be typed about picks, and about faults drawn or proposed.
+//! Arguments for picks, and for faults that are drawn or proposed.
 
 use clap::{ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use std::path::PathBuf;
@@ -10,19 +10,20 @@ pub(in crate::cli) struct PickArgs {
     /// Place: line numbers and the vertical value
     #[arg(long, value_name = "INLINE,CROSSLINE,Z", allow_hyphen_values = true)]
     pub(in crate::cli) at: String,
-    /// Horizon that the node goes to; made when it is not there
+    /// Horizon to add the node to; created if it does not exist
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) horizon: String,
-    /// Climb so many levels above the leaf [default: 0]
+    /// Climb this many levels above the leaf [default: 0]
     #[arg(long, value_name = "N", conflicts_with = "highest_valid")]
     pub(in crate::cli) up: Option<u32>,
-    /// Climb to the highest node that does not lie twice over a trace, by itself or with the horizon
+    /// Climb to the highest node that has no two depths at one trace, neither by itself nor together with the
+    /// horizon
     #[arg(long)]
     pub(in crate::cli) highest_valid: bool,
-    /// Take the node out of the horizon
+    /// Remove the node from the horizon
     #[arg(long)]
     pub(in crate::cli) remove: bool,
-    /// Colour of the horizon, #rrggbb [default: as it was, or the next of a list]
+    /// Colour of the horizon, #rrggbb [default: its present colour, or the next of a list]
     #[arg(long, value_name = "COLOUR")]
     pub(in crate::cli) colour: Option<String>,
 }
@@ -36,7 +37,7 @@ pub(in crate::cli) struct ClimbArgs {
     /// Levels
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(in crate::cli) levels: u32,
-    /// To the highest node that does not lie twice over a trace
+    /// Climb to the highest node that has no two depths at one trace
     #[arg(long, conflicts_with = "levels")]
     pub(in crate::cli) highest_valid: bool,
 }
@@ -58,7 +59,7 @@ pub(in crate::cli) struct FillArgs {
     pub(in crate::cli) project: PathBuf,
     /// Horizon
     pub(in crate::cli) name: String,
-    /// Leave holes of more traces than this [default: fill all]
+    /// Leave holes with more traces than this open [default: fill all]
     #[arg(long, value_name = "N")]
     pub(in crate::cli) max_traces: Option<usize>,
 }
@@ -69,7 +70,7 @@ pub(in crate::cli) struct ReplayArgs {
     pub(in crate::cli) project: PathBuf,
     /// Horizon [default: all that were assembled]
     pub(in crate::cli) name: Option<String>,
-    /// Take picks that no longer fit out of the log
+    /// Remove from the log the picks that no longer fit
     #[arg(long)]
     pub(in crate::cli) drop_unfit: bool,
 }
@@ -78,7 +79,7 @@ pub(in crate::cli) struct ReplayArgs {
 pub(in crate::cli) struct FaultPickArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// Fault; further sticks are added to it
+    /// Name of the fault; if it exists already, the sticks are added to it
     #[arg(long)]
     pub(in crate::cli) name: String,
     #[command(flatten)]
@@ -89,7 +90,7 @@ pub(in crate::cli) struct FaultPickArgs {
 pub(in crate::cli) struct FaultProposeArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// Farthest that two sides of a horizon may be apart, traces [default: 14]
+    /// Largest distance between the two sides of a horizon, traces [default: 14]
     #[arg(long, value_name = "TRACES")]
     pub(in crate::cli) reach: Option<usize>,
     /// Smallest throw, samples [default: 2]
@@ -100,7 +101,8 @@ pub(in crate::cli) struct FaultProposeArgs {
     pub(in crate::cli) min_dip: Option<f64>,
 }
 
-/// `--stick A B C --stick D E`: each occurrence is a list of its own, which derived arguments cannot tell.
+/// `--stick A B C --stick D E`: each occurrence is a list of its own, which derived arguments cannot
+/// distinguish.
 #[derive(Debug, Clone, Default)]
 pub(in crate::cli) struct StickArgs(pub(in crate::cli) Vec<Vec<String>>);
 

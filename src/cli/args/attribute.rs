@@ -1,4 +1,4 @@
-//! What can be typed about attributes.
+//! Arguments for attributes.
 
 use clap::Args;
 use std::path::PathBuf;
@@ -7,7 +7,8 @@ use std::path::PathBuf;
 pub(in crate::cli) struct AttributeArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// semblance (likeness of neighbouring traces, low at faults), envelope (strength of reflections) or dip (their steepness)
+    /// semblance (similarity of neighbouring traces, low at faults), envelope (strength of reflections) or
+    /// dip (their steepness)
     #[arg(long, value_name = "semblance|envelope|dip")]
     pub(in crate::cli) kind: String,
     /// Name of the new volume; a dip adds NAME-inline and NAME-crossline
@@ -16,7 +17,7 @@ pub(in crate::cli) struct AttributeArgs {
     /// Volume to compute it from [default: the first]
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) volume: Option<String>,
-    /// Steepest dip looked for, samples a line [default: 4]
+    /// Steepest dip looked for, samples per line [default: 4]
     #[arg(long, value_name = "N")]
     pub(in crate::cli) max_dip: Option<usize>,
     /// Memory to use, such as 2G or 800M [default: half of what is available]

@@ -1,4 +1,4 @@
-//! What can be typed to extract horizon candidates.
+//! Arguments for extracting horizon candidates.
 
 use clap::Args;
 use std::path::PathBuf;
@@ -10,27 +10,27 @@ pub(in crate::cli) struct ExtractArgs {
     /// Volume to extract from [default: the first on the project's lattice]
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) volume: Option<String>,
-    /// How surfaces grow: ours, or paper, the published way
+    /// How surfaces grow: `ours`, or `paper` for the published method
     #[arg(long, value_name = "ours|paper", default_value = "ours")]
     pub(in crate::cli) method: String,
-    /// What they follow: peak, trough, zero; several with commas
+    /// What surfaces follow: peak, trough or zero; separate several by commas
     #[arg(long, value_name = "KINDS", default_value = "peak,trough")]
     pub(in crate::cli) extrema: String,
-    /// Traces: surfaces and connections narrower than this are not grown
+    /// Smallest width, traces: surfaces and connections narrower than this are not grown
     #[arg(long, value_name = "TRACES", default_value_t = 4)]
     pub(in crate::cli) min_front_width: usize,
-    /// Share of the common boundary of two pieces of a surface that must speak for joining them: the less, the fewer and larger surfaces; more
-    /// than 1 joins none
+    /// Share of the common boundary of two pieces of a surface that must support joining them: a smaller
+    /// share gives fewer and larger surfaces; more than 1 joins none
     #[arg(long, value_name = "SHARE", default_value_t = 0.4)]
     pub(in crate::cli) join_share: f32,
-    /// Evidence along a plane that makes it a fault which cuts surfaces: the more is asked, the fewer cuts. For chaotic or clipped data 100 to
-    /// 200; `inf` looks for no faults
+    /// Evidence required along a plane to count it as a fault, which cuts surfaces: a larger value gives
+    /// fewer cuts. Use 100 to 200 for chaotic or clipped data; `inf` looks for no faults
     #[arg(long, value_name = "NATS", default_value_t = 25.0)]
     pub(in crate::cli) fault_evidence: f32,
-    /// Fewest triangles of a leaf of a surface's tree
+    /// Smallest number of triangles in a leaf of a surface's tree
     #[arg(long, value_name = "N", default_value_t = 500)]
     pub(in crate::cli) min_leaf_triangles: u32,
-    /// Greatest distance to a surface that is told, voxels
+    /// Largest distance to a surface that is stored, voxels
     #[arg(long, value_name = "VOXELS", default_value_t = 10.0)]
     pub(in crate::cli) max_distance: f32,
 }

@@ -1,4 +1,4 @@
-//! What can be typed about figures: pages of sections, maps and blocks with what explains them.
+//! Arguments for figures: pages of sections, maps and blocks, with legends and scale bars.
 
 use clap::Args;
 use std::path::PathBuf;
@@ -22,31 +22,32 @@ pub(in crate::cli) struct FigureArgs {
     /// Map of a horizon: its depth or time in colours and contours
     #[arg(long, value_name = "HORIZON")]
     pub(in crate::cli) map: Option<String>,
-    /// Map the thickness from that horizon down to this one instead
+    /// Map the thickness from the horizon of --map down to this one instead
     #[arg(long, value_name = "HORIZON", requires = "map")]
     pub(in crate::cli) thickness_to: Option<String>,
-    /// The block, beside the sections or the map that were asked for
+    /// Add the block, beside the sections or the map that were asked for
     #[arg(long)]
     pub(in crate::cli) block: bool,
     /// Two blocks compared: their blends, 0 = illustrated to 1 = raw
     #[arg(long, value_name = "BLEND,BLEND")]
     pub(in crate::cli) compare: Option<String>,
-    /// Compare them one over the other, parted at this share of the width, instead of side by side
+    /// Lay the two blocks over one another, divided at this share of the width, instead of side by side
     #[arg(long, value_name = "0..1", requires = "compare")]
     pub(in crate::cli) wipe: Option<f64>,
-    /// Show what an interpreter sees: horizons as they were picked, holes dotted, faults, proposals and sticks
+    /// Show what an interpreter sees: horizons as they were picked with dotted holes, faults, proposals and
+    /// sticks
     #[arg(long)]
     pub(in crate::cli) interpretation: bool,
     /// List the layers with their patterns, or the horizons with their colours
     #[arg(long)]
     pub(in crate::cli) legend: bool,
-    /// Draw scale bars, and say the exaggeration
+    /// Draw scale bars and state the vertical exaggeration
     #[arg(long)]
     pub(in crate::cli) scale_bar: bool,
     /// Size of the page on paper, in centimetres at --dpi
     #[arg(long, value_name = "WxH", conflicts_with = "size")]
     pub(in crate::cli) size_cm: Option<String>,
-    /// TOML file that says what the page shows; nothing else about the page is typed then
+    /// TOML file that says what the page shows, instead of the other options of the page
     #[arg(
         long,
         value_name = "FILE.toml",

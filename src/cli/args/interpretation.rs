@@ -1,4 +1,4 @@
-//! What can be typed about volumes, horizons and faults.
+//! Arguments for volumes, horizons and faults.
 
 use super::SegyArgs;
 use super::assembly::{FaultPickArgs, FaultProposeArgs, FillArgs, ReplayArgs};
@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub(in crate::cli) struct ImportArgs {
     /// SEG-Y file
     pub(in crate::cli) survey: PathBuf,
-    /// Project folder; made when it is not there
+    /// Project folder; created if it does not exist
     pub(in crate::cli) project: PathBuf,
     /// Name of the volume [default: seismic, for further ones the file's name]
     #[arg(long)]
@@ -32,7 +32,7 @@ pub(in crate::cli) enum VolumeAction {
         /// Project folder
         project: PathBuf,
     },
-    /// Take a volume away
+    /// Remove a volume
     #[command(after_help = "Example:\n  petroglyph volume remove north.petro impedance")]
     Remove {
         /// Project folder
@@ -55,7 +55,7 @@ pub(in crate::cli) enum HorizonAction {
         /// Project folder
         project: PathBuf,
     },
-    /// Say what a horizon holds: depths, holes, sheets, source
+    /// Show what a horizon holds: depths, holes, sheets, source
     #[command(after_help = "Example:\n  petroglyph horizon show north.petro \"Top Chalk\"")]
     Show {
         /// Project folder
@@ -63,7 +63,7 @@ pub(in crate::cli) enum HorizonAction {
         /// Horizon
         name: String,
     },
-    /// Give a horizon another name
+    /// Rename a horizon
     #[command(after_help = "Example:\n  petroglyph horizon rename north.petro A \"Top Chalk\"")]
     Rename {
         /// Project folder
@@ -79,7 +79,7 @@ pub(in crate::cli) enum HorizonAction {
     /// Make the picks of horizons again, after another extraction
     #[command(after_help = "Example:\n  petroglyph horizon replay north.petro")]
     Replay(ReplayArgs),
-    /// Take a pick back, as if it had never been made
+    /// Remove a pick, as if it had never been made
     #[command(after_help = "Example:\n  petroglyph horizon unpick north.petro 3")]
     Unpick {
         /// Project folder
@@ -97,7 +97,7 @@ pub(in crate::cli) enum HorizonAction {
         /// Colour, #rrggbb
         colour: String,
     },
-    /// Say what a horizon does to its neighbours
+    /// State how a horizon meets its neighbours
     #[command(after_help = "Example:\n  petroglyph horizon contact north.petro \"Base Tertiary\" erosional")]
     Contact {
         /// Project folder
@@ -107,7 +107,7 @@ pub(in crate::cli) enum HorizonAction {
         /// conformable, erosional, onlap or intrusive
         contact: String,
     },
-    /// Take a horizon away
+    /// Remove a horizon
     #[command(after_help = "Example:\n  petroglyph horizon remove north.petro \"Top Chalk\"")]
     Remove {
         /// Project folder
@@ -126,7 +126,7 @@ pub(in crate::cli) struct HorizonAddArgs {
     /// Name of the horizon
     #[arg(long)]
     pub(in crate::cli) name: String,
-    /// What it does to its neighbours: conformable, erosional, onlap or intrusive [default: conformable]
+    /// How it meets its neighbours: conformable, erosional, onlap or intrusive [default: conformable]
     #[arg(long)]
     pub(in crate::cli) contact: Option<String>,
     /// Put it just above this horizon [default: by its depth]
@@ -148,16 +148,16 @@ pub(in crate::cli) struct ReadingArgs {
     /// Vertical unit of the file [default: as the file says, else the project's]
     #[arg(long, value_name = "ms|s|m|ft")]
     pub(in crate::cli) z_unit: Option<String>,
-    /// Sign of the file [default: as the file says, else down]
+    /// Direction in which the values of the file increase [default: as the file says, else down]
     #[arg(long, value_name = "down|up")]
     pub(in crate::cli) z_positive: Option<String>,
-    /// Factor on the file's values, before sign and unit
+    /// Factor that the file's values are multiplied by, before sign and unit are applied
     #[arg(long, value_name = "F", allow_hyphen_values = true)]
     pub(in crate::cli) z_factor: Option<f64>,
     /// Value that marks nodes without data
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     pub(in crate::cli) null: Option<f64>,
-    /// Name in the file, where it holds several
+    /// Name in the file, if it holds several
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) select: Option<String>,
     /// Columns of a table in order, such as `inline,crossline,z` or `x,y,-,z`
@@ -169,7 +169,7 @@ pub(in crate::cli) struct ReadingArgs {
     /// CPS-3: the order of the values, columns from the north or rows from the south [default: the smoother]
     #[arg(long, value_name = "columns|rows")]
     pub(in crate::cli) value_order: Option<String>,
-    /// Scattered points: gaps that hold a circle of this radius stay holes
+    /// Scattered points: gaps that a circle of this radius fits into stay holes
     #[arg(long = "gap", value_name = "M")]
     pub(in crate::cli) gap_m: Option<f64>,
 }
@@ -181,7 +181,7 @@ pub(in crate::cli) enum FaultAction {
         after_help = "Examples:\n  petroglyph fault add north.petro f1.ts --name F1\n  petroglyph fault add north.petro sticks.dat --name F2 --z-unit ms --truncated-by F1"
     )]
     Add(Box<FaultAddArgs>),
-    /// Draw a fault by sticks
+    /// Draw a fault from sticks
     #[command(
         after_help = "Example:\n  petroglyph fault pick north.petro --name F1 --stick 1250,1300,900 1250,1310,1020 --stick 1270,1302,900 1270,1312,1020"
     )]
@@ -206,7 +206,7 @@ pub(in crate::cli) enum FaultAction {
         /// Project folder
         project: PathBuf,
     },
-    /// Say at which fault another one ends
+    /// State at which other fault a fault ends
     #[command(after_help = "Example:\n  petroglyph fault truncate north.petro F2 --by F1")]
     Truncate {
         /// Project folder
@@ -217,7 +217,7 @@ pub(in crate::cli) enum FaultAction {
         #[arg(long, value_name = "FAULT")]
         by: Option<String>,
     },
-    /// Take a fault away
+    /// Remove a fault
     #[command(after_help = "Example:\n  petroglyph fault remove north.petro F1")]
     Remove {
         /// Project folder
@@ -252,16 +252,17 @@ pub(in crate::cli) struct ExportArgs {
     /// Horizon to write
     #[arg(long, value_name = "NAME", required_unless_present_any = ["candidates", "volume"], conflicts_with = "volume")]
     pub(in crate::cli) horizon: Option<String>,
-    /// All horizon candidates instead: CSV with inline, crossline, z, leaf and surface of each point
+    /// Write all horizon candidates instead, as CSV with inline, crossline, z, leaf and surface of each point
     #[arg(long, conflicts_with_all = ["horizon", "format", "volume"])]
     pub(in crate::cli) candidates: bool,
     /// Format of the horizon's file: csv, irap, opendtect, tsurf, zmap or cps3 [default: by its extension]
     #[arg(long, conflicts_with = "volume")]
     pub(in crate::cli) format: Option<String>,
-    /// Volume to write, as SEG-Y
+    /// Volume to write as SEG-Y
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) volume: Option<String>,
-    /// SEG-Y sample format: 1 IBM float, 3 16-bit integer, 5 IEEE float, 8 8-bit integer, 11 and 16 unsigned 16-bit and 8-bit integer [default: as the volume is stored]
+    /// SEG-Y sample format: 1 IBM float, 3 16-bit integer, 5 IEEE float, 8 8-bit integer, 11 and 16 unsigned
+    /// 16-bit and 8-bit integer [default: as the volume is stored]
     #[arg(long, value_name = "1|3|5|8|11|16", requires = "volume")]
     pub(in crate::cli) format_code: Option<u16>,
     /// ZMAP+ and CPS-3, which hold no rotated grids: resample such a grid, or refuse it [default: resample]

@@ -1,4 +1,4 @@
-//! What can be typed about the look of layers, volumes and raw data.
+//! Arguments for the look of layers, volumes and raw data.
 
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -35,7 +35,7 @@ pub(in crate::cli) struct LayerSetArgs {
     /// New name
     #[arg(long)]
     pub(in crate::cli) name: Option<String>,
-    /// Pattern over the whole layer (`petroglyph patterns` draws them all); its usual colour comes along
+    /// Pattern over the whole layer (`petroglyph patterns` draws them all); sets its usual colour, too
     #[arg(long, conflicts_with = "interval")]
     pub(in crate::cli) pattern: Option<String>,
     /// Colour under the pattern
@@ -75,11 +75,12 @@ pub(in crate::cli) enum ScalarAction {
         project: PathBuf,
         /// Volume
         volume: String,
-        /// Range of values, pattern, its opacity, and factors on the layer's frequencies; repeat it for each range
+        /// Range of values, pattern, its opacity, and factors on the layer's frequencies; repeat it for each
+        /// range
         #[arg(long, value_name = "LOW,HIGH,PATTERN[,OPACITY[,H,V]]", required = true, allow_hyphen_values = true)]
         interval: Vec<String>,
     },
-    /// Take the textures of a volume away
+    /// Remove the textures of a volume
     #[command(after_help = "Example:\n  petroglyph scalar remove north.petro impedance")]
     Remove {
         /// Project folder
@@ -93,7 +94,7 @@ pub(in crate::cli) enum ScalarAction {
 pub(in crate::cli) struct RawArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// Volume to show [default: the present one, else the first]
+    /// Volume to show [default: the one shown at present, else the first]
     #[arg(long)]
     pub(in crate::cli) volume: Option<String>,
     /// Colour map: seismics, petrel-like, red-white-black, grey, cool-warm, strata
@@ -108,7 +109,7 @@ pub(in crate::cli) struct RawArgs {
 pub(in crate::cli) struct TextureArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// PNG, JPEG or SVG tile; layers call it by the file's name without ending
+    /// PNG, JPEG or SVG tile; layers refer to it by the file's name without extension
     pub(in crate::cli) file: PathBuf,
     /// Printed width of the tile
     #[arg(long, value_name = "MM")]

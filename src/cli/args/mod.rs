@@ -1,4 +1,4 @@
-//! What can be typed.
+//! The arguments of the command line.
 
 mod assembly;
 mod attribute;
@@ -31,7 +31,7 @@ use std::path::PathBuf;
 #[derive(Debug, Parser)]
 #[command(name = "petroglyph", version, about, propagate_version = true, max_term_width = 110)]
 pub(super) struct Arguments {
-    /// Answer with one JSON object on stdout
+    /// Write one JSON object to stdout as the answer
     #[arg(long, global = true)]
     pub(super) json: bool,
     #[command(subcommand)]
@@ -40,13 +40,13 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Action {
-    /// From a synthetic survey to finished pictures: the whole chain
+    /// Run the whole chain from a synthetic survey to finished pictures
     #[command(after_help = "Example:\n  petroglyph demo --out out/demo")]
     Demo(DemoArgs),
     /// Make a synthetic survey with its interpretation and its truth
     #[command(after_help = "Example:\n  petroglyph synth out/synth --size 128x128x128 --seed 7 --snr 3")]
     Synth(SynthArgs),
-    /// Say what a file or project holds
+    /// Show what a file or project holds
     #[command(
         after_help = "Example:\n  petroglyph info survey.sgy\n  petroglyph info survey.sgy --inline-byte 193 --crossline-byte 189\n  petroglyph info top-chalk.irap\n  petroglyph info north.petro --json"
     )]
@@ -58,7 +58,7 @@ pub(super) enum Action {
         #[command(flatten)]
         reading: ReadingArgs,
     },
-    /// Begin a project without seismic
+    /// Create a project without seismic
     #[command(
         after_help = "Example:\n  petroglyph create sketch.petro --bounds 0,5000,0,4000,0,2000 --size 201x161x101 --z-unit m"
     )]
@@ -129,10 +129,10 @@ pub(super) enum Action {
     /// Textures by the values of a volume, over the layers
     #[command(subcommand)]
     Scalar(ScalarAction),
-    /// Say which volume is shown as raw data, and in which colours
+    /// Choose which volume is shown as raw data, and in which colours
     #[command(after_help = "Example:\n  petroglyph raw north.petro --volume seismic --map grey")]
     Raw(RawArgs),
-    /// Bring a tile of your own into a project
+    /// Add a tile of your own to a project
     #[command(after_help = "Example:\n  petroglyph texture north.petro coal-seam.svg --width-mm 12")]
     Texture(TextureArgs),
     /// Named views
@@ -146,12 +146,12 @@ pub(super) enum Action {
         after_help = "Examples:\n  petroglyph render north.petro block.png\n  petroglyph render north.petro half.png --blend 0.5 --cut nearest,0.5,0.4 --azimuth 30 --size 2400x1800 --dpi 300\n  petroglyph render north.petro figure.png --legend --scale-bar --size-cm 16x11\n  petroglyph render north.petro compared.png --compare 0,1 --wipe 0.5 --scale-bar\n  petroglyph render north.petro section.png --inline 1250 --size-cm 16x9 --scale-bar\n  petroglyph render north.petro four.png --block --inline 1250 --crossline 1302 --slice 948 --legend\n  petroglyph render north.petro fence.png --fence 1200,1300 1250,1340 1290,1310 --interpretation\n  petroglyph render north.petro map.png --map \"Top Chalk\" --scale-bar\n  petroglyph render north.petro isochore.png --map \"Top Chalk\" --thickness-to \"Base Chalk\""
     )]
     Render(Box<RenderArgs>),
-    /// Open the window: the whole work, from volume to picture
+    /// Open the window, for the whole work from volume to picture
     #[command(after_help = "Examples:\n  petroglyph view\n  petroglyph view north.petro")]
     View {
         /// Project folder; without one the start page opens
         project: Option<PathBuf>,
-        /// Write down how long each frame takes, as CSV; frames then follow one another without pause
+        /// Record how long each frame takes, as CSV; frames then follow one another without pause
         #[arg(long, value_name = "FILE", hide = true)]
         frame_times: Option<PathBuf>,
     },
@@ -179,7 +179,7 @@ pub(super) enum Action {
         /// Project folder
         project: PathBuf,
     },
-    /// Forget the history and free the data only it refers to
+    /// Forget the history, and delete the data that only the history refers to
     #[command(after_help = "Example:\n  petroglyph prune north.petro")]
     Prune {
         /// Project folder
@@ -189,9 +189,9 @@ pub(super) enum Action {
 
 #[derive(Debug, Args)]
 pub(super) struct CreateArgs {
-    /// Project folder to make, usually NAME.petro
+    /// Project folder to create, usually NAME.petro
     pub(super) project: PathBuf,
-    /// World bounds X0,X1,Y0,Y1,Z0,Z1: metres, and the vertical unit positive down
+    /// World bounds X0,X1,Y0,Y1,Z0,Z1: X and Y in metres, Z in the vertical unit, positive down
     #[arg(long, value_name = "X0,X1,Y0,Y1,Z0,Z1", allow_hyphen_values = true)]
     pub(super) bounds: Option<String>,
     /// Samples along X, Y and Z [default: 128x128x128]

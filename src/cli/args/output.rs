@@ -1,4 +1,4 @@
-//! What can be typed about pictures, synthetic surveys and measurements.
+//! Arguments for pictures, synthetic surveys and measurements.
 
 use super::{FigureArgs, ViewArgs};
 use clap::Args;
@@ -13,34 +13,37 @@ pub(in crate::cli) struct RenderArgs {
     /// Named view of the project, or a TOML file [default: the project's first, else a three-quarter view]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(in crate::cli) scene: Option<String>,
-    /// Dots per inch, written into the picture: sets its printed size
+    /// Resolution written into the picture, dots per inch; it sets the printed size
     #[arg(long, value_name = "D", default_value_t = 300.0)]
     pub(in crate::cli) dpi: f64,
-    /// Way of drawing: illustrate (textured faces), occlusion (the volume seen through, shaded without gradients), phong (by gradients), interleaved
-    /// (both, in stripes), volume (unshaded), or map (a map of the topmost horizon unless --map names one) [default: as the view says, else illustrate]
+    /// Technique: illustrate (textured faces), volume rendering as occlusion (shaded without gradients),
+    /// phong (shaded by gradients), interleaved (both, in stripes) or volume (unshaded), or map (a map of the
+    /// topmost horizon unless --map names one) [default: as the view says, else illustrate]
     #[arg(long, value_name = "illustrate|occlusion|phong|interleaved|volume|map")]
     pub(in crate::cli) technique: Option<String>,
-    /// Volume that is seen through; with textured faces it fills the cut-outs, in layers that have an opacity if there are any [default: the volume shown as
-    /// raw data]
+    /// Volume that volume rendering shows; with textured faces it fills the cut-outs, in the layers that have
+    /// an opacity if there are any [default: the volume shown as raw data]
     #[arg(long, value_name = "NAME")]
     pub(in crate::cli) medium: Option<String>,
-    /// Values up to this share of the volume's clip are clear, larger ones more and more opaque; from -1
+    /// Values up to this share of the volume's clip are transparent, larger ones increasingly opaque; from -1
     #[arg(long, value_name = "SHARE", default_value_t = 0.1, allow_hyphen_values = true)]
     pub(in crate::cli) clear_below: f32,
-    /// Horizon shown in the volume, with its colour, opacity and the light it gives off; repeat it for several
+    /// Horizon shown in the volume, with its colour, opacity and the light it gives off; repeat it for
+    /// several
     #[arg(long, value_name = "NAME[,#RRGGBB[,OPACITY[,LIGHT]]]")]
     pub(in crate::cli) horizon: Vec<String>,
-    /// Surface of one value in the volume: of a volume by its name, or of `k`, the layer from the bottom (counted from 0) plus k; without --medium the volume
-    /// itself is not shown; repeat it for several
+    /// Isosurface: of a volume by its name, or of `k`, which is the number of the layer from the bottom
+    /// (counted from 0) plus k; without --medium the volume itself is not shown; repeat it for several
     #[arg(long, value_name = "NAME,VALUE[,#RRGGBB[,OPACITY]]")]
     pub(in crate::cli) isosurface: Vec<String>,
     /// Where the volume shows: everywhere, near the horizons shown, or away from them
     #[arg(long, value_name = "everywhere|near|away", default_value = "everywhere")]
     pub(in crate::cli) scope: String,
-    /// What draws: the graphics adapter, or the processor when there is none; or one of them
+    /// Device that draws: the graphics adapter, or the processor when there is none (auto), or one of the two
     #[arg(long, value_name = "auto|gpu|cpu", default_value = "auto")]
     pub(in crate::cli) device: String,
-    /// Most memory for the samples of one volume, such as 2G; a larger one is shown by a coarser level of its pyramid [default: half of what is free]
+    /// Largest memory for the samples of one volume, such as 2G; a larger volume is shown at a coarser level
+    /// of its pyramid [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     pub(in crate::cli) volume_memory: Option<String>,
     #[command(flatten)]
@@ -60,12 +63,12 @@ pub(in crate::cli) struct ParameterizeArgs {
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct SynthArgs {
-    /// Folder to write into; made when it is not there
+    /// Folder to write into; created if it does not exist
     pub(in crate::cli) out: PathBuf,
     /// Inlines, crosslines and samples
     #[arg(long, value_name = "NxNxN", default_value = "128x128x128")]
     pub(in crate::cli) size: String,
-    /// Number that chooses directions, beds and noise
+    /// Seed of the random numbers that choose directions, beds and noise
     #[arg(long, value_name = "S", default_value_t = 1)]
     pub(in crate::cli) seed: u64,
     /// RMS signal over RMS noise; `none` for no noise
@@ -82,13 +85,14 @@ pub(in crate::cli) struct DemoArgs {
 
 #[derive(Debug, Args)]
 pub(in crate::cli) struct BenchArgs {
-    /// Small sizes: seconds instead of minutes
+    /// Use small sizes, which take seconds instead of minutes
     #[arg(long)]
     pub(in crate::cli) quick: bool,
     /// Write the model that is measured here as NumPy files, to time other programs on
     #[arg(long, value_name = "DIR")]
     pub(in crate::cli) dump: Option<PathBuf>,
-    /// Measure instead how fast a SEG-Y cube is read and stored, with files in this folder, which stay there for other programs
+    /// Measure instead how fast a SEG-Y cube is read and stored, with files in this folder, which stay there
+    /// for other programs
     #[arg(long, value_name = "DIR", conflicts_with = "dump")]
     pub(in crate::cli) segy: Option<PathBuf>,
 }

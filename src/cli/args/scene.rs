@@ -1,4 +1,4 @@
-//! What can be typed about views.
+//! Arguments for views.
 
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -24,7 +24,7 @@ pub(in crate::cli) enum SceneAction {
         /// Its name [default: the view that `render` starts from]
         name: Option<String>,
     },
-    /// Take a view away
+    /// Remove a view
     #[command(after_help = "Example:\n  petroglyph scene remove north.petro corner")]
     Remove {
         /// Project folder
@@ -53,7 +53,7 @@ pub(in crate::cli) struct ViewArgs {
     /// Size of the image in pixels
     #[arg(long, value_name = "WxH")]
     pub(in crate::cli) size: Option<String>,
-    /// 0 = illustrative to 1 = raw data
+    /// Blend from 0 = illustrative to 1 = raw data
     #[arg(long, value_name = "0..1")]
     pub(in crate::cli) blend: Option<f32>,
     /// How layer coordinates are looked up: exact, or the packed volume of the published method
@@ -62,47 +62,50 @@ pub(in crate::cli) struct ViewArgs {
     /// Vertical exaggeration
     #[arg(long, value_name = "FACTOR")]
     pub(in crate::cli) exaggeration: Option<f64>,
-    /// Bearing the camera looks along, degrees clockwise from north
+    /// Bearing in which the camera looks, degrees clockwise from north
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub(in crate::cli) azimuth: Option<f64>,
     /// Height of the camera above the horizontal, degrees
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub(in crate::cli) elevation: Option<f64>,
-    /// Perspective with this opening angle instead of a parallel projection
+    /// Use a perspective with this opening angle instead of a parallel projection
     #[arg(long, value_name = "DEG")]
     pub(in crate::cli) perspective: Option<f64>,
-    /// Factor on the scale at which the block fits the image
+    /// Magnification, as a factor on the scale at which the block fits the image
     #[arg(long, value_name = "FACTOR")]
     pub(in crate::cli) zoom: Option<f64>,
-    /// Show this part of the survey: inlines, crosslines, vertical values
+    /// Show only this part of the survey: inlines, crosslines, vertical values
     #[arg(long = "box", value_name = "IL0,IL1,XL0,XL1,Z0,Z1", allow_hyphen_values = true)]
     pub(in crate::cli) roaming_box: Option<String>,
-    /// Cut a corner off over the whole height: nearest, min-min, min-max, max-min or max-max (first and last inline, crossline), and the share of
-    /// the block's length along inlines and crosslines; repeat it for several
+    /// Cut a corner off over the whole height: nearest, min-min, min-max, max-min or max-max (first and last
+    /// inline, crossline), and the share of the block's length along inlines and crosslines; repeat it for
+    /// several
     #[arg(long, value_name = "CORNER[,SHARE,SHARE]")]
     pub(in crate::cli) cut: Vec<String>,
     /// Cut a box out; repeat it for several
     #[arg(long, value_name = "IL0,IL1,XL0,XL1,Z0,Z1", allow_hyphen_values = true)]
     pub(in crate::cli) cut_box: Vec<String>,
-    /// Relief of the topmost horizon instead of a flat top
+    /// Show the relief of the topmost horizon instead of a flat top
     #[arg(long, value_name = "on|off")]
     pub(in crate::cli) ground: Option<String>,
     /// Opacity of that relief
     #[arg(long, value_name = "0..1")]
     pub(in crate::cli) ground_opacity: Option<f32>,
-    /// What faces show: the rock, the leaves of horizon candidates in colours, or the distance to the nearest candidate. In a volume seen through, leaves colour the horizons shown, or all candidates
+    /// What faces show: the rock, the leaves of horizon candidates in colours, or the distance to the nearest
+    /// candidate. In volume rendering, leaves colour the horizons shown, or all candidates
     #[arg(long, value_name = "rock|leaves|distance")]
     pub(in crate::cli) show: Option<String>,
-    /// Tell leaves apart by the nodes this many levels up their surface trees; 0 = leaves. Shows leaves unless --show says otherwise
+    /// Colour leaves by the node this many levels up their surface tree; 0 = the leaf itself. Shows leaves
+    /// unless --show says otherwise
     #[arg(long, value_name = "N")]
     pub(in crate::cli) level: Option<u32>,
-    /// Lines along horizons, faults and edges
+    /// Draw lines along horizons, faults and edges
     #[arg(long, value_name = "on|off")]
     pub(in crate::cli) outlines: Option<String>,
     /// Factor on the frequency of every pattern
     #[arg(long, value_name = "FACTOR")]
     pub(in crate::cli) global_frequency: Option<f32>,
-    /// Samples a pixel along each axis
+    /// Samples per pixel along each axis
     #[arg(long, value_name = "N")]
     pub(in crate::cli) samples: Option<u32>,
     /// Colour behind the block, or `transparent`

@@ -1,8 +1,8 @@
-//! What can be typed about a SEG-Y file.
+//! Arguments for a SEG-Y file.
 
 use clap::Args;
 
-/// What the user states about a SEG-Y file; `info` shows what is found without.
+/// What the user states about a SEG-Y file; `info` shows what is found without any statement.
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "Options of SEG-Y files")]
 pub(in crate::cli) struct SegyArgs {
@@ -25,7 +25,8 @@ pub(in crate::cli) struct SegyArgs {
     /// Trace header byte of Y
     #[arg(long, value_name = "B")]
     pub(in crate::cli) y_byte: Option<u16>,
-    /// How X and Y are stored: i32, i16, u16, f32, f64 or ibm32 [default: i32, else f32 if that makes places]
+    /// How X and Y are stored: i32, i16, u16, f32, f64 or ibm32 [default: i32, else f32 if that gives valid
+    /// places]
     #[arg(long, value_name = "TYPE")]
     pub(in crate::cli) coordinate_type: Option<String>,
     /// Trace header byte of the coordinate scalar [default: 71]
@@ -37,7 +38,8 @@ pub(in crate::cli) struct SegyArgs {
     /// Byte order: big or little
     #[arg(long, value_name = "big|little")]
     pub(in crate::cli) byte_order: Option<String>,
-    /// Sample format, whatever the header says: ibm32, ieee32, ieee64, int8, int16, int24, int32, int64, uint8, ...
+    /// Sample format, whatever the header says: ibm32, ieee32, ieee64, int8, int16, int24, int32, int64,
+    /// uint8, ...
     #[arg(long, value_name = "FORMAT")]
     pub(in crate::cli) sample_format: Option<String>,
     /// Sample interval, in the vertical unit
@@ -58,7 +60,7 @@ pub(in crate::cli) struct SegyArgs {
     /// Trace weight N at byte 169: apply (2^-N, the standard), inverse (2^N) or ignore [default: apply]
     #[arg(long, value_name = "WORD")]
     pub(in crate::cli) trace_weight: Option<String>,
-    /// Which of several traces at one place is kept: first or last [default: first, if they are few]
+    /// Which of several traces at one place to keep: first or last [default: first, if they are few]
     #[arg(long, value_name = "first|last")]
     pub(in crate::cli) duplicates: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! What can be typed about wells.
+//! Arguments for wells.
 
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
@@ -16,7 +16,7 @@ pub(in crate::cli) enum WellAction {
         /// Project folder
         project: PathBuf,
     },
-    /// Say where a well runs, where its tops are against the horizons, and what was measured along it
+    /// Show where a well runs, where its tops lie relative to the horizons, and what was measured along it
     #[command(after_help = "Example:\n  petroglyph well show north.petro A-1")]
     Show {
         /// Project folder
@@ -24,7 +24,7 @@ pub(in crate::cli) enum WellAction {
         /// Well
         name: String,
     },
-    /// Give a well another name
+    /// Rename a well
     #[command(after_help = "Example:\n  petroglyph well rename north.petro A-1 \"16/1-9\"")]
     Rename {
         /// Project folder
@@ -34,7 +34,7 @@ pub(in crate::cli) enum WellAction {
         /// New name
         to: String,
     },
-    /// Take a well away
+    /// Remove a well
     #[command(after_help = "Example:\n  petroglyph well remove north.petro A-1")]
     Remove {
         /// Project folder
@@ -56,7 +56,7 @@ pub(in crate::cli) struct WellAddArgs {
     /// Tops: names and depths
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) tops: Option<PathBuf>,
-    /// LAS 2.0 file; may be given several times
+    /// LAS 2.0 file; repeat it for several
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) las: Vec<PathBuf>,
     /// Time-depth table: TVDSS and TWT
@@ -68,7 +68,7 @@ pub(in crate::cli) struct WellAddArgs {
     /// Height of the datum (kelly bushing) above sea level in metres [default: as the deviation says]
     #[arg(long = "kb", value_name = "M", allow_hyphen_values = true)]
     pub(in crate::cli) datum_m: Option<f64>,
-    /// Unit of depths where columns do not say it [default: m]
+    /// Unit of depths whose columns do not state one [default: m]
     #[arg(long, value_name = "m|ft")]
     pub(in crate::cli) md_unit: Option<String>,
     /// Name of the well in files that hold several [default: --name]

@@ -176,7 +176,8 @@ fn iesx_says_its_unit_and_name() {
             }
         }
     }
-    // Undefined depths overflow their field in some exports; values that are too wide are refused with their line.
+    // Undefined depths overflow their field in some exports; values that are too wide are refused with their
+    // line.
     let broken = format!("{head}{}", iesx_row(0, 0, 100.0).replace(" I", " J"));
     let (_folder, path) = file("a.iesx", &broken);
     let error = read_horizons(&path, &survey(VerticalUnit::Milliseconds), &ImportOptions::default()).unwrap_err();

@@ -1,9 +1,11 @@
-//! One real horizon in thirteen files: each reproduces the truth within what its own sampling allows. The table of it is
-//! `docs/horizon-formats.md`; with `PETROGLYPH_WRITE_DOCS=1` this test writes it, otherwise it checks that it still holds.
+//! One real horizon in thirteen files: each reproduces the truth within what its own sampling allows. The
+//! table of it is `docs/horizon-formats.md`; with `PETROGLYPH_WRITE_DOCS=1` this test writes it, otherwise it
+//! checks that it still holds.
 //!
-//! Two measures. At the file's own nodes, where these are traces: |file − truth| is at most the rounding of its digits. At all
-//! traces: a value interpolated between nodes is a mean of truths around it, so it lies between the lowest and highest truth of the
-//! traces within reach of its nodes; the table has the part of traces that do and the worst excess.
+//! Two measures. At the file's own nodes, where these are traces: |file − truth| is at most the rounding of
+//! its digits. At all traces: a value interpolated between nodes is a mean of truths around it, so it lies
+//! between the lowest and highest truth of the traces within reach of its nodes; the table has the part of
+//! traces that do and the worst excess.
 
 use super::*;
 use glam::{DVec2, DVec3};

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use survey::geometry::{LineAxis, VerticalAxis, VerticalUnit};
 use survey::remedy::Setting;
 
-/// The folder of interpretations; None, said so, without `PETROGLYPH_DATA`.
+/// The folder of interpretations; without `PETROGLYPH_DATA`, `None` and a message.
 fn interpretation() -> Option<PathBuf> {
     Some(testdata::folder()?.join("interpretation"))
 }

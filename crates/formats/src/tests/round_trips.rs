@@ -1,4 +1,5 @@
-//! What is written is read back: horizons on random surveys (rotated, mirrored, stepped) in every format that is written.
+//! What is written is read back: horizons on random surveys (rotated, mirrored, stepped) in every format that
+//! is written.
 
 use super::*;
 use glam::DVec2;

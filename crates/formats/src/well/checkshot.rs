@@ -1,7 +1,7 @@
 //! Files of time–depth tables: CSV or blanks, with named columns or with two.
 //!
-//! Whether a table is in seconds or milliseconds, if it does not say, is settled by physics: only one of the two gives interval
-//! velocities between 300 and 10 000 m/s.
+//! Whether a table is in seconds or milliseconds, if it does not say, is settled by physics: only one of the
+//! two gives interval velocities between 300 and 10 000 m/s.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
@@ -12,8 +12,8 @@ use std::path::Path;
 use survey::remedy::Note;
 use survey::well::{Checkshot, WellPath};
 
-/// Reads a checkshot table: a depth (TVDSS, TVD, Z or MD along `path`) and a time (TWT, or OWT one-way) a row.
-/// Without a header the columns are TVDSS and TWT.
+/// Reads a checkshot table: a depth (TVDSS, TVD, Z or MD along `path`) and a time (TWT, or OWT one-way) a
+/// row. Without a header the columns are TVDSS and TWT.
 ///
 /// # Errors
 /// [`WellFileError`] with the line, or with the columns that are missing.
@@ -50,7 +50,8 @@ pub fn parse_checkshot(
     for row in &table.rows {
         rows.push([table.number(row, depth_at)? * to_m, table.number(row, time_at)? * ways]);
     }
-    // The sign of depths and times: both grow downwards in some files, both fall in others (elevations, negative times).
+    // The sign of depths and times: both grow downwards in some files, both fall in others (elevations,
+    // negative times).
     for (axis, what) in [(0, "depths"), (1, "times")] {
         if rows.first().zip(rows.last()).is_some_and(|(a, b)| b[axis] < a[axis] && b[axis] < 0.0) {
             rows.iter_mut().for_each(|r| r[axis] = -r[axis]);

@@ -1,4 +1,4 @@
-//! What a well's file holds, before it is imported: for `petroglyph info`.
+//! The description of a well's file before its import, for `petroglyph info`.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum WellFileKind {
-    /// Where the well runs.
+    /// The path of the well.
     Deviation,
     /// Named depths.
     Tops,
@@ -68,8 +68,8 @@ fn column(name: &str, unit: &str, description: &str, values: impl Iterator<Item 
     }
 }
 
-/// Describes a file when it is a well's: LAS, or a table whose columns are those of a deviation, of tops or of checkshots.
-/// None for anything else.
+/// Describes a file when it is a well's: LAS, or a table whose columns are those of a deviation, of tops or
+/// of checkshots. None for anything else.
 ///
 /// # Errors
 /// [`WellFileError`] for a LAS file that is broken.

@@ -6,9 +6,10 @@
 //! | X, Y and TVDSS, Z or TVD; MD where known | straight between the places |
 //! | dX, dY (from the head) and TVD, TVDSS or Z | straight between the places |
 //!
-//! A file with both angles and places is read by its angles, and the note says how far the places are off. The head comes from
-//! the option, the comments (`# WELL HEAD X-COORDINATE: …`), or the first row's X, Y; the datum from the option or the comments,
-//! else it is taken as 0 and said so. Z of either sign is told by its course: a hole goes down.
+//! A file with both angles and places is read by its angles, and the note says how far the places are off.
+//! The head comes from the option, the comments (`# WELL HEAD X-COORDINATE: …`), or the first row's X, Y; the
+//! datum from the option or the comments, else it is taken as 0 and reported. The sign of Z is determined by
+//! its course: a hole goes down.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
@@ -219,7 +220,7 @@ impl Reading<'_> {
         let (Some(dx), Some(dy)) = (dx, dy) else { return Ok(None) };
         let head = match self.head(None) {
             Ok(head) => head,
-            // Angles may still place the well; without them the head is missed there.
+            // The angles may still give the path; without them, the missing head is reported there.
             Err(error) if self.table.position(WellColumn::Inclination).is_none() => return Err(error),
             Err(_) => return Ok(None),
         };

@@ -1,4 +1,4 @@
-//! What can go wrong with a well's files, with the facts a user needs to put it right.
+//! Errors of a well's files, with the facts that a user needs to correct them.
 
 use std::path::PathBuf;
 use survey::remedy::{Remedy, Setting};
@@ -61,7 +61,7 @@ pub enum WellFileError {
         /// The names there are.
         available: String,
     },
-    /// The numbers make no well.
+    /// The numbers are not a valid path or time–depth table.
     #[error(transparent)]
     Well(#[from] WellError),
     /// The unit is not known.

@@ -1,8 +1,9 @@
 //! LAS 1.2 and 2.0: curves by depth or time.
 //!
-//! Sections begin with `~` and a letter: V (version, wrap), W (well: STRT, STOP, STEP, NULL …), C (curves), P (parameters), O (other),
-//! A (data). Lines are `MNEM.UNIT value : description`, cut at the first dot, the first blank after it and the last colon.
-//! In wrapped files the values of a depth run over several lines. LAS 3.0 is another format and refused.
+//! Sections begin with `~` and a letter: V (version, wrap), W (well: STRT, STOP, STEP, NULL …), C (curves), P
+//! (parameters), O (other), A (data). Lines are `MNEM.UNIT value : description`, cut at the first dot, the
+//! first blank after it and the last colon. In wrapped files the values of a depth run over several lines.
+//! LAS 3.0 is another format and refused.
 
 use super::error::WellFileError;
 use crate::text::{self, Line, excerpt};

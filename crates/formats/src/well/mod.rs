@@ -1,7 +1,8 @@
-//! Files of wells: deviation (with head and datum), tops, checkshots and logs become a [`Well`](survey::Well).
+//! Files of wells: deviation (with head and datum), tops, checkshots and logs become a
+//! [`Well`](survey::Well).
 //!
-//! Lengths in feet are converted when read, with the international foot. What a file does not say is assumed and reported, or stated by
-//! [`WellOptions`].
+//! Lengths in feet are converted when they are read, with the international foot. What a file does not say is
+//! stated by the user in [`WellOptions`], or assumed and reported.
 
 mod checkshot;
 mod columns;

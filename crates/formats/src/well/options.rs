@@ -1,9 +1,9 @@
-//! What the user says about a well: its name, its head, its datum, the unit of lengths along it.
+//! What the user states about a well: its name, its head, its datum and the unit of lengths along it.
 
 use crate::unit::ZUnit;
 use serde::{Deserialize, Serialize};
 
-/// What the user says about a well's files; everything has a default.
+/// What the user states about a well's files; everything has a default.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct WellOptions {

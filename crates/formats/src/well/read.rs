@@ -16,7 +16,7 @@ use survey::well::{Checkshot, Curve, LogSet, Well, WellPath};
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct WellFiles {
-    /// Where it runs.
+    /// The deviation, which gives the path.
     pub deviation: PathBuf,
     /// Tops.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -116,7 +116,7 @@ fn log_set(
     if falling {
         order.reverse();
     }
-    // Samples that do not go on along the hole would make the axis ambiguous.
+    // Measured depths that do not increase would make the axis ambiguous.
     let mut last = f64::NEG_INFINITY;
     let all = order.len();
     order.retain(|&n| {

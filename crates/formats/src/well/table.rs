@@ -1,7 +1,8 @@
 //! A well's text tables: facts in comments (`# WELL DATUM: 25.0 (m)`), named columns, rows.
 //!
-//! The columns are named by a header line, by the last comment before the rows, or one a line between `BEGIN HEADER` and
-//! `END HEADER` (Petrel). Fields are cut by `;`, tab, comma or blanks; quotes hold one together.
+//! The columns are named by a header line, by the last comment before the rows, or one a line between
+//! `BEGIN HEADER` and `END HEADER` (Petrel). Fields are cut by `;`, tab, comma or blanks; quotes hold one
+//! together.
 
 use super::columns::{self, WellColumn};
 use super::error::WellFileError;
@@ -185,7 +186,8 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Metres in one unit of a length column: as its name says, else as told, else metres, said so in `notes`.
+    /// Metres in one unit of a length column: as its name says, else as the user states, else metres,
+    /// reported in `notes`.
     pub fn length_to_m(&self, at: usize, told: Option<ZUnit>, notes: &mut Vec<Note>) -> Result<f64, WellFileError> {
         let unit = self.units[at].or(told);
         if unit.is_none() {
@@ -211,7 +213,8 @@ impl<'a> Table<'a> {
         self.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
     }
 
-    /// Keeps the rows of one well when a column names wells: the one told, else one of `names`, else the only one.
+    /// Keeps the rows of one well when a column names wells: the one told, else one of `names`, else the only
+    /// one.
     ///
     /// # Errors
     /// [`WellFileError::NoSuchWell`] when it is not there or several are.

@@ -1,7 +1,8 @@
-//! Tops: the name of a surface and where the well met it, by MD, TVD, TVDSS or Z.
+//! Tops: the name of a surface and the depth at which the well penetrates it, as MD, TVD, TVDSS or Z.
 //!
-//! CSV or blanks with a header, Petrel well tops (`BEGIN HEADER` … `END HEADER`), or two columns without a header, depth and name
-//! (taken as measured depth). Vertical depths are brought onto the path at its first crossing of that depth.
+//! CSV or blanks with a header, Petrel well tops (`BEGIN HEADER` … `END HEADER`), or two columns without a
+//! header, depth and name (taken as measured depth). Vertical depths are brought onto the path at its first
+//! crossing of that depth.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;

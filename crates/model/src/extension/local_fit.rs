@@ -1,8 +1,9 @@
 //! Value and slope of noisy data near a rim, by weighted least squares.
 //!
-//! Around a node the data within `radius` is fitted by h = c₀ + c₁ξ + c₂η + c₃ξ²/2 + c₄ξη + c₅η²/2 (ξ, η = offset / radius) with
-//! weights (1 − ρ²)², ρ² = ξ² + η². The quadratic terms keep a slope at the rim of a curved surface unbiased; a small ridge (they are pulled
-//! to zero) keeps strips and corners from inventing curvature. Nodes far off the first fit are left out of a second one.
+//! Around a node the data within `radius` is fitted by h = c₀ + c₁ξ + c₂η + c₃ξ²/2 + c₄ξη + c₅η²/2 (ξ, η =
+//! offset / radius) with weights (1 − ρ²)², ρ² = ξ² + η². The quadratic terms keep a slope at the rim of a
+//! curved surface unbiased; a small ridge (they are pulled to zero) keeps strips and corners from inventing
+//! curvature. Nodes far off the first fit are left out of a second one.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
@@ -37,8 +38,8 @@ impl Fit {
     }
 }
 
-/// Ridges relative to the sum of weights. Larger damps noise in thin strips; smaller lets slope and curvature speak there. At a straight
-/// rim the moments they are compared with are 0.1 (slope) and 0.01 (curvature).
+/// Ridges relative to the sum of weights. Larger damps noise in thin strips; smaller lets slope and curvature
+/// speak there. At a straight rim the moments they are compared with are 0.1 (slope) and 0.01 (curvature).
 const SLOPE_RIDGE: f64 = 1e-5;
 const CURVATURE_RIDGE: f64 = 1e-4;
 /// Deviation beyond which a node is an outlier, in robust standard deviations.
@@ -46,8 +47,8 @@ const OUTLIER: f32 = 6.0;
 /// A fit wants at least this many nodes; its neighbourhood grows until it has them.
 const FEWEST_NODES: usize = 12;
 
-/// How far beyond the data its curvature is kept, nodes. A fault between two lattice nodes is met on the curve, not on its tangent;
-/// farther off, curvature would run away.
+/// How far beyond the data its curvature is kept, nodes. A fault between two lattice nodes is met on the
+/// curve, not on its tangent; farther off, curvature would run away.
 pub const COLLAR: f32 = 2.3;
 
 /// Fits at the nodes of a grid, made when asked for.
@@ -82,8 +83,8 @@ impl<'a> LocalFits<'a> {
         fit
     }
 
-    /// Continues the data with its curvature onto the nodes closer than [`COLLAR`] to it, and counts them as fitted from now on;
-    /// returns which nodes they are.
+    /// Continues the data with its curvature onto the nodes closer than [`COLLAR`] to it, and counts them as
+    /// fitted from now on; returns which nodes they are.
     ///
     /// Each takes the quadratics of the known nodes around it with weights 1/d⁴.
     pub fn collar(&self) -> Vec<usize> {

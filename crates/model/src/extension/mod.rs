@@ -1,12 +1,17 @@
-//! Continues gridded data smoothly over a whole grid: holes, walls and faults handled alike.
+//! Continues gridded data smoothly over a whole grid. Holes, the outer boundary of the volume and faults are
+//! handled alike.
 //!
-//! 1. The least-squares plane is taken off, so that planes stay exact planes.
-//! 2. [`local_fit`]: the data near the rim is replaced by robust local quadratics; their slope is what the surface is continued with,
-//!    so that picking noise is not amplified.
-//! 3. Over the next two nodes the quadratics go on with their curvature, so that a fault between nodes is met on the curve.
-//! 4. [`plate`]: between and beyond, the surface of least bending, min ∫ h_xx² + 2h_xy² + h_yy², that takes up value and slope there (clamped) and is free at the grid's border: a hole is filled by a thin plate, an edge is continued linearly, and both
-//!    join C¹. Coarse to fine: a direct solution on a coarse grid, then relaxation in a band around the data on each finer one.
-//! 5. What the fits smoothed off the rim (data − fit) fades out over a few nodes, so that the data itself stays exact.
+//! 1. The least-squares plane is subtracted, so that planes stay exact planes.
+//! 2. [`local_fit`]: the data near the rim is replaced by robust local quadratics; their slope is what the
+//!    surface is continued with, so that picking noise is not amplified.
+//! 3. Over the next two nodes the quadratics continue with their curvature, so that a fault between nodes is
+//!    met on the curve.
+//! 4. [`plate`]: between and beyond, the surface of least bending, min ∫ h_xx² + 2h_xy² + h_yy², that takes
+//!    up value and slope there (clamped) and is free at the grid's border: a hole is filled by a thin plate,
+//!    an edge is continued linearly, and both join C¹. Coarse to fine: a direct solution on a coarse grid,
+//!    then relaxation in a band around the data on each finer one.
+//! 5. What the fits smoothed off the rim (data − fit) fades out over a few nodes, so that the data itself
+//!    stays exact.
 //!
 //! "Extended linearly" is P-illus 3.2; a plate is our choice because it is also right for holes and corners.
 
@@ -43,8 +48,8 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// The least-squares plane through the finite nodes of a grid; `None` without any. Directions in which the data has no width take
-    /// their slope from `prior`.
+    /// The least-squares plane through the finite nodes of a grid; `None` without any. Directions in which
+    /// the data has no width take their slope from `prior`.
     pub fn through(size: [usize; 2], values: &[f32], prior: [f64; 2]) -> Option<Self> {
         let nodes = || {
             values.iter().enumerate().filter(|(_, z)| z.is_finite()).map(|(n, &z)| {
@@ -65,7 +70,8 @@ impl Plane {
                 *sum += term;
             }
         }
-        // Principal axes of the nodes; along one that is thinner than about two nodes the slope would be noise.
+        // Principal axes of the nodes; along one that is thinner than about two nodes the slope would be
+        // noise.
         let (mean, diff) = (0.5 * (c[0] + c[2]), 0.5 * (c[0] - c[2]));
         let root = diff.hypot(c[1]);
         let angle = 0.5 * c[1].atan2(diff);
@@ -94,9 +100,9 @@ impl Plane {
 }
 
 impl Extension {
-    /// The share of the radius that the data's noise asks for. A slope fitted over r nodes is off by about 10 σ/r² through noise and by r²
-    /// times the third derivative through the shape, so clean data is better served by a smaller neighbourhood. σ is taken from third differences, which
-    /// see no curvature.
+    /// The share of the radius that the data's noise asks for. A slope fitted over r nodes is off by about 10
+    /// σ/r² through noise and by r² times the third derivative through the shape, so clean data is better
+    /// served by a smaller neighbourhood. σ is taken from third differences, which see no curvature.
     fn steadiness(&self, size: [usize; 2], flat: &[f32]) -> f32 {
         let mut differences: Vec<f32> = Vec::new();
         for (n, &z) in flat.iter().enumerate() {
@@ -114,12 +120,14 @@ impl Extension {
             return 1.0;
         }
         let half = differences.len() / 2;
-        // The standard deviation of white noise: a third difference has variance 20 σ², its median modulus is 0.6745 of its deviation.
+        // The standard deviation of white noise: a third difference has variance 20 σ², its median modulus is
+        // 0.6745 of its deviation.
         let deviation = *differences.select_nth_unstable_by(half, f32::total_cmp).1 / (0.6745 * 20.0f32.sqrt());
         (deviation / (0.5 * self.noise)).sqrt().clamp(LEAST_RADIUS, 1.0)
     }
 
-    /// Replaces the NaN nodes of `values`, `[x][y]` of `size`, and leaves the others as they are; `None` when all are NaN.
+    /// Replaces the NaN nodes of `values`, `[x][y]` of `size`, and leaves the others as they are; `None` when
+    /// all are NaN.
     pub fn extend(&self, size: [usize; 2], values: &mut [f32]) -> Option<()> {
         let plane = Plane::through(size, values, self.slope)?;
         let known: Vec<bool> = values.iter().map(|z| z.is_finite()).collect();

@@ -1,13 +1,16 @@
-//! The thin plate over the unknown nodes, coarse to fine.
+//! The thin plate over the unknown nodes, solved from coarse to fine.
 //!
-//! Energy on a grid: Σ (δ²ₓh)² + 2(δₓδ_yh)² + (δ²_yh)² over every stencil that fits in the grid, so that its border is free and planes cost
-//! nothing. Two rings of known nodes around the unknown carry the fits' values: the plate is clamped. Level l has every 2^l-th node.
+//! Energy on a grid: Σ (δ²ₓh)² + 2(δₓδ_yh)² + (δ²_yh)² over every stencil that fits in the grid, so that its
+//! border is free and planes cost nothing. Two rings of known nodes around the unknown ones carry the values
+//! of the fits, which clamps the plate. Level l has every 2^l-th node.
 
 use super::local_fit::LocalFits;
 
-/// A grid whose longer side has no more nodes than this is solved directly. Larger is more exact far from data and slower (fourth power).
+/// A grid whose longer side has no more nodes than this is solved directly. Larger is more exact far from
+/// data and slower (fourth power).
 const DIRECT_NODES: usize = 48;
-/// On finer grids the plate is relaxed within this many cells of the data; farther off the coarser solution is smooth enough.
+/// On finer grids the plate is relaxed within this many cells of the data; farther off the coarser solution
+/// is smooth enough.
 const BAND_CELLS: usize = 10;
 /// Relaxation sweeps on each finer grid, and their over-relaxation.
 const SWEEPS: usize = 40;
@@ -38,7 +41,8 @@ pub fn solve(size: [usize; 2], known: &[bool], fits: &LocalFits) -> Vec<f32> {
     level.h
 }
 
-/// The index of the known node nearest to each node (exact for all practical purposes: vector propagation over 8 neighbours, 4 sweeps).
+/// The index of the known node nearest to each node (exact for all practical purposes: vector propagation
+/// over 8 neighbours, 4 sweeps).
 fn nearest_known(size: [usize; 2], known: &[bool]) -> Vec<u32> {
     const NONE: u32 = u32::MAX;
     let mut nearest: Vec<u32> = known.iter().enumerate().map(|(n, &k)| if k { n as u32 } else { NONE }).collect();
@@ -91,7 +95,8 @@ impl Level {
                     h[n] = fits.at(m).z;
                 }
             } else if l > 0 {
-                // A coarse node up to one cell off the data takes the slope of the true rim, which lies between coarse nodes.
+                // A coarse node up to one cell off the data takes the slope of the true rim, which lies
+                // between coarse nodes.
                 let rim = nearest[m] as usize;
                 let (dx, dy) =
                     ((m / fine[1]) as f32 - (rim / fine[1]) as f32, (m % fine[1]) as f32 - (rim % fine[1]) as f32);
@@ -124,7 +129,8 @@ impl Level {
         found
     }
 
-    /// Every second-difference term that node `n` takes part in: calls `visit(weight, nodes and coefficients of the term, own coefficient)`.
+    /// Every second-difference term that node `n` takes part in: calls `visit(weight, nodes and coefficients
+    /// of the term, own coefficient)`.
     fn terms(size: [usize; 2], n: usize, mut visit: impl FnMut(f32, &[(usize, f32)], f32)) {
         let [nx, ny] = size;
         let (x, y) = (n / ny, n % ny);
@@ -187,7 +193,8 @@ impl Level {
                     }
                 }
             });
-            // Without data enough to hold a plane the ridge chooses the flat one (the mean plane is taken off before).
+            // Without data enough to hold a plane the ridge chooses the flat one (the mean plane is taken off
+            // before).
             a[i * width + band] += 1e-9;
         }
         for i in 0..unknown.len() {
@@ -288,7 +295,8 @@ impl Level {
     }
 }
 
-/// Value at fine index `j` of a line of `count` coarse values, by cubic interpolation; linear beyond the ends.
+/// Value at fine index `j` of a line of `count` coarse values, by cubic interpolation; linear beyond the
+/// ends.
 fn halved(at: impl Fn(usize) -> f32, count: usize, j: usize) -> f32 {
     let k = j / 2;
     if j.is_multiple_of(2) {

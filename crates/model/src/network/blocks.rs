@@ -1,8 +1,9 @@
 //! Which combinations of fault sides occur in the volume: the fault blocks.
 //!
-//! The volume is halved again and again; a box farther from a fault than its own half diagonal lies on one side of it (|w − g| changes by at most
-//! √(1 + |∂g|²) per metre), so only boxes that a fault passes through are divided, down to single voxels. Blocks are numbered by
-//! their first voxel in memory order, which no thread count or tiling can change.
+//! The volume is halved again and again; a box farther from a fault than its own half diagonal lies on one
+//! side of it (|w − g| changes by at most √(1 + |∂g|²) per metre), so only boxes that a fault passes through
+//! are divided, down to single voxels. Blocks are numbered by their first voxel in memory order, which no
+//! thread count or tiling can change.
 
 use super::surface::FaultSurface;
 use super::{BlockSignature, Truncation};

@@ -9,7 +9,8 @@ use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 use survey::height_field::HeightField;
 
-/// Most nodes of a fault's grid; beyond, the spacing grows. 2¹⁸ nodes are 1 MiB a grid, of which there are two.
+/// Most nodes of a fault's grid; beyond, the spacing grows. 2¹⁸ nodes are 1 MiB a grid, of which there are
+/// two.
 const MOST_NODES: f64 = 262_144.0;
 /// Voxels around the volume that the grid covers; farther out the border cells continue linearly.
 const MARGIN_VOXELS: f64 = 8.0;
@@ -106,7 +107,8 @@ fn area(points: &[DVec3], t: &[usize; 3]) -> f64 {
     0.5 * (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).length()
 }
 
-/// Centroid, and unit vectors (along strike, down dip, normal) of the area-weighted best-fit plane; `None` without area.
+/// Centroid, and unit vectors (along strike, down dip, normal) of the area-weighted best-fit plane; `None`
+/// without area.
 fn best_fit_plane(points: &[DVec3], triangles: &[[usize; 3]]) -> Option<(DVec3, [DVec3; 3])> {
     let total: f64 = triangles.iter().map(|t| area(points, t)).sum();
     if !(total > 0.0 && total.is_finite()) {

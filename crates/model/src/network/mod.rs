@@ -1,11 +1,12 @@
-//! Faults as surfaces that reach through the whole volume, and the blocks they cut it into.
+//! The faults, continued as surfaces through the whole volume, and the blocks into which they divide it.
 //!
-//! A fault exists everywhere, unless it is truncated by another: then it exists only on the side of the other on which most of its
-//! vertices lie (and only where that other exists). A block is a combination of sides that occurs in the volume; faults that do
-//! not exist at a place have no say there. A combination that no voxel has (it can occur in a sliver between voxels) is given to the known
-//! block with the fewest differing sides.
+//! A fault exists everywhere unless it is truncated by another one. Then it exists only on the side of the
+//! other fault on which most of its vertices lie, and only where that other fault exists. A block is a
+//! combination of sides that occurs in the volume; faults that do not exist at a place do not count there. A
+//! combination that no voxel has (it can occur in a sliver between voxels) is given to the known block with
+//! the fewest differing sides.
 //!
-//! Any number of faults up to 64 may cross (X), end at one another (Y) or both; a circle of truncations is an error.
+//! Up to 64 faults may cross (X), end at one another (Y) or both. A circle of truncations is an error.
 
 mod blocks;
 mod build;
@@ -24,23 +25,24 @@ use survey::geometry::SurveyGeometry;
 use survey::height_field::HeightField;
 use survey::progress::Progress;
 
-/// Most faults: one bit each.
+/// Largest number of faults: each takes one bit of a mask.
 const MOST_FAULTS: usize = 64;
-/// Most blocks; each needs sheets of its own.
+/// Largest number of blocks: each needs sheets of its own.
 const MOST_BLOCKS: usize = 4096;
-/// Up to so many faults the block is read from a table of all combinations, 2 bytes each.
+/// Up to this many faults, the block is read from a table of all combinations of sides, 2 bytes each.
 const TABLE_FAULTS: usize = 14;
 
-/// Where a fault ends at another.
+/// The end of one fault at another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Truncation {
     /// Index of the fault it ends at.
     pub by: usize,
-    /// Whether it lies on the positive side of that one.
+    /// Whether the truncated fault lies on the positive side of that one.
     pub positive: bool,
 }
 
-/// The sides of the faults a block lies on: it holds every place whose side bits agree with `bits` where `care` is set.
+/// The sides of the faults on which a block lies. The block holds every place whose side bits agree with
+/// `bits` wherever `care` is set.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BlockSignature {
     /// Bit f set: on the positive side of fault f.
@@ -49,7 +51,7 @@ pub struct BlockSignature {
     pub care: u64,
 }
 
-/// All faults of a model and the blocks between them.
+/// All faults of a model, and the blocks between them.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaultNetwork {
     surfaces: Vec<FaultSurface>,
@@ -62,7 +64,17 @@ pub struct FaultNetwork {
 }
 
 impl FaultNetwork {
-    /// No faults: one block.
+    /// A network without faults: the whole volume is block 0.
+    ///
+    /// # Examples
+    /// ```
+    /// use glam::Vec3;
+    /// use model::FaultNetwork;
+    ///
+    /// let faults = FaultNetwork::none();
+    /// assert_eq!(faults.block_count(), 1);
+    /// assert_eq!(faults.block_at(Vec3::new(3.0, 4.0, 5.0)), 0);
+    /// ```
     pub fn none() -> Self {
         Self {
             surfaces: Vec::new(),
@@ -76,7 +88,8 @@ impl FaultNetwork {
     /// Continues `faults` through the volume of `geometry` and finds the blocks.
     ///
     /// # Errors
-    /// [`ModelError`] for a fault without area, one that folds over itself, bad truncations, too many faults or blocks.
+    /// [`ModelError`] for a fault without area, one that folds over itself, bad truncations, too many faults
+    /// or blocks.
     pub fn build(
         geometry: &SurveyGeometry,
         faults: &[Fault],
@@ -123,7 +136,8 @@ impl FaultNetwork {
         Ok(Self { surfaces, truncation, order, signatures, table: Vec::new() }.with_table())
     }
 
-    /// The network that [`Self::surfaces`], [`Self::truncation`] and [`Self::signatures`] are of; `None` where they do not go together.
+    /// The network that [`Self::surfaces`], [`Self::truncation`] and [`Self::signatures`] are of; `None`
+    /// where they do not go together.
     pub fn of_parts(
         surfaces: Vec<FaultSurface>,
         truncation: Vec<Option<Truncation>>,
@@ -154,33 +168,36 @@ impl FaultNetwork {
         self
     }
 
-    /// Count of blocks, at least 1.
+    /// Number of blocks, at least 1.
     pub fn block_count(&self) -> usize {
         self.signatures.len()
     }
 
-    /// The fault surfaces, in the order the faults were given.
+    /// The fault surfaces, in the order in which the faults were given.
     pub fn surfaces(&self) -> &[FaultSurface] {
         &self.surfaces
     }
 
-    /// Where each fault ends at another, if it does.
+    /// For each fault, the fault it ends at, if any.
     pub fn truncation(&self) -> &[Option<Truncation>] {
         &self.truncation
     }
 
     /// The signature of each block; index = block id. A place is in the block with the fewest bits set in
-    /// `(bits ^ signature.bits) & signature.care`, the first of them; for voxels of the volume that count is 0 for exactly one block.
+    /// `(bits ^ signature.bits) & signature.care`, the first of them; for voxels of the volume that count is
+    /// 0 for exactly one block.
     pub fn signatures(&self) -> &[BlockSignature] {
         &self.signatures
     }
 
-    /// The block of every combination of side bits, 2^faults entries; `None` when there are too many faults for a table.
+    /// The block of every combination of side bits, 2^faults entries; `None` when there are too many faults
+    /// for a table.
     pub fn table(&self) -> Option<&[u16]> {
         (!self.table.is_empty()).then_some(&self.table)
     }
 
-    /// Signed metric offset of voxel position `p` from the extended surface of `fault`, along the normal of its plane, m.
+    /// Signed metric offset of voxel position `p` from the extended surface of `fault`, along the normal of
+    /// its plane, m.
     pub fn side(&self, fault: usize, p: Vec3) -> f32 {
         self.surfaces[fault].side(p.as_dvec3()) as f32
     }
@@ -196,7 +213,8 @@ impl FaultNetwork {
         blocks::existing(&self.truncation, &self.order, bits)
     }
 
-    /// Whether the place of `fault` nearest to voxel position `p` (along the normal of its plane) was interpreted, and is drawn.
+    /// Whether the place of `fault` nearest to voxel position `p` (along the normal of its plane) was
+    /// interpreted, and is drawn.
     pub fn is_real(&self, fault: usize, p: Vec3) -> bool {
         self.surfaces[fault].extent_at(p.as_dvec3()) >= 0.0
             && (self.truncation[fault].is_none() || self.existing(self.bits_at(p)) >> fault & 1 == 1)
@@ -207,7 +225,8 @@ impl FaultNetwork {
         self.block_of(self.bits_at(p))
     }
 
-    /// Whether voxel position `p` is on the sides of all faults that bound `block`; stops at the first one that says no.
+    /// Whether voxel position `p` is on the sides of all faults that bound `block`; stops at the first one
+    /// that says no.
     pub fn holds(&self, block: u16, p: Vec3) -> bool {
         let (p, BlockSignature { bits, care }) = (p.as_dvec3(), self.signatures[usize::from(block)]);
         self.surfaces.iter().enumerate().all(|(f, s)| care >> f & 1 == 0 || (s.side(p) >= 0.0) == (bits >> f & 1 == 1))
@@ -264,7 +283,8 @@ fn ordered(by: &[Option<usize>]) -> Result<Vec<usize>, Vec<usize>> {
     Ok(order)
 }
 
-/// Signed distance of fault `f` to the rim of its extent at its grid nodes, m, after its rim was pushed on to what it nearly reaches.
+/// Signed distance of fault `f` to the rim of its extent at its grid nodes, m, after its rim was extended to
+/// what it nearly reaches.
 fn extent(
     geometry: &SurveyGeometry,
     built: &[Built],
@@ -277,7 +297,8 @@ fn extent(
     let tolerance = settings.rim_tolerance_m.unwrap_or(*edge_m) / spacing;
     let voxel_from_frame = surface.frame_from_voxel.inverse();
     let voxel = move |q: DVec3| voxel_from_frame * (q - surface.frame_offset);
-    // In-plane direction (cells) along which `value`, 0 on the target and positive before it, falls, and the cells to go.
+    // In-plane direction (cells) along which `value`, 0 on the target and positive before it, falls, and the
+    // cells to go.
     let towards = move |value: f64, gradient_voxel: DVec3| {
         let gradient = (voxel_from_frame.transpose() * gradient_voxel).truncate();
         let steep = gradient.length();
@@ -289,7 +310,8 @@ fn extent(
         walls.push(Box::new(move |q| towards(voxel(q)[axis], DVec3::AXES[axis])));
         walls.push(Box::new(move |q| towards(last - voxel(q)[axis], -DVec3::AXES[axis])));
     }
-    // Past a wall the strip goes on to the end of the grid, past a fault by half the tolerance.
+    // Past the outer boundary of the volume the strip continues to the end of the grid, past a fault by half
+    // the tolerance.
     let [nu, nv] = surface.surface.size;
     let mut reaches: Vec<(Reach, f64)> = walls.iter().map(|w| (&**w as Reach, (nu + nv) as f64)).collect();
     let by = truncation.map(|t| (&built[t.by].surface, if t.positive { 1.0 } else { -1.0 }));

@@ -1,12 +1,14 @@
 //! How far a fault was interpreted: the rim of its mesh on its best-fit plane, and the signed distance to it.
 //!
-//! Rim edges that end within a tolerance of a wall of the volume, or of the fault this one is truncated by, are pushed straight on to
-//! it (and on beyond a wall), because an interpreter's sticks seldom end exactly there. Holes inside the mesh count as interpreted.
+//! Rim edges that end within a tolerance of the volume's outer boundary, or of the fault this one is
+//! truncated by, are extended straight to it (and beyond it, in the case of the outer boundary), because an
+//! interpreter's sticks seldom end exactly there. Holes inside the mesh count as interpreted.
 
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
-/// Spacing of the points that stand for the rim, cells. The distance is too long by at most (spacing/2)² / 2d.
+/// Spacing of the points that stand for the rim, cells. The distance is too long by at most (spacing/2)² /
+/// 2d.
 const RIM_SPACING: f64 = 0.125;
 /// Half the distance between the two probes that tell a rim from a seam between triangles, cells.
 const PROBE: f64 = 0.02;
@@ -18,7 +20,8 @@ pub(super) struct Patch {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Something a rim may end at: the cells to go from a rim point and the direction, `None` when it is too far or lies aside.
+/// Something a rim may end at: the cells to go from a rim point and the direction, `None` when it is too far
+/// or lies aside.
 pub(super) type Reach<'a> = &'a dyn Fn(DVec3) -> Target;
 
 /// Direction and cells to go, if the target is near.
@@ -92,7 +95,7 @@ impl Patch {
                 }
             }
         }
-        // A rim point near two walls fills the corner between its two strips.
+        // A rim point near two outer boundaries fills the corner between its two strips.
         let mut ends: Vec<u32> = rim.into_iter().flatten().collect();
         ends.sort_unstable();
         ends.dedup();
@@ -232,7 +235,8 @@ impl Bins {
     }
 }
 
-/// Distance from each node to the nearest of `points`, cells, by passing the nearest point on from neighbour to neighbour.
+/// Distance from each node to the nearest of `points`, cells, by passing the nearest point on from neighbour
+/// to neighbour.
 fn distances(origin: [i32; 2], size: [usize; 2], points: &[DVec2], far: f32) -> Vec<f32> {
     let [nu, nv] = size;
     let at = |n: usize| DVec2::new(f64::from(origin[0]) + (n / nv) as f64, f64::from(origin[1]) + (n % nv) as f64);

@@ -1,16 +1,17 @@
 //! One fault as a height field over its best-fit plane, continued through the whole volume.
 //!
-//! w = g(u, v) in metric space, with g the Catmull–Rom bicubic of a regular grid (the same kernel as horizons), so the side of the fault
-//! that a place lies on is the sign of w − g(u, v). A second grid holds the signed distance to the rim of what was interpreted: beyond its
-//! tip a fault is virtual, which shapes the parameterization and is never drawn.
+//! w = g(u, v) in metric space, with g the Catmull–Rom bicubic of a regular grid (the same kernel as
+//! horizons), so the side of the fault that a place lies on is the sign of w − g(u, v). A second grid holds
+//! the signed distance to the rim of the interpreted extent. Beyond its tip a fault is virtual: it shapes the
+//! parameterization and is never drawn.
 
 use glam::{DMat3, DVec3};
 use survey::height_field::HeightField;
 
 /// One fault, continued through the whole volume.
 ///
-/// `frame_from_voxel · p + frame_offset` is (u, v, w) of voxel position p: u and v in cells of the grids, w in metres along the
-/// plane's normal.
+/// `frame_from_voxel · p + frame_offset` is (u, v, w) of voxel position p: u and v in cells of the grids, w
+/// in metres along the plane's normal.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaultSurface {
     /// Name of the fault.
@@ -23,7 +24,8 @@ pub struct FaultSurface {
     pub spacing_m: f64,
     /// g at the grid nodes, m.
     pub surface: HeightField,
-    /// Signed distance to the rim of the interpreted extent at the same nodes, m; positive inside (real), negative beyond the tip.
+    /// Signed distance to the rim of the interpreted extent at the same nodes, m; positive inside (real),
+    /// negative beyond the tip.
     pub extent: HeightField,
 }
 
@@ -46,7 +48,8 @@ impl FaultSurface {
         self.frame_from_voxel.transpose() * DVec3::new(-f64::from(slope.x), -f64::from(slope.y), 1.0)
     }
 
-    /// Signed distance to the rim of the interpreted extent, m, positive inside; of the place reached along the plane's normal.
+    /// Signed distance to the rim of the interpreted extent, m, positive inside; of the place reached along
+    /// the plane's normal.
     pub fn extent_at(&self, p: DVec3) -> f64 {
         let q = self.frame(p);
         f64::from(self.extent.z_at(q.x as f32, q.y as f32))
@@ -65,7 +68,8 @@ impl FaultSurface {
                 worst = worst.max(du.hypot(dv));
             }
         }
-        // A Catmull–Rom cubic is at most 1.5 times as steep as the steepest of its three chords (with their signs mixed).
+        // A Catmull–Rom cubic is at most 1.5 times as steep as the steepest of its three chords (with their
+        // signs mixed).
         2.0 * f64::from(worst) / self.spacing_m
     }
 }

@@ -47,7 +47,8 @@ fn places(count: usize) -> Vec<Vec3> {
     (0..count).map(|_| Vec3::new(47.0 * next(), 39.0 * next(), 59.0 * next())).collect()
 }
 
-/// Blocks must be in one-to-one correspondence with `truth` wherever `distance` (voxels to the nearest fault) is more than 0.02.
+/// Blocks must be in one-to-one correspondence with `truth` wherever `distance` (voxels to the nearest fault)
+/// is more than 0.02.
 fn same_partition(n: &FaultNetwork, truth: impl Fn(Vec3) -> (u32, f32)) {
     let mut of_truth = std::collections::BTreeMap::new();
     let mut of_block = std::collections::BTreeMap::new();

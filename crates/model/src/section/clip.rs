@@ -1,4 +1,4 @@
-//! Cells to pieces: triangles clipped by faults and sheets.
+//! From cells to pieces: triangles are clipped by faults and sheets.
 
 use super::plane::SectionPlane;
 use crate::{Region, StructuralModel};
@@ -35,8 +35,8 @@ pub(super) struct Arrangement {
     pub edges: Vec<Edge>,
 }
 
-/// Crossings of one chord by horizons of different blocks closer than this are one, voxels: beyond a fault's tip the sheets on
-/// both sides are the same but for rounding.
+/// Crossings of one chord by horizons of different blocks closer than this are one, voxels: beyond a fault's
+/// tip the sheets on both sides are the same but for rounding.
 const WELD: f64 = 2e-3;
 
 /// What is known of a corner: sides of all faults, its block, and below which sheets of the block it lies.
@@ -334,8 +334,8 @@ impl Clipper<'_> {
     }
 }
 
-/// Where `f` changes sign in [0, 1]: secant steps that keep the bracket (Illinois), then halving. `positive` is the side that 0 was found to
-/// lie on; an end that is on the surface but for rounding is the root.
+/// Where `f` changes sign in [0, 1]: secant steps that keep the bracket (Illinois), then halving. `positive`
+/// is the side that 0 was found to lie on; an end that is on the surface but for rounding is the root.
 fn root(f: impl Fn(f64) -> f64, positive: bool) -> f64 {
     let (mut a, mut b) = (0.0, 1.0);
     let (mut fa, mut fb) = (f(a), f(b));

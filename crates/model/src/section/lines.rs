@@ -1,4 +1,4 @@
-//! Edges to lines: tagged edges between different regions, chained.
+//! From edges to lines: the tagged edges between different regions are chained.
 
 use super::clip::{Edge, Tag};
 use super::plane::SectionPlane;
@@ -10,7 +10,8 @@ use survey::horizon::Quality;
 
 /// Halvings that find the tip of a fault on an edge of its line.
 const TIP_STEPS: usize = 30;
-/// A change of quality over less than this along a line is not shown, voxels: gridded picks change at every node.
+/// A change of quality over less than this along a line is not shown, voxels: gridded picks change at every
+/// node.
 const SHORTEST_RUN: f64 = 8.0;
 
 /// Whether `edge` is part of a fault where it was interpreted.

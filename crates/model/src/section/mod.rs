@@ -1,20 +1,27 @@
-//! The planar arrangement of (layer, block) regions on any plane, exact from the interpretation.
+//! A section: the (layer, block) regions and the lines between them on any plane, computed exactly from the
+//! model.
 //!
-//! The rectangle is divided into cells of about a voxel. A cell whose corners agree on the side of every fault and horizon is uniform; the
-//! others are halved into triangles, which are clipped by one fault after another and then, inside each block, by the block's
-//! unclipped sheets. A clip cuts an edge where the *exact* function is zero (bracketed root finding along the edge), and an edge is known by its two
-//! vertices, so that neighbours share the cut bit for bit and no cracks appear; inside a cell a curve is replaced by its chord
-//! (off by curvature/8 of a voxel). The contact rules then name the layer of each piece from its sides alone. Pieces of one region are joined
-//! by cancelling the edges they share; what is left is traced into rings and lines.
+//! The rectangle is divided into cells of about a voxel. A cell is uniform when its corners agree on the side
+//! of every fault and horizon. The other cells are halved into triangles, which are clipped by one fault
+//! after another and then, inside each block, by the block's unclipped sheets. A clip cuts an edge where the *exact*
+//! function is zero (bracketed root finding along the edge). An edge is identified by its two vertices, so
+//! that neighbours share the cut bit for bit and no cracks appear. Inside a cell a curve is replaced by its
+//! chord (off by curvature/8 of a voxel). The contact rules then name the layer of each piece from its sides
+//! alone. Pieces of one region are joined by cancelling the edges they share, and the remaining edges are
+//! traced into rings and lines.
 //!
-//! - A horizon meets a fault at a vertex on the fault's chord (a T-junction); the pieces on the other side get that vertex too.
-//! - At a pinch-out or an unconformity two sheets cross at a vertex where one chord meets another: nothing is thinner than can be drawn.
-//! - Where a fault does not exist (behind the one it is truncated by) both sides are one block and their pieces are joined.
-//! - Across the virtual part of a fault, beyond its tip, regions stay apart (they are different blocks), but there is no line between
-//!   pieces of one layer, and [`Section::layers`] joins them.
+//! - A horizon meets a fault at a vertex on the fault's chord (a T-junction); the pieces on the other side
+//!   get that vertex too.
+//! - At a pinch-out or an unconformity two sheets cross at a vertex where one chord meets another: nothing is
+//!   thinner than can be drawn.
+//! - Where a fault does not exist (behind the one it is truncated by) both sides are one block and their
+//!   pieces are joined.
+//! - Across the virtual part of a fault, beyond its tip, regions stay apart (they are different blocks), but
+//!   there is no line between pieces of one layer, and [`Section::layers`] joins them.
 //!
-//! Spaces: (s, t) of the [`SectionPlane`]. Outer rings turn from s to t, holes the other way. Cost: one evaluation of each fault and sheet
-//! per cell corner; about 20 ms for 256 × 256 cells, three faults and four horizons on one core.
+//! Spaces: (s, t) of the [`SectionPlane`]. Outer rings turn from s to t, holes the other way. Cost: one
+//! evaluation of each fault and sheet per cell corner; about 20 ms for 256 × 256 cells, three faults and four
+//! horizons on one core.
 
 mod clip;
 mod lines;
@@ -26,7 +33,7 @@ pub use plane::SectionPlane;
 use crate::{Region, StructuralModel};
 use glam::DVec2;
 
-/// What a line is.
+/// What a line of a section represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LineKind {
     /// A horizon, 0 = youngest.
@@ -41,16 +48,16 @@ pub enum LineKind {
         /// Whether it was interpreted here; `false` beyond its tip, where different layers still meet.
         real: bool,
     },
-    /// The rectangle's own outline.
+    /// The outline of the rectangle.
     Frame,
 }
 
-/// How sure a line is, by the nodes it comes from.
+/// How certain a line is, according to the nodes it comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum LineQuality {
     /// Picked or tracked: drawn solid.
     Certain,
-    /// Filled between picks: dashed.
+    /// Filled between picks: drawn dashed.
     Approximate,
     /// Extrapolated: queried.
     Inferred,
@@ -74,25 +81,49 @@ pub struct LayerPolygon {
     pub rings: Vec<Vec<DVec2>>,
 }
 
-/// A line to be drawn.
+/// A line of a section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionLine {
     /// What it is.
     pub kind: LineKind,
-    /// How sure it is.
+    /// How certain it is.
     pub quality: LineQuality,
     /// (s, t); a closed line repeats its first point.
     pub points: Vec<DVec2>,
 }
 
-/// Regions and lines on a plane.
+/// A section of a model: regions and lines on a plane.
+///
+/// # Examples
+/// An inline section through two flat horizons, 10 and 20 samples deep, shows three layers:
+/// ```
+/// use glam::{DVec2, DVec3};
+/// use model::section::{Section, SectionPlane};
+/// use model::{ModelSettings, StructuralModel};
+/// use survey::geometry::{SurveyGeometry, VerticalUnit};
+/// use survey::progress::Progress;
+/// use synth::closed_form::ClosedForm;
+///
+/// let geometry = SurveyGeometry::regular([11, 11, 40], 25.0, 10.0, VerticalUnit::Metres);
+/// let form = ClosedForm::flat(&geometry, &[10.0, 20.0]);
+/// let (settings, progress) = (ModelSettings::default(), Progress::silent());
+/// let model = StructuralModel::build(&geometry, &form.stratigraphy, &form.horizons, &[], &settings, &progress)?;
+///
+/// let plane = SectionPlane::inline(5.0, DVec3::ZERO, DVec3::new(10.0, 10.0, 39.0));
+/// let section = Section::new(&model, &plane);
+/// // s is y and t is z.
+/// let layer = |t: f64| section.region_at(DVec2::new(4.5, t)).map(|region| region.layer);
+/// assert_eq!([5.0, 15.0, 25.0].map(layer), [Some(2), Some(1), Some(0)]);
+/// assert_eq!(layer(45.0), None);
+/// # Ok::<(), model::ModelError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// Where it lies.
     pub plane: SectionPlane,
-    /// Areas of one region; together they cover the rectangle.
+    /// Connected areas of one region each; together they cover the rectangle.
     pub polygons: Vec<SectionPolygon>,
-    /// Areas of one layer; together they cover the rectangle, too.
+    /// Connected areas of one layer each; together they also cover the rectangle.
     pub layers: Vec<LayerPolygon>,
     /// Horizons, faults and the frame.
     pub lines: Vec<SectionLine>,
@@ -119,7 +150,7 @@ impl Section {
         section
     }
 
-    /// The region at (s, t), by its polygons; `None` outside the rectangle.
+    /// The region at (s, t) according to the polygons; `None` outside the rectangle.
     pub fn region_at(&self, st: DVec2) -> Option<Region> {
         self.polygons.iter().find(|p| trace::winding(&p.rings, st) != 0).map(|p| p.region)
     }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-/// A plane rectangle: (s, t) in [0, extent] lies at voxel origin + s·s_axis + t·t_axis.
+/// A rectangle on a plane: (s, t) in [0, extent] lies at voxel position origin + s·s_axis + t·t_axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SectionPlane {
     /// Voxel position of (s, t) = (0, 0).
@@ -50,7 +50,8 @@ impl SectionPlane {
 
     /// Cells of about a voxel along s and t.
     pub(super) fn cells(&self) -> [usize; 2] {
-        // At least 16, so that a curve stays a curve when a few voxels fill the page; at most 4096 for memory's sake.
+        // At least 16, so that a curve stays a curve when a few voxels fill the page; at most 4096 for
+        // memory's sake.
         let count = |axis: DVec3, extent: f64| (axis.length() * extent).ceil().clamp(16.0, 4096.0) as usize;
         [count(self.s_axis, self.extent[0]), count(self.t_axis, self.extent[1])]
     }

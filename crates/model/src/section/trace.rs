@@ -1,11 +1,12 @@
-//! Edges to rings: what is left after pieces of one area have cancelled the edges they share.
+//! From edges to rings: pieces of one area cancel the edges they share, and the remaining edges are traced.
 
 use super::clip::{Edge, Tag};
 use glam::DVec2;
 use std::collections::HashMap;
 use std::hash::Hash;
 
-/// The edges whose reverse does not belong to the same area, in the order given; `may` says which may be cancelled at all.
+/// The edges whose reverse does not belong to the same area, in the order given; `may` says which may be
+/// cancelled at all.
 pub(super) fn cancel_within<K: Hash + Eq + Copy>(
     edges: &[Edge],
     area: impl Fn(&Edge) -> K,

@@ -1,4 +1,4 @@
-//! Volumes computed from a volume.
+//! Attribute volumes that are computed from a volume.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content::volume_facts::{self, Facts};
@@ -40,8 +40,8 @@ impl AttributeKind {
 pub struct ComputeAttribute {
     /// What to compute.
     pub kind: AttributeKind,
-    /// Name of the new volume. A dip is its angle from the horizontal in degrees, and `NAME-inline` and `NAME-crossline` are added, in samples
-    /// a line.
+    /// Name of the new volume. A dip is its angle from the horizontal in degrees, and `NAME-inline` and
+    /// `NAME-crossline` are added, in samples a line.
     pub name: String,
     /// The volume to compute it from; absent: the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -52,7 +52,8 @@ pub struct ComputeAttribute {
     /// How semblance is computed.
     #[serde(default)]
     pub semblance: SemblanceSettings,
-    /// Memory to use, bytes; absent: half of what is available. Not remembered: the result does not depend on it.
+    /// Memory to use, bytes; absent: half of what is available. Not remembered: the result does not depend on
+    /// it.
     #[serde(skip)]
     pub memory_bytes: Option<u64>,
 }

@@ -1,6 +1,8 @@
-//! Extraction of horizon candidates and the search for faults, as changes of a project: undo leads back to what was there before.
+//! Extraction of horizon candidates and the search for faults, as changes of a project: undo leads back to
+//! what was there before.
 //!
-//! What takes long is computed by `prepare`, before the project is locked, and kept under a key; `execute` then only names it.
+//! Long computations run in `prepare`, before the project is locked, and their result is kept under a key.
+//! `execute` then only records the key.
 
 use super::Effect;
 use crate::document::{Document, ExtractionEntry, ProposalsEntry};

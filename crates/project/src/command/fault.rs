@@ -1,4 +1,4 @@
-//! Bringing faults in, saying where they end, taking them out.
+//! Adding faults, stating at which fault they end, and removing them.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;

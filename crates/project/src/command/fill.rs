@@ -10,7 +10,8 @@ use interp::reassembly::{from_horizon, to_horizon};
 use serde::{Deserialize, Serialize};
 use survey::Progress;
 
-/// Fills holes with the surface of least curvature, never across a fault. An assembled horizon stays filled when its picks change.
+/// Fills holes with the surface of least curvature, never across a fault. An assembled horizon stays filled
+/// when its picks change.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct FillHorizon {
     /// Name of the horizon.

@@ -1,7 +1,8 @@
-//! Bringing horizons in, naming them, taking them out.
+//! Adding, renaming and removing horizons.
 //!
-//! A horizon takes its place in the stratigraphy by its depth, or where the user puts it. One that runs through another is refused unless a
-//! contact rule lets one cut the other: the layer between them would be inside out.
+//! A horizon takes its place in the stratigraphy by its depth, or where the user puts it. A horizon that runs
+//! through another is refused unless a contact rule lets one cut the other, because the layer between them
+//! would be inside out.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;

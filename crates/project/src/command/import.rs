@@ -1,4 +1,4 @@
-//! Bringing volumes in, and taking them out again.
+//! Importing and removing volumes.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content::volume_facts::{self, Facts};
@@ -27,7 +27,8 @@ pub struct ImportVolume {
     /// What the user states about the file.
     #[serde(default)]
     pub options: SegyOptions,
-    /// Memory to use, bytes; absent: half of what is available. Not remembered: the result does not depend on it.
+    /// Memory to use, bytes; absent: half of what is available. Not remembered: the result does not depend on
+    /// it.
     #[serde(skip)]
     pub memory_bytes: Option<u64>,
 }
@@ -80,7 +81,8 @@ impl ImportVolume {
         let folder = draft.root().join(IMPORTING);
         let ingested = self.ingest(&file, &geometry, &folder, &new, progress);
         if ingested.is_err() {
-            // Only a killed program leaves something to go on with; who cancels, or has no room, wants none of it.
+            // Only a killed program leaves something to go on with; who cancels, or has no room, wants none
+            // of it.
             let _ = fs::remove_dir_all(&folder);
         }
         let ingested = ingested?;

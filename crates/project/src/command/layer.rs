@@ -37,7 +37,8 @@ pub struct SetLayer {
     /// What k means inside the layer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k: Option<KDefinition>,
-    /// All of its style at once, before anything else is changed: so that ink and frequency can be taken away, too.
+    /// All of its style at once, before anything else is changed: so that ink and frequency can be taken
+    /// away, too.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub style: Option<LayerStyle>,
 }

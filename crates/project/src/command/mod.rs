@@ -1,8 +1,9 @@
-//! Everything that changes a project, as one serialisable enum: what was asked for, not how it is done.
+//! Everything that changes a project, as one serialisable enum. A command states what is asked for, not how
+//! it is done.
 //!
-//! A command reads files and the present state, writes new data through the [`Draft`] and leaves the new state in it. It
-//! overwrites nothing and can fail at any point: [`crate::Project::apply`] discards the draft then. Undo needs nothing
-//! from a command, because every state is remembered.
+//! A command reads files and the present state, writes new data through the [`Draft`] and leaves the new
+//! state in it. It overwrites nothing and can fail at any point: [`crate::Project::apply`] discards the draft
+//! then. Undo needs nothing from a command, because every state is remembered.
 
 mod attribute;
 mod contact;
@@ -161,8 +162,8 @@ pub enum Effect {
 }
 
 impl Command {
-    /// Computes what takes long and needs no lock, and keeps it where [`Command::execute`] finds it; answers whether there was
-    /// anything to compute.
+    /// Computes what takes long and needs no lock, and keeps it where [`Command::execute`] finds it; answers
+    /// whether there was anything to compute.
     pub(crate) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
         match self {
             Self::Extract(change) => change.prepare(root, document, progress),
@@ -213,7 +214,8 @@ impl Command {
 }
 
 impl Effect {
-    /// Whether the command may have found everything as it wants it; such a command is no step of the history.
+    /// Whether the command may have found everything as it wants it; such a command is no step of the
+    /// history.
     pub(crate) fn is_nothing_new(&self) -> bool {
         matches!(self, Self::Extracted(_) | Self::FaultsProposed(_))
     }

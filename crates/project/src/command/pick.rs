@@ -1,4 +1,5 @@
-//! Picking: a place becomes a leaf, a leaf a node, a node part of a horizon; and moving a pick later.
+//! Picking: a place selects a leaf, the leaf a node of its tree, and the node becomes part of a horizon. A
+//! pick can be moved later.
 
 use super::{Effect, Noun, ProjectError};
 use crate::document::{Assembly, PickEntry};

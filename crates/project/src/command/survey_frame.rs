@@ -1,4 +1,4 @@
-//! Changes to the frame that everything is placed in.
+//! Changes to the frame in which everything is placed.
 
 use super::{Effect, ProjectError};
 use crate::folder::Draft;
@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// Sets the velocity that turns two-way time into metres.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SetVelocity {
-    /// Metres a second; the wave travels the depth twice.
+    /// Velocity in m/s. The wave travels the depth twice.
     pub velocity_m_s: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The user's own tiles.
+//! Tiles of the user's own for patterns.
 
 use super::{Effect, Noun, ProjectError};
 use crate::document::TextureEntry;

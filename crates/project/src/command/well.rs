@@ -1,4 +1,4 @@
-//! Bringing wells in, naming them, taking them out.
+//! Adding, renaming and removing wells.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
@@ -47,7 +47,8 @@ pub struct PlacedTop {
     /// Where it is.
     #[serde(flatten)]
     pub place: TopPlace,
-    /// How much deeper the top is than the project's horizon of that name, in the survey's unit; None without such a horizon there.
+    /// How much deeper the top is than the project's horizon of that name, in the survey's unit; None without
+    /// such a horizon there.
     pub below_horizon: Option<f64>,
 }
 

@@ -1,12 +1,13 @@
 //! Hashes that identify bulk data.
 //!
-//! A hash covers what a computation depends on, values and their place, and nothing else: not names, not files.
+//! A hash covers what a computation depends on, values and their place, and nothing else: not names, not
+//! files.
 
 use store::{StoreError, StoredVolume};
 use survey::{Fault, Horizon, Well};
 
-/// BLAKE3 of a volume's size, sample type, the checksums of its bricks and its live-trace mask: what identifies its samples, without reading
-/// them.
+/// BLAKE3 of a volume's size, sample type, the checksums of its bricks and its live-trace mask: what
+/// identifies its samples, without reading them.
 ///
 /// # Errors
 /// Missing or damaged data.

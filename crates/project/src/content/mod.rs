@@ -1,4 +1,5 @@
-//! The bulk data of a project: volumes, horizons, faults and wells, read by the project's entries, and the hashes that identify them.
+//! The bulk data of a project: volumes, horizons, faults and wells, read by the project's entries, and the
+//! hashes that identify them.
 
 mod hash;
 mod read;

@@ -25,7 +25,8 @@ pub fn read_volume(root: &Path, entry: &VolumeEntry, progress: &Progress) -> Res
     Ok(StoredVolume::open(&at_hand(root, &entry.file))?.read_f32(0, progress)?)
 }
 
-/// Reads a volume of the project in `root` at the finest level of its pyramid that fits into so many bytes, the coarsest where none does; answers the level too.
+/// Reads a volume of the project in `root` at the finest level of its pyramid that fits into so many bytes,
+/// the coarsest where none does; answers the level too.
 ///
 /// # Errors
 /// Missing or damaged data, or cancelled.

@@ -1,4 +1,4 @@
-//! What the project keeps about a stored volume, found by reading as little of it as serves.
+//! The facts that a project keeps about a stored volume, found by reading as little of it as necessary.
 
 use crate::content;
 use crate::document::{Polarity, Source, VolumeEntry};
@@ -41,7 +41,8 @@ pub(crate) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<Vo
     })
 }
 
-/// The value that most samples of live traces do not exceed in size, found on evenly spread traces; 1 where all are zero.
+/// The value that most samples of live traces do not exceed in size, found on evenly spread traces; 1 where
+/// all are zero.
 fn clip_of(stored: &StoredVolume, progress: &Progress) -> Result<f32, ProjectError> {
     let [_, crosslines, samples] = stored.size(0);
     let live: Vec<usize> =

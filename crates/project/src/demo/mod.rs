@@ -1,8 +1,9 @@
 //! `petroglyph demo`: the whole chain on a synthetic survey, through files and commands as a user would go.
 //!
-//! Synthetic survey → SEG-Y and fault files → import → candidates → picks, one on each part of each horizon → layers → parameterization → three
-//! pictures: illustrative, raw, and half-way between. Of the truth no more is used than one place on each part, as someone has it who
-//! sees the reflector. The look is in `look.toml`.
+//! Synthetic survey → SEG-Y and fault files → import → candidates → picks, one on each part of each horizon →
+//! layers → parameterization → three pictures: illustrative, raw, and half-way between. Of the truth only one
+//! place on each part is used, which anyone who sees the reflector could point at. The styles are in
+//! `look.toml`.
 
 pub mod survey_files;
 
@@ -171,8 +172,8 @@ const LOOKS: usize = 2;
 /// Samples within which a place of a horizon counts as picked.
 const NEAR_SAMPLES: f64 = 2.0;
 
-/// Picks every part of every horizon, then the middle of what that left out, climbing to the highest valid node, and fills the holes. Answers the
-/// count of picks.
+/// Picks every part of every horizon, then the middle of what that left out, climbing to the highest valid
+/// node, and fills the holes. Answers the count of picks.
 fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> Result<usize, ProjectError> {
     let truth = survey_files::read_truth(&files.truth)?;
     let frame = project.document().frame()?.clone();

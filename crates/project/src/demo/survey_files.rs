@@ -1,5 +1,5 @@
-//! A synthetic survey on disk, as a survey comes from others, with its truth beside it and what an interpreter would
-//! say about its files.
+//! A synthetic survey on disk, as a survey comes from others, with its truth beside it and what an
+//! interpreter would say about its files.
 //!
 //! ```text
 //! survey.sgy  attribute.sgy   seismic; acoustic impedance of another size and a smaller extent

@@ -1,4 +1,5 @@
-//! Fault blocks, kept: `blocks-KEY.bin`. Making them takes longer than all else that one pick needs.
+//! Fault blocks, kept: `blocks-KEY.bin`. Computing them takes longer than everything else that one pick
+//! needs.
 
 use super::kept::{Kind, damaged, read_array, read_header, write_header};
 use super::{key_of, revision};

@@ -155,7 +155,8 @@ pub fn write_volumes(
     Ok(VoxelParameterization { size, i, j, k, layer, block })
 }
 
-/// The sampled parameterization, if the one kept was computed from the same input; `size` absent takes any size.
+/// The sampled parameterization, if the one kept was computed from the same input; `size` absent takes any
+/// size.
 pub fn load_volumes(
     root: &Path,
     key: &str,

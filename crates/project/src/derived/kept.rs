@@ -1,4 +1,5 @@
-//! A file of derived data: a kind, a body, and the BLAKE3 hash of both, so that one that is damaged or cut off is not used.
+//! A file of derived data: a kind, a body, and the BLAKE3 hash of both, so that a damaged or truncated file
+//! is not used.
 
 use super::{Scratch, folder};
 use crate::folder::storage;
@@ -50,7 +51,8 @@ impl Kind {
         }
     }
 
-    /// What `body` reads from the file kept under `key`; it is also told the length of the file. `None` where there is none that is whole.
+    /// What `body` reads from the file kept under `key`; it is also told the length of the file. `None` where
+    /// there is none that is whole.
     pub(super) fn load<T>(
         &self,
         root: &Path,

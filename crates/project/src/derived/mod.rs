@@ -1,4 +1,5 @@
-//! What is computed from a project and kept beside it, so that nothing is computed twice and nothing stale is used.
+//! Results that are computed from a project and kept beside it, so that nothing is computed twice and nothing
+//! stale is used.
 //!
 //! ```text
 //! derived/blocks-KEY.bin          the faults continued through the volume, and the blocks between them
@@ -6,10 +7,11 @@
 //! derived/parameterization.zarr   the same sampled on a lattice: i, j, k, layer, block, for other programs; its key inside
 //! ```
 //!
-//! A key is the BLAKE3 hash of everything the result depends on: the revision of the method ([`revision`]), the frame, the hashes of faults, for the
-//! parameterization those of horizons and their contacts, and the settings. What has another key is not looked at; undoing a change
-//! therefore finds the earlier result again, as long as it is among the last few kept. Everything here may be deleted, and a result
-//! that cannot be kept (a full disk, a read-only project) is still used.
+//! A key is the BLAKE3 hash of everything the result depends on: the revision of the method ([`revision`]),
+//! the frame, the hashes of faults, for the parameterization those of horizons and their contacts, and the
+//! settings. A file with another key is not read. Undoing a change therefore finds the earlier result again,
+//! as long as it is among the last few kept. Everything here may be deleted, and a result that cannot be kept
+//! (a full disk, a read-only project) is still used.
 
 mod blocks;
 mod grids;

@@ -1,7 +1,8 @@
 //! Where derived data are written until they are complete: `derived/unfinished/`, a folder for each writer.
 //!
-//! What is derived is kept without the project's lock, by several programs at once. Each writer therefore has a folder of its
-//! own, beside a lock file that the system releases however the program ends; whoever writes next removes the folders whose lock is free.
+//! Derived data are kept without the project's lock, and several programs may do so at once. Each writer
+//! therefore has a folder of its own, beside a lock file that the system releases however the program ends.
+//! The next writer removes the folders whose lock is free.
 
 use super::folder;
 use crate::error::ProjectError;

@@ -1,7 +1,8 @@
-//! Comments of `project.toml`: what a person wrote between the lines stays when a command writes the file again.
+//! Comments of `project.toml`: what a person wrote between the lines stays when a command writes the file
+//! again.
 //!
-//! A comment belongs to the key, table or entry below it, or to the value before it on the same line. It stays as long as
-//! that is there; entries of a list are recognised by their `name` or `layer`.
+//! A comment belongs to the key, table or entry below it, or to the value before it on the same line. It
+//! stays as long as that item exists. Entries of a list are recognised by their `name` or `layer`.
 
 use toml_edit::{ArrayOfTables, Decor, DocumentMut, Item, Table};
 

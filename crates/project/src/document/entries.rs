@@ -1,5 +1,5 @@
-//! The named things of a project as `project.toml` lists them. Files are relative to the project's folder; a hash identifies data by
-//! its content.
+//! The named things of a project as `project.toml` lists them. Files are relative to the project's folder; a
+//! hash identifies data by its content.
 
 use super::picks::Assembly;
 use render::Scene;
@@ -147,8 +147,8 @@ pub struct TextureEntry {
     pub source: Source,
 }
 
-/// How everything is coloured and textured; what is absent gets a default when it is drawn. Blend and frequency
-/// belong to the scenes.
+/// How everything is coloured and textured; what is absent gets a default when it is drawn. Blend and
+/// frequency belong to the scenes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Style {

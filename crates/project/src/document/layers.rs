@@ -1,7 +1,8 @@
 //! Layers of a project: their names, and how their styles survive a change of the horizons.
 //!
-//! Styles belong to layers by name. A horizon put into a layer splits it: the part that keeps the old base keeps name and style, the part
-//! above the new horizon starts without. Taking a horizon away joins two layers into one that keeps those of the lower.
+//! Styles belong to layers by name. A horizon put into a layer splits it: the part that keeps the old base
+//! keeps the name and the style, the part above the new horizon starts without them. Removing a horizon joins
+//! two layers into one, which keeps the name and the style of the lower one.
 
 use super::Document;
 use crate::error::{Noun, ProjectError};
@@ -75,7 +76,8 @@ impl Document {
         })
     }
 
-    /// Moves styles and definitions of k from old to new layer names at once; those without a new name are dropped.
+    /// Moves styles and definitions of k from old to new layer names at once; those without a new name are
+    /// dropped.
     fn rename_styles<'a>(&mut self, names: impl Iterator<Item = (&'a str, Option<&'a str>)>) {
         let names: Vec<_> = names.collect();
         let styles = std::mem::take(&mut self.style.layers.styles);

@@ -1,7 +1,8 @@
-//! What `project.toml` says: the whole state of a project but for the bulk data, which it refers to by file.
+//! The content of `project.toml`: the whole state of a project except for the bulk data, to which it refers
+//! by file.
 //!
-//! The text is made for people: it can be read, compared and edited. Every command rewrites it in one fixed order, so that two
-//! states differ only where the project does.
+//! The text is made for people: it can be read, compared and edited. Every command rewrites it in one fixed
+//! order, so that two files differ only where the projects differ.
 
 mod comments;
 pub(crate) mod data_file;
@@ -155,7 +156,8 @@ impl Document {
             }
         }
         self.check_truncation().map_err(|error| error.to_string())?;
-        // Whatever else a name says would let a project read, and a later command delete, what is not its own.
+        // Whatever else a name says would let a project read, and a later command delete, what is not its
+        // own.
         for (kind, file) in self.files_by_kind() {
             if !data_file::is_data_file(kind, file) {
                 return Err(format!("the file \"{file}\" is not of the form {kind}/NAME"));
@@ -242,8 +244,8 @@ impl Document {
     /// Checks that a name may be given to something new.
     ///
     /// # Errors
-    /// [`ProjectError::BadName`]; [`ProjectError::Duplicate`], also when only the case differs, because file systems and people
-    /// do not tell such names apart.
+    /// [`ProjectError::BadName`]; [`ProjectError::Duplicate`], also when only the case differs, because file
+    /// systems and people do not tell such names apart.
     pub fn check_new_name(&self, noun: Noun, name: &str) -> Result<(), ProjectError> {
         let bad = |fact| Err(ProjectError::BadName { noun, name: name.to_owned(), fact });
         if name.trim().is_empty() {

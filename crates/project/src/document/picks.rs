@@ -1,7 +1,8 @@
 //! How a horizon was assembled: its log of picks, in the order they were made.
 //!
-//! The horizon's sheets are primary data; this is how they came about, and what is needed to move a pick later or to make the same picks again on
-//! another extraction. Places are line numbers and vertical values, so that they can be read and typed.
+//! The horizon's sheets are primary data. The log tells how they were made, and it is what is needed to move
+//! a pick later or to make the same picks again on another extraction. Places are line numbers and vertical
+//! values, so that they can be read and typed.
 
 use interp::assembly::{Fingerprint, Operation};
 use interp::holes::FillSettings;
@@ -42,7 +43,8 @@ pub struct PickEntry {
     pub node: Fingerprint,
 }
 
-/// A fault that is being drawn: sticks as they were picked. From two sticks on there is a fault of that name.
+/// A fault that is being drawn: sticks as they were picked. With two or more sticks there is a fault of that
+/// name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FaultSticks {

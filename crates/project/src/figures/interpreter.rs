@@ -1,4 +1,4 @@
-//! What an interpreter sees, read from a project, with what only the interpreter's own view knows.
+//! The interpreter's view: what is read from a project, together with what only the view itself knows.
 
 use crate::content;
 use crate::error::ProjectError;

@@ -1,5 +1,5 @@
-//! Figures of a project: what one needs is loaded, and its page made, in one way, for the command line and
-//! the window alike.
+//! Figures of a project. The command line and the window load what a figure needs, and make its page, in the
+//! same way.
 //!
 //! A figure with a block needs what the block's scene needs. One of sections and maps alone needs the model
 //! but no layer coordinates, and what an interpreter sees needs no model at all.

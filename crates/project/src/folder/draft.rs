@@ -1,11 +1,12 @@
-//! A state of a project in the making: what a command works on.
+//! A draft: the new state of a project while a command works on it.
 
 use super::{history, storage};
 use crate::document::Document;
 use crate::error::ProjectError;
 use std::path::{Path, PathBuf};
 
-/// A copy of the state to change, and a place to write new data to. Dropped without being kept, it removes what was written.
+/// A copy of the state to change, and a place to write new data to. Dropped without being kept, it removes
+/// what was written.
 #[derive(Debug)]
 pub struct Draft {
     root: PathBuf,
@@ -25,9 +26,11 @@ impl Draft {
         &self.root
     }
 
-    /// A new place for data of a kind (`volumes`, `horizons` …): the file to put into the document, and the path to write to now.
+    /// A new place for data of a kind (`volumes`, `horizons` …): the file to put into the document, and the
+    /// path to write to now.
     ///
-    /// The file is named after `name` as far as file systems allow, with a number where an older generation of that name is still remembered.
+    /// The file is named after `name` as far as file systems allow, with a number where an older generation
+    /// of that name is still remembered.
     ///
     /// # Errors
     /// The folder to write to cannot be made.

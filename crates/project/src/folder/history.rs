@@ -1,14 +1,17 @@
 //! The commands of a project, each with the state it led to: what undo and redo walk along.
 //!
-//! `history/0007.toml` holds command 7 and the text of `project.toml` after it. Undo writes the text of step 6 back, redo that of
-//! step 8, so both restore it byte for byte, from any process. Data files that a remembered state refers to stay where they are until the last
-//! such state is forgotten: by a command given after an undo, by the limit on the length, or by [`super::Project::prune`].
+//! `history/0007.toml` holds command 7 and the text of `project.toml` after it. Undo writes the text of step
+//! 6 back, redo that of step 8, so both restore it byte for byte, from any process. Data files that a
+//! remembered state refers to stay where they are until the last such state is forgotten: by a command given
+//! after an undo, by the limit on the length, or by [`super::Project::prune`].
 //!
-//! A step waits in `unfinished/` while `project.toml` is replaced and gets its place after it; a writer that finds one there
-//! can tell by `project.toml` whether the command was completed ([`recover`]). A step that is to be forgotten moves there, too, and is
-//! deleted after the data that only it refers to, so that a kill in between leaves nothing behind.
+//! A step waits in `unfinished/` while `project.toml` is replaced and gets its place after it; a writer that
+//! finds one there can tell by `project.toml` whether the command was completed ([`recover`]). A step that is
+//! to be forgotten moves there, too, and is deleted after the data that only it refers to, so that a kill in
+//! between leaves nothing behind.
 //!
-//! A step that cannot be read any more is told as such and is no reason to refuse work; whatever it may refer to is kept.
+//! A step that can no longer be read is reported as such and is no reason to refuse work. Whatever it may
+//! refer to is kept.
 
 use super::storage;
 use crate::document::{Document, data_file};
@@ -17,7 +20,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Remembered steps; the oldest are forgotten first. Long enough for a day's work, short enough that removed volumes do not fill the disk for ever.
+/// Remembered steps; the oldest are forgotten first. Long enough for a day's work, short enough that removed
+/// volumes do not fill the disk for ever.
 pub const HISTORY_LIMIT: u32 = 200;
 
 /// One remembered command.
@@ -73,7 +77,8 @@ pub(crate) fn prepare(root: &Path, number: u32, step: &Step) -> Result<(), Proje
     storage::write_unfinished(root, &file_of(number), text.as_bytes())
 }
 
-/// Makes a prepared step the last one: what was undone before it is forgotten, and so are steps beyond the limit, with their data.
+/// Makes a prepared step the last one: what was undone before it is forgotten, and so are steps beyond the
+/// limit, with their data.
 pub(crate) fn complete(root: &Path, number: u32) -> Result<(), ProjectError> {
     forget(root, |old| old >= number || old.saturating_add(HISTORY_LIMIT) <= number)?;
     storage::rename(&storage::unfinished(root, &file_of(number)), &root.join(file_of(number)))?;
@@ -106,7 +111,8 @@ fn release_forgotten(root: &Path) -> Result<(), ProjectError> {
     Ok(())
 }
 
-/// Cleans up after a writer that did not come to its end: a completed command gets its step, an incomplete one leaves nothing.
+/// Cleans up after a writer that did not come to its end: a completed command gets its step, an incomplete
+/// one leaves nothing.
 pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectError> {
     if !root.join(storage::UNFINISHED).exists() {
         return Ok(());
@@ -124,7 +130,8 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
     Ok(())
 }
 
-/// Whether the present or any remembered state has this text somewhere: keys of derived data are looked for so.
+/// Whether the present or any remembered state has this text somewhere: keys of derived data are looked for
+/// so.
 pub(crate) fn is_named(root: &Path, text: &str) -> bool {
     let states = numbers(root).into_iter().map(|number| root.join(file_of(number))).chain([root.join(storage::STATE)]);
     // A state that cannot be read may name anything.
@@ -137,8 +144,8 @@ fn files_of(step: Option<&Step>) -> BTreeSet<String> {
     document.iter().flat_map(|document| document.files().map(str::to_owned)).collect()
 }
 
-/// Deletes those of `files` that neither the present nor any remembered state refers to. What is not `KIND/NAME` is no data of a
-/// project and stays. While the present state cannot be read, everything stays.
+/// Deletes those of `files` that neither the present nor any remembered state refers to. What is not
+/// `KIND/NAME` is no data of a project and stays. While the present state cannot be read, everything stays.
 pub(crate) fn release(root: &Path, mut files: BTreeSet<String>) -> Result<(), ProjectError> {
     files.retain(|file| data_file::is_any_data_file(file));
     if files.is_empty() {
@@ -157,7 +164,8 @@ pub(crate) fn release(root: &Path, mut files: BTreeSet<String>) -> Result<(), Pr
     Ok(())
 }
 
-/// Takes out of `files` what a damaged step may still refer to: everything it names, or everything when it cannot be read at all.
+/// Takes out of `files` what a damaged step may still refer to: everything it names, or everything when it
+/// cannot be read at all.
 fn keep_what_is_named_in(step: &Path, files: &mut BTreeSet<String>) {
     match std::fs::read(step) {
         Ok(bytes) => {

@@ -1,15 +1,17 @@
 //! Files of a project on disk: where each may lie, how it is replaced, and the one place that deletes.
 //!
-//! A file of a project is named by its path relative to the project's folder, with `/` between the parts. Data that a state
-//! refers to is exactly `KIND/NAME` ([`crate::document::data_file`]), a real file or folder and not a link.
+//! A file of a project is named by its path relative to the project's folder, with `/` between the parts.
+//! Data that a state refers to is exactly `KIND/NAME` ([`crate::document::data_file`]), a real file or folder
+//! and not a link.
 //!
-//! Nothing that a saved state refers to is ever overwritten. What is being written lies in the folder `unfinished/` under the
-//! same relative path, and is renamed to its place when it is complete ([`publish`], [`replace`]). What a killed program leaves
-//! there was never part of a project; the next writer removes the folder. Names of data therefore never decide what is
-//! a leftover.
+//! Nothing that a saved state refers to is ever overwritten. What is being written lies in the folder
+//! `unfinished/` under the same relative path, and is renamed to its place when it is complete ([`publish`],
+//! [`replace`]). What a killed program leaves there was never part of a project; the next writer removes the
+//! folder. Names of data therefore never decide what is a leftover.
 //!
-//! [`remove`] deletes single files of the project's own making and works through a handle on the folder, which cannot be led
-//! outside by a link. Data files go through [`super::history::release`] instead, which first asks every remembered state.
+//! [`remove`] deletes single files of the project's own making and works through a handle on the folder,
+//! which cannot be led outside by a link. Data files go through [`super::history::release`] instead, which
+//! first asks every remembered state.
 
 use crate::document::data_file::KINDS;
 use crate::error::ProjectError;
@@ -36,8 +38,8 @@ pub(crate) const IMPORTING: &str = "importing";
 const FOLDERS: [&str; 4] = ["history", DERIVED, UNFINISHED, IMPORTING];
 const FILES: [&str; 4] = [STATE, "lock", "creating", "window.lock"];
 
-/// Refuses a project in which a link could lead a writer outside: every folder and file that commands write to, and
-/// everything in it, must be what it seems. Nothing is written before this has passed.
+/// Refuses a project in which a link could lead a writer outside: every folder and file that commands write
+/// to, and everything in it, must be what it seems. Nothing is written before this has passed.
 ///
 /// # Errors
 /// [`ProjectError::Link`] with the first link found, or a folder that cannot be read.
@@ -86,7 +88,8 @@ pub(crate) fn begin(root: &Path, file: &str) -> Result<PathBuf, ProjectError> {
     Ok(path)
 }
 
-/// Where `file` can be read now: what a command under way has written and not yet published lies in `unfinished/`.
+/// Where `file` can be read now: what a command under way has written and not yet published lies in
+/// `unfinished/`.
 pub fn at_hand(root: &Path, file: &str) -> PathBuf {
     let (path, unfinished) = (root.join(file), unfinished(root, file));
     if !path.exists() && unfinished.exists() { unfinished } else { path }
@@ -152,10 +155,11 @@ fn sync_tree(path: &Path) -> Result<(), ProjectError> {
     }
 }
 
-/// Removes a file or folder of the project, if it is there: the one place where something in a project is deleted.
+/// Removes a file or folder of the project, if it is there: the one place where something in a project is
+/// deleted.
 ///
-/// `file` must lie inside the project; of a link the link itself goes, never what it points to. What cannot be removed stays
-/// behind as something that no state refers to.
+/// `file` must lie inside the project; of a link the link itself goes, never what it points to. What cannot
+/// be removed stays behind as something that no state refers to.
 pub(crate) fn remove(root: &Path, file: &str) {
     let plain =
         !file.is_empty() && Path::new(file).components().all(|part| matches!(part, std::path::Component::Normal(_)));
@@ -178,7 +182,8 @@ fn remove_inside(root: &Path, file: &str) -> io::Result<()> {
     Ok(())
 }
 
-/// Opens a file at the top of the project for reading and writing, made if it is not there; a link is not followed.
+/// Opens a file at the top of the project for reading and writing, made if it is not there; a link is not
+/// followed.
 ///
 /// # Errors
 /// It is a link, or cannot be opened.
@@ -202,7 +207,8 @@ pub(crate) fn names_in(folder: &Path) -> Vec<String> {
     found
 }
 
-/// Keeps other writers out for as long as it lives. The system releases it when the process ends, however it ends.
+/// Keeps other writers out for as long as it lives. The system releases it when the process ends, however it
+/// ends.
 #[derive(Debug)]
 pub(crate) struct Lock {
     _file: File,

@@ -1,4 +1,4 @@
-//! From a horizon's log of picks to its sheets: what every command on picks ends with.
+//! From a horizon's log of picks to its sheets: the last step of every command on picks.
 
 use super::order;
 use crate::content;
@@ -199,8 +199,8 @@ pub fn sentence(conflict: &ReportedConflict) -> String {
     }
 }
 
-/// The faults of the project as blocks; they take longer to make than all else that a pick needs, so they are kept beside the project, and whoever
-/// makes several picks holds them.
+/// The faults of the project as blocks; they take longer to make than all else that a pick needs, so they are
+/// kept beside the project, and whoever makes several picks holds them.
 pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
     static HELD: WeakCache<(SurveyGeometry, Vec<String>), FaultNetwork> = WeakCache::nothing();
     let geometry = document.frame()?;
@@ -253,7 +253,8 @@ pub fn next_colour(document: &Document) -> Colour {
     horizon_colour(None, assembled)
 }
 
-/// Makes the sheets of horizon `name` from `log` and puts both into the draft, the horizon at its place by depth.
+/// Makes the sheets of horizon `name` from `log` and puts both into the draft, the horizon at its place by
+/// depth.
 pub(crate) fn rebuild(
     draft: &mut Draft,
     candidates: &Candidates,
@@ -405,7 +406,8 @@ pub fn conflicts_of(
     Ok(found.into_iter().map(|conflict| ReportedConflict::new(conflict, geometry)).collect())
 }
 
-/// Makes all assembled horizons anew, after the faults have changed. Those whose picks are of another extraction stay as they are; a warning says so.
+/// Remakes all assembled horizons after the faults have changed. Horizons whose picks belong to another
+/// extraction stay as they are, and a warning says so.
 pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectError> {
     let logs: Vec<(String, Assembly)> = draft
         .document

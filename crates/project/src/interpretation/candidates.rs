@@ -1,7 +1,7 @@
 //! The present extraction as picks see it: the trees, and what identifies them.
 //!
-//! Whoever makes several picks holds what [`Candidates::load`] gave: while that lives, those who ask for the same extraction get it without
-//! reading anything but its facts.
+//! A caller that makes several picks holds the result of [`Candidates::load`]. While it lives, callers that
+//! ask for the same extraction get it without reading anything but its facts.
 
 use super::extraction;
 use crate::document::Document;
@@ -30,7 +30,8 @@ pub struct Candidates {
 }
 
 impl Candidates {
-    /// Those of the project in `root`: the ones that someone holds, where they are the present extraction, or else read.
+    /// Those of the project in `root`: the ones that someone holds, where they are the present extraction, or
+    /// else read.
     ///
     /// # Errors
     /// [`ProjectError::NotExtracted`] when there are none; damaged data, or cancelled.

@@ -1,9 +1,10 @@
-//! Horizon candidates of a project, extracted once for a volume and settings and kept in `derived/` for as long as a remembered state
-//! names them: `candidates.zarr` is the present extraction, `candidates-KEY.zarr` those that undo and redo lead to.
+//! Horizon candidates of a project, extracted once for a volume and settings and kept in `derived/` for as
+//! long as a remembered state names them: `candidates.zarr` is the present extraction, `candidates-KEY.zarr`
+//! those that undo and redo lead to.
 //!
-//! The key is the BLAKE3 hash of all the result depends on: the revision of the method, the volume's samples, the settings. How many
-//! inlines are read at a time is not among them. Candidates lie on the project's own lattice, so that a voxel of theirs is one of the
-//! project's.
+//! The key is the BLAKE3 hash of everything the result depends on: the revision of the method, the volume's
+//! samples, the settings. The number of inlines that are read at a time is not part of it. Candidates lie on
+//! the project's own lattice, so that their voxels are the project's voxels.
 
 use crate::derived::{Scratch, folder, key_of, revision};
 use crate::document::{Document, VolumeEntry};
@@ -61,11 +62,12 @@ fn key_at(path: &Path) -> Option<String> {
     StoredCandidates::open(path).ok().map(|stored| stored.info().key.clone())
 }
 
-/// Where the extraction lies that a state names: the present one, or one that waits for an undo. A project of before extractions
-/// were part of the history names none and has the one that is there.
+/// Where the extraction lies that a state names: the present one, or one that waits for an undo. A project of
+/// before extractions were part of the history names none and has the one that is there.
 ///
 /// # Errors
-/// [`ProjectError::NotExtracted`] when the state names none or it is gone, [`ProjectError::Store`] when it is there and damaged.
+/// [`ProjectError::NotExtracted`] when the state names none or it is gone, [`ProjectError::Store`] when it is
+/// there and damaged.
 pub fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, ProjectError> {
     let present = folder(root).join(PRESENT);
     let Some(entry) = &document.extraction else {
@@ -83,8 +85,8 @@ pub fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, Proj
     if stored.info().key == entry.key { Ok(present) } else { Err(ProjectError::NotExtracted) }
 }
 
-/// Gives the extraction that the state names the place of the present one; what was there waits under its key. Called by whoever
-/// holds the project's lock. Where it fails, the extraction is still found by its key.
+/// Gives the extraction that the state names the place of the present one; what was there waits under its
+/// key. Called by whoever holds the project's lock. Where it fails, the extraction is still found by its key.
 pub(crate) fn make_present(root: &Path, document: &Document) {
     let present = folder(root).join(PRESENT);
     let wanted = document.extraction.as_ref().map(|entry| entry.key.as_str());
@@ -159,11 +161,12 @@ fn key(entry: &VolumeEntry, settings: &ExtractSettings) -> String {
     key_of(&(revision::EXTRACTION, &entry.hash, settings))
 }
 
-/// Extracts the candidates of a volume, unless they are there, and keeps them under their key; the state that names them comes with
-/// [`crate::command::Extract`]. Needs no lock.
+/// Extracts the candidates of a volume, unless they are there, and keeps them under their key; the state that
+/// names them comes with [`crate::command::Extract`]. Needs no lock.
 ///
 /// # Errors
-/// No such volume, settings that make no sense, damaged data, a full disk, or cancelled; former candidates are then still there.
+/// No such volume, settings that make no sense, damaged data, a full disk, or cancelled; former candidates
+/// are then still there.
 pub(crate) fn compute(
     root: &Path,
     document: &Document,
@@ -202,8 +205,9 @@ pub(crate) fn compute(
     Ok(answer(folder(root).join(file), report, true))
 }
 
-/// Writes all candidates as points: inline, crossline, z in the vertical unit, leaf and surface, both numbered from 1. A point on the border of
-/// leaves is told once, with the least of them. Answers the count of points.
+/// Writes all candidates as points: inline, crossline, z in the vertical unit, leaf and surface, both
+/// numbered from 1. A point on the border of leaves is told once, with the least of them. Answers the count
+/// of points.
 ///
 /// # Errors
 /// No candidates, damaged data, a file that cannot be written, or cancelled.

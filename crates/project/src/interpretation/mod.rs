@@ -1,6 +1,7 @@
-//! The interpretation service: from a volume to horizon candidates, from picks to a horizon, from horizons to proposed faults.
+//! The interpretation service: from a volume to horizon candidates, from picks to a horizon, from horizons to
+//! proposed faults.
 //!
-//! Commands, the window and the demonstration make horizons of picks through [`assembly`]; nobody else does.
+//! Commands, the window and the demonstration make horizons from picks only through [`assembly`].
 
 pub mod assembly;
 pub mod candidates;

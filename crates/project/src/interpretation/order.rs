@@ -1,9 +1,10 @@
 //! Which of two horizons is above the other, and whether they cross.
 //!
-//! Compared at the traces of the survey. A horizon may have several depths at one trace (a reverse fault); the shallowest are compared
-//! with the shallowest and the deepest with the deepest, because the order holds in each fault block though not between them. Blocks are
-//! not known here, so next to a fault two horizons may seem to cross when they do not; a small share of such traces is let
-//! pass, and the structural model, which knows the blocks, has the last word.
+//! The horizons are compared at the traces of the survey. A horizon may have several depths at one trace (a
+//! reverse fault); the shallowest are compared with the shallowest and the deepest with the deepest, because
+//! the order holds in each fault block though not between them. Fault blocks are not known here, so that next
+//! to a fault two horizons may seem to cross when they do not; a small share of such traces is let pass, and
+//! the structural model, which knows the blocks, has the last word.
 
 use crate::error::ProjectError;
 use survey::{Horizon, NodeGrid, SurveyGeometry};
@@ -129,7 +130,8 @@ mod tests {
         assert_eq!((lines[0], worst), (20.0, 36.0));
     }
 
-    /// Two depths across a reverse fault: the lower sheet of the younger lies below the upper one of the older.
+    /// Two depths across a reverse fault: the lower sheet of the younger lies below the upper one of the
+    /// older.
     #[test]
     fn a_reverse_fault_is_no_crossing() {
         let young: [fn(f32, f32) -> f32; 2] =

@@ -1,8 +1,9 @@
 //! Proposed faults, kept until one of them is accepted.
 //!
-//! `derived/fault-proposals-KEY.json` holds what was found, for as long as a remembered state names it; the key stands for horizons,
-//! faults, volume and settings. Proposals of another state are not accepted, but for the faults that were accepted from them. What
-//! is a fault of the project already is not proposed; it is told.
+//! `derived/fault-proposals-KEY.json` holds what was found, for as long as a remembered state names it; the
+//! key stands for horizons, faults, volume and settings. Proposals of another state are not accepted, unless
+//! that state differs only by faults accepted from them. A fault that the project already has is not proposed
+//! but reported.
 
 use crate::content;
 use crate::derived::{Scratch, folder, key_of, revision};
@@ -124,8 +125,8 @@ fn hashes(document: &Document) -> Vec<String> {
     document.horizons.iter().map(|entry| entry.hash.clone()).collect()
 }
 
-/// Looks for faults in the project's horizons, unless that was done, and keeps what is found under its key; the state that names it
-/// comes with [`crate::command::ProposeFaults`]. Needs no lock.
+/// Looks for faults in the project's horizons, unless that was done, and keeps what is found under its key;
+/// the state that names it comes with [`crate::command::ProposeFaults`]. Needs no lock.
 ///
 /// # Errors
 /// No horizons, data that cannot be read, or cancelled.
@@ -192,7 +193,8 @@ pub(crate) fn forget_unnamed(root: &Path) {
     }
 }
 
-/// The proposal with a number, if it was made for these horizons, up to what accepting others of them has changed.
+/// The proposal with a number, if it was made for these horizons, up to what accepting others of them has
+/// changed.
 ///
 /// # Errors
 /// There is none, or it is of another state.
@@ -220,7 +222,8 @@ pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError>
     Ok(kept)
 }
 
-/// The proposals for the horizons as they are, but for those accepted; none where there are none, or of another state.
+/// The proposals for the horizons as they are, but for those accepted; none where there are none, or of
+/// another state.
 pub fn open(root: &Path, document: &Document) -> Vec<Proposal> {
     let Ok(kept) = kept(root, document) else { return Vec::new() };
     let accepted = |proposal: &Proposal| {

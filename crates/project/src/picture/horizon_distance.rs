@@ -1,8 +1,9 @@
-//! Distances to the horizons of an interpretation, in the form of an extraction's: so that imported horizons, too, are seen in volumes and on
-//! faces (P-horiz 5.2).
+//! Distances to the horizons of an interpretation, in the form that an extraction has, so that imported
+//! horizons can be shown in volumes and on faces, too (P-horiz 5.2).
 //!
-//! The distance of a voxel to a sheet z = h(x, y) is |z − h|/√(1 + |∇h|²), exact for a plane; it is told as far as the codes reach. Among candidates that are
-//! there already a horizon wins within two voxels and where it is nearer. Voxel space.
+//! The distance of a voxel to a sheet z = h(x, y) is |z − h|/√(1 + |∇h|²), exact for a plane, up to the
+//! largest distance that the codes can hold. Where there are candidates already, a horizon replaces them
+//! within two voxels and wherever it is nearer. Voxel space.
 
 use glam::Vec3;
 use model::StructuralModel;
@@ -23,7 +24,8 @@ pub fn nothing_near(size: [usize; 3]) -> CandidateBox {
     CandidateBox { size, distance: vec![BEYOND; count], leaf: vec![0; count] }
 }
 
-/// Adds the horizons numbered `which` of a model to distances up to `farthest` voxels; the id of the n-th of the model's is `first_id + n`.
+/// Adds the horizons numbered `which` of a model to distances up to `farthest` voxels; the id of the n-th of
+/// the model's is `first_id + n`.
 ///
 /// # Errors
 /// Cancelled.

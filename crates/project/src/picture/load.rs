@@ -1,5 +1,5 @@
-//! From a project to what renderers take: data read, model built, layers parameterized, styles compiled. Each step is asked for what it
-//! needs and nothing more, and what was computed before is taken from `derived/`.
+//! From a project to the input of renderers: data is read, the model built, layers are parameterized and
+//! styles compiled. Each step does only what is needed, and earlier results are taken from `derived/`.
 
 use crate::Project;
 use crate::document::Document;
@@ -117,8 +117,8 @@ impl Rock {
         }
     }
 
-    /// Metres that k = 0 … 1 stands for in each layer, bottom to top: the mean thickness where the layer is there, or the reference
-    /// thickness of an open one.
+    /// Metres that k = 0 … 1 stands for in each layer, bottom to top: the mean thickness where the layer is
+    /// there, or the reference thickness of an open one.
     fn thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
         let size = self.model.size();
         let counts = size.map(|n| n.min(THICKNESS_SAMPLES));
@@ -187,7 +187,8 @@ pub struct Loaded {
     pub candidates: Option<ShownCandidates>,
     /// Compiled styles.
     pub tables: Option<TtfTables>,
-    /// Unlike that of anything else loaded by this process: renderers keep what they uploaded while it stays the same.
+    /// Unlike that of anything else loaded by this process: renderers keep what they uploaded while it stays
+    /// the same.
     pub version: u64,
 }
 
@@ -205,7 +206,8 @@ pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loa
     load_within(project, scene, memory_budget::half_of_available(), progress)
 }
 
-/// The same with at most so many bytes for the samples of each volume; larger ones come from a coarser level of their pyramid, and a warning says so.
+/// The same with at most so many bytes for the samples of each volume; larger ones come from a coarser level
+/// of their pyramid, and a warning says so.
 ///
 /// # Errors
 /// As [`load`].
@@ -263,8 +265,8 @@ pub fn load_within(
     })
 }
 
-/// The volumes that a scene shows within the block: media, isosurfaces, and those that horizons are painted with. Whoever loads for a
-/// scene asks here.
+/// The volumes that a scene shows within the block: media, isosurfaces, and those that horizons are painted
+/// with. Whoever loads for a scene asks here.
 pub fn volumes_within(scene: &Scene) -> impl Iterator<Item = &str> {
     let media = &scene.media;
     let painted = media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str()));
@@ -281,7 +283,8 @@ pub struct More {
     candidates: Option<ShownCandidates>,
 }
 
-/// Reads the volumes and horizons that `scene` sees through and that are not loaded yet; the model stays.
+/// Reads the volumes and horizons that the volume rendering of `scene` needs and that are not loaded yet. The
+/// model stays as it is.
 ///
 /// # Errors
 /// Damaged data, or cancelled.
@@ -303,7 +306,8 @@ impl More {
     }
 }
 
-/// Reads what interpreting needs: the raw volume, the wells, and of the extraction what `scene` shows; no model, whatever horizons there are.
+/// Reads what interpreting needs: the raw volume, the wells, and of the extraction what `scene` shows; no
+/// model, whatever horizons there are.
 ///
 /// # Errors
 /// Damaged data, or cancelled.
@@ -367,7 +371,8 @@ fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Re
     Ok(wells)
 }
 
-/// Voxel positions of the first and last sample of a level of a pyramid, whose sample m lies at m·2^level of the full volume.
+/// Voxel positions of the first and last sample of a level of a pyramid, whose sample m lies at m·2^level of
+/// the full volume.
 fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) -> VoxelBox {
     let max = |axis: usize| {
         let share = ((size[axis].saturating_sub(1)) << level) as f64 / full[axis].saturating_sub(1).max(1) as f64;
@@ -376,8 +381,8 @@ fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) 
     VoxelBox { min: covers.min, max: [max(0), max(1), max(2)] }
 }
 
-/// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those of the exaggerated display, so
-/// that tiles print in their own shape.
+/// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those
+/// of the exaggerated display, so that tiles print in their own shape.
 pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
     let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
     let extent = [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny];
@@ -403,7 +408,8 @@ impl Loaded {
         self.volumes.iter().any(|volume| volume.name == name)
     }
 
-    /// A scene with all that only the project knows: colours of raw data where it states none, and the leaves of horizons it names.
+    /// A scene with all that only the project knows: colours of raw data where it states none, and the leaves
+    /// of horizons it names.
     pub fn complete(&self, scene: &Scene) -> Scene {
         let mut scene = Scene { raw: scene.raw.clone().or_else(|| self.raw.clone()), ..scene.clone() };
         match &self.candidates {

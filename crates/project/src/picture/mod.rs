@@ -1,4 +1,5 @@
-//! Pictures of a project: what a scene needs is loaded in one way ([`load`]) and drawn in one way ([`Painter`]).
+//! Pictures of a project: what a scene needs is loaded in one way ([`load`]) and drawn in one way
+//! ([`Painter`]).
 
 mod horizon_distance;
 pub mod load;

@@ -15,7 +15,8 @@ use survey::Progress;
 /// What draws.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Device {
-    /// The graphics adapter; the processor when there is none, or when the adapter is a driver that runs on the processor itself.
+    /// The graphics adapter; the processor when there is none, or when the adapter is a driver that runs on
+    /// the processor itself.
     #[default]
     Auto,
     /// The graphics adapter.
@@ -24,8 +25,8 @@ pub enum Device {
     Cpu,
 }
 
-/// How the names of drivers begin that run on the processor. Our own code for the processor is faster than shaders run there (0.6 of
-/// llvmpipe's processor time for the demonstration's pictures), and draws the same.
+/// How the names of drivers begin that run on the processor. Our own code for the processor is faster than
+/// shaders run there (0.6 of llvmpipe's processor time for the demonstration's pictures), and draws the same.
 const SOFTWARE_DRIVERS: [&str; 2] = ["llvmpipe", "SwiftShader"];
 
 /// Draws pictures one after the other; an adapter is looked for once.
@@ -63,8 +64,9 @@ impl Painter {
         self.renderer.as_ref().map_or("processor", Renderer::adapter_name)
     }
 
-    /// Draws a scene; raw data in the project's colours where the scene states none. A picture that the adapter cannot hold, or was lost over, is
-    /// drawn on the processor unless the adapter was asked for; this warns, and stays so.
+    /// Draws a scene; raw data in the project's colours where the scene states none. A picture that the
+    /// adapter cannot hold, or was lost over, is drawn on the processor unless the adapter was asked for;
+    /// this warns, and stays so.
     ///
     /// # Errors
     /// A scene that shows nothing, or a device that fails.

@@ -1,4 +1,4 @@
-//! Which view of a project is drawn when nothing else is said.
+//! The view of a project that is drawn by default.
 
 use crate::document::Document;
 use crate::error::{Noun, ProjectError};
@@ -26,8 +26,9 @@ pub fn choose(document: &Document, name: Option<&str>) -> Result<Scene, ProjectE
     }
 }
 
-/// A three-quarter view with the nearest corner cut off, exaggerated so that flat surveys read as blocks; the topmost of several horizons
-/// as ground. Without a volume it is illustrative, without horizons raw.
+/// A three-quarter view with the nearest corner cut off, exaggerated so that flat surveys read as blocks,
+/// with the topmost of several horizons as ground. Without a volume the view is illustrative, without
+/// horizons it shows raw data.
 ///
 /// # Errors
 /// [`ProjectError::NoGeometry`].
@@ -50,18 +51,19 @@ pub fn default_view(document: &Document) -> Result<Scene, ProjectError> {
     Ok(scene)
 }
 
-/// A way of drawing, by one word.
+/// A technique of drawing, named by one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Technique {
     /// Textured faces.
     Illustrate,
-    /// The volume seen through, shaded by what lies in front (P-horiz 5.1).
+    /// Volume rendering, shaded by what lies in front (P-horiz 5.1).
     Occlusion,
-    /// The volume seen through, shaded by its gradients.
+    /// Volume rendering, shaded by the gradients of the volume.
     Phong,
-    /// The volume seen through, unshaded.
+    /// Volume rendering without shading.
     Volume,
-    /// The volume seen through, by its gradients and by what lies in front in stripes (P-horiz, figure 5).
+    /// Volume rendering, shaded in alternating stripes by the gradients and by what lies in front (P-horiz,
+    /// figure 5).
     Interleaved,
 }
 
@@ -112,7 +114,7 @@ pub struct ShownIsosurface {
 const ISOSURFACE_COLOURS: [Colour; 3] =
     [Colour::new(0xd8, 0xb3, 0x65), Colour::new(0x5a, 0xb4, 0xac), Colour::new(0xc5, 0x7d, 0x8f)];
 
-/// Background of volumes seen through: their white needs something darker behind it.
+/// Background of volume renderings: their white needs something darker behind it.
 const BEHIND_VOLUMES: Colour = Colour::new(0x2c, 0x33, 0x3a);
 /// Edges before that background.
 const EDGES_OF_VOLUMES: Colour = Colour::new(0x9a, 0xa4, 0xad);
@@ -181,7 +183,8 @@ impl SeeThrough {
         Ok(())
     }
 
-    /// Fills the cut-outs of an illustration with the volume in its raw colours, more opaque the larger its values are.
+    /// Fills the cut-outs of an illustration with the volume in its raw colours, more opaque the larger its
+    /// values are.
     fn fill_cut_outs(&self, scene: &mut Scene, document: &Document) -> Result<(), ProjectError> {
         if self.technique == Some(Technique::Illustrate) {
             scene.media.faces = Faces::All;
@@ -212,7 +215,8 @@ impl SeeThrough {
     }
 }
 
-/// Where no face of rock shows leaves, the horizons shown in the volume tell theirs apart; without one, all candidates are shown.
+/// Where no face of rock shows leaves, the horizons shown in the volume tell theirs apart; without one, all
+/// candidates are shown.
 pub fn leaves_in_volume(scene: &mut Scene) {
     if scene.face_data != FaceData::Leaves || scene.media.faces != Faces::None {
         return;
@@ -238,7 +242,8 @@ fn resampled(function: &RgbaFunction) -> Vec<RgbaStop> {
     (0..=BETWEEN).map(stop).collect()
 }
 
-/// Height of the drawn block over its longer side that the exaggeration aims at: a block, neither a tile nor a tower.
+/// Height of the drawn block over its longer side that the exaggeration aims at: a block, neither a tile nor
+/// a tower.
 const TARGET_HEIGHT: f64 = 0.45;
 /// Shares of the block along inlines and crosslines that the default corner cut takes.
 const CUT_SHARE: [f64; 2] = [0.45, 0.45];

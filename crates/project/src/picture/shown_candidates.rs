@@ -1,4 +1,5 @@
-//! Horizon candidates as pictures show them: the project's extraction with the horizons picked from it, and sheets where there are no picks.
+//! Horizon candidates as pictures show them: the project's extraction with the horizons picked from it, and
+//! sheets where there are no picks.
 //!
 //! | a scene shows | drawn from |
 //! |---|---|
@@ -51,8 +52,8 @@ impl ShownCandidates {
     /// Reads what `scene` shows; `None` where that is nothing.
     ///
     /// # Errors
-    /// [`ProjectError::NotExtracted`] where there is neither an extraction nor a horizon to show in its place; an unknown horizon, damaged data, or
-    /// cancelled.
+    /// [`ProjectError::NotExtracted`] where there is neither an extraction nor a horizon to show in its
+    /// place; an unknown horizon, damaged data, or cancelled.
     pub fn load(
         project: &Project,
         scene: &Scene,
@@ -125,7 +126,8 @@ impl ShownCandidates {
         self.key.as_deref()
     }
 
-    /// Takes the picks of a project's state: voxels stay as they are. Picks of another extraction are not taken.
+    /// Takes the picks of a project's state: voxels stay as they are. Picks of another extraction are not
+    /// taken.
     pub fn take_picks(&mut self, document: &Document) {
         self.picked.clear();
         let Some(key) = &self.key else { return };

@@ -10,12 +10,14 @@
 //! lock                held while a command runs
 //! ```
 //!
-//! [`Project::apply`] is the only way to change one. It takes the lock, reads the state again if another process has
-//! changed it, lets the [`Command`] write new data and a new state, and then replaces `project.toml` by a rename: before that moment the old
-//! state is valid, after it the new one. When anything fails, what was written is removed. A project may come from a stranger: before
-//! anything is written or deleted, no part of it may be a link, and every data file that a state names must be `KIND/NAME`.
+//! [`Project::apply`] is the only way to change a project. It takes the lock, reads the state again if
+//! another process has changed it, lets the [`Command`] write new data and a new state, and then replaces
+//! `project.toml` by a rename. Before that moment the old state is valid, after it the new one. When anything
+//! fails, what was written is removed. A project may come from a stranger: before anything is written or
+//! deleted, no part of it may be a link, and every data file that a state names must be `KIND/NAME`.
 //!
-//! Deliberately absent: no state is kept in memory that is not on disk, and nothing that is saved is edited in place.
+//! Deliberately absent: no state is kept in memory that is not on disk, and nothing that is saved is edited
+//! in place.
 
 use crate::command::{Command, Effect};
 use crate::derived;
@@ -27,7 +29,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use survey::{Progress, SurveyGeometry};
 
-/// An open project.
+/// An open project. It is changed by [`Command`]s, each of which can be undone.
 #[derive(Debug)]
 pub struct Project {
     root: PathBuf,
@@ -89,7 +91,8 @@ impl Project {
     /// Carries out a command and saves the project.
     ///
     /// # Errors
-    /// Whatever stands against it; the project is then as it was before, on disk and here.
+    /// The reason why the command could not be carried out. The project is then as it was before, on disk and
+    /// in memory.
     pub fn apply(&mut self, command: &Command, progress: &Progress) -> Result<Effect, ProjectError> {
         let computed = command.prepare(&self.root, &self.document, progress)?;
         let _lock = self.lock()?;
@@ -106,7 +109,7 @@ impl Project {
     /// Goes back by one command; answers what was undone.
     ///
     /// # Errors
-    /// [`ProjectError::NothingToUndo`] at the beginning of what is remembered.
+    /// [`ProjectError::NothingToUndo`] at the beginning of the remembered history.
     pub fn undo(&mut self) -> Result<String, ProjectError> {
         let _lock = self.lock()?;
         let step = self.document.step;
@@ -168,7 +171,8 @@ impl Project {
         Ok(lock)
     }
 
-    /// An edit of `project.toml` by hand becomes a step of its own, so that undoing a later command does not lose it.
+    /// An edit of `project.toml` by hand becomes a step of its own, so that undoing a later command does not
+    /// lose it.
     fn adopt_edit(&mut self) -> Result<(), ProjectError> {
         // A step that cannot be read says nothing about an edit.
         let known = history::read(&self.root, self.document.step).ok().flatten();
@@ -199,7 +203,8 @@ impl Project {
         Ok(())
     }
 
-    /// Puts the extraction that the state names into its place, and lets go of what no remembered state names.
+    /// Puts the extraction that the state names into its place, and lets go of what no remembered state
+    /// names.
     fn settle_derived(&self) {
         extraction::make_present(&self.root, &self.document);
         extraction::forget_unnamed(&self.root);
@@ -236,7 +241,8 @@ fn in_the_making(destination: &Path) -> Result<PathBuf, ProjectError> {
     Ok(destination.with_file_name(hidden))
 }
 
-/// A project in the making, in a hidden folder beside its destination. Dropped without [`NewProject::publish`], it leaves nothing.
+/// A project in the making, in a hidden folder beside its destination. Dropped without
+/// [`NewProject::publish`], it leaves nothing.
 #[derive(Debug)]
 pub struct NewProject {
     project: Project,
@@ -258,7 +264,8 @@ impl NewProject {
         }
         fs::create_dir_all(&root).map_err(fail)?;
         storage::refuse_links(&root)?;
-        // Two processes may want to create the same project; the one in the making is locked under another name than its own commands use.
+        // Two processes may want to create the same project; the one in the making is locked under another
+        // name than its own commands use.
         let lock = Lock::take_named(&root, CREATING)?;
         let path = root.join(storage::STATE);
         let document = Document::empty(geometry);
@@ -316,7 +323,8 @@ impl NewProject {
 impl Drop for NewProject {
     fn drop(&mut self) {
         if !self.published {
-            // A folder that cannot be removed is found by its marker when a project of this name is created again.
+            // A folder that cannot be removed is found by its marker when a project of this name is created
+            // again.
             let _ = fs::remove_dir_all(&self.project.root);
         }
     }

@@ -224,7 +224,8 @@ fn whole(project: &Project) -> (String, Vec<Vec<u8>>) {
     (bytes(&project), data)
 }
 
-/// Any sequence of commands, undos, redos and cancelled commands walks along one line of states, and each comes back with its data.
+/// Any sequence of commands, undos, redos and cancelled commands walks along one line of states, and each
+/// comes back with its data.
 #[test]
 fn any_walk_through_the_history_meets_the_same_states() {
     for seed in 1..6 {

@@ -1,4 +1,5 @@
-//! How a project's layers and volumes look: the patterns it can use, and colours of raw data that fit its volumes.
+//! How a project's layers and volumes look: the patterns it can use, and colours of raw data that fit its
+//! volumes.
 
 mod library;
 mod raw_colour;

@@ -4,8 +4,8 @@ use crate::document::Document;
 use crate::error::{Noun, ProjectError};
 use ttf::{ColourMap, RawColour, RgbaFunction, TransferFunctions};
 
-/// A volume of the project in the colours of a map: over `range`, or centred on zero and clipped where 99 % of the samples end. Without a
-/// name it is the volume shown at present, or else the first.
+/// A volume of the project in the colours of a map: over `range`, or centred on zero and clipped where 99 %
+/// of the samples end. Without a name it is the volume shown at present, or else the first.
 ///
 /// # Errors
 /// No such volume.

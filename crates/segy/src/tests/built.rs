@@ -49,8 +49,8 @@ pub struct Built {
 }
 
 impl Built {
-    /// Every crossline of every inline, in that order: IEEE, 4 ms, standard bytes, 25 m bins turned by 30° at X, Y in
-    /// cm. Sample k is `1000·inline + crossline + k/4`.
+    /// Every crossline of every inline, in that order: IEEE, 4 ms, standard bytes, 25 m bins turned by 30° at
+    /// X, Y in cm. Sample k is `1000·inline + crossline + k/4`.
     pub fn grid(inlines: &[i32], crosslines: &[i32]) -> Self {
         Self::grid_in(ByteOrder::Big, inlines, crosslines)
     }

@@ -1,5 +1,6 @@
-//! Files of every kind, built by an encoder of their own: any format code, byte order, size, rotation, step, missing trace and
-//! revision comes back as the volume and geometry it was made of; cut anywhere, it is a clear error.
+//! Files of every kind, built by an encoder of their own: any format code, byte order, size, rotation, step,
+//! missing trace and revision comes back as the volume and geometry it was made of; cut anywhere, it is a
+//! clear error.
 
 use glam::DVec2;
 

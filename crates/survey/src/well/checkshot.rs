@@ -1,11 +1,22 @@
-//! Time–depth tables of a well: TVDSS (m) against two-way time (ms), and what a survey in time uses without one.
+//! Time–depth tables of a well: TVDSS (m) against two-way time (ms). Also the rule for a survey in time
+//! without one.
 //!
-//! Between shots time is linear in depth; beyond the first and last it goes on at the nearest interval's velocity.
+//! Between shots, time is linear in depth. Beyond the first and the last shot the nearest interval velocity
+//! applies.
 
 use super::error::WellError;
 use serde::{Deserialize, Serialize};
 
-/// A time–depth table, both increasing.
+/// A time–depth table in which both depth and time increase.
+///
+/// ```
+/// # use survey::well::Checkshot;
+/// let table = Checkshot::new(vec![[0.0, 0.0], [1000.0, 1000.0], [2500.0, 2000.0]])?;
+/// assert_eq!(table.twt_at_tvdss(500.0), 500.0);
+/// assert_eq!(table.tvdss_at_twt(1500.0), 1750.0);
+/// assert_eq!(table.velocity_range_m_s(), [2000.0, 3000.0]);
+/// # Ok::<(), survey::well::WellError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<[f64; 2]>", into = "Vec<[f64; 2]>")]
 pub struct Checkshot {
@@ -31,7 +42,7 @@ impl From<Checkshot> for Vec<[f64; 2]> {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum TimeDepth {
-    /// The survey is in depth: TVDSS as it is.
+    /// The survey is in depth: TVDSS is the vertical value.
     Depth,
     /// Through the well's checkshots.
     Checkshot,

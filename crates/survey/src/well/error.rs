@@ -1,8 +1,8 @@
-//! What cannot be the path of a well, or its time–depth table, with the facts a user needs to put it right.
+//! Errors in the path of a well or in its time–depth table, with the facts that a user needs to correct them.
 
 use crate::remedy::{Remedy, Setting};
 
-/// Why numbers make no well.
+/// Why a path or a time–depth table is invalid.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WellError {
     /// Values that must increase do not.
@@ -15,7 +15,7 @@ pub enum WellError {
         /// The value after.
         after: f64,
     },
-    /// An angle is none of a hole's.
+    /// An inclination or azimuth is out of range.
     #[error(
         "at {md_m} m the inclination is {inclination_deg} and the azimuth {azimuth_deg} degrees; inclinations are 0 to 180 from the vertical, azimuths 0 to 360 from north"
     )]
@@ -27,7 +27,7 @@ pub enum WellError {
         /// The azimuth.
         azimuth_deg: f64,
     },
-    /// The hole turns round between two stations.
+    /// The hole turns too sharply between two stations to have been drilled.
     #[error(
         "the hole turns by {dogleg_deg:.0} degrees before {md_m} m, which cannot be drilled; check inclination and azimuth"
     )]
@@ -61,7 +61,7 @@ pub enum WellError {
 }
 
 impl WellError {
-    /// What to state so that they do, where that may help.
+    /// What to state so that the numbers become valid, where that may help.
     pub fn remedy(&self) -> Option<Remedy> {
         matches!(self, Self::ShorterThanStraight { .. }).then(|| Setting::MdUnit.stated_as("m or ft"))
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// Curves with a common axis of measured depth.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LogSet {
-    /// Where it came from, for people.
+    /// Where it came from, in words.
     pub source: String,
     /// Measured depths, m, increasing.
     pub md_m: Vec<f64>,
@@ -16,19 +16,19 @@ pub struct LogSet {
 /// A measured curve.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Curve {
-    /// Short name as in the file, `GR`.
+    /// Short name as in the file, for example `GR`.
     pub name: String,
-    /// Unit as in the file, `GAPI`.
+    /// Unit as in the file, for example `GAPI`.
     pub unit: String,
-    /// What it is, as in the file.
+    /// Description as in the file.
     pub description: String,
-    /// A value per measured depth; NaN (null on disk) where none was measured.
+    /// One value per measured depth; NaN (null on disk) where nothing was measured.
     #[serde(with = "with_holes")]
     pub values: Vec<f32>,
 }
 
 impl LogSet {
-    /// The curve of that name, whatever its case.
+    /// The curve of that name; upper and lower case are the same.
     pub fn curve(&self, name: &str) -> Option<&Curve> {
         self.curves.iter().find(|c| c.name.eq_ignore_ascii_case(name))
     }
@@ -48,7 +48,7 @@ impl LogSet {
     }
 }
 
-/// JSON has no NaN: a hole is null there.
+/// JSON has no NaN, so a missing value is written as null.
 mod with_holes {
     use serde::{Deserialize, Deserializer, Serializer};
 

@@ -1,12 +1,12 @@
-//! Wells: where they run, what they met (tops), what was measured along them (logs).
+//! Wells: their paths, the surfaces they penetrate (tops), and the curves measured along them (logs).
 //!
-//! A well's axis is measured depth (MD, m, 0 at its datum, usually the kelly bushing). Its path lies in the world: X east,
-//! Y north, TVDSS = true vertical depth below mean sea level, m, positive down; a datum 25 m above the sea is at
-//! TVDSS = −25.
+//! A well's axis is measured depth (MD, m, 0 at its datum, usually the kelly bushing). Its path lies in the
+//! world: X east, Y north, TVDSS = true vertical depth below mean sea level, m, positive down; a datum 25 m
+//! above the sea is at TVDSS = −25.
 //!
-//! Between two surveyed stations with directions the path is the circular arc that touches both (minimum curvature); between
-//! stations that are places alone it is straight. In a time survey TVDSS becomes TWT through the well's checkshots, else
-//! through the survey's constant velocity ([`TimeDepth`] says which).
+//! Between two surveyed stations with directions the path is the circular arc that touches both (minimum
+//! curvature); between stations that are places alone it is straight. In a time survey TVDSS becomes TWT
+//! through the well's checkshots, else through the survey's constant velocity ([`TimeDepth`] says which).
 //!
 //! ```
 //! # use survey::well::{Survey, Well, WellPath};
@@ -40,12 +40,12 @@ use serde::{Deserialize, Serialize};
 pub struct Well {
     /// Unique within a project.
     pub name: String,
-    /// Where it runs.
+    /// Its path.
     pub path: WellPath,
-    /// What it met, in order of measured depth.
+    /// The surfaces that it penetrates, in order of measured depth.
     #[serde(default)]
     pub tops: Vec<Top>,
-    /// What was measured along it.
+    /// Curves measured along it.
     #[serde(default)]
     pub logs: Vec<LogSet>,
     /// Its own time–depth table.
@@ -53,7 +53,7 @@ pub struct Well {
     pub checkshot: Option<Checkshot>,
 }
 
-/// A named surface where the well met it.
+/// The point at which a well penetrates a named surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Top {
     /// Name of the surface.

@@ -1,21 +1,23 @@
-//! The path of a well: stations by measured depth, and what lies between them.
+//! The path of a well: stations by measured depth, and the interpolation between them.
 //!
-//! **Minimum curvature** (Taylor & Mason 1972; Sawaryn & Thorogood 2005, SPE 84246): stations with unit tangents t₀, t₁ at angle β
-//! are joined by the arc of radius Δs/β. At the share f of its length, with w = sin β,
+//! **Minimum curvature** (Taylor & Mason 1972; Sawaryn & Thorogood 2005, SPE 84246): stations with unit
+//! tangents t₀, t₁ at angle β are joined by the arc of radius Δs/β. At the share f of its length, with w =
+//! sin β,
 //!
 //! ```text
 //! t(f) = (sin((1−f)β)·t₀ + sin(fβ)·t₁) / w
 //! p(f) = p₀ + Δs/β · ((cos((1−f)β) − cos β)·t₀ + (1 − cos fβ)·t₁) / w
 //! ```
 //!
-//! which at f = 1 is the usual Δs/2 · (t₀ + t₁) · tan(β/2)/(β/2). For β → 0 it is the parabola p₀ + Δs·(f·t₀ + f²/2·(t₁ − t₀)).
-//! Vectors are (east, north, down), m; azimuths count clockwise from grid north, inclinations from the vertical.
+//! which at f = 1 is the usual Δs/2 · (t₀ + t₁) · tan(β/2)/(β/2). For β → 0 it is the parabola p₀ + Δs·(f·t₀ +
+//! f²/2·(t₁ − t₀)). Vectors are (east, north, down), m; azimuths count clockwise from grid north,
+//! inclinations from the vertical.
 
 use super::error::WellError;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
-/// A directional survey as it was measured.
+/// One measurement of a directional survey.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Survey {
     /// Measured depth, m.
@@ -26,7 +28,7 @@ pub struct Survey {
     pub azimuth_deg: f64,
 }
 
-/// A place on the path.
+/// A point on the path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Station {
     /// Measured depth, m.
@@ -67,7 +69,7 @@ impl TryFrom<Stored> for WellPath {
 
 /// Below this angle, in radians, an arc is computed as a parabola: both differ by less than β³.
 const STRAIGHT_RAD: f64 = 1e-4;
-/// Two neighbouring surveys further apart in direction than this are not a hole that was drilled.
+/// No drilled hole turns by more than this between two neighbouring surveys.
 const MAX_DOGLEG_DEG: f64 = 150.0;
 
 impl Survey {
@@ -81,7 +83,8 @@ impl Survey {
 
 /// Place and direction at the share f of the arc between two stations.
 fn arc(p0: DVec3, t0: DVec3, t1: DVec3, length_m: f64, f: f64) -> (DVec3, DVec3) {
-    // The angle from the chord of the unit vectors keeps its digits where acos of their product loses them.
+    // The angle from the chord of the unit vectors stays accurate where the arc cosine of their product does
+    // not.
     let beta = 2.0 * (0.5 * (t1 - t0).length()).clamp(0.0, 1.0).asin();
     if beta < STRAIGHT_RAD {
         let place = p0 + length_m * (f * t0 + 0.5 * f * f * (t1 - t0));
@@ -95,8 +98,8 @@ fn arc(p0: DVec3, t0: DVec3, t1: DVec3, length_m: f64, f: f64) -> (DVec3, DVec3)
 }
 
 impl WellPath {
-    /// The path of a directional survey from the well head by minimum curvature. `datum_m` is the datum's height above
-    /// mean sea level. Above the first survey the hole is vertical, from MD 0 at the head.
+    /// The path of a directional survey from the well head by minimum curvature. `datum_m` is the datum's
+    /// height above mean sea level. Above the first survey the hole is vertical, from MD 0 at the head.
     ///
     /// # Errors
     /// [`WellError::NotIncreasing`], [`WellError::Angle`], [`WellError::Dogleg`], [`WellError::TooShort`].
@@ -133,8 +136,8 @@ impl WellPath {
         Self::of_stations(datum_m, stations)
     }
 
-    /// The path through places, straight between them. Measured depths that are not known are added up along it, from the first
-    /// place's vertical distance below the datum.
+    /// The path of straight lines through points. Unknown measured depths are the length along the path,
+    /// counted from the vertical distance of the first point below the datum.
     ///
     /// # Errors
     /// [`WellError::NotIncreasing`], [`WellError::TooShort`], [`WellError::ShorterThanStraight`].
@@ -163,7 +166,8 @@ impl WellPath {
             if b.md_m <= a.md_m {
                 return Err(WellError::NotIncreasing { what: "measured depth", before: a.md_m, after: b.md_m });
             }
-            // Rounded files may be a little short; a hole cannot be shorter than the straight line.
+            // A hole cannot be shorter than the straight line; numbers rounded in a file may be slightly
+            // short.
             let straight_m = a.position.distance(b.position);
             let along_m = b.md_m - a.md_m;
             if straight_m > along_m * 1.02 + 0.5 {
@@ -178,7 +182,7 @@ impl WellPath {
         self.datum_m
     }
 
-    /// The stations, by measured depth.
+    /// The stations in order of measured depth.
     pub fn stations(&self) -> &[Station] {
         &self.stations
     }
@@ -211,7 +215,7 @@ impl WellPath {
         match (a.direction, b.direction) {
             (Some(t0), Some(t1)) => {
                 let (place, direction) = arc(a.position, t0, t1, length_m, f);
-                // The stations hold what was summed; their own place is exact.
+                // At the stations themselves their stored positions are exact.
                 (
                     if f == 0.0 {
                         a.position
@@ -237,7 +241,8 @@ impl WellPath {
         self.at(md_m).map(|(_, direction)| direction)
     }
 
-    /// Measured depths (m) at which the path crosses a TVDSS (m), from the top; a horizontal hole may cross several times.
+    /// Measured depths (m) at which the path crosses a TVDSS (m), from the top; a horizontal hole may cross
+    /// several times.
     ///
     /// # Cost
     /// O(stations).
@@ -246,7 +251,8 @@ impl WellPath {
         for after in 1..self.stations.len() {
             let (low, high) = (self.stations[after - 1].md_m, self.stations[after].md_m);
             let z = |md: f64| self.on_segment(after, md).0.z - tvdss_m;
-            // An arc turns its vertical direction at most once in the angles allowed: eight parts bracket every crossing.
+            // Within the angles allowed, an arc reverses its vertical direction at most once: eight parts
+            // bracket every crossing.
             let parts = if self.stations[after].direction.is_some() { 8 } else { 1 };
             let at = |n: usize| if n == parts { high } else { low + (high - low) * n as f64 / f64::from(parts as u32) };
             for n in 0..parts {

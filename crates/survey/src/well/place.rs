@@ -1,4 +1,4 @@
-//! A well in a survey: in voxels, and where it lies against it.
+//! A well in a survey: its path in voxels, and its position relative to the survey.
 
 use super::Well;
 use super::checkshot::TimeDepth;
@@ -6,10 +6,11 @@ use crate::geometry::{SurveyGeometry, VerticalUnit};
 use glam::DVec3;
 use serde::Serialize;
 
-/// Longest step between points of a path that is drawn, m: an arc of 3°/30 m leaves its chord by a centimetre.
+/// Longest step between points of a path that is drawn, m. An arc of 3°/30 m departs from such a chord by a
+/// centimetre.
 const STEP_M: f64 = 10.0;
 
-/// A point of a well in the survey's own numbers.
+/// A point of a well in line numbers and vertical values of the survey.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct TopPlace {
     /// Measured depth, m.
@@ -20,22 +21,22 @@ pub struct TopPlace {
     pub lines: [f64; 2],
     /// Vertical value, in the survey's unit.
     pub z: f64,
-    /// Whether it lies in the survey's box.
+    /// Whether it lies inside the survey.
     pub inside: bool,
 }
 
-/// Where a well lies against a survey.
+/// The position of a well relative to a survey.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WellPlacement {
     /// Its first station.
     pub head: TopPlace,
     /// Its last station.
     pub total_depth: TopPlace,
-    /// First and last measured depth in the survey's box, m; None when it passes beside it.
+    /// First and last measured depth inside the survey, m; `None` when the well passes beside it.
     pub inside_md_m: Option<[f64; 2]>,
-    /// Share of its length in the survey's box.
+    /// Share of its length inside the survey.
     pub inside_share: f64,
-    /// How depths became vertical values.
+    /// How depths were converted to vertical values.
     pub time_depth: TimeDepth,
 }
 
@@ -45,7 +46,7 @@ impl Well {
         self.path.position_at_md(md_m)
     }
 
-    /// What turns its depths into the survey's vertical values.
+    /// How its depths become vertical values of the survey.
     pub fn time_depth(&self, geometry: &SurveyGeometry) -> TimeDepth {
         match (geometry.vertical.unit, &self.checkshot) {
             (VerticalUnit::Metres, _) => TimeDepth::Depth,
@@ -63,7 +64,8 @@ impl Well {
         }
     }
 
-    /// Voxel position at a measured depth (m); None outside the surveyed range. It may lie outside the volume.
+    /// Voxel position at a measured depth (m); None outside the surveyed range. It may lie outside the
+    /// volume.
     pub fn voxel_at_md(&self, md_m: f64, geometry: &SurveyGeometry) -> Option<DVec3> {
         self.position_at_md(md_m).map(|p| self.voxel_of(p, geometry))
     }
@@ -73,19 +75,22 @@ impl Well {
         geometry.voxel_from_world(position.truncate().extend(z))
     }
 
-    /// The path as a line in voxels, from the head down: every station, and at most 10 m of hole between points.
+    /// The path as a polyline in voxels from the head down: every station, and at most 10 m of hole between
+    /// points.
     pub fn path_in_voxels(&self, geometry: &SurveyGeometry) -> Vec<DVec3> {
         self.path.mds_by_step(STEP_M).into_iter().filter_map(|md| self.voxel_at_md(md, geometry)).collect()
     }
 
-    /// A curve along the path in voxels: the samples that have a value. None when there is no such curve.
+    /// The samples of a curve that have a value, at their voxel positions along the path; `None` when there
+    /// is no such curve.
     pub fn log_in_voxels(&self, curve: &str, geometry: &SurveyGeometry) -> Option<Vec<(DVec3, f32)>> {
         let (set, curve) = self.logs.iter().find_map(|set| Some((set, set.curve(curve)?)))?;
         let known = set.md_m.iter().zip(&curve.values).filter(|(_, v)| v.is_finite());
         Some(known.filter_map(|(md, v)| Some((self.voxel_at_md(*md, geometry)?, *v))).collect())
     }
 
-    /// A point of the well in the survey's own numbers; None outside the surveyed range.
+    /// A point of the well in line numbers and vertical values of the survey; `None` outside the surveyed
+    /// range.
     pub fn place_at_md(&self, md_m: f64, geometry: &SurveyGeometry) -> Option<TopPlace> {
         let position = self.position_at_md(md_m)?;
         let voxel = self.voxel_of(position, geometry);
@@ -99,7 +104,7 @@ impl Well {
         })
     }
 
-    /// Where the well lies against the survey.
+    /// The position of the well relative to the survey.
     pub fn placement(&self, geometry: &SurveyGeometry) -> WellPlacement {
         let [first, last] = self.path.md_range_m();
         let mds = self.path.mds_by_step(STEP_M);
@@ -121,7 +126,7 @@ impl Well {
     }
 }
 
-/// Whether a voxel position lies in the survey's box, half a sample of slack included.
+/// Whether a voxel position lies inside the survey, with a tolerance of half a voxel.
 fn is_inside(voxel: DVec3, geometry: &SurveyGeometry) -> bool {
     let [nx, ny, nz] = geometry.size().map(|n| n as f64 - 0.5);
     voxel.cmpge(DVec3::splat(-0.5)).all() && voxel.cmple(DVec3::new(nx, ny, nz)).all()
