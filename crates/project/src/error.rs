@@ -428,6 +428,75 @@ impl ProjectError {
         }
     }
 
+    /// What to do next, where it is the same wherever the error is shown. Whoever shows the others has words of its own for them, or
+    /// they say it themselves.
+    pub fn advice(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NotAProject { .. } => "give the folder that holds project.toml, usually NAME.petro",
+            Self::Exists { .. } => "choose another name, or move the old project away first",
+            Self::Newer { .. } => "update Petroglyph, or ask for the project to be saved by the older version",
+            Self::Malformed { .. } => "undo the last edit by hand, or copy the last good state from history/",
+            Self::Locked { .. } => "wait until the other command has finished, then try again; nothing was changed",
+            Self::Link { .. } => {
+                "if you trust where the project comes from, put a copy of the file or folder in the link's place; nothing was changed"
+            }
+            Self::ReadOnly { .. } => "copy the project to a folder you may write to; nothing was changed",
+            Self::SeveralHorizons { .. } => "make the picks of each horizon in a step of their own",
+            Self::FlatSticks { .. } => "draw sticks beside one another, along the fault's dip",
+            Self::NoEvidence => "assemble or import horizons first",
+            Self::BadName { .. } => "use letters, digits, blanks, - and _",
+            Self::Cancelled(_) => "nothing was changed",
+            Self::OtherLattice { .. } => {
+                "extract from a volume on the project's lattice, or import this one into a project of its own"
+            }
+            Self::Geometry(_) => "check the header bytes and bounds the geometry is made from",
+            Self::CircularTruncation { .. } => "take one of these truncations away",
+            Self::Io { .. }
+            | Self::Segy(_)
+            | Self::Format(_)
+            | Self::Well(_)
+            | Self::Store(_)
+            | Self::Synth(_)
+            | Self::Assembly(_)
+            | Self::Attribute(_)
+            | Self::Model(_)
+            | Self::Param(_)
+            | Self::Interp(_)
+            | Self::Render(_)
+            | Self::AlreadyPicked { .. }
+            | Self::AtLeaf { .. }
+            | Self::Crossing { .. }
+            | Self::DiskFull { .. }
+            | Self::Duplicate { .. }
+            | Self::Figure(_)
+            | Self::NoCandidate { .. }
+            | Self::NoGeometry
+            | Self::NoProposals
+            | Self::NoVolume
+            | Self::NotATruth { .. }
+            | Self::NotAssembled { .. }
+            | Self::NotDrawn { .. }
+            | Self::NotExtracted
+            | Self::NotFound { .. }
+            | Self::NotPicked { .. }
+            | Self::NothingLeft { .. }
+            | Self::NothingToRedo
+            | Self::NothingToUndo
+            | Self::OutdatedPicks { .. }
+            | Self::OutdatedProposals
+            | Self::PickOutside { .. }
+            | Self::Placement { .. }
+            | Self::Scene(_)
+            | Self::SeveralInFile { .. }
+            | Self::ShortStick { .. }
+            | Self::Style(_)
+            | Self::UnfitPicks { .. }
+            | Self::Unknown { .. }
+            | Self::UnknownPick { .. }
+            | Self::UnknownProposal { .. } => return None,
+        })
+    }
+
     /// What can be stated about a file so that this does not happen again, where that is known.
     pub fn remedy(&self) -> Option<Remedy> {
         match self {
