@@ -5,29 +5,31 @@ use std::path::PathBuf;
 /// A window could not be opened.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
-    /// No desktop to open it on.
+    /// There is no desktop session to open it in.
     #[error(
-        "there is no display to open a window on ({reason}); start it in a desktop session or set DISPLAY, or make pictures with `petroglyph render`"
+        "there is no display to open a window on ({reason}); start it in a desktop session or set DISPLAY, \
+         or make pictures with `petroglyph render`"
     )]
     NoDisplay {
         /// What the system said.
         reason: String,
     },
-    /// No graphics driver.
+    /// There is no graphics driver.
     #[error(
-        "there is no graphics driver for the window ({reason}); install one (Mesa's software driver will do: mesa-vulkan-drivers), or make pictures with `petroglyph render --device cpu`"
+        "there is no graphics driver for the window ({reason}); install one (Mesa's software driver will do: \
+         mesa-vulkan-drivers), or make pictures with `petroglyph render --device cpu`"
     )]
     NoDriver {
         /// What the system said.
         reason: String,
     },
-    /// Anything else.
+    /// Any other reason.
     #[error("the window could not be opened ({reason}); try again, or make pictures with `petroglyph render`")]
     Failed {
         /// What the system said.
         reason: String,
     },
-    /// The table of frame times.
+    /// The table of frame times could not be written.
     #[error("{} cannot be written: {source}", path.display())]
     FrameTimes {
         /// The file.
@@ -39,7 +41,7 @@ pub enum WindowError {
 
 impl From<eframe::Error> for WindowError {
     fn from(error: eframe::Error) -> Self {
-        // Winit quotes the line of its source that noticed.
+        // Winit prefixes its message with the source line that raised it; only the message is shown.
         let text = error.to_string();
         let reason = text.rsplit("): ").next().and_then(|tail| tail.rsplit(".rs:").next()).unwrap_or(&text);
         let reason = reason

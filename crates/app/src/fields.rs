@@ -1,9 +1,10 @@
-//! What can be stated about a file, by the names of the dialogues' fields: an error or a note that asks for something names the field to put it in.
+//! The dialogue fields in which something about a file can be stated: an error or a note that asks for a statement
+//! names the field to put it in.
 
 use survey::remedy::Statement;
 use survey::{Note, Remedy, Setting};
 
-/// The field that states it; none where no dialogue has one.
+/// The name of the field that states this setting; `None` where no dialogue has such a field.
 pub fn field(setting: Setting) -> Option<&'static str> {
     Some(match setting {
         Setting::InlineByte => "Inline",
@@ -34,7 +35,7 @@ pub fn field(setting: Setting) -> Option<&'static str> {
     })
 }
 
-/// What to do next.
+/// Advice on what to do next.
 pub fn advice(remedy: &Remedy) -> String {
     let ways = ways(remedy);
     if ways.is_empty() {
@@ -43,13 +44,13 @@ pub fn advice(remedy: &Remedy) -> String {
     format!("state {ways}")
 }
 
-/// The note, with where to state otherwise.
+/// The note, followed by the fields in which something else can be stated.
 pub fn note(note: &Note) -> String {
     let ways = note.otherwise.as_ref().map(ways).unwrap_or_default();
     if ways.is_empty() { note.fact.clone() } else { format!("{} (if not: {ways})", note.fact) }
 }
 
-/// The ways that go through fields alone.
+/// The alternatives that can be stated entirely through fields.
 fn ways(remedy: &Remedy) -> String {
     let named = |way: &Vec<Statement>| -> Option<String> {
         let names: Option<Vec<String>> = way.iter().map(named).collect();

@@ -3,13 +3,13 @@
 use project::ProjectError;
 use std::error::Error;
 
-/// What to do next about an error, or about what caused it; none where that cannot be said in general.
+/// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub fn of(error: &(dyn Error + 'static)) -> Option<String> {
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
 }
 
-/// What to do next in the window, where that can be said in general.
+/// What to do next in the window, where general advice is possible.
 fn words(error: &ProjectError) -> Option<&'static str> {
     Some(match error {
         ProjectError::NotFound { .. } => "check the path, or begin a new project from SEG-Y",

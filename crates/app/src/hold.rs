@@ -1,38 +1,38 @@
-//! Which window has a project open: a lock that ends with its process, however that ends.
+//! Which window has a project open: a file lock, which the system releases when the process ends, however it ends.
 //!
-//! The file `window.lock` in the project says whose it is; what counts is the lock on it, since a number outlives its process. A project that cannot be
-//! written to is held by nobody.
+//! The file `window.lock` in the project holds the id of the process. The lock on the file decides, not the id: an id
+//! outlives its process. A project that cannot be written to is held by no window.
 
 use project::folder::open_own;
 use std::fs::{File, TryLockError};
 use std::io::{Read, Seek, Write};
 use std::path::Path;
 
-/// Name of the file.
+/// Name of the lock file.
 const NAME: &str = "window.lock";
 
-/// Keeps a project as open in this window.
+/// Marks a project as open in this window for as long as the value lives.
 #[derive(Debug)]
 pub struct Hold {
     _file: File,
 }
 
-/// What came of taking hold of a project.
+/// The outcome of taking the lock.
 #[derive(Debug)]
 pub enum Taken {
-    /// It is this window's, or cannot be anybody's.
+    /// This window holds the lock, or no window can.
     Here(Option<Hold>),
-    /// Another window has it, of this process if it is known.
+    /// Another window holds the lock; with the id of its process, if known.
     Elsewhere(Option<u32>),
 }
 
 impl Hold {
-    /// Takes hold of the project in the folder `root`.
+    /// Takes the lock of the project in the folder `root`.
     pub fn take(root: &Path) -> Taken {
         let Ok(mut file) = open_own(root, NAME) else { return Taken::Here(None) };
         match file.try_lock() {
             Ok(()) => {
-                // Told to people only: without it the lock holds all the same.
+                // The id is only for messages: without it the lock is held all the same.
                 let _ = file.set_len(0).and_then(|()| file.rewind());
                 let _ = write!(file, "{}", std::process::id());
                 Taken::Here(Some(Self { _file: file }))

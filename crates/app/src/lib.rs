@@ -1,17 +1,19 @@
-//! `petroglyph view`: the whole work in one window (DESIGN 3.6).
+//! `petroglyph view`: the whole workflow in one window.
 //!
-//! Three parts that know of one another in one direction only:
+//! Three parts, each of which knows only of those above it:
 //!
-//! - [`state`]: what is open, selected and looked at, as plain values. [`state::State::apply`] turns an [`state::Action`] into a new state
-//!   and [`state::Task`]s for others. No window, no file, no thread.
-//! - [`work`]: everything that takes time, on threads of its own, with progress and cancel; answers come back as
-//!   [`work::Event`]s.
-//! - [`views`]: a file for each panel. A panel draws the state and answers with actions; it changes nothing itself.
+//! - [`state`]: what is open, selected and displayed, as plain values. [`state::State::apply`] turns an
+//! [`state::Action`] into a new state and a list of [`state::Task`]s for the workers. No window, no file, no thread.
+//! - [`work`]: everything that takes time, on threads of its own, with progress and cancellation; results come back as
+//! [`work::Event`]s.
+//! - [`views`]: one file or folder for each panel. A panel draws the state and returns actions; it changes nothing
+//! itself.
 //!
-//! What changes a project goes through [`project::Command`] and the project's history, as on the command line; pictures come from the
-//! same [`project::picture::Painter`] as `petroglyph render`, so that window and file show the same.
+//! Every change to a project goes through [`project::Command`] and the project's history, as on the command line.
+//! Pictures come from the same [`project::picture::Painter`] as those of `petroglyph render`, so the window and the
+//! file show the same.
 //!
-//! Deliberately absent: no state of a project lives here that is not on disk, and no drawing of rock.
+//! Deliberately absent: project state that is not on disk, and any drawing of rock.
 
 pub mod error;
 pub mod fields;

@@ -1,8 +1,9 @@
-//! What egui lays out, painted into an image by the processor: for looking at panels without a display.
+//! Paints egui's output into an image on the processor, so that panels can be looked at without a display.
 //!
-//! The same as egui's own shaders do: colours are sRGB with premultiplied alpha and are blended as they are, result = source + (1 − α) · below, where
-//! the source is the vertices' colour times the texture's. A pixel belongs to a triangle when its centre lies inside, or on an upper or left side, so that
-//! neighbours share none. Space: pixels, y down.
+//! It follows egui's own shaders: colours are sRGB with premultiplied alpha and are blended as encoded, result = source
+//! + (1 − α) · below, where the source is the vertex colour times the texture. A pixel belongs to a triangle when its
+//! centre lies inside the triangle or on its upper or left side, so that neighbouring triangles share no pixel. Space:
+//! pixels, y down.
 
 use eframe::egui::epaint::{ClippedPrimitive, Mesh, Primitive, Vertex};
 use eframe::egui::{ColorImage, ImageData, TextureId, TexturesDelta};
@@ -15,14 +16,14 @@ use std::sync::Arc;
 /// Rows that a thread paints at a time.
 const BAND: usize = 32;
 
-/// The textures that meshes refer to.
+/// The textures that the meshes refer to.
 #[derive(Default)]
 pub struct Raster {
     textures: HashMap<TextureId, Arc<ColorImage>>,
 }
 
 impl Raster {
-    /// Takes new and changed textures in; those that are let go of are, too.
+    /// Takes over new and changed textures, and drops those that egui has freed.
     pub fn receive(&mut self, delta: &mut TexturesDelta) {
         for (id, changes) in delta.set.drain() {
             for change in changes {
@@ -66,7 +67,7 @@ fn patch(whole: &mut ColorImage, part: &ColorImage, [x, y]: [usize; 2]) {
     }
 }
 
-/// Some rows of the image.
+/// A band of rows of the image.
 struct Band<'a> {
     pixels: &'a mut [u8],
     width: usize,
@@ -74,7 +75,7 @@ struct Band<'a> {
 }
 
 impl Band<'_> {
-    /// Paints the part of a mesh that lies in these rows and within `clip`: left, top, right, bottom.
+    /// Paints the part of a mesh that lies in these rows and within `clip` (left, top, right, bottom).
     fn paint(&mut self, mesh: &Mesh, texture: &ColorImage, pixels_per_point: f32, clip: [usize; 4]) {
         let rows = clip[1].max(self.top)..clip[3].min(self.top + self.pixels.len() / (4 * self.width));
         let columns = clip[0]..clip[2].min(self.width);
@@ -119,7 +120,7 @@ impl Triangle {
         (area != 0.0 && area.is_finite()).then_some(Self { corners, places, area: area.abs() })
     }
 
-    /// Pixels along an axis whose centres may lie inside.
+    /// The pixels along an axis whose centres may lie inside.
     fn span(&self, axis: usize, range: &Range<usize>) -> Range<usize> {
         let sides = self.places.map(|place| place[axis] - 0.5);
         let low = sides.into_iter().fold(f64::INFINITY, f64::min).ceil().max(range.start as f64);
@@ -127,13 +128,13 @@ impl Triangle {
         low as usize..high.clamp(0.0, range.end as f64) as usize
     }
 
-    /// The corners' shares in a point, if it is inside.
+    /// The barycentric weights of a point, if it lies inside.
     fn weights(&self, at: [f64; 2]) -> Option<[f32; 3]> {
         let mut weights = [0.0; 3];
         for (n, weight) in weights.iter_mut().enumerate() {
             let (from, to) = (self.places[(n + 1) % 3], self.places[(n + 2) % 3]);
             let off = edge(from, to, at);
-            // Clockwise with y down: upper sides run to the right, left sides upwards.
+            // Clockwise with y down: upper sides run to the right, left sides run upwards.
             let is_own = to[1] < from[1] || to[1] == from[1] && to[0] > from[0];
             if off < 0.0 || off == 0.0 && !is_own {
                 return None;
@@ -164,7 +165,7 @@ fn edge(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }
 
-/// A texture between its pixels, its edge going on beyond it.
+/// A sample of a texture, interpolated between its pixels; beyond its edge the edge is repeated.
 fn sample(texture: &ColorImage, uv: [f32; 2]) -> [f32; 4] {
     let [width, height] = texture.size;
     let split = |share: f32, count: usize| {
@@ -203,7 +204,7 @@ mod tests {
     #[test]
     fn triangles_that_share_a_side_share_no_pixel() {
         let half = Color32::from_rgba_premultiplied(100, 100, 100, 128);
-        // Two halves of a square through pixel centres, run in opposite senses.
+        // Two halves of a square whose sides pass through pixel centres, with opposite orientations.
         let corners = [pos2(0.5, 0.5), pos2(6.5, 0.5), pos2(6.5, 6.5), pos2(0.5, 6.5)];
         let mut mesh = Mesh::default();
         corners.iter().for_each(|at| mesh.colored_vertex(*at, half));

@@ -1,4 +1,4 @@
-//! The look of the window: one accent colour, quiet surfaces, type that is read on a projector.
+//! The look of the window: one accent colour, muted surfaces, text that can be read on a projector.
 //!
 //! Sizes are points (pixels at a scale of 1). Text on its background has a contrast of at least 7 : 1, weak text of 4.5 : 1.
 
@@ -7,9 +7,9 @@ use eframe::egui::{
     Visuals,
 };
 
-/// Ochre, as rock paintings have it.
+/// Ochre, as in rock paintings.
 pub const ACCENT_LIGHT: Color32 = Color32::from_rgb(0xa4, 0x4a, 0x1c);
-/// The same on dark.
+/// The same for the dark theme.
 pub const ACCENT_DARK: Color32 = Color32::from_rgb(0xe5, 0x95, 0x5c);
 
 /// The accent colour of a theme.
@@ -21,11 +21,11 @@ pub fn accent(visuals: &Visuals) -> Color32 {
 pub fn install(ctx: &Context) {
     ctx.set_style_of(Theme::Light, style(Theme::Light));
     ctx.set_style_of(Theme::Dark, style(Theme::Dark));
-    // Where the desktop does not say: as paper is.
+    // Where the desktop states no preference, the light theme is used.
     ctx.options_mut(|options| options.fallback_theme = Theme::Light);
 }
 
-/// The frame of a dialogue in front of everything: room around it, as around a page.
+/// The frame of a dialogue, with a margin.
 pub fn dialogue(ctx: &Context) -> Frame {
     Frame::popup(&ctx.global_style()).inner_margin(Margin::same(20)).corner_radius(CornerRadius::same(10))
 }

@@ -1,4 +1,4 @@
-//! What can happen, and what follows from it for others.
+//! Actions, and the tasks for the workers that follow from them.
 
 use super::Appearance;
 use super::dialogue::{Dialogue, ExportForm};
@@ -10,16 +10,16 @@ use project::command::Command;
 use render::Scene;
 use std::path::PathBuf;
 
-/// Something the user did, or an answer of the workers.
+/// Something the user did, or a result from the workers.
 #[derive(Debug, Clone)]
 pub enum Action {
     /// Open a project.
     Open(PathBuf),
-    /// Go on from how a project was left.
+    /// Continue from the recorded view of the project that was open when the last run ended.
     Recover,
-    /// Do not.
+    /// Discard that record.
     Abandon,
-    /// Take a project off the list of recent ones.
+    /// Remove a project from the list of recent ones.
     Forget(PathBuf),
     /// Make the demonstration in a folder and open it.
     Demo(PathBuf),
@@ -29,52 +29,52 @@ pub enum Action {
     Opened(Box<Snapshot>),
     /// The open project changed.
     Changed(Box<Snapshot>),
-    /// Something went wrong or is worth knowing.
+    /// Show a message.
     Tell(Notice),
-    /// A notice has been read.
+    /// Put a message away.
     Dismiss(usize),
-    /// Ask for something.
+    /// Open a dialogue.
     Ask(Box<Dialogue>),
-    /// Ask no more.
+    /// Close the dialogue.
     Answered,
-    /// Change the project.
+    /// Apply a command to the project.
     Apply(Box<Command>),
-    /// Take the last change back.
+    /// Undo the last change.
     Undo,
-    /// Bring it back.
+    /// Redo the change that was undone last.
     Redo,
-    /// Read a survey into the open project, or into a new one at this place.
+    /// Read a survey into the open project or into a new one.
     Import {
         /// What to read, and how.
         command: Box<project::command::ImportVolume>,
-        /// Where a new project goes; absent: into the open one.
+        /// Folder of the new project; `None`: import into the open one.
         into: Option<PathBuf>,
     },
-    /// Draw to a file.
+    /// Draw the page to a file.
     Export(Box<ExportForm>),
-    /// Put the picture on the clipboard.
+    /// Copy the picture to the clipboard.
     Copy,
-    /// Show another picture: camera, box, cut-outs, blend.
+    /// Show another scene: camera, box, cut-outs, blend.
     Show(Box<Scene>),
     /// Show a named scene.
     ShowNamed(String),
-    /// Put the camera somewhere known.
+    /// Move the camera to a standard position.
     Stand(StandardView),
-    /// Fill the middle otherwise.
+    /// Choose which views fill the middle.
     Arrange(Layout),
-    /// Compare raw and illustrated otherwise.
+    /// Choose how raw and illustrated pictures are compared.
     Compare(Compare),
-    /// Move the wipe's line, share of the width.
+    /// Move the dividing line of the wipe to this share of the width.
     Wipe(f32),
     /// Move the sections to a point, voxel.
     Slices([f64; 3]),
-    /// Lay the fence through these corners, voxel x and y.
+    /// Set the corners of the fence, voxel x and y.
     Fence(Vec<[f64; 2]>),
-    /// Interpret.
+    /// Take a step of the interpretation.
     Picking(PickingStep),
-    /// Extract candidates of a volume; of the first where none is named.
+    /// Extract candidates of a volume; `None`: of the first one.
     Extract(Option<String>, Box<interp::ExtractSettings>),
-    /// Look for faults in the horizons.
+    /// Propose faults from the offsets of the horizons.
     ProposeFaults,
     /// Show another panel on the left.
     Panel(Panel),
@@ -82,11 +82,11 @@ pub enum Action {
     Layer(Option<String>),
     /// Show a horizon on the map.
     Horizon(Option<String>),
-    /// Show or hide the handles of box and cut-outs.
+    /// Show or hide the handles of the box and the cut-outs.
     Handles(bool),
-    /// Light or dark.
+    /// Choose the light or the dark theme.
     Appear(Appearance),
-    /// Scale everything.
+    /// Scale the whole interface.
     Scale(f32),
 }
 
@@ -103,21 +103,21 @@ pub enum Task {
     Undo,
     /// Redo in the open project.
     Redo,
-    /// Make a project of a survey, then open it.
+    /// Create a project from a survey, then open it.
     Create {
         /// What to read, and how.
         command: Box<project::command::ImportVolume>,
         /// The project's folder.
         root: PathBuf,
     },
-    /// Something the interpretation needs.
+    /// Work that the interpretation needs.
     Picking(PickingTask),
-    /// Draw to a file.
+    /// Draw the page to a file.
     Export(Box<ExportForm>),
-    /// Put the picture on the clipboard.
+    /// Copy the picture to the clipboard.
     Copy,
-    /// Let go of the open project.
+    /// Release everything that was loaded for the open project.
     Release,
-    /// Write down what outlives the window.
+    /// Write the settings that outlive the window.
     Remember,
 }

@@ -4,7 +4,7 @@ use super::{Action, Compare, Dialogue, Notice, Panel, PickingTask, Place, Sessio
 use project::picture::scene;
 
 impl State {
-    /// Takes an action in; what others are to do comes out.
+    /// Applies an action; returns the tasks for the workers.
     pub fn apply(&mut self, action: Action) -> Vec<Task> {
         match action {
             Action::Open(path) => {
@@ -83,7 +83,7 @@ impl State {
             }
             Action::ProposeFaults => {
                 self.quieten(Place::Interpret);
-                // Numbers of former proposals mean nothing in the next list.
+                // The numbers of former proposals mean nothing in the new list.
                 if let Some(session) = &mut self.session {
                     session.view.picking.dismissed.clear();
                 }
@@ -102,7 +102,7 @@ impl State {
         Vec::new()
     }
 
-    /// Actions on the view of the open project; without one they mean nothing.
+    /// Actions on the view of the open project; they are ignored while no project is open.
     fn look(&mut self, action: Action) {
         let Some(session) = &mut self.session else { return };
         let view = &mut session.view;
@@ -144,7 +144,7 @@ impl State {
         vec![Task::Remember]
     }
 
-    /// Notes how the project is looked at, so that it can be gone on from.
+    /// Records the present view, so that work can be continued from it.
     pub fn mark(&mut self) {
         self.remembered.left = self
             .session
@@ -152,22 +152,22 @@ impl State {
             .map(|session| super::remembered::Left { root: session.root.clone(), view: session.view.clone() });
     }
 
-    /// A task that needs a project.
+    /// A task that needs an open project.
     fn task(&self, task: Task) -> Vec<Task> {
         if self.session.is_some() { vec![task] } else { Vec::new() }
     }
 
-    /// Takes the notices of one place away: something new is begun there.
+    /// Removes the messages of one place, because something new begins there.
     fn quieten(&mut self, place: Place) {
         self.notices.retain(|notice| notice.place != place);
     }
 
-    /// Whether a dialogue or a text field in it must keep the shortcuts of the views.
+    /// Whether a dialogue or a text field in it takes the keyboard, so that the shortcuts of the views must not act.
     pub fn is_asking(&self) -> bool {
         matches!(&self.dialogue, Some(dialogue) if !matches!(dialogue, Dialogue::Shortcuts))
     }
 
-    /// The scenes drawn side by side or over one another in the block view: blends and their order.
+    /// The scenes that the block view draws, side by side or over one another: their blends, in order.
     pub fn blends(view: &View) -> Vec<f32> {
         match view.compare {
             _ if view.panel == Panel::Interpret => vec![1.0],

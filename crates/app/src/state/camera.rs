@@ -1,8 +1,8 @@
-//! The camera under the hand: orbit, pan, zoom about the cursor.
+//! Moving the camera by hand: orbit, pan, zoom about the cursor.
 //!
-//! [`render::Camera`] is fitted to the block: its scale follows the block's outline, which changes with every turn. Under the hand the
-//! block must neither grow nor wander while it turns, so [`hold`] corrects zoom and pan until one anchor
-//! keeps its pixel and the picture its scale there ([`pixels_per_metre`]).
+//! [`render::Camera`] is fitted to the block: its scale follows the block's outline, which changes with every turn.
+//! While the user turns the block it must neither grow nor drift, so [`hold`] corrects zoom and pan until one anchor
+//! point keeps its pixel and the scale there stays the same ([`pixels_per_metre`]).
 
 use super::view::StandardView;
 use figure::draw::block::pixels_per_metre;
@@ -10,9 +10,9 @@ use glam::{DVec2, DVec3};
 use render::{Scene, View};
 use survey::SurveyGeometry;
 
-/// Degrees a point of mouse travel turns: across a 1000-point view half a turn.
+/// Degrees of rotation for each point of mouse travel: half a turn across a view of 1000 points.
 const DEG_PER_POINT: f64 = 0.25;
-/// Zoom stays between these, so that nobody loses the block.
+/// The zoom stays in this range, so that the block is never lost.
 const ZOOM: [f64; 2] = [0.2, 60.0];
 
 /// The view of a scene in a picture of this size, points.
@@ -21,7 +21,7 @@ pub fn view(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> View {
     View::new(&scene.camera, geometry, &scene.box_in(geometry), scene.exaggeration, size_px)
 }
 
-/// Keeps `anchor` (voxel) at its pixel of `before`, and the scale there.
+/// Keeps `anchor` (voxel) at the pixel where `before` shows it, and keeps the scale there.
 pub fn hold(before: &View, scene: &mut Scene, geometry: &SurveyGeometry, size: DVec2, anchor: DVec3) {
     let factor = pixels_per_metre(before, anchor) / pixels_per_metre(&view(scene, geometry, size), anchor);
     scene.camera.zoom = (scene.camera.zoom * factor).clamp(ZOOM[0], ZOOM[1]);
@@ -30,7 +30,8 @@ pub fn hold(before: &View, scene: &mut Scene, geometry: &SurveyGeometry, size: D
     scene.camera.pan = pan.to_array();
 }
 
-/// Turns the block by a drag of `delta` points: to the right turns it to the right, up tips it towards the viewer.
+/// Turns the block by a drag of `delta` points: a drag to the right turns it to the right, a drag up tips it towards
+/// the viewer.
 pub fn orbit(scene: &mut Scene, geometry: &SurveyGeometry, size: DVec2, delta: DVec2) {
     let before = view(scene, geometry, size);
     let block = scene.box_in(geometry);
@@ -40,12 +41,12 @@ pub fn orbit(scene: &mut Scene, geometry: &SurveyGeometry, size: DVec2, delta: D
     hold(&before, scene, geometry, size, block.centre());
 }
 
-/// Shifts the picture.
+/// Pans the picture.
 pub fn pan(scene: &mut Scene, size: DVec2, delta: DVec2) {
     scene.camera.pan = (DVec2::from_array(scene.camera.pan) + delta / size).to_array();
 }
 
-/// Scales the picture about a point of it.
+/// Zooms about a point of the picture.
 pub fn zoom_at(scene: &mut Scene, size: DVec2, at: DVec2, factor: f64) {
     let zoom = (scene.camera.zoom * factor).clamp(ZOOM[0], ZOOM[1]);
     let factor = zoom / scene.camera.zoom;
@@ -55,7 +56,7 @@ pub fn zoom_at(scene: &mut Scene, size: DVec2, at: DVec2, factor: f64) {
     scene.camera.pan = (moved / size - DVec2::splat(0.5)).to_array();
 }
 
-/// Puts the camera somewhere known; the projection stays.
+/// Moves the camera to a standard position; the projection stays.
 pub fn stand(scene: &mut Scene, place: StandardView) {
     let usual = render::Camera::default();
     let (azimuth_deg, elevation_deg) = match place {

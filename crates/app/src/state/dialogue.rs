@@ -1,4 +1,4 @@
-//! What the window asks for in front of everything else.
+//! The dialogues.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 pub enum Choice {
     /// A project to open.
     Project,
-    /// A SEG-Y file to begin a project with.
+    /// A SEG-Y file to start a project with.
     NewSurvey,
     /// A SEG-Y file for the open project.
     MoreSurvey,
@@ -17,16 +17,16 @@ pub enum Choice {
     Fault,
     /// A well's deviation file.
     Well,
-    /// A picture to tile layers with.
+    /// A picture to use as a tile of a pattern.
     Texture,
     /// A folder for the demonstration.
     Demo,
 }
 
-/// Where a survey goes.
+/// The target of an import.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
-    /// Into a project of its own.
+    /// A new project.
     NewProject,
     /// Into the open project.
     OpenProject,
@@ -41,43 +41,43 @@ pub enum Interpreted {
     Fault,
 }
 
-/// Something asked for.
+/// A dialogue.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Dialogue {
-    /// A file or folder.
+    /// Choose a file or folder.
     Choose(Choice),
-    /// How to read a survey.
+    /// State how to read a survey.
     Survey {
         /// The file.
         path: PathBuf,
-        /// Where it goes.
+        /// The target of the import.
         target: Target,
     },
-    /// How to read a horizon or fault.
+    /// State how to read a horizon or fault.
     Interpretation {
         /// The file.
         path: PathBuf,
         /// What it holds.
         kind: Interpreted,
     },
-    /// What a file that was dropped on the window holds.
+    /// Ask what a file that was dropped on the window holds.
     Dropped {
         /// The file.
         path: PathBuf,
     },
-    /// How to read a well.
+    /// State how to read a well.
     Well {
-        /// Where it runs.
+        /// The deviation file.
         path: PathBuf,
     },
-    /// Which pattern a layer gets.
+    /// Choose a pattern for a layer.
     Patterns {
         /// The layer.
         layer: String,
-        /// Which of its depth intervals, from the bottom; absent: the whole layer.
+        /// Which of its depth intervals, counted from the bottom; `None`: the whole layer.
         interval: Option<usize>,
     },
-    /// Where to draw to.
+    /// Export the picture.
     Export(ExportForm),
     /// The list of shortcuts.
     Shortcuts,
@@ -86,7 +86,7 @@ pub enum Dialogue {
 /// Millimetres in an inch.
 const INCH_MM: f64 = 25.4;
 
-/// A picture as it is asked for.
+/// The settings of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportForm {
     /// PNG file to write.
@@ -95,13 +95,13 @@ pub struct ExportForm {
     pub size_cm: [f64; 2],
     /// Dots an inch.
     pub dpi: f64,
-    /// Patterns with the layers' names beside the picture; while interpreting, the horizons' colours.
+    /// List the layers with their patterns beside the picture; while interpreting, the horizons with their colours.
     pub legend: Shown,
-    /// Lengths below the block.
+    /// Draw a scale bar below the block.
     pub scale_bar: Shown,
 }
 
-/// Whether something is part of a picture.
+/// Whether the page has a part such as a legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
     /// It is.
@@ -111,7 +111,7 @@ pub enum Shown {
 }
 
 impl ExportForm {
-    /// A third of a page in print quality.
+    /// The defaults: a third of a page in print quality.
     pub fn new(path: String) -> Self {
         Self { path, size_cm: [16.0, 11.0], dpi: 300.0, legend: Shown::Yes, scale_bar: Shown::Yes }
     }
@@ -121,7 +121,7 @@ impl ExportForm {
         self.size_cm.map(|cm| (cm * 10.0 / INCH_MM * self.dpi).round().clamp(1.0, 60_000.0) as u32)
     }
 
-    /// Dots in a point of lettering.
+    /// Pixels in a point of lettering.
     pub fn px_per_mm(&self) -> f64 {
         self.dpi / INCH_MM
     }

@@ -1,7 +1,8 @@
-//! Faces of the roaming box and of the cut-outs, to be dragged.
+//! Dragging the faces of the roaming box and of the cut-outs.
 //!
-//! A face moves along its axis by the share of the pointer's travel that runs along the axis' image: Δ = δ·a/|a|², a the pixels that one
-//! voxel along the axis takes at the handle. Faces stop at whole samples.
+//! A face moves along its axis by the share of the pointer's travel that runs along the image of the axis: Δ =
+//! δ·a/|a|², where a is the vector in pixels that one voxel along the axis covers at the handle. Faces stop at whole
+//! samples.
 
 use super::camera;
 use glam::{DVec2, DVec3};
@@ -9,40 +10,40 @@ use render::visible::Solid;
 use render::{Scene, VoxelBox};
 use survey::SurveyGeometry;
 
-/// What a face belongs to.
+/// The box that a face belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Owner {
     /// The roaming box.
     Block,
-    /// A cut-out, by its place in the scene.
+    /// A cut-out, by its index in the scene.
     CutOut(usize),
 }
 
 /// One of the six faces of a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Face {
-    /// Whose.
+    /// Its box.
     pub owner: Owner,
     /// 0 = across inlines (x), 1 = across crosslines (y), 2 = across depth (z).
     pub axis: usize,
-    /// At the largest coordinate along the axis, else at the smallest.
+    /// Whether it is the face at the largest coordinate along the axis; otherwise it is the one at the smallest.
     pub at_max: bool,
 }
 
-/// A visible face and the point to take hold of it.
+/// A visible face and the handle by which it is dragged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Handle {
     /// The face.
     pub face: Face,
-    /// Where, voxel.
+    /// Position of the handle, voxel.
     pub voxel: DVec3,
-    /// Where, in the picture.
+    /// Position of the handle in the picture.
     pub at: DVec2,
     /// The image of one voxel along the axis.
     pub along: DVec2,
 }
 
-/// Least length of a box along an axis, samples.
+/// Smallest length of a box along an axis, samples.
 const THINNEST: f64 = 2.0;
 
 fn boxes(scene: &Scene, geometry: &SurveyGeometry) -> Vec<(Owner, VoxelBox)> {
@@ -50,7 +51,8 @@ fn boxes(scene: &Scene, geometry: &SurveyGeometry) -> Vec<(Owner, VoxelBox)> {
     std::iter::once((Owner::Block, scene.box_in(geometry))).chain(cuts).collect()
 }
 
-/// The faces that can be seen, each with a handle in its middle or, where that is cut away, in the middle of what is left of it.
+/// The visible faces, each with a handle in its middle or, where the middle is cut away, in the middle of what is left
+/// of the face.
 pub fn handles(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> Vec<Handle> {
     let view = camera::view(scene, geometry, size);
     let block = scene.box_in(geometry);
@@ -61,7 +63,8 @@ pub fn handles(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> Vec<Han
         for axis in 0..3 {
             for at_max in [false, true] {
                 let outward = if at_max { 1.0 } else { -1.0 };
-                // A cut-out's walls are rock on the far side; where it reaches the block's own face there is no wall.
+                // The inner faces of a cut-out are rock on the far side. Where a cut-out reaches the block's own face
+                // it has no inner face.
                 let plane = if at_max { bounds.max[axis] } else { bounds.min[axis] };
                 let (normal, is_open) = match owner {
                     Owner::Block => (outward, false),
@@ -81,7 +84,7 @@ pub fn handles(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> Vec<Han
     found
 }
 
-/// The point of the face nearest its middle that has rock behind it and air before it.
+/// The point of the face nearest its middle that has rock behind it and air in front of it.
 fn place(bounds: &VoxelBox, axis: usize, plane: f64, solid: &Solid, normal: f64) -> Option<DVec3> {
     const SHARES: [f64; 5] = [0.5, 0.3, 0.7, 0.15, 0.85];
     let [u, v] = [(axis + 1) % 3, (axis + 2) % 3];
@@ -100,7 +103,8 @@ fn place(bounds: &VoxelBox, axis: usize, plane: f64, solid: &Solid, normal: f64)
         .find(|point| solid.contains((*point + behind).as_vec3()) && !solid.contains((*point - behind).as_vec3()))
 }
 
-/// The scene with a handle pulled by `delta` points from where it was in `start`; the rest of the picture stays where it is.
+/// The scene after a handle was dragged by `delta` points from its position in `start`; the rest of the picture stays
+/// where it is.
 pub fn pull(start: &Scene, geometry: &SurveyGeometry, size: DVec2, handle: &Handle, delta: DVec2) -> Scene {
     let length_sq = handle.along.length_squared();
     if length_sq < 1e-9 {
@@ -110,7 +114,7 @@ pub fn pull(start: &Scene, geometry: &SurveyGeometry, size: DVec2, handle: &Hand
     move_face(start, geometry, size, handle.face, moved)
 }
 
-/// The scene with a face moved by so many samples along its axis, as far as it can go.
+/// The scene with a face moved by this many samples along its axis, or as far as it can go.
 pub fn move_face(start: &Scene, geometry: &SurveyGeometry, size: DVec2, face: Face, moved: f64) -> Scene {
     let mut scene = start.clone();
     let Face { owner, axis, at_max } = face;

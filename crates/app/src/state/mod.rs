@@ -1,7 +1,8 @@
-//! What is open, selected and looked at, without a window.
+//! What is open, selected and displayed, without a window.
 //!
-//! [`State::apply`] is the only way a state changes: an [`Action`] (something the user did, or an answer of the workers) in,
-//! [`Task`]s (something the workers are to do) out. Positions are voxel, sizes on the screen points.
+//! [`State::apply`] is the only way in which a state changes: it takes an [`Action`] (something the user did, or a
+//! result from the workers) and returns [`Task`]s (something for the workers to do). Positions are voxels, sizes on the
+//! screen points.
 
 mod action;
 mod apply;
@@ -30,26 +31,26 @@ pub use remembered::{Appearance, Remembered};
 pub use session::{Session, Snapshot};
 pub use view::{Compare, Layout, Panel, SectionKind, StandardView, View};
 
-/// Everything the window shows.
+/// Everything that the window shows.
 #[derive(Debug, Clone, Default)]
 pub struct State {
-    /// What outlives the window: recent projects, appearance, how the last one was left.
+    /// What outlives the window: recent projects, appearance, the view of the last project.
     pub remembered: Remembered,
-    /// The open project; without one the start page is shown.
+    /// The open project; `None` while the start page is shown.
     pub session: Option<Session>,
-    /// What is asked for at present.
+    /// The dialogue in front, if any.
     pub dialogue: Option<Dialogue>,
-    /// What went wrong or is worth knowing, where it happened; newest last.
+    /// Messages, each with the place where it is shown; newest last.
     pub notices: Vec<Notice>,
 }
 
 impl State {
-    /// A start page that knows what was open before.
+    /// The start page, with the settings of earlier runs.
     pub fn new(remembered: Remembered) -> Self {
         Self { remembered, ..Self::default() }
     }
 
-    /// Notices of one place.
+    /// The messages of one place.
     pub fn notices_at(&self, place: Place) -> impl Iterator<Item = (usize, &Notice)> {
         self.notices.iter().enumerate().filter(move |(_, notice)| notice.place == place)
     }

@@ -1,9 +1,9 @@
-//! What went wrong, kept where it happened until the user has seen it.
+//! Messages: errors and notes, kept where they arose until the user has seen them.
 
 use crate::{fields, hint};
 use project::error::remedy_of;
 
-/// Where in the window something belongs.
+/// The part of the window where a message is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Place {
     /// The start page.
@@ -18,7 +18,7 @@ pub enum Place {
     Interpret,
     /// Named scenes and view settings.
     Scenes,
-    /// The line at the foot: what was done and shows nowhere else.
+    /// The status bar: for what was done and shows nowhere else.
     Foot,
     /// The dialogue in front.
     Dialogue,
@@ -29,7 +29,7 @@ pub enum Place {
 pub struct Notice {
     /// Where it is shown.
     pub place: Place,
-    /// Whether something failed, or is only worth knowing.
+    /// Whether something failed; otherwise the message is a note.
     pub failed: bool,
     /// What happened.
     pub text: String,
@@ -38,7 +38,7 @@ pub struct Notice {
 }
 
 impl Notice {
-    /// Something failed; causes are told once each.
+    /// An error, with its chain of causes; a cause that the text already quotes is not repeated.
     pub fn failure(place: Place, error: &(dyn std::error::Error + 'static)) -> Self {
         let mut text = error.to_string();
         let hint = hint::of(error).or_else(|| remedy_of(error).map(|remedy| fields::advice(&remedy)));
@@ -53,7 +53,7 @@ impl Notice {
         Self { place, failed: true, text, hint }
     }
 
-    /// Something worth knowing.
+    /// A note.
     pub fn note(place: Place, text: impl Into<String>) -> Self {
         Self { place, failed: false, text: text.into(), hint: None }
     }

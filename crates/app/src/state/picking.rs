@@ -1,8 +1,10 @@
-//! What is being interpreted: the horizon that picks go to, the node that is selected but not accepted yet, sticks being drawn.
+//! The interpretation under way: the horizon that picks go to, the node that is selected but not accepted yet, and the
+//! sticks being drawn.
 //!
-//! A click selects a leaf (a [`Pick`] in the making), keys climb and descend, Enter makes it part of the horizon through the same command that
-//! `petroglyph pick` gives. What is not accepted yet belongs to the view, so it is written down with it and outlives a crash. Places are line numbers
-//! and vertical values, as commands take them; (s, t) and voxels are converted here.
+//! A click selects a leaf (a [`Pick`] in the making), keys climb and descend its tree, and Enter adds it to the horizon
+//! through the same command as `petroglyph pick`. What is not accepted yet belongs to the view; it is saved with the
+//! view and so survives a crash. Places are line numbers and vertical values, as commands take them; (s, t) of sections
+//! and voxels are converted here.
 
 use super::{SectionKind, Task};
 use glam::{DVec2, DVec3};
@@ -18,7 +20,8 @@ use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
 use ttf::Colour;
 
-/// Decimals that places are rounded to: a thousandth of a line is far less than a hand can aim at, and can be typed again.
+/// Decimals that places are rounded to: a thousandth of a line is far finer than anyone can aim, and can still be
+/// typed.
 const DECIMALS: f64 = 1000.0;
 
 /// What the pointer does on sections and on the block.
@@ -28,7 +31,7 @@ pub enum Tool {
     /// Selects candidates.
     #[default]
     Pick,
-    /// Erases what it draws around.
+    /// Erases the leaves that a lasso encloses.
     Lasso,
     /// Draws fault sticks.
     Sticks,
@@ -38,9 +41,9 @@ pub enum Tool {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Look {
-    /// Its faces, with the horizons in front of them as through glass.
+    /// Its faces, with the horizons in front of them, semi-transparent.
     Faces,
-    /// Seen through, in the occlusion slicer with a white function (P-horiz 6).
+    /// Volume rendering with occlusion and a white RGBA function (P-horiz 6).
     #[default]
     SeeThrough,
 }
@@ -48,17 +51,17 @@ pub enum Look {
 /// A node that is selected and not accepted yet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Pick {
-    /// Inline, crossline and vertical value of the place clicked.
+    /// Inline, crossline and vertical value of the place that was clicked.
     pub at: [f64; 3],
     /// The leaf there.
     pub leaf: u32,
-    /// Levels above it.
+    /// Levels above the leaf.
     pub up: u32,
     /// Levels from the leaf to the root.
     pub levels: u32,
 }
 
-/// What is being interpreted.
+/// The interpretation under way.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Picking {
@@ -71,7 +74,7 @@ pub struct Picking {
     /// The selected node.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pick: Option<Pick>,
-    /// The node just accepted, until the project has it.
+    /// The node accepted last, until the project contains it.
     #[serde(skip)]
     pub accepted: Option<Pick>,
     /// What the pointer does.
@@ -82,11 +85,11 @@ pub struct Picking {
     pub show: FaceData,
     /// The stick being drawn.
     pub stick: Vec<[f64; 3]>,
-    /// Sticks drawn for a fault that was not made yet.
+    /// The complete sticks of a fault that does not exist yet.
     pub sticks: Vec<Vec<[f64; 3]>>,
     /// Name of that fault.
     pub fault: String,
-    /// Proposals that are not to be shown, by number.
+    /// The numbers of the proposals that were dismissed.
     pub dismissed: Vec<u32>,
     /// Whether minor proposals are shown too.
     pub minor: bool,
@@ -102,15 +105,15 @@ impl Picking {
 /// How a click changes the selection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum How {
-    /// It becomes the selection; what was selected and not accepted is let go.
+    /// The leaf becomes the selection; an earlier selection that was not accepted is dropped.
     Replace,
-    /// What is selected is accepted first.
+    /// The present selection is accepted first.
     Extend,
     /// The leaf is taken out of the horizon.
     Remove,
 }
 
-/// A line drawn around what is to be erased.
+/// A closed line around what is to be erased.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Lasso {
     /// What it was drawn on.
@@ -128,65 +131,65 @@ pub enum LassoOn {
     Block(Box<Scene>, DVec2),
 }
 
-/// Something done while interpreting.
+/// A step of the interpretation.
 #[derive(Debug, Clone, PartialEq)]
 pub enum PickingStep {
     /// A click on rock, voxel.
     At(DVec3, How),
-    /// A leaf was found.
+    /// The workers found a leaf.
     Found(Pick),
-    /// Climb so many levels; negative descends.
+    /// Climb this many levels; a negative number descends.
     Climb(i32),
     /// Climb to the highest node without overlap.
     HighestValid,
-    /// Make the selection part of the horizon.
+    /// Add the selection to the horizon.
     Accept,
-    /// Let go of the selection, or of the stick being drawn.
+    /// Drop the selection or the stick being drawn.
     GiveUp,
-    /// Begin another horizon, under a name of its own.
+    /// Start another horizon, under a name of its own.
     Begin,
-    /// Picks go to this horizon from now on.
+    /// Send picks to this horizon from now on.
     Choose(String),
-    /// The horizon that does not exist yet gets this name.
+    /// Name the horizon that does not exist yet.
     Name(String),
-    /// The horizon that does not exist yet gets this colour.
+    /// Choose the colour of the horizon that does not exist yet.
     Tint(Colour),
     /// Use another tool.
     Use(Tool),
-    /// Show the block otherwise.
+    /// Choose how the block is shown.
     Look(Look),
-    /// Show something else on faces and sections.
+    /// Choose what faces and sections show.
     Show(FaceData),
-    /// Erase what was drawn around.
+    /// Erase what a lasso encloses.
     Erase(Lasso),
-    /// The next place of a stick, voxel.
+    /// Add a point to the stick, voxel.
     Stick(DVec3),
-    /// The stick is complete.
+    /// End the stick.
     EndStick,
-    /// Take the last place of the sticks back.
+    /// Remove the last point of the sticks.
     Backspace,
     /// Name of the fault being drawn.
     NameFault(String),
-    /// Make a fault of the sticks.
+    /// Make a fault from the sticks.
     MakeFault,
-    /// Do not show a proposal any more.
+    /// Dismiss a proposal.
     Dismiss(u32),
-    /// Minor proposals are shown, or not.
+    /// Show or hide minor proposals.
     Minor(bool),
 }
 
-/// What the workers are asked while interpreting.
+/// Work for the workers while interpreting.
 #[derive(Debug, Clone)]
 pub enum PickingTask {
-    /// The leaf at a place.
+    /// Find the leaf at a place.
     Find([f64; 3]),
-    /// The highest node above a pick without overlap, for a horizon.
+    /// Find the highest node above a pick that does not overlap itself or the horizon.
     HighestValid(Pick, Option<String>),
-    /// Take out of a horizon what a lasso holds.
+    /// Remove from a horizon what a lasso encloses.
     Erase(Lasso, String),
     /// Extract candidates of a volume.
     Extract(Option<String>, Box<ExtractSettings>),
-    /// Look for faults.
+    /// Propose faults.
     ProposeFaults,
 }
 
@@ -202,7 +205,7 @@ pub fn voxel_of(geometry: &SurveyGeometry, place: [f64; 3]) -> DVec3 {
     geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]))
 }
 
-/// A name that nothing of a kind has: "Horizon 1", "Horizon 2", …
+/// A name that is still free: "Horizon 1", "Horizon 2", …
 pub fn free_name(document: &Document, noun: Noun, word: &str) -> String {
     let names = document.names(noun);
     let mut number = 1;
@@ -216,7 +219,7 @@ pub fn free_name(document: &Document, noun: Noun, word: &str) -> String {
 }
 
 impl Picking {
-    /// Lets go of what the project no longer has: a horizon that was renamed or removed.
+    /// Drops references to what the project no longer has, such as a horizon that was renamed or removed.
     pub fn fit(&mut self, before: &Document, now: &Document) {
         let Some(name) = &self.horizon else { return };
         let had = before.horizons.iter().any(|entry| entry.name == *name);

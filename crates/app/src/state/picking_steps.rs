@@ -1,4 +1,4 @@
-//! What each step does to the state, and what others are to do.
+//! What each step of the interpretation does to the state, and which tasks follow.
 
 use super::picking::{How, Picking, PickingStep, PickingTask, Tool, free_name, place_of};
 use super::{Place, State, Task};
@@ -86,7 +86,7 @@ impl State {
         Vec::new()
     }
 
-    /// A command of the interpretation failed: what it was to accept is selected again.
+    /// A command of the interpretation failed: the selection that it was to accept is selected again.
     pub(super) fn reselect(&mut self) {
         let Some(session) = &mut self.session else { return };
         let picking = &mut session.view.picking;
@@ -99,7 +99,8 @@ impl State {
 }
 
 impl Picking {
-    /// A click at a place in line numbers: selects there, after accepting what was selected where it extends, or takes out.
+    /// A click at a place in line numbers: selects the leaf there, accepts the previous selection first, or removes the
+    /// leaf, as `how` says.
     fn click(&mut self, at: [f64; 3], how: How) -> Vec<Task> {
         let mut tasks = Vec::new();
         if how == How::Remove {
@@ -117,9 +118,9 @@ impl Picking {
         tasks
     }
 
-    /// Lets the next picks go to another horizon: the one chosen, or else a new one.
+    /// Sends the next picks to another horizon: the one given, or else a new one.
     fn turn_to(&mut self, chosen: Option<String>, document: &Document) -> Vec<Task> {
-        // What is selected belongs to the horizon it was selected for.
+        // The selection belongs to the horizon that it was made for.
         let tasks: Vec<Task> = self.accept().into_iter().collect();
         let taken = self.horizon.clone().filter(|_| !tasks.is_empty());
         self.horizon = Some(chosen.unwrap_or_else(|| {
@@ -135,7 +136,7 @@ impl Picking {
         tasks
     }
 
-    /// A fault of the sticks drawn; nothing without any.
+    /// The command that makes a fault of the sticks; nothing while there are none.
     fn make_fault(&mut self) -> Option<Task> {
         self.end_stick();
         let sticks = std::mem::take(&mut self.sticks);

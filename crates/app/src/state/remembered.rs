@@ -1,21 +1,22 @@
-//! What outlives the window: recent projects, appearance, and how the last project was left.
+//! What outlives the window: recent projects, appearance, and the view of the last project.
 //!
-//! Commands are saved as they are given, so a crash loses nothing of a project. What it could lose is the view; that is written here
-//! now and then, with a mark that is taken away when the window is closed properly. A mark that is still there at the next start means
-//! that the last run ended badly, and the start page offers to go on from where it was.
+//! Commands are saved as they are given, so a crash loses nothing of a project. Only the view could be lost; it is
+//! written here from time to time, together with a mark that is removed when the window is closed properly. A mark that
+//! is still there at the next start means that the last run ended badly, and the start page offers to continue from
+//! that view.
 
 use super::view::View;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
-/// Recent projects kept.
+/// Number of recent projects that are kept.
 const RECENT: usize = 8;
 
 /// Light or dark.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Appearance {
-    /// As the desktop is.
+    /// As the desktop says.
     #[default]
     System,
     /// Dark on light.
@@ -25,7 +26,7 @@ pub enum Appearance {
 }
 
 impl Appearance {
-    /// The next one round.
+    /// The next choice in turn.
     pub fn next(self) -> Self {
         match self {
             Self::System => Self::Light,
@@ -44,12 +45,12 @@ impl Appearance {
     }
 }
 
-/// A project left open.
+/// A project that was open when the program ended.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Left {
     /// Its folder.
     pub root: PathBuf,
-    /// How it was looked at.
+    /// Its view.
     pub view: View,
 }
 
@@ -59,29 +60,29 @@ pub struct Left {
 pub struct Remembered {
     /// Light or dark.
     pub appearance: Appearance,
-    /// Scale of everything on top of the desktop's.
+    /// Scale of the interface on top of the desktop's.
     pub scale: Option<f32>,
     /// Recent projects, newest first.
     pub recent: Vec<PathBuf>,
-    /// What was open when the window was last heard of; taken away when it is closed properly.
+    /// The project that was open when the window last wrote this file; removed when the window is closed properly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left: Option<Left>,
 }
 
 impl Remembered {
-    /// Puts a project first.
+    /// Puts a project first in the list.
     pub fn add(&mut self, root: &Path) {
         self.recent.retain(|known| known != root);
         self.recent.insert(0, root.to_owned());
         self.recent.truncate(RECENT);
     }
 
-    /// Forgets a project.
+    /// Removes a project from the list.
     pub fn forget(&mut self, root: &Path) {
         self.recent.retain(|known| known != root);
     }
 
-    /// The file it is kept in: `petroglyph/window.toml` where the system keeps settings.
+    /// The file of the settings: `petroglyph/window.toml` in the system's folder for settings.
     pub fn path() -> Option<PathBuf> {
         let folder = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
         let settings = folder("XDG_CONFIG_HOME")
@@ -90,12 +91,13 @@ impl Remembered {
         Some(settings.join("petroglyph").join("window.toml"))
     }
 
-    /// What is kept at `path`; nothing where there is no such file or it cannot be understood, for it holds nothing that matters.
+    /// The settings in `path`; the defaults where the file does not exist or cannot be parsed, since it holds nothing
+    /// that matters.
     pub fn read(path: &Path) -> Self {
         std::fs::read_to_string(path).ok().and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
     }
 
-    /// Keeps it at `path`, complete or not at all.
+    /// Writes the settings to `path`, completely or not at all.
     ///
     /// # Errors
     /// The file could not be written.

@@ -1,11 +1,11 @@
-//! The open project as the window knows it: a copy of its document, its history, and how it is looked at.
+//! The open project as the window knows it: a copy of its document, its history, and its view.
 
 use super::view::{Panel, View};
 use project::HistoryLine;
 use project::document::Document;
 use std::path::PathBuf;
 
-/// A project as it was read.
+/// A project as read from disk.
 #[derive(Debug, Clone)]
 pub struct Snapshot {
     /// Its folder.
@@ -23,16 +23,16 @@ pub struct Session {
     pub root: PathBuf,
     /// Its state as last read.
     pub document: Document,
-    /// Grows with each state read: steps of the history come again after undo.
+    /// Grows with each state that is read. The step number alone does not identify a state: it repeats after undo.
     pub revision: u64,
     /// Its history, oldest first.
     pub history: Vec<HistoryLine>,
-    /// How it is looked at.
+    /// The view.
     pub view: View,
 }
 
 impl Session {
-    /// A project just opened, looked at as `view` says or else in its own first scene.
+    /// A project that was just opened, with the given view or else its own first scene.
     pub fn new(snapshot: Snapshot, view: Option<View>) -> Self {
         let Snapshot { root, document, history } = snapshot;
         let mut view = view.unwrap_or_else(|| View::of(&document));
@@ -40,7 +40,7 @@ impl Session {
         Self { root, document, revision: 0, history, view }
     }
 
-    /// Takes a new state of the same project over; the view stays as far as it still fits.
+    /// Takes over a new state of the same project; the view stays as far as it still applies.
     pub fn renew(&mut self, snapshot: Snapshot) {
         let had_frame = self.document.geometry.is_some();
         let was_bare = self.document.horizons.is_empty();
@@ -53,7 +53,8 @@ impl Session {
         if !had_frame || illustrates_now {
             let usual = View::of(&self.document).scene;
             if self.view.panel == Panel::Interpret {
-                // Who is picking keeps camera, box and cut-outs; the illustration begins when it is looked at.
+                // Whoever is picking keeps camera, box and cut-outs; the scene of the illustration takes over when it
+                // is first shown.
                 self.view.scene.blend = usual.blend;
                 self.view.scene.ground = usual.ground;
             } else {
@@ -63,20 +64,20 @@ impl Session {
         self.view.fit(&self.document);
     }
 
-    /// The name the project goes by: its folder's without the ending.
+    /// The project's name: its folder's name without the extension.
     pub fn name(&self) -> String {
         self.root
             .file_stem()
             .map_or_else(|| self.root.display().to_string(), |stem| stem.to_string_lossy().into_owned())
     }
 
-    /// What undo would take back.
+    /// The change that undo would revert.
     pub fn undoable(&self) -> Option<&str> {
         let step = self.document.step;
         self.history.iter().find(|line| line.step == step && step > 0).map(|line| line.summary.as_str())
     }
 
-    /// What redo would bring back.
+    /// The change that redo would restore.
     pub fn redoable(&self) -> Option<&str> {
         let step = self.document.step + 1;
         self.history.iter().find(|line| line.step == step).map(|line| line.summary.as_str())

@@ -1,4 +1,5 @@
-//! What the block shows while interpreting: the view's own scene in raw colours, or seen through in the occlusion slicer (P-horiz 6).
+//! What the block shows while interpreting: the view's own scene in raw colours, or volume rendering with occlusion
+//! (P-horiz 6).
 
 use super::picking::Look;
 use super::{Panel, Session};
@@ -6,13 +7,14 @@ use project::picture::scene::{SeeThrough, Technique};
 use render::{FaceData, Media, PickedHorizon, Scene, Scope};
 use ttf::Colour;
 
-/// Values up to this share of the volume's clip are clear in the white function: what is left are the strong reflections.
+/// Values up to this share of the volume's clip are transparent in the white function, so that only strong reflections
+/// remain.
 const CLEAR_BELOW: f32 = 0.35;
-/// Half of a horizon's thickness where the block is seen through, voxels.
+/// Half of a horizon's thickness in volume rendering, voxels.
 const THICKNESS: f32 = 1.2;
 
-/// The scene that the block view draws; `horizons` are those to be seen in it by their colour and leaves, absent while no candidates are in
-/// memory.
+/// The scene that the block view draws; `horizons` are those to show in it, by their colours and leaves, or `None`
+/// while no candidates are in memory.
 pub fn scene(session: &Session, horizons: Option<&[(Colour, Vec<u32>)]>) -> Scene {
     let view = &session.view;
     let mut scene = view.scene.clone();

@@ -1,5 +1,5 @@
-//! What a view sees through, as the window changes it: one volume in the cut-outs or in the whole block, and horizons in it with light of
-//! their own (P-illus 5.1, P-horiz 5).
+//! Volume rendering as the window sets it up: one volume in the cut-outs or in the whole block, and horizons in it that
+//! may give off light (P-illus 5.1, P-horiz 5).
 
 use project::document::Document;
 use project::error::ProjectError;
@@ -8,37 +8,37 @@ use render::media::Interleaved;
 use render::{Faces, Ground, Medium, Occlusion, Phong, PickedHorizon, Scene, Scope, Shading};
 use ttf::{Colour, RgbaFunction, RgbaStop};
 
-/// Values up to this share of the volume's clip are clear to begin with: what is left are the strong reflections.
+/// Values up to this share of the volume's clip are transparent at first, so that only strong reflections remain.
 const CLEAR_BELOW: f32 = 0.35;
-/// Error of colour and opacity, in shares of their range, that a function may have for being drawn with fewer stops.
+/// Error of colour and opacity, as a share of their range, that is accepted when a function is drawn with fewer stops.
 const TOLERANCE: f32 = 0.02;
 
-/// Where a volume is seen through.
+/// Where a volume is rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Extent {
     /// Nowhere.
     Nowhere,
-    /// In the cut-outs, before the rock behind them.
+    /// In the cut-outs, in front of the rock behind them.
     CutOuts,
     /// In the whole block, in place of the rock.
     Block,
 }
 
-/// How it is lit.
+/// How the volume is shaded.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Light {
     /// Not at all.
     None,
     /// By the volume's gradients.
     Gradients,
-    /// By what lies in front.
+    /// By occlusion.
     Occlusion,
-    /// By both, in stripes.
+    /// By gradients and by occlusion, in alternating stripes.
     Stripes,
 }
 
 impl Light {
-    /// Of a scene.
+    /// The shading of a scene.
     pub fn of(scene: &Scene) -> Self {
         match scene.media.shading {
             Shading::Unshaded => Self::None,
@@ -59,7 +59,7 @@ impl Light {
     }
 }
 
-/// Where a scene is seen through.
+/// Where a scene renders a volume.
 pub fn extent(scene: &Scene) -> Extent {
     match (scene.media.faces, scene.media.cut_outs.is_empty()) {
         (Faces::None, _) => Extent::Block,
@@ -68,13 +68,13 @@ pub fn extent(scene: &Scene) -> Extent {
     }
 }
 
-/// The volume that is seen through.
+/// The volume that is rendered.
 pub fn medium(scene: &mut Scene) -> Option<&mut Medium> {
     let media = &mut scene.media;
     media.surroundings.first_mut().or(media.cut_outs.first_mut())
 }
 
-/// Has a volume seen through there, in the colours and the light that suit the place; horizons stay.
+/// Renders a volume in that extent, with colours and shading to match; horizons in it stay.
 ///
 /// # Errors
 /// The project has no such volume.
@@ -111,7 +111,8 @@ pub fn see(scene: &mut Scene, document: &Document, extent: Extent, volume: &str)
     Ok(())
 }
 
-/// Shows a horizon in what is seen through, or no longer. Surfaces of one colour have no shape without light.
+/// Shows or hides a horizon in the rendered volume. Shading is switched on with it: surfaces of one colour have no
+/// shape without it.
 pub fn show_horizon(scene: &mut Scene, name: &str, colour: Colour, is_shown: bool) {
     let media = &mut scene.media;
     media.horizons.retain(|horizon| horizon.name.as_deref() != Some(name));
@@ -125,7 +126,8 @@ pub fn show_horizon(scene: &mut Scene, name: &str, colour: Colour, is_shown: boo
     }
 }
 
-/// The same function but for [`TOLERANCE`], with the stops that it cannot do without (Douglas and Peucker's way with lines).
+/// The same function within [`TOLERANCE`], with as few stops as possible (the line simplification of Douglas and
+/// Peucker).
 fn with_fewer_stops(function: &RgbaFunction) -> RgbaFunction {
     let stops = &function.stops;
     let mut kept = vec![false; stops.len()];

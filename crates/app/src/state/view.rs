@@ -1,4 +1,4 @@
-//! How a project is looked at: nothing of this belongs to the project until it is kept as a named scene.
+//! How a project is displayed: nothing of this belongs to the project until it is saved as a named scene.
 
 pub use figure::SectionKind;
 
@@ -9,7 +9,7 @@ use render::{Scene, VoxelBox};
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
 
-/// What fills the middle of the window.
+/// Which views fill the middle of the window.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Layout {
@@ -24,16 +24,16 @@ pub enum Layout {
     Fence,
 }
 
-/// How raw and illustrated stand beside each other.
+/// How raw and illustrated pictures are compared.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Compare {
     /// One picture, blended as the slider says.
     #[default]
     Blend,
-    /// Illustrated on the left, raw on the right, one camera.
+    /// Illustrated on the left, raw on the right, with one camera.
     SideBySide,
-    /// One over the other, parted by a line that can be dragged.
+    /// One over the other, divided by a line that can be dragged.
     Wipe,
 }
 
@@ -52,10 +52,10 @@ pub enum Panel {
     Interpret,
 }
 
-/// Where the camera can be put at once.
+/// Standard positions of the camera.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StandardView {
-    /// Over a corner, as block diagrams are drawn.
+    /// Obliquely over a corner, the usual view of block diagrams.
     Block,
     /// Straight down, north up.
     Top,
@@ -70,7 +70,7 @@ pub enum StandardView {
 }
 
 impl StandardView {
-    /// All of them, in the order they are offered.
+    /// All of them, in the order in which they are offered.
     pub const ALL: [Self; 6] = [Self::Block, Self::Top, Self::North, Self::East, Self::South, Self::West];
 
     /// Its name.
@@ -86,16 +86,16 @@ impl StandardView {
     }
 }
 
-/// How the open project is looked at.
+/// How the open project is displayed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct View {
-    /// Camera, box, cut-outs, blend: what the picture shows. Its size is that of the last export.
+    /// The scene: camera, box, cut-outs, blend. Its size is that of the last export.
     pub scene: Scene,
-    /// What fills the middle.
+    /// Which views fill the middle.
     pub layout: Layout,
-    /// Raw against illustrated.
+    /// How raw and illustrated are compared.
     pub compare: Compare,
-    /// Where the wipe's line stands, share of the width.
+    /// Position of the dividing line of the wipe, share of the width.
     pub wipe: f32,
     /// The point the sections run through, voxel.
     pub slices: [f64; 3],
@@ -108,15 +108,15 @@ pub struct View {
     pub layer: Option<String>,
     /// The horizon that the map shows.
     pub horizon: Option<String>,
-    /// Whether handles of box and cut-outs are shown.
+    /// Whether the handles of the box and the cut-outs are shown.
     pub handles: bool,
-    /// What is being interpreted.
+    /// The interpretation under way.
     #[serde(default)]
     pub picking: Picking,
 }
 
 impl View {
-    /// The first scene of a project, or its default view.
+    /// The view of a project's first scene, or its default view.
     pub fn of(document: &Document) -> Self {
         let scene = scene::choose(document, None).unwrap_or_default();
         let size = document.geometry.as_ref().map_or([1; 3], SurveyGeometry::size);
@@ -135,7 +135,7 @@ impl View {
         }
     }
 
-    /// Lets go of what the project no longer has.
+    /// Drops references to what the project no longer has.
     pub fn fit(&mut self, document: &Document) {
         let Some(geometry) = &document.geometry else { return };
         if self.scene.validate(geometry).is_err() {
