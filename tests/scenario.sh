@@ -67,11 +67,11 @@ click "$section_x" "$((middle_y + height / 25))"
 sleep 2; look 2-selected
 key Up Up
 sleep 2; look 3-climbed
-# Killed with the selection not accepted yet: the next window goes on with it.
+# Killed with the selection not accepted yet: the next window restores it.
 kill -9 "$window_process"; wait "$window_process" 2>/dev/null || true
 open
 look 4-recovery
-# "Go on" is the first button of the page.
+# "Continue" is the first button of the page.
 key Tab; key space
 sleep 6
 look 4-recovered

@@ -12,7 +12,7 @@ pub fn of(error: &(dyn Error + 'static)) -> Option<String> {
 /// What to do next in the window, where general advice is possible.
 fn words(error: &ProjectError) -> Option<&'static str> {
     Some(match error {
-        ProjectError::NotFound { .. } => "check the path, or begin a new project from SEG-Y",
+        ProjectError::NotFound { .. } => "check the path, or create a new project from SEG-Y",
         ProjectError::DiskFull { .. } => {
             "free some space (the project's folder derived may be deleted), then try again; nothing was changed"
         }
@@ -20,26 +20,28 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::Unknown { .. } => "check the spelling, and whether it was renamed or removed meanwhile",
         ProjectError::PickOutside { .. } => "click inside the survey",
         ProjectError::NoCandidate { .. } => {
-            "click there, or extract again and follow other extrema or with a larger reach (How)"
+            "click there, or extract again with other extrema or a larger maximum distance (Settings)"
         }
         ProjectError::NotAssembled { .. } => {
-            "choose another horizon, or begin one (New horizon): picks make horizons of their own"
+            "choose another horizon, or start one (New horizon): only horizons that were made from picks take picks"
         }
-        ProjectError::NothingLeft { .. } => "Remove takes a horizon away",
+        ProjectError::NothingLeft { .. } => "to remove the horizon, use Remove beside its name",
         ProjectError::AlreadyPicked { .. } => "pick elsewhere, or climb higher first",
         ProjectError::NotPicked { .. } => "the picks and their places are listed under the horizon's name",
         ProjectError::UnknownPick { .. } => "the picks with their numbers are listed under the horizon's name",
         ProjectError::AtLeaf { .. } => {
-            "take the leaf out with Alt and a click, or extract again with smaller leaves (How)"
+            "remove the leaf with Alt and a click, or extract again with smaller leaves (Settings)"
         }
-        ProjectError::OutdatedPicks { .. } => "choose the horizon and Pick again, or extract with the former settings",
+        ProjectError::OutdatedPicks { .. } => {
+            "choose the horizon and use Pick again, or extract with the former settings"
+        }
         ProjectError::UnfitPicks { .. } => {
-            "Pick again what fits leaves them out; where none fits, pick anew in another horizon"
+            "Pick again what fits leaves them out; where none fits, pick another horizon"
         }
-        ProjectError::ShortStick { .. } => "end a stick after its second place or later",
+        ProjectError::ShortStick { .. } => "click at least two points before you end a stick",
         ProjectError::NotDrawn { .. } => "choose another fault",
-        ProjectError::NoProposals | ProjectError::OutdatedProposals => "look for faults again",
-        ProjectError::UnknownProposal { .. } => "look for faults again",
+        ProjectError::NoProposals | ProjectError::OutdatedProposals => "propose faults again",
+        ProjectError::UnknownProposal { .. } => "propose faults again",
         ProjectError::NoGeometry => "add a volume first",
         ProjectError::NothingToUndo | ProjectError::NothingToRedo => {
             "another window or command may have changed the project's history"
@@ -48,8 +50,8 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::NoVolume => "add a volume first",
         ProjectError::Style(_) => "choose another pattern for the layer, or go back to its default style",
         ProjectError::Scene(_) => "show the whole survey without cut-outs, or another scene",
-        ProjectError::Placement { .. } => "begin a project of its own with it, or check its header bytes",
-        ProjectError::SeveralInFile { .. } => "choose one of those listed",
+        ProjectError::Placement { .. } => "import it into a new project, or check its header bytes",
+        ProjectError::SeveralInFile { .. } => "choose one of the names that are listed",
         ProjectError::Crossing { .. } => {
             "check unit, sign and picks there, or choose another contact: erosional, onlap or intrusive"
         }

@@ -1,4 +1,4 @@
-//! The line at the top: the project, undo and redo, what fills the middle, raw against illustrated.
+//! The toolbar at the top: project menu, undo and redo, views, comparison of raw and illustrated, export.
 
 use crate::state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, Layout as Arrangement, Panel, Session, State,
@@ -6,16 +6,16 @@ use crate::state::{
 use eframe::egui::{Align, Button, Label, Layout, RichText, Slider, Ui};
 use render::Scene;
 
-/// Room for everything but the project's name and the comparison, points.
+/// Width of everything but the project's name and the comparison, points.
 const OTHERS: f32 = 680.0;
-/// Room for the comparison, points.
+/// Width of the comparison, points.
 const COMPARISON: f32 = 440.0;
-/// Room for the menu that it folds into, points.
+/// Width of the menu that the comparison folds into, points.
 const MENU: f32 = 110.0;
-/// The shortest and the longest that a project's name is shown, points.
+/// Smallest and largest width of the project's name, points.
 const NAME: [f32; 2] = [60.0, 280.0];
 
-/// Shows the line.
+/// Shows the toolbar.
 pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
     // Interpreting is done on the raw volume: there is nothing to compare it with.
     let compares = session.view.panel != Panel::Interpret;
@@ -67,7 +67,7 @@ pub fn show(ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Act
             }
             let form = ExportForm::new(session.root.with_extension("png").display().to_string());
             let can = session.is_drawable();
-            let export = ui.add_enabled(can, Button::new("Export…")).on_hover_text("Draw to a file (Ctrl E)");
+            let export = ui.add_enabled(can, Button::new("Export…")).on_hover_text("Export the picture (Ctrl E)");
             if export.clicked() {
                 actions.push(Action::Ask(Box::new(Dialogue::Export(form))));
             }
@@ -131,7 +131,7 @@ fn comparison(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         for (compare, name, hint) in [
             (Compare::Blend, "Blend", "One picture, blended from illustrated to raw"),
             (Compare::SideBySide, "Side by side", "Illustrated and raw beside each other"),
-            (Compare::Wipe, "Wipe", "Illustrated over raw, with a line to drag"),
+            (Compare::Wipe, "Wipe", "Illustrated over raw, divided by a line to drag"),
         ] {
             let label = ui.selectable_label(session.view.compare == compare, name).on_hover_text(hint);
             if label.clicked() {

@@ -1,11 +1,11 @@
-//! Horizon candidates: extracting them, and how.
+//! The panel of horizon candidates: extraction and its settings.
 
 use crate::state::{Action, Session};
 use crate::work::{Interpreted, RunningLine};
 use eframe::egui::{Align, Button, ComboBox, DragValue, Grid, Layout, ProgressBar, Ui};
 use interp::{ExtractSettings, Extremum, Method};
 
-/// What is to be extracted.
+/// The volume and the settings of the next extraction.
 #[derive(Default)]
 pub struct CandidatesPanel {
     settings: ExtractSettings,
@@ -32,7 +32,7 @@ impl CandidatesPanel {
                     ui.add(ProgressBar::new(line.share().unwrap_or(0.0)).show_percentage());
                 });
             });
-            ui.weak("Work goes on meanwhile.");
+            ui.weak("You can go on working meanwhile.");
             return;
         }
         let found = shown.and_then(|shown| shown.extraction.as_ref());
@@ -49,7 +49,7 @@ impl CandidatesPanel {
                 actions.push(Action::Extract(self.volume.clone(), Box::new(self.settings.clone())));
             }
         });
-        ui.collapsing("How", |ui| self.extraction_settings(ui, session));
+        ui.collapsing("Settings", |ui| self.extraction_settings(ui, session));
     }
 
     fn extraction_settings(&mut self, ui: &mut Ui, session: &Session) {
@@ -72,7 +72,7 @@ impl CandidatesPanel {
             ui.label("Method");
             ui.horizontal(|ui| {
                 ui.selectable_value(&mut settings.grow.method, Method::Ours, "Ours");
-                ui.selectable_value(&mut settings.grow.method, Method::Paper, "Paper's");
+                ui.selectable_value(&mut settings.grow.method, Method::Paper, "As published");
             });
             ui.end_row();
             ui.label("Follow");
@@ -90,33 +90,33 @@ impl CandidatesPanel {
                 }
             });
             ui.end_row();
-            let label = ui.label("Least front width");
+            let label = ui.label("Minimum front width");
             let drag = DragValue::new(&mut settings.grow.min_front_width).range(2..=64).suffix(" traces");
             ui.add(drag).labelled_by(label.id);
             ui.end_row();
             let label = ui.label("Fault evidence");
             let drag = DragValue::new(&mut settings.grow.fault_evidence).range(5.0..=10_000.0).speed(1.0);
-            let hint = "The more is asked, the fewer cuts: 25 for clean data, 100 to 200 where samples are clipped or reflectors chaotic";
+            let hint = "More evidence gives fewer cuts: 25 for clean data, 100 to 200 for clipped samples or chaotic reflectors";
             ui.add(drag).labelled_by(label.id).on_hover_text(hint);
             ui.end_row();
             let label = ui.label("Join pieces from");
             let mut percent = 100.0 * settings.grow.join_share;
             let drag = DragValue::new(&mut percent).range(5.0..=101.0).speed(1.0).suffix(" %");
-            let hint = "Share of the common boundary that must speak for joining two pieces; 101 joins none";
+            let hint = "Share of the common boundary that must support joining two pieces; 101 joins none";
             if ui.add(drag).labelled_by(label.id).on_hover_text(hint).changed() {
                 settings.grow.join_share = percent / 100.0;
             }
             ui.end_row();
-            let label = ui.label("Least leaf");
+            let label = ui.label("Minimum leaf size");
             let drag = DragValue::new(&mut settings.forest.min_leaf_triangles).range(1..=100_000).suffix(" triangles");
             ui.add(drag).labelled_by(label.id);
             ui.end_row();
-            let label = ui.label("Reach");
+            let label = ui.label("Maximum distance");
             let drag = DragValue::new(&mut settings.distance.max_distance).range(1.0..=10.0).suffix(" voxels");
             ui.add(drag).labelled_by(label.id);
             ui.end_row();
         });
-        if ui.small_button("Usual settings").clicked() {
+        if ui.small_button("Default settings").clicked() {
             *settings = ExtractSettings::default();
         }
     }

@@ -1,4 +1,4 @@
-//! Items of a figure's page on the screen: the same display list that is printed, painted by egui.
+//! Paints items of a figure's page on the screen: egui paints the same display list that is printed.
 //!
 //! A point of the page is [`SCALE`] points of the screen, so that a page's 7-point numbers are as large as
 //! the window's own. Images are painted as the texture that the view keeps of them, small ones pixel by
@@ -15,25 +15,25 @@ use std::f32::consts::PI;
 
 /// Points of the screen to a point of the page.
 pub const SCALE: f64 = 1.64;
-/// Straight pieces that a curve is painted as.
+/// Line segments that approximate a curve.
 const PIECES: usize = 8;
-/// Images of no more pixels are painted pixel by pixel where there is no texture of them.
+/// Images of up to this many pixels are painted pixel by pixel where there is no texture of them.
 const SMALL_PX: u32 = 512;
-/// Copies of a text that make its rim.
+/// Copies of a text that form its halo.
 const RIM: usize = 8;
 
-/// A place of the screen as a place of the page.
+/// Converts a point of the screen to a point of the page.
 pub fn page(at: Pos2) -> DVec2 {
     DVec2::new(f64::from(at.x), f64::from(at.y)) / SCALE
 }
 
-/// A place of the page as a place of the screen.
+/// Converts a point of the page to a point of the screen.
 pub fn screen(at: DVec2) -> Pos2 {
     let at = at * SCALE;
     pos2(at.x as f32, at.y as f32)
 }
 
-/// A rectangle of the screen as one of the page.
+/// Converts a rectangle of the screen to one of the page.
 pub fn page_rect(rect: Rect) -> figure::Rect {
     figure::Rect::new(page(rect.min), page(rect.max))
 }
@@ -61,7 +61,7 @@ fn colour(ink: Ink) -> Color32 {
     Color32::from_rgba_unmultiplied(r, g, b, (ink.opacity.clamp(0.0, 1.0) * 255.0).round() as u8)
 }
 
-/// The pieces of a path as straight lines on the screen.
+/// The segments of a path as straight lines on the screen.
 fn pieces(path: &Path) -> Vec<Vec<Pos2>> {
     let mut pieces: Vec<Vec<DVec2>> = Vec::new();
     for segment in &path.segments {
@@ -119,7 +119,7 @@ fn paint_text(painter: &Painter, text: &Text) {
         Across::Middle => 0.5,
         Across::End => 1.0,
     };
-    // Within a line of this face the baseline lies at four fifths of the height, and capitals reach from there to a fifth.
+    // In this typeface the baseline lies at four fifths of the line height, and capitals reach up to one fifth.
     let upright = match text.anchor.upright {
         Upright::Baseline => 0.8,
         Upright::Middle => 0.5,

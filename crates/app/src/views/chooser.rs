@@ -1,6 +1,7 @@
-//! Choosing a file or folder: a list to walk through and a line to type into.
+//! Choosing a file or folder: a list to browse and a line to type into.
 //!
-//! Ours, not the desktop's, so that it is the same everywhere, needs no desktop service, and can be driven by keys and tests.
+//! It is our own rather than the desktop's, so that it is the same everywhere, needs no desktop service, and can be
+//! driven by keys and tests.
 
 use super::notices;
 use crate::state::{Action, Choice, Dialogue, Interpreted, Place, State, Target};
@@ -14,7 +15,7 @@ pub struct Chooser {
     choice: Option<Choice>,
     text: String,
     listing: Folder,
-    /// Folder last chosen from.
+    /// The folder that was chosen from last.
     home: PathBuf,
 }
 
@@ -63,7 +64,7 @@ impl Chooser {
         }
     }
 
-    /// The folder that the typed path is in or is.
+    /// The folder that the typed path names or lies in.
     fn folder(&self) -> PathBuf {
         let path = Path::new(self.text.trim());
         if self.text.ends_with(['/', '\\']) || self.text.is_empty() {
@@ -73,7 +74,7 @@ impl Chooser {
         }
     }
 
-    /// What the folder holds; whether something in it was taken by a double click.
+    /// Lists the content of the folder; returns whether something in it was chosen by a double click.
     fn list(&mut self, ui: &mut Ui, choice: Choice) -> bool {
         let mut is_taken = false;
         let listing = self.listing.listing(ui.ctx(), &self.folder());
@@ -143,7 +144,7 @@ impl Chooser {
     }
 }
 
-/// Whether a file's ending fits what is looked for. Interpretations have any ending.
+/// Whether a file's extension fits what is looked for. Interpretations may have any extension.
 pub(super) fn fits(choice: Choice, name: &str) -> bool {
     let ending = name.rsplit_once('.').map(|(_, ending)| ending.to_lowercase()).unwrap_or_default();
     match choice {
@@ -170,12 +171,12 @@ fn explanation(choice: Choice) -> &'static str {
     match choice {
         Choice::Project => "Projects are shown in bold; they are folders that end in .petro.",
         Choice::NewSurvey | Choice::MoreSurvey => {
-            "Choose the file. How it is read is shown before anything is imported."
+            "Choose the file. How it will be read is shown before anything is imported."
         }
         Choice::Horizon => {
             "Irap, ZMAP+, CPS-3, EarthVision, Petrel, Charisma, OpendTect, TSurf, CSV and plain columns."
         }
-        Choice::Well => "The deviation as CSV; tops, logs and checkshots are asked for next.",
+        Choice::Well => "The deviation as CSV; the next dialogue asks for tops, logs and checkshots.",
         Choice::Fault => "Sticks (OpendTect, Charisma), TSurf, or points.",
         Choice::Texture => "A PNG, JPEG or SVG that repeats without seams.",
         Choice::Demo => "A folder for it. It takes about a minute and 60 MB.",

@@ -1,4 +1,4 @@
-//! The panel on the right: the camera, the box, the display, and named scenes.
+//! The panel on the right: camera, display, block, and named scenes.
 
 use super::notices;
 use crate::state::{Action, Panel, Place, Session, StandardView, State};
@@ -8,16 +8,16 @@ use project::command::{AddScene, Command, RemoveScene};
 use render::{Corner, Ground, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 
-/// Angle a perspective begins with.
+/// Opening angle that a perspective starts with.
 const FOV_DEG: f64 = 35.0;
-/// Width of the labels before sliders, points.
+/// Width of the labels in front of sliders, points.
 const LABELS: f32 = 100.0;
-/// Room beside a slider for its label and its number, points.
+/// Width that the label and the number beside a slider take, points.
 const BESIDE_SLIDER: f32 = 184.0;
-/// Shares of the block a new corner cut takes.
+/// Shares of the block that a new corner cut takes.
 const CUT_SHARE: [f64; 2] = [0.45, 0.45];
 
-/// The panel, and what is being typed in it.
+/// The panel, with the text being typed in it.
 #[derive(Debug, Default)]
 pub struct Controls {
     scene_name: String,
@@ -27,7 +27,7 @@ impl Controls {
     /// Shows the panel.
     pub fn show(&mut self, ui: &mut Ui, state: &State, session: &Session, actions: &mut Vec<Action>) {
         ScrollArea::vertical().show(ui, |ui| {
-            // Whatever rows there are, the panel keeps its width and the middle its place.
+            // The panel keeps its width whatever rows it has, so that the middle keeps its place.
             ui.spacing_mut().slider_width = (ui.available_width() - BESIDE_SLIDER).max(60.0);
             let scene = &session.view.scene;
             let mut next = scene.clone();
@@ -66,7 +66,7 @@ impl Controls {
             let label = ui.label("Scene name");
             ui.add(TextEdit::singleline(&mut self.scene_name).desired_width(100.0)).labelled_by(label.id);
             let name = self.scene_name.trim().to_owned();
-            if ui.add_enabled(!name.is_empty(), Button::new("Keep view")).clicked() {
+            if ui.add_enabled(!name.is_empty(), Button::new("Save scene")).clicked() {
                 let command = AddScene { name, scene: session.view.scene.clone() };
                 actions.push(Action::Apply(Box::new(Command::AddScene(command))));
                 self.scene_name.clear();
@@ -114,7 +114,7 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
                 )
             });
         }
-        row(ui, "Side tone", |ui| ui.add(Slider::new(&mut scene.face_tone, 0.0..=0.5).max_decimals(2)));
+        row(ui, "Face tone", |ui| ui.add(Slider::new(&mut scene.face_tone, 0.0..=0.5).max_decimals(2)));
     });
     if has_layers {
         let mut has_ground = scene.ground.is_some();
@@ -133,7 +133,7 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
     }
 }
 
-/// The box in line numbers and vertical values, and the cut-outs.
+/// The limits of the box in line numbers and vertical values, and the cut-outs.
 fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Action>) {
     let Some(geometry) = &session.document.geometry else { return };
     let bounds = scene.box_in(geometry);
@@ -200,7 +200,7 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
     }
 }
 
-/// The cut-out at the corner that the viewer is nearest to.
+/// The cut-out at the corner that is nearest to the viewer.
 pub fn nearest_cut(scene: &Scene, geometry: &survey::SurveyGeometry) -> VoxelBox {
     let block = scene.box_in(geometry);
     let corner = scene.view(geometry).nearest_corner(&block);

@@ -1,4 +1,4 @@
-//! Volumes, horizons, faults and wells of the project.
+//! The volumes, horizons, faults and wells of the project.
 
 use super::notices;
 use super::sections::entry_colour;
@@ -11,10 +11,10 @@ use project::styles;
 use survey::VerticalUnit;
 use ttf::ColourMap;
 
-/// The panel, and what is being typed in it.
+/// The panel, with the text being typed in it.
 #[derive(Default)]
 pub struct Data {
-    /// A horizon and its new name.
+    /// A horizon and the new name being typed.
     renaming: Option<(String, String)>,
     velocity: Option<f64>,
 }
@@ -108,7 +108,7 @@ impl Data {
     }
 }
 
-/// A button at the right end of a row; answers whether it was clicked.
+/// A button at the right end of a row; returns whether it was clicked.
 pub(super) fn remove(ui: &mut Ui, hint: &str) -> bool {
     ui.with_layout(Layout::right_to_left(Align::Center), |ui| ui.small_button("Remove").on_hover_text(hint).clicked())
         .inner

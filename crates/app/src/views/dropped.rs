@@ -1,4 +1,5 @@
-//! Files dropped on the window: a project is opened, a volume read, a tile added; of anything else it is asked what it holds.
+//! Files dropped on the window: a project is opened, a volume is read, a tile is added; for any other file a dialogue
+//! asks what it holds.
 
 use crate::state::{Action, Choice, Dialogue, Interpreted, Notice, Place, State, Target};
 use crate::theme;
@@ -6,7 +7,8 @@ use crate::views::chooser;
 use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Modal, Order};
 use std::path::{Path, PathBuf};
 
-/// Takes in the file that was dropped, the first of several; while one is held over the window, says what letting go does.
+/// Handles the first of the files that were dropped; while a file is held over the window, says what dropping it will
+/// do.
 pub fn receive(ctx: &Context, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
     let (is_held, path) = ctx.input(|input| {
         let dropped = input.raw.dropped_files.first().map(|file| file.path().to_owned());
@@ -16,17 +18,17 @@ pub fn receive(ctx: &Context, state: &State, is_busy: bool, actions: &mut Vec<Ac
         let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("held file")));
         let rect = ctx.content_rect();
         painter.rect_filled(rect, 0.0, Color32::from_black_alpha(150));
-        let text = "Let go to open it";
+        let text = "Drop to open";
         painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(24.0), Color32::WHITE);
     }
     match path {
-        // What is being opened comes first.
+        // Finish the dialogue that is open first.
         Some(path) if state.session.is_some() || !is_busy => actions.push(action(&path, state)),
         _ => {}
     }
 }
 
-/// What a file that was dropped is for.
+/// What a dropped file can be used for.
 fn action(path: &Path, state: &State) -> Action {
     let document = state.session.as_ref().map(|session| &session.document);
     let ask = |dialogue: Dialogue| Action::Ask(Box::new(dialogue));
@@ -55,13 +57,14 @@ fn action(path: &Path, state: &State) -> Action {
         None => Action::Tell(Notice::note(
             Place::Start,
             format!(
-                "the file {name} is neither a project (a folder NAME.petro) nor a SEG-Y volume (.sgy, .segy); open a project before its horizons, faults and wells"
+                "the file {name} is neither a project (a folder NAME.petro) nor a SEG-Y volume (.sgy, .segy); \
+             open a project before its horizons, faults and wells"
             ),
         )),
     }
 }
 
-/// The project that a path is or is the description of.
+/// The project folder, if the path is one or is the `project.toml` in one.
 fn project_of(path: &Path) -> Option<PathBuf> {
     if path.join("project.toml").is_file() {
         return Some(path.to_owned());

@@ -1,11 +1,11 @@
-//! How large, how fine, and where to.
+//! The dialogue for export: file, size and resolution.
 
 use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
 use crate::theme;
 use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
 
-/// Largest picture, pixels a side.
+/// Largest side of a picture, pixels.
 const LARGEST: u32 = 16_000;
 
 /// Shows the dialogue.

@@ -1,6 +1,6 @@
-//! A fence: a section along a line that is drawn on the slice beside it, corner by corner.
+//! The fence view: a section along a line whose corners are clicked on the slice beside it.
 //!
-//! Spaces: s along the line and t down, one a trace and a sample; points of the window.
+//! Spaces: s along the line and t down, in traces and samples; points of the window.
 
 use super::lasso;
 use super::overlay::Overlay;
@@ -18,7 +18,7 @@ use image::RgbaImage;
 use render::FaceData;
 use std::sync::Arc;
 
-/// Room for numbers at the left and the top, points.
+/// Margin for the numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
 
 /// The view.
@@ -29,7 +29,7 @@ pub struct FenceView {
     requested: Option<(Vec<DVec2>, u64, FaceData)>,
 }
 
-/// A fence as figures take it.
+/// The fence in the form that figures take.
 struct Shown {
     corners: Vec<DVec2>,
     image: Arc<RgbaImage>,
@@ -37,13 +37,13 @@ struct Shown {
 }
 
 impl FenceView {
-    /// Takes a fence in.
+    /// Takes over a fence that was cut.
     pub fn receive(&mut self, ctx: &Context, cut: FenceCut) {
         texture::keep(&mut self.texture, ctx, "fence", texture::pixels(&cut.image));
         self.shown = Some(Shown { corners: cut.corners, image: Arc::new(cut.image), lines: cut.lines });
     }
 
-    /// Shows the fence in all the room there is; answers what is under the cursor.
+    /// Shows the fence in all the room there is; returns what is under the cursor.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -87,7 +87,7 @@ impl FenceView {
         Some(pointed::at_voxel(&loaded, voxel.as_vec3(), None))
     }
 
-    /// Paints the fence with its numbers into a rectangle; nothing where it is not cut yet.
+    /// Paints the fence with its numbers into a rectangle; nothing until it has been cut.
     fn paint(&self, ui: &Ui, session: &Session, whole: Rect, overlay: &mut Overlay) -> Option<()> {
         let geometry = session.document.geometry.as_ref()?;
         let corners: Vec<DVec2> = session.view.fence.iter().copied().map(DVec2::from_array).collect();
@@ -107,7 +107,7 @@ impl FenceView {
             horizons: &project::figures::horizons(&session.document),
             faults: &[],
             interpretation: None,
-            // Where it turns.
+            // Lines at the corners of the fence.
             marks: Marks { down: along[1..along.len() - 1].to_vec(), ..Marks::default() },
         };
         canvas::paint(&painter, &contents.drawn(seen, seen), self.texture.as_ref().map(TextureHandle::id));
@@ -134,7 +134,7 @@ fn header(ui: &mut Ui, corners: &[DVec2], actions: &mut Vec<Action>) {
         ui.strong("Fence");
         let last = &corners[..corners.len().saturating_sub(1)];
         let some = !corners.is_empty();
-        if ui.add_enabled(some, Button::new("Last corner back")).clicked() {
+        if ui.add_enabled(some, Button::new("Remove last corner")).clicked() {
             actions.push(Action::Fence(last.iter().map(|at| at.to_array()).collect()));
         }
         if ui.add_enabled(some, Button::new("New line")).clicked() {

@@ -1,10 +1,10 @@
-//! Rows of the dialogues' forms: a name and what is stated under it, or left to the file.
+//! Rows of the dialogues' forms: the name of a setting, and its stated value or that of the file.
 
 use crate::fields::field;
 use eframe::egui::{ComboBox, DragValue, TextEdit, Ui};
 use survey::Setting;
 
-/// What a field shows that is left to the file.
+/// The text of a field whose value is taken from the file.
 pub const AS_FILE: &str = "as the file says";
 
 /// The name of a setting's field.
@@ -12,7 +12,7 @@ pub fn name_of(setting: Setting) -> &'static str {
     field(setting).unwrap_or_else(|| setting.option())
 }
 
-/// A choice that may be left to the file; `unstated` is what it shows then.
+/// A choice that may be left to the file, which is then shown as `unstated`.
 pub fn choice<T: Copy + PartialEq>(
     ui: &mut Ui,
     setting: Setting,
@@ -34,7 +34,7 @@ pub fn choice<T: Copy + PartialEq>(
     ui.end_row();
 }
 
-/// A choice with one of its values to begin with.
+/// A choice that always has a value.
 pub fn one_of<T: Copy + PartialEq>(ui: &mut Ui, setting: Setting, value: &mut T, choices: &[(T, &str)]) {
     let name = name_of(setting);
     let label = ui.label(name);

@@ -1,4 +1,5 @@
-//! How a survey would be read: geometry, evidence, a map of the traces, a section; bytes can be changed and show their effect at once.
+//! The dialogue that shows how a survey would be read: geometry, evidence, a map of the traces, a section. Header bytes
+//! can be changed, and the effect shows at once.
 
 use super::{form, notices, texture};
 use crate::fields;
@@ -18,15 +19,15 @@ use segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOption
 use std::path::{Path, PathBuf};
 use survey::{Setting, SurveyGeometry};
 
-/// What a field shows whose value is found in the file.
+/// The text of a field whose value is detected in the file.
 const AS_FOUND: &str = "as found";
 
-/// Lines from the left: columns would stretch words over their width.
+/// Left-aligned lines: justified columns would stretch the words over their width.
 fn from_left() -> Layout {
     Layout::top_down(Align::Min)
 }
 
-/// Room for the buttons beside the path of a new project, points.
+/// Width of the buttons beside the path of a new project, points.
 const BUTTONS: f32 = 190.0;
 
 /// The dialogue.
@@ -38,7 +39,7 @@ pub struct Import {
     polarity: Polarity,
     root: String,
     reading: Reading<SegyOptions, SurveyScan>,
-    /// Of which look.
+    /// Number of the scan that the textures were made from.
     textures: Option<(u64, TextureHandle, TextureHandle)>,
 }
 
@@ -91,7 +92,7 @@ impl Import {
         }
     }
 
-    /// What can be stated about the file, beside what was found.
+    /// The settings that can be stated about the file, beside the values that were detected.
     fn form(&mut self, ui: &mut Ui) {
         let options = &mut self.options;
         let name = &mut self.name;
@@ -99,7 +100,7 @@ impl Import {
         self.reading.with(|found| {
             let found = found.map(|(_, found)| found);
             let info = found.and_then(|found| found.as_ref().ok()).map(|scan| &scan.info);
-            // What an error asks for must be in sight.
+            // The field that an error asks for must be visible.
             let is_refused = matches!(found, Some(Err(_)));
             ui.strong("Header bytes");
             Grid::new("bytes").num_columns(3).spacing([12.0, 7.0]).show(ui, |ui| {
@@ -210,7 +211,7 @@ impl Import {
     }
 }
 
-/// A byte position: what was found, until another is typed.
+/// A byte position: the detected one, until another is typed.
 fn byte(ui: &mut Ui, setting: Setting, option: &mut Option<u16>, found: Option<u16>) {
     let label = ui.label(form::name_of(setting));
     let mut value = option.or(found).unwrap_or(0);
@@ -228,7 +229,7 @@ fn byte(ui: &mut Ui, setting: Setting, option: &mut Option<u16>, found: Option<u
     ui.end_row();
 }
 
-/// What is seldom to be stated.
+/// Settings that seldom need to be stated.
 fn more(ui: &mut Ui, options: &mut SegyOptions) {
     Grid::new("more").num_columns(2).spacing([12.0, 7.0]).show(ui, |ui| {
         form::number(ui, Setting::Interval, &mut options.interval);
@@ -245,15 +246,15 @@ fn more(ui: &mut Ui, options: &mut SegyOptions) {
         let kept = [(KeptDuplicate::First, "the first is kept"), (KeptDuplicate::Last, "the last is kept")];
         form::choice(ui, Setting::Duplicates, &mut options.duplicates, "the first, if they are few", &kept);
         let weights = [
-            (TraceWeight::Apply, "divides by 2^N"),
-            (TraceWeight::Inverse, "multiplies by 2^N"),
-            (TraceWeight::Ignore, "is ignored"),
+            (TraceWeight::Apply, "divide by 2^N"),
+            (TraceWeight::Inverse, "multiply by 2^N"),
+            (TraceWeight::Ignore, "ignore it"),
         ];
         form::one_of(ui, Setting::TraceWeight, &mut options.trace_weight, &weights);
     });
 }
 
-/// Readings of the line numbers that were looked at; each can be taken.
+/// Other readings of the line numbers that were considered; each can be chosen.
 fn candidates(ui: &mut Ui, info: &SegyInfo, options: &mut SegyOptions) {
     ui.strong("Other readings");
     for candidate in &info.candidates {
@@ -303,7 +304,7 @@ fn picture(ui: &mut Ui, texture: &TextureHandle, name: &str) {
     ui.painter().image(texture.id(), rect, uv, Color32::WHITE);
 }
 
-/// The lattice where it lies in the world, one scale both ways.
+/// The lattice at its place in the world, with one scale for both axes.
 fn map(ui: &mut Ui, texture: &TextureHandle, geometry: &SurveyGeometry) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 190.0), Sense::hover());
     response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Map of the traces"));

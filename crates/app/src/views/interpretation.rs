@@ -1,4 +1,5 @@
-//! How a horizon or fault file would be read: unit, sign, factor; what was found is shown before it is added.
+//! The dialogue that shows how a horizon or fault file would be read: unit, sign, factor, and the values found, before
+//! it is added.
 
 use super::layers::contact_name;
 use super::{form, notices};
@@ -20,9 +21,9 @@ pub struct Interpretation {
     path: PathBuf,
     name: String,
     options: ImportOptions,
-    /// The columns as they are typed.
+    /// The text of the columns field.
     columns: String,
-    /// Which of several surfaces of the file is added.
+    /// The name of the surface to add, if the file holds several.
     chosen: Option<String>,
     contact: Contact,
     truncated_by: Option<String>,
@@ -121,12 +122,12 @@ impl Interpretation {
             }
             ui.end_row();
         });
-        // What an error asks for must be in sight.
+        // The field that an error asks for must be visible.
         let is_refused = self.reading.with(|found| matches!(found, Some((_, Err(_)))));
         CollapsingHeader::new("More").open(is_refused.then_some(true)).show(ui, |ui| self.more(ui));
     }
 
-    /// What is seldom to be stated.
+    /// Settings that seldom need to be stated.
     fn more(&mut self, ui: &mut Ui) {
         let options = &mut self.options;
         Grid::new("more").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
@@ -146,7 +147,7 @@ impl Interpretation {
             let by = [(PlaceBy::Lines, "line numbers"), (PlaceBy::World, "X and Y")];
             form::choice(ui, Setting::PlaceBy, &mut options.place_by, "line numbers, if X and Y agree", &by);
             let orders = [(ValueOrder::Columns, "columns"), (ValueOrder::Rows, "rows")];
-            form::choice(ui, Setting::ValueOrder, &mut options.value_order, "the smoother", &orders);
+            form::choice(ui, Setting::ValueOrder, &mut options.value_order, "whichever is smoother", &orders);
         });
     }
 

@@ -1,13 +1,13 @@
-//! What the pointer does on sections and on the block: a click picks, a line drawn around erases.
+//! What the pointer does on sections and on the block: a click picks, a lasso erases.
 
 use crate::state::{Action, How, Panel, PickingStep, Session, Tool};
 use crate::theme;
 use eframe::egui::{Color32, Key, Painter, Pos2, Response, Shape, Stroke, Ui};
 use glam::DVec3;
 
-/// Least distance between two corners, points.
+/// Smallest distance between two corners, points.
 const EVERY: f32 = 3.0;
-/// Corners that a line needs to hold anything.
+/// Smallest number of corners of a lasso.
 const FEWEST: usize = 4;
 
 /// A line being drawn, points of the window.
@@ -17,7 +17,7 @@ pub struct LassoLine {
 }
 
 impl LassoLine {
-    /// Goes on with the line while the hand draws; answers it when the hand lets go.
+    /// Extends the line while it is dragged; returns it when the drag ends.
     pub fn draw(&mut self, painter: &Painter, response: &Response, is_held: bool) -> Option<Vec<Pos2>> {
         if is_held
             && response.dragged()
@@ -41,17 +41,17 @@ impl LassoLine {
     }
 }
 
-/// Held while dragging, it draws a lasso.
+/// The key that makes a drag draw a lasso.
 pub const HELD: Key = Key::A;
 
-/// Whether a drag draws a lasso: it is the tool, or its key is held.
+/// Whether a drag draws a lasso: the lasso is the chosen tool, or its key is held.
 pub fn is_held(ui: &Ui, session: &Session) -> bool {
     session.view.panel == Panel::Interpret
         && (session.view.picking.tool == Tool::Lasso
             || ui.input(|input| input.key_down(HELD)) && !ui.ctx().egui_wants_keyboard_input())
 }
 
-/// How a click picks and where, in the window, if it picks.
+/// How a click picks, and where in the window; `None` where it does not pick.
 pub fn pick_at(ui: &Ui, response: &Response, session: &Session) -> Option<(How, Pos2)> {
     let picks = response.clicked() && session.view.picking.tool != Tool::Sticks;
     picks.then(|| response.interact_pointer_pos().map(|at| (how(ui), at))).flatten()
@@ -66,7 +66,7 @@ fn how(ui: &Ui) -> How {
     }
 }
 
-/// What a click on a place does, voxel.
+/// What a click at a voxel position does.
 pub fn click(ui: &Ui, response: &Response, session: &Session, voxel: DVec3, actions: &mut Vec<Action>) {
     let move_there = Action::Slices(voxel.to_array());
     if session.view.panel != Panel::Interpret {

@@ -1,4 +1,5 @@
-//! The map: a horizon's structure, or the thickness below it, north up, with contours, the sections' lines and a colour bar.
+//! The map: the depth of a horizon, or the thickness below it, north up, with contours, the lines of the sections and a
+//! colour bar.
 
 use super::{canvas, texture};
 use crate::state::{Action, Session};
@@ -8,7 +9,7 @@ use figure::draw::map::{self as drawing, MapFrame};
 use figure::map::{HorizonMap, Mapped};
 use glam::DVec2;
 
-/// Zoom stays between these.
+/// Smallest and largest zoom.
 const ZOOM: [f32; 2] = [0.8, 40.0];
 
 /// The view.
@@ -23,13 +24,13 @@ pub struct MapView {
 }
 
 impl MapView {
-    /// Takes a map in.
+    /// Takes over a map that was drawn.
     pub fn receive(&mut self, ctx: &Context, map: HorizonMap) {
         texture::keep(&mut self.texture, ctx, "map", texture::pixels(&map.image));
         self.shown = Some(map);
     }
 
-    /// Shows the map in all the room there is, made from `data` in its present state.
+    /// Shows the map in all the room there is; `data` is what it is made from.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -70,7 +71,7 @@ impl MapView {
         }
     }
 
-    /// What it shows of a project that has horizons.
+    /// The content of the map, for a project that has horizons.
     pub fn mapped(&self, session: &Session) -> Mapped {
         let (upper, lower) = chosen(session);
         match lower.filter(|_| self.thickness) {
@@ -141,7 +142,7 @@ impl MapView {
             return;
         };
         let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1) as f64);
-        // Clear of what explains the map.
+        // The caption keeps clear of the legend.
         let room = Rect::from_min_max(rect.min + vec2(8.0, 8.0), rect.max - vec2(96.0, 8.0));
         canvas::paint(&painter, &drawing::contents(shown, frame, canvas::page_rect(room)), Some(texture.id()));
         let [x, y, _] = session.view.slices;
@@ -159,7 +160,7 @@ impl MapView {
     }
 }
 
-/// The horizon chosen, and the next one down.
+/// The chosen horizon, and the next one down.
 fn chosen(session: &Session) -> (usize, Option<usize>) {
     let horizons = &session.document.horizons;
     let chosen = session.view.horizon.as_ref().and_then(|name| horizons.iter().position(|entry| entry.name == *name));

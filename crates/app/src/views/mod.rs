@@ -1,4 +1,4 @@
-//! What is seen: a file for each panel. Each draws the state and answers with actions.
+//! The panels, one file or folder for each. A panel draws the state and returns actions.
 
 pub mod bar;
 pub mod block;

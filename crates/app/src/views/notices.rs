@@ -1,9 +1,9 @@
-//! Messages, shown where they belong.
+//! Messages, shown in the part of the window that they belong to.
 
 use crate::state::{Action, Place, State};
 use eframe::egui::{Frame, Margin, RichText, Stroke, Ui};
 
-/// Shows the messages of one place, each with what to do next and a button to put it away.
+/// Shows the messages of one place, each with advice on what to do next and a button to dismiss it.
 pub fn show(ui: &mut Ui, state: &State, place: Place, actions: &mut Vec<Action>) {
     for (index, notice) in state.notices_at(place) {
         let visuals = ui.visuals();
@@ -26,7 +26,7 @@ pub fn show(ui: &mut Ui, state: &State, place: Place, actions: &mut Vec<Action>)
     }
 }
 
-/// With a capital letter and a full stop.
+/// Capitalises the first letter and ends the text with a full stop.
 fn sentence(text: &str) -> String {
     let mut letters = text.chars();
     let capital = letters.next().map(|first| first.to_uppercase().chain(letters).collect::<String>());

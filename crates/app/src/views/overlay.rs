@@ -1,8 +1,8 @@
-//! The interpretation over the pictures: horizons, the selected node, faults, sticks and proposals on
-//! sections and on the block.
+//! The interpretation drawn over the pictures: horizons, the selected node, faults, sticks and proposals, on sections
+//! and on the block.
 //!
-//! Lines on sections are those that figures print ([`figure::draw::overlay`]); they are cut again when
-//! something has changed.
+//! Lines on sections are those that figures print ([`figure::draw::overlay`]); they are cut again when something has
+//! changed.
 
 use super::{canvas, surfaces};
 use crate::state::picking::voxel_of;
@@ -19,11 +19,11 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use ttf::Colour;
 
-/// Sticks that are drawn for a fault, and the one being drawn.
+/// The sticks of a fault being drawn, and the stick being drawn.
 const STICKS: [Colour; 2] = [Colour::new(0x9c, 0x27, 0x6f), Colour::new(0xe0, 0x20, 0x60)];
 
-/// What lines on a section were made of: the interpretation, the selection, how many proposals are
-/// dismissed and whether minor ones show, and where.
+/// What the lines on a section depend on: the interpretation, the selection, the number of dismissed proposals, whether
+/// minor ones are shown, and the position of the section.
 type Made<P> = (u64, usize, (usize, bool), P);
 
 /// What is drawn over the pictures while interpreting. Cheap to clone.
@@ -31,7 +31,7 @@ type Made<P> = (u64, usize, (usize, bool), P);
 pub struct Overlay {
     interpreted: Option<Arc<Interpreted>>,
     selected: Option<Arc<ShownPick>>,
-    /// Grows with each selection.
+    /// Increases with each selection.
     selection: usize,
     cells: Arc<Vec<(Colour, Vec<Cells>)>>,
     selected_cells: Arc<Vec<Cells>>,
@@ -39,7 +39,7 @@ pub struct Overlay {
     fence: Option<(Made<Vec<DVec2>>, OverlayLines)>,
 }
 
-/// What only this view knows of an interpretation: for figures, which read the rest from the project.
+/// The part of an interpretation that only this view knows, for figures, which read the rest from the project.
 pub fn interpreter_view(session: &Session, selected: Option<&ShownPick>) -> InterpreterView {
     let picking = &session.view.picking;
     InterpreterView {
@@ -58,7 +58,7 @@ fn own_sticks(session: &Session) -> impl Iterator<Item = (&Vec<[f64; 3]>, Colour
     drawn.chain(std::iter::once((&picking.stick, STICKS[1]))).filter(|(stick, _)| !stick.is_empty())
 }
 
-/// All sticks there are, with their colours: those of faults, those drawn, the one being drawn.
+/// All sticks with their colours: those of faults, those drawn, and the one being drawn.
 fn sticks(session: &Session) -> Vec<Stick> {
     let Some(geometry) = &session.document.geometry else { return Vec::new() };
     let made = session.document.sticks.iter().flat_map(|fault| &fault.sticks).map(|stick| (stick, Colour::BLACK));
@@ -72,12 +72,12 @@ impl Overlay {
         self.interpreted.as_ref()
     }
 
-    /// The selection as last drawn.
+    /// The selection as drawn last.
     pub fn selected(&self) -> Option<&ShownPick> {
         self.selected.as_deref()
     }
 
-    /// The horizons and the selection by colour and leaves, the selection last.
+    /// The horizons and the selection as colours and leaves, the selection last.
     pub fn leaves(&self, session: &Session) -> Vec<(Colour, Vec<u32>)> {
         let shown = self.interpreted.iter().flat_map(|shown| &shown.horizons);
         let horizons = shown.filter_map(|horizon| Some((horizon.colour?, horizon.leaves.clone())));
@@ -85,7 +85,7 @@ impl Overlay {
         horizons.chain(self.selected.iter().map(|shown| (own, shown.leaves.clone()))).collect()
     }
 
-    /// Takes the interpretation in.
+    /// Takes over an interpretation that was read.
     pub fn receive(&mut self, session: &Session, interpreted: Arc<Interpreted>) {
         let Some(geometry) = &session.document.geometry else { return };
         let [nx, ny, _] = geometry.size();
@@ -101,7 +101,7 @@ impl Overlay {
         }
     }
 
-    /// Takes the selection in.
+    /// Takes over a selection.
     pub fn select(&mut self, session: &Session, selected: Option<Arc<ShownPick>>) {
         let Some(geometry) = &session.document.geometry else { return };
         let [nx, ny, _] = geometry.size();
@@ -111,7 +111,7 @@ impl Overlay {
         self.selection += 1;
     }
 
-    /// Draws on a section; `page` leads from (s, t) to the page.
+    /// Draws on a section; `page` converts (s, t) to the page.
     pub fn on_section(
         &mut self,
         painter: &Painter,
@@ -148,7 +148,7 @@ impl Overlay {
         (number, self.selection, (picking.dismissed.len(), picking.minor), place)
     }
 
-    /// Where everything meets a section.
+    /// The lines in which everything intersects a section.
     fn cut(&self, session: &Session, on: SeenOn) -> Option<OverlayLines> {
         let [nx, ny, _] = session.document.geometry.as_ref()?.size();
         let shown = self.interpreted.as_ref()?;
@@ -161,7 +161,7 @@ impl Overlay {
         Some(OverlayLines::new(&Interpretation { selection, ..seen }, [nx, ny], on))
     }
 
-    /// Draws horizons and the selection before the block.
+    /// Draws the horizons and the selection in front of the block.
     pub fn surfaces_on_block(&self, ui: &Ui, session: &Session, pane: Rect) {
         if session.view.panel != Panel::Interpret {
             return;
@@ -178,7 +178,7 @@ impl Overlay {
         surfaces::paint(ui, pane, &session.view.scene, geometry, horizons.chain(picked));
     }
 
-    /// Draws sticks before the block.
+    /// Draws the sticks in front of the block.
     pub fn sticks_on_block(&self, ui: &Ui, session: &Session, pane: Rect) {
         let Some(geometry) = &session.document.geometry else { return };
         if session.view.panel != Panel::Interpret {
@@ -194,7 +194,7 @@ impl Overlay {
     }
 }
 
-/// Lines and sticks on a section.
+/// The lines and sticks on a section.
 fn draw(painter: &Painter, session: &Session, lines: &OverlayLines, on: SeenOn, page: impl Fn(DVec2) -> DVec2) {
     lines.drawn(&page).iter().for_each(|group| canvas::paint(painter, group, None));
     let own = Interpretation { sticks: sticks(session), ..Interpretation::default() };

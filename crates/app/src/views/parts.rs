@@ -1,4 +1,4 @@
-//! What fills the middle of the window: which views, and where.
+//! The views that fill the middle of the window, and their places.
 
 use crate::state::{Layout, SectionKind};
 use eframe::egui::Rect;
@@ -16,10 +16,11 @@ pub enum Part {
     Fence,
 }
 
-/// Room between views, points.
+/// Gap between views, points.
 const GAP: f32 = 3.0;
 
-/// Two views stand beside one another where the room is broader than so many heights, else one over the other.
+/// Two views stand side by side where the room is at least this many times as wide as high, otherwise one above the
+/// other.
 const BROAD: f32 = 1.2;
 
 /// The views of a layout with their places in a rectangle.

@@ -1,4 +1,4 @@
-//! The pattern browser: every tile, by rock, with a search.
+//! The pattern browser: every tile, grouped by rock, with a search.
 
 use super::notices;
 use super::tiles::Tiles;
@@ -12,7 +12,7 @@ use ttf::{LayerStyle, Pattern};
 /// Size of a swatch, points.
 const SWATCH: [f32; 2] = [104.0, 66.0];
 
-/// The browser, and what is searched for.
+/// The browser, and the search text.
 #[derive(Default)]
 pub struct Patterns {
     search: String,
@@ -55,7 +55,7 @@ impl Patterns {
                 let patterns = swatches.patterns();
                 let found: Vec<&Pattern> = patterns.iter().filter(|pattern| fits(pattern, &self.search)).collect();
                 if found.is_empty() {
-                    ui.weak("No pattern is called so. Try a rock's name or an FGDC number.");
+                    ui.weak("No pattern matches. Try a rock's name or an FGDC number.");
                 }
                 for family in families(&found) {
                     ui.add_space(6.0);
@@ -80,7 +80,7 @@ impl Patterns {
     }
 }
 
-/// The families of patterns, each once, in the order of the first of each.
+/// The families of patterns, each once, in the order in which they first occur.
 fn families<'a>(patterns: &[&'a Pattern]) -> Vec<&'a str> {
     let mut families: Vec<&str> = Vec::new();
     for pattern in patterns {
@@ -91,7 +91,7 @@ fn families<'a>(patterns: &[&'a Pattern]) -> Vec<&'a str> {
     families
 }
 
-/// A tile with its name beneath; answers whether it was clicked.
+/// A tile with its name beneath; returns whether it was clicked.
 fn tile(ui: &mut Ui, pattern: &Pattern, swatches: &Swatches, tiles: &mut Tiles) -> bool {
     let size = vec2(SWATCH[0], SWATCH[1] + 32.0);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
@@ -132,7 +132,7 @@ fn chosen(session: &Session, layer: &str, interval: Option<usize>, pattern: &Pat
     Command::SetLayer(command)
 }
 
-/// Whether every word is in the pattern's names, number or description.
+/// Whether every word of the search occurs in the pattern's names, number or description.
 fn fits(pattern: &Pattern, search: &str) -> bool {
     let number = pattern.fgdc.map_or_else(String::new, |number| number.to_string());
     let text = [&pattern.name, &pattern.title, &pattern.family, &pattern.description, &number]

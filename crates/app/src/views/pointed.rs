@@ -6,19 +6,19 @@ use project::picture::load::Loaded;
 use render::visible::{Ray, Solid};
 use render::{NamedVolume, Scene};
 
-/// Steps a voxel in which the ground is looked for along a ray.
+/// Steps for each voxel of a ray in the search for the ground.
 const GROUND_STEP: f32 = 0.5;
 
 /// A place on the block.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pointed {
-    /// Where, voxel.
+    /// Position, voxel.
     pub voxel: DVec3,
-    /// The axis across the face; absent on the ground.
+    /// The axis across the face; `None` on the ground.
     pub axis: Option<usize>,
     /// The layer, 0 = deepest.
     pub layer: Option<u16>,
-    /// The value of the raw volume.
+    /// The value of the raw volume there.
     pub value: Option<f32>,
 }
 
@@ -61,7 +61,7 @@ pub fn at_voxel(loaded: &Loaded, voxel: Vec3, axis: Option<usize>) -> Pointed {
     Pointed { voxel: voxel.as_dvec3(), axis, layer, value: value.filter(|value| !value.is_nan()) }
 }
 
-/// The place in words: line numbers, depth with its unit, value, layer.
+/// The place in words: line numbers, time or depth with its unit, value, layer.
 pub fn sentence(pointed: &Pointed, document: &project::document::Document) -> String {
     let Some(geometry) = &document.geometry else { return String::new() };
     let lines = geometry.lines_from_voxel(pointed.voxel.truncate());
@@ -80,7 +80,7 @@ pub fn sentence(pointed: &Pointed, document: &project::document::Document) -> St
     text
 }
 
-/// A number to five digits that tell something.
+/// A number with five significant digits.
 fn five_digits(value: f32) -> String {
     let power = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
     match usize::try_from(4 - power) {

@@ -1,6 +1,6 @@
-//! What is on the screen as a figure for print: what the page preview and the file show.
+//! What is on the screen as a figure: for the preview of the page and for the exported file.
 //!
-//! The page itself is made by [`project::figures::make`], as by `petroglyph render`.
+//! The page itself is made by [`project::figures::make`], as for `petroglyph render`.
 
 use super::block::{self, BEHIND_VOLUMES};
 use super::overlay::{Overlay, interpreter_view};
@@ -33,7 +33,7 @@ pub struct Page {
 }
 
 impl Page {
-    /// The page that shows what is on the screen; `None` of a project without a frame.
+    /// The page that shows what is on the screen; `None` for a project without a survey geometry.
     pub fn of(
         session: &Session,
         overlay: &Overlay,
@@ -63,7 +63,7 @@ impl Page {
     /// Makes the page and writes it.
     ///
     /// # Errors
-    /// Data that cannot be read or drawn, a file that cannot be written, or cancelled.
+    /// Data cannot be read or drawn, the file cannot be written, or the user cancelled.
     pub fn write(&self, progress: &Progress) -> Result<(), ProjectError> {
         let project = Project::open(&self.root)?;
         let settings = FigureSettings { device: Device::Auto, volume_bytes: memory_budget::half_of_available() };
@@ -75,7 +75,7 @@ impl Page {
     }
 }
 
-/// The views on the screen as parts of a figure, in the order that a page has them.
+/// The views on the screen as parts of a figure, in the order of the page.
 fn parts(
     session: &Session,
     geometry: &SurveyGeometry,

@@ -1,4 +1,4 @@
-//! Every action by keyboard: one table that is both obeyed and shown.
+//! All keyboard shortcuts: one table that is both obeyed and shown.
 
 use super::lasso;
 use crate::state::faces::{self, Face, Owner};
@@ -16,13 +16,13 @@ use render::{FaceData, Scene};
 /// What a key does to an open project.
 type Deed = fn(&Session) -> Option<Action>;
 
-/// A key and its deed.
+/// A key and its action.
 pub struct Shortcut {
     /// The key.
     pub key: Key,
-    /// What is held with it.
+    /// The modifier keys.
     pub modifiers: Modifiers,
-    /// How the two are shown.
+    /// How the key is written in the list.
     pub shown: &'static str,
     /// What it does.
     pub name: &'static str,
@@ -41,16 +41,16 @@ const fn command(key: Key, shown: &'static str, name: &'static str, deed: Deed) 
     Shortcut { key, modifiers: Modifiers::COMMAND, shown, name, deed }
 }
 
-/// Degrees that an arrow key turns.
+/// Degrees that an arrow key turns the block.
 const TURN_POINTS: f64 = 30.0;
 /// Factor that a key zooms by.
 const ZOOM: f64 = 1.2;
-/// Samples that a key moves a side of the block by.
+/// Samples that a key moves a face of the block.
 const SIDE: f64 = 4.0;
-/// A picture's size where only the aspect matters.
+/// A picture size for use where only the aspect ratio matters.
 const ANY_SIZE: DVec2 = DVec2::new(900.0, 650.0);
 
-/// All of them.
+/// The shortcuts that work everywhere.
 pub const SHORTCUTS: &[Shortcut] = &[
     Shortcut {
         key: Key::Z,
@@ -95,10 +95,10 @@ pub const SHORTCUTS: &[Shortcut] = &[
     plain(Key::ArrowRight, "Right", "Turn right", |session| turn(session, DVec2::new(TURN_POINTS, 0.0))),
     plain(Key::PageUp, "Page up", "Look from higher", |session| turn(session, DVec2::new(0.0, TURN_POINTS))),
     plain(Key::PageDown, "Page down", "Look from lower", |session| turn(session, DVec2::new(0.0, -TURN_POINTS))),
-    plain(Key::Plus, "+", "Nearer", |session| zoom(session, ZOOM)),
-    plain(Key::Equals, "=", "Nearer", |session| zoom(session, ZOOM)),
-    plain(Key::Minus, "-", "Farther", |session| zoom(session, 1.0 / ZOOM)),
-    plain(Key::C, "C", "Cut the nearest corner, or nothing", |session| {
+    plain(Key::Plus, "+", "Zoom in", |session| zoom(session, ZOOM)),
+    plain(Key::Equals, "=", "Zoom in", |session| zoom(session, ZOOM)),
+    plain(Key::Minus, "-", "Zoom out", |session| zoom(session, 1.0 / ZOOM)),
+    plain(Key::C, "C", "Cut the nearest corner, or remove the cut-outs", |session| {
         let geometry = session.document.geometry.as_ref()?;
         let mut scene = session.view.scene.clone();
         if scene.cut_outs.is_empty() {
@@ -108,29 +108,29 @@ pub const SHORTCUTS: &[Shortcut] = &[
         }
         show(scene)
     }),
-    shifted(Key::I, "Shift I", "Inline side outwards", |session| side(session, 0, -SIDE)),
-    plain(Key::I, "I", "Inline side inwards", |session| side(session, 0, SIDE)),
-    shifted(Key::X, "Shift X", "Crossline side outwards", |session| side(session, 1, -SIDE)),
-    plain(Key::X, "X", "Crossline side inwards", |session| side(session, 1, SIDE)),
+    shifted(Key::I, "Shift I", "Inline face outwards", |session| side(session, 0, -SIDE)),
+    plain(Key::I, "I", "Inline face inwards", |session| side(session, 0, SIDE)),
+    shifted(Key::X, "Shift X", "Crossline face outwards", |session| side(session, 1, -SIDE)),
+    plain(Key::X, "X", "Crossline face inwards", |session| side(session, 1, SIDE)),
     shifted(Key::Z, "Shift Z", "Top up", |session| side(session, 2, -SIDE)),
     plain(Key::Z, "Z", "Top down", |session| side(session, 2, SIDE)),
     plain(Key::H, "H", "Handles", |session| Some(Action::Handles(!session.view.handles))),
-    plain(Key::J, "J", "Inline before", |session| step(session, 0, -1.0)),
-    plain(Key::K, "K", "Inline after", |session| step(session, 0, 1.0)),
-    plain(Key::N, "N", "Crossline before", |session| step(session, 1, -1.0)),
-    plain(Key::M, "M", "Crossline after", |session| step(session, 1, 1.0)),
+    plain(Key::J, "J", "Previous inline", |session| step(session, 0, -1.0)),
+    plain(Key::K, "K", "Next inline", |session| step(session, 0, 1.0)),
+    plain(Key::N, "N", "Previous crossline", |session| step(session, 1, -1.0)),
+    plain(Key::M, "M", "Next crossline", |session| step(session, 1, 1.0)),
     plain(Key::Comma, ",", "Slice above", |session| step(session, 2, -1.0)),
     plain(Key::Period, ".", "Slice below", |session| step(session, 2, 1.0)),
 ];
 
-/// What keys do while interpreting, before anything else.
+/// The shortcuts that take precedence while interpreting.
 pub const INTERPRETING: &[Shortcut] = &[
     plain(Key::ArrowUp, "Up", "Climb", |_| picking(PickingStep::Climb(1))),
     plain(Key::ArrowDown, "Down", "Descend", |_| picking(PickingStep::Climb(-1))),
     plain(Key::H, "H", "Highest valid", |_| picking(PickingStep::HighestValid)),
     plain(Key::Enter, "Enter", "Add to the horizon; end a stick", |_| picking(PickingStep::Accept)),
-    plain(Key::Escape, "Escape", "Let go of the selection or the stick", |_| picking(PickingStep::GiveUp)),
-    plain(Key::Backspace, "Backspace", "Take a stick's last place back", |session| {
+    plain(Key::Escape, "Escape", "Deselect, or drop the stick", |_| picking(PickingStep::GiveUp)),
+    plain(Key::Backspace, "Backspace", "Remove the last point of a stick", |session| {
         (session.view.picking.tool == Tool::Sticks).then_some(Action::Picking(PickingStep::Backspace))
     }),
     plain(Key::N, "N", "New horizon", |_| picking(PickingStep::Begin)),
@@ -138,7 +138,7 @@ pub const INTERPRETING: &[Shortcut] = &[
         let is_drawing = session.view.picking.tool == Tool::Sticks;
         picking(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks }))
     }),
-    plain(Key::O, "O", "See through the block, or its faces", |session| {
+    plain(Key::O, "O", "Volume rendering, or the faces of the block", |session| {
         let is_clear = session.view.picking.look == Look::SeeThrough;
         picking(PickingStep::Look(if is_clear { Look::Faces } else { Look::SeeThrough }))
     }),
@@ -159,10 +159,10 @@ pub const INTERPRETING: &[Shortcut] = &[
         let command = FillHorizon { name, settings: FillSettings::default() };
         Some(Action::Apply(Box::new(Command::FillHorizon(command))))
     }),
-    plain(Key::Q, "Q", "Look for faults", |_| Some(Action::ProposeFaults)),
+    plain(Key::Q, "Q", "Propose faults", |_| Some(Action::ProposeFaults)),
     plain(Key::P, "P", "Back to the layers", |_| Some(Action::Panel(Panel::Layers))),
-    // Held while dragging, so a press does nothing.
-    plain(lasso::HELD, "A and drag", "Erase what is drawn around", |_| None),
+    // The key is held while dragging; pressing it does nothing by itself.
+    plain(lasso::HELD, "A and drag", "Erase with the lasso", |_| None),
 ];
 
 fn picking(step: PickingStep) -> Option<Action> {
@@ -195,19 +195,19 @@ fn step(session: &Session, axis: usize, by: f64) -> Option<Action> {
     Some(Action::Slices(slices))
 }
 
-/// Moves the side of the block that faces the viewer inwards by so many samples.
+/// Moves the face of the block that faces the viewer inwards by this many samples.
 fn side(session: &Session, axis: usize, inwards: f64) -> Option<Action> {
     let geometry = session.document.geometry.as_ref()?;
     let scene = &session.view.scene;
     let block = scene.box_in(geometry);
     let towards = camera::view(scene, geometry, ANY_SIZE).towards_camera(block.centre())[axis];
-    // From below, the base is the side that faces the viewer.
+    // Seen from below, the base faces the viewer.
     let at_max = towards > 0.0;
     let face = Face { owner: Owner::Block, axis, at_max };
     show(faces::move_face(scene, geometry, ANY_SIZE, face, if at_max { -inwards } else { inwards }))
 }
 
-/// Obeys the keys that were pressed, unless something is being typed or asked.
+/// Obeys the keys that were pressed, unless a text field or a dialogue takes them.
 pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
     if state.is_asking() || ctx.egui_wants_keyboard_input() {
         return;
@@ -234,7 +234,7 @@ pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
         ui.set_width((room.x - 100.0).min(1060.0));
         ui.heading("Shortcuts");
         ui.add_space(4.0);
-        // Nothing here is to be hit with a finger: rows as high as their words.
+        // These rows are not clicked, so they are only as high as their text.
         ui.spacing_mut().interact_size.y = 0.0;
         ScrollArea::vertical().max_height(room.y - 190.0).show(ui, |ui| {
             ui.columns_const(|columns: &mut [eframe::egui::Ui; 3]| {

@@ -1,4 +1,4 @@
-//! The start page: go on, open, begin.
+//! The start page: continue, open a project, create one.
 
 use super::{notices, texture};
 use crate::state::{Action, Choice, Dialogue, Place, State};
@@ -12,14 +12,14 @@ use std::path::Path;
 
 /// Width of the column in the middle.
 const WIDTH: f32 = 660.0;
-/// Height of a button that begins something.
+/// Height of the buttons that create or open a project.
 const TALL: f32 = 42.0;
-/// Where the picture is parted until the pointer says otherwise, share of its width.
+/// Position of the dividing line until the pointer moves it, share of the width.
 const PARTED: f32 = 0.42;
 
-/// What the page is for, drawn by the program: the demonstration's block raw, and illustrated.
+/// The demonstration's block, raw and illustrated: it shows what the program is for.
 const BLOCK: [&[u8]; 2] = [include_bytes!("start/raw.png"), include_bytes!("start/illustrated.png")];
-/// Points a pixel of these takes: they are drawn for dense displays.
+/// Size of a pixel of these pictures in points: they are drawn for high-density displays.
 const PICTURE_SCALE: f32 = 0.6;
 
 /// The page, and what it keeps.
@@ -81,7 +81,8 @@ impl StartPage {
             ui.horizontal(|ui| {
                 let title = RichText::new(name(root)).size(16.0);
                 let open = ui.add_enabled(there && !is_busy, Button::new(title).frame(false));
-                let open = open.on_hover_text("Open this project").on_disabled_hover_text("It is not there any more");
+                let open =
+                    open.on_hover_text("Open this project").on_disabled_hover_text("This folder no longer exists");
                 if open.clicked() {
                     actions.push(Action::Open(root.clone()));
                 }
@@ -132,9 +133,9 @@ fn recovery(ui: &mut Ui, root: &Path, is_busy: bool, actions: &mut Vec<Action>) 
     ui.group(|ui| {
         ui.set_width(ui.available_width());
         ui.strong(format!("{} was still open when Petroglyph ended", name(root)));
-        ui.label("Every change to it had been saved. Go on with the same view?");
+        ui.label("Every change to it had been saved. Continue with the same view?");
         ui.horizontal(|ui| {
-            if ui.add_enabled(!is_busy, Button::new("Go on")).clicked() {
+            if ui.add_enabled(!is_busy, Button::new("Continue")).clicked() {
                 actions.push(Action::Recover);
             }
             if ui.button("Not now").clicked() {
@@ -145,7 +146,7 @@ fn recovery(ui: &mut Ui, root: &Path, is_busy: bool, actions: &mut Vec<Action>) 
     ui.add_space(10.0);
 }
 
-/// What a project is called.
+/// The name of a project.
 fn name(root: &Path) -> String {
     root.file_stem().map_or_else(|| root.display().to_string(), |stem| stem.to_string_lossy().into_owned())
 }

@@ -1,11 +1,11 @@
-//! The line at the foot: what is under the cursor, and what is under way.
+//! The status bar: what is under the cursor, and what is under way.
 
 use super::pointed::{self, Pointed};
 use crate::state::{Action, Place, State};
 use crate::work::RunningLine;
 use eframe::egui::{Align, Label, Layout, ProgressBar, Ui};
 
-/// Shows the line.
+/// Shows the status bar.
 pub fn show(
     ui: &mut Ui,
     state: &State,

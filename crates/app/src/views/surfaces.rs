@@ -1,4 +1,4 @@
-//! Picked surfaces before the block, painted at once, without waiting for a picture.
+//! Picked surfaces in front of the block, painted at once, before a picture of them is drawn.
 
 use crate::state::camera;
 use eframe::egui::{Color32, Mesh, Rect, Shape, Ui, vec2};

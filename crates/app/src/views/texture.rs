@@ -1,14 +1,14 @@
-//! Pictures of the workers as textures on the screen.
+//! Pictures from the workers as textures on the screen.
 
 use eframe::egui::{ColorImage, Context, TextureHandle, TextureOptions};
 use image::RgbaImage;
 
-/// The pixels, as the screen takes them.
+/// Converts the pixels to egui's image type.
 pub fn pixels(image: &RgbaImage) -> ColorImage {
     ColorImage::from_rgba_unmultiplied([image.width() as usize, image.height() as usize], image)
 }
 
-/// Puts a picture in place of the one before.
+/// Replaces the previous picture by this one.
 pub fn keep(texture: &mut Option<TextureHandle>, ctx: &Context, name: &str, pixels: ColorImage) {
     match texture {
         Some(texture) => texture.set(pixels, TextureOptions::LINEAR),

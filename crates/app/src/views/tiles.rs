@@ -1,4 +1,4 @@
-//! Swatches on the screen: textures made of what the swatch thread has drawn.
+//! Swatches on the screen: textures made from what the swatch thread has drawn.
 
 use super::texture;
 use crate::work::Swatches;
@@ -6,9 +6,9 @@ use eframe::egui::{Color32, CornerRadius, Rect, Stroke, StrokeKind, TextureHandl
 use std::collections::HashMap;
 use ttf::LayerStyle;
 
-/// Pixels a millimetre of a pattern's printed size: small enough that a tile is recognised in a swatch.
+/// Pixels for each millimetre of a pattern's printed size: few enough that a whole tile is recognised in a swatch.
 const PX_PER_MM: f32 = 3.2;
-/// Textures kept; patterns come and go while one browses.
+/// Largest number of textures that are kept, since patterns come and go while one browses.
 const KEPT: usize = 400;
 
 /// The textures.
@@ -18,7 +18,7 @@ pub struct Tiles {
 }
 
 impl Tiles {
-    /// Paints a style into a rectangle; its plain colour until the pattern is drawn.
+    /// Paints a style into a rectangle, in its plain colour until the pattern is drawn.
     pub fn paint(&mut self, ui: &Ui, swatches: &Swatches, style: &LayerStyle, rect: Rect) {
         let scale = ui.pixels_per_point();
         let size_px = [rect.width(), rect.height()].map(|side| (side * scale).round().max(1.0) as u32);

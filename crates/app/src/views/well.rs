@@ -1,4 +1,4 @@
-//! How a well's files would be read; what was found is shown before the well is added.
+//! The dialogue that shows how the files of a well would be read, before the well is added.
 
 use super::{form, notices};
 use crate::fields;
@@ -14,12 +14,12 @@ use project::command::{AddWell, Command};
 use std::path::{Path, PathBuf};
 use survey::Setting;
 
-/// Endings of tables.
+/// File extensions of tables.
 const TABLES: [&str; 3] = ["csv", "txt", "dat"];
-/// Files offered at most.
+/// Largest number of files that are offered.
 const OFFERED: usize = 40;
 
-/// The dialogue: paths and numbers as they are typed.
+/// The dialogue, with the paths and numbers as they are typed.
 #[derive(Default)]
 pub struct WellDialogue {
     deviation: PathBuf,
@@ -88,7 +88,7 @@ impl WellDialogue {
             for (name, hint, endings, text) in [
                 ("Name", "", &[][..], &mut self.name),
                 ("Tops", "CSV of measured depth and name; may stay empty", &TABLES[..], &mut self.tops),
-                ("Logs", "LAS files, parted by semicolons; may stay empty", &["las"][..], &mut self.las),
+                ("Logs", "LAS files, separated by semicolons; may stay empty", &["las"][..], &mut self.las),
                 (
                     form::name_of(Setting::Checkshot),
                     "CSV of time and depth, where the survey is in time",
@@ -124,7 +124,7 @@ impl WellDialogue {
         });
     }
 
-    /// What was typed and means nothing.
+    /// The first entry that cannot be understood.
     fn unclear(&self) -> Option<String> {
         let options = self.options();
         let is_unclear = |text: &str, is_known: bool| !text.trim().is_empty() && !is_known;
@@ -156,14 +156,14 @@ impl WellDialogue {
     }
 }
 
-/// So many finite numbers, parted by commas; none where something else is typed.
+/// This many finite numbers, separated by commas; `None` for any other text.
 fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let parsed: Option<Vec<f64>> =
         text.split(',').map(|part| part.trim().parse().ok().filter(|number: &f64| number.is_finite())).collect();
     parsed?.try_into().ok()
 }
 
-/// Offers the files beside the deviation; where several may be named, another is added to those that are.
+/// Offers the files beside the deviation; where several may be named, the chosen file is added to the list.
 fn nearby(ui: &mut Ui, listing: &Listing, endings: &[&str], text: &mut String) {
     ui.menu_button("…", |ui| {
         let is_one = |name: &&String| endings.iter().any(|ending| name.to_lowercase().ends_with(&format!(".{ending}")));

@@ -1,4 +1,4 @@
-//! What the window asks of the workers, and what it makes of their answers.
+//! The window's requests to the workers, and what it does with their results.
 
 use super::Window;
 use crate::hold::{Hold, Taken};
@@ -9,24 +9,24 @@ use project::command::Command;
 use std::path::Path;
 use ttf::{LayerStyle, RawColour};
 
-/// What decides over what is loaded.
+/// What the loaded data depend on.
 #[derive(PartialEq)]
 pub(super) struct Needs {
-    /// Of the open project's state.
+    /// Revision of the open project.
     revision: u64,
-    /// The style under the hand.
+    /// The draft of a style.
     layer: Option<LayerStyle>,
-    /// The colours under the hand.
+    /// The draft of the raw colours.
     raw: Option<RawColour>,
     exaggeration: f64,
-    /// What is seen through.
+    /// The volumes and horizons of the volume rendering.
     seen: Seen,
-    /// While interpreting, the extraction whose candidates are shown, if any are.
+    /// While interpreting: the extraction whose candidates are shown, if any are.
     interpreting: Option<Option<String>>,
 }
 
 impl Window {
-    /// Takes the workers' answers in.
+    /// Takes over the workers' results.
     pub(super) fn receive(&mut self, ctx: &Context) {
         while let Some(event) = self.work.next_event() {
             match event {
@@ -39,7 +39,8 @@ impl Window {
                         Taken::Elsewhere(process) => {
                             let process = process.map_or_else(String::new, |id| format!(" (process {id})"));
                             let text = format!(
-                                "this project is open in another window too{process}; what is changed there shows here after the next change here"
+                                "this project is also open in another window{process}; \
+                                 changes made there show here after the next change made here"
                             );
                             self.act(Action::Tell(Notice::note(Place::Block, text)));
                         }
@@ -56,7 +57,7 @@ impl Window {
                                 | Dialogue::Choose(_)
                         )
                     );
-                    // One that was opened since a change was asked for elsewhere stays.
+                    // A dialogue that was opened after a change was requested elsewhere stays open.
                     if waits && place == Place::Dialogue {
                         self.act(Action::Answered);
                     }
@@ -85,7 +86,7 @@ impl Window {
                 Event::Erased { root, picks } if self.has_open(&root) => {
                     self.act(Action::Apply(Box::new(Command::PickSeveral(project::command::PickNodes { picks }))));
                 }
-                // Of a project that was closed meanwhile.
+                // The project was closed meanwhile.
                 Event::Picking { .. } | Event::Erased { .. } => {}
                 Event::Exported(path) => {
                     self.act(Action::Answered);
@@ -100,7 +101,7 @@ impl Window {
         self.state.session.as_ref().is_some_and(|session| session.root == root)
     }
 
-    /// Loads what the open project needs when it has changed.
+    /// Loads what the open project needs when that has changed.
     pub(super) fn keep_loaded(&mut self) {
         let Some(session) = self.state.session.as_ref().filter(|session| session.is_drawable()) else { return };
         let needs = self.needs_of(session);
@@ -108,13 +109,13 @@ impl Window {
             return;
         }
         self.swatches.follow(&session.root, &session.document);
-        // Neither named views nor the history change what is drawn from.
+        // Neither named scenes nor the history change what is drawn.
         let mut document = project::document::Document { scenes: Vec::new(), step: 0, ..session.document.clone() };
         self.layers.draft_of(&mut document);
         self.functions.draft_of(&mut document);
         let root = session.root.clone();
         let wanted = if let Some(extraction) = needs.interpreting.clone() {
-            // Picks change horizons and faults; what they are made on stays.
+            // Picks change horizons and faults, but not the volume that they are made on.
             document.horizons.clear();
             document.faults.clear();
             document.sticks.clear();
@@ -135,7 +136,7 @@ impl Window {
         }
     }
 
-    /// What decides over what is to be loaded: asked in every frame, so it copies no document.
+    /// What the loaded data depend on. It is computed in every frame, so it copies no document.
     fn needs_of(&self, session: &Session) -> Needs {
         let picking = &session.view.picking;
         let shows = picking.look == Look::SeeThrough || picking.show != render::FaceData::Rock;
@@ -167,7 +168,7 @@ impl Window {
             self.followed = Some(session.revision);
         }
         let Picking { pick, horizon, accepted, .. } = &session.view.picking;
-        // What was just accepted is shown until the project has it.
+        // The node accepted last is shown until the project contains it.
         let requested = pick.clone().or_else(|| accepted.clone()).map(|pick| (pick, horizon.clone()));
         let number = self.overlay.interpreted().map_or(0, |shown| shown.number);
         let selected = Some((requested, number));

@@ -1,4 +1,4 @@
-//! How long frames take, as a table in CSV: a line a frame.
+//! The duration of frames, as a CSV table with one line for each frame.
 
 use crate::error::WindowError;
 use crate::work::RunningLine;
@@ -22,13 +22,13 @@ impl FrameTimes {
         Ok(Self { out, begun: Instant::now(), last: None })
     }
 
-    /// Notes a frame that was begun at `start` and has just been laid out.
+    /// Records a frame that was begun at `start` and has just been laid out.
     pub(super) fn record(&mut self, start: Instant, under_way: &[RunningLine]) {
         let since_last = self.last.replace(start).map(|last| start - last);
         let Some(since_last) = since_last else { return };
         let ms = |seconds: f64| 1000.0 * seconds;
         let titles: Vec<&str> = under_way.iter().map(|line| line.title.as_str()).collect();
-        // A full disk ends the table, not the work.
+        // A full disk ends the table, but not the work.
         let _ = writeln!(
             self.out,
             "{:.3},{:.2},{:.2},{}",

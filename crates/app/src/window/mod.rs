@@ -24,21 +24,21 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-/// How often it is written down how the project is looked at.
+/// Interval at which the view is saved.
 const MARK_EVERY: Duration = Duration::from_secs(5);
-/// Size of a first window, points.
+/// Size of the window at its first start, points.
 const SIZE: [f32; 2] = [1280.0, 800.0];
 /// Smallest window, points.
 const LEAST: [f32; 2] = [860.0, 560.0];
 
-/// Opens the window and returns when it is closed. With `frame_times`, frames follow one another without pause and how long each took is
-/// written there.
+/// Opens the window and returns when it is closed. With `frame_times`, frames follow one another without pause, and the
+/// duration of each is written to that file.
 ///
 /// # Errors
-/// There is no display or no graphics driver, or that file cannot be written.
+/// There is no display, there is no graphics driver, or the file cannot be written.
 pub fn run(project: Option<PathBuf>, frame_times: Option<&Path>) -> Result<(), WindowError> {
     let frames = frame_times.map(FrameTimes::create).transpose()?;
-    // Winit's own words for it are an error chain of its backends.
+    // Winit's own message for this is an error chain of its back ends.
     #[cfg(all(unix, not(target_os = "macos")))]
     if ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"]
         .iter()
@@ -51,7 +51,7 @@ pub fn run(project: Option<PathBuf>, frame_times: Option<&Path>) -> Result<(), W
         .with_app_id("petroglyph")
         .with_inner_size(SIZE)
         .with_min_inner_size(LEAST);
-    // Dithering is for gradients, which there are none of here, and a software driver pays for it at every pixel.
+    // Dithering serves gradients, of which there are none here, and it costs a software driver time at every pixel.
     let options = eframe::NativeOptions { viewport, dithering: false, ..eframe::NativeOptions::default() };
     eframe::run_native(
         "Petroglyph",
@@ -64,7 +64,7 @@ pub fn run(project: Option<PathBuf>, frame_times: Option<&Path>) -> Result<(), W
     Ok(())
 }
 
-/// A selection, the horizon it is for, and the interpretation it is to be seen in.
+/// A selection and the horizon that it is for, with the number of the interpretation that it was requested for.
 type Inbox = (Option<(Pick, Option<String>)>, u64);
 
 /// The window's content.
@@ -73,7 +73,7 @@ pub struct Window {
     state: State,
     work: Work,
     settings: Option<PathBuf>,
-    /// Keeps the open project from being offered for recovery by another window.
+    /// The lock that shows other windows that this one has the project open.
     hold: Option<Hold>,
     start: StartPage,
     block: BlockView,
@@ -89,10 +89,9 @@ pub struct Window {
     well: WellDialogue,
     picking: PickingPanel,
     overlay: Overlay,
-    /// State of the project that its interpretation was last asked for.
-    /// The revision whose interpretation was asked for.
+    /// The revision of the project whose interpretation was requested last.
     followed: Option<u64>,
-    /// Selection that was last asked for, and the interpretation it was asked of.
+    /// The selection that was requested last, and the interpretation that it was requested for.
     selected: Option<Inbox>,
     tiles: Tiles,
     swatches: Swatches,
@@ -103,18 +102,18 @@ pub struct Window {
     needs: Option<Needs>,
     wanted: Option<Wanted>,
     marked: Instant,
-    /// What was selected or drawn when the view was last written down.
+    /// The selection and the sticks when the view was last saved.
     unsaved: Option<(Option<Pick>, usize, usize)>,
-    /// Where frame times go, if they are wanted.
+    /// The table of frame times, if it is wanted.
     frames: Option<FrameTimes>,
 }
 
 impl Window {
-    /// Begins with the start page, or with a project; `settings` is the file that outlives the window.
+    /// Opens with the start page, or with a project; `settings` is the file of what outlives the window.
     pub fn new(ctx: &Context, settings: Option<PathBuf>, project: Option<PathBuf>) -> Self {
         theme::install(ctx);
         let mut remembered = settings.as_deref().map(Remembered::read).unwrap_or_default();
-        // What another window has open was not left.
+        // A project that another window has open was not left by a crash.
         remembered.left = remembered.left.filter(|left| !Hold::is_elsewhere(&left.root));
         let waking = ctx.clone();
         let wake: Wake = Arc::new(move || waking.request_repaint());
@@ -159,18 +158,18 @@ impl Window {
         window
     }
 
-    /// What it shows.
+    /// The present state.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Whether nothing is under way and the picture is the last word.
+    /// Whether nothing is under way and the picture is final.
     pub fn is_settled(&self) -> bool {
         let drawable = self.state.session.as_ref().is_some_and(super::state::Session::is_drawable);
         self.work.running.is_idle() && (!drawable || self.block.is_settled())
     }
 
-    /// Takes an action and has its tasks done.
+    /// Applies an action and has its tasks carried out.
     pub fn act(&mut self, action: Action) {
         for task in self.state.apply(action) {
             let place = self.place_of(&task);
@@ -190,7 +189,7 @@ impl Window {
         }
     }
 
-    /// Draws what is on the screen to a file.
+    /// Draws the page to a file.
     fn export(&self, form: ExportForm) {
         let Some(session) = self.state.session.clone() else { return };
         let mapped = self.map.mapped(&session);
@@ -203,7 +202,7 @@ impl Window {
         });
     }
 
-    /// Lets go of what was made of a project.
+    /// Drops everything that was made for a project.
     fn forget(&mut self) {
         (self.rocks, self.needs, self.wanted, self.pointed) = (None, None, None, None);
         (self.followed, self.selected, self.hold) = (None, None, None);
@@ -237,11 +236,11 @@ impl Window {
         let Some(path) = &self.settings else { return };
         let mut remembered = self.state.remembered.clone();
         if remembered.left.is_none() {
-            // Another window's project stays on record, should that one crash.
+            // The project of another window stays on record, in case that window crashes.
             remembered.left = Remembered::read(path).left.filter(|left| Hold::is_elsewhere(&left.root));
         }
         if let Err(error) = remembered.write(path) {
-            let text = format!("recent projects cannot be remembered: {}: {error}", path.display());
+            let text = format!("the list of recent projects could not be saved: {}: {error}", path.display());
             self.state.apply(Action::Tell(Notice::note(Place::Start, text)));
         }
     }
@@ -278,7 +277,7 @@ impl Window {
         for action in actions {
             self.act(action);
         }
-        // What is selected or drawn and not yet part of the project is work: it is written down at once.
+        // The selection and the sticks that are not yet part of the project are work, so they are saved at once.
         let unsaved = self.state.session.as_ref().map(|session| {
             let picking = &session.view.picking;
             (picking.pick.clone(), picking.stick.len(), picking.sticks.len())
@@ -338,7 +337,7 @@ impl eframe::App for Window {
     }
 
     fn on_exit(&mut self) {
-        // Closed properly: there is nothing to recover.
+        // The window is closed properly, so there is nothing to recover.
         self.state.remembered.left = None;
         self.hold = None;
         self.remember();

@@ -1,4 +1,4 @@
-//! The page of an open project: the bar, the panels at the sides, and what fills the middle.
+//! The page of an open project: the toolbar, the panels at the sides, and the views in the middle.
 
 use super::Window;
 use crate::state::{Action, Panel as Side, Place, Session};
@@ -56,7 +56,7 @@ impl Window {
         });
     }
 
-    /// What stands on the left: tabs, and the panel that is chosen.
+    /// The left side: tabs, and the panel that is chosen.
     fn side(&mut self, ui: &mut Ui, running: &[RunningLine], actions: &mut Vec<Action>) {
         let Some(session) = &self.state.session else { return };
         ui.add_space(6.0);
@@ -92,7 +92,8 @@ impl Window {
     }
 }
 
-/// Shows something in the room there is. A panel whose content asked for more would widen, and the middle be drawn anew.
+/// Shows a panel in the room there is. A panel whose content asked for more would widen, and the views in the middle
+/// would be drawn again.
 fn within(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     let rect = ui.available_rect_before_wrap();
     add(&mut ui.new_child(egui::UiBuilder::new().max_rect(rect)));

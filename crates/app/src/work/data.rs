@@ -1,6 +1,7 @@
-//! What pictures are drawn from, read and computed once and shared by those who draw and those who ask what is under the cursor.
+//! The data that pictures are drawn from: read and computed once, and shared by the threads that draw and by the query
+//! for what is under the cursor.
 //!
-//! A change of style alone compiles the tables anew and leaves model, parameterization and volumes as they are.
+//! A change of style alone only compiles the tables again; model, parameterization and volumes stay.
 
 use super::latest_value::{Inbox, LatestValueWorker};
 use super::running::Running;
@@ -19,10 +20,10 @@ use std::sync::{Arc, PoisonError, RwLock};
 use survey::Progress;
 use ttf::{Colour, TtfTables};
 
-/// Loaded data; whoever only looks must not wait for it (`try_read`).
+/// Loaded data. The window's thread must not wait for them; it uses `try_read`.
 pub type Rocks = Arc<RwLock<Loaded>>;
 
-/// What is to be drawn.
+/// A request for data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wanted {
     /// The project.
@@ -31,23 +32,23 @@ pub struct Wanted {
     pub document: Document,
     /// Vertical exaggeration: patterns are sized for it.
     pub exaggeration: f64,
-    /// What for.
+    /// The purpose of the pictures.
     pub purpose: Purpose,
 }
 
-/// What pictures are drawn for.
+/// The purpose of the pictures that are drawn from the data.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Purpose {
-    /// To be looked at: with everything that the interpretation makes of the volume, and what is seen through.
+    /// Illustration: everything that is computed from the interpretation, and what the volume rendering shows.
     Illustrate(Seen),
-    /// To be interpreted: the volume alone, whatever horizons there are, so that no pick has to wait for a model.
+    /// Interpreting: the volume alone, whatever horizons there are, so that no pick has to wait for a model.
     Interpret {
-        /// The extraction whose candidates are shown; absent where none are, for they take five bytes a voxel.
+        /// The extraction whose candidates are shown; `None` where none are shown, since they take five bytes a voxel.
         extraction: Option<String>,
     },
 }
 
-/// What is seen through, by names in their order.
+/// The content of the volume rendering: names in sorted order.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Seen {
     /// Volumes.
@@ -57,7 +58,7 @@ pub struct Seen {
 }
 
 impl Seen {
-    /// What a scene shows within the block.
+    /// What a scene renders within the block.
     pub fn of(scene: &Scene) -> Self {
         let mut volumes: Vec<String> = load::volumes_within(scene).map(str::to_owned).collect();
         let mut horizons: Vec<String> =
@@ -69,7 +70,7 @@ impl Seen {
         Self { volumes, horizons }
     }
 
-    /// A scene that shows this.
+    /// A scene that renders this.
     fn scene(&self, exaggeration: f64) -> Scene {
         let medium = |volume: &String| Medium {
             volume: volume.clone(),
@@ -79,7 +80,7 @@ impl Seen {
         };
         let horizon =
             |name: &String| PickedHorizon { name: Some(name.clone()), ..PickedHorizon::of(Vec::new(), Colour::WHITE) };
-        // Half-way needs everything that any blend needs.
+        // A blend in between needs everything that any blend needs.
         let mut scene = Scene { blend: 0.5, exaggeration, ..Scene::default() };
         scene.media.surroundings = self.volumes.iter().map(medium).collect();
         scene.media.horizons = self.horizons.iter().map(horizon).collect();
@@ -94,7 +95,7 @@ struct Next {
     forget: bool,
 }
 
-/// The thread that loads, and the request it works on next.
+/// A latest-value worker that loads data.
 pub(super) struct Loader {
     worker: LatestValueWorker<Next>,
 }
@@ -103,13 +104,13 @@ impl Loader {
     pub(super) fn start(outbox: Outbox, running: Running) -> Self {
         let told = outbox.clone();
         Self {
-            worker: LatestValueWorker::start("what the pictures need", &told, move |inbox| {
+            worker: LatestValueWorker::start("the loading of data", &told, move |inbox| {
                 work(inbox, &outbox, &running);
             }),
         }
     }
 
-    /// Loads this next; what is being loaded for another state is given up.
+    /// Loads this next; the loading for another state is cancelled.
     pub(super) fn load(&self, wanted: Wanted) {
         self.worker.change(|next| {
             next.wanted = Some(wanted);
@@ -117,7 +118,7 @@ impl Loader {
         });
     }
 
-    /// Lets go of everything.
+    /// Drops everything that was loaded.
     pub(super) fn forget(&self) {
         self.worker.change(|next| {
             next.wanted = None;
@@ -133,7 +134,7 @@ impl Drop for Loader {
     }
 }
 
-/// What was loaded last, and what for.
+/// What was loaded last, and for which request.
 struct Kept {
     root: PathBuf,
     key: String,
@@ -166,7 +167,7 @@ fn work(inbox: &Inbox<Next>, outbox: &Outbox, running: &Running) {
         drop(guard);
         match loaded {
             Ok(rocks) => outbox.send(Event::Ready { root: wanted.root, rocks }),
-            // However deep in a chain of causes it stands, what was cancelled has not failed.
+            // A cancelled request has not failed, wherever in the chain of causes the cancellation stands.
             Err(_) if progress.check().is_err() => {}
             Err(error) => outbox.send(Event::Told(Notice::failure(Place::Block, &error))),
         }
@@ -196,7 +197,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
         restyle(&kept.rocks, wanted)?;
         return Ok(kept.rocks.clone());
     }
-    // Memory for one model and its volumes, not for two.
+    // Drop the old data first, so that memory holds one model and its volumes rather than two.
     *kept = None;
     let project = Project::open(&wanted.root)?;
     let scene = seen.scene(wanted.exaggeration);
@@ -206,7 +207,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     Ok(rocks)
 }
 
-/// What the interpretation is drawn from: the raw volume, the wells, candidates where they are shown.
+/// The data for interpreting: the raw volume, the wells, and the candidates where they are shown.
 fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result<Rocks, ProjectError> {
     let document = &wanted.document;
     let raw = styles::transfer_functions(document).raw;
@@ -243,7 +244,7 @@ fn needed_volumes(document: &Document) -> Vec<(String, String)> {
     entries.map(|entry| (entry.name.clone(), entry.hash.clone())).collect()
 }
 
-/// Compiles the styles of a project state into what is loaded.
+/// Compiles the styles of a project state into the loaded data.
 fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
     let document = &wanted.document;
     let functions = styles::transfer_functions(document);

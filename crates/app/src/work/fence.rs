@@ -1,4 +1,4 @@
-//! Sections along a line, to be cut for the latest request.
+//! Sections along a line.
 
 use super::Rocks;
 use super::slice::source;
@@ -7,18 +7,18 @@ use glam::DVec2;
 use project::picture::load::Loaded;
 use render::FaceData;
 
-/// A fence that is asked for.
+/// A request for a fence.
 #[derive(Clone)]
 pub struct FenceRequest {
-    /// Its corners, voxel x and y; two at least.
+    /// Its corners, voxel x and y; at least two.
     pub corners: Vec<DVec2>,
-    /// What it is cut from.
+    /// The data that it is cut from.
     pub rocks: Rocks,
     /// What it shows.
     pub show: FaceData,
 }
 
-/// Cuts what is loaded.
+/// Cuts a fence from the loaded data.
 pub(super) fn cut(loaded: &Loaded, request: &FenceRequest) -> FenceCut {
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     FenceCut::new(&source(loaded, &volumes, &wells), &request.corners, request.show)

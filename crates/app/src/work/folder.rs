@@ -1,4 +1,4 @@
-//! What folders hold, read on threads: one on a network may take its time.
+//! The content of folders, read on threads of their own: a folder on a network may take long.
 
 use super::latest::Latest;
 use super::spawn_quietly;
@@ -6,12 +6,12 @@ use eframe::egui::Context;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// What a folder holds.
+/// The content of a folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Listing {
     /// The folder.
     pub folder: PathBuf,
-    /// Folders in it, in order of their names, as files and projects are.
+    /// Folders in it, sorted by name, as files and projects are.
     pub folders: Vec<String>,
     /// Files in it.
     pub files: Vec<String>,
@@ -21,7 +21,7 @@ pub struct Listing {
     pub error: Option<String>,
 }
 
-/// The folder looked at last.
+/// The folder that was listed last.
 #[derive(Default)]
 pub struct Folder {
     asked: Option<PathBuf>,
@@ -29,7 +29,7 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// What it holds, as far as that is known; another folder is read when it is asked for.
+    /// Its content, as far as it is known; another folder is listed when it is asked for.
     pub fn listing(&mut self, ctx: &Context, folder: &Path) -> Arc<Listing> {
         if self.asked.as_deref() != Some(folder) {
             self.asked = Some(folder.to_owned());
@@ -42,13 +42,13 @@ impl Folder {
         self.found.with(|found| found.map(|(_, listing)| listing.clone())).unwrap_or_default()
     }
 
-    /// Reads it anew when it is asked for again.
+    /// Lists the folder again when it is next asked for.
     pub fn forget(&mut self) {
         self.asked = None;
     }
 }
 
-/// Which of the recent projects are still there.
+/// Which of the recent projects still exist.
 #[derive(Default)]
 pub struct Presence {
     asked: Vec<PathBuf>,
@@ -56,7 +56,7 @@ pub struct Presence {
 }
 
 impl Presence {
-    /// Whether each of the projects is there; while that is not known, they are taken to be.
+    /// Whether each of the projects exists; until that is known, they are taken to exist.
     pub fn of(&mut self, ctx: &Context, projects: &[PathBuf]) -> Vec<bool> {
         if self.asked != projects {
             self.asked = projects.to_vec();
@@ -72,7 +72,7 @@ impl Presence {
     }
 }
 
-/// Reads a folder; what cannot be read is said to be so.
+/// Lists a folder; a failure is recorded in the listing.
 fn read(folder: &Path) -> Listing {
     let mut listing = Listing { folder: folder.to_owned(), ..Listing::default() };
     let entries = match std::fs::read_dir(if folder.as_os_str().is_empty() { Path::new(".") } else { folder }) {

@@ -1,7 +1,8 @@
-//! What a lasso holds: the leaves of a horizon that lie mostly inside, joined to nodes where all of a node does.
+//! What a lasso encloses: the leaves of a horizon that lie mostly inside, combined into nodes where all leaves of a
+//! node do.
 //!
-//! On a section only what lies near it counts: what cannot be seen there is not drawn around. On the block everything counts that is behind
-//! the line. Spaces: (s, t) of the section; points of the picture; voxels.
+//! On a section only what lies near it counts, because the user cannot see the rest. On the block everything behind the
+//! lasso counts. Spaces: (s, t) of the section; points of the picture; voxels.
 
 use crate::state::picking::place_of;
 use crate::state::{Lasso, LassoOn, camera};
@@ -11,12 +12,12 @@ use interp::assembly::{Operation, Selection};
 use project::command::{Climb, PickNode};
 use survey::SurveyGeometry;
 
-/// How far from a section something counts as on it: traces across, samples along the vertical.
+/// Distance from a section within which something lies on it: traces across, samples along the vertical.
 const NEAR: f64 = 2.0;
 /// Share of a leaf's vertices that must lie inside.
 const MOSTLY: f64 = 0.5;
 
-/// The picks that take out of a selection what a lasso holds.
+/// The picks that remove from a selection what a lasso encloses.
 pub(super) fn nodes_inside(
     lasso: &Lasso,
     forest: &Forest,
@@ -83,7 +84,7 @@ fn gather(forest: &Forest, root: u32, inside: &[bool], found: &mut impl FnMut(u3
     }
 }
 
-/// The middle of a node's middle triangle: a place that belongs to it and to no other.
+/// The centre of the middle triangle of a node: a place that belongs to it and to no other.
 fn middle(forest: &Forest, node: u32) -> DVec3 {
     let range = &forest.nodes[node as usize].triangles;
     let corners = forest.surfaces.triangles[(range.start + (range.end - range.start) / 2) as usize];
@@ -94,7 +95,7 @@ fn middle(forest: &Forest, node: u32) -> DVec3 {
     corners.into_iter().map(place).sum::<DVec3>() / 3.0
 }
 
-/// Whether a closed line runs around a point: a ray to the right crosses it an odd number of times.
+/// Whether a closed line encloses a point: a ray to the right crosses the line an odd number of times.
 fn contains(corners: &[DVec2], at: DVec2) -> bool {
     let ends = corners.iter().zip(corners.iter().cycle().skip(1));
     let crosses = |(a, b): &(&DVec2, &DVec2)| {

@@ -1,18 +1,18 @@
-//! What the last look at something found: a newer look replaces it, and gives up what is still under way.
+//! The result of the latest attempt: a newer attempt replaces it and cancels the one that is still under way.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use survey::Progress;
 
 struct Looks<T> {
-    /// How many were begun.
+    /// Number of attempts begun.
     begun: u64,
-    /// The number of the look that found something last, and what that was.
+    /// The latest result, with the number of its attempt.
     found: Option<(u64, T)>,
-    /// Of the look under way.
+    /// Progress of the attempt under way.
     progress: Option<Progress>,
 }
 
-/// What was found last. Cheap to clone.
+/// The latest result. Cheap to clone.
 pub struct Latest<T> {
     looks: Arc<Mutex<Looks<T>>>,
 }
@@ -34,7 +34,7 @@ impl<T> Latest<T> {
         self.looks.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Begins another look; what is found is put in under its number.
+    /// Begins a new attempt, cancels the previous one, and returns the number under which the result is stored.
     pub fn begin(&self) -> u64 {
         let mut looks = self.lock();
         looks.progress.take().iter().for_each(Progress::cancel);
@@ -42,7 +42,7 @@ impl<T> Latest<T> {
         looks.begun
     }
 
-    /// Lets a newer look stop this one.
+    /// Registers the progress of an attempt, so that a newer one can cancel it.
     pub fn stop_by(&self, number: u64, progress: &Progress) {
         let mut looks = self.lock();
         if looks.begun == number {
@@ -52,7 +52,7 @@ impl<T> Latest<T> {
         }
     }
 
-    /// Puts in what was found, unless another look has begun.
+    /// Stores the result of an attempt, unless a newer one has begun.
     pub fn put(&self, number: u64, found: T) {
         let mut looks = self.lock();
         if looks.begun == number {
@@ -60,12 +60,12 @@ impl<T> Latest<T> {
         }
     }
 
-    /// Looks at what was found last, and by which look.
+    /// Reads the latest result and the number of its attempt.
     pub fn with<R>(&self, look: impl FnOnce(Option<(u64, &T)>) -> R) -> R {
         look(self.lock().found.as_ref().map(|(number, found)| (*number, found)))
     }
 
-    /// Whether the look begun last has found something.
+    /// Whether the attempt begun last has a result.
     pub fn is_current(&self) -> bool {
         let looks = self.lock();
         looks.found.as_ref().is_some_and(|(number, _)| *number == looks.begun)

@@ -1,5 +1,5 @@
-//! A latest-value worker: a thread that works on the latest value it was given. A value that arrives while it works replaces one that
-//! still waits; nothing is queued.
+//! A latest-value worker: a thread that works on the latest value it was given. A value that arrives while it works
+//! replaces any that is still waiting; nothing is queued.
 
 use super::{Outbox, keep_working};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -20,13 +20,13 @@ impl<W> Shared<W> {
     }
 }
 
-/// Where requests are left; when it is dropped, the thread ends with the value it works on.
+/// The sender's end. When it is dropped, the thread ends after the value that it works on.
 pub(super) struct LatestValueWorker<W> {
     shared: Arc<Shared<W>>,
 }
 
 impl<W: Default + Send + 'static> LatestValueWorker<W> {
-    /// Starts a thread of this name; `work` is called again after a panic, which is told.
+    /// Starts a thread of this name; after a panic, which is reported, `work` is called again.
     pub(super) fn start(name: &'static str, outbox: &Outbox, mut work: impl FnMut(&Inbox<W>) + Send + 'static) -> Self {
         let slot = Mutex::new(Slot { values: W::default(), ended: false });
         let shared = Arc::new(Shared { slot, changed: Condvar::new() });
@@ -37,7 +37,7 @@ impl<W: Default + Send + 'static> LatestValueWorker<W> {
 }
 
 impl<W> LatestValueWorker<W> {
-    /// Changes what is asked for.
+    /// Changes the waiting value.
     pub(super) fn change(&self, change: impl FnOnce(&mut W)) {
         change(&mut self.shared.lock().values);
         self.shared.changed.notify_one();
@@ -51,13 +51,13 @@ impl<W> Drop for LatestValueWorker<W> {
     }
 }
 
-/// The requests as the thread sees them.
+/// The thread's end.
 pub(super) struct Inbox<W> {
     shared: Arc<Shared<W>>,
 }
 
 impl<W> Inbox<W> {
-    /// Waits until `take` finds something to do; `None` when nothing more will be asked.
+    /// Waits until `take` returns something to do; `None` when the sender is gone.
     pub(super) fn next<T>(&self, mut take: impl FnMut(&mut W) -> Option<T>) -> Option<T> {
         let mut slot = self.shared.lock();
         loop {
@@ -71,7 +71,7 @@ impl<W> Inbox<W> {
         }
     }
 
-    /// Looks at what is asked for now; `None` when nothing more will be.
+    /// Reads the waiting value now; `None` when the sender is gone.
     pub(super) fn look<T>(&self, look: impl FnOnce(&mut W) -> T) -> Option<T> {
         let mut slot = self.shared.lock();
         (!slot.ended).then(|| look(&mut slot.values))

@@ -1,4 +1,4 @@
-//! Maps of horizons and thicknesses, drawn on a thread for the latest request.
+//! Maps of depth and thickness, drawn by a latest-value worker.
 
 use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Interpreted, Outbox, Rocks};
@@ -6,31 +6,31 @@ use figure::map::{HorizonMap, MapSource, Mapped};
 use std::sync::{Arc, PoisonError};
 use survey::SurveyGeometry;
 
-/// What a map is made from.
+/// The data that a map is made from.
 #[derive(Clone)]
 pub enum MapData {
-    /// The model.
+    /// The model of the loaded data.
     Rocks(Rocks),
     /// The horizons as they were picked, without a model.
     Interpreted(Arc<Interpreted>, Box<SurveyGeometry>),
 }
 
-/// A map that is asked for.
+/// A request for a map.
 #[derive(Clone)]
 pub struct MapRequest {
-    /// Of what.
+    /// What it shows.
     pub mapped: Mapped,
-    /// What it is made from.
+    /// The data that it is made from.
     pub data: MapData,
 }
 
-/// The thread that maps, and the request it works on next.
+/// The worker that draws maps.
 pub struct Maps {
     worker: LatestValueWorker<Option<MapRequest>>,
 }
 
 impl Maps {
-    /// Starts the thread.
+    /// Starts the worker.
     pub fn start(outbox: Outbox) -> Self {
         let told = outbox.clone();
         Self {
@@ -44,13 +44,13 @@ impl Maps {
         }
     }
 
-    /// Maps this next.
+    /// Draws this map next.
     pub fn map(&self, request: MapRequest) {
         self.worker.change(|next| *next = Some(request));
     }
 }
 
-/// Maps what is asked for; `None` when there is nothing of it.
+/// Draws the requested map; `None` when there are no data for it.
 fn draw(request: &MapRequest) -> Option<HorizonMap> {
     match &request.data {
         MapData::Rocks(rocks) => {

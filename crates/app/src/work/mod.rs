@@ -1,10 +1,10 @@
 //! Everything that takes time, away from the window's thread.
 //!
-//! [`Work`] hands orders to threads and collects their [`Event`]s; [`Running`] lists what is under way, with progress and a way to stop it.
-//! Commands on the project go one after the other (`orders`); data are read and models built by [`data`]; pictures
-//! ([`picture`]) and sections ([`mod@slice`]) are drawn for the latest request only.
+//! [`Work`] hands tasks to threads and collects their [`Event`]s; [`Running`] lists what is under way, with progress
+//! and a way to stop it. Commands on the project run one after the other (`orders`); [`data`] reads data and builds
+//! models; pictures ([`picture`]) and sections ([`mod@slice`]) are drawn for the latest request only.
 //!
-//! Invariant: no call from the window's thread waits.
+//! Invariant: no call from the window's thread blocks.
 
 pub mod data;
 pub mod fence;
@@ -40,18 +40,18 @@ use std::sync::{Arc, OnceLock};
 use survey::Progress;
 use threads::{keep_working, spawn, spawn_quietly};
 
-/// An answer.
+/// A result.
 pub enum Event {
     /// A project was read.
     Opened(Box<Snapshot>),
     /// The open project changed.
     Changed {
-        /// What it is now.
+        /// Its present state.
         snapshot: Box<Snapshot>,
-        /// Where the change was asked for.
+        /// Where the change was requested.
         place: Place,
     },
-    /// Data of this project state are ready to be drawn.
+    /// The data of this project state are ready to be drawn.
     Ready {
         /// The project.
         root: PathBuf,
@@ -68,32 +68,32 @@ pub enum Event {
     Mapped(HorizonMap),
     /// The interpretation was read.
     Interpreted(Arc<Interpreted>),
-    /// The selected node, ready to be drawn; none where nothing is selected.
+    /// The selected node, ready to be drawn; `None` where nothing is selected.
     Selected(Option<Arc<ShownPick>>),
-    /// An answer while interpreting.
+    /// A result of the interpretation's tasks.
     Picking {
         /// The project it is for.
         root: PathBuf,
-        /// The answer.
+        /// The step that follows from it.
         step: PickingStep,
     },
-    /// What a lasso holds, to be taken out.
+    /// The picks that remove what a lasso encloses.
     Erased {
-        /// Of which project.
+        /// The project they are for.
         root: PathBuf,
-        /// The picks that take it out.
+        /// The picks.
         picks: Vec<PickNode>,
     },
     /// A picture was written.
     Exported(PathBuf),
-    /// Something is worth knowing.
+    /// A message.
     Told(Notice),
 }
 
-/// Wakes the window up: something is there to be shown.
+/// Wakes the window up, because something has arrived.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
-/// Where workers leave their answers.
+/// Where workers put their results.
 #[derive(Clone)]
 pub struct Outbox {
     sender: Sender<Event>,
@@ -101,13 +101,13 @@ pub struct Outbox {
 }
 
 impl Outbox {
-    /// Leaves an answer; a window that has gone needs none.
+    /// Sends a result; once the window is closed it is ignored.
     pub fn send(&self, event: Event) {
         let _ = self.sender.send(event);
         (self.wake)();
     }
 
-    /// Wakes the window without an answer.
+    /// Wakes the window without a result.
     pub fn wake(&self) {
         (self.wake)();
     }
@@ -116,9 +116,9 @@ impl Outbox {
 /// The workers.
 pub struct Work {
     events: Receiver<Event>,
-    /// Where answers go.
+    /// The end of the channel from which results come.
     pub outbox: Outbox,
-    /// What is under way.
+    /// The list of what is under way.
     pub running: Running,
     orders: Sender<orders::Order>,
     data: data::Loader,
@@ -153,7 +153,7 @@ impl Work {
         }
     }
 
-    /// The next answer, if there is one.
+    /// The next result, if there is one.
     pub fn next_event(&mut self) -> Option<Event> {
         let event = self.events.try_recv().ok()?;
         if let Event::Opened(snapshot) = &event {
@@ -162,7 +162,7 @@ impl Work {
         Some(event)
     }
 
-    /// Does what a state asks for; `place` is where a failure is shown.
+    /// Carries out a task; `place` is where a failure is shown.
     pub fn run(&mut self, task: Task, place: Place) {
         let root = || self.root.clone();
         let order = match task {
@@ -193,7 +193,7 @@ impl Work {
                 self.picks.forget();
                 return;
             }
-            // These are the window's own.
+            // The window handles these itself.
             Task::Remember | Task::Copy | Task::Export(_) => return,
         };
         // The thread lives as long as this value.
@@ -205,7 +205,7 @@ impl Work {
         self.data.load(wanted);
     }
 
-    /// Does something of its own on a thread; what was stopped by the user has not failed.
+    /// Runs a job on a thread of its own; a job that the user stopped has not failed.
     pub fn background(
         &self,
         title: &str,
@@ -215,7 +215,7 @@ impl Work {
         let (outbox, running) = (self.outbox.clone(), self.running.clone());
         let title = title.to_owned();
         let theirs = outbox.clone();
-        spawn("a task", &theirs, move || {
+        spawn("a background task", &theirs, move || {
             let (line, progress) = running.begin(&title, place, outbox.wake.clone());
             match job(&progress, &outbox) {
                 Err(notice) if progress.check().is_ok() => outbox.send(Event::Told(notice)),
@@ -227,16 +227,16 @@ impl Work {
     }
 }
 
-/// Computes on all processors but one: that one is the window's, so that it stays at hand while work goes on.
+/// Computes on all processors but one, which is left to the window so that it stays responsive.
 ///
-/// A job must take no lock on what is loaded: the thread that holds it may be waiting for these processors. Locks are
-/// taken before, by the caller.
+/// A job must take no lock on the loaded data: the thread that holds the lock may be waiting for these processors. The
+/// caller takes locks beforehand.
 pub(super) fn compute<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
     on(&POOL, job)
 }
 
-/// The same, on threads that pictures are not drawn on: what takes minutes must not keep them waiting.
+/// The same on separate threads: jobs that take minutes must not delay the drawing of pictures.
 fn compute_apart<T: Send>(job: impl FnOnce() -> T + Send) -> T {
     static POOL: OnceLock<Option<rayon::ThreadPool>> = OnceLock::new();
     on(&POOL, job)

@@ -1,4 +1,4 @@
-//! Orders on projects, one after the other: what changes a project must not overtake itself.
+//! Commands on projects, carried out one after the other, so that changes to a project keep their order.
 
 use super::running::{Running, RunningGuard};
 use super::{Event, Outbox, keep_working};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Sender, channel};
 use survey::Progress;
 
-/// An order.
+/// A command, or another order on a project.
 pub(super) enum Order {
     Open(PathBuf),
     Demo(PathBuf),
@@ -106,7 +106,7 @@ impl Order {
     }
 }
 
-/// The project as the window keeps it.
+/// The project in the form that the window keeps.
 pub(super) fn snapshot(project: &Project) -> Result<Snapshot, ProjectError> {
     Ok(Snapshot { root: project.root().to_owned(), document: project.document().clone(), history: project.history() })
 }
@@ -115,7 +115,7 @@ fn file_name(path: &Path) -> String {
     path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned())
 }
 
-/// Recent projects must be found from any folder.
+/// An absolute path, since recent projects must be found from any working folder.
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
 }

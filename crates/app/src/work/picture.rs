@@ -1,7 +1,9 @@
-//! Pictures of the block for the screen: coarse at once, then full, then smooth, always for the latest request.
+//! Pictures of the block for the screen: first coarse, then at full resolution, then smooth, always for the latest
+//! request.
 //!
-//! The time that one ray took last time decides how coarse the first picture is, so that it comes within `COARSE_S` on any machine. A
-//! coarse picture is always finished, or nothing would be seen while the camera moves; finer ones are given up for a newer request.
+//! The measured time for each ray decides how coarse the first picture is, so that it takes about `COARSE_S` on any
+//! machine. A coarse picture is always finished, otherwise nothing would be visible while the camera moves; finer ones
+//! are cancelled by a newer request.
 
 use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Outbox, Rocks};
@@ -15,58 +17,58 @@ use std::sync::PoisonError;
 use std::time::Instant;
 use survey::Progress;
 
-/// Seconds a first picture may take: the hand notices more than a tenth.
+/// Time for a first picture, seconds: users notice a delay of more than a tenth.
 const COARSE_S: f64 = 0.09;
 /// Largest factor by which a first picture is coarser.
 const COARSEST: u32 = 8;
-/// Most cells of a slice of light in a coarse picture.
+/// Largest number of light cells in a slice of a coarse picture.
 const COARSE_CELLS: u32 = 96;
-/// Samples a pixel along each axis of the last picture.
+/// Samples for each pixel along each axis in the final picture.
 const SMOOTH_SAMPLES: u32 = 2;
-/// Weight of the latest measurement of the time a ray takes.
+/// Weight of the latest measurement in the estimate of the time for a ray.
 const LATEST: f64 = 0.5;
 
-/// What is that is asked for.
+/// A request for pictures.
 #[derive(Clone)]
 pub struct PictureRequest {
-    /// Unlike that of any other request, and growing.
+    /// A number that increases with each request.
     pub number: u64,
-    /// The pictures, each with its size on the screen.
+    /// The scenes, each with its size on the screen.
     pub scenes: Vec<Scene>,
-    /// What they are drawn from.
+    /// The data that they are drawn from.
     pub rocks: Rocks,
-    /// While the hand moves, coarse is enough.
+    /// While the user drags, coarse pictures suffice.
     pub is_moving: bool,
-    /// What is on the screen already tells more than a coarse picture would.
+    /// Start at full resolution, because the picture on the screen is already better than a coarse one would be.
     pub begins_fine: bool,
 }
 
-/// A click on a picture in which something may be seen behind its faces.
+/// A click on volume rendering, where the place that is hit may lie behind the faces.
 #[derive(Clone)]
 pub struct Touch {
     /// The project.
     pub root: PathBuf,
-    /// The picture, with a size in points.
+    /// The scene, with a size in points.
     pub scene: Scene,
-    /// Where, points from its upper left corner.
+    /// The place of the click, points from the upper left corner.
     pub at: DVec2,
     /// What the click does.
     pub how: How,
-    /// What the picture was drawn from.
+    /// The data that the picture was drawn from.
     pub rocks: Rocks,
 }
 
 /// A picture.
 pub struct Drawn {
-    /// Of which request.
+    /// Number of its request.
     pub number: u64,
-    /// Which of its scenes.
+    /// Index of its scene.
     pub pane: usize,
-    /// The pixels: fewer than the screen's where it is coarse.
+    /// The pixels; fewer than the screen's where the picture is coarse.
     pub image: RgbaImage,
-    /// Whether nothing better will come.
+    /// Whether it is the final picture of its request.
     pub is_final: bool,
-    /// What drew it.
+    /// The device that drew it.
     pub device: String,
 }
 
@@ -74,11 +76,11 @@ pub struct Drawn {
 struct Wanted {
     request: Option<PictureRequest>,
     touch: Option<Touch>,
-    /// Of the picture being drawn, if it may be given up.
+    /// Progress of the picture being drawn, if that may be cancelled.
     progress: Option<Progress>,
 }
 
-/// What is done next: a click waits for no picture.
+/// The next thing to do: a click does not wait for a picture.
 enum Next {
     Touch(Box<Touch>),
     Draw(PictureRequest),
@@ -91,13 +93,13 @@ impl Wanted {
     }
 }
 
-/// The thread that draws, and the request it works on next.
+/// A latest-value worker that draws pictures.
 pub struct Drawing {
     worker: LatestValueWorker<Wanted>,
 }
 
 impl Drawing {
-    /// Starts the thread.
+    /// Starts the worker.
     pub fn start(outbox: Outbox) -> Self {
         let told = outbox.clone();
         Self {
@@ -107,7 +109,7 @@ impl Drawing {
         }
     }
 
-    /// Draws this next, instead of an earlier one.
+    /// Draws this next, instead of an earlier request.
     pub fn draw(&self, request: PictureRequest) {
         self.worker.change(|wanted| {
             wanted.request = Some(request);
@@ -115,7 +117,7 @@ impl Drawing {
         });
     }
 
-    /// Finds what is seen at a place of a picture, and picks it.
+    /// Finds what is hit at a place of a picture, and picks it.
     pub fn touch(&self, touch: Touch) {
         self.worker.change(|wanted| wanted.touch = Some(touch));
     }
@@ -127,7 +129,8 @@ impl Drop for Drawing {
     }
 }
 
-/// Media of a picture that is coarser by a factor: light and samples are coarser too, for they cost what pixels do not.
+/// The media for a picture that is coarser by a factor: light and samples along rays are coarser too, because their
+/// cost does not depend on the number of pixels.
 fn media_for(media: &Media, divisor: u32) -> Media {
     let mut media = media.clone();
     if divisor > 1 {
@@ -143,13 +146,13 @@ fn media_for(media: &Media, divisor: u32) -> Media {
 struct Artist {
     outbox: Outbox,
     painter: Option<Painter>,
-    /// Seconds a ray takes.
+    /// Estimated time for a ray, seconds.
     ray_s: f64,
 }
 
 impl Artist {
     fn new(outbox: Outbox) -> Self {
-        // Until measured: a slow processor.
+        // Before the first measurement a slow processor is assumed.
         Self { outbox, painter: None, ray_s: 1.5e-6 }
     }
 
@@ -166,7 +169,7 @@ impl Artist {
         }
     }
 
-    /// What is seen at a place becomes a click on it.
+    /// Finds what is hit at a place and reports a click there.
     fn find(&self, touch: &Touch) {
         let loaded = touch.rocks.read().unwrap_or_else(PoisonError::into_inner);
         let scene = loaded.complete(&touch.scene);
@@ -181,7 +184,7 @@ impl Artist {
         }
     }
 
-    /// Draws the requested picture ever finer until it is smooth or a newer one is there.
+    /// Draws the requested picture at increasing resolution until it is smooth or a newer request arrives.
     fn satisfy(&mut self, request: &PictureRequest, inbox: &Inbox<Wanted>) -> Result<(), RenderError> {
         let rays: f64 =
             request.scenes.iter().map(|scene| f64::from(scene.size_px[0]) * f64::from(scene.size_px[1])).sum();

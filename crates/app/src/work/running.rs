@@ -9,30 +9,30 @@ use std::time::{Duration, Instant};
 use survey::progress::ProgressSink;
 use survey::{Note, Progress};
 
-/// How often progress wakes the window at most.
+/// Smallest interval at which progress wakes the window.
 const WAKE_EVERY: Duration = Duration::from_millis(100);
 
 /// A job under way.
 #[derive(Clone)]
 pub struct RunningLine {
-    /// Unlike any other.
+    /// A number that no other job has.
     pub id: u64,
-    /// What it does.
+    /// Its title.
     pub title: String,
     /// Where its failure would be shown.
     pub place: Place,
-    /// The stage it is in.
+    /// Its present stage.
     pub stage: String,
-    /// Steps done and in all; 0 in all: unknown.
+    /// Steps done and steps in all; 0 in all means unknown.
     pub steps: [u64; 2],
-    /// What it warned of.
+    /// Its warnings.
     pub warnings: Vec<String>,
-    /// Stops it.
+    /// A handle to cancel it.
     pub progress: Progress,
 }
 
 impl RunningLine {
-    /// Share done of the present stage.
+    /// The share of the present stage that is done.
     pub fn share(&self) -> Option<f32> {
         let [done, total] = self.steps;
         (total > 0).then(|| (done as f32 / total as f32).clamp(0.0, 1.0))
@@ -47,7 +47,7 @@ pub struct Running {
 }
 
 impl Running {
-    /// Adds a job; it is listed as long as the guard lives.
+    /// Adds a job; it is listed for as long as the guard lives.
     pub fn begin(&self, title: &str, place: Place, wake: Wake) -> (RunningGuard, Progress) {
         let id = self.next.fetch_add(1, Ordering::Relaxed);
         let sink = Sink { id, running: self.clone(), wake, woke: Mutex::new(Instant::now()) };
@@ -65,12 +65,12 @@ impl Running {
         (RunningGuard { id, running: self.clone() }, progress)
     }
 
-    /// What is under way now.
+    /// The jobs that are under way now.
     pub fn lines(&self) -> Vec<RunningLine> {
         self.with(|lines| lines.clone())
     }
 
-    /// Whether nothing is.
+    /// Whether no job is under way.
     pub fn is_idle(&self) -> bool {
         self.with(|lines| lines.is_empty())
     }
@@ -84,14 +84,14 @@ impl Running {
     }
 }
 
-/// Keeps a job on the list.
+/// Keeps a job on the list while it lives.
 pub struct RunningGuard {
     id: u64,
     running: Running,
 }
 
 impl RunningGuard {
-    /// What the job warned of.
+    /// The warnings of the job.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         self.running.of(self.id, |line| warnings.clone_from(&line.warnings));
@@ -122,7 +122,7 @@ impl ProgressSink for Sink {
     }
 
     fn advance(&self, done: u64) {
-        // Steps come by the thousand; the list is locked and the window woken now and then only.
+        // Steps come by the thousand, so the list is locked and the window woken only from time to time.
         let Ok(mut woke) = self.woke.try_lock() else { return };
         if woke.elapsed() < WAKE_EVERY {
             return;

@@ -1,4 +1,4 @@
-//! Looking into files before anything is imported: how they would be read, and why.
+//! Scanning files before anything is imported: how they would be read, and why.
 
 use super::Work;
 use super::latest::Latest;
@@ -15,7 +15,7 @@ use ttf::{ColourMap, RgbaFunction};
 
 /// Longest side of a preview, pixels.
 const PREVIEW_PX: usize = 480;
-/// Share of the samples that the preview shows unclipped.
+/// Share of the samples that lie within the range of colours of the preview.
 const SHOWN_SHARE: f32 = 0.98;
 
 /// A survey as it would be read.
@@ -24,7 +24,8 @@ pub struct SurveyScan {
     pub info: SegyInfo,
     /// Where its traces are.
     pub geometry: SurveyGeometry,
-    /// A pixel for so many traces, inlines to the right, crosslines down: dark where there is a live one.
+    /// A map of the traces, several lines to a pixel, inlines to the right, crosslines down: dark where there is a live
+    /// trace.
     pub traces: RgbaImage,
     /// The middle inline, crosslines to the right.
     pub inline: RgbaImage,
@@ -32,18 +33,18 @@ pub struct SurveyScan {
 
 /// A horizon or fault as it would be read.
 pub struct InterpretationScan {
-    /// Name and what was found, for each surface of the file.
+    /// For each surface of the file its name and a report.
     pub surfaces: Vec<(String, String)>,
 }
 
-/// After a change, so long nothing more must change before a file is read anew.
+/// A file is read again when nothing has been changed in the dialogue for this long.
 const PATIENCE: Duration = Duration::from_millis(250);
 
-/// What was found in a file, as it is read with what is stated about it.
+/// The result of reading a file with what is stated about it.
 pub struct Reading<O, T> {
-    /// What was stated when it was read last.
+    /// The statements with which it was read last.
     read: Option<O>,
-    /// What is stated since when.
+    /// The present statements, and since when they have been unchanged.
     stated: Option<(O, Instant)>,
     found: Latest<Result<T, Notice>>,
 }
@@ -55,7 +56,7 @@ impl<O, T> Default for Reading<O, T> {
 }
 
 impl<O: Clone + PartialEq, T: Send + 'static> Reading<O, T> {
-    /// Reads the file on a thread: at once the first time, and anew when what is stated has stopped changing.
+    /// Reads the file on a thread: at once the first time, and again when the statements have stopped changing.
     pub fn follow(
         &mut self,
         ctx: &Context,
@@ -89,19 +90,19 @@ impl<O: Clone + PartialEq, T: Send + 'static> Reading<O, T> {
         });
     }
 
-    /// Whether the file can be read with what is stated now.
+    /// Whether the file can be read with the present statements.
     pub fn is_good(&self, stated: &O) -> bool {
         let is_read = self.read.as_ref() == Some(stated) && self.found.is_current();
         is_read && self.with(|found| matches!(found, Some((_, Ok(_)))))
     }
 
-    /// Looks at what was found last, and by which look.
+    /// Reads the latest result and the number of its attempt.
     pub fn with<R>(&self, look: impl FnOnce(Option<(u64, &Result<T, Notice>)>) -> R) -> R {
         self.found.with(look)
     }
 }
 
-/// Looks into a SEG-Y file.
+/// Scans a SEG-Y file.
 ///
 /// # Errors
 /// Why it cannot be read as a volume, for the dialogue.
@@ -139,7 +140,7 @@ fn middle_inline(file: &SegyFile) -> RgbaImage {
     })
 }
 
-/// Looks into a horizon or fault file.
+/// Scans a horizon or fault file.
 ///
 /// # Errors
 /// Why it cannot be read, for the dialogue.
@@ -151,7 +152,7 @@ pub fn horizon(path: &Path, geometry: &SurveyGeometry, options: &ImportOptions) 
     })
 }
 
-/// Looks into a fault file.
+/// Scans a fault file.
 ///
 /// # Errors
 /// Why it cannot be read, for the dialogue.

@@ -1,4 +1,4 @@
-//! Sections along the lattice, cut on a thread for the latest request of each kind.
+//! Sections along the lattice, cut for the latest request of each kind.
 
 use super::fence::{self, FenceRequest};
 use super::latest_value::{Inbox, LatestValueWorker};
@@ -10,27 +10,27 @@ use render::{DrawnWell, FaceData, NamedVolume};
 use std::collections::HashMap;
 use std::sync::PoisonError;
 
-/// A section that is asked for.
+/// A request for a section.
 #[derive(Clone)]
 pub struct SliceRequest {
-    /// Along what.
+    /// Its kind.
     pub kind: SectionKind,
-    /// Where, voxel.
+    /// Its position, voxel.
     pub at: f64,
-    /// What it is cut from.
+    /// The data that it is cut from.
     pub rocks: Rocks,
-    /// What it shows; amplitudes where there are no candidates in memory.
+    /// What it shows; amplitudes where no candidates are in memory.
     pub show: FaceData,
 }
 
-/// What is to be cut: the latest of each kind.
+/// The latest request of each kind.
 #[derive(Default)]
 struct Wanted {
     slices: HashMap<SectionKind, SliceRequest>,
     fence: Option<FenceRequest>,
 }
 
-/// What is cut next.
+/// The next request.
 enum Next {
     Slice(SliceRequest),
     Fence(FenceRequest),
@@ -43,13 +43,13 @@ impl Wanted {
     }
 }
 
-/// The thread that cuts, and the requests it works on next.
+/// A latest-value worker that cuts sections.
 pub struct Slices {
     worker: LatestValueWorker<Wanted>,
 }
 
 impl Slices {
-    /// Starts the thread.
+    /// Starts the worker.
     pub fn start(outbox: Outbox) -> Self {
         let told = outbox.clone();
         Self {
@@ -70,7 +70,7 @@ impl Slices {
         }
     }
 
-    /// Cuts this next, instead of an earlier one of its kind.
+    /// Cuts this next, instead of an earlier request of its kind.
     pub fn cut(&self, request: SliceRequest) {
         self.worker.change(|wanted| drop(wanted.slices.insert(request.kind, request)));
     }
@@ -81,12 +81,12 @@ impl Slices {
     }
 }
 
-/// What sections are cut from.
+/// The data that sections are cut from.
 pub(super) fn source<'a>(loaded: &'a Loaded, volumes: &'a [NamedVolume<'a>], wells: &'a [DrawnWell<'a>]) -> Source<'a> {
     Source { data: loaded.inputs(volumes, wells), raw: loaded.raw.as_ref() }
 }
 
-/// Cuts what is loaded.
+/// Cuts a section from the loaded data.
 fn cut(loaded: &Loaded, request: &SliceRequest) -> SectionCut {
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     SectionCut::new(&source(loaded, &volumes, &wells), request.kind, request.at, request.show)

@@ -1,4 +1,5 @@
-//! Swatches of layers and patterns, drawn on a thread: a pattern is rasterised when it is first seen, which takes a while.
+//! Swatches of layers and patterns, drawn on a thread: a pattern is rasterised when it is first shown, which takes a
+//! while.
 
 use super::{Wake, spawn_quietly};
 use figure::draw::swatch;
@@ -11,7 +12,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use ttf::{LayerStyle, Pattern, TextureLibrary};
 
-/// A swatch asked for.
+/// A request for a swatch.
 struct Request {
     key: String,
     style: LayerStyle,
@@ -30,7 +31,7 @@ struct Done {
     patterns: Arc<Vec<Pattern>>,
 }
 
-/// The thread that draws swatches, and what it has drawn.
+/// The thread that draws swatches, and the swatches that it has drawn.
 pub struct Swatches {
     orders: Sender<Order>,
     done: Arc<Mutex<Done>>,
@@ -67,7 +68,7 @@ impl Swatches {
         Self { orders, done, textures: None }
     }
 
-    /// Uses the tiles of this project too.
+    /// Uses the tiles of this project, too.
     pub fn follow(&mut self, root: &std::path::Path, document: &Document) {
         let tiles = document.textures.iter().map(|entry| entry.file.clone()).collect();
         let textures = Some((root.to_owned(), tiles));
@@ -78,12 +79,12 @@ impl Swatches {
         }
     }
 
-    /// All patterns there are, in catalogue order.
+    /// All patterns, in the order of the catalogue.
     pub fn patterns(&self) -> Arc<Vec<Pattern>> {
         self.done.lock().unwrap_or_else(PoisonError::into_inner).patterns.clone()
     }
 
-    /// A swatch and the key it is known by; `None` until it is drawn.
+    /// A swatch and its key; `None` until it is drawn.
     pub fn get(&self, style: &LayerStyle, size_px: [u32; 2], px_per_mm: f32) -> (String, Option<Arc<RgbaImage>>) {
         let nameless = LayerStyle { layer: String::new(), ..style.clone() };
         let key = format!("{nameless:?} {size_px:?} {px_per_mm}");

@@ -1,5 +1,5 @@
-//! Threads of the window's workers. A panic in one is an error of the program: it is told, costs the order it happened in and nothing
-//! else, and the worker goes on with the next.
+//! Threads of the window's workers. A panic in one is a bug in the program: it is reported, the order in which it
+//! happened is lost, and the worker goes on with the next order.
 
 use super::{Event, Outbox};
 use crate::state::{Notice, Place};
@@ -7,10 +7,10 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread::Builder;
 
-/// So often a worker is started again; one that fails more often fails at everything.
+/// How many times a worker is restarted; one that fails more often would fail at everything.
 const RESTARTS: usize = 50;
 
-/// A thread for one job. A panic in it, or that there is no thread to be had, is told.
+/// Starts a thread for one job. A panic in it is reported, and so is a failure to start the thread.
 pub(super) fn spawn(name: &'static str, outbox: &Outbox, job: impl FnOnce() + Send + 'static) {
     let theirs = outbox.clone();
     let started = Builder::new().name(name.to_owned()).spawn(move || {
@@ -22,20 +22,20 @@ pub(super) fn spawn(name: &'static str, outbox: &Outbox, job: impl FnOnce() + Se
         outbox.send(Event::Told(Notice {
             place: Place::Block,
             failed: true,
-            text: format!("there is no thread for the work on {name}: {error}"),
+            text: format!("no thread could be started for {name}: {error}"),
             hint: Some("close other programs, then open the project again".to_owned()),
         }));
     }
 }
 
-/// A thread for something that is asked for again when it is missing: a listing, a swatch.
+/// Starts a thread for something that is requested again when it is missing, such as a listing or a swatch.
 pub(super) fn spawn_quietly(name: &'static str, job: impl FnOnce() + Send + 'static) {
-    // Without a thread it stays missing, which is seen.
+    // If the thread cannot be started the result stays missing, which the user sees.
     let _ = Builder::new().name(name.to_owned()).spawn(job);
 }
 
-/// A thread that works until `job` returns. A panic is told, and the job called again: what it has taken from its inbox is lost, what
-/// waits there is not.
+/// Starts a thread that works until `job` returns. A panic is reported and the job is called again: what it had taken
+/// from its inbox is lost, what is still waiting there is kept.
 pub(super) fn keep_working(name: &'static str, outbox: &Outbox, mut job: impl FnMut() + Send + 'static) {
     let theirs = outbox.clone();
     spawn(name, outbox, move || {
@@ -48,15 +48,15 @@ pub(super) fn keep_working(name: &'static str, outbox: &Outbox, mut job: impl Fn
     });
 }
 
-/// What is told of a panic.
+/// The message about a panic.
 fn stopped(name: &str, panic: &(dyn Any + Send)) -> Notice {
     let text = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let text = text.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_default();
     Notice {
         place: Place::Block,
         failed: true,
-        text: format!("an error in the program stopped the work on {name}: {text}"),
-        hint: Some("try again; nothing of the project was changed by it. Please report what you did".to_owned()),
+        text: format!("an error in the program interrupted {name}: {text}"),
+        hint: Some("try again; the project was not changed. Please report what you did".to_owned()),
     }
 }
 

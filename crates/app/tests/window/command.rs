@@ -104,7 +104,7 @@ fn proposed_faults_are_accepted_and_dismissed() {
         harness.query_all_by_label_contains("Proposal").count() == 0
     });
     // Looking again makes another list, in which nothing is dismissed; flat horizons have no offset.
-    click_last(&mut harness, "Look for faults");
+    click_last(&mut harness, "Propose faults");
     assert!(state(&harness).session.as_ref().unwrap().view.picking.dismissed.is_empty());
     wait(&mut harness, "it is said that there are none", |harness| !state(harness).notices.is_empty());
     assert!(state(&harness).notices[0].text.contains("no fault is proposed"), "{:?}", state(&harness).notices);
@@ -212,7 +212,7 @@ fn a_tile_of_ones_own_and_a_kept_view_come_and_go() {
     harness.step();
     harness.get_by_label("Scene name").type_text("plan");
     harness.run_steps(2);
-    click(&mut harness, "Keep view");
+    click(&mut harness, "Save scene");
     wait(&mut harness, "the view is kept", |harness| document(harness).scenes.len() == 1);
     wait(&mut harness, "it is listed", |harness| harness.query_by_label("plan").is_some());
     click_last(&mut harness, "Remove");

@@ -138,13 +138,13 @@ fn the_start_page_opens_begins_and_remembers() {
     // While it is open, another window does not offer it.
     let mut second = driven(folder.path(), None);
     second.step();
-    assert!(second.query_by_label("Go on").is_none());
+    assert!(second.query_by_label("Continue").is_none());
     drop(second);
     drop(harness);
     let mut next = driven(folder.path(), None);
     next.step();
     // It was not closed, as after a crash: what was open is offered again.
-    click(&mut next, "Go on");
+    click(&mut next, "Continue");
     wait(&mut next, "the project is open again", |harness| state(harness).session.is_some());
 }
 
@@ -237,7 +237,7 @@ fn views_are_arranged_compared_and_kept() {
     harness.step();
     harness.get_by_label("Scene name").type_text("plan");
     harness.run_steps(2);
-    click(&mut harness, "Keep view");
+    click(&mut harness, "Save scene");
     wait(&mut harness, "the scene is kept", |harness| document(harness).scenes.len() == 1);
     assert_eq!(document(&harness).scenes[0].scene.camera.elevation_deg, 90.0);
 }

@@ -38,7 +38,7 @@ fn extract_again(harness: &mut Driven, min_leaf_triangles: u32) {
     settings.forest.min_leaf_triangles = min_leaf_triangles;
     harness.state_mut().as_mut().unwrap().act(Action::Extract(None, Box::new(settings)));
     wait(harness, "the picks are known to be outdated", |harness| {
-        harness.query_by_label_contains("picks are of another extraction").is_some()
+        harness.query_by_label_contains("picks were made on another extraction").is_some()
     });
 }
 

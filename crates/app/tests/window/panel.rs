@@ -78,7 +78,7 @@ fn every_field_of_a_panel_has_a_name_of_its_own() {
     for panel in [Panel::Data, Panel::Values, Panel::Interpret] {
         act(&mut harness, Action::Panel(panel));
         if panel == Panel::Interpret {
-            click_last(&mut harness, "How");
+            click_last(&mut harness, "Settings");
             act(&mut harness, Action::Picking(PickingStep::Begin));
             act(&mut harness, Action::Picking(PickingStep::Use(Tool::Sticks)));
             wait(&mut harness, "sticks can be drawn", |harness| field_is_there(harness, "Name of the fault"));
@@ -251,7 +251,7 @@ fn a_project_left_open_can_be_let_go_and_one_that_is_gone_is_not_opened() {
     let mut next = driven(folder.path(), None);
     next.step();
     click(&mut next, "Not now");
-    assert!(state(&next).remembered.left.is_none() && next.query_by_label("Go on").is_none());
+    assert!(state(&next).remembered.left.is_none() && next.query_by_label("Continue").is_none());
     wait(&mut next, "it is known to be gone", |next| next.get_by_label("north").accesskit_node().is_disabled());
 }
 

@@ -77,8 +77,10 @@ fn candidates_are_extracted_from_the_panel() {
     harness.key_press(Key::P);
     harness.run_steps(3);
     assert_eq!(state(&harness).session.as_ref().unwrap().view.panel, Panel::Interpret);
-    click(&mut harness, "How");
-    for label in ["Least front width", "Fault evidence", "Join pieces from", "Least leaf", "Reach", "Peaks"] {
+    click(&mut harness, "Settings");
+    for label in
+        ["Minimum front width", "Fault evidence", "Join pieces from", "Minimum leaf size", "Maximum distance", "Peaks"]
+    {
         assert!(harness.query_all_by_label(label).count() > 0, "{label}");
     }
     click(&mut harness, "Extract");
@@ -177,12 +179,12 @@ fn shift_adds_alt_takes_out_and_the_pick_list_moves_and_takes_back() {
         entry.and_then(|entry| entry.assembly.clone()).map_or_else(Vec::new, |log| log.picks)
     };
     wait(&mut harness, "both are in the log", |harness| log(harness).len() == 2);
-    wait(&mut harness, "the list shows them", |harness| harness.query_all_by_label("Take back").count() == 2);
+    wait(&mut harness, "the list shows them", |harness| harness.query_all_by_label("Unpick").count() == 2);
     harness.query_all_by_label("Up").next().unwrap().click();
     harness.run_steps(2);
     wait(&mut harness, "the first pick is higher", |harness| log(harness)[0].up == 1);
     wait(&mut harness, "the list knows", |harness| harness.query_by_label("level 1").is_some());
-    harness.query_all_by_label("Take back").next().unwrap().click();
+    harness.query_all_by_label("Unpick").next().unwrap().click();
     harness.run_steps(2);
     wait(&mut harness, "one pick is left", |harness| log(harness).len() == 1);
     // What is not part of the horizon cannot be taken out, and this is said.
@@ -264,7 +266,7 @@ fn a_new_horizon_is_named_coloured_and_a_selection_outlives_the_window() {
     drop(harness);
     let mut next = driven(folder.path(), None);
     next.step();
-    click(&mut next, "Go on");
+    click(&mut next, "Continue");
     wait(&mut next, "the selection is back", |harness| {
         state(harness).session.as_ref().is_some_and(|session| session.view.picking.pick == pick)
     });
@@ -308,7 +310,7 @@ fn a_fence_runs_along_the_corners_clicked_on_the_slice() {
     click_in(&mut harness, "Slice section", [20.0, 90.0], Modifiers::NONE);
     assert_eq!(state(&harness).session.as_ref().unwrap().view.fence.len(), 3);
     wait(&mut harness, "the fence is cut", |harness| harness.query_by_label("Fence section").is_some());
-    click(&mut harness, "Last corner back");
+    click(&mut harness, "Remove last corner");
     assert_eq!(state(&harness).session.as_ref().unwrap().view.fence.len(), 2);
     // What is clicked on the fence is picked as on any section.
     click_in(&mut harness, "Fence section", [10.0, 10.0], Modifiers::NONE);

@@ -29,13 +29,13 @@ fn a_volume_fills_the_cut_outs_and_the_block() {
     assert!(stops > 2);
     click_last(&mut harness, "Remove stop");
     assert_eq!(scene(&harness).media.cut_outs[0].function.stops.len(), stops - 1);
-    click_last(&mut harness, "Only in layers that stand out");
+    click_last(&mut harness, "Only in layers left standing");
     drawn(&mut harness);
     click_last(&mut harness, "Whole block");
     assert_eq!(extent(scene(&harness)), Extent::Block);
     assert!(scene(&harness).ground.is_none() && scene(&harness).background != Scene::default().background);
     drawn(&mut harness);
-    choose(&mut harness, "Light", "by gradients");
+    choose(&mut harness, "Light", "gradients");
     assert!(matches!(scene(&harness).media.shading, Shading::Phong(_)));
     drawn(&mut harness);
     click_last(&mut harness, "Nothing");
@@ -54,10 +54,10 @@ fn a_horizon_glows_in_the_cut_out() {
     click_last(&mut harness, "Top");
     wait(&mut harness, "the horizon is seen", |harness| !scene(harness).media.horizons.is_empty());
     drawn(&mut harness);
-    for label in ["Light of Top", "Top: opacity", "Top: thick", "Top: glow"] {
+    for label in ["Light of Top", "Top: opacity", "Top: thickness", "Top: glow"] {
         assert!(harness.query_all_by_label(label).next().is_some(), "{label}");
     }
-    click_last(&mut harness, "near them");
+    click_last(&mut harness, "near horizons");
     drawn(&mut harness);
     click_last(&mut harness, "Top");
     assert!(scene(&harness).media.horizons.is_empty());

@@ -1,18 +1,19 @@
-//! Pictures that are compared: where each lies, what of it is seen, and what parts them.
+//! Compared pictures: where each lies, which part of it is visible, and what divides them.
 
 use crate::state::{Compare, Panel, Session};
 use crate::theme;
 use eframe::egui::{Align2, Color32, FontId, Rect, Stroke, Ui, Vec2, pos2, vec2};
 
-/// A view is narrow for two blocks beside one another below this width, heights.
+/// Below this ratio of width to height a view is too narrow for two blocks side by side.
 const NARROW: f32 = 1.4;
 
-/// How pictures are compared: while interpreting there is only one.
+/// How pictures are compared; while interpreting there is only one.
 pub fn compare(session: &Session) -> Compare {
     if session.view.panel == Panel::Interpret { Compare::Blend } else { session.view.compare }
 }
 
-/// Where each of the compared pictures lies. Blocks are broader than high: in a narrow view two stand one over the other.
+/// The rectangles of the compared pictures. Blocks are wider than high, so in a narrow view two of them lie one above
+/// the other.
 pub fn panes(compare: Compare, rect: Rect) -> Vec<Rect> {
     match compare {
         Compare::SideBySide => {
@@ -32,7 +33,7 @@ fn is_narrow(rect: Rect) -> bool {
     rect.width() < NARROW * rect.height()
 }
 
-/// The part of a pane that its picture is seen in.
+/// The part of a pane in which its picture is visible.
 pub fn clip(compare: Compare, index: usize, rect: Rect, wipe: f32) -> Rect {
     let wipe_x = rect.left() + rect.width() * wipe;
     match (compare, index) {
@@ -42,7 +43,7 @@ pub fn clip(compare: Compare, index: usize, rect: Rect, wipe: f32) -> Rect {
     }
 }
 
-/// What parts compared pictures, and which is which.
+/// Paints the dividing line and the captions of compared pictures.
 pub fn rule(ui: &Ui, compare: Compare, whole: Rect, wipe: f32) {
     let painter = ui.painter_at(whole);
     let thin = Stroke::new(1.0, ui.visuals().widgets.noninteractive.bg_stroke.color);
@@ -70,7 +71,8 @@ pub fn rule(ui: &Ui, compare: Compare, whole: Rect, wipe: f32) {
     }
 }
 
-/// The largest rectangle of a picture's shape in the middle of another: a picture of before the view was resized keeps its shape.
+/// The largest rectangle with a picture's aspect ratio, centred in another: a picture drawn before the view was resized
+/// keeps its shape.
 pub(super) fn fitted(rect: Rect, shape: Vec2) -> Rect {
     let scale = (rect.width() / shape.x).min(rect.height() / shape.y);
     let is_same = (rect.width() / rect.height() / (shape.x / shape.y) - 1.0).abs() < 0.03;

@@ -1,4 +1,5 @@
-//! The block under the hand: turned, moved, zoomed, cut by its faces; the line of the wipe.
+//! Handling the block with the pointer: turning, moving, zooming, cutting by its faces; and the dividing line of the
+//! wipe.
 
 use super::{REACH, dvec, screen};
 use crate::state::faces::{self, Face, Handle};
@@ -7,12 +8,12 @@ use eframe::egui::{CursorIcon, Modifiers, PointerButton, Pos2, Rect, Response, U
 use glam::DVec2;
 use render::Scene;
 
-/// Natural logarithm of the zoom that a point of wheel travel makes.
+/// Change of the natural logarithm of the zoom for each point of wheel travel.
 const WHEEL: f64 = 0.0022;
 /// Wheel travel that moves a face by a sample, points.
 const WHEEL_STEP: f32 = 24.0;
 
-/// What it holds.
+/// What the pointer drags.
 enum Grab {
     Turn,
     Shift,
@@ -20,21 +21,21 @@ enum Grab {
     Face { handle: Handle, start: Box<Scene>, from: Pos2, size: DVec2 },
 }
 
-/// The hand on the block.
+/// The state of dragging in the block view.
 #[derive(Default)]
 pub(super) struct Hand {
     grab: Option<Grab>,
-    /// Wheel travel over a handle not yet used, points.
+    /// Wheel travel over a handle that has not moved its face yet, points.
     wheel: f32,
 }
 
 impl Hand {
-    /// Whether it holds something.
+    /// Whether something is dragged.
     pub(super) fn is_closed(&self) -> bool {
         self.grab.is_some()
     }
 
-    /// The face it holds.
+    /// The face that is dragged.
     pub(super) fn face(&self) -> Option<Face> {
         match &self.grab {
             Some(Grab::Face { handle, .. }) => Some(handle.face),
@@ -42,7 +43,7 @@ impl Hand {
         }
     }
 
-    /// Turns, moves, zooms and cuts as the pointer does in a pane of the whole view.
+    /// Turns, moves, zooms and cuts as the pointer does in one pane of the view.
     pub(super) fn touch(
         &mut self,
         ui: &Ui,

@@ -1,7 +1,7 @@
-//! The block: pictures from the painter, turned and cut by hand.
+//! The block view: pictures from the painter, turned and cut with the pointer.
 //!
-//! Two spaces: points of the window, and pixels of the picture (points × the display's scale). Cameras are changed in points: [`camera`](crate::state::camera)
-//! needs proportions only.
+//! Two spaces: points of the window, and pixels of the picture (points × the display's scale). Cameras are changed in
+//! points, since [`camera`](crate::state::camera) depends on proportions only.
 
 mod compare;
 mod hand;
@@ -23,22 +23,22 @@ use hand::Hand;
 use project::picture::load::Loaded;
 use render::{Background, Faces, Media, Scene};
 
-/// How near the pointer must be to take hold of a handle or of the wipe's line, points.
+/// Distance within which the pointer catches a handle or the dividing line of the wipe, points.
 const REACH: f32 = 11.0;
 
-/// What white volumes are seen before.
+/// Background of volumes that are rendered in white.
 pub const BEHIND_VOLUMES: Color32 = Color32::from_rgb(0x2c, 0x33, 0x3a);
 
 /// The view.
 #[derive(Default)]
 pub struct BlockView {
     panes: Vec<Option<TextureHandle>>,
-    /// The pictures' pixels, left to right.
+    /// The pixels of the pictures, left to right.
     pixels: Vec<Option<ColorImage>>,
     requested: Option<(Vec<Scene>, u64, bool)>,
-    /// The scenes on the screen, if they are drawn in all their pixels.
+    /// The scenes on the screen, once they are drawn at full resolution.
     fine: Option<Vec<Scene>>,
-    /// Whether the picture that is asked for, and the one on the screen, lie on a dark ground.
+    /// Whether the requested picture, and the one on the screen, have the dark background.
     dark: [bool; 2],
     number: u64,
     shown: u64,
@@ -49,17 +49,17 @@ pub struct BlockView {
 }
 
 impl BlockView {
-    /// What draws the pictures.
+    /// The device that draws the pictures.
     pub fn device(&self) -> &str {
         &self.device
     }
 
-    /// Whether the picture shown is the final one of what is asked for.
+    /// Whether the picture shown is the final one of the present request.
     pub fn is_settled(&self) -> bool {
         self.is_final && self.shown == self.number
     }
 
-    /// Puts the picture on the clipboard, on white; of two that are compared, the illustrated one.
+    /// Copies the picture to the clipboard, on white; of two compared pictures, the illustrated one.
     pub fn copy(&self, ctx: &eframe::egui::Context) {
         let Some(mut image) = self.pixels.iter().flatten().next().cloned() else { return };
         for pixel in &mut image.pixels {
@@ -70,7 +70,7 @@ impl BlockView {
         ctx.copy_image(image);
     }
 
-    /// Takes a picture in.
+    /// Takes over a picture that was drawn.
     pub fn receive(&mut self, ctx: &eframe::egui::Context, drawn: Drawn) {
         if drawn.number < self.shown || drawn.pane >= self.panes.len() {
             return;
@@ -92,7 +92,7 @@ impl BlockView {
         texture::keep(&mut self.panes[drawn.pane], ctx, &format!("block {}", drawn.pane), pixels);
     }
 
-    /// Shows the block in all the room there is; answers what is under the cursor.
+    /// Shows the block in all the room there is; returns what is under the cursor.
     pub fn show(
         &mut self,
         ui: &mut Ui,
@@ -111,11 +111,11 @@ impl BlockView {
         };
         let horizons = holds(&|loaded| loaded.candidates.is_some()).then(|| overlay.leaves(session));
         let mut shown = showing::scene(session, horizons.as_deref());
-        // After interpreting there is no model yet to take the relief from.
+        // Just after interpreting the model is not loaded yet, so there is no relief to draw.
         if !holds(&|loaded| loaded.rock.is_some()) {
             shown.ground = None;
         }
-        // What is to be seen through is shown when it has been read.
+        // Volumes and horizons of the volume rendering are shown once they have been read.
         if view.panel != Panel::Interpret && !holds(&|loaded| loaded.holds_media(&shown.media)) {
             shown.media = Media::default();
         }
@@ -140,13 +140,13 @@ impl BlockView {
         if !has_lasso {
             self.hand.touch(ui, &response, session, [pane, rect], &handles, actions);
         }
-        // While they are being changed nobody knows what they hold; the next frame asks again.
+        // While the loaded data are being changed they cannot be looked at; the next frame tries again.
         if let Some((rocks, version)) = rocks.filter(|_| is_known) {
             self.dark[0] = is_dark(session);
             self.request(scenes, rocks, version, drawing);
         }
         self.paint(ui, session, compare, &rects, rect);
-        // Where the block is seen through, the picture shows the horizons itself, once it is drawn.
+        // In volume rendering the picture contains the horizons, once it is final.
         if !is_clear(session) || !self.is_settled() {
             overlay.surfaces_on_block(ui, session, pane);
         }
@@ -166,7 +166,7 @@ impl BlockView {
         if let (true, Some((how, at)), Some((rocks, _))) =
             (is_clear(session), lasso::pick_at(ui, &response, session), rocks)
         {
-            // What is seen there may lie anywhere behind the face.
+            // In volume rendering the place that was clicked may lie anywhere behind the face.
             let scene = Scene { size_px: pane_px(pane), ..shown };
             let (root, rocks) = (session.root.clone(), rocks.clone());
             drawing.touch(Touch { root, scene, at: dvec(at - pane.min), how, rocks });
@@ -176,7 +176,7 @@ impl BlockView {
         pointed
     }
 
-    /// Asks for other pictures when something that shows has changed.
+    /// Requests other pictures when something visible has changed.
     fn request(&mut self, scenes: Vec<Scene>, rocks: &Rocks, version: u64, drawing: &Drawing) {
         let is_moving = self.hand.is_closed();
         let requested = (scenes, version, is_moving);
@@ -185,7 +185,7 @@ impl BlockView {
         }
         self.panes.resize_with(requested.0.len(), || None);
         self.number += 1;
-        // Surfaces are laid over the picture at once: it can stay until one with them in it is there.
+        // Surfaces are painted over the picture at once, so the picture can stay until one that contains them is drawn.
         let is_alike = |fine: &Vec<Scene>| {
             fine.len() == requested.0.len()
                 && fine.iter().zip(&requested.0).all(|(fine, scene)| is_but_for_horizons(fine, scene))
@@ -234,7 +234,7 @@ impl BlockView {
     }
 }
 
-/// Whether two pictures differ in nothing but the horizons that are seen in them.
+/// Whether two scenes differ in nothing but the horizons in their volume rendering.
 fn is_but_for_horizons(one: &Scene, other: &Scene) -> bool {
     let without = |scene: &Scene| {
         let mut scene = scene.clone();
@@ -244,22 +244,22 @@ fn is_but_for_horizons(one: &Scene, other: &Scene) -> bool {
     without(one) == without(other)
 }
 
-/// Whether the block is seen through.
+/// Whether the block shows volume rendering while interpreting.
 pub fn is_clear(session: &Session) -> bool {
     session.view.panel == Panel::Interpret && session.view.picking.look == Look::SeeThrough
 }
 
-/// A pane's size in points, as a picture's.
+/// The size of a pane in points, as the size of a picture.
 fn pane_px(pane: Rect) -> [u32; 2] {
     [pane.width(), pane.height()].map(|side| side.max(1.0) as u32)
 }
 
-/// Whether the block lies on a dark ground: volumes are white.
+/// Whether the block has the dark background, because volumes are white.
 pub fn is_dark(session: &Session) -> bool {
     is_clear(session) || session.view.panel != Panel::Interpret && session.view.scene.media.faces == Faces::None
 }
 
-/// What pictures lie on.
+/// The background of pictures.
 pub fn paper(ui: &Ui) -> Color32 {
     if ui.visuals().dark_mode { Color32::from_rgb(0xd2, 0xcf, 0xc8) } else { Color32::WHITE }
 }

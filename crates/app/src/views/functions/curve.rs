@@ -1,5 +1,5 @@
-//! An RGBA function drawn over the histogram of its volume: stops are dragged for value and opacity, added by a double click, and the one
-//! chosen last has its numbers below.
+//! An RGBA function drawn over the histogram of its volume: stops are dragged to change value and opacity, a double
+//! click adds one, and the stop chosen last is shown as numbers below.
 
 use super::colour_well;
 use super::histogram::Histogram;
@@ -11,16 +11,16 @@ use ttf::{Colour, RgbaFunction, RgbaStop};
 
 /// Height of the drawing, points.
 const HEIGHT: f32 = 110.0;
-/// Room above an opacity of 1 and below one of 0, points.
+/// Margin above opacity 1 and below opacity 0, points.
 const MARGIN: f32 = 8.0;
-/// How near the pointer must be to a stop, points.
+/// Distance within which the pointer catches a stop, points.
 const REACH: f32 = 11.0;
-/// Least part of the domain between two stops.
+/// Smallest distance between two stops, as a share of the domain.
 const APART: f32 = 1e-3;
-/// Fewest stops of a function.
+/// Smallest number of stops of a function.
 const FEWEST: usize = 2;
 
-/// A stop by its value.
+/// A stop, identified by its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Stop {
     value: f32,
@@ -28,7 +28,7 @@ struct Stop {
     opacity: f32,
 }
 
-/// What the hand holds, and which stop it held last.
+/// The stop being dragged, and the stop chosen last.
 #[derive(Debug, Default)]
 pub(super) struct Curve {
     held: Option<usize>,
@@ -36,7 +36,7 @@ pub(super) struct Curve {
 }
 
 impl Curve {
-    /// Shows a function and takes in what the hand does to it.
+    /// Shows a function and applies the user's changes to it.
     pub(super) fn show(&mut self, ui: &mut Ui, histogram: Option<&Histogram>, function: &mut RgbaFunction) {
         let mut stops = stops_of(function);
         self.chosen = self.chosen.min(stops.len().saturating_sub(1));
@@ -74,7 +74,7 @@ impl Curve {
         }
     }
 
-    /// The chosen stop in numbers.
+    /// The chosen stop as numbers.
     fn numbers(&mut self, ui: &mut Ui, stops: &mut Vec<Stop>) {
         let Some(&stop) = stops.get(self.chosen) else { return };
         let span = stops[stops.len() - 1].value - stops[0].value;
@@ -88,7 +88,7 @@ impl Curve {
             ui.add(drag).labelled_by(label.id);
             let can = stops.len() > FEWEST;
             let remove = ui.add_enabled(can, Button::new("Remove stop").small());
-            if remove.on_disabled_hover_text("A function has two stops at least").clicked() {
+            if remove.on_disabled_hover_text("A function has at least two stops").clicked() {
                 stops.remove(self.chosen);
                 self.chosen = self.chosen.saturating_sub(1);
             } else {
@@ -98,11 +98,11 @@ impl Curve {
                 }
             }
         });
-        ui.weak("Drag a stop; double click for another.");
+        ui.weak("Drag a stop to move it; double-click to add one.");
     }
 }
 
-/// Where values and opacities lie on the screen.
+/// The mapping from values and opacities to the screen.
 struct Plot {
     rect: Rect,
     range: [f32; 2],
@@ -118,7 +118,7 @@ impl Plot {
         pos2(x, self.rect.bottom() - MARGIN - opacity * (self.rect.height() - 2.0 * MARGIN))
     }
 
-    /// Value and opacity of a place.
+    /// The value and opacity at a point of the screen.
     fn at(&self, at: Pos2) -> (f32, f32) {
         let share = ((at.x - self.rect.left()) / self.rect.width()).clamp(0.0, 1.0);
         let opacity = (self.rect.bottom() - MARGIN - at.y) / (self.rect.height() - 2.0 * MARGIN);
@@ -134,7 +134,7 @@ impl Plot {
     fn paint(&self, ui: &Ui, histogram: Option<&Histogram>, function: &RgbaFunction, stops: &[Stop], chosen: usize) {
         let painter = ui.painter_at(self.rect);
         let visuals = ui.visuals();
-        // White as well as black stands out from it.
+        // A colour that stands out from white as well as from black.
         painter.rect_filled(self.rect, 4.0, Color32::from_gray(if visuals.dark_mode { 0x4a } else { 0xbc }));
         if let Some(histogram) = histogram {
             histogram.paint(&painter, self.rect, |value| {
@@ -181,7 +181,7 @@ fn place(stops: &mut [Stop], index: usize, value: f32) {
     stops[index].value = value.min(high).max(low);
 }
 
-/// Adds a stop in the colour that the function has there; answers which it is.
+/// Adds a stop with the colour that the function has there; returns its index.
 fn add(stops: &mut Vec<Stop>, function: &RgbaFunction, value: f32, opacity: f32) -> usize {
     let index = stops.partition_point(|stop| stop.value <= value);
     let [r, g, b, _] = function.evaluate(value).map(|channel| (channel * 255.0 + 0.5) as u8);

@@ -1,15 +1,15 @@
-//! How often values occur in a volume.
+//! Histograms of the values of a volume.
 
 use eframe::egui::{Color32, Painter, Rect, pos2};
 
 /// Columns of the histogram.
 const COLUMNS: usize = 96;
-/// Samples looked at for it: enough for its shape.
+/// Number of samples that are counted: enough for the shape of the histogram.
 const SAMPLES: usize = 1 << 16;
 
-/// How often values occur.
+/// The histogram of a volume.
 pub(super) struct Histogram {
-    /// State of the data that was counted.
+    /// Hash of the data that were counted.
     pub(super) version: u64,
     counts: Vec<f32>,
     /// Lowest and highest value.
@@ -27,12 +27,12 @@ impl Histogram {
         for value in values() {
             counts[(((value - range[0]) / width * COLUMNS as f32) as usize).min(COLUMNS - 1)] += 1.0;
         }
-        // Amplitudes crowd around zero; the root lets the tails be seen.
+        // Amplitudes cluster around zero; the square root makes the tails visible.
         counts.iter_mut().for_each(|count| *count = count.sqrt());
         Self { version, counts, range }
     }
 
-    /// Draws its columns, each in the colour of its value.
+    /// Draws the columns, each in the colour of its value.
     pub(super) fn paint(&self, painter: &Painter, rect: Rect, colour: impl Fn(f32) -> Color32) {
         let [first, last] = self.range;
         let tallest = self.counts.iter().copied().fold(1e-6, f32::max);

@@ -1,6 +1,7 @@
 //! Functions of values: the colours of raw data over the volume's histogram, and textures by value (P-illus 4.2, 4.3).
 //!
-//! The range of the colours is pulled on the histogram; the picture follows at once, and letting go makes it one command.
+//! The colour range is dragged on the histogram. The picture follows at once; releasing the pointer makes the change
+//! one command.
 
 mod curve;
 mod histogram;
@@ -20,10 +21,10 @@ use scalars::{intervals, ranges};
 use std::collections::HashMap;
 use ttf::{ColourMap, RawColour, ScalarInterval, ScalarTtf};
 
-/// How near the pointer must be to an end of the range, points.
+/// Distance within which the pointer catches an end of the range, points.
 const REACH: f32 = 10.0;
 
-/// The panel, and what is being changed in it.
+/// The panel, and the changes being made in it.
 #[derive(Default)]
 pub struct Functions {
     histograms: HashMap<String, Histogram>,
@@ -35,12 +36,12 @@ pub struct Functions {
 }
 
 impl Functions {
-    /// The colours under the hand.
+    /// The colours being changed, until they become a command.
     pub fn draft(&self) -> Option<&RawColour> {
         self.draft.as_ref()
     }
 
-    /// The project's state with what is being changed under the hand.
+    /// Applies the changes being made to a copy of the project's state.
     pub fn draft_of(&self, document: &mut Document) {
         if let Some(raw) = &self.draft {
             document.style.raw = Some(raw.clone());
@@ -113,7 +114,7 @@ impl Functions {
         self.histograms.insert(volume.to_owned(), histogram);
     }
 
-    /// The histogram over the colours, with the ends of the range to be pulled, and both as numbers.
+    /// The histogram over the colours; the ends of the range can be dragged and are shown as numbers.
     fn range(&mut self, ui: &mut Ui, raw: &mut RawColour) {
         let [low, high] = raw.function.domain;
         if let Some(histogram) = self.histograms.get(&raw.volume) {
@@ -207,7 +208,7 @@ impl Functions {
     }
 }
 
-/// The colour map, by name.
+/// The choice of a colour map, by name.
 fn map(ui: &mut Ui, document: &Document, raw: &mut RawColour) {
     ui.horizontal(|ui| {
         let label = ui.label("Colours");
@@ -236,14 +237,15 @@ fn map(ui: &mut Ui, document: &Document, raw: &mut RawColour) {
     });
 }
 
-/// The end of the range that a point takes hold of; the nearer one, even where both are out of reach.
+/// The end of the range that a drag from this point moves: the nearer one, even where both are out of reach.
 fn nearest(at: Pos2, ends: [f32; 2], rect: Rect) -> Option<usize> {
     let off = ends.map(|x| (x.clamp(rect.left(), rect.right()) - at.x).abs());
     let end = usize::from(off[1] < off[0]);
     (off[end] < REACH.max(rect.width() * 0.2)).then_some(end)
 }
 
-/// Moves an end of a range; where the range was centred on zero it stays so, for only then are amplitudes coloured fairly.
+/// Moves an end of a range. A range that was centred on zero stays centred, because otherwise positive and negative
+/// amplitudes are coloured unequally.
 fn pull(domain: &mut [f32; 2], end: usize, value: f32) {
     let [low, high] = *domain;
     if low == -high {
@@ -258,7 +260,7 @@ fn pull(domain: &mut [f32; 2], end: usize, value: f32) {
     }
 }
 
-/// A colour to be chosen, with a name for those who read the screen: a well has none of its own.
+/// A button that shows and changes a colour. It is given a name for screen readers, because egui gives it none.
 fn colour_well(ui: &mut Ui, name: &str, rgb: &mut [u8; 3]) {
     let id = ui.color_edit_button_srgb(rgb).on_hover_text(name).id;
     ui.ctx().accesskit_node_builder(id, |node| node.set_label(name));

@@ -1,4 +1,4 @@
-//! Textures by value: which ranges of a volume's values have one, and which.
+//! Textures by value: which ranges of a volume's values have a texture, and which one.
 
 use super::histogram::Histogram;
 use crate::theme;
@@ -6,7 +6,7 @@ use crate::work::Swatches;
 use eframe::egui::{ComboBox, DragValue, Role, Sense, Ui, WidgetInfo, vec2};
 use ttf::{ScalarInterval, ScalarTtf};
 
-/// The histogram of a volume with the values that have a texture marked.
+/// The histogram of a volume, with the ranges that have a texture marked.
 pub(super) fn ranges(ui: &mut Ui, histogram: &Histogram, function: &ScalarTtf) {
     let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), 44.0), Sense::hover());
     let name = format!("Histogram of {}", function.volume);
@@ -18,7 +18,7 @@ pub(super) fn ranges(ui: &mut Ui, histogram: &Histogram, function: &ScalarTtf) {
     });
 }
 
-/// Ranges of values with their textures; a range can be divided, and taken away as long as there is another.
+/// The ranges of values with their textures; a range can be split, and removed while there is another.
 pub(super) fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatches) {
     let (mut split, mut gone) = (None, None);
     let count = function.intervals.len();
@@ -39,10 +39,10 @@ pub(super) fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatch
             let drag = DragValue::new(&mut interval.opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
             ui.name_inputs(format!("Opacity of {} {ordinal}", function.volume), |ui| ui.add(drag))
                 .on_hover_text("Opacity over the layer's pattern");
-            if ui.small_button("Split").on_hover_text("Divide this range in two").clicked() {
+            if ui.small_button("Split").on_hover_text("Split this range in two").clicked() {
                 split = Some(index);
             }
-            if count > 1 && ui.small_button("−").on_hover_text("No texture for this range").clicked() {
+            if count > 1 && ui.small_button("−").on_hover_text("Remove this range").clicked() {
                 gone = Some(index);
             }
         });
@@ -56,7 +56,7 @@ pub(super) fn intervals(ui: &mut Ui, function: &mut ScalarTtf, swatches: &Swatch
     }
 }
 
-/// A range of values in two: at its middle, or where it has no end as far from the end it has as that is from zero.
+/// Splits a range in two: at its middle, or, where one end is open, as far from the other end as that end is from zero.
 fn halves(interval: ScalarInterval) -> (ScalarInterval, ScalarInterval) {
     let [low, high] = interval.range;
     let at = match (low.is_finite(), high.is_finite()) {

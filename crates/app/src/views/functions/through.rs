@@ -1,5 +1,5 @@
-//! What is seen through: a volume in the cut-outs or the whole block by its RGBA function, its light, and horizons that give off light of
-//! their own (P-illus 5.1, P-horiz 5).
+//! Volume rendering: a volume in the cut-outs or in the whole block with its RGBA function and shading, and horizons in
+//! it that may give off light (P-illus 5.1, P-horiz 5).
 
 use super::colour_well;
 use super::curve::Curve;
@@ -13,14 +13,14 @@ use render::media::{LayerOpacity, MediumColour};
 use render::{PickedHorizon, Scene, Scope, Shading};
 use ttf::Colour;
 
-/// The volume that is seen through, or would be.
+/// The volume that is rendered, or that would be.
 pub(super) fn volume(session: &Session) -> Option<String> {
     let media = &session.view.scene.media;
     let first = || session.document.volumes.first().map(|entry| entry.name.clone());
     media.all().next().map(|medium| medium.volume.clone()).or_else(first)
 }
 
-/// Shows where and how the scene is seen through.
+/// Shows where and how the scene renders a volume.
 pub(super) fn show(
     ui: &mut Ui,
     session: &Session,
@@ -29,14 +29,14 @@ pub(super) fn show(
     actions: &mut Vec<Action>,
 ) {
     let mut next = session.view.scene.clone();
-    ui.heading("Seen through");
+    ui.heading("Volume rendering");
     if let Some(volume) = volume(session) {
         place(ui, session, &volume, &mut next, actions);
         if let Some(medium) = through::medium(&mut next) {
             curve.show(ui, histogram, &mut medium.function);
             let mut follows = medium.layers == LayerOpacity::Followed;
-            let hint = "Layers stand out by their own opacity (Layers, In cut-outs); the others stay clear";
-            if ui.checkbox(&mut follows, "Only in layers that stand out").on_hover_text(hint).changed() {
+            let hint = "A layer is left standing where its opacity is above 0 (Layers, In cut-outs); the others stay transparent";
+            if ui.checkbox(&mut follows, "Only in layers left standing").on_hover_text(hint).changed() {
                 medium.layers = if follows { LayerOpacity::Followed } else { LayerOpacity::Ignored };
             }
             let mut is_rock = medium.colour == MediumColour::Layers;
@@ -54,21 +54,21 @@ pub(super) fn show(
     }
 }
 
-/// Where, and which volume.
+/// Where a volume is rendered, and which one.
 fn place(ui: &mut Ui, session: &Session, volume: &str, next: &mut Scene, actions: &mut Vec<Action>) {
     let present = through::extent(next);
     let (mut extent, mut name) = (present, volume.to_owned());
     ui.horizontal_wrapped(|ui| {
         for (choice, label, hint) in [
-            (Extent::Nowhere, "Nothing", "Rock all over"),
-            (Extent::CutOuts, "Cut-outs", "A volume fills the cut-outs before the rock behind them"),
+            (Extent::Nowhere, "Nothing", "No volume rendering: rock everywhere"),
+            (Extent::CutOuts, "Cut-outs", "A volume in the cut-outs, in front of the rock behind them"),
             (Extent::Block, "Whole block", "A volume in place of the rock"),
         ] {
             ui.selectable_value(&mut extent, choice, label).on_hover_text(hint);
         }
     });
     if present != Extent::Nowhere {
-        let label = ui.label("Volume seen through");
+        let label = ui.label("Rendered volume");
         ui.label_inputs_by(label.id, |ui| {
             ComboBox::from_id_salt("medium").selected_text(&name).show_ui(ui, |ui| {
                 for entry in &session.document.volumes {
@@ -88,13 +88,13 @@ fn place(ui: &mut Ui, session: &Session, volume: &str, next: &mut Scene, actions
     }
 }
 
-/// The horizons, each with its light.
+/// The horizons in the volume, each with its colour and light.
 fn horizons(ui: &mut Ui, session: &Session, next: &mut Scene) {
     let entries = &session.document.horizons;
     if entries.is_empty() {
         return;
     }
-    ui.label("Horizons in it");
+    ui.label("Horizons in the volume");
     for (index, entry) in entries.iter().enumerate() {
         let is_this = |horizon: &PickedHorizon| horizon.name.as_deref() == Some(entry.name.as_str());
         let mut is_shown = next.media.horizons.iter().any(is_this);
@@ -108,11 +108,11 @@ fn horizons(ui: &mut Ui, session: &Session, next: &mut Scene) {
     }
     if !next.media.horizons.is_empty() {
         ui.horizontal_wrapped(|ui| {
-            ui.label("Volume");
+            ui.label("Show the volume");
             for (scope, name) in [
                 (Scope::Everywhere, "everywhere"),
-                (Scope::NearHorizons, "near them"),
-                (Scope::AwayFromHorizons, "away from them"),
+                (Scope::NearHorizons, "near horizons"),
+                (Scope::AwayFromHorizons, "away from horizons"),
             ] {
                 ui.selectable_value(&mut next.media.scope, scope, name);
             }
@@ -128,13 +128,13 @@ fn numbers(ui: &mut Ui, name: &str, horizon: &mut PickedHorizon) {
     ui.horizontal_wrapped(|ui| {
         colour_well(ui, &format!("Light of {name}"), &mut horizon.colour.rgb);
         for (word, value, range, hint) in [
-            ("opacity", &mut horizon.opacity, 0.0..=1.0, "Of one voxel of its thickness"),
-            ("thick", &mut horizon.thickness, 0.2..=9.0, "Voxels to either side"),
+            ("opacity", &mut horizon.opacity, 0.0..=1.0, "For each voxel of its thickness"),
+            ("thickness", &mut horizon.thickness, 0.2..=9.0, "Voxels on either side"),
             (
                 "glow",
                 &mut horizon.emission,
                 0.0..=20.0,
-                "Light it gives off, which falls on what lies around; 1 is as bright as it is lit",
+                "Light that it gives off and that falls on its surroundings; at 1 it is as bright as when it is lit",
             ),
         ] {
             ui.weak(word);
@@ -151,8 +151,8 @@ fn light(ui: &mut Ui, next: &mut Scene) {
     ui.label_inputs_by(label.id, |ui| {
         let names = [
             (Light::None, "none"),
-            (Light::Gradients, "by gradients"),
-            (Light::Occlusion, "by what lies in front"),
+            (Light::Gradients, "gradients"),
+            (Light::Occlusion, "occlusion"),
             (Light::Stripes, "both, in stripes"),
         ];
         let shown = names.iter().find(|(light, _)| *light == present).map_or("", |(_, name)| name);

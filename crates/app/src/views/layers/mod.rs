@@ -1,7 +1,7 @@
-//! The stratigraphic column: youngest on top, and the style of the chosen layer.
+//! The stratigraphic column, youngest layer on top, and the style of the chosen layer.
 //!
-//! What is changed under the hand is a draft: the picture follows it at once, and it becomes one command when the hand lets go, so that
-//! a drag of a slider is one step of the history.
+//! A change in progress is a draft: the picture follows it at once, and when the user releases the pointer it becomes
+//! one command, so that dragging a slider is one step of the history.
 
 mod style;
 
@@ -24,7 +24,7 @@ use ttf::{Colour, LayerStyle, LayerTtf, TextureLibrary};
 /// Size of a layer's swatch in the column, points.
 const SWATCH: [f32; 2] = [64.0, 40.0];
 
-/// The panel, and what is being changed in it.
+/// The panel, with the change in progress.
 #[derive(Default)]
 pub struct Layers {
     draft: Option<(String, LayerStyle)>,
@@ -36,12 +36,12 @@ pub struct Layers {
 }
 
 impl Layers {
-    /// The style under the hand.
+    /// The draft of a style.
     pub fn draft(&self) -> Option<&LayerStyle> {
         self.draft.as_ref().map(|(_, style)| style)
     }
 
-    /// The project's state with what is being changed under the hand.
+    /// Applies the draft to a copy of the project's state.
     pub fn draft_of(&self, document: &mut Document) {
         if let Some((layer, style)) = &self.draft
             && document.layers().contains(layer)
@@ -91,7 +91,7 @@ impl Layers {
                 ui.add_space(8.0);
                 ui.separator();
                 let editor = ui.scope(|ui| self.editor(ui, session, index, &layers[index], actions)).response;
-                // A layer just chosen can be changed without looking for where.
+                // Scroll so that the style of a layer that was just chosen is visible.
                 if self.editing != session.view.layer {
                     ui.scroll_to_rect(editor.rect, None);
                 }
@@ -128,9 +128,9 @@ impl Layers {
         Grid::new("style").num_columns(2).show(ui, |ui| {
             colours(ui, &mut style);
             frequencies(ui, &mut style);
-            let label = ui
-                .label("In cut-outs")
-                .on_hover_text("Opacity where the block is cut away: 0 is gone, 1 stands out of the cut");
+            let label = ui.label("In cut-outs").on_hover_text(
+                "Opacity where the block is cut away: 0 removes the layer, 1 leaves it standing in the cut-out",
+            );
             ui.add(Slider::new(&mut style.opacity, 0.0..=1.0).max_decimals(2)).labelled_by(label.id);
             ui.end_row();
             definition(ui, document, layer, actions);
@@ -151,7 +151,7 @@ impl Layers {
         self.settle(ui, document, actions);
     }
 
-    /// Makes the draft a command once the hand has let go; forgets it when the project has it.
+    /// Makes the draft a command once the user has released the pointer; drops it when the project contains it.
     fn settle(&mut self, ui: &Ui, document: &Document, actions: &mut Vec<Action>) {
         let Some((layer, draft)) = &self.draft else { return };
         if document.style.layers.style(layer) == Some(draft) || !document.layers().contains(layer) {
@@ -164,7 +164,7 @@ impl Layers {
             return;
         }
         if self.sent.as_ref() == Some(draft) {
-            // Shown until the project has it, and asked for once.
+            // The draft is shown until the project contains it, and the command is sent once.
             return;
         }
         let command = SetLayer { layer: layer.clone(), style: Some(draft.clone()), ..SetLayer::default() };
@@ -227,7 +227,7 @@ fn row(
     }
 }
 
-/// The horizon between two layers, and what it does to them.
+/// The horizon between two layers, and its contact.
 fn boundary(ui: &mut Ui, index: usize, horizon: &HorizonEntry, actions: &mut Vec<Action>) {
     let (name, contact) = (horizon.name.as_str(), horizon.contact);
     ui.horizontal(|ui| {

@@ -7,16 +7,16 @@ use project::command::{Command, SetLayer};
 use project::document::Document;
 use ttf::{Colour, DepthInterval, Frequency, LayerStyle};
 
-/// Repeats that a layer begins with when it gets frequencies of its own.
+/// Repeats that a layer starts with when it gets its own.
 const FREQUENCY: Frequency = Frequency { horizontal: 40.0, vertical: 3.0 };
 
-/// Colour of the ground and of the ink.
+/// The colour under the pattern, and that of the pattern's lines.
 pub(super) fn colours(ui: &mut Ui, style: &mut LayerStyle) {
     let label = ui.label("Colour");
     ui.horizontal(|ui| {
         ui.color_edit_button_srgb(&mut style.colour.rgb).labelled_by(label.id);
         let mut has_ink = style.ink.is_some();
-        let label = ui.checkbox(&mut has_ink, "Ink").on_hover_text("Draw the pattern in a colour of your own");
+        let label = ui.checkbox(&mut has_ink, "Ink").on_hover_text("Draw the lines of the pattern in this colour");
         if label.changed() {
             style.ink = has_ink.then_some(Colour::BLACK);
         }
@@ -32,7 +32,8 @@ pub(super) fn frequencies(ui: &mut Ui, style: &mut LayerStyle) {
     ui.label("Repeats");
     ui.horizontal(|ui| {
         let mut has_own = style.frequency.is_some();
-        let hint = "Repeats of the tile along the block and through the layer; otherwise it keeps its printed size";
+        let hint =
+            "Repeats of the tile along the block and through the layer; otherwise the tile keeps its printed size";
         if ui.checkbox(&mut has_own, "Own").on_hover_text(hint).changed() {
             style.frequency = has_own.then_some(FREQUENCY);
         }
@@ -72,7 +73,7 @@ pub(super) fn definition(ui: &mut Ui, document: &Document, layer: &str, actions:
     }
 }
 
-/// Patterns by depth, top first, each with where it begins from below.
+/// The patterns by depth, top first, each with its lower limit.
 pub(super) fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, actions: &mut Vec<Action>) {
     let browse =
         |interval: Option<usize>| Action::Ask(Box::new(Dialogue::Patterns { layer: layer.to_owned(), interval }));
@@ -97,7 +98,7 @@ pub(super) fn intervals(ui: &mut Ui, layer: &str, style: &mut LayerStyle, action
                 DragValue::new(&mut style.intervals[index].opacity).speed(0.01).range(0.0..=1.0).max_decimals(2);
             ui.name_inputs(format!("Opacity of pattern {ordinal}"), |ui| ui.add(opacity))
                 .on_hover_text("Opacity of the pattern");
-            if ui.small_button("Split").on_hover_text("Divide this part of the layer in two").clicked() {
+            if ui.small_button("Split").on_hover_text("Split this part of the layer in two").clicked() {
                 split = Some(index);
             }
             if count > 1 && ui.small_button("Remove").clicked() {

@@ -1,4 +1,4 @@
-//! Faults: drawn by sticks, looked for, accepted.
+//! The panel of faults: drawn from sticks, proposed, accepted.
 
 use super::go;
 use crate::state::{Action, PickingStep, Session, Tool};
@@ -9,10 +9,10 @@ use project::command::{AcceptFault, Command};
 use std::collections::HashMap;
 use survey::SurveyGeometry;
 
-/// What is being typed.
+/// The texts being typed.
 #[derive(Default)]
 pub struct FaultsPanel {
-    /// Names for proposals, by number.
+    /// Names for proposals, by the proposal's number.
     names: HashMap<u32, String>,
 }
 
@@ -32,7 +32,7 @@ impl FaultsPanel {
         let is_drawing = picking.tool == Tool::Sticks;
         if ui
             .selectable_label(is_drawing, "Draw sticks")
-            .on_hover_text("Click along the fault on a section; Enter ends a stick (F)")
+            .on_hover_text("Click points along the fault on a section; Enter ends a stick (F)")
             .clicked()
         {
             actions.push(step(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks })));
@@ -40,7 +40,7 @@ impl FaultsPanel {
         if is_drawing || !picking.sticks.is_empty() {
             let complete = picking.sticks.len();
             ui.label(format!(
-                "{complete} stick{} drawn, {} place{} on the next",
+                "{complete} stick{} drawn, {} point{} on the next",
                 if complete == 1 { "" } else { "s" },
                 picking.stick.len(),
                 if picking.stick.len() == 1 { "" } else { "s" }
@@ -50,7 +50,7 @@ impl FaultsPanel {
                     actions.push(step(PickingStep::EndStick));
                 }
                 let some = !(picking.stick.is_empty() && picking.sticks.is_empty());
-                if ui.add_enabled(some, Button::new("Take back")).on_hover_text("Backspace").clicked() {
+                if ui.add_enabled(some, Button::new("Remove last point")).on_hover_text("Backspace").clicked() {
                     actions.push(step(PickingStep::Backspace));
                 }
             });
@@ -71,10 +71,10 @@ impl FaultsPanel {
         for entry in &session.document.faults {
             ui.label(&entry.name).on_hover_text(&entry.source.reading);
         }
-        let is_looking = running.iter().any(|line| line.title == "Looking for faults");
+        let is_looking = running.iter().any(|line| line.title == "Proposing faults");
         let can = !session.document.horizons.is_empty() && !is_looking;
-        let hint = "Where horizons are offset, a fault is proposed";
-        if ui.add_enabled(can, Button::new("Look for faults")).on_hover_text(hint).clicked() {
+        let hint = "A fault is proposed wherever horizons are offset (Q)";
+        if ui.add_enabled(can, Button::new("Propose faults")).on_hover_text(hint).clicked() {
             actions.push(Action::ProposeFaults);
         }
         let Some(shown) = shown else { return };
@@ -87,7 +87,7 @@ impl FaultsPanel {
         if minor > 0 {
             ui.separator();
             let text = format!("{minor} minor proposal{}", if minor == 1 { "" } else { "s" });
-            let hint = "Small ones, together a fifth of all offset or less, and those that scatter or show no break in the data";
+            let hint = "Small ones, together a fifth of the total offset or less, and those whose evidence scatters or shows no break in the data";
             if ui.selectable_label(picking.minor, text).on_hover_text(hint).clicked() {
                 actions.push(step(PickingStep::Minor(!picking.minor)));
             }
@@ -132,10 +132,10 @@ impl FaultsPanel {
     }
 }
 
-/// What speaks for a proposal.
+/// The evidence for a proposal.
 fn seen(proposal: &Proposal) -> String {
     let mut text = format!(
-        "seen by {} pairs on {}, {:.0} m off its surface; throw by length {:.0} m²",
+        "{} pairs on {}, {:.0} m off its surface; throw times length {:.0} m²",
         proposal.support,
         proposal.horizons.join(", "),
         proposal.misfit_m,

@@ -1,4 +1,4 @@
-//! The horizons, each with what is known of it; under the one that picks go to, its picks and holes.
+//! The horizons with their coverage; below the one that picks go to, its picks and holes.
 
 use super::go;
 use super::palette::palette;
@@ -15,13 +15,13 @@ use project::command::{
 use project::document::HorizonEntry;
 use survey::SurveyGeometry;
 
-/// Holes listed at most.
+/// Largest number of holes that are listed.
 const HOLES: usize = 5;
 
-/// The list, and what is being typed in it.
+/// The list, with the text being typed in it.
 #[derive(Default)]
 pub(super) struct HorizonList {
-    /// A horizon and its new name.
+    /// A horizon and the new name being typed.
     renaming: Option<(String, String)>,
     max_traces: usize,
 }
@@ -38,7 +38,7 @@ impl HorizonList {
     ) {
         let picking = &session.view.picking;
         let document = &session.document;
-        if ui.button("New horizon").on_hover_text("What you pick next becomes another horizon (N)").clicked() {
+        if ui.button("New horizon").on_hover_text("The next pick starts another horizon (N)").clicked() {
             actions.push(Action::Picking(PickingStep::Begin));
         }
         for (index, entry) in document.horizons.iter().enumerate() {
@@ -54,7 +54,7 @@ impl HorizonList {
                     ui.weak(format!("{:.0} %", 100.0 * facts.report.share)).on_hover_text("Of the traces");
                     if facts.report.overlap.is_some() || !facts.conflicts.is_empty() || facts.outdated {
                         let colour = ui.visuals().warn_fg_color;
-                        let hint = "It overlaps or contradicts; choose it to see where";
+                        let hint = "It overlaps itself or conflicts with another horizon; choose it to see where";
                         ui.colored_label(colour, "!").on_hover_text(hint);
                     }
                 }
@@ -70,7 +70,7 @@ impl HorizonList {
         }
     }
 
-    /// A horizon that does not exist yet.
+    /// The row of a horizon that does not exist yet.
     fn begun(&self, ui: &mut Ui, session: &Session, name: &str, actions: &mut Vec<Action>) {
         let picking = &session.view.picking;
         ui.horizontal(|ui| {
@@ -86,7 +86,7 @@ impl HorizonList {
                 actions.push(Action::Picking(PickingStep::Name(text)));
             }
         });
-        ui.weak("New: it begins with the first pick that you accept.");
+        ui.weak("New: it is created with the first pick that you add.");
     }
 
     fn current(
@@ -129,11 +129,15 @@ impl HorizonList {
             plural(report.sheets)
         ));
         if facts.outdated {
-            ui.colored_label(ui.visuals().warn_fg_color, "Its picks are of another extraction.");
+            ui.colored_label(ui.visuals().warn_fg_color, "Its picks were made on another extraction.");
             ui.horizontal_wrapped(|ui| {
                 for (name, unfit, hint) in [
                     ("Pick again", Unfit::Refuse, "Make the same picks on the present extraction"),
-                    ("Pick again what fits", Unfit::Drop, "And leave out the picks whose nodes are gone"),
+                    (
+                        "Pick again what fits",
+                        Unfit::Drop,
+                        "Make the same picks, without those whose nodes no longer exist",
+                    ),
                 ] {
                     if ui.button(name).on_hover_text(hint).clicked() {
                         let command = ReplayPicks { horizon: Some(entry.name.clone()), unfit };
@@ -200,7 +204,7 @@ impl HorizonList {
     }
 }
 
-/// The colour of a horizon, to be changed where it was assembled here.
+/// The colour of a horizon; it can be changed if the horizon was assembled from picks.
 fn swatch(ui: &mut Ui, entry: &HorizonEntry, index: usize, actions: &mut Vec<Action>) {
     match &entry.assembly {
         Some(log) => {
@@ -247,7 +251,7 @@ fn picks(ui: &mut Ui, entry: &HorizonEntry, geometry: &SurveyGeometry, actions: 
             button(ui, "Down", "Descend with", pick.up > 0, to(Move::Down(1)));
             button(ui, "Highest", "Highest valid for", true, to(Move::HighestValid));
             let only = log.picks.len() == 1;
-            button(ui, "Take back", "Take back", !only, Command::RemovePick(RemovePick { id: pick.id }));
+            button(ui, "Unpick", "Remove", !only, Command::RemovePick(RemovePick { id: pick.id }));
         });
     }
 }

@@ -1,4 +1,4 @@
-//! Interpreting: candidates, what is selected, horizons with their picks, faults.
+//! The panel for interpreting: candidates, the selection, horizons with their picks, faults.
 
 mod faults;
 mod horizons;
@@ -16,13 +16,13 @@ use render::FaceData;
 use std::sync::Arc;
 use survey::SurveyGeometry;
 
-/// The panel, and what is being typed in it.
+/// The panel, with the text being typed in it.
 #[derive(Default)]
 pub struct PickingPanel {
     candidates: CandidatesPanel,
     horizons: HorizonList,
     faults: FaultsPanel,
-    /// Whether sticks were being drawn, and how many faults were proposed, in the frame before.
+    /// Whether sticks were being drawn, and the number of proposed faults, in the previous frame.
     open: (bool, usize),
 }
 
@@ -59,7 +59,7 @@ impl PickingPanel {
             ui.add_space(8.0);
             ui.heading("Faults");
             let faults = ui.scope(|ui| self.faults.show(ui, session, shown, running, geometry, actions)).response;
-            // Who begins to draw, or is proposed something, need not look for where.
+            // Scroll to the faults when drawing begins or proposals arrive.
             let open = (session.view.picking.tool == Tool::Sticks, shown.map_or(0, |shown| shown.proposals.len()));
             if open != self.open && (open.0 || open.1 > 0) {
                 ui.scroll_to_rect(faults.rect, None);
@@ -69,7 +69,7 @@ impl PickingPanel {
     }
 }
 
-/// Moves the sections through a place in line numbers.
+/// Moves the sections through a place given by line numbers and vertical value.
 pub(super) fn go(geometry: &SurveyGeometry, place: [f64; 3], actions: &mut Vec<Action>) {
     actions.push(Action::Slices(voxel_of(geometry, place).to_array()));
 }
@@ -80,7 +80,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.label("Pointer");
         for (tool, name, hint) in [
             (Tool::Pick, "Pick", "Click a reflection: its leaf is selected"),
-            (Tool::Lasso, "Lasso", "Draw around what is to be erased (or hold A)"),
+            (Tool::Lasso, "Lasso", "Drag around what is to be erased (or hold A and drag)"),
         ] {
             if ui.selectable_label(picking.tool == tool, name).on_hover_text(hint).clicked() {
                 actions.push(Action::Picking(PickingStep::Use(tool)));
@@ -90,8 +90,8 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     ui.horizontal_wrapped(|ui| {
         ui.label("Block");
         for (look, name, hint) in [
-            (Look::Faces, "Faces", "The faces of the block, with the horizons before them"),
-            (Look::SeeThrough, "See through", "Strong reflections in white, shaded by what lies before them (O)"),
+            (Look::Faces, "Faces", "The faces of the block, with the horizons in front of them"),
+            (Look::SeeThrough, "Volume rendering", "Strong reflections in white, shaded by occlusion (O)"),
         ] {
             if ui.selectable_label(picking.look == look, name).on_hover_text(hint).clicked() {
                 actions.push(Action::Picking(PickingStep::Look(look)));
@@ -127,7 +127,7 @@ fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &Survey
     if let Some(overlap) = facts.filter(|shown| shown.is_wrong).and_then(|shown| shown.overlap.as_ref()) {
         ui.colored_label(
             ui.visuals().warn_fg_color,
-            format!("Lies twice over {} traces, up to {:.0} samples apart: descend.", overlap.traces, overlap.apart),
+            format!("Overlaps at {} traces, by up to {:.0} samples: descend.", overlap.traces, overlap.apart),
         );
         if ui.small_button("Show where").clicked() {
             go(geometry, overlap.at, actions);
@@ -140,14 +140,14 @@ fn selected(ui: &mut Ui, session: &Session, overlay: &Overlay, geometry: &Survey
         if ui.add_enabled(pick.up > 0, Button::new("Descend")).on_hover_text("Down arrow").clicked() {
             actions.push(step(PickingStep::Climb(-1)));
         }
-        let hint = "As high as it does not lie twice over a trace (H)";
+        let hint = "Climb to the highest node without overlap (H)";
         if ui.button("Highest valid").on_hover_text(hint).clicked() {
             actions.push(step(PickingStep::HighestValid));
         }
         if ui.button("Add to horizon").on_hover_text("Enter").clicked() {
             actions.push(step(PickingStep::Accept));
         }
-        if ui.button("Let go").on_hover_text("Escape").clicked() {
+        if ui.button("Deselect").on_hover_text("Escape").clicked() {
             actions.push(step(PickingStep::GiveUp));
         }
     });

@@ -1,14 +1,14 @@
-//! The colours that horizons can have.
+//! The palette of horizon colours.
 
 use eframe::egui::containers::menu::MenuButton;
 use eframe::egui::{Button, Color32, Grid, Role, Stroke, Ui, WidgetInfo, vec2};
 use figure::style::HORIZON_COLOURS;
 use ttf::Colour;
 
-/// Colours offered beside those that horizons get in turn.
+/// Colours offered besides those that horizons are given by default.
 const MORE_COLOURS: [[u8; 3]; 4] = [[0xb8, 0xa8, 0x00], [0xc0, 0x18, 0x2c], [0x1b, 0x78, 0x37], [0x30, 0x30, 0x30]];
 
-/// A button in a colour that offers others.
+/// A button in the present colour that opens a palette of others.
 pub(super) fn palette(ui: &mut Ui, colour: Colour, name: &str) -> Option<Colour> {
     let paint = |rgb: [u8; 3]| Color32::from_rgb(rgb[0], rgb[1], rgb[2]);
     let mut chosen = None;

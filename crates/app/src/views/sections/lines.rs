@@ -1,4 +1,4 @@
-//! Colours of horizons, and where other sections run.
+//! Colours of horizons, and the positions of the other sections.
 
 use crate::state::{Layout, SectionKind, Session};
 use eframe::egui::Color32;
@@ -6,7 +6,7 @@ use figure::draw::section::Marks;
 use glam::DVec2;
 use project::document::HorizonEntry;
 
-/// The colour of a horizon: its own, or else that of its place.
+/// The colour of a horizon: its own, or else the default of its place in the list.
 pub fn horizon_colour(own: Option<ttf::Colour>, index: usize) -> Color32 {
     let [r, g, b] = figure::style::horizon_colour(own, index).rgb;
     Color32::from_rgb(r, g, b)
@@ -17,7 +17,7 @@ pub fn entry_colour(entry: &HorizonEntry, index: usize) -> Color32 {
     horizon_colour(entry.assembly.as_ref().map(|log| log.colour), index)
 }
 
-/// Where the other two sections run, and on the slice the fence.
+/// The positions of the other two sections, and on the slice also the fence.
 pub(super) fn marks(session: &Session, kind: SectionKind) -> Marks {
     let [s, t] = kind.axes().map(|axis| session.view.slices[axis]);
     let has_fence = kind == SectionKind::Slice && session.view.layout == Layout::Fence;

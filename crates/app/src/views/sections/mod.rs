@@ -1,7 +1,8 @@
-//! Inline, crossline and slice through one point: amplitudes with horizons and faults over them.
+//! The section views: inline, crossline and slice through one point, amplitudes with horizons and faults over them.
 //!
-//! Spaces: (s, t) of the section, one a sample; points of the window, y down. Both axes are stretched to the view, so a section fills
-//! it whatever its shape; the wheel with Ctrl zooms about the pointer, a drag moves, the wheel alone goes to the next section.
+//! Spaces: (s, t) of the section, in samples; points of the window, y down. Both axes are stretched, so that a section
+//! fills its view whatever its shape. Ctrl and the wheel zoom about the pointer, a drag moves, the wheel alone goes to
+//! the next section.
 
 mod lines;
 
@@ -26,9 +27,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use survey::SurveyGeometry;
 
-/// Room for numbers at the left and the top, points.
+/// Margin for the numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
-/// Zoom stays between these.
+/// Smallest and largest zoom.
 const ZOOM: [f32; 2] = [1.0, 40.0];
 /// Wheel travel that goes to the next section, points.
 const WHEEL_STEP: f32 = 24.0;
@@ -36,13 +37,13 @@ const WHEEL_STEP: f32 = 24.0;
 /// One section on the screen.
 struct Pane {
     texture: Option<TextureHandle>,
-    /// The picture as figures take it, with its lines.
+    /// The picture in the form that figures take, with its lines.
     shown: Option<(Arc<RgbaImage>, Vec<CutLine>)>,
     requested: Option<(f64, u64, FaceData)>,
     zoom: f32,
-    /// Which part of the section is in the middle, shares.
+    /// The point of the section that is in the middle of the view, shares of its width and height.
     middle: Vec2,
-    /// Wheel travel not yet used.
+    /// Wheel travel that has not changed the section yet, points.
     wheel: f32,
     lasso: LassoLine,
 }
@@ -68,14 +69,14 @@ pub struct Sections {
 }
 
 impl Sections {
-    /// Takes a section in.
+    /// Takes over a section that was cut.
     pub fn receive(&mut self, ctx: &Context, cut: SectionCut) {
         let pane = self.panes.entry(cut.kind).or_default();
         texture::keep(&mut pane.texture, ctx, cut.kind.name(), texture::pixels(&cut.image));
         pane.shown = Some((Arc::new(cut.image), cut.lines));
     }
 
-    /// Shows one section in all the room there is; answers what is under the cursor.
+    /// Shows one section in all the room there is; returns what is under the cursor.
     #[expect(clippy::too_many_arguments, reason = "a panel is handed the parts of the window it needs, and no others")]
     pub fn show(
         &mut self,
@@ -142,7 +143,7 @@ impl Sections {
 }
 
 impl Sections {
-    /// Which part of a section is seen.
+    /// The visible part of a section.
     pub fn zoom(&self, kind: SectionKind) -> Zoom {
         let pane = self.panes.get(&kind);
         pane.map_or_else(Zoom::default, |pane| Zoom {
@@ -158,7 +159,7 @@ fn body_of(whole: Rect) -> Rect {
 }
 
 impl Pane {
-    /// Paints the section with its numbers into a rectangle; answers where all of it lies.
+    /// Paints the section with its numbers into a rectangle; returns the rectangle of the whole section.
     fn paint(&self, ui: &Ui, session: &Session, kind: SectionKind, whole: Rect, overlay: &mut Overlay) -> Option<Rect> {
         let geometry = session.document.geometry.as_ref()?;
         let body = body_of(whole);
@@ -191,7 +192,7 @@ impl Pane {
         Some(image)
     }
 
-    /// Where the whole section lies on the screen.
+    /// The rectangle of the whole section on the screen.
     fn image_rect(&self, body: Rect) -> Rect {
         let size = body.size() * self.zoom;
         Rect::from_min_size(body.center() - self.middle * size, size)
@@ -217,7 +218,7 @@ impl Pane {
         self.middle = self.middle.clamp(Vec2::splat(half), Vec2::splat(1.0 - half));
     }
 
-    /// The wheel goes to the next section.
+    /// Goes to the next section by the wheel.
     fn step(&mut self, ui: &Ui, session: &Session, kind: SectionKind, actions: &mut Vec<Action>) {
         let (scroll, has_zoomed) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta() != 1.0));
         if has_zoomed {
@@ -234,7 +235,7 @@ impl Pane {
     }
 }
 
-/// What a section shows, as figures print it.
+/// What a section shows, in the form that figures print.
 fn contents<'a>(
     image: &'a Arc<RgbaImage>,
     lines: &'a [CutLine],

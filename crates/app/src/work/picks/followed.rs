@@ -1,4 +1,4 @@
-//! A project that is followed: what was read of it, and what a selection is in it.
+//! The project that is being interpreted: what was read of it, and what a selection covers in it.
 
 use super::ShownPick;
 use crate::state::picking::Pick;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use survey::SurveyGeometry;
 
-/// A project followed, and what was read of it.
+/// The project that is being interpreted, and what was read of it.
 pub(super) struct Followed {
     pub(super) root: PathBuf,
     pub(super) document: Document,
@@ -23,12 +23,12 @@ pub(super) struct Followed {
 }
 
 impl Followed {
-    /// The candidates, where there is an extraction.
+    /// The candidates, if there is an extraction.
     pub(super) fn candidates(&self) -> Result<&Candidates, ProjectError> {
         self.candidates.as_deref().ok_or(ProjectError::NotExtracted)
     }
 
-    /// What the picks of a horizon have selected.
+    /// The nodes that the picks of a horizon have selected.
     pub(super) fn chosen(&self, horizon: Option<&str>) -> Selection {
         let entry = self.document.horizons.iter().find(|entry| Some(entry.name.as_str()) == horizon);
         let log = entry.and_then(|entry| Some((entry, entry.assembly.as_ref()?)));
@@ -37,7 +37,7 @@ impl Followed {
             .unwrap_or_default()
     }
 
-    /// A selection as sheets; `None` where the extraction has changed and it means nothing any more.
+    /// A selection as sheets; `None` where the extraction has changed and the selection no longer means anything.
     pub(super) fn show(&self, pick: Pick, horizon: Option<&str>) -> Result<Option<ShownPick>, ProjectError> {
         let candidates = self.candidates()?;
         let forest = &candidates.forest;

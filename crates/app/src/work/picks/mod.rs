@@ -1,8 +1,10 @@
-//! What the interpretation needs: candidates in memory, the horizons' sheets, the leaf under a click, the selected node as sheets.
+//! What the interpretation needs: candidates in memory, the horizons' sheets, the leaf under a click, the selected node
+//! as sheets.
 //!
-//! One thread keeps the present extraction and what was made of it, so that a click takes milliseconds; it reads anew what has
-//! changed and nothing else. Orders are carried out in turn, but of several states to follow, or selections to draw, only the last. Extracting and
-//! looking for faults take long and run on threads of their own, on processors of their own. Places are voxels but where said otherwise.
+//! One thread keeps the present extraction and what was made of it, so that a click takes milliseconds; it reads again
+//! only what has changed. Orders are carried out in turn, except that of several states to follow, or selections to
+//! draw, only the last counts. Extracting and proposing faults take long and run on threads and processors of their
+//! own. Places are voxels unless stated otherwise.
 
 mod followed;
 
@@ -35,13 +37,13 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use survey::{Fault, Progress, SurveyGeometry};
 use ttf::Colour;
 
-/// A horizon of the project, to be drawn and described.
+/// A horizon of the project, with what is drawn and reported of it.
 pub struct ShownHorizon {
     /// Its name.
     pub name: String,
-    /// The colour it was given, if it was assembled.
+    /// The colour chosen for it, if it was assembled from picks.
     pub colour: Option<Colour>,
-    /// Where it is.
+    /// Its sheets.
     pub sheets: Arc<Vec<VoxelSheet>>,
     /// Its leaves.
     pub leaves: Vec<u32>,
@@ -49,13 +51,13 @@ pub struct ShownHorizon {
     pub report: AssemblyReport,
     /// Its holes, largest first.
     pub holes: Vec<Hole>,
-    /// What it contradicts, in words.
+    /// Its conflicts with other horizons, in words.
     pub conflicts: Vec<String>,
-    /// Whether its picks are of another extraction than the present one.
+    /// Whether its picks were made on another extraction than the present one.
     pub outdated: bool,
 }
 
-/// A fault, to be drawn.
+/// A fault, with what is drawn of it.
 pub struct ShownFault {
     /// Its name.
     pub name: String,
@@ -63,35 +65,36 @@ pub struct ShownFault {
     pub triangles: Vec<[DVec3; 3]>,
 }
 
-/// The interpretation as it is.
+/// The present interpretation.
 pub struct Interpreted {
     /// The project.
     pub root: PathBuf,
-    /// Its step.
+    /// The step of its history.
     pub step: u32,
-    /// Unlike that of any other.
+    /// A number that no other interpretation has.
     pub number: u64,
-    /// Youngest first.
+    /// The horizons, youngest first.
     pub horizons: Vec<ShownHorizon>,
-    /// In the project's order.
+    /// The faults, in the project's order.
     pub faults: Vec<ShownFault>,
-    /// What the present extraction found; absent where there is none.
+    /// The report of the present extraction, if there is one.
     pub extraction: Option<ExtractReport>,
-    /// Identifies that extraction.
+    /// Key of that extraction.
     pub key: Option<String>,
-    /// Faults proposed for the horizons as they are.
+    /// The faults proposed for the present horizons.
     pub proposals: Vec<(Proposal, ShownFault)>,
-    /// Unit of the throws of these.
+    /// Unit of their throws.
     pub unit: String,
 }
 
-/// A sheet as figures take it.
+/// A sheet in the form that figures take.
 pub fn sheet(sheet: &VoxelSheet) -> TraceSheet<'_> {
     project::figures::borrowed(sheet)
 }
 
 impl Interpreted {
-    /// As figures take it, with the proposals that are to be seen; sticks and the selection belong to the view.
+    /// The interpretation in the form that figures take, with the proposals that are to be shown; sticks and the
+    /// selection belong to the view.
     pub fn seen(&self, shows: impl Fn(&Proposal) -> bool) -> Interpretation<'_> {
         let horizons = self.horizons.iter().enumerate().map(|(index, horizon)| PickedSheets {
             name: &horizon.name,
@@ -120,19 +123,19 @@ impl ShownFault {
     }
 }
 
-/// The selected node, to be drawn.
+/// The selected node, with what is drawn and reported of it.
 pub struct ShownPick {
-    /// What was selected.
+    /// The selection.
     pub pick: Pick,
-    /// Where it is.
+    /// Its sheets.
     pub sheets: Vec<VoxelSheet>,
-    /// Triangles of the node.
+    /// Number of triangles of the node.
     pub triangles: usize,
     /// Its leaves.
     pub leaves: Vec<u32>,
-    /// Where it would lie over the horizon or itself, in line numbers.
+    /// Where it would overlap the horizon or itself, in line numbers.
     pub overlap: Option<ReportedOverlap>,
-    /// Whether that is more than noise makes.
+    /// Whether the overlap exceeds what noise causes.
     pub is_wrong: bool,
 }
 
@@ -159,22 +162,22 @@ impl Picks {
         Self { orders, outbox, running }
     }
 
-    /// Reads what this state of a project needs and has not been read.
+    /// Reads what this state of a project needs and has not been read yet.
     pub fn follow(&self, root: PathBuf, document: Document) {
         let _ = self.orders.send(Order::Follow(root, Box::new(document)));
     }
 
-    /// Makes sheets of a selection for a horizon; of none, nothing is shown.
+    /// Makes the sheets of a selection for a horizon; with `None`, no selection is shown.
     pub fn draw(&self, selection: Option<(Pick, Option<String>)>) {
         let _ = self.orders.send(Order::Draw(selection));
     }
 
-    /// Lets go of everything.
+    /// Drops everything that was read.
     pub fn forget(&self) {
         let _ = self.orders.send(Order::Forget);
     }
 
-    /// Does what a state asks for.
+    /// Carries out a task.
     pub(super) fn run(&self, task: PickingTask, root: PathBuf) {
         let (outbox, running, orders) = (self.outbox.clone(), self.running.clone(), self.orders.clone());
         let told = outbox.clone();
@@ -195,7 +198,7 @@ impl Picks {
                 let _ = orders.send(Order::Renew);
             }),
             PickingTask::ProposeFaults => spawn("fault proposals", &told, move || {
-                let (guard, progress) = running.begin("Looking for faults", Place::Interpret, outbox.wake.clone());
+                let (guard, progress) = running.begin("Proposing faults", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
                     let mut project = Project::open(&root)?;
                     let effect = project.apply(&Command::ProposeFaults(ProposeFaults::default()), &progress)?;
@@ -215,7 +218,7 @@ impl Picks {
     }
 }
 
-/// Tells what the project has become, or why it has not changed.
+/// Reports the new state of the project, or why it has not changed.
 fn tell_change(done: Result<Snapshot, ProjectError>, progress: &Progress, outbox: &Outbox) {
     let done = done.map(|snapshot| {
         outbox.send(Event::Changed { snapshot: Box::new(snapshot), place: Place::Interpret });
@@ -223,7 +226,7 @@ fn tell_change(done: Result<Snapshot, ProjectError>, progress: &Progress, outbox
     tell(done, Some(progress), outbox);
 }
 
-/// Tells a failure; what was stopped by the user is none.
+/// Reports a failure; a job that the user stopped has not failed.
 fn tell(done: Result<(), ProjectError>, progress: Option<&Progress>, outbox: &Outbox) {
     match done {
         Ok(()) => outbox.wake(),
@@ -236,7 +239,7 @@ struct Keeper {
     outbox: Outbox,
     running: Running,
     followed: Option<Followed>,
-    /// Sheets by the horizon's hash and those of the faults.
+    /// Sheets, by the hash of the horizon and those of the faults.
     sheets: HashMap<String, Arc<Vec<VoxelSheet>>>,
     number: u64,
 }
@@ -249,7 +252,7 @@ impl Keeper {
     fn work(&mut self, orders: &Receiver<Order>) {
         while let Ok(first) = orders.recv() {
             let mut queue: Vec<Order> = std::iter::once(first).chain(orders.try_iter()).collect();
-            // Only the last of its kind matters.
+            // Of several orders of a kind only the last counts.
             for is_kind in [
                 (|order| matches!(order, Order::Draw(_))) as fn(&Order) -> bool,
                 |order| matches!(order, Order::Follow(..)),
@@ -293,7 +296,7 @@ impl Keeper {
         Ok(())
     }
 
-    /// Does a task on the project it was given for.
+    /// Carries out a task for the project that it was requested for.
     fn answer(&self, task: PickingTask, root: PathBuf) -> Result<(), ProjectError> {
         let followed = self.followed.as_ref().filter(|followed| followed.root == root);
         let followed = followed.ok_or(ProjectError::NotExtracted)?;
@@ -322,7 +325,7 @@ impl Keeper {
                 });
                 return Ok(());
             }
-            // These have threads of their own.
+            // These tasks have threads of their own.
             PickingTask::Extract(..) | PickingTask::ProposeFaults => return Ok(()),
         };
         self.outbox.send(Event::Picking { root, step: PickingStep::Found(found) });
@@ -334,7 +337,7 @@ impl Keeper {
         let former = self.followed.take().filter(|former| former.root == root);
         let (guard, progress) =
             self.running.begin("Reading the interpretation", Place::Interpret, self.outbox.wake.clone());
-        // Candidates that cannot be opened are damaged, not absent.
+        // Candidates that cannot be opened are damaged; this is an error, and not an extraction that is absent.
         let stored = match extraction::open(&root, &document) {
             Err(ProjectError::NotExtracted) => None,
             opened => Some(opened?),
@@ -422,7 +425,7 @@ impl Keeper {
     }
 }
 
-/// Triangles that reassembling starts from.
+/// The triangles that reassembly starts from.
 fn seeds(log: Option<&Assembly>, candidates: &Candidates) -> Vec<u32> {
     let forest = &candidates.forest;
     let picks = log.into_iter().flat_map(|log| &log.picks);
@@ -430,7 +433,7 @@ fn seeds(log: Option<&Assembly>, candidates: &Candidates) -> Vec<u32> {
     picks.filter_map(|pick| Some(forest.nodes[*leaf(pick.leaf)? as usize].triangles.start)).collect()
 }
 
-/// What the fault blocks are made of.
+/// What the fault blocks depend on.
 fn hashes(document: &Document) -> Vec<String> {
     document.faults.iter().map(|entry| format!("{} {:?}", entry.hash, entry.truncated_by)).collect()
 }
@@ -439,7 +442,7 @@ fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {
     ShownFault { name: fault.name.clone(), triangles: content::fault_triangles(fault, geometry) }
 }
 
-/// The proposals for the horizons as they are, but for those accepted, and the unit of their throws.
+/// The proposals for the present horizons without those that were accepted, and the unit of their throws.
 fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec<(Proposal, ShownFault)>, String) {
     let open = proposals::open(root, document).into_iter().map(|proposal| {
         let fault = shown(&proposal.fault(&proposal.name), geometry);
@@ -448,7 +451,7 @@ fn proposed(root: &Path, document: &Document, geometry: &SurveyGeometry) -> (Vec
     (open.collect(), geometry.vertical.unit.symbol().to_owned())
 }
 
-/// Voxel position of a place where an overlap is worst.
+/// The voxel position at which an overlap is worst.
 pub fn voxel_of_overlap(geometry: &SurveyGeometry, overlap: &ReportedOverlap) -> DVec3 {
     voxel_of(geometry, overlap.at)
 }
