@@ -191,12 +191,15 @@ fn every_file_of_horizon_b_reproduces_the_truth_and_the_table_says_so() {
     let truth = Truth::open(&folder);
     let mut text = String::from(
         "# One horizon in thirteen files\n\n\
-        Horizon B of the Penobscot survey (offshore Nova Scotia; see `ATTRIBUTION.md`), 250 inlines by 150 crosslines, picked at every\n\
-        trace, in thirteen files of eleven formats. Each is read with the survey's geometry and compared with the picks.\n\n\
-        *At nodes*: |file - picks| where a node of the file is a trace. *All traces*: the same at every trace the surface covers; between\n\
-        nodes the picks' own roughness decides (they jump at faults). *Within reach*: the part of all traces at which the value lies\n\
-        between the lowest and highest pick among the traces it can depend on, which is what interpolation may do, and the worst excess.\n\n\
-        | file | format | nodes | at nodes: median, max (ms) | allowed (ms) | all traces: median, max (ms) | within reach, worst excess (ms) | why |\n\
+        Horizon B of the Penobscot survey (offshore Nova Scotia; see [ATTRIBUTION.md](ATTRIBUTION.md)), 250 inlines\n\
+        by 150 crosslines, picked at every trace, in thirteen files of eleven formats. Each file is read with the\n\
+        survey's geometry and compared with the picks.\n\n\
+        *At nodes*: |file - picks| where a node of the file lies on a trace. *All traces*: the same at every trace\n\
+        that the surface covers; between nodes the roughness of the picks decides, since they jump at faults.\n\
+        *Within reach*: the share of all traces at which the value lies between the lowest and the highest of the\n\
+        picks that it can depend on, as interpolation may; and the worst excess.\n\n\
+        | file | format | nodes | at nodes: median, max (ms) | allowed (ms) | all traces: median, max (ms) \
+        | within reach, worst excess (ms) | why |\n\
         |---|---|---|---|---|---|---|---|\n",
     );
     for case in &CASES {
@@ -225,7 +228,8 @@ fn every_file_of_horizon_b_reproduces_the_truth_and_the_table_says_so() {
         assert!(found.excess <= case.excess_ms.max(case.at_nodes_ms.unwrap_or(0.0)), "{}: {}", case.file, found.excess);
         assert!(found.traces >= 34_000, "{}: {} traces", case.file, found.traces);
     }
-    text += "\nMade by `PETROGLYPH_WRITE_DOCS=1 cargo test -p petroglyph-formats horizon_b`; the test fails when a figure changes.\n";
+    text += "\nWritten by `PETROGLYPH_WRITE_DOCS=1 cargo test -p petroglyph-formats horizon_b`; \
+             the test fails when a figure changes.\n";
     let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/horizon-formats.md");
     if std::env::var("PETROGLYPH_WRITE_DOCS").is_ok() {
         std::fs::write(&table, &text).unwrap();
