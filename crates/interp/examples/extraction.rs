@@ -25,25 +25,33 @@ const HELD_OUT: [u64; 2] = [4, 5];
 const NOTES: &str = "
 ## What falls short, and why
 
-- Coverage of a horizon below the unconformity is bounded by the extrema: where it thins out against the unconformity the two
-  interfere, and no extremum lies within a sample of it. Ours reaches that bound within 0.01 at SNR 10 and 3, within 0.1 at 1.5. What covers Charlie closest to
-  its end is the unconformity's own extremum: with extrema more than a sample off the unconformity no more than 0.956, 0.945 and 0.937 of it can be
-  covered (SNR 3, seeds 1 to 3), and surfaces of Charlie's own cover 0.953, 0.939 and 0.929.
-- Without the recognition of side lobes Charlie's precision at SNR 3 was 0.954, 0.836 and 0.932 (seeds 1 to 3). The vertices off it lay more than
-  10 samples from it and mostly more than 12 from the unconformity: on lobes of the reflectors below and above, which a fault lays against it, with a third of its height.
-- The unconformity loses up to 0.01 of precision by it (SNR 3, seed 1): of the vertices off it three in five lie on reflectors that end there, in
-  wedges up to 12 traces wide between a fault and the line where both become one extremum. Wedges that are narrower than a core go to the surface that they touch, and the
-  cuts beside lobes make more of them. Letting wedges be pieces of their own gives 0.987, but 28 to 45 picks for the unconformity at SNR 10.
-- At SNR 1.5 reflectors that are weaker than three times the noise from trace to trace are separated from the stronger ones: precision over all reflectors was 0.81
-  to 0.84 before and is 0.91 to 0.93, but coverage fell, most on Alpha, from 0.92 to 0.83 (seed 1). Where lobes cannot be recognised, on F3 and Penobscot, nothing is changed: strong extrema have neighbours of any height there.
-- Where the throw of a fault is a whole period within a sample over 80 traces of strike and 50 samples of depth (normal fault,
-  seed 1), all reflectors of that part match wrong ones. Only the planes tell: every surface across it was impure without them.
-- Joining pieces by their whole common boundary halves the count of large surfaces, and `docs/picks.md` shows what that is worth; where a leak
-  across a fault is there already, it makes it larger.
-- Seeds 1 to 3 were used while the method was developed, 4 and 5 were not: there a throw near a period costs Delta of seed 5 its purity. That leak is there before pieces
-  are joined, and asking less evidence of a fault (12 instead of 25) does not close it.
-- The times were taken while the machine did other work: compare none of them, not even with one another.
-- Without fault planes, links alone join nearly everything; a horizon of which no surface is its own shows as 0.
+- Coverage of a horizon below the unconformity is bounded by the extrema: where it thins out against the unconformity
+  the two interfere, and no extremum lies within a sample of it. Ours reaches that bound within 0.01 at SNR 10 and 3,
+  and within 0.1 at SNR 1.5. What covers Charlie closest to its end is the extremum of the unconformity: by extrema
+  more than a sample off the unconformity no more than 0.956, 0.945 and 0.937 of it can be covered (SNR 3, seeds 1 to
+  3), and surfaces of Charlie's own cover 0.953, 0.939 and 0.929.
+- Without the recognition of side lobes Charlie's precision at SNR 3 was 0.954, 0.836 and 0.932 (seeds 1 to 3). The
+  vertices off it lay more than 10 samples from it, and mostly more than 12 from the unconformity: on side lobes of
+  the reflectors below and above, which a fault brings next to it and which have a third of its height.
+- The recognition of side lobes costs the unconformity up to 0.01 of precision (SNR 3, seed 1). Of the vertices off it
+  three in five lie on reflectors that end there, in wedges up to 12 traces wide between a fault and the line where
+  both become one extremum. Wedges that are narrower than a core are joined to the surface that they touch, and the
+  cuts beside side lobes create more of them. If wedges were pieces of their own the precision would be 0.987, but the
+  unconformity would take 28 to 45 picks at SNR 10.
+- At SNR 1.5 reflectors that are weaker than three times the noise from trace to trace are separated from the stronger
+  ones. Precision over all reflectors was 0.81 to 0.84 before and is 0.91 to 0.93, but coverage fell, most on Alpha,
+  from 0.92 to 0.83 (seed 1). Where side lobes cannot be recognised, on F3 and Penobscot, nothing changes: strong
+  extrema have neighbours of any height there.
+- Where the throw of a fault is a whole period to within a sample, over 80 traces of strike and 50 samples of depth
+  (normal fault, seed 1), every reflector of that part matches a wrong one. Only the fault planes can tell: without
+  them every surface across the fault was impure.
+- Joining pieces along their whole common boundary halves the number of large surfaces; [picks.md](picks.md) shows
+  what that is worth. Where a surface already leaks across a fault, joining enlarges the leak.
+- Seeds 1 to 3 were used while the method was developed, seeds 4 and 5 were not. On seed 5 a throw near a period costs
+  Delta its purity. That leak exists before pieces are joined, and requiring less evidence for a fault (12 instead of
+  25) does not close it.
+- The times were taken while the machine did other work; they cannot be compared, not even with one another.
+- Without fault planes, links alone join nearly everything; a horizon that no surface belongs to shows as 0.
 ";
 
 /// A survey with its truth.
@@ -153,16 +161,16 @@ fn quality(evaluation: &Evaluation, reflector: Option<usize>) -> [f64; 2] {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let side = std::env::args().nth(1).map_or(Ok(256), |side| side.parse())?;
+    println!("# Extraction\n");
     println!(
-        "# Extraction\n\nWritten by `make extraction`. Synthetic surveys of {side}³; tolerance one sample. For each horizon coverage /"
+        "Written by `make extraction`, from synthetic surveys of {side}³ samples; the tolerance is one sample.\n\
+         The columns of the horizons give coverage / precision / purity of the surfaces (weighted by vertices),\n\
+         over the surfaces that have at least half of their vertices on reflectors.\n\n\
+         Coverage in brackets is what the extrema allow: the share of nodes that have any extremum within a\n\
+         sample. A bed that thins out below an unconformity interferes with it, and no extremum lies within a\n\
+         sample of it.\n"
     );
-    println!(
-        "precision / purity per surface (vertex-weighted), over the surfaces that have at least half of their vertices on reflectors.\n"
-    );
-    println!(
-        "Coverage in brackets is what the extrema allow: nodes with any extremum within a sample. Below an unconformity a bed"
-    );
-    println!("that thins out interferes with it, and no extremum lies within a sample of it.\n\n## Ours\n");
+    println!("## Ours\n");
     println!(
         "| SNR | seed | Alpha | Bravo | Unconformity | Charlie | Delta | all reflectors | surfaces ≥ 500 triangles | s |"
     );
@@ -186,9 +194,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let steps = [
         ("the paper's growing", GrowSettings { method: Method::Paper, ..ours.clone() }),
         ("links guided by dip", GrowSettings { core_width: 4, fault_evidence: f32::INFINITY, ..plain.clone() }),
-        ("and cores of 10 traces", GrowSettings { fault_evidence: f32::INFINITY, ..plain.clone() }),
-        ("or fault planes", GrowSettings { core_width: 4, ..plain.clone() }),
-        ("both", plain),
+        ("dip and cores of 10 traces", GrowSettings { fault_evidence: f32::INFINITY, ..plain.clone() }),
+        ("dip and fault planes", GrowSettings { core_width: 4, ..plain.clone() }),
+        ("dip, cores and fault planes", plain),
         ("and side lobes recognised", GrowSettings { join_share: 2.0, ..ours.clone() }),
         ("and pieces joined: ours", ours),
     ];
@@ -196,7 +204,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let plain = plain_components(&case.survey.seismic)?;
     let seconds = start.elapsed().as_secs_f64();
     let evaluation = evaluate_with(&plain, &case.survey.truth, &case.index, &EvaluateSettings::default());
-    report(&case, "plain: connected maxima above one rms", &plain, &evaluation, seconds)?;
+    report(&case, "baseline: connected extrema above one RMS", &plain, &evaluation, seconds)?;
     for (name, settings) in steps {
         row(&case, name, &settings)?;
     }

@@ -19,19 +19,24 @@ const SNR: [f64; 3] = [10.0, 3.0, 1.5];
 /// Seeds that were not used while the method was developed.
 const HELD_OUT: [u64; 2] = [4, 5];
 /// Explanations of the tables.
-const SHORTFALLS: &str = "\n\
-## What falls short, and why\n\
-\n\
-- Picks: the aim is at most two more than there are parts. At SNR 3 Alpha and Bravo keep to it on every seed, Delta on seeds 1 and 3. On seed 2 a fault's throw is near a period,\n\
-\x20 and one part of Delta, 28 % of it, lies on a surface that is mostly another reflector. On seed 5 Delta itself is such a mixture.\n\
-- The unconformity of seed 1 is not reached at SNR 3 within 0.98: its precision is 0.973, with wedges of the reflectors that end at it.\n\
-- Charlie thins out below the unconformity. 95 % of it cannot be covered by extrema of its own: at most 0.956, 0.945 and 0.937 (seeds 1 to 3) lie within a sample of an\n\
-\x20 extremum that is not the unconformity's. On seeds 2 and 3 the oracle stops there; the replay goes on, picks the unconformity, and its precision falls. On seed 1 it takes 8.\n\
-- Seeds 4 and 5 were not used for tuning; the cause of the leak of seed 5 was examined.\n\
-- Proposed faults: a trace needs the rims of assembled horizons on both sides. One pick on each part covers too little of each horizon in noise; the\n\
-\x20 more of a horizon is assembled, the better the proposals. The fault that dies out is found by\n\
-\x20 the bends that it makes where horizons were tracked across it: roughly, and with the throw it has there, which is less than its greatest. Bends add minor\n\
-\x20 proposals (three or four a survey here); on seed 2 at SNR 10 they cost the reverse fault its other horizons (65 m off, 7 before).\n\
+const SHORTFALLS: &str = "
+## What falls short, and why
+
+- Picks: the aim is at most two more than there are parts. At SNR 3 Alpha and Bravo reach it on every seed, Delta on
+  seeds 1 and 3. On seed 2 the throw of a fault is near a period, and one part of Delta, 28 % of it, lies on a surface
+  that is mostly another reflector. On seed 5 Delta itself is such a mixture.
+- The unconformity of seed 1 is not reached at SNR 3 with a precision of 0.98: it is 0.973, because of wedges of the
+  reflectors that end at the unconformity.
+- Charlie thins out below the unconformity. 95 % of it cannot be covered by extrema of its own: at most 0.956, 0.945
+  and 0.937 (seeds 1 to 3) lie within a sample of an extremum that is not the unconformity's. On seeds 2 and 3 the
+  oracle stops there; the replay goes on, picks the unconformity, and its precision falls. On seed 1 the replay takes
+  8 picks.
+- Seeds 4 and 5 were not used for tuning; the cause of the leak on seed 5 was examined.
+- Proposed faults: a trace needs the rims of assembled horizons on both sides. In noise, one pick on each part covers
+  too little of each horizon; the more of a horizon is assembled, the better the proposals. The fault that dies out is
+  found by the bends where horizons were tracked across it: roughly, and with the throw that it has there, which is
+  less than its greatest. Bends add minor proposals (three or four a survey here); on seed 2 at SNR 10 they cost the
+  reverse fault its other horizons (65 m off, 7 m before).
 ";
 /// Parts of fewer traces are not picked for the fault search.
 const FEWEST_TRACES: usize = 200;
@@ -55,20 +60,24 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     println!("# Picks\n");
     println!(
-        "Written by `cargo run -p petroglyph-interp --example picks`; synthetic surveys of {size}³ samples, no fault interpreted.\n"
+        "Written by `cargo run -p petroglyph-interp --example picks`, from synthetic surveys of {size}³ samples;\n\
+         no fault is interpreted.\n"
     );
     println!("## Extraction and picks\n");
     println!(
-        "Coverage, precision and purity per surface as in `interp::evaluate`, with one sample of tolerance. A pick is one seed and one climb; picks are counted until \
-         95 % of the horizon is covered with at least 98 % of what was picked on it. The oracle knows the truth and takes the best node of any level; the replay puts its seed into \
-         the middle of the largest gap and climbs to the highest valid node. In brackets: what was asked was not reached, with coverage and precision.\n"
+        "Coverage, precision and purity of the surfaces as in `interp::evaluate`, with one sample of tolerance. A\n\
+         pick is one seed and one climb. Picks are counted until 95 % of the horizon is covered and at least 98 %\n\
+         of what was picked lies on it. The oracle knows the truth and takes the best node of any level; the\n\
+         replay puts its seed into the middle of the largest gap and climbs to the highest valid node. Counts in\n\
+         brackets did not reach that aim; they are followed by the coverage and the precision that were reached.\n"
     );
     println!("| SNR | seed | horizon | parts | coverage | precision | purity | worst surface | oracle | replay |");
     println!("|---|---|---|---|---|---|---|---|---|---|");
     print!("{extraction}");
     println!("\n## Proposed faults\n");
     println!(
-        "Horizons assembled by one pick on each part, without faults; proposals compared with the true surfaces, distances in metres; a voxel is 25 m across and 10 m down.\n"
+        "The horizons are assembled by one pick on each part, without faults, and the proposals are compared with\n\
+         the true fault surfaces. Distances are in metres; a voxel is 25 m across and 10 m down.\n"
     );
     println!("| SNR | seed | fault | median, m | 95 %, m | throw found / true, m | horizons | proposals in all |");
     println!("|---|---|---|---|---|---|---|---|");
