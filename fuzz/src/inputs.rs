@@ -42,7 +42,8 @@ pub const WELL_FILES: &[(&str, &str)] = &[
     ("checkshot", "MD(m),OWT(s)\n25,0\n1000,0.41\n"),
     (
         "las",
-        "~Version\nVERS. 2.0 :\nWRAP. NO :\n~Well\nSTRT.M 100 :\nSTOP.M 101 :\nSTEP.M 0.5 :\nNULL. -999.25 :\nWELL. A-1 :\n~Curve\nDEPT.M :\nGR.API : gamma\n~Ascii\n100 45.5\n100.5 -999.25\n101 47\n",
+        "~Version\nVERS. 2.0 :\nWRAP. NO :\n~Well\nSTRT.M 100 :\nSTOP.M 101 :\nSTEP.M 0.5 :\nNULL. -999.25 :\
+         \nWELL. A-1 :\n~Curve\nDEPT.M :\nGR.API : gamma\n~Ascii\n100 45.5\n100.5 -999.25\n101 47\n",
     ),
 ];
 
@@ -53,7 +54,10 @@ pub const HAND_WRITTEN: &[(&str, &str)] = &[
     ("opendtect", "\"F\"\t0\t0\t40\t0\t0\n\"F\"\t5\t0\t80\t0\t1\n\"F\"\t0\t25\t40\t1\t0\n\"F\"\t5\t25\t80\t1\t1\n"),
     (
         "tsurf",
-        "GOCAD TSurf 1\nHEADER {\nname: A\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT m m ms\nZPOSITIVE Elevation\nEND_ORIGINAL_COORDINATE_SYSTEM\nPROPERTIES a\nTFACE\nVRTX 1 0 0 -40\nPVRTX 2 50 0 -44 1.5\nVRTX 3 0 50 -48\nATOM 4 3\nTRGL 1 2 3\nTRGL 2 4 1\nBSTONE 1\nBORDER 5 1 2\nEND\n",
+        "GOCAD TSurf 1\nHEADER {\nname: A\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT m m ms\
+         \nZPOSITIVE Elevation\nEND_ORIGINAL_COORDINATE_SYSTEM\nPROPERTIES a\nTFACE\nVRTX 1 0 0 -40\
+         \nPVRTX 2 50 0 -44 1.5\nVRTX 3 0 50 -48\nATOM 4 3\nTRGL 1 2 3\nTRGL 2 4 1\nBSTONE 1\nBORDER 5 1 2\nEND\
+         \n",
     ),
     (
         "zmap",
@@ -65,7 +69,8 @@ pub const HAND_WRITTEN: &[(&str, &str)] = &[
     ),
     (
         "earthvision",
-        "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z milliseconds\n# Grid_size: 2 x 2\n# Null_value: 1.0e30\n# End:\n0 0 40 1 1\n25 0 44 2 1\n0 25 48 1 2\n",
+        "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z milliseconds\n# Grid_size: 2 x 2\
+         \n# Null_value: 1.0e30\n# End:\n0 0 40 1 1\n25 0 44 2 1\n0 25 48 1 2\n",
     ),
     (
         "petrel",

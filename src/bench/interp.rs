@@ -38,7 +38,8 @@ impl fmt::Display for ExtractionRow {
         let interp::StageSeconds { growing, trees, distances, total, .. } = self.seconds;
         write!(
             f,
-            "{:>4}³  extraction {total:.2} s: growing {growing:.2} s, trees {trees:.2} s, distances {distances:.2} s; {} triangles, {} leaves, {:.3} µs a voxel",
+            "{:>4}³  extraction {total:.2} s: growing {growing:.2} s, trees {trees:.2} s, distances \
+             {distances:.2} s; {} triangles, {} leaves, {:.3} µs a voxel",
             self.side, self.triangles, self.leaves, self.us_per_voxel
         )?;
         match self.peak_bytes_per_voxel {

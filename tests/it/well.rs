@@ -23,7 +23,8 @@ fn files(at: &Path) {
     fs::write(at.join("tops.csv"), "surface,md_m,well\nTop chalk,535,A 1\nBase,800,A 1\nTop chalk,1,B 2\n").unwrap();
     let rows: String = (0..=80).map(|n| format!("{} {} -999.25\n", 100 + 10 * n, 30 + n)).collect();
     let las = format!(
-        "~V\n VERS. 2.0 :\n WRAP. NO :\n~W\n STRT.M 100 :\n STOP.M 900 :\n STEP.M 10 :\n NULL. -999.25 :\n WELL. A-1 :\n~C\n DEPT.M : depth\n GR.GAPI : gamma\n X.M : nothing\n~A\n{rows}"
+        "~V\n VERS. 2.0 :\n WRAP. NO :\n~W\n STRT.M 100 :\n STOP.M 900 :\n STEP.M 10 :\n NULL. -999.25 :\
+         \n WELL. A-1 :\n~C\n DEPT.M : depth\n GR.GAPI : gamma\n X.M : nothing\n~A\n{rows}"
     );
     fs::write(at.join("A.las"), las).unwrap();
 }

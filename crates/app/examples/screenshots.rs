@@ -313,7 +313,8 @@ impl Tour {
         }
         std::fs::write(self.out.join("tops.csv"), format!("md_m,name\n{:.0},Chalk\n", 0.4 * deepest_m))?;
         let las = format!(
-            "~V\nVERS. 2.0 :\nWRAP. NO :\n~W\nSTRT.M 0 :\nSTOP.M {deepest_m:.1} :\nSTEP.M 0 :\nNULL. -999.25 :\n~C\nDEPT.M :\nGR.API :\n~A\n{log}"
+            "~V\nVERS. 2.0 :\nWRAP. NO :\n~W\nSTRT.M 0 :\nSTOP.M {deepest_m:.1} :\nSTEP.M 0 :\nNULL. -999.25 :\
+             \n~C\nDEPT.M :\nGR.API :\n~A\n{log}"
         );
         std::fs::write(self.out.join("log.las"), las)?;
         let file = self.out.join("W-1.csv");

@@ -100,7 +100,8 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         None if clear => notes.push(format!("values taken as {word}, the smoother order: {evidence}")),
         None => warnings.push(Note::unless(
             format!(
-                "the file does not say the order of its values and both are about as smooth: {evidence}{square}. Taken as {word}; look at the map"
+                "the file does not say the order of its values and both are about as smooth: \
+                 {evidence}{square}. Taken as {word}; look at the map"
             ),
             Setting::ValueOrder.stated_as("rows or columns"),
         )),

@@ -153,7 +153,8 @@ pub enum FormatError {
     },
     /// Most of the surface lies above or below the survey.
     #[error(
-        "{file}: '{name}' lies outside the survey's vertical range: it spans {} to {} {unit} after conversion ({outside} of {total} values outside), the survey {} to {} {unit}. {}",
+        "{file}: '{name}' lies outside the survey's vertical range: it spans {} to {} {unit} after conversion \
+         ({outside} of {total} values outside), the survey {} to {} {unit}. {}",
         found[0], found[1], survey[0], survey[1], hint.fact
     )]
     OutsideRange {

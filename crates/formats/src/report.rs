@@ -190,7 +190,8 @@ impl fmt::Display for Gridding {
             ),
             Self::Interpolated { gap_m, picked, filled } => write!(
                 f,
-                "scattered points interpolated onto the survey's traces: {picked} at points, {filled} between; gaps wider than {:.1} m stay holes",
+                "scattered points interpolated onto the survey's traces: {picked} at points, {filled} between; \
+                 gaps wider than {:.1} m stay holes",
                 2.0 * gap_m
             ),
             Self::Rasterised { triangles } => write!(f, "{triangles} triangles sampled at the survey's traces"),

@@ -54,7 +54,8 @@ impl Outliers {
         let [x, y, z, off] = self.worst;
         let unit = unit.symbol();
         format!(
-            "{} points lie more than {:.1} {unit} off their neighbours, where most lie within a tenth of that: mis-picks? The worst, {off:+.1} {unit}, is {z:.1} at {x:.1}, {y:.1}. They were kept",
+            "{} points lie more than {:.1} {unit} off their neighbours, where most lie within a tenth of that: \
+             mis-picks? The worst, {off:+.1} {unit}, is {z:.1} at {x:.1}, {y:.1}. They were kept",
             self.count, self.limit
         )
     }

@@ -52,7 +52,8 @@ pub(super) fn of<'a>(
     };
     let [nu, nv] = resampled.grid.count;
     let note = format!(
-        "the grid is rotated by {degrees:.3} degrees, which the format cannot hold: resampled bilinearly onto {nu} x {nv} nodes of {:.3} m; irap, csv, opendtect and tsurf keep the nodes as they are",
+        "the grid is rotated by {degrees:.3} degrees, which the format cannot hold: resampled bilinearly onto \
+         {nu} x {nv} nodes of {:.3} m; irap, csv, opendtect and tsurf keep the nodes as they are",
         resampled.grid.u_step.x
     );
     Ok((alone(resampled), vec![note]))

@@ -76,7 +76,8 @@ impl ExtractReport {
     pub fn nothing_found(&self) -> Option<String> {
         (self.surfaces == 0).then(|| {
             format!(
-                "no surface at least {} traces wide was found: the volume is constant, dead or narrower than that, or it has none of the extrema that were followed",
+                "no surface at least {} traces wide was found: the volume is constant, dead or narrower than \
+                 that, or it has none of the extrema that were followed",
                 self.settings.grow.min_front_width
             )
         })

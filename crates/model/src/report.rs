@@ -31,7 +31,8 @@ pub enum ModelError {
     },
     /// A horizon has no usable node.
     #[error(
-        "horizon \"{name}\" has no node inside the survey ({outside} outside, {holes} holes); check its coordinates, vertical unit, sign and null value"
+        "horizon \"{name}\" has no node inside the survey ({outside} outside, {holes} holes); check its \
+         coordinates, vertical unit, sign and null value"
     )]
     EmptyHorizon {
         /// Name of the horizon.
@@ -61,7 +62,8 @@ pub enum ModelError {
     },
     /// A fault folds over itself: it passes twice over one place of its own best-fit plane.
     #[error(
-        "fault \"{name}\" folds back over itself by up to {offset_m:.0} m near X {:.0}, Y {:.0}, vertical {:.0}; split it into two faults there and let one be truncated by the other",
+        "fault \"{name}\" folds back over itself by up to {offset_m:.0} m near X {:.0}, Y {:.0}, vertical \
+         {:.0}; split it into two faults there and let one be truncated by the other",
         world[0], world[1], world[2]
     )]
     FoldedFault {
@@ -90,7 +92,8 @@ pub enum ModelError {
     },
     /// The picks of two horizons are in the wrong order.
     #[error(
-        "horizon \"{younger}\" lies below \"{older}\" at {nodes} nodes of fault block {block}, by up to {worst:.1} samples near inline {:.0}, crossline {:.0}; \
+        "horizon \"{younger}\" lies below \"{older}\" at {nodes} nodes of fault block {block}, by up to \
+         {worst:.1} samples near inline {:.0}, crossline {:.0}; \
          correct their order in the stratigraphy, edit the picks there, or make one of them an erosional, onlap or intrusive contact",
         lines[0], lines[1]
     )]
@@ -232,7 +235,8 @@ impl fmt::Display for ModelNote {
             }
             Self::Placed { horizon, block, by: Placement::Thickness { donor } } => write!(
                 f,
-                "horizon \"{horizon}\" has no or too few picks in fault block {block} and was placed by the thickness it has in block {donor}"
+                "horizon \"{horizon}\" has no or too few picks in fault block {block} and was placed by the \
+                 thickness it has in block {donor}"
             ),
             Self::Placed { horizon, block, by: Placement::OtherBlocks } => write!(
                 f,
@@ -240,7 +244,8 @@ impl fmt::Display for ModelNote {
             ),
             Self::Clamped { younger, older, block, nodes, worst } => write!(
                 f,
-                "horizons \"{younger}\" and \"{older}\", continued without data, crossed by up to {worst:.1} samples at {nodes} traces of fault block {block} and were pulled together"
+                "horizons \"{younger}\" and \"{older}\", continued without data, crossed by up to {worst:.1} \
+                 samples at {nodes} traces of fault block {block} and were pulled together"
             ),
         }
     }

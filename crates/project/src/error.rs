@@ -168,7 +168,8 @@ pub enum ProjectError {
     },
     /// Horizons in the wrong order.
     #[error(
-        "horizon \"{younger}\" runs below \"{older}\" at {:.0} % of their common traces, by up to {worst:.1} {unit} at inline {:.0}, crossline {:.0}",
+        "horizon \"{younger}\" runs below \"{older}\" at {:.0} % of their common traces, by up to {worst:.1} \
+         {unit} at inline {:.0}, crossline {:.0}",
         share * 100.0, lines[0], lines[1]
     )]
     Crossing {
@@ -267,7 +268,8 @@ pub enum ProjectError {
     },
     /// A place with no candidate near it.
     #[error(
-        "no candidate lies within {max_distance} voxels of inline {}, crossline {}, {}: the nearest is {distance:.1} voxels away, at inline {:.1}, crossline {:.1}, {:.1}",
+        "no candidate lies within {max_distance} voxels of inline {}, crossline {}, {}: the nearest is \
+         {distance:.1} voxels away, at inline {:.1}, crossline {:.1}, {:.1}",
         at[0], at[1], at[2], nearest[0], nearest[1], nearest[2]
     )]
     NoCandidate {

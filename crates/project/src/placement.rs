@@ -21,7 +21,8 @@ pub enum PlacementError {
     },
     /// The lines are turned against the project's.
     #[error(
-        "its {lines} run at {found_deg:.1} degrees from east, the project's at {expected_deg:.1}; the two surveys are turned against one another"
+        "its {lines} run at {found_deg:.1} degrees from east, the project's at {expected_deg:.1}; the two \
+         surveys are turned against one another"
     )]
     Turned {
         /// "inlines" or "crosslines".

@@ -39,7 +39,8 @@ pub enum SceneError {
     },
     /// A roaming box that reaches beyond the survey.
     #[error(
-        "the roaming box {min:?} to {max:?} reaches beyond the survey, whose samples run from 0 to {last:?} (inline, crossline, sample index); make it smaller"
+        "the roaming box {min:?} to {max:?} reaches beyond the survey, whose samples run from 0 to {last:?} \
+         (inline, crossline, sample index); make it smaller"
     )]
     OutsideSurvey {
         /// Its smallest corner.
@@ -148,7 +149,8 @@ pub enum RenderError {
     Cancelled(#[from] Cancelled),
     /// There is no graphics adapter, neither a GPU nor a software driver.
     #[error(
-        "no graphics adapter was found ({reason}); install a Vulkan driver (the software one is in the packages mesa-vulkan-drivers and libvulkan1), or render on the CPU"
+        "no graphics adapter was found ({reason}); install a Vulkan driver (the software one is in the \
+         packages mesa-vulkan-drivers and libvulkan1), or render on the CPU"
     )]
     NoAdapter {
         /// The message of the graphics library.

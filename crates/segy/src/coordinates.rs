@@ -276,7 +276,8 @@ impl Place {
             let bytes = Remedy::all([Setting::XByte.stated(), Setting::YByte.stated()]);
             findings.assumption(Note::unless(
                 format!(
-                    "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y that span an area were found at bytes {places}"
+                    "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y that span an \
+                     area were found at bytes {places}"
                 ),
                 Remedy::any([bytes, Setting::Bin.stated()]),
             ));
@@ -315,7 +316,8 @@ fn note_fit(
     let [low, high] = coordinates.scalar.range();
     let scalar = coordinates.storage();
     findings.evidence(format!(
-        "place: X at byte {} and Y at byte {}, {scalar}; bins of {:.2} by {:.2} {}; X and Y of {} traces lie within {:.3} bin of the lattice (root mean square)",
+        "place: X at byte {} and Y at byte {}, {scalar}; bins of {:.2} by {:.2} {}; X and Y of {} traces lie \
+         within {:.3} bin of the lattice (root mean square)",
         coordinates.bytes[0],
         coordinates.bytes[1],
         fit.inline_vector.length(),
@@ -343,7 +345,8 @@ fn note_fit(
     }
     if fit.outliers > 0 {
         findings.warning(format!(
-            "X and Y of {} traces lie more than {MAX_RESIDUAL_BINS} bin off the lattice, trace {} by {:.1} bins: check the line and coordinate bytes",
+            "X and Y of {} traces lie more than {MAX_RESIDUAL_BINS} bin off the lattice, trace {} by {:.1} \
+             bins: check the line and coordinate bytes",
             fit.outliers,
             fit.worst_trace + 1,
             fit.max_bins

@@ -56,7 +56,8 @@ pub enum SegyProblem {
     },
     /// No valid format code in either byte order.
     #[error(
-        "bytes 3225-3226 hold {big} (or {little} in little-endian order), which is no SEG-Y sample format; this is not SEG-Y, or its header is damaged"
+        "bytes 3225-3226 hold {big} (or {little} in little-endian order), which is no SEG-Y sample format; \
+         this is not SEG-Y, or its header is damaged"
     )]
     NotSegy {
         /// The code read big-endian.
@@ -88,7 +89,8 @@ pub enum SegyProblem {
     },
     /// The last trace is incomplete.
     #[error(
-        "the file is cut off inside trace {trace}: {present} of its {trace_bytes} bytes are there ({samples} samples a trace); copy it again from its source"
+        "the file is cut off inside trace {trace}: {present} of its {trace_bytes} bytes are there ({samples} \
+         samples a trace); copy it again from its source"
     )]
     Truncated {
         /// Number of the incomplete trace, from 1.
@@ -137,7 +139,8 @@ pub enum SegyProblem {
     },
     /// Coordinates are angles.
     #[error(
-        "X and Y are in {unit} (byte 89 is {code}), not in a length; project them to metres or feet first, or state a bin size to place the survey without them"
+        "X and Y are in {unit} (byte 89 is {code}), not in a length; project them to metres or feet first, or \
+         state a bin size to place the survey without them"
     )]
     AngularCoordinates {
         /// Byte 89.
@@ -201,7 +204,8 @@ pub enum SegyProblem {
     },
     /// Start times differ by a fraction of a sample.
     #[error(
-        "traces start at times that differ by a fraction of a sample (trace {trace}: {start} against {base}); resample the file to a common start"
+        "traces start at times that differ by a fraction of a sample (trace {trace}: {start} against {base}); \
+         resample the file to a common start"
     )]
     UnevenStart {
         /// Number of a trace that does not fit, from 1.

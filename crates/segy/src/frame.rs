@@ -210,7 +210,8 @@ impl Shape {
                         continue;
                     } else {
                         findings.warning(format!(
-                            "the headers announce {} samples a trace from byte {}, but the file's length fits {} from byte {}, which is what is read",
+                            "the headers announce {} samples a trace from byte {}, but the file's length fits \
+                             {} from byte {}, which is what is read",
                             preferred.samples,
                             preferred.start + 1,
                             shape.samples,
@@ -310,7 +311,9 @@ fn starts(file: &[u8], binary: &BinaryHeader, encoding: TextEncoding, findings: 
         -1 => match find_end_of_text(&file[FILE_HEADER_BYTES..], encoding) {
             Some(n) => starts.push(FILE_HEADER_BYTES + TEXT_BYTES * n),
             None => findings.warning(
-                "byte 3505 announces extended text headers closed by ((SEG: EndText)), which is nowhere in the file; none are read".to_owned(),
+                "byte 3505 announces extended text headers closed by ((SEG: EndText)), which is nowhere in the \
+                 file; none are read"
+                    .to_owned(),
             ),
         },
         _ => {}

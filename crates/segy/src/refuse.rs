@@ -63,7 +63,8 @@ pub(super) fn shot_gathers(columns: &Columns) -> Result<(), SegyProblem> {
     if cdp.constant().is_some() && record.constant().is_none() && in_record.constant().is_none() {
         return Err(SegyProblem::PreStack {
             evidence: format!(
-                "field records {} to {} (byte 9) hold traces {} to {} (byte 13), and there are no line or CDP numbers: these are shot gathers",
+                "field records {} to {} (byte 9) hold traces {} to {} (byte 13), and there are no line or CDP \
+                 numbers: these are shot gathers",
                 record.range[0], record.range[1], in_record.range[0], in_record.range[1]
             ),
             may_repeat: false,

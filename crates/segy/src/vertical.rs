@@ -112,7 +112,8 @@ fn interval_field(frame: &Frame, columns: &Columns, findings: &mut Findings) -> 
     if in_file != in_trace && in_trace != 0 && in_file != 0 {
         findings.warning(Note::unless(
             format!(
-                "the binary header gives a sample interval of {in_file} (byte 3217), the first trace {in_trace} (byte 117); {chosen} is used"
+                "the binary header gives a sample interval of {in_file} (byte 3217), the first trace \
+                 {in_trace} (byte 117); {chosen} is used"
             ),
             Setting::Interval.stated(),
         ));

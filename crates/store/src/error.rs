@@ -8,13 +8,15 @@ use survey::progress::Cancelled;
 #[derive(Debug, thiserror::Error)]
 pub enum StoreError {
     /// No space left, or a quota is used up.
-    #[error("the disk is full: {} could not be written; free some space or choose another disk (what was there before is unchanged)", path.display())]
+    #[error("the disk is full: {} could not be written; free some space or choose another disk (what was there \
+             before is unchanged)", path.display())]
     DiskFull {
         /// What was being written.
         path: PathBuf,
     },
     /// The folder or file cannot be written to.
-    #[error("{} cannot be written: the folder is read-only or belongs to someone else; choose another folder or change its permissions", path.display())]
+    #[error("{} cannot be written: the folder is read-only or belongs to someone else; choose another folder \
+             or change its permissions", path.display())]
     ReadOnly {
         /// What was being written.
         path: PathBuf,

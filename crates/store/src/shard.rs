@@ -190,7 +190,8 @@ impl Shard {
         };
         #[expect(
             unsafe_code,
-            reason = "a file can be mapped in no other way; files of the store are replaced, never changed. A crossline of 512³ samples lies in \
+            reason = "a file can be mapped in no other way; files of the store are replaced, never changed. A \
+                      crossline of 512³ samples lies in \
                       4096 pieces of 256 bytes, each of which positional reads would pay a call for"
         )]
         let map = unsafe { Mmap::map(&file) }.map_err(Trouble::Io)?;

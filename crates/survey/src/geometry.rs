@@ -160,7 +160,8 @@ pub enum GeometryError {
     },
     /// The bin cell has no area.
     #[error(
-        "the bin cell is degenerate: inline vector {inline:?} m and crossline vector {crossline:?} m span no area; check the coordinate bytes and scalar"
+        "the bin cell is degenerate: inline vector {inline:?} m and crossline vector {crossline:?} m span no \
+         area; check the coordinate bytes and scalar"
     )]
     DegenerateBin {
         /// The inline vector.

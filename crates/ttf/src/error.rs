@@ -35,7 +35,8 @@ pub enum Error {
     },
     /// A depth interval outside [0, 1], empty, reversed or not a number.
     #[error(
-        "layer `{layer}`: the depth interval [{low}, {high}) is not usable; k runs from 0 (bottom) to 1 (top) and the first number must be the smaller one"
+        "layer `{layer}`: the depth interval [{low}, {high}) is not usable; k runs from 0 (bottom) to 1 (top) \
+         and the first number must be the smaller one"
     )]
     BadDepthInterval {
         /// The layer's name.
@@ -47,7 +48,8 @@ pub enum Error {
     },
     /// A value interval that is empty, reversed or not a number.
     #[error(
-        "scalar function on `{volume}`: the interval [{low}, {high}) is not usable; the first number must be the smaller one (-inf and inf are allowed)"
+        "scalar function on `{volume}`: the interval [{low}, {high}) is not usable; the first number must be \
+         the smaller one (-inf and inf are allowed)"
     )]
     BadValueInterval {
         /// The volume's name.

@@ -45,9 +45,9 @@ pub(in crate::cli) enum VolumeAction {
 #[derive(Debug, Subcommand)]
 pub(in crate::cli) enum HorizonAction {
     /// Read a horizon
-    #[command(
-        after_help = "Examples:\n  petroglyph horizon add north.petro top.irap --name \"Top Chalk\"\n  petroglyph horizon add north.petro a.csv --name A --z-unit ms --z-positive up --z-factor 0.3333 --contact erosional"
-    )]
+    #[command(after_help = "Examples:\n  petroglyph horizon add north.petro top.irap --name \"Top Chalk\"\
+                      \n  petroglyph horizon add north.petro a.csv --name A --z-unit ms --z-positive up \
+                      --z-factor 0.3333 --contact erosional")]
     Add(Box<HorizonAddArgs>),
     /// List the horizons, youngest first
     #[command(after_help = "Example:\n  petroglyph horizon list north.petro")]
@@ -177,14 +177,13 @@ pub(in crate::cli) struct ReadingArgs {
 #[derive(Debug, Subcommand)]
 pub(in crate::cli) enum FaultAction {
     /// Read a fault
-    #[command(
-        after_help = "Examples:\n  petroglyph fault add north.petro f1.ts --name F1\n  petroglyph fault add north.petro sticks.dat --name F2 --z-unit ms --truncated-by F1"
-    )]
+    #[command(after_help = "Examples:\n  petroglyph fault add north.petro f1.ts --name F1\
+                      \n  petroglyph fault add north.petro sticks.dat --name F2 --z-unit ms --truncated-by F1")]
     Add(Box<FaultAddArgs>),
     /// Draw a fault from sticks
-    #[command(
-        after_help = "Example:\n  petroglyph fault pick north.petro --name F1 --stick 1250,1300,900 1250,1310,1020 --stick 1270,1302,900 1270,1312,1020"
-    )]
+    #[command(after_help = "Example:\
+                      \n  petroglyph fault pick north.petro --name F1 --stick 1250,1300,900 1250,1310,1020 \
+                      --stick 1270,1302,900 1270,1312,1020")]
     Pick(FaultPickArgs),
     /// Propose faults from the offsets of the horizons
     #[command(after_help = "Example:\n  petroglyph fault propose north.petro")]

@@ -12,9 +12,9 @@ pub(in crate::cli) enum LayerAction {
         project: PathBuf,
     },
     /// Change how a layer looks
-    #[command(
-        after_help = "Examples:\n  petroglyph layer set north.petro \"A - B\" --name Chalk --pattern chalk\n  petroglyph layer set north.petro Chalk --interval 0,0.3,marl --interval 0.3,1,chalk --frequency 12,3"
-    )]
+    #[command(after_help = "Examples:\n  petroglyph layer set north.petro \"A - B\" --name Chalk --pattern chalk\
+                      \n  petroglyph layer set north.petro Chalk --interval 0,0.3,marl --interval 0.3,1,chalk \
+                      --frequency 12,3")]
     Set(LayerSetArgs),
     /// Give a layer its default style again
     #[command(after_help = "Example:\n  petroglyph layer reset north.petro Chalk")]

@@ -47,9 +47,9 @@ pub(super) enum Action {
     #[command(after_help = "Example:\n  petroglyph synth out/synth --size 128x128x128 --seed 7 --snr 3")]
     Synth(SynthArgs),
     /// Show what a file or project holds
-    #[command(
-        after_help = "Example:\n  petroglyph info survey.sgy\n  petroglyph info survey.sgy --inline-byte 193 --crossline-byte 189\n  petroglyph info top-chalk.irap\n  petroglyph info north.petro --json"
-    )]
+    #[command(after_help = "Example:\n  petroglyph info survey.sgy\
+                      \n  petroglyph info survey.sgy --inline-byte 193 --crossline-byte 189\
+                      \n  petroglyph info top-chalk.irap\n  petroglyph info north.petro --json")]
     Info {
         /// SEG-Y, horizon, fault or well file, or project folder
         path: PathBuf,
@@ -64,14 +64,14 @@ pub(super) enum Action {
     )]
     Create(CreateArgs),
     /// Read a SEG-Y volume into a project
-    #[command(
-        after_help = "Examples:\n  petroglyph import survey.sgy north.petro\n  petroglyph import large.sgy north.petro --memory 4G\n  petroglyph import impedance.sgy north.petro --name impedance --inline-byte 9 --crossline-byte 21"
-    )]
+    #[command(after_help = "Examples:\n  petroglyph import survey.sgy north.petro\
+                      \n  petroglyph import large.sgy north.petro --memory 4G\
+                      \n  petroglyph import impedance.sgy north.petro --name impedance --inline-byte 9 \
+                      --crossline-byte 21")]
     Import(ImportArgs),
     /// Compute a volume from a volume: semblance, envelope or dip
-    #[command(
-        after_help = "Examples:\n  petroglyph attribute north.petro --kind semblance --name faults\n  petroglyph attribute north.petro --kind dip --name dip --volume seismic --memory 2G"
-    )]
+    #[command(after_help = "Examples:\n  petroglyph attribute north.petro --kind semblance --name faults\
+                      \n  petroglyph attribute north.petro --kind dip --name dip --volume seismic --memory 2G")]
     Attribute(AttributeArgs),
     /// Volumes of a project
     #[command(subcommand)]
@@ -86,14 +86,14 @@ pub(super) enum Action {
     #[command(subcommand)]
     Well(WellAction),
     /// Find horizon candidates in a volume: surfaces, their trees, and the closest leaf of every voxel
-    #[command(
-        after_help = "Examples:\n  petroglyph extract north.petro\n  petroglyph extract north.petro --extrema peak --min-front-width 6 --json"
-    )]
+    #[command(after_help = "Examples:\n  petroglyph extract north.petro\
+                      \n  petroglyph extract north.petro --extrema peak --min-front-width 6 --json")]
     Extract(ExtractArgs),
     /// Pick a candidate and add it to a horizon, or take it out
-    #[command(
-        after_help = "Examples:\n  petroglyph pick north.petro --at 1250,1302,948 --horizon \"Top Chalk\" --highest-valid\n  petroglyph pick north.petro --at 1310,1302,960 --horizon \"Top Chalk\" --up 2 --remove"
-    )]
+    #[command(after_help = "Examples:\
+                      \n  petroglyph pick north.petro --at 1250,1302,948 --horizon \"Top Chalk\" \
+                      --highest-valid\
+                      \n  petroglyph pick north.petro --at 1310,1302,960 --horizon \"Top Chalk\" --up 2 --remove")]
     Pick(PickArgs),
     /// Move a pick up its tree
     #[command(after_help = "Example:\n  petroglyph climb north.petro 3 --levels 2")]
@@ -110,9 +110,9 @@ pub(super) enum Action {
         truth: PathBuf,
     },
     /// Write a horizon, the points of all candidates or a volume to a file
-    #[command(
-        after_help = "Examples:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap\n  petroglyph export north.petro points.csv --candidates\n  petroglyph export north.petro out.sgy --volume seismic"
-    )]
+    #[command(after_help = "Examples:\n  petroglyph export north.petro top.irap --horizon \"Top Chalk\" --format irap\
+                      \n  petroglyph export north.petro points.csv --candidates\
+                      \n  petroglyph export north.petro out.sgy --volume seismic")]
     Export(ExportArgs),
     /// State the velocity that turns two-way time into metres
     #[command(after_help = "Example:\n  petroglyph velocity north.petro 2500")]
@@ -142,9 +142,18 @@ pub(super) enum Action {
     #[command(after_help = "Example:\n  petroglyph parameterize north.petro --size 128x128x128")]
     Parameterize(ParameterizeArgs),
     /// Draw a picture
-    #[command(
-        after_help = "Examples:\n  petroglyph render north.petro block.png\n  petroglyph render north.petro half.png --blend 0.5 --cut nearest,0.5,0.4 --azimuth 30 --size 2400x1800 --dpi 300\n  petroglyph render north.petro figure.png --legend --scale-bar --size-cm 16x11\n  petroglyph render north.petro compared.png --compare 0,1 --wipe 0.5 --scale-bar\n  petroglyph render north.petro section.png --inline 1250 --size-cm 16x9 --scale-bar\n  petroglyph render north.petro four.png --block --inline 1250 --crossline 1302 --slice 948 --legend\n  petroglyph render north.petro fence.png --fence 1200,1300 1250,1340 1290,1310 --interpretation\n  petroglyph render north.petro map.png --map \"Top Chalk\" --scale-bar\n  petroglyph render north.petro isochore.png --map \"Top Chalk\" --thickness-to \"Base Chalk\""
-    )]
+    #[command(after_help = "Examples:\n  petroglyph render north.petro block.png\
+                      \n  petroglyph render north.petro half.png --blend 0.5 --cut nearest,0.5,0.4 --azimuth \
+                      30 --size 2400x1800 --dpi 300\
+                      \n  petroglyph render north.petro figure.png --legend --scale-bar --size-cm 16x11\
+                      \n  petroglyph render north.petro compared.png --compare 0,1 --wipe 0.5 --scale-bar\
+                      \n  petroglyph render north.petro section.png --inline 1250 --size-cm 16x9 --scale-bar\
+                      \n  petroglyph render north.petro four.png --block --inline 1250 --crossline 1302 \
+                      --slice 948 --legend\
+                      \n  petroglyph render north.petro fence.png --fence 1200,1300 1250,1340 1290,1310 \
+                      --interpretation\n  petroglyph render north.petro map.png --map \"Top Chalk\" --scale-bar\
+                      \n  petroglyph render north.petro isochore.png --map \"Top Chalk\" --thickness-to \"Base \
+                      Chalk\"")]
     Render(Box<RenderArgs>),
     /// Open the window, for the whole work from volume to picture
     #[command(after_help = "Examples:\n  petroglyph view\n  petroglyph view north.petro")]

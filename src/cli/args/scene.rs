@@ -12,9 +12,9 @@ pub(in crate::cli) enum SceneAction {
         project: PathBuf,
     },
     /// Keep a view under a name
-    #[command(
-        after_help = "Examples:\n  petroglyph scene add north.petro corner --cut nearest,0.5,0.4 --azimuth 30 --exaggeration 2\n  petroglyph scene add north.petro figure3 --from figure3.toml"
-    )]
+    #[command(after_help = "Examples:\
+                      \n  petroglyph scene add north.petro corner --cut nearest,0.5,0.4 --azimuth 30 \
+                      --exaggeration 2\n  petroglyph scene add north.petro figure3 --from figure3.toml")]
     Add(Box<SceneAddArgs>),
     /// Print a view as TOML, to edit and give to `render --scene` or `scene add --from`
     #[command(after_help = "Example:\n  petroglyph scene show north.petro corner > corner.toml")]

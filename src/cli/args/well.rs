@@ -6,9 +6,13 @@ use std::path::PathBuf;
 #[derive(Debug, Subcommand)]
 pub(in crate::cli) enum WellAction {
     /// Read a well: its deviation, and tops, logs and checkshots along it
-    #[command(
-        after_help = "Examples:\n  petroglyph well add north.petro A-1.csv --name A-1 --kb 25 --tops tops.csv --las A-1.las\n  petroglyph well add north.petro A-2.dev --name A-2 --head 460000,5930000 --kb 25 --checkshot A-2.ckb\n\nThe deviation's header names its columns: md, inclination, azimuth (minimum curvature); or x, y, tvdss; or dx, dy, tvd."
-    )]
+    #[command(after_help = "Examples:\
+                      \n  petroglyph well add north.petro A-1.csv --name A-1 --kb 25 --tops tops.csv --las \
+                      A-1.las\
+                      \n  petroglyph well add north.petro A-2.dev --name A-2 --head 460000,5930000 --kb 25 \
+                      --checkshot A-2.ckb\n\
+                      \nThe deviation's header names its columns: md, inclination, azimuth (minimum \
+                      curvature); or x, y, tvdss; or dx, dy, tvd.")]
     Add(Box<WellAddArgs>),
     /// List the wells
     #[command(after_help = "Example:\n  petroglyph well list north.petro")]

@@ -96,13 +96,20 @@ fn points_without_sticks_are_fitted() {
 #[test]
 fn tsurf_with_all_its_liberties() {
     let text = "GOCAD TSurf 1 \r\nHEADER {\r\n*solid*color: 1 0 0 1\r\nname:  Big fault \r\n}\r\nPROPERTIES a b\r\nTFACE\r\n\
-        PVRTX 10 7300 100 0 1.5 2\r\nVRTX 11 7700 100 800 CNXYZ\r\nVRTX 13 7300 900 0\r\nTRGL 10 11 13\r\nTFACE\r\nATOM 20 11\r\nATOM 21 13\r\n\
+        PVRTX 10 7300 100 0 1.5 2\r\nVRTX 11 7700 100 800 CNXYZ\r\nVRTX 13 7300 900 0\r\nTRGL 10 11 13\r\
+        \nTFACE\r\nATOM 20 11\r\nATOM 21 13\r\n\
         VRTX 22 7700 900 800\r\nTRGL 20 22 21\r\nBSTONE 10\r\nBORDER 30 10 11\r\nEND\r\n";
     let (fault, report) = fault(text, &ImportOptions::default());
     assert_eq!((fault.name.as_str(), fault.mesh.triangles.len()), ("Big fault", 2));
     assert_eq!((&report.z_unit.source, &report.z_positive.source), (&Provenance::Assumed, &Provenance::Assumed));
     assert!(fault.mesh.vertices.iter().all(|v| off_plane(*v) < 1e-9));
-    let up = text.replace("PROPERTIES a b", "GOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT \"m\" \"m\" \"ft\"\nZPOSITIVE Elevation\nEND_ORIGINAL_COORDINATE_SYSTEM").replace(" 800", " -2624.671916");
+    let up = text
+        .replace(
+            "PROPERTIES a b",
+            "GOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT \"m\" \"m\" \"ft\"\
+        \nZPOSITIVE Elevation\nEND_ORIGINAL_COORDINATE_SYSTEM",
+        )
+        .replace(" 800", " -2624.671916");
     let (in_feet, report) = self::fault(&up, &ImportOptions::default());
     assert_eq!(report.z_unit.value, ZUnit::Feet);
     assert!(in_feet.mesh.vertices.iter().all(|v| off_plane(*v) < 1e-6));

@@ -110,7 +110,9 @@ fn in_every_format(factor: f64) -> Vec<(&'static str, &'static str, String)> {
             "zmappoints",
             "a.zmap",
             format!(
-                "!\n@FREE POINT , DATA, 80, 1\nX (EASTING) , 1, 1, 1, 1, 20,, 1.0E+30,,, 4, 0\nY (NORTHING) , 2, 2, 1, 21, 40,, 1.0E+30,,, 4, 0\nZ VALUE , 3, 3, 1, 41, 60,, 1.0E+30,,, 4, 0\n@\n{}",
+                "!\n@FREE POINT , DATA, 80, 1\nX (EASTING) , 1, 1, 1, 1, 20,, 1.0E+30,,, 4, 0\
+                 \nY (NORTHING) , 2, 2, 1, 21, 40,, 1.0E+30,,, 4, 0\
+                 \nZ VALUE , 3, 3, 1, 41, 60,, 1.0E+30,,, 4, 0\n@\n{}",
                 rows(|x, y, z| format!("{:>20}{:>20}{:>20}\n", world(x, y).0, world(x, y).1, z * factor))
             ),
         ),
@@ -209,7 +211,8 @@ fn petromod_turns_about_its_own_pivot() {
 #[test]
 fn petrel_well_tops_give_a_horizon_for_each_surface() {
     let mut text = String::from(
-        "# Petrel well tops\n# Unit in X and Y direction: m\n# Unit in depth: m\nVERSION 2\nBEGIN HEADER\nX\nY\nZ\nTWT picked\nMD\nType\nSurface\nWell\nEND HEADER\n",
+        "# Petrel well tops\n# Unit in X and Y direction: m\n# Unit in depth: m\nVERSION 2\nBEGIN HEADER\nX\nY\
+         \nZ\nTWT picked\nMD\nType\nSurface\nWell\nEND HEADER\n",
     );
     for (n, (x, y)) in [(50.0, 50.0), (400.0, 60.0), (200.0, 300.0), (100.0, 200.0)].into_iter().enumerate() {
         text += &format!("{x} {y} -{} -999 1{n}00 Horizon \"Top A\" \"W {n}\"\n", 100 + n);

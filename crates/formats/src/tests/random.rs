@@ -12,12 +12,15 @@ const FILES: &[(&str, &str)] = &[
     ("irap", "-996 2 10 10\n0 10 0 10\n2 0 0 0\n0 0 0 0 0 0 0\n40 41 42 9999900.0\n"),
     (
         "opendtect",
-        "# \"X\"\t\"Y\"\t\"Inline\"\t\"Crossline\"\t\"Z\"\n# - - - -\n\"A\"\t0.00\t0.00\t1\t1\t40.5\n\"A\"\t0.00\t25.00\t1\t2\t1e30\n\"B\"\t25.00\t0.00\t2\t1\t44\n",
+        "# \"X\"\t\"Y\"\t\"Inline\"\t\"Crossline\"\t\"Z\"\n# - - - -\n\"A\"\t0.00\t0.00\t1\t1\t40.5\
+         \n\"A\"\t0.00\t25.00\t1\t2\t1e30\n\"B\"\t25.00\t0.00\t2\t1\t44\n",
     ),
     ("opendtect", "\"F\"\t0\t0\t40\t0\t0\n\"F\"\t5\t0\t80\t0\t1\n\"F\"\t0\t25\t40\t1\t0\n\"F\"\t5\t25\t80\t1\t1\n"),
     (
         "tsurf",
-        "GOCAD TSurf 1\nHEADER {\nname: A\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT m m ms\nZPOSITIVE Depth\nEND_ORIGINAL_COORDINATE_SYSTEM\nTFACE\nVRTX 1 0 0 40\nPVRTX 2 50 0 44 1.5\nVRTX 3 0 50 48\nATOM 4 3\nTRGL 1 2 3\nTRGL 2 4 1\nEND\n",
+        "GOCAD TSurf 1\nHEADER {\nname: A\n}\nGOCAD_ORIGINAL_COORDINATE_SYSTEM\nAXIS_UNIT m m ms\
+         \nZPOSITIVE Depth\nEND_ORIGINAL_COORDINATE_SYSTEM\nTFACE\nVRTX 1 0 0 40\nPVRTX 2 50 0 44 1.5\
+         \nVRTX 3 0 50 48\nATOM 4 3\nTRGL 1 2 3\nTRGL 2 4 1\nEND\n",
     ),
     (
         "zmap",
@@ -29,7 +32,8 @@ const FILES: &[(&str, &str)] = &[
     ),
     (
         "earthvision",
-        "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z milliseconds\n# Null_value: 1.0e30\n# End:\n0 0 40\n25 0 44\n0 25 48\n",
+        "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z milliseconds\n# Null_value: 1.0e30\
+         \n# End:\n0 0 40\n25 0 44\n0 25 48\n",
     ),
     (
         "petrel",
@@ -38,15 +42,22 @@ const FILES: &[(&str, &str)] = &[
     ("charisma", "INLINE :   1 XLINE :   1   0.0   0.0   40.0\nINLINE :   1 XLINE :   2   0.0   25.0   44.0\n"),
     (
         "charisma",
-        "INLINE-  0  0  0.0  0.0  40.0 F 1\nINLINE-  0  0  5.0  0.0  80.0 F 1\nINLINE-  0  0  0.0  25.0  40.0 F 2\nINLINE-  0  0  5.0  25.0  80.0 F 2\n",
+        "INLINE-  0  0  0.0  0.0  40.0 F 1\nINLINE-  0  0  5.0  0.0  80.0 F 1\
+         \nINLINE-  0  0  0.0  25.0  40.0 F 2\nINLINE-  0  0  5.0  25.0  80.0 F 2\n",
     ),
     (
         "zmappoints",
-        "!\n@FREE POINT , DATA, 80, 1\nX (E) , 1, 1, 1, 1, 8,, 1.0E+30,,, 4, 0\nY (N) , 2, 2, 1, 9, 16,, 1.0E+30,,, 4, 0\nZ , 3, 3, 1, 17, 24,, 1.0E+30,,, 4, 0\nSEG I.D. , 4, 35, 1, 25, 30,, 1.0E+30,,, 0, 0\n@\n     0.0     0.0    40.0     1\n    50.0     0.0    44.0     1\n    50.0    50.0    48.0     1\n     0.0     0.0    40.0     1\n",
+        "!\n@FREE POINT , DATA, 80, 1\nX (E) , 1, 1, 1, 1, 8,, 1.0E+30,,, 4, 0\
+         \nY (N) , 2, 2, 1, 9, 16,, 1.0E+30,,, 4, 0\nZ , 3, 3, 1, 17, 24,, 1.0E+30,,, 4, 0\
+         \nSEG I.D. , 4, 35, 1, 25, 30,, 1.0E+30,,, 0, 0\n@\n     0.0     0.0    40.0     1\
+         \n    50.0     0.0    44.0     1\n    50.0    50.0    48.0     1\n     0.0     0.0    40.0     1\n",
     ),
     (
         "iesx",
-        "PROFILE A TYPE 1  4 a3d_ci7m.ifdf     m ms\nSNAPPING PARAMETERS     5     0     1\n  0.00000000E+00  0.00000000E+00  1 14    40.00      1.00      1.00    1 4.0000000E+01 I      1 XX\n  2.50000000E+01  0.00000000E+00  1 14    44.00      1.00      1.00    1 4.4000000E+01 I      2 XX\nEOD\n",
+        "PROFILE A TYPE 1  4 a3d_ci7m.ifdf     m ms\nSNAPPING PARAMETERS     5     0     1\
+         \n  0.00000000E+00  0.00000000E+00  1 14    40.00      1.00      1.00    1 4.0000000E+01 I      1 XX\
+         \n  2.50000000E+01  0.00000000E+00  1 14    44.00      1.00      1.00    1 4.4000000E+01 I      2 XX\
+         \nEOD\n",
     ),
     ("dug", "# subgrid=il:1-2[1]+cl:1-2[1]\n# vertical_dimension=time\n1\t1\t40\n1\t2\t44\n2\t1\t48\n"),
     (

@@ -69,11 +69,13 @@ fn earthvision_and_petrel_say_their_unit() {
     let survey = SurveyGeometry::regular([9, 9, 101], 5.0, 1.0, VerticalUnit::Milliseconds);
     for (text, words) in [
         (
-            "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z seconds\n# Null_value: -999\n# End:\n0 0 0.05\n5 0 0.06\n5 5 -999\n",
+            "# Type: scattered data\n# Field: 1 x\n# Field: 2 y\n# Field: 3 z seconds\n# Null_value: -999\
+             \n# End:\n0 0 0.05\n5 0 0.06\n5 5 -999\n",
             "Field: 3 z seconds",
         ),
         (
-            "# Petrel Points with attributes\r\n# Unit in X and Y direction: m\r\n# Unit in depth: s\r\nVERSION 1\r\nBEGIN HEADER\r\nX\r\nY\r\nZ\r\nEND HEADER\r\n0 0 0.05 \r\n5 0 0.06\r\n",
+            "# Petrel Points with attributes\r\n# Unit in X and Y direction: m\r\n# Unit in depth: s\r\
+             \nVERSION 1\r\nBEGIN HEADER\r\nX\r\nY\r\nZ\r\nEND HEADER\r\n0 0 0.05 \r\n5 0 0.06\r\n",
             "'Unit in depth: s'",
         ),
     ] {

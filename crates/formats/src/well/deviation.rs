@@ -90,7 +90,9 @@ impl Reading<'_> {
                 let found = self.angles(WellColumn::AzimuthTrue)?;
                 if found.is_some() {
                     self.warnings.push(
-                        "the azimuths are from true north and were taken as from grid north; add the convergence in the file if it matters".into(),
+                        "the azimuths are from true north and were taken as from grid north; add the \
+                         convergence in the file if it matters"
+                            .into(),
                     );
                 }
                 found

@@ -116,7 +116,8 @@ fn tops_by_measured_and_vertical_depth() {
         format!("Well;Surface;Z\nB2;A;-1\nwell;A;{}\n", -z),
         "700 A\n".to_string(),
         format!(
-            "# Petrel well tops\nVERSION 2\nBEGIN HEADER\nX\nY\nZ\nMD\nType\nSurface\nWell\nEND HEADER\n1 2 {} 700 Horizon \"A\" \"well\"\n",
+            "# Petrel well tops\nVERSION 2\nBEGIN HEADER\nX\nY\nZ\nMD\nType\nSurface\nWell\nEND HEADER\
+             \n1 2 {} 700 Horizon \"A\" \"well\"\n",
             -z
         ),
     ] {

@@ -18,7 +18,8 @@ pub enum AssemblyError {
     },
     /// No surface is near enough.
     #[error(
-        "no candidate lies within {max_distance} voxels of {at}: the nearest is leaf {leaf}, {distance:.1} voxels away at {nearest}; pick there"
+        "no candidate lies within {max_distance} voxels of {at}: the nearest is leaf {leaf}, {distance:.1} \
+         voxels away at {nearest}; pick there"
     )]
     NothingNear {
         /// The point, voxels.

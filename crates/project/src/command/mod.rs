@@ -261,7 +261,8 @@ impl std::fmt::Display for Effect {
                 let [inlines, crosslines, samples] = done.size;
                 writeln!(
                     f,
-                    "volume '{}': {inlines} inlines, {crosslines} crosslines, {samples} samples, stored as {}; {} traces, {} missing; {} polarity",
+                    "volume '{}': {inlines} inlines, {crosslines} crosslines, {samples} samples, stored as {}; \
+                     {} traces, {} missing; {} polarity",
                     done.volume, done.sample_type, done.traces, done.missing_traces, done.polarity
                 )?;
                 done.evidence.iter().try_for_each(|line| writeln!(f, "  {line}"))?;

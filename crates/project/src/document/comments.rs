@@ -71,12 +71,15 @@ mod tests {
 
     #[test]
     fn comments_stay_with_what_they_are_about() {
-        let old = "# ours\n\n# mine, above\nversion = 1 # at the end\n\n[style]\n# inside\nraw = 2\n\n# about B\n[[horizons]]\nname = \"B\"\nfile = \"b\"\n\n[[horizons]]\nname = \"C\" # c\n# the end\n";
-        let new = "# ours\n\nversion = 2\n\n[style]\nraw = 3\n\n[[horizons]]\nname = \"A\"\nfile = \"a\"\n\n[[horizons]]\nname = \"B\"\nfile = \"b2\"\n";
+        let old = "# ours\n\n# mine, above\nversion = 1 # at the end\n\n[style]\n# inside\nraw = 2\n\n# about B\
+                   \n[[horizons]]\nname = \"B\"\nfile = \"b\"\n\n[[horizons]]\nname = \"C\" # c\n# the end\n";
+        let new = "# ours\n\nversion = 2\n\n[style]\nraw = 3\n\n[[horizons]]\nname = \"A\"\nfile = \"a\"\n\
+                   \n[[horizons]]\nname = \"B\"\nfile = \"b2\"\n";
         let kept = keep_comments(old, new.to_owned());
         assert_eq!(
             kept,
-            "# ours\n\n# mine, above\nversion = 2 # at the end\n\n[style]\n# inside\nraw = 3\n\n[[horizons]]\nname = \"A\"\nfile = \"a\"\n\n# about B\n[[horizons]]\nname = \"B\"\nfile = \"b2\"\n# the end\n"
+            "# ours\n\n# mine, above\nversion = 2 # at the end\n\n[style]\n# inside\nraw = 3\n\n[[horizons]]\
+             \nname = \"A\"\nfile = \"a\"\n\n# about B\n[[horizons]]\nname = \"B\"\nfile = \"b2\"\n# the end\n"
         );
         assert_eq!(keep_comments(&kept, new.to_owned()), kept);
     }

@@ -75,7 +75,8 @@ pub struct Document {
 }
 
 /// Says at the top of the file what it is.
-const HEADER: &str = "# A Petroglyph project. Commands change this file and remember its former states in history/; `petroglyph undo` goes back.\n\n";
+const HEADER: &str = "# A Petroglyph project. Commands change this file and remember its former states in \
+                      history/; `petroglyph undo` goes back.\n\n";
 
 impl Document {
     /// A project with nothing in it.

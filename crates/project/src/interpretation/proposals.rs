@@ -50,7 +50,8 @@ impl Proposals {
         let [a, b] = p.ends;
         write!(
             f,
-            "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline {:.0}, crossline {:.0} to inline {:.0}, \
+            "{}: {kind}, strikes {:.0} deg, dips {:.0} deg, throw {:.0} {unit} (up to {:.0}), from inline \
+             {:.0}, crossline {:.0} to inline {:.0}, \
              crossline {:.0}, {:.0} to {:.0} {unit}; throw by length {:.0} m2, {} pairs on {}, {:.0} m off",
             p.id,
             p.strike_deg,
@@ -95,7 +96,8 @@ impl fmt::Display for Proposals {
             let Repeat { fault, support, along, off_traces, throw, .. } = repeat;
             write!(
                 f,
-                "\nnot proposed: \"{fault}\" again, by {support} pairs along {:.0} % of it, {off_traces:.1} traces off, throw {throw:.0} {}",
+                "\nnot proposed: \"{fault}\" again, by {support} pairs along {:.0} % of it, {off_traces:.1} \
+                 traces off, throw {throw:.0} {}",
                 100.0 * along,
                 self.unit
             )

@@ -325,7 +325,10 @@ mod tests {
 
     #[test]
     fn toml_is_short_and_round_trips() {
-        let text = "faces = 'none'\nshading = { occlusion = { spread = 0.5 } }\n[[surroundings]]\nvolume = 'seismic'\n[surroundings.function]\ndomain = [-1.0, 1.0]\nstops = [{ at = 0.0, colour = '#ffffff', opacity = 0.0 }, { at = 1.0, colour = '#ffffff' }]";
+        let text = "faces = 'none'\nshading = { occlusion = { spread = 0.5 } }\n[[surroundings]]\
+                    \nvolume = 'seismic'\n[surroundings.function]\ndomain = [-1.0, 1.0]\
+                    \nstops = [{ at = 0.0, colour = '#ffffff', opacity = 0.0 }, \
+                    { at = 1.0, colour = '#ffffff' }]";
         let media: Media = toml::from_str(text).unwrap();
         assert_eq!(media.surroundings[0].function, {
             let mut ramp = white_ramp(1.0, -1.0);

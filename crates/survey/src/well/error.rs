@@ -17,7 +17,8 @@ pub enum WellError {
     },
     /// An inclination or azimuth is out of range.
     #[error(
-        "at {md_m} m the inclination is {inclination_deg} and the azimuth {azimuth_deg} degrees; inclinations are 0 to 180 from the vertical, azimuths 0 to 360 from north"
+        "at {md_m} m the inclination is {inclination_deg} and the azimuth {azimuth_deg} degrees; inclinations \
+         are 0 to 180 from the vertical, azimuths 0 to 360 from north"
     )]
     Angle {
         /// Measured depth.
@@ -39,7 +40,8 @@ pub enum WellError {
     },
     /// Two stations are further apart than the hole between them is long.
     #[error(
-        "before {md_m} m the hole is {along_m:.2} m long but its ends are {straight_m:.2} m apart; check the units of measured depth and of X, Y"
+        "before {md_m} m the hole is {along_m:.2} m long but its ends are {straight_m:.2} m apart; check the \
+         units of measured depth and of X, Y"
     )]
     ShorterThanStraight {
         /// Measured depth.

@@ -87,7 +87,8 @@ impl FaultsPanel {
         if minor > 0 {
             ui.separator();
             let text = format!("{minor} minor proposal{}", if minor == 1 { "" } else { "s" });
-            let hint = "Small ones, together a fifth of the total offset or less, and those whose evidence scatters or shows no break in the data";
+            let hint = "Small ones, together a fifth of the total offset or less, and those whose evidence \
+                        scatters or shows no break in the data";
             if ui.selectable_label(picking.minor, text).on_hover_text(hint).clicked() {
                 actions.push(step(PickingStep::Minor(!picking.minor)));
             }
