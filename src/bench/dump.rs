@@ -1,4 +1,4 @@
-//! The measured model as NumPy files, for programs of others to be timed on.
+//! Writes the measured model as NumPy files, so that other programs can be timed on it.
 //!
 //! `region.npy` uint16 `[inline][crossline][sample]`: layer + layers · block. `sheets.npy` float32 `[horizon][block][x][y]`: voxel z of the
 //! extended sheets. `meta.json`: `size`, `margin` (nodes around the survey), `metric_m` (metres per voxel along
@@ -16,7 +16,7 @@ use survey::Progress;
 /// Writes the three files.
 ///
 /// # Errors
-/// They could not be written, or cancelled.
+/// The files could not be written, or the user cancelled.
 pub(super) fn write(folder: &Path, model: &StructuralModel, progress: &Progress) -> Result<(), ProjectError> {
     let fail = |source| ProjectError::io("written", folder, source);
     fs::create_dir_all(folder).map_err(fail)?;
@@ -58,7 +58,7 @@ pub(super) fn write(folder: &Path, model: &StructuralModel, progress: &Progress)
     fs::write(folder.join("meta.json"), meta.to_string()).map_err(fail)
 }
 
-/// Version 1.0 of the format: magic, length of the header, a Python literal padded to 64 bytes, the values in C order.
+/// Writes version 1.0 of the NumPy format: magic, length of the header, a Python literal padded to 64 bytes, the values in C order.
 pub(super) fn write_npy<'a>(
     path: &Path,
     kind: &str,

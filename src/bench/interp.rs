@@ -1,7 +1,8 @@
 //! The extraction of horizon candidates: growing, trees, distances with leaf ids, on cubes of the synthetic survey at SNR 3.
 //!
-//! Memory is what the process needed at its peak beyond the volume, which it held before. With a dump, the amplitudes of the middle cube are
-//! written as `amplitude.npy` (float32, `[inline][crossline][sample]`), for other programs to be timed on.
+//! Memory is the peak of the process beyond the volume, which it held before. With a dump, the amplitudes of the
+//! middle cube are written as `amplitude.npy` (float32, `[inline][crossline][sample]`), so that other programs can
+//! be timed on them.
 
 use super::{Memory, Sizes, dump};
 use interp::{ExtractSettings, extract};
@@ -29,7 +30,7 @@ pub struct ExtractionRow {
     pub seconds: interp::StageSeconds,
     /// Microseconds a voxel for all of it.
     pub us_per_voxel: f64,
-    /// Bytes a voxel at the peak, the volume itself apart; absent where the system does not tell.
+    /// Bytes a voxel at the peak, without the volume itself; `None` where the system does not report it.
     pub peak_bytes_per_voxel: Option<f64>,
 }
 
@@ -52,7 +53,7 @@ impl fmt::Display for ExtractionRow {
 /// Extracts the candidates of each cube.
 ///
 /// # Errors
-/// Cancelled, or a dump that could not be written.
+/// The user cancelled, or a dump could not be written.
 pub(super) fn measure(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<Vec<ExtractionRow>> {
     sizes.sides().iter().map(|&side| row(side, dump.filter(|_| side == sizes.middle()), progress)).collect()
 }

@@ -1,9 +1,10 @@
-//! `petroglyph bench`: how long the stages take on this machine, as ratios where they can be: machines differ, ratios less.
+//! `petroglyph bench`: how long the stages take on this machine, as ratios where possible, since these differ less between
+//! machines.
 //!
 //! The model is closed form: four folded layers cut by two faults, a cube of n³ voxels. Measured are the structural model, the
 //! parameterization (k with its refinement to the surface, and the traces that give i and j), i, j, k at every voxel, and a picture
 //! of three textured faces by the exact lookup and by the packed one of the paper. Growth is the time per voxel of the
-//! largest cube over that of the smallest. Memory is what the process needed at its peak beyond what it held before, a voxel.
+//! largest cube over that of the smallest. Memory is the peak of the process beyond what it held before, in bytes a voxel.
 
 mod dump;
 mod interp;
@@ -71,7 +72,7 @@ pub struct Cube {
     pub stages: Vec<Stage>,
     /// Microseconds a voxel for the parameterization.
     pub us_per_voxel: f64,
-    /// Bytes a voxel at the peak of the parameterization; absent where the system does not tell.
+    /// Bytes a voxel at the peak of the parameterization; `None` where the system does not report it.
     pub peak_bytes_per_voxel: Option<f64>,
 }
 
@@ -88,7 +89,7 @@ pub struct Measured {
     pub extractions: Vec<ExtractionRow>,
     /// Time per voxel of the largest extraction over that of the smallest.
     pub extraction_growth: f64,
-    /// What drew the pictures.
+    /// The device that drew the pictures.
     pub device: String,
     /// Seconds for a picture by the exact lookup.
     pub exact_picture_seconds: f64,
@@ -96,7 +97,7 @@ pub struct Measured {
     pub packed_picture_seconds: f64,
     /// The first over the second.
     pub exact_over_packed: f64,
-    /// Into the store and out of it.
+    /// Times for writing to the store and reading from it.
     pub store: StoreMeasured,
 }
 
@@ -126,10 +127,10 @@ impl fmt::Display for Measured {
     }
 }
 
-/// Measures; with `dump`, writes the middle cube there for other programs to be timed on.
+/// Measures; with `dump`, writes the middle cube there, so that other programs can be timed on it.
 ///
 /// # Errors
-/// Cancelled, or files that could not be written.
+/// The user cancelled, or files could not be written.
 pub fn run(sizes: Sizes, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<Measured> {
     let extractions = interp::measure(sizes, dump, progress)?;
     let extraction_growth = match (extractions.first(), extractions.last()) {
@@ -180,7 +181,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
     let start = Instant::now();
     let parameterization = Parameterization::compute(&model, &ParamSettings::default(), progress)?;
     let took = start.elapsed();
-    // Both run in every thread side by side: their shares of the processor time are shares of the wall time.
+    // Both run side by side in every thread, so their shares of the processor time are their shares of the elapsed time.
     let cost = parameterization.cost;
     let share = cost.closest_points.as_secs_f64() / (cost.closest_points + cost.traces).as_secs_f64().max(1e-9);
     stages.push(Stage::new("k (closest points)", took.mul_f64(share)));
@@ -217,7 +218,8 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
     ))
 }
 
-/// Seconds for a picture by each lookup, the second time it is drawn: compiling shaders and uploading is not counted.
+/// Seconds for a picture by each lookup when it is drawn for the second time, so that compiling shaders and uploading are
+/// not counted.
 fn draw(painter: &mut Painter, loaded: &Loaded, progress: &Progress) -> Result<(f64, f64), ProjectError> {
     let mut seconds = |lookup| {
         let scene = Scene { size_px: [800, 600], samples: 2, lookup, ..Scene::default() };
@@ -227,13 +229,13 @@ fn draw(painter: &mut Painter, loaded: &Loaded, progress: &Progress) -> Result<(
     Ok((seconds(Lookup::Exact)?, seconds(Lookup::Packed)?))
 }
 
-/// Memory of this process, as Linux tells it.
+/// Memory of this process, as Linux reports it.
 struct Memory {
     resident: f64,
 }
 
 impl Memory {
-    /// Notes what is held now and forgets the peak so far.
+    /// Records the present memory and resets the peak.
     fn begin() -> Option<Self> {
         fs::write("/proc/self/clear_refs", "5").ok()?;
         Some(Self { resident: status("VmRSS:")? })

@@ -84,7 +84,7 @@ fn fault(index: usize) -> Fault {
     let mut mesh = TriangleMesh::default();
     for row in 0..=CELLS {
         for column in 0..=CELLS {
-            // A little beyond the walls, so that the fault certainly reaches them.
+            // A little beyond the outer boundary, so that the fault certainly reaches it.
             let share = |n: usize| -0.05 + 1.1 * n as f64 / CELLS as f64;
             mesh.vertices.push(vertex(share(row) * WIDTH_M, share(column) * DEPTH_M));
         }

@@ -1,6 +1,6 @@
-//! How fast a SEG-Y cube comes into memory: IEEE and IBM floats, headers understood, every trace decoded and measured.
+//! How fast a SEG-Y cube is read into memory: IEEE and IBM floats, headers interpreted, every trace decoded and measured.
 //!
-//! The file was just written, so the system holds it in memory: what is timed is our work and not the disk. `bench/peers.py` times
+//! The file was just written, so the system holds it in memory: the times are those of our work and not of the disk. `bench/peers.py` times
 //! segyio on the same files. A third file goes into the store and out of it.
 
 use super::StoreMeasured;
@@ -12,7 +12,7 @@ use std::path::Path;
 use std::time::Instant;
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
-/// Readings of each file; the quickest counts, since other programs only ever slow one down.
+/// How often each file is read; the quickest reading counts, since other programs can only slow one down.
 const ROUNDS: usize = 5;
 
 /// One file.
@@ -35,7 +35,7 @@ pub struct SegyReads {
     pub threads: usize,
     /// The files.
     pub reads: Vec<SegyRead>,
-    /// Into the store and out of it.
+    /// Times for writing to the store and reading from it.
     pub store: StoreMeasured,
 }
 
@@ -55,7 +55,7 @@ impl fmt::Display for SegyReads {
 /// Writes a cube of `side`³ samples to `folder` in each format, and reads it. The files stay.
 ///
 /// # Errors
-/// Cancelled, or files that could not be written.
+/// The user cancelled, or files could not be written.
 pub fn run(side: usize, folder: &Path, progress: &Progress) -> Result<SegyReads, ProjectError> {
     let geometry = SurveyGeometry::regular([side; 3], 25.0, 4.0, VerticalUnit::Milliseconds);
     let mut volume = Volume::filled([side; 3], 0.0_f32);

@@ -1,6 +1,7 @@
-//! How long a volume takes into the store and out of it: a SEG-Y file of n³ IEEE floats, reflections with noise, is read to memory, imported with
-//! its pyramid, and read back by inline, crossline and time slice; dip and semblance are computed on it. With a folder given, the file stays
-//! there as `survey.sgy` for other programs to be timed on (`bench/peers.py --store`).
+//! How long it takes to write a volume to the store and to read from it. A SEG-Y file of n³ IEEE floats (reflections
+//! with noise) is read to memory, imported with its pyramid, and read back by inline, crossline and time slice; dip
+//! and semblance are computed on it. With a folder given, the file stays there as `survey.sgy`, so that other programs
+//! can be timed on it (`bench/peers.py --store`).
 
 use attribute::{DipSettings, SemblanceSettings, dip, semblance};
 use project::error::ProjectError;
@@ -13,7 +14,7 @@ use std::time::Instant;
 use store::{MEMORY_BYTES, StoredVolume, VolumeInfo, resume_blocks};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 
-/// Each section is read so often; the shortest time counts, as on the other side.
+/// How often each section is read; the shortest time counts, as in `bench/peers.py`.
 const REPEATS: usize = 7;
 
 /// What was measured.
@@ -21,7 +22,7 @@ const REPEATS: usize = 7;
 pub struct StoreMeasured {
     /// Samples along each axis.
     pub side: usize,
-    /// MB of samples.
+    /// Size of the samples, MB.
     pub megabytes: f64,
     /// SEG-Y to memory.
     pub read_seconds: f64,
@@ -71,7 +72,7 @@ impl fmt::Display for StoreMeasured {
 pub(super) fn run(side: usize, folder: Option<&Path>, progress: &Progress) -> Result<StoreMeasured, ProjectError> {
     let own = std::env::temp_dir().join(format!("petroglyph-bench-{}", std::process::id()));
     let measured = measure(side, folder.unwrap_or(&own), &own, progress);
-    // What could not be removed is in the folder for temporary files.
+    // What cannot be removed stays in the folder for temporary files.
     let _ = fs::remove_dir_all(&own);
     measured
 }
@@ -129,7 +130,7 @@ fn measure(side: usize, kept: &Path, own: &Path, progress: &Progress) -> Result<
     })
 }
 
-/// From the file to the store as `import` does it, without the project around it.
+/// Imports the file to the store as `import` does, without a project.
 fn ingest(file: &Path, zarr: &Path, progress: &Progress) -> Result<(), ProjectError> {
     let opened = SegyFile::open(file, &SegyOptions::default(), progress)?;
     let info = VolumeInfo::of(opened.geometry()?);
@@ -137,7 +138,7 @@ fn ingest(file: &Path, zarr: &Path, progress: &Progress) -> Result<(), ProjectEr
     Ok(())
 }
 
-/// Folded reflections under noise, so that nothing about the samples is easier than in a real survey.
+/// Folded reflections with noise, so that the samples are no easier to handle than those of a real survey.
 fn write_survey(side: usize, path: &Path, progress: &Progress) -> Result<(), ProjectError> {
     let geometry = SurveyGeometry::regular([side; 3], 25.0, 4.0, VerticalUnit::Milliseconds);
     let mut source = |lines: std::ops::Range<usize>| {

@@ -1,4 +1,4 @@
-//! What was meant by picks, and answers about extractions and proposals.
+//! Turns arguments for picks and faults into commands, and evaluates extractions.
 
 use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
 use super::report::Report;
@@ -20,7 +20,7 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;
 
-/// Three numbers with commas.
+/// Parses three numbers separated by commas.
 fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
     let numbers: Vec<f64> = text.split(',').filter_map(|part| part.trim().parse().ok()).collect();
     let wrong = || format!("{option} {text}: expected INLINE,CROSSLINE,Z, three numbers");
@@ -102,7 +102,7 @@ pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> any
     let size = candidates.forest.surfaces.size;
     if size != truth.size {
         bail!(
-            "the extraction is of {size:?} voxels, the truth of {:?}; give the folder of the survey that the project was imported from",
+            "the extraction has {size:?} voxels, the truth {:?}; give the folder of the survey that the project was imported from",
             truth.size
         );
     }
@@ -126,7 +126,7 @@ pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> any
         ));
     }
     if counts.iter().any(|count| !(count.oracle.reached && count.replay.reached)) {
-        report.say("(in brackets: 95 % covered at 98 % precision was not reached)");
+        report.say("(in brackets: a coverage of 95 % with a precision of 98 % was not reached)");
     }
     let horizons: Vec<Value> =
         found.horizons.iter().zip(&counts).map(|(score, count)| object(score, Some(count))).collect();

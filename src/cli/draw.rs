@@ -1,4 +1,4 @@
-//! `petroglyph render`: a picture, and what was assumed to make it.
+//! `petroglyph render`: draws a picture, and reports the assumptions behind it.
 
 use super::report::Report;
 use super::request::RenderRequest;
@@ -28,7 +28,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         );
     }
     if document.volumes.is_empty() && scene.blend > 0.0 {
-        progress.warn("the project has no volume to blend to: the picture is illustrative throughout");
+        progress.warn("the project has no volume to blend with: the picture is fully illustrated");
         scene.blend = 0.0;
     }
     scene.validate(document.frame()?)?;
@@ -68,12 +68,12 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     Ok(report)
 }
 
-/// Printed length of so many pixels.
+/// Printed length of this many pixels.
 pub(super) fn millimetres(pixels: u32, dpi: f64) -> f64 {
     f64::from(pixels) / dpi * INCH_MM
 }
 
-/// A named scene, or a file.
+/// The scene that was asked for: a named one, or one from a file.
 fn choose(project: &Project, wanted: Option<&str>) -> anyhow::Result<Scene> {
     match wanted {
         Some(file) if file.ends_with(".toml") => scene_file(Path::new(file)),
@@ -81,12 +81,12 @@ fn choose(project: &Project, wanted: Option<&str>) -> anyhow::Result<Scene> {
     }
 }
 
-/// What a reader of the picture must know to trust it.
+/// The assumptions that a reader of the picture must know.
 pub(super) fn assumptions(project: &Project, scene: &Scene) -> Vec<String> {
     let document = project.document();
     let mut lines = Vec::new();
     for medium in scene.media.all() {
-        lines.push(format!("seen through: volume {}", medium.volume));
+        lines.push(format!("volume rendering of {}", medium.volume));
     }
     let in_time = document.geometry.as_ref().filter(|frame| frame.vertical.unit == VerticalUnit::Milliseconds);
     match in_time {

@@ -1,11 +1,11 @@
-//! What was meant by the options of an extraction.
+//! Turns the options of an extraction into settings.
 
 use super::args::ExtractArgs;
 use super::interpretation::word;
 use super::request::{Request, Usage};
 use interp::{DistanceSettings, ExtractSettings, Extremum, ForestSettings, GrowSettings, Method};
 
-/// What surfaces can follow, by word.
+/// The words for what surfaces can follow.
 const KINDS: [(&str, Extremum); 3] = [("peak", Extremum::Peak), ("trough", Extremum::Trough), ("zero", Extremum::Zero)];
 
 pub(super) fn extract(typed: ExtractArgs) -> Result<Request, Usage> {

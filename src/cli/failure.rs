@@ -1,11 +1,11 @@
-//! Failures on the terminal: one sentence, a hint, an exit code.
+//! Failures on the terminal: an error in one sentence, and a hint.
 
 use super::hint;
 use super::run::Failure;
 use project::error::remedy_of;
 use std::process::ExitCode;
 
-/// Prints a failure: the error's chain in one sentence and what to do next.
+/// Prints a failure: the error with its causes in one sentence, and what to do next.
 pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
     let (code, reason, hint) = match failure {
         Failure::Usage(reason) => (2, reason.clone(), GENERAL_HINT.to_owned()),
@@ -26,10 +26,11 @@ pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// What to do when nothing better is known.
+/// The hint when nothing more specific is known.
 const GENERAL_HINT: &str = "`petroglyph COMMAND --help` shows an example";
 
-/// Errors of the other crates end in what to do, after a semicolon or in a sentence of its own: that part is the hint.
+/// Splits an error of the other crates into the error and the hint: it ends with what to do, after a semicolon or in a sentence
+/// of its own.
 fn advice(sentence: String) -> (u8, String, String) {
     let own_sentence = |at: &usize| sentence[at + 2..].starts_with(char::is_uppercase);
     let stop = sentence.match_indices(". ").map(|(at, _)| at).filter(own_sentence).last();
@@ -39,7 +40,7 @@ fn advice(sentence: String) -> (u8, String, String) {
     }
 }
 
-/// The chain of causes, each said once: many errors already quote what caused them.
+/// The error with its chain of causes; a cause that is already quoted is not repeated.
 fn sentence(error: &anyhow::Error) -> String {
     let mut sentence = String::new();
     for cause in error.chain() {

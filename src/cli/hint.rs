@@ -3,20 +3,20 @@
 use project::ProjectError;
 use std::error::Error;
 
-/// What to do next about an error, or about what caused it; none where that cannot be said in general.
+/// What to do next about an error, or about what caused it; `None` where no general advice is possible.
 pub(super) fn of(error: &(dyn Error + 'static)) -> Option<String> {
     let own = error.downcast_ref::<ProjectError>().and_then(words).map(str::to_owned);
     own.or_else(|| of(error.source()?))
 }
 
-/// What to do next on the command line, where that can be said in general.
+/// What to do next on the command line, where general advice is possible.
 fn words(error: &ProjectError) -> Option<&'static str> {
     Some(match error {
         ProjectError::NotFound { .. } => {
             "check the path, or make a project with `petroglyph import SURVEY.sgy PROJECT` or `petroglyph create`"
         }
         ProjectError::DiskFull { .. } => {
-            "free some space (derived/ may be deleted, `petroglyph prune` forgets undone data), then try again; nothing was changed"
+            "free some space (derived/ may be deleted, `petroglyph prune` deletes the history), then try again; nothing was changed"
         }
         ProjectError::Duplicate { .. } => "choose another --name, or rename or remove the present one first",
         ProjectError::Unknown { .. } => "check the spelling; names are listed by `petroglyph info PROJECT`",
@@ -24,18 +24,20 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "give INLINE,CROSSLINE,Z as line numbers and in the project's vertical unit"
         }
         ProjectError::NoCandidate { .. } => "pick there, or extract with another --extrema or a larger --max-distance",
-        ProjectError::NotAssembled { .. } => "choose another --horizon; picks make horizons of their own",
-        ProjectError::NothingLeft { .. } => "`petroglyph horizon remove` takes a horizon away",
+        ProjectError::NotAssembled { .. } => {
+            "choose another --horizon: only horizons that were made from picks take picks"
+        }
+        ProjectError::NothingLeft { .. } => "`petroglyph horizon remove` removes a horizon",
         ProjectError::AlreadyPicked { .. } => "pick elsewhere, or climb higher with --up",
         ProjectError::NotPicked { .. } => "`petroglyph horizon show` lists the picks and their places",
         ProjectError::UnknownPick { .. } => "`petroglyph horizon show PROJECT NAME` lists the picks with their numbers",
         ProjectError::AtLeaf { .. } => {
-            "take the leaf out with `petroglyph pick --remove`, or extract with smaller leaves"
+            "remove the leaf with `petroglyph pick --remove`, or extract with smaller leaves"
         }
         ProjectError::OutdatedPicks { .. } => {
-            "`petroglyph horizon replay` makes them again, or extract with the former settings"
+            "make them again with `petroglyph horizon replay`, or extract with the former settings"
         }
-        ProjectError::UnfitPicks { .. } => "`petroglyph horizon replay --drop-unfit` takes them out; then pick anew",
+        ProjectError::UnfitPicks { .. } => "remove them with `petroglyph horizon replay --drop-unfit`, then pick again",
         ProjectError::ShortStick { .. } => "write a stick as --stick IL,XL,Z IL,XL,Z …",
         ProjectError::NotDrawn { .. } => "choose another --name",
         ProjectError::NoProposals | ProjectError::OutdatedProposals => "run `petroglyph fault propose PROJECT`",
@@ -49,11 +51,11 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "`petroglyph scene show` prints a scene; `petroglyph render --help` lists what can be set"
         }
         ProjectError::Placement { .. } => {
-            "import it into a project of its own, or check its header bytes with `petroglyph info FILE`"
+            "import it into a new project, or check its header bytes with `petroglyph info FILE`"
         }
         ProjectError::SeveralInFile { .. } => "choose one with --select NAME",
         ProjectError::Crossing { .. } => {
-            "check unit, sign and picks there, put it elsewhere with --above or --below, or say --contact erosional, onlap or intrusive"
+            "check unit, sign and picks there, put it elsewhere with --above or --below, or state --contact erosional, onlap or intrusive"
         }
         ProjectError::NotATruth { .. } => "give the folder that `petroglyph synth` wrote",
         ProjectError::Figure(_) => {

@@ -10,7 +10,7 @@ use serde_json::json;
 use std::path::Path;
 use survey::{Progress, SurveyGeometry};
 
-/// Describes whatever is at `path`: a project when it is a folder, else a horizon, fault or well file, else a SEG-Y file.
+/// Describes what is at `path`: a project if it is a folder, else a horizon, fault or well file, else a SEG-Y file.
 pub(super) fn describe(
     path: &Path,
     options: &SegyOptions,
@@ -41,7 +41,7 @@ fn project(project: &Project) -> anyhow::Result<Report> {
     if let Some(geometry) = &document.geometry {
         frame(geometry, &mut report);
     } else {
-        report.say("no survey frame yet: import a volume");
+        report.say("no survey geometry yet: import a volume");
     }
     for noun in [Noun::Volume, Noun::Horizon, Noun::Fault, Noun::Well, Noun::Layer] {
         let names = document.names(noun);

@@ -7,10 +7,10 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Files longer than this are volumes.
+/// Files longer than this are taken for volumes.
 const LARGEST: u64 = 2 << 30;
 
-/// Describes a horizon, fault or well file; None when it is neither (then it may be SEG-Y).
+/// Describes a horizon, fault or well file; `None` if it is none of them (then it may be SEG-Y).
 pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<Option<Report>> {
     if options.format.is_none() && is_volume(path) {
         return Ok(None);
@@ -29,14 +29,15 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
     }
 }
 
-/// Volumes are told from interpretation without reading them: by extension, length or the first bytes of a text header.
+/// Whether a file is a volume rather than an interpretation, judged by its extension, its length or the first bytes of a text
+/// header.
 fn is_volume(path: &Path) -> bool {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let long = std::fs::metadata(path).is_ok_and(|facts| facts.len() > LARGEST);
     ["sgy", "segy", "seg"].contains(&extension.as_str()) || long || begin(path).is_some_and(|b| b[..2] == [0xC3, 0x40])
 }
 
-/// SEG-Y files are at least as long as their headers; shorter ones get the answer for interpretation files.
+/// Whether a file is as long as the headers of SEG-Y at least; shorter ones get the error for interpretation files.
 fn may_be_segy(path: &Path) -> bool {
     std::fs::metadata(path).is_ok_and(|facts| facts.len() >= 3600)
 }
@@ -51,7 +52,7 @@ fn interpretation(found: &FileDescription) -> Report {
     let mut report = Report::default();
     let evidence = match &found.format.source {
         formats::Provenance::File(words) => words.as_str(),
-        formats::Provenance::Option | formats::Provenance::Assumed => "as told",
+        formats::Provenance::Option | formats::Provenance::Assumed => "as stated",
     };
     report.say(format!(
         "{}: {} file in the format {} ({evidence}), {} bytes",

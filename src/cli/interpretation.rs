@@ -1,4 +1,4 @@
-//! What was meant by the options of volumes, horizons and faults.
+//! Turns the options of volumes, horizons and faults into commands.
 
 use super::args::{
     AttributeArgs, ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs,
@@ -17,7 +17,7 @@ use project::memory_budget;
 use segy::WriteFormat;
 use survey::Contact;
 
-/// One of several words.
+/// Parses one of several words.
 pub(super) fn word<T: Copy>(option: &str, text: &str, words: &[(&str, T)]) -> Result<T, Usage> {
     words.iter().find(|(word, _)| word.eq_ignore_ascii_case(text)).map(|(_, value)| *value).ok_or_else(|| {
         let known: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
@@ -36,7 +36,7 @@ pub(super) fn import(typed: ImportArgs) -> Result<ImportVolume, Usage> {
     })
 }
 
-/// Bytes of `2G` and the like.
+/// Parses a number of bytes such as `2G`.
 pub(super) fn bytes(option: &str, typed: Option<&str>) -> Result<Option<u64>, Usage> {
     let parsed = |text| {
         memory_budget::parse_bytes(text)

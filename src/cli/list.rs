@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use survey::Progress;
 use ttf::{LayerStyle, LayerTtf};
 
-/// Answers a listing.
+/// Makes a listing.
 pub(super) fn list(project: &Project, what: Listing) -> anyhow::Result<Report> {
     match what {
         Listing::Volumes => Ok(volumes(project)),
@@ -78,7 +78,7 @@ fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
         report.say(format!("  colour {}, {} picks:", log.colour, log.picks.len()));
         for pick in &log.picks {
             let [inline, crossline, z] = pick.at;
-            let verb = if pick.operation == interp::assembly::Operation::Add { "adds" } else { "takes out" };
+            let verb = if pick.operation == interp::assembly::Operation::Add { "adds" } else { "removes" };
             report.say(format!(
                 "    {}: at {inline},{crossline},{z}, leaf {}, {} up, {verb} {} triangles",
                 pick.id, pick.leaf, pick.up, pick.node.triangles
@@ -151,7 +151,7 @@ fn scalars(project: &Project) -> Report {
     if stack.is_empty() {
         report.say("no textures by value");
     }
-    // JSON has no infinity; an open end is null there.
+    // JSON has no infinity, so an open end is null.
     let finite = |value: f32| if value.is_finite() { json!(value) } else { Value::Null };
     let objects: Vec<Value> = stack
         .iter()

@@ -1,7 +1,7 @@
-//! The command line: parse what was typed, work out what it means, do it, say what happened.
+//! The command line: parses the arguments, turns them into a request, carries it out and reports the result.
 //!
-//! Results for people go to stdout, progress and warnings to stderr; with `--json` stdout holds exactly one object. Exit codes: 0 done,
-//! 1 failed, 2 wrong usage.
+//! Results go to stdout, progress and warnings to stderr; with `--json` stdout holds exactly one object. Exit codes:
+//! 0 success, 1 failure, 2 wrong usage.
 
 mod args;
 mod assembly;

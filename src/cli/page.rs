@@ -1,5 +1,5 @@
-//! `petroglyph render` with more on the page than a picture of the block: sections, fences, maps, blocks
-//! compared, a legend.
+//! `petroglyph render` with more on the page than a picture of the block: sections, fences, maps, compared
+//! blocks, a legend.
 
 use super::args::FigureArgs;
 use super::draw::{assumptions, millimetres};
@@ -15,12 +15,12 @@ use render::{Faces, Media, Scene};
 use std::path::PathBuf;
 use survey::Progress;
 
-/// A page as it was asked for.
+/// A page that was asked for.
 #[derive(Debug, Default)]
 pub(super) struct PageRequest {
     sections: Vec<(SectionKind, f64)>,
     fence: Vec<[f64; 2]>,
-    /// A map, of the topmost horizon where none is named, and where a thickness ends.
+    /// A map: its horizon (`None`: the topmost one), and the horizon down to which thickness is measured.
     map: Option<(Option<String>, Option<String>)>,
     has_block: bool,
     comparison: Comparison,
@@ -32,7 +32,7 @@ pub(super) struct PageRequest {
 }
 
 impl PageRequest {
-    /// What was meant; `None` where only a picture of the block was asked for.
+    /// Parses the options of the page; `None` where only a picture of the block was asked for.
     pub(super) fn meant(typed: FigureArgs, is_map: bool) -> Result<Option<Self>, Usage> {
         let kinds = [
             (SectionKind::Inline, typed.inline),
@@ -64,7 +64,7 @@ impl PageRequest {
             + usize::from(meant.map.is_some())
             + usize::from(meant.has_block);
         if parts > 4 {
-            return Err(format!("a page takes four parts, these are {parts}: leave some out"));
+            return Err(format!("a page holds at most four parts, these are {parts}: leave some out"));
         }
         Ok(meant.is_page().then_some(meant))
     }
@@ -112,14 +112,14 @@ impl PageRequest {
     }
 }
 
-/// Width and height in centimetres.
+/// Parses width and height in centimetres.
 fn size_cm(text: &str) -> Result<[f64; 2], Usage> {
     let usage = || format!("--size-cm {text}: expected width and height in centimetres such as 16x11");
     let size: [f64; 2] = numbers("--size-cm", &text.replace(['X', '×'], "x"), 'x').map_err(|_| usage())?;
     if size.iter().all(|side| *side > 0.0) { Ok(size) } else { Err(usage()) }
 }
 
-/// Two blends, side by side or parted.
+/// Parses two blends, side by side or divided by a line.
 fn comparison(blends: Option<&str>, wipe: Option<f64>) -> Result<Comparison, Usage> {
     let Some(text) = blends else { return Ok(Comparison::None) };
     let blends = numbers::<2>("--compare", text, ',')?.map(|blend| blend as f32);
@@ -133,7 +133,7 @@ fn comparison(blends: Option<&str>, wipe: Option<f64>) -> Result<Comparison, Usa
     }
 }
 
-/// The block as an interpreter sees it: raw data, the horizons before it; what is seen through stays.
+/// The block as an interpreter sees it: raw data with the horizons in front; volume rendering stays.
 fn interpreted(scene: &Scene) -> Scene {
     let is_through = scene.media.faces == Faces::None;
     let media = if is_through { scene.media.clone() } else { Media::default() };

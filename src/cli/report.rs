@@ -1,10 +1,10 @@
-//! What a command answers: text for people, one object for programs.
+//! The report of a command: text for people, a JSON object for programs.
 
 use serde_json::{Map, Value};
 use std::io::Write;
 use std::process::ExitCode;
 
-/// An answer.
+/// A report.
 #[derive(Debug, Default)]
 pub(super) struct Report {
     lines: Vec<String>,
@@ -12,7 +12,7 @@ pub(super) struct Report {
 }
 
 impl Report {
-    /// An answer in one line.
+    /// A report of one line.
     pub(super) fn line(line: impl Into<String>) -> Self {
         let mut report = Self::default();
         report.say(line);
@@ -40,7 +40,7 @@ impl Report {
         self
     }
 
-    /// Prints it; a reader that has gone away is no failure of ours.
+    /// Prints the report; a closed output is not an error.
     pub(super) fn print(self, json: bool) -> ExitCode {
         let text = if json { Value::Object(self.object).to_string() } else { self.lines.join("\n") };
         if !text.is_empty() {

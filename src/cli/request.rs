@@ -1,4 +1,4 @@
-//! What was meant: typed text turned into commands and values, or refused as wrong usage.
+//! Turns arguments into requests with commands and values, or refuses them as wrong usage.
 
 use super::args::{
     Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs,
@@ -27,30 +27,30 @@ use survey::{SurveyGeometry, VerticalUnit};
 use synth::SynthSettings;
 use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
 
-/// Something to do.
+/// A request.
 #[derive(Debug)]
 pub(super) enum Request {
     /// Make a synthetic survey and pictures of it.
     Demo { out: PathBuf },
     /// Make a synthetic survey.
     Synth { out: PathBuf, settings: SynthSettings },
-    /// Say what a file or project holds.
+    /// Describe a file or project.
     Info { path: PathBuf, segy: SegyOptions, reading: ImportOptions },
-    /// Read a volume; the project is made when it is not there.
+    /// Import a volume; the project is created if it does not exist.
     Import { project: PathBuf, command: ImportVolume },
-    /// Make a project.
+    /// Create a project.
     Create { project: PathBuf, geometry: Option<SurveyGeometry> },
     /// Change a project.
     Change { project: PathBuf, command: Command },
-    /// Measure an extraction.
+    /// Measure an extraction against a truth.
     Evaluate { project: PathBuf, truth: PathBuf },
-    /// Look for faults.
+    /// Propose faults.
     ProposeFaults { project: PathBuf, settings: ProposeSettings },
-    /// Keep a view, made from what the project or a file has.
+    /// Save a scene that is based on one of the project or of a file.
     AddScene { project: PathBuf, name: String, from: Option<PathBuf>, view: View },
     /// Set the colours of raw data.
     SetRaw { project: PathBuf, volume: Option<String>, map: ColourMap, range: Option<[f32; 2]> },
-    /// Say something about a project.
+    /// List parts of a project.
     List { project: PathBuf, what: Listing },
     /// Extract horizon candidates.
     Extract { project: PathBuf, volume: Option<String>, settings: ExtractSettings },
@@ -70,13 +70,13 @@ pub(super) enum Request {
     Patterns { out: PathBuf, project: Option<PathBuf> },
     /// Measure stages.
     Bench { sizes: bench::Sizes, dump: Option<PathBuf> },
-    /// How fast a SEG-Y cube is read.
+    /// Measure how fast a SEG-Y cube is read.
     BenchSegy { side: usize, folder: PathBuf },
-    /// Go back.
+    /// Undo the last command.
     Undo(PathBuf),
-    /// Go forward.
+    /// Redo the command that was undone last.
     Redo(PathBuf),
-    /// Forget the history.
+    /// Delete the history.
     Prune(PathBuf),
 }
 
@@ -85,16 +85,16 @@ pub(super) enum Request {
 pub(super) struct RenderRequest {
     pub(super) project: PathBuf,
     pub(super) out: PathBuf,
-    /// Name of a view, or a TOML file.
+    /// Name of a scene, or a TOML file.
     pub(super) scene: Option<String>,
     pub(super) view: View,
     pub(super) dpi: f64,
     pub(super) device: Device,
-    /// Most bytes for the samples of a volume.
+    /// Largest memory for the samples of a volume, bytes.
     pub(super) volume_bytes: Option<u64>,
-    /// What is seen through, where it was said.
+    /// The options of volume rendering, if any were given.
     pub(super) see_through: SeeThrough,
-    /// The page, where more was asked for than a picture of the block.
+    /// The page, if more was asked for than a picture of the block.
     pub(super) figure: Option<PageRequest>,
 }
 
@@ -117,9 +117,9 @@ pub(super) enum Listing {
     Layers,
     /// Scalar functions.
     Scalars,
-    /// Named views.
+    /// Named scenes.
     Scenes,
-    /// One view as TOML; `None`: the one that rendering starts from.
+    /// One scene as TOML; `None`: the one that rendering starts from.
     Scene(Option<String>),
 }
 
@@ -268,7 +268,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         Some("phong") => Some(Technique::Phong),
         Some("interleaved") => Some(Technique::Interleaved),
         Some("volume") => Some(Technique::Volume),
-        // A map is a figure of its own.
+        // A map is a figure, not a technique of the block.
         Some("map") => None,
         Some(other) => {
             return Err(format!(
@@ -325,7 +325,7 @@ fn shown_horizon(text: &str) -> Result<ShownHorizon, Usage> {
     let colour = parts.next().map(colour).transpose()?;
     let mut number = |unless: f32| match parts.next() {
         None => Ok(unless),
-        Some(part) => part.parse::<f32>().map_err(|_| format!("--horizon {text}: {part} is no number")),
+        Some(part) => part.parse::<f32>().map_err(|_| format!("--horizon {text}: {part} is not a number")),
     };
     let (opacity, emission) = (number(1.0)?, number(0.0)?);
     if parts.next().is_some() {

@@ -1,4 +1,4 @@
-//! Doing what was meant.
+//! Carries out requests.
 
 use super::report::Report;
 use super::request::{Request, Usage};
@@ -21,12 +21,12 @@ use std::time::Instant;
 use survey::Progress;
 use ttf::{TextureLibrary, contact_sheet};
 
-/// Why there is no answer.
+/// Why a request failed.
 #[derive(Debug)]
 pub(super) enum Failure {
-    /// The arguments make no sense.
+    /// The arguments are contradictory or out of range.
     Usage(Usage),
-    /// It could not be done.
+    /// It could not be carried out.
     Failed(anyhow::Error),
 }
 
@@ -36,14 +36,14 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
     }
 }
 
-/// Opens the window; it shows progress itself, and Ctrl-C is to end it at once.
+/// Opens the window, which shows progress itself; Ctrl-C ends it at once.
 #[cfg(feature = "window")]
 fn open_window(project: Option<PathBuf>, frame_times: Option<&Path>) -> anyhow::Result<Report> {
     app::run(project, frame_times)?;
     Ok(Report::default())
 }
 
-/// Says that there is none.
+/// Reports that there is no window.
 #[cfg(not(feature = "window"))]
 fn open_window(_: Option<PathBuf>, _: Option<&Path>) -> anyhow::Result<Report> {
     anyhow::bail!(
@@ -51,7 +51,7 @@ fn open_window(_: Option<PathBuf>, _: Option<&Path>) -> anyhow::Result<Report> {
     )
 }
 
-/// Does it.
+/// Carries out a request.
 pub(super) fn run(request: Request) -> Result<Report, Failure> {
     if let Request::Window { project, frame_times } = request {
         return Ok(open_window(project, frame_times.as_deref())?);
@@ -126,13 +126,13 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
         }
         Request::Redo(project) => {
             let redone = Project::open(&project)?.redo()?;
-            let mut report = Report::line(format!("done again: {redone}"));
+            let mut report = Report::line(format!("redone: {redone}"));
             report.field("redone", redone);
             report
         }
         Request::Prune(project) => {
             Project::open(&project)?.prune()?;
-            Report::line("the history is forgotten; only the present state is kept")
+            Report::line("the history was deleted; only the present state is kept")
         }
     };
     let warnings = terminal.finish();
@@ -142,7 +142,7 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
     Ok(report)
 }
 
-/// Applies a command and tells what it did.
+/// Applies a command and reports what it did.
 fn change(mut project: Project, command: &Command, progress: &Progress) -> anyhow::Result<Report> {
     let effect = project.apply(command, progress)?;
     let mut report = Report::line(effect.to_string().trim_end());
@@ -150,20 +150,20 @@ fn change(mut project: Project, command: &Command, progress: &Progress) -> anyho
     Ok(report)
 }
 
-/// Reads a scene that a person wrote.
+/// Reads a scene file.
 pub(super) fn scene_file(path: &Path) -> anyhow::Result<Scene> {
     let text = std::fs::read_to_string(path).with_context(|| format!("{} could not be read", path.display()))?;
     toml::from_str(&text).with_context(|| format!("{} is not a scene", path.display()))
 }
 
-/// Something that says what it did: its text for people, its fields for programs.
+/// The report of an effect: its text for people, its fields for programs.
 fn told(done: impl std::fmt::Display + serde::Serialize) -> Report {
     let mut report = Report::line(done.to_string().trim_end());
     report.fields(done);
     report
 }
 
-/// Imports a volume; a project that is not there is made, and only appears when the import has succeeded.
+/// Imports a volume. A project that does not exist is created, and appears only when the import has succeeded.
 fn import(path: &Path, command: ImportVolume, progress: &Progress) -> anyhow::Result<Report> {
     let command = Command::Import(command);
     if path.exists() {

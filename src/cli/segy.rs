@@ -1,4 +1,4 @@
-//! What was meant by the options of SEG-Y files.
+//! Turns the options of SEG-Y files into settings.
 
 use super::args::SegyArgs;
 use super::interpretation::word;
@@ -42,7 +42,7 @@ pub(super) fn segy_options(typed: &SegyArgs) -> Result<SegyOptions, Usage> {
     })
 }
 
-/// The word that was typed, if one was.
+/// Parses a word, if one was given.
 fn one<T: Copy>(option: &str, typed: &Option<String>, words: &[(&str, T)]) -> Result<Option<T>, Usage> {
     typed.as_deref().map(|text| word(option, text, words)).transpose()
 }

@@ -12,7 +12,7 @@ pub(super) struct Terminal {
 }
 
 impl Terminal {
-    /// A bar that Ctrl-C cancels; a second Ctrl-C ends the process at once.
+    /// A progress bar whose work Ctrl-C cancels; a second Ctrl-C ends the process at once.
     pub(super) fn start() -> (Arc<Self>, Progress) {
         let bar = ProgressBar::new(0);
         if let Ok(style) = ProgressStyle::with_template("{msg:28} {wide_bar} {percent:>3} % {eta:>4}") {
@@ -33,7 +33,7 @@ impl Terminal {
         (terminal, progress)
     }
 
-    /// Removes the bar; answers what was warned of.
+    /// Removes the bar; returns the warnings.
     pub(super) fn finish(&self) -> Vec<String> {
         self.bar.finish_and_clear();
         std::mem::take(&mut *self.warnings.lock().unwrap_or_else(PoisonError::into_inner))

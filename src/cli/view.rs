@@ -1,4 +1,4 @@
-//! What was meant by the options of a view: changes on a scene.
+//! Turns the options of a view into changes of a scene.
 
 use super::args::ViewArgs;
 use super::request::{Usage, counts, numbers};
@@ -6,7 +6,7 @@ use glam::DVec3;
 use render::{Background, Corner, FaceData, Ground, Lookup, Outlines, Projection, Scene, VoxelBox};
 use survey::SurveyGeometry;
 
-/// Changes to a scene; what is absent stays.
+/// Changes to a scene; what is `None` stays.
 #[derive(Debug, Default, Clone, PartialEq)]
 pub(super) struct View {
     size_px: Option<[u32; 2]>,
@@ -38,7 +38,7 @@ enum Cut {
     Box(LineBox),
 }
 
-/// Share of the block that a corner cut takes unless told otherwise.
+/// Share of the block that a corner cut takes by default.
 const CUT_SHARE: f64 = 0.45;
 
 impl TryFrom<ViewArgs> for View {
@@ -134,7 +134,7 @@ fn corner_cut(text: &str) -> Result<Cut, Usage> {
 }
 
 impl View {
-    /// Changes `scene` where something was said. Cuts, when given, replace the scene's own.
+    /// Applies the changes to `scene`. Cuts, if any are given, replace the scene's own.
     pub(super) fn change(&self, scene: &mut Scene, geometry: &SurveyGeometry) {
         scene.size_px = self.size_px.unwrap_or(scene.size_px);
         scene.blend = self.blend.unwrap_or(scene.blend);
@@ -169,8 +169,8 @@ impl View {
     }
 }
 
-/// The voxel box between two inlines, two crosslines and two vertical values, in any order. Decimals as people type them
-/// mean the sample they name: what is within a millionth of one is on it.
+/// The voxel box between two inlines, two crosslines and two vertical values, in any order. A coordinate within a
+/// millionth of a sample is placed on that sample, since people type rounded decimals.
 fn voxel_box([il0, il1, xl0, xl1, z0, z1]: LineBox, geometry: &SurveyGeometry) -> VoxelBox {
     let on_sample = |voxel: DVec3| {
         let near = voxel.round();

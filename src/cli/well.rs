@@ -1,4 +1,4 @@
-//! Wells: what was meant, and listings.
+//! Wells: turns their options into commands, and lists them.
 
 use super::args::{WellAction, WellAddArgs};
 use super::interpretation::word;
@@ -12,7 +12,7 @@ use project::content;
 use project::error::Noun;
 use survey::Progress;
 
-/// A typed action as a request.
+/// Turns the arguments into a request.
 pub(super) fn well(action: WellAction) -> Result<Request, Usage> {
     Ok(match action {
         WellAction::Add(typed) => add(*typed)?,
@@ -44,7 +44,7 @@ fn add(typed: WellAddArgs) -> Result<Request, Usage> {
     Ok(Request::Change { project: typed.project, command: Command::AddWell(command) })
 }
 
-/// All wells.
+/// Lists the wells.
 pub(super) fn list(project: &Project) -> Report {
     let document = project.document();
     let mut report = Report::default();
@@ -58,7 +58,7 @@ pub(super) fn list(project: &Project) -> Report {
     report
 }
 
-/// One well against the survey and its horizons as they are now.
+/// Shows one well relative to the survey and its present horizons.
 pub(super) fn show(project: &Project, name: &str) -> anyhow::Result<Report> {
     let document = project.document();
     let entry = &document.wells[document.position(Noun::Well, name)?];

@@ -1,4 +1,4 @@
-//! Pictures of volumes that are seen through: by one word, in cut-outs, and what is refused.
+//! Volume rendering: by `--technique`, in cut-outs, and what is refused.
 
 use crate::program::{project, run_in, survey};
 use image::RgbImage;
@@ -48,7 +48,7 @@ fn a_cut_out_is_filled_with_a_volume_in_the_layers_that_have_an_opacity() {
     let differing = |a: &RgbImage, b: &RgbImage| a.pixels().zip(b.pixels()).filter(|(a, b)| a != b).count();
     assert!(differing(&empty, &thin) < differing(&empty, &filled), "only one layer is left standing");
     let shown = run_in(at, &format!("render p.petro a.png {SMALL} --technique occlusion --json")).done().json();
-    assert!(shown["assumptions"].to_string().contains("seen through"));
+    assert!(shown["assumptions"].to_string().contains("volume rendering of"));
     let rock = picture(at, view);
     assert!(picture(at, &format!("{view} --show leaves")) != rock);
     assert!(picture(at, &format!("{view} --show distance")) != rock);

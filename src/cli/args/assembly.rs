@@ -118,7 +118,7 @@ impl Args for StickArgs {
                 .num_args(1..)
                 .action(ArgAction::Append)
                 .required(true)
-                .help("A stick: two or more places along the fault, from top to bottom; may be repeated"),
+                .help("A stick: two or more points along the fault, from top to bottom; repeat it for several"),
         )
     }
 

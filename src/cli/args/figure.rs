@@ -51,7 +51,10 @@ pub(in crate::cli) struct FigureArgs {
     #[arg(
         long,
         value_name = "FILE.toml",
-        conflicts_with_all = ["inline", "crossline", "slice", "fence", "map", "block", "compare", "size_cm", "interpretation", "legend", "scale_bar"]
+        conflicts_with_all = [
+            "inline", "crossline", "slice", "fence", "map", "block", "compare", "size_cm", "interpretation", "legend",
+            "scale_bar",
+        ]
     )]
     pub(in crate::cli) figure: Option<PathBuf>,
 }

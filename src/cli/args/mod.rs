@@ -135,10 +135,10 @@ pub(super) enum Action {
     /// Add a tile of your own to a project
     #[command(after_help = "Example:\n  petroglyph texture north.petro coal-seam.svg --width-mm 12")]
     Texture(TextureArgs),
-    /// Named views
+    /// Scenes: views of the project under names
     #[command(subcommand)]
     Scene(SceneAction),
-    /// Work out the layer coordinates i, j, k and keep them in the project
+    /// Compute the layer coordinates i, j, k and keep them in the project
     #[command(after_help = "Example:\n  petroglyph parameterize north.petro --size 128x128x128")]
     Parameterize(ParameterizeArgs),
     /// Draw a picture
@@ -176,19 +176,19 @@ pub(super) enum Action {
     /// Measure how long the stages take on this machine
     #[command(after_help = "Example:\n  petroglyph bench --quick --json")]
     Bench(BenchArgs),
-    /// Go back by one command
+    /// Undo the last command
     #[command(after_help = "Example:\n  petroglyph undo north.petro")]
     Undo {
         /// Project folder
         project: PathBuf,
     },
-    /// Go forward by one undone command
+    /// Redo the command that was undone last
     #[command(after_help = "Example:\n  petroglyph redo north.petro")]
     Redo {
         /// Project folder
         project: PathBuf,
     },
-    /// Forget the history, and delete the data that only the history refers to
+    /// Delete the history and the data that only the history refers to
     #[command(after_help = "Example:\n  petroglyph prune north.petro")]
     Prune {
         /// Project folder

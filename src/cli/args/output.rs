@@ -10,7 +10,7 @@ pub(in crate::cli) struct RenderArgs {
     pub(in crate::cli) project: PathBuf,
     /// PNG file to write
     pub(in crate::cli) out: PathBuf,
-    /// Named view of the project, or a TOML file [default: the project's first, else a three-quarter view]
+    /// Named scene of the project, or a TOML file [default: the project's first, else a three-quarter view]
     #[arg(long, value_name = "NAME|FILE.toml")]
     pub(in crate::cli) scene: Option<String>,
     /// Resolution written into the picture, dots per inch; it sets the printed size
@@ -18,7 +18,7 @@ pub(in crate::cli) struct RenderArgs {
     pub(in crate::cli) dpi: f64,
     /// Technique: illustrate (textured faces), volume rendering as occlusion (shaded without gradients),
     /// phong (shaded by gradients), interleaved (both, in stripes) or volume (unshaded), or map (a map of the
-    /// topmost horizon unless --map names one) [default: as the view says, else illustrate]
+    /// topmost horizon unless --map names one) [default: as the scene says, else illustrate]
     #[arg(long, value_name = "illustrate|occlusion|phong|interleaved|volume|map")]
     pub(in crate::cli) technique: Option<String>,
     /// Volume that volume rendering shows; with textured faces it fills the cut-outs, in the layers that have

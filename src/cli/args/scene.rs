@@ -1,35 +1,35 @@
-//! Arguments for views.
+//! Arguments for scenes.
 
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
 #[derive(Debug, Subcommand)]
 pub(in crate::cli) enum SceneAction {
-    /// List the named views
+    /// List the named scenes
     #[command(after_help = "Example:\n  petroglyph scene list north.petro")]
     List {
         /// Project folder
         project: PathBuf,
     },
-    /// Keep a view under a name
+    /// Save a scene under a name
     #[command(after_help = "Examples:\
                       \n  petroglyph scene add north.petro corner --cut nearest,0.5,0.4 --azimuth 30 \
                       --exaggeration 2\n  petroglyph scene add north.petro figure3 --from figure3.toml")]
     Add(Box<SceneAddArgs>),
-    /// Print a view as TOML, to edit and give to `render --scene` or `scene add --from`
+    /// Print a scene as TOML, to edit and give to `render --scene` or `scene add --from`
     #[command(after_help = "Example:\n  petroglyph scene show north.petro corner > corner.toml")]
     Show {
         /// Project folder
         project: PathBuf,
-        /// Its name [default: the view that `render` starts from]
+        /// Name of the scene [default: the one that `render` starts from]
         name: Option<String>,
     },
-    /// Remove a view
+    /// Remove a scene
     #[command(after_help = "Example:\n  petroglyph scene remove north.petro corner")]
     Remove {
         /// Project folder
         project: PathBuf,
-        /// Its name
+        /// Name of the scene
         name: String,
     },
 }
@@ -38,7 +38,7 @@ pub(in crate::cli) enum SceneAction {
 pub(in crate::cli) struct SceneAddArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// Its name
+    /// Name of the scene
     pub(in crate::cli) name: String,
     /// TOML file to start from, as `scene show` prints it
     #[arg(long, value_name = "FILE.toml")]
@@ -47,7 +47,7 @@ pub(in crate::cli) struct SceneAddArgs {
     pub(in crate::cli) view: ViewArgs,
 }
 
-/// Changes to a view.
+/// Changes to a scene.
 #[derive(Debug, Default, Args)]
 pub(in crate::cli) struct ViewArgs {
     /// Size of the image in pixels
