@@ -12,20 +12,20 @@ use std::path::{Path, PathBuf};
 use store::{StoreError, StoredVolume, VolumeInfo, write_blocks};
 use survey::{Progress, SurveyGeometry};
 
-/// What is computed.
+/// The attributes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AttributeKind {
-    /// How alike neighbouring traces are along the reflections: low at faults.
+    /// Semblance: how alike neighbouring traces are along the reflections; low at faults.
     Semblance,
-    /// How strong the reflections are, whatever their phase.
+    /// Envelope: the strength of the reflections, whatever their phase.
     Envelope,
-    /// How steep the reflections are: three volumes.
+    /// Dip: the steepness of the reflections, as three volumes.
     Dip,
 }
 
 impl AttributeKind {
-    /// As it is typed.
+    /// The word for it on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Self::Semblance => "semblance",
@@ -43,25 +43,25 @@ pub struct ComputeAttribute {
     /// Name of the new volume. A dip is its angle from the horizontal in degrees, and `NAME-inline` and
     /// `NAME-crossline` are added, in samples a line.
     pub name: String,
-    /// The volume to compute it from; absent: the first.
+    /// The volume to compute it from; `None`: the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub volume: Option<String>,
-    /// How dips are found.
+    /// Settings for finding dips.
     #[serde(default)]
     pub dip: DipSettings,
-    /// How semblance is computed.
+    /// Settings for computing semblance.
     #[serde(default)]
     pub semblance: SemblanceSettings,
-    /// Memory to use, bytes; absent: half of what is available. Not remembered: the result does not depend on
+    /// Memory to use, bytes; `None`: half of what is available. It is not recorded, since the result does not depend on
     /// it.
     #[serde(skip)]
     pub memory_bytes: Option<u64>,
 }
 
-/// What was computed.
+/// The report of a computed attribute.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AttributeComputed {
-    /// What it is.
+    /// The attribute.
     pub attribute: &'static str,
     /// The volume it was computed from.
     pub of: String,
@@ -127,7 +127,7 @@ impl ComputeAttribute {
         Ok(Effect::AttributeComputed(AttributeComputed { attribute: self.kind.name(), of: from.name, volumes }))
     }
 
-    /// The volumes it makes: what follows the name, and the unit.
+    /// The volumes that it produces: the suffix of each name, and the unit.
     fn parts(&self) -> Vec<(&'static str, Option<&'static str>)> {
         match self.kind {
             AttributeKind::Dip => vec![
@@ -161,7 +161,7 @@ fn write(
     write_blocks(path, &mut blocks, info, memory_bytes, progress).map(|_| ()).map_err(explain)
 }
 
-/// What went wrong in the computation comes back through the writer; taken out again.
+/// An error of the computation, which passes through the writer and is taken out again afterwards.
 fn explain(error: StoreError) -> ProjectError {
     let StoreError::Source { path, source } = error else { return error.into() };
     match source.downcast::<AttributeError>() {

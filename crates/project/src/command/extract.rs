@@ -1,8 +1,8 @@
-//! Extraction of horizon candidates and the search for faults, as changes of a project: undo leads back to
-//! what was there before.
+//! Extraction of horizon candidates and the proposal of faults, as changes of a project: undo restores what was there
+//! before.
 //!
-//! Long computations run in `prepare`, before the project is locked, and their result is kept under a key.
-//! `execute` then only records the key.
+//! Long computations run in `prepare`, before the project is locked, and their result is stored under a key. `execute`
+//! then only records the key.
 
 use super::Effect;
 use crate::document::{Document, ExtractionEntry, ProposalsEntry};
@@ -18,16 +18,16 @@ use survey::Progress;
 /// Extracts horizon candidates from a volume; picks are made from them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Extract {
-    /// The volume; absent: the first on the project's own lattice.
+    /// The volume; `None`: the first on the project's own lattice.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub volume: Option<String>,
-    /// How it is done.
+    /// The settings of the extraction.
     #[serde(default)]
     pub settings: ExtractSettings,
 }
 
 impl Extract {
-    /// Computes the candidates, unless they are there; answers whether it had to.
+    /// Computes the candidates, unless they exist; returns whether it had to.
     pub(super) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
         let extracted = extraction::compute(root, document, self.volume.as_deref(), &self.settings, progress)?;
         Ok(extracted.computed)
@@ -36,7 +36,7 @@ impl Extract {
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let (root, volume) = (draft.root().to_owned(), self.volume.as_deref());
         let mut extracted = extraction::compute(&root, &draft.document, volume, &self.settings, progress)?;
-        // It is renamed when the state that names it is saved.
+        // They are renamed when the state that names them is saved.
         extracted.file = extraction::present_path(&root);
         draft.document.extraction =
             Some(ExtractionEntry { key: extracted.key.clone(), volume: extracted.volume.clone() });
@@ -44,16 +44,16 @@ impl Extract {
     }
 }
 
-/// Looks for faults in the offsets and bends of the project's horizons.
+/// Proposes faults from the offsets and bends of the project's horizons.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct ProposeFaults {
-    /// How they are looked for.
+    /// The settings of the proposal.
     #[serde(default)]
     pub settings: ProposeSettings,
 }
 
 impl ProposeFaults {
-    /// Looks for them, unless that was done.
+    /// Computes the proposals, unless they exist.
     pub(super) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
         proposals::compute(root, document, &self.settings, progress).map(|_| true)
     }

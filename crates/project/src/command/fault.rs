@@ -1,4 +1,4 @@
-//! Adding faults, stating at which fault they end, and removing them.
+//! Adding faults, stating at which other fault each ends, and removing them.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
@@ -25,17 +25,17 @@ pub struct AddFault {
     pub options: ImportOptions,
 }
 
-/// Says where a fault ends.
+/// States at which other fault a fault ends.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SetTruncation {
     /// Name of the fault.
     pub fault: String,
-    /// The fault it ends at; absent: none.
+    /// The fault it ends at; `None`: it ends at no other fault.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
 }
 
-/// Takes a fault away.
+/// Removes a fault.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemoveFault {
     /// Its name.
@@ -77,7 +77,7 @@ impl AddFault {
     }
 }
 
-/// What adding a fault did.
+/// The report of an added fault.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FaultAdded {
     /// Triangles of its surface.

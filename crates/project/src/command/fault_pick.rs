@@ -1,4 +1,4 @@
-//! Faults drawn by hand as sticks, and proposed ones accepted.
+//! Faults that are drawn as sticks, and proposed faults that are accepted.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
@@ -12,16 +12,16 @@ use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 use survey::{Fault, Progress};
 
-/// Adds sticks to a fault that is being drawn; its surface is made from two sticks on.
+/// Adds sticks to a fault; from two sticks on it has a surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PickFault {
     /// Name of the fault.
     pub name: String,
-    /// Sticks, each of at least two places: inline, crossline, vertical value.
+    /// The sticks, each of at least two points: inline, crossline, vertical value.
     pub sticks: Vec<Vec<[f64; 3]>>,
 }
 
-/// Makes a proposed fault one of the project's.
+/// Adds a proposed fault to the project.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct AcceptFault {
     /// Number of the proposal.
@@ -39,7 +39,7 @@ impl PickFault {
         for place in self.sticks.iter().flatten() {
             let voxel = geometry.voxel_from_lines(place[0], place[1]).extend(geometry.vertical.index_of(place[2]));
             let size = geometry.size();
-            // A stick may end a little outside; farther off, a number was mistyped.
+            // A stick may end a little outside the survey; a point farther outside is a mistyped number.
             let near = (0..3).all(|axis| {
                 let n = size[axis] as f64;
                 voxel[axis] >= -0.25 * n && voxel[axis] <= 1.25 * n
@@ -103,7 +103,7 @@ impl AcceptFault {
     }
 }
 
-/// Writes a fault and its entry; one of that name is replaced.
+/// Writes a fault and its entry; an existing fault of that name is replaced.
 fn put(draft: &mut Draft, fault: &Fault, source: Source) -> Result<(), ProjectError> {
     let old = draft.document.faults.iter().position(|entry| entry.name == fault.name);
     let truncated_by = old.and_then(|old| draft.document.faults[old].truncated_by.clone());

@@ -16,17 +16,17 @@ use survey::Progress;
 pub struct FillHorizon {
     /// Name of the horizon.
     pub name: String,
-    /// Which holes.
+    /// Which holes are filled.
     #[serde(default)]
     pub settings: FillSettings,
 }
 
-/// A horizon whose holes were filled.
+/// The report of a horizon whose holes were filled.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HorizonFilled {
     /// Its name.
     pub horizon: String,
-    /// What it is now.
+    /// Its present state.
     pub result: AssemblyReport,
 }
 

@@ -1,8 +1,7 @@
 //! Adding, renaming and removing horizons.
 //!
-//! A horizon takes its place in the stratigraphy by its depth, or where the user puts it. A horizon that runs
-//! through another is refused unless a contact rule lets one cut the other, because the layer between them
-//! would be inside out.
+//! A horizon takes its place in the stratigraphy by its depth, or where the user puts it. A horizon that crosses
+//! another is refused unless a contact rule lets one cut the other, because the layer between them would be inside out.
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
@@ -35,7 +34,7 @@ pub struct AddHorizon {
     pub path: PathBuf,
     /// Name of the horizon.
     pub name: String,
-    /// What it does to its neighbours.
+    /// Its contact with its neighbours.
     #[serde(default)]
     pub contact: Contact,
     /// Where it goes.
@@ -55,7 +54,7 @@ pub struct RenameHorizon {
     pub to: String,
 }
 
-/// Takes a horizon away; the two layers it parts become one.
+/// Removes a horizon; the two layers that it separates become one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemoveHorizon {
     /// Its name.
@@ -102,13 +101,13 @@ impl AddHorizon {
         Ok(Effect::HorizonAdded(Box::new(HorizonAdded { position, report })))
     }
 
-    /// The name chooses among several horizons of a file, unless one is selected by the name it has there.
+    /// The name chooses among several horizons of a file, unless the user selects one by its name in the file.
     fn named(&self) -> ImportOptions {
         let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
         ImportOptions { name, ..self.options.clone() }
     }
 
-    /// The place in the list, 0 = youngest.
+    /// The position in the list, 0 = youngest.
     fn position(&self, draft: &Draft, horizon: &Horizon, others: &[Horizon]) -> Result<usize, ProjectError> {
         match &self.age {
             Age::Above(name) => draft.document.position(Noun::Horizon, name),
@@ -122,17 +121,17 @@ impl AddHorizon {
     }
 }
 
-/// What adding a horizon did.
+/// The report of an added horizon.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HorizonAdded {
-    /// Place in the stratigraphy, 0 = youngest.
+    /// Position in the stratigraphy, 0 = youngest.
     pub position: usize,
     /// What was read, assumed and left out.
     #[serde(flatten)]
     pub report: ImportReport,
 }
 
-/// The facts of the reading in one line, for the record.
+/// How the file was read, in one line, for the record of the source.
 pub(super) fn reading(report: &ImportReport) -> String {
     let mut line = format!(
         "{}, vertical in {}, positive {}",
@@ -154,7 +153,7 @@ fn load_all(draft: &Draft, progress: &Progress) -> Result<Vec<Horizon>, ProjectE
 impl RenameHorizon {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Horizon, &self.from)?;
-        // Its own name in another case is no duplicate.
+        // The horizon's own name in another case is not a duplicate.
         if self.from.to_lowercase() != self.to.to_lowercase() {
             draft.document.check_new_name(Noun::Horizon, &self.to)?;
         }

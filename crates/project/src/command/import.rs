@@ -13,12 +13,12 @@ use std::path::{Path, PathBuf};
 use store::{Ingested, StoreError, VolumeInfo, resume_blocks};
 use survey::{Note, Progress, SurveyGeometry};
 
-/// Reads a SEG-Y volume into the project. The first one gives the survey frame; others must lie in it.
+/// Reads a SEG-Y volume into the project. The first volume defines the survey geometry; others must lie in it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ImportVolume {
     /// The file.
     pub path: PathBuf,
-    /// Name of the volume; absent: "seismic" for the first one, else the file's name.
+    /// Name of the volume; `None`: "seismic" for the first one, otherwise the file's name.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub name: Option<String>,
     /// What a positive amplitude means.
@@ -27,38 +27,38 @@ pub struct ImportVolume {
     /// What the user states about the file.
     #[serde(default)]
     pub options: SegyOptions,
-    /// Memory to use, bytes; absent: half of what is available. Not remembered: the result does not depend on
+    /// Memory to use, bytes; `None`: half of what is available. It is not recorded, since the result does not depend on
     /// it.
     #[serde(skip)]
     pub memory_bytes: Option<u64>,
 }
 
-/// What an import did.
+/// The report of an import.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VolumeImported {
     /// Name of the volume.
     pub volume: String,
     /// Counts of inlines, crosslines and samples.
     pub size: [usize; 3],
-    /// Traces there are.
+    /// Number of traces.
     pub traces: usize,
-    /// Places of the lattice without a trace.
+    /// Number of places of the lattice without a trace.
     pub missing_traces: usize,
     /// Type that the samples are stored in.
     pub sample_type: String,
-    /// Files of the volume that an interrupted import of the same file had written.
+    /// Number of the volume's files that an interrupted import of the same file had written already.
     pub kept_files: usize,
     /// What a positive amplitude means.
     pub polarity: Polarity,
     /// Value at which colours are clipped.
     pub clip: f32,
-    /// How geometry and units were found.
+    /// How geometry and units were detected.
     pub evidence: Vec<Note>,
-    /// What had to be assumed.
+    /// What was assumed.
     pub assumptions: Vec<Note>,
 }
 
-/// Takes a volume away.
+/// Removes a volume.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemoveVolume {
     /// Its name.
@@ -81,8 +81,8 @@ impl ImportVolume {
         let folder = draft.root().join(IMPORTING);
         let ingested = self.ingest(&file, &geometry, &folder, &new, progress);
         if ingested.is_err() {
-            // Only a killed program leaves something to go on with; who cancels, or has no room, wants none
-            // of it.
+            // Only an import whose program was killed leaves files with which the next one can continue; an import that
+            // was cancelled or ran out of space leaves none.
             let _ = fs::remove_dir_all(&folder);
         }
         let ingested = ingested?;
@@ -91,7 +91,7 @@ impl ImportVolume {
                 draft.document.geometry = Some(geometry);
                 None
             }
-            // The velocity is the project's to state, wherever the lattice is from.
+            // The project states the velocity, wherever the lattice comes from.
             Some(frame) if is_same_lattice(frame, &geometry) => None,
             Some(_) => Some(geometry),
         };
@@ -120,7 +120,7 @@ impl ImportVolume {
         }))
     }
 
-    /// Writes the file's samples to the store at `new`, by way of `folder`.
+    /// Writes the file's samples to the store at `new`, through the folder `folder`.
     fn ingest(
         &self,
         file: &SegyFile,
@@ -133,7 +133,7 @@ impl ImportVolume {
         keep_only(folder, &partial);
         let done = self.ingest_into(file, geometry, &partial, progress)?;
         fs::rename(&partial, new).map_err(|source| ProjectError::io("written", new, source))?;
-        // Empty now; an empty folder left behind is no harm.
+        // The folder is empty now; leaving it behind does no harm.
         let _ = fs::remove_dir(folder);
         Ok(done)
     }
@@ -168,7 +168,7 @@ impl ImportVolume {
         Ok(done)
     }
 
-    /// Stands for the file as it is now, and for what was said about it.
+    /// Identifies the file as it is now, and what was stated about it.
     fn fingerprint(&self, file: &SegyFile) -> Result<String, ProjectError> {
         let fail = |source| ProjectError::io("read", &self.path, source);
         let facts = fs::metadata(&self.path).map_err(fail)?;
@@ -195,13 +195,13 @@ impl ImportVolume {
     }
 }
 
-/// Whether two lattices are one but for the velocity.
+/// Whether two lattices agree in everything but the velocity.
 fn is_same_lattice(a: &SurveyGeometry, b: &SurveyGeometry) -> bool {
     let velocity_m_s = a.velocity_m_s;
     *a == (SurveyGeometry { velocity_m_s, ..b.clone() })
 }
 
-/// Byte positions and units in one line, for the record.
+/// Byte positions and units in one line, for the record of the source.
 fn reading(info: &segy::SegyInfo) -> String {
     let bytes = &info.byte_positions;
     let place = match (bytes.x, bytes.y) {
@@ -223,7 +223,7 @@ fn keep_only(folder: &Path, wanted: &Path) {
     }
 }
 
-/// A cancel that the reader noticed is a cancel, not a failure of the source.
+/// Turns a cancellation that the reader noticed into a cancellation, instead of a failure of the source.
 fn cancelled_within(error: StoreError) -> ProjectError {
     match error {
         StoreError::Source { path, source } => match source.downcast::<segy::SegyError>() {

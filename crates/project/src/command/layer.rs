@@ -7,7 +7,7 @@ use param::KDefinition;
 use serde::{Deserialize, Serialize};
 use ttf::{Colour, DepthInterval, Frequency, LayerStyle, LayerTtf};
 
-/// Changes a layer's style; what is absent stays as it is.
+/// Changes a layer's style; what is `None` stays as it is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct SetLayer {
@@ -22,10 +22,10 @@ pub struct SetLayer {
     /// Colour of the pattern's lines.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ink: Option<Colour>,
-    /// One texture from bottom to top; its usual colour comes along unless `colour` is given.
+    /// One texture from bottom to top; the layer takes its usual colour unless `colour` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,
-    /// Textures by depth in the layer, instead of those there are.
+    /// Textures by depth in the layer, which replace the present ones.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub intervals: Vec<DepthInterval>,
     /// Repeats of the tile along i and along k.
@@ -37,13 +37,12 @@ pub struct SetLayer {
     /// What k means inside the layer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub k: Option<KDefinition>,
-    /// All of its style at once, before anything else is changed: so that ink and frequency can be taken
-    /// away, too.
+    /// The complete style, applied before the other changes: only in this way can ink and frequency be removed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub style: Option<LayerStyle>,
 }
 
-/// Takes a layer's style away: it gets the default one again.
+/// Removes a layer's style, so that it has the default one again.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ResetLayer {
     /// The layer's name.

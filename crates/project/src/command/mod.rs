@@ -1,9 +1,8 @@
-//! Everything that changes a project, as one serialisable enum. A command states what is asked for, not how
-//! it is done.
+//! Everything that changes a project, as one serialisable enum. A command states what is wanted, not how it is done.
 //!
-//! A command reads files and the present state, writes new data through the [`Draft`] and leaves the new
-//! state in it. It overwrites nothing and can fail at any point: [`crate::Project::apply`] discards the draft
-//! then. Undo needs nothing from a command, because every state is remembered.
+//! A command reads files and the present state, writes new data through the [`Draft`] and leaves the new state in it.
+//! It overwrites nothing and can fail at any point: [`crate::Project::apply`] then discards the draft. Undo needs
+//! nothing from a command, because every state is kept in the history.
 
 mod attribute;
 mod contact;
@@ -54,39 +53,39 @@ use survey::{Progress, SurveyGeometry};
 #[serde(rename_all = "kebab-case")]
 #[expect(clippy::large_enum_variant, reason = "one at a time, never in bulk")]
 pub enum Command {
-    /// Begin a project, with a survey frame or without.
+    /// Create a project, with or without a survey geometry.
     Create {
-        /// The lattice that everything is placed in.
+        /// The lattice in which everything is placed.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         geometry: Option<SurveyGeometry>,
     },
-    /// Read a volume.
+    /// Import a volume.
     Import(ImportVolume),
     /// Compute a volume from a volume.
     Attribute(ComputeAttribute),
     /// Extract horizon candidates from a volume.
     Extract(Extract),
-    /// Look for faults in the horizons.
+    /// Propose faults from the horizons.
     ProposeFaults(ProposeFaults),
-    /// Take a volume away.
+    /// Remove a volume.
     RemoveVolume(RemoveVolume),
-    /// Read a horizon.
+    /// Add a horizon from a file.
     AddHorizon(AddHorizon),
-    /// Give a horizon another name.
+    /// Rename a horizon.
     RenameHorizon(RenameHorizon),
-    /// Take a horizon away.
+    /// Remove a horizon.
     RemoveHorizon(RemoveHorizon),
-    /// Add a node of a surface tree to a horizon, or take it out.
+    /// Add a node of a surface tree to a horizon, or remove it.
     Pick(PickNode),
     /// Make several picks of one horizon.
     PickSeveral(PickNodes),
     /// Move a pick up or down its tree.
     MovePick(MovePick),
-    /// Take a pick out of its horizon's log.
+    /// Remove a pick from its horizon's log.
     RemovePick(RemovePick),
     /// Give an assembled horizon another colour.
     SetHorizonColour(SetHorizonColour),
-    /// Make picks again on the present extraction.
+    /// Repeat picks on the present extraction.
     ReplayPicks(ReplayPicks),
     /// Fill the holes of a horizon.
     FillHorizon(FillHorizon),
@@ -94,76 +93,76 @@ pub enum Command {
     PickFault(PickFault),
     /// Accept a proposed fault.
     AcceptFault(AcceptFault),
-    /// Read a fault.
+    /// Add a fault from a file.
     AddFault(AddFault),
-    /// Say where a fault ends.
+    /// State at which other fault a fault ends.
     SetTruncation(SetTruncation),
-    /// Take a fault away.
+    /// Remove a fault.
     RemoveFault(RemoveFault),
-    /// Read a well.
+    /// Add a well from its files.
     AddWell(AddWell),
-    /// Give a well another name.
+    /// Rename a well.
     RenameWell(RenameWell),
-    /// Take a well away.
+    /// Remove a well.
     RemoveWell(RemoveWell),
     /// State the velocity that turns two-way time into metres.
     SetVelocity(SetVelocity),
-    /// Say what a horizon does to its neighbours.
+    /// State the contact of a horizon with its neighbours.
     SetContact(SetContact),
     /// Change how a layer looks.
     SetLayer(SetLayer),
-    /// Take a layer's style away.
+    /// Remove a layer's style.
     ResetLayer(ResetLayer),
-    /// Lay textures of a volume's values over the layers.
+    /// Lay textures over the layers by the values of a volume.
     SetScalar(SetScalar),
-    /// Take a volume's textures away.
+    /// Remove the textures of a volume.
     RemoveScalar(RemoveScalar),
-    /// Say how raw data is coloured.
+    /// Set the colours of raw data.
     SetRaw(SetRaw),
-    /// Bring a tile of one's own.
+    /// Add a tile.
     AddTexture(AddTexture),
-    /// Keep a view under a name.
+    /// Save a scene under a name.
     AddScene(AddScene),
-    /// Take a view away.
+    /// Remove a scene.
     RemoveScene(RemoveScene),
 }
 
-/// What a command did: the facts to tell the user.
+/// What a command did: the facts to report to the user.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "effect", rename_all = "kebab-case")]
 pub enum Effect {
     /// The project exists.
     Created,
-    /// A volume is in the project.
+    /// A volume was imported.
     VolumeImported(VolumeImported),
     /// Volumes were computed.
     AttributeComputed(AttributeComputed),
-    /// There are candidates to pick from.
+    /// Candidates were extracted.
     Extracted(Box<Extracted>),
-    /// Faults were looked for.
+    /// Faults were proposed.
     FaultsProposed(Box<Proposals>),
-    /// A horizon is in the project.
+    /// A horizon was added or changed.
     HorizonAdded(Box<HorizonAdded>),
-    /// A node was added to a horizon or taken out, or a pick was moved.
+    /// A node was added to a horizon or removed, or a pick was moved.
     Picked(Box<Picked>),
-    /// Picks were made again.
+    /// Picks were repeated.
     Replayed(Box<Replayed>),
     /// Holes of a horizon were filled.
     HorizonFilled(Box<HorizonFilled>),
-    /// A fault is in the project.
+    /// A fault was added or changed.
     FaultAdded(Box<FaultAdded>),
-    /// A well is in the project.
+    /// A well was added.
     WellAdded(Box<WellAdded>),
-    /// Something small changed.
+    /// A small change.
     Changed {
-        /// What, in a few words.
+        /// The change, in a few words.
         summary: String,
     },
 }
 
 impl Command {
-    /// Computes what takes long and needs no lock, and keeps it where [`Command::execute`] finds it; answers
-    /// whether there was anything to compute.
+    /// Computes what takes long and needs no lock, and stores it where [`Command::execute`] finds it; returns whether
+    /// anything had to be computed.
     pub(crate) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
         match self {
             Self::Extract(change) => change.prepare(root, document, progress),
@@ -172,7 +171,7 @@ impl Command {
         }
     }
 
-    /// Does what it says to the draft.
+    /// Applies the command to the draft.
     pub(crate) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         match self {
             Self::Create { .. } => Err(ProjectError::Exists { path: draft.root().to_owned() }),
@@ -214,13 +213,13 @@ impl Command {
 }
 
 impl Effect {
-    /// Whether the command may have found everything as it wants it; such a command is no step of the
+    /// Whether the command may find everything as it wants it already; such a command does not become a step of the
     /// history.
     pub(crate) fn is_nothing_new(&self) -> bool {
         matches!(self, Self::Extracted(_) | Self::FaultsProposed(_))
     }
 
-    /// Tells that something was computed before the command was carried out.
+    /// Records in the effect that something was computed before the command was carried out.
     pub(crate) fn after_computing(mut self, computed: bool) -> Self {
         if let Self::Extracted(extracted) = &mut self {
             extracted.computed |= computed;
@@ -228,7 +227,7 @@ impl Effect {
         self
     }
 
-    /// What happened, in a few words for the history.
+    /// The effect in a few words, for the history.
     pub fn summary(&self) -> String {
         match self {
             Self::Created => "create".to_owned(),
@@ -247,14 +246,14 @@ impl Effect {
     }
 }
 
-/// Facts of a file that was read as `reading`.
+/// The facts of a file that was read as `reading`.
 fn source_of(path: &Path, reading: String) -> Result<Source, ProjectError> {
     let facts = std::fs::metadata(path).map_err(|source| ProjectError::io("read", path, source))?;
     Ok(Source { path: path.to_owned(), bytes: facts.len(), reading })
 }
 
 impl std::fmt::Display for Effect {
-    /// For the user: what was read and assumed, or what changed.
+    /// The report for the user: what was read and assumed, or what changed.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::VolumeImported(done) => {

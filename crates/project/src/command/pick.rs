@@ -1,5 +1,5 @@
-//! Picking: a place selects a leaf, the leaf a node of its tree, and the node becomes part of a horizon. A
-//! pick can be moved later.
+//! Picking: a place selects a leaf, the climb a node of its tree, and the node becomes part of a horizon. A pick can be
+//! moved later.
 
 use super::{Effect, Noun, ProjectError};
 use crate::document::{Assembly, PickEntry};
@@ -12,27 +12,27 @@ use serde::{Deserialize, Serialize};
 use survey::{Progress, SurveyGeometry};
 use ttf::Colour;
 
-/// How far to climb above a leaf.
+/// How far to climb above the leaf.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Climb {
-    /// So many levels.
+    /// By this many levels.
     Levels(u32),
-    /// To the highest node that does not lie twice over a trace.
+    /// To the highest node that has no two depths at one trace.
     HighestValid,
 }
 
-/// Picks a node of a surface tree and adds it to a horizon, or takes it out.
+/// Picks a node of a surface tree and adds it to a horizon, or removes it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PickNode {
     /// Inline, crossline and vertical value.
     pub at: [f64; 3],
-    /// The horizon; made when it is not there.
+    /// The horizon; it is created if it does not exist.
     pub horizon: String,
-    /// Add or take out.
+    /// Whether the node is added or removed.
     #[serde(default)]
     pub operation: Operation,
-    /// Colour of the horizon; absent: as it was, or the next of a list.
+    /// Colour of the horizon; `None`: its present one, or the next of the palette.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub colour: Option<Colour>,
     /// How far to climb.
@@ -44,54 +44,54 @@ pub struct PickNode {
 pub struct MovePick {
     /// Its number.
     pub id: u32,
-    /// Where to.
+    /// The movement.
     pub to: Move,
 }
 
-/// Where a pick moves to.
+/// A movement of a pick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Move {
-    /// So many levels up.
+    /// Up by this many levels.
     Up(u32),
-    /// So many levels down.
+    /// Down by this many levels.
     Down(u32),
     /// To the highest node without overlap.
     HighestValid,
 }
 
-/// Makes picks again on the present extraction.
+/// Repeats picks on the present extraction.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ReplayPicks {
-    /// The horizon; absent: all that were assembled.
+    /// The horizon; `None`: all that were assembled from picks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub horizon: Option<String>,
-    /// What to do with picks that no longer fit.
+    /// What happens to picks that no longer fit.
     #[serde(default)]
     pub unfit: Unfit,
 }
 
-/// What becomes of picks that no longer fit.
+/// What happens to picks that no longer fit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Unfit {
-    /// Nothing is changed; they are named.
+    /// Nothing is changed, and an error names them.
     #[default]
     Refuse,
-    /// They are taken out of the log.
+    /// They are removed from the log.
     Drop,
 }
 
-/// What a pick did.
+/// The report of a pick.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Picked {
     /// Number of the pick.
     pub pick: u32,
     /// The horizon.
     pub horizon: String,
-    /// What it did to it.
+    /// Whether the node was added or removed.
     pub operation: Operation,
-    /// Leaf at the place.
+    /// The leaf at the place.
     pub leaf: u32,
     /// Levels above the leaf.
     pub up: u32,
@@ -102,7 +102,7 @@ pub struct Picked {
     /// Overlap of the next higher node, which ended the climb.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stopped_by: Option<ReportedOverlap>,
-    /// The horizon now.
+    /// The present state of the horizon.
     pub result: AssemblyReport,
 }
 
@@ -121,23 +121,23 @@ impl std::fmt::Display for Picked {
     }
 }
 
-/// What a replay found.
+/// The report of a replay.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Replayed {
-    /// Picks by how they fit.
+    /// The picks by how well they fit.
     pub picks: Vec<ReplayedPick>,
-    /// The horizons now.
+    /// The present state of the horizons.
     pub horizons: Vec<(String, AssemblyReport)>,
 }
 
-/// A pick that was made again.
+/// A pick that was repeated.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ReplayedPick {
     /// Its number.
     pub pick: u32,
-    /// How its node compares with what it was.
+    /// How its node compares with the former one.
     pub fit: NodeFit,
-    /// Triangles it had and has.
+    /// Number of triangles of the former node and of the present one.
     pub triangles: [u32; 2],
 }
 
@@ -154,7 +154,7 @@ impl std::fmt::Display for Replayed {
     }
 }
 
-/// Node, levels and what ended the climb.
+/// The node, the levels climbed, and the overlap that ended the climb.
 fn climbed(
     candidates: &Candidates,
     leaf: u32,
@@ -195,7 +195,7 @@ impl PickNode {
         })))
     }
 
-    /// The log of its horizon, or an empty one for a new horizon.
+    /// The log of the horizon, or an empty one for a new horizon.
     fn log(&self, draft: &Draft) -> Result<Assembly, ProjectError> {
         let known = draft.document.horizons.iter().any(|entry| entry.name == self.horizon);
         if known {
@@ -205,7 +205,7 @@ impl PickNode {
         Ok(Assembly { colour: assembly::next_colour(&draft.document), fill: None, picks: Vec::new() })
     }
 
-    /// Puts it at the end of a log; answers what ended the climb.
+    /// Appends the pick to a log; returns the overlap that ended the climb.
     fn enter(
         &self,
         log: &mut Assembly,
@@ -216,7 +216,7 @@ impl PickNode {
     ) -> Result<Option<Overlap>, ProjectError> {
         let chosen = assembly::selection(&self.horizon, log, candidates)?;
         let hit = candidates.leaf_near(geometry, self.at)?;
-        // What is taken out may overlap with what stays.
+        // A removed node may overlap with what stays.
         let beside = if self.operation == Operation::Add { chosen.clone() } else { Selection::default() };
         let (node, up, stopped_by) = climbed(candidates, hit.leaf, self.climb, &beside, blocks)?;
         let mut own = Selection::default();
@@ -247,10 +247,10 @@ impl PickNode {
     }
 }
 
-/// Makes several picks of one horizon at once, as a lasso does: one step of the history.
+/// Makes several picks of one horizon in one step of the history, as a lasso does.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PickNodes {
-    /// The picks, first to last; all of the same horizon.
+    /// The picks in order, all of the same horizon.
     pub picks: Vec<PickNode>,
 }
 
@@ -274,7 +274,7 @@ impl PickNodes {
     }
 }
 
-/// Takes a pick out of its horizon's log, as if it had never been made.
+/// Removes a pick from its horizon's log, as if it had never been made.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemovePick {
     /// Its number.
@@ -292,7 +292,7 @@ impl RemovePick {
     }
 }
 
-/// A pick by its number: its horizon, that horizon's log, its place there.
+/// Finds a pick by its number: its horizon, that horizon's log, and its position there.
 fn find(draft: &Draft, id: u32) -> Result<(String, Assembly, usize), ProjectError> {
     let logs = || draft.document.horizons.iter().filter_map(|entry| Some((entry, entry.assembly.as_ref()?)));
     let found = logs().find_map(|(entry, log)| {
@@ -325,7 +325,7 @@ impl SetHorizonColour {
     }
 }
 
-/// A number that no pick has.
+/// A number that no pick has yet.
 fn next_id(draft: &Draft) -> u32 {
     let logs = draft.document.horizons.iter().filter_map(|entry| entry.assembly.as_ref());
     logs.flat_map(|log| &log.picks).map(|pick| pick.id).max().unwrap_or(0) + 1
@@ -406,7 +406,7 @@ impl ReplayPicks {
     }
 }
 
-/// Makes one pick again: at its place, at the level whose node is most like what it was.
+/// Repeats one pick: at its place, at the level whose node is most like the former one.
 fn again(pick: &mut PickEntry, candidates: &Candidates, geometry: &SurveyGeometry) -> NodeFit {
     let Ok(hit) = candidates.leaf_near(geometry, pick.at) else { return NodeFit::Different };
     let rank = |fit: NodeFit| match fit {

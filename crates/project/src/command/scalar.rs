@@ -6,14 +6,14 @@ use crate::styles;
 use serde::{Deserialize, Serialize};
 use ttf::{RawColour, ScalarTtf};
 
-/// Lays textures of a volume's values over the layers; replaces the volume's present function.
+/// Lays textures over the layers by the values of a volume; replaces the volume's present function.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SetScalar {
     /// The function.
     pub function: ScalarTtf,
 }
 
-/// Takes a volume's textures away.
+/// Removes the textures of a volume.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemoveScalar {
     /// Name of the volume.

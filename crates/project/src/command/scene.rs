@@ -1,4 +1,4 @@
-//! Named views.
+//! Named scenes.
 
 use super::{Effect, Noun, ProjectError};
 use crate::document::SceneEntry;
@@ -6,16 +6,16 @@ use crate::folder::Draft;
 use render::Scene;
 use serde::{Deserialize, Serialize};
 
-/// Keeps a view under a name.
+/// Saves a scene under a name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AddScene {
     /// Its name.
     pub name: String,
-    /// What it shows.
+    /// The scene.
     pub scene: Scene,
 }
 
-/// Takes a view away.
+/// Removes a scene.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemoveScene {
     /// Its name.

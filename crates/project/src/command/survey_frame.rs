@@ -1,4 +1,4 @@
-//! Changes to the frame in which everything is placed.
+//! Changes to the survey geometry.
 
 use super::{Effect, ProjectError};
 use crate::folder::Draft;

@@ -1,4 +1,4 @@
-//! Tiles of the user's own for patterns.
+//! The user's own tiles for patterns.
 
 use super::{Effect, Noun, ProjectError};
 use crate::document::TextureEntry;
@@ -8,12 +8,12 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Copies a picture into the project, to tile layers with.
+/// Copies a picture into the project for use as a tile.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AddTexture {
     /// PNG, JPEG or SVG file.
     pub path: PathBuf,
-    /// Printed width, mm; absent: the library's own for user tiles.
+    /// Printed width, mm; `None`: the library's default for user tiles.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub width_mm: Option<f32>,
 }

@@ -32,23 +32,23 @@ pub struct RenameWell {
     pub to: String,
 }
 
-/// Takes a well away.
+/// Removes a well.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RemoveWell {
     /// Its name.
     pub name: String,
 }
 
-/// A top of a well against the survey.
+/// A top of a well relative to the survey.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PlacedTop {
     /// Name of the surface.
     pub name: String,
-    /// Where it is.
+    /// Its place.
     #[serde(flatten)]
     pub place: TopPlace,
-    /// How much deeper the top is than the project's horizon of that name, in the survey's unit; None without
-    /// such a horizon there.
+    /// How much deeper the top is than the project's horizon of that name, in the survey's unit; `None` if there is no
+    /// such horizon at that place.
     pub below_horizon: Option<f64>,
 }
 
@@ -59,7 +59,7 @@ pub struct CurveSummary {
     pub name: String,
     /// Its unit.
     pub unit: String,
-    /// What it is.
+    /// Its description.
     pub description: String,
     /// First and last measured depth with a value, m.
     pub md_m: Option<[f64; 2]>,
@@ -67,14 +67,14 @@ pub struct CurveSummary {
     pub range: Option<[f32; 2]>,
 }
 
-/// A well against the survey, and what was read and assumed.
+/// A well relative to the survey, and what was read and assumed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WellAdded {
     /// Name of the well.
     pub name: String,
     /// Height of the datum above sea level, m.
     pub datum_m: f64,
-    /// Where it lies.
+    /// Its path in the survey.
     #[serde(flatten)]
     pub placement: WellPlacement,
     /// The survey's vertical unit.
@@ -91,10 +91,10 @@ pub struct WellAdded {
 }
 
 impl WellAdded {
-    /// The well against the project as it is.
+    /// Describes the well relative to the present project.
     ///
     /// # Errors
-    /// No survey frame; a horizon that cannot be read.
+    /// There is no survey geometry, or a horizon cannot be read.
     pub fn of(
         well: &Well,
         root: &Path,
@@ -126,7 +126,7 @@ impl WellAdded {
     }
 }
 
-/// Names as people write them: case, blanks and signs do not matter.
+/// Compares names regardless of case, blanks and punctuation.
 fn same_name(a: &str, b: &str) -> bool {
     let plain = |name: &str| name.chars().filter(|c| c.is_alphanumeric()).collect::<String>().to_lowercase();
     plain(a) == plain(b)
@@ -243,7 +243,7 @@ impl AddWell {
 impl RenameWell {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Well, &self.from)?;
-        // Its own name in another case is no duplicate.
+        // The well's own name in another case is not a duplicate.
         if self.from.to_lowercase() != self.to.to_lowercase() {
             draft.document.check_new_name(Noun::Well, &self.to)?;
         }

@@ -1,16 +1,16 @@
 //! Hashes that identify bulk data.
 //!
-//! A hash covers what a computation depends on, values and their place, and nothing else: not names, not
+//! A hash covers what a computation depends on, which is values and their places, and nothing else: neither names nor
 //! files.
 
 use store::{StoreError, StoredVolume};
 use survey::{Fault, Horizon, Well};
 
-/// BLAKE3 of a volume's size, sample type, the checksums of its bricks and its live-trace mask: what
-/// identifies its samples, without reading them.
+/// BLAKE3 hash of a volume's size, sample type, the checksums of its bricks and its live-trace mask: identifies its
+/// samples without reading them.
 ///
 /// # Errors
-/// Missing or damaged data.
+/// Data are missing or damaged.
 pub fn hash_stored(volume: &StoredVolume) -> Result<String, StoreError> {
     let mut hash = blake3::Hasher::new();
     hash.update(bytemuck::cast_slice(&volume.size(0).map(|count| count as u64)));
@@ -52,7 +52,7 @@ pub fn hash_fault(fault: &Fault) -> String {
 /// BLAKE3 of a well's path, tops, logs and checkshots.
 ///
 /// # Errors
-/// A value that JSON cannot hold.
+/// A value cannot be written as JSON.
 pub fn hash_well(well: &Well) -> Result<String, serde_json::Error> {
     let nameless = Well { name: String::new(), ..well.clone() };
     Ok(blake3::hash(&serde_json::to_vec(&nameless)?).to_hex().to_string())

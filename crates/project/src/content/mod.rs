@@ -1,4 +1,4 @@
-//! The bulk data of a project: volumes, horizons, faults and wells, read by the project's entries, and the
+//! The bulk data of a project: reads volumes, horizons, faults and wells by the project's entries, and computes the
 //! hashes that identify them.
 
 mod hash;

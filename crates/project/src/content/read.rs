@@ -1,4 +1,4 @@
-//! Reading bulk data under the name the project gives it.
+//! Reads bulk data by the entries of a project.
 
 use crate::document::{FaultEntry, HorizonEntry, VolumeEntry, WellEntry};
 use crate::error::ProjectError;
@@ -11,7 +11,7 @@ use survey::{Fault, Horizon, Progress, SurveyGeometry, Volume, Well};
 /// Reads a well of the project in `root`.
 ///
 /// # Errors
-/// Missing or damaged data.
+/// Data are missing or damaged.
 pub fn read_well(root: &Path, entry: &WellEntry) -> Result<Well, ProjectError> {
     let well = store::read_well(&at_hand(root, &entry.file))?;
     Ok(Well { name: entry.name.clone(), ..well })
@@ -20,16 +20,16 @@ pub fn read_well(root: &Path, entry: &WellEntry) -> Result<Well, ProjectError> {
 /// Reads a volume of the project in `root`.
 ///
 /// # Errors
-/// Missing or damaged data, or cancelled.
+/// Data are missing or damaged, or the user cancelled.
 pub fn read_volume(root: &Path, entry: &VolumeEntry, progress: &Progress) -> Result<Volume<f32>, ProjectError> {
     Ok(StoredVolume::open(&at_hand(root, &entry.file))?.read_f32(0, progress)?)
 }
 
-/// Reads a volume of the project in `root` at the finest level of its pyramid that fits into so many bytes,
-/// the coarsest where none does; answers the level too.
+/// Reads a volume of the project in `root` at the finest level of its pyramid that fits into this many bytes, or at the
+/// coarsest where none does; returns the level, too.
 ///
 /// # Errors
-/// Missing or damaged data, or cancelled.
+/// Data are missing or damaged, or the user cancelled.
 pub fn read_volume_within(
     root: &Path,
     entry: &VolumeEntry,
@@ -45,7 +45,7 @@ pub fn read_volume_within(
 /// Reads a horizon of the project in `root`.
 ///
 /// # Errors
-/// Missing or damaged data, or cancelled.
+/// Data are missing or damaged, or the user cancelled.
 pub fn read_horizon(root: &Path, entry: &HorizonEntry, progress: &Progress) -> Result<Horizon, ProjectError> {
     let horizon = store::read_horizon(&at_hand(root, &entry.file), progress)?;
     Ok(Horizon { name: entry.name.clone(), ..horizon })
@@ -54,13 +54,13 @@ pub fn read_horizon(root: &Path, entry: &HorizonEntry, progress: &Progress) -> R
 /// Reads a fault of the project in `root`.
 ///
 /// # Errors
-/// Missing or damaged data.
+/// Data are missing or damaged.
 pub fn read_fault(root: &Path, entry: &FaultEntry) -> Result<Fault, ProjectError> {
     let fault = store::read_fault(&at_hand(root, &entry.file))?;
     Ok(Fault { name: entry.name.clone(), truncated_by: entry.truncated_by.clone(), ..fault })
 }
 
-/// The triangles of a fault as voxels.
+/// The triangles of a fault in voxels.
 pub fn fault_triangles(fault: &Fault, geometry: &SurveyGeometry) -> Vec<[DVec3; 3]> {
     let vertices: Vec<DVec3> = fault.mesh.vertices.iter().map(|vertex| geometry.voxel_from_world(*vertex)).collect();
     fault.mesh.triangles.iter().map(|corners| corners.map(|v| vertices[v as usize])).collect()

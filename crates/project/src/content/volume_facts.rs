@@ -7,20 +7,20 @@ use std::path::Path;
 use store::StoredVolume;
 use survey::{Progress, SurveyGeometry};
 
-/// Share of the samples that a colour map shows unclipped.
+/// Share of the samples that lie within the range of colours.
 const SHOWN_SHARE: f32 = 0.99;
 
-/// So many samples give a percentile to three digits; more would only take longer.
+/// Number of samples that gives a percentile to three digits; more would only take longer.
 const SAMPLES_ENOUGH: usize = 1 << 20;
 
-/// The facts of a new volume that are found elsewhere than in its samples.
+/// The facts of a new volume that do not come from its samples.
 pub(crate) struct Facts {
     pub(crate) name: String,
     /// Relative to the project's folder.
     pub(crate) file: String,
     pub(crate) polarity: Polarity,
     pub(crate) source: Source,
-    /// Its own lattice, where that is not the project's.
+    /// Its own lattice, if it differs from the project's.
     pub(crate) geometry: Option<SurveyGeometry>,
 }
 
@@ -41,7 +41,7 @@ pub(crate) fn entry(path: &Path, facts: Facts, progress: &Progress) -> Result<Vo
     })
 }
 
-/// The value that most samples of live traces do not exceed in size, found on evenly spread traces; 1 where
+/// The value that most samples of live traces do not exceed in magnitude, estimated on evenly spread traces; 1 where
 /// all are zero.
 fn clip_of(stored: &StoredVolume, progress: &Progress) -> Result<f32, ProjectError> {
     let [_, crosslines, samples] = stored.size(0);

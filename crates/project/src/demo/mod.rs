@@ -1,9 +1,8 @@
-//! `petroglyph demo`: the whole chain on a synthetic survey, through files and commands as a user would go.
+//! `petroglyph demo`: the whole chain on a synthetic survey, through files and commands as a user would take it.
 //!
-//! Synthetic survey → SEG-Y and fault files → import → candidates → picks, one on each part of each horizon →
-//! layers → parameterization → three pictures: illustrative, raw, and half-way between. Of the truth only one
-//! place on each part is used, which anyone who sees the reflector could point at. The styles are in
-//! `look.toml`.
+//! Synthetic survey → SEG-Y and fault files → import → candidates → picks, one on each part of each horizon → layers →
+//! parameterization → three pictures: illustrative, raw, and half-way between. Of the truth only one place on each part
+//! is used, which anyone who sees the reflector could point at. The styles are in `look.toml`.
 
 pub mod survey_files;
 
@@ -34,7 +33,7 @@ use std::time::Instant;
 use survey::{Contact, Progress};
 use survey_files::SynthSurvey;
 
-/// Survey, patterns and view.
+/// The survey, the patterns and the scene of the demonstration.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Look {
@@ -51,7 +50,7 @@ const PICTURES: [(&str, f32); 3] = [("illustrative", 0.0), ("raw", 1.0), ("half-
 /// Resolution of the pictures.
 const DPI: f64 = 220.0;
 
-/// What the demonstration left behind.
+/// What the demonstration made.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Demonstration {
     /// The project.
@@ -60,7 +59,7 @@ pub struct Demonstration {
     pub pictures: Vec<PathBuf>,
     /// Seconds by stage.
     pub stages: Vec<Stage>,
-    /// What was done, in order.
+    /// A log of what was done.
     pub steps: Vec<String>,
 }
 
@@ -77,7 +76,7 @@ impl fmt::Display for Demonstration {
 /// Runs the chain and leaves its files in `out`.
 ///
 /// # Errors
-/// Files that could not be written, no device to draw with, or cancelled.
+/// A file could not be written, there is no device to draw with, or the user cancelled.
 pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectError> {
     let look: Look = toml::from_str(include_str!("look.toml")).expect("the look is part of the program");
     fs::create_dir_all(out).map_err(|source| ProjectError::io("written", out, source))?;
@@ -117,7 +116,7 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
         let scene = Scene { blend, ..scene.clone() };
         project.apply(&Command::AddScene(AddScene { name: name.to_owned(), scene }), progress)?;
     }
-    // What the half-way picture needs is what all of them need.
+    // The half-way picture needs everything that all three need.
     let loaded = load::load(&project, &Scene { blend: 0.5, ..scene.clone() }, progress)?;
     done.stages.extend(loaded.rock.iter().flat_map(|rock| rock.stages.clone()));
     let mut painter = Painter::new(Device::Auto, progress)?;
@@ -134,7 +133,7 @@ pub fn run(out: &Path, progress: &Progress) -> Result<Demonstration, ProjectErro
 
 /// Imports volumes and faults through the same commands as the command line.
 fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> Result<Project, ProjectError> {
-    // A former demonstration is replaced; anything else of that name is not ours to remove.
+    // A former demonstration is replaced; anything else of that name is not removed.
     if path.join("project.toml").exists() {
         fs::remove_dir_all(path).map_err(|source| ProjectError::io("written", path, source))?;
     }
@@ -166,18 +165,18 @@ fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> Resul
 /// Parts of a horizon with fewer traces are not picked.
 const FEWEST_TRACES: usize = 200;
 
-/// Times that a horizon is looked at again for what its picks have left out.
+/// How many times a horizon is checked for what its picks have left out.
 const LOOKS: usize = 2;
 
 /// Samples within which a place of a horizon counts as picked.
 const NEAR_SAMPLES: f64 = 2.0;
 
-/// Picks every part of every horizon, then the middle of what that left out, climbing to the highest valid
-/// node, and fills the holes. Answers the count of picks.
+/// Picks every part of every horizon, then the middle of what these picks left out, climbing to the highest valid node,
+/// and fills the holes. Returns the number of picks.
 fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> Result<usize, ProjectError> {
     let truth = survey_files::read_truth(&files.truth)?;
     let frame = project.document().frame()?.clone();
-    // Held for all picks, so that none has to make them anew.
+    // Held for all picks, so that the candidates are read only once.
     let _candidates = Candidates::load(project.root(), project.document(), progress)?;
     let _blocks = blocks(project.root(), project.document(), progress)?;
     let mut picks = 0;
@@ -196,7 +195,7 @@ fn assemble(project: &mut Project, files: &SynthSurvey, progress: &Progress) -> 
                 };
                 match project.apply(&Command::Pick(pick), progress) {
                     Ok(Effect::Picked(_)) => picks += 1,
-                    // A part that noise has swallowed, or that another pick has reached.
+                    // A part that is lost in noise, or that another pick has covered.
                     Err(ProjectError::NoCandidate { .. } | ProjectError::AlreadyPicked { .. }) | Ok(_) => {}
                     Err(error) => return Err(error),
                 }

@@ -1,5 +1,5 @@
-//! A synthetic survey on disk, as a survey comes from others, with its truth beside it and what an
-//! interpreter would say about its files.
+//! A synthetic survey on disk, in the files in which a survey arrives from elsewhere, with its truth beside it and what
+//! an interpreter would state about the files.
 //!
 //! ```text
 //! survey.sgy  attribute.sgy   seismic; acoustic impedance of another size and a smaller extent
@@ -34,7 +34,7 @@ pub struct SynthSurvey {
     pub faults: Vec<SynthFault>,
     /// Names of the layers, youngest first.
     pub layer_names: Vec<String>,
-    /// The closed form behind it all.
+    /// The closed form that all of it follows.
     pub truth: PathBuf,
 }
 
@@ -43,7 +43,7 @@ pub struct SynthSurvey {
 pub struct SynthHorizon {
     /// Name.
     pub name: String,
-    /// What it does to its neighbours.
+    /// Its contact with its neighbours.
     pub contact: Contact,
     /// All its sheets, CSV.
     pub file: PathBuf,
@@ -76,7 +76,7 @@ impl fmt::Display for SynthSurvey {
 /// Makes a survey and writes it to the folder `out`.
 ///
 /// # Errors
-/// A size too small for its folds and faults, files that could not be written, or cancelled.
+/// The size is too small for the survey's folds and faults, a file could not be written, or the user cancelled.
 pub fn write(out: &Path, settings: &SynthSettings, progress: &Progress) -> Result<SynthSurvey, ProjectError> {
     let made = Synthetic::generate(settings, progress)?;
     let files = write_files(&made, out, progress)?;
@@ -115,10 +115,10 @@ pub struct SynthFiles {
     pub truth: PathBuf,
 }
 
-/// Writes a survey and its interpretation into the folder `out`, which is made if need be.
+/// Writes a survey and its interpretation into the folder `out`, which is created if necessary.
 ///
 /// # Errors
-/// When a file cannot be written or the user cancelled; files written before that stay.
+/// A file cannot be written or the user cancelled; files written before that stay.
 pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<SynthFiles, ProjectError> {
     let folder = |name: &str| {
         let path = out.join(name);
@@ -166,7 +166,7 @@ pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<
 /// Reads the truth that [`write_files`] left in a folder (or its `truth.json` itself).
 ///
 /// # Errors
-/// [`ProjectError::NotATruth`] when there is none or it is not one.
+/// [`ProjectError::NotATruth`] if there is none, or the file is not one.
 pub fn read_truth(path: &Path) -> Result<SynthTruth, ProjectError> {
     #[derive(Deserialize)]
     struct File {

@@ -1,5 +1,4 @@
-//! Fault blocks, kept: `blocks-KEY.bin`. Computing them takes longer than everything else that one pick
-//! needs.
+//! Storage of fault blocks: `blocks-KEY.bin`. Computing them takes longer than everything else that one pick needs.
 
 use super::kept::{Kind, damaged, read_array, read_header, write_header};
 use super::{key_of, revision};
@@ -13,10 +12,10 @@ use survey::{HeightField, Progress};
 
 const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x01", what: "the fault blocks" };
 
-/// Numbers of a fault's frame: a matrix, an offset, the distance of its nodes.
+/// Numbers in a fault's frame: a matrix, an offset, the spacing of its nodes.
 const FRAME: usize = 13;
 
-/// Identifies the fault blocks of a project by what they are made of.
+/// The key of a project's fault blocks: a hash of everything that they depend on.
 pub fn blocks_key(document: &Document, model: &ModelSettings) -> String {
     #[derive(Serialize)]
     struct Inputs<'a> {
@@ -37,12 +36,12 @@ pub fn blocks_key(document: &Document, model: &ModelSettings) -> String {
     })
 }
 
-/// The fault blocks kept under `key`, if there are some that are whole.
+/// The fault blocks stored under `key`, if there is an intact file.
 pub fn load_blocks(root: &Path, key: &str) -> Option<FaultNetwork> {
     BLOCKS.load(root, key, read)
 }
 
-/// Keeps fault blocks under `key`; warns when it cannot.
+/// Stores fault blocks under `key`; warns if that fails.
 pub fn keep_blocks(root: &Path, key: &str, blocks: &FaultNetwork, progress: &Progress) {
     BLOCKS.keep(root, key, progress, |out| write(out, blocks));
 }
@@ -50,14 +49,14 @@ pub fn keep_blocks(root: &Path, key: &str, blocks: &FaultNetwork, progress: &Pro
 #[derive(Serialize, Deserialize)]
 struct Header {
     faults: Vec<FaultHeader>,
-    /// Bits and care of each block.
+    /// The side bits of each block and which of them matter.
     signatures: Vec<(u64, u64)>,
 }
 
 #[derive(Serialize, Deserialize)]
 struct FaultHeader {
     name: String,
-    /// Fault it ends at, and whether on the positive side of that.
+    /// The fault it ends at, and whether it lies on the positive side of that fault.
     truncation: Option<(usize, bool)>,
     origin: [i32; 2],
     size: [usize; 2],

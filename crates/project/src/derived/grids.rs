@@ -1,4 +1,4 @@
-//! The parameterization, kept: `grids-KEY.bin` and `parameterization.zarr`.
+//! Storage of the parameterization: `grids-KEY.bin` and `parameterization.zarr`.
 
 use super::kept::{Kind, read_array, read_header, write_header};
 use super::{Scratch, folder, key_of, revision};
@@ -15,7 +15,7 @@ use survey::Progress;
 /// Grid files.
 const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x01", what: "the parameterization" };
 
-/// Identifies a parameterization by what it is computed from.
+/// The key of a parameterization: a hash of everything that it depends on.
 pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
     #[derive(Serialize)]
     struct Inputs<'a> {
@@ -42,12 +42,12 @@ pub fn parameterization_key(document: &Document, model: &ModelSettings, settings
     key_of(&inputs)
 }
 
-/// The parameterization kept under `key`, if there is one that is whole.
+/// The parameterization stored under `key`, if there is an intact file.
 pub fn load_grids(root: &Path, key: &str) -> Option<Parameterization> {
     GRIDS.load(root, key, read_grids)
 }
 
-/// Keeps a parameterization under `key`; warns when it cannot.
+/// Stores a parameterization under `key`; warns if that fails.
 pub fn keep_grids(root: &Path, key: &str, parameterization: &Parameterization, progress: &Progress) {
     GRIDS.keep(root, key, progress, |out| write_grids(out, parameterization));
 }
@@ -131,7 +131,7 @@ fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization>
 /// The sampled parameterization, in `derived/`.
 const VOLUMES: &str = "parameterization.zarr";
 
-/// Where the sampled parameterization is.
+/// Its path.
 pub fn volumes_path(root: &Path) -> PathBuf {
     folder(root).join(VOLUMES)
 }
@@ -139,7 +139,7 @@ pub fn volumes_path(root: &Path) -> PathBuf {
 /// Writes the sampled parameterization for other programs.
 ///
 /// # Errors
-/// It could not be written; what was there before is still there.
+/// It could not be written; an earlier one is then still there.
 pub fn write_volumes(
     root: &Path,
     key: &str,
@@ -155,8 +155,8 @@ pub fn write_volumes(
     Ok(VoxelParameterization { size, i, j, k, layer, block })
 }
 
-/// The sampled parameterization, if the one kept was computed from the same input; `size` absent takes any
-/// size.
+/// The sampled parameterization, if the stored one was computed from the same input; with `size` `None` any size will
+/// do.
 pub fn load_volumes(
     root: &Path,
     key: &str,

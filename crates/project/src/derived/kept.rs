@@ -1,5 +1,5 @@
-//! A file of derived data: a kind, a body, and the BLAKE3 hash of both, so that a damaged or truncated file
-//! is not used.
+//! A file of derived data: a kind, a body, and the BLAKE3 hash of both, so that a damaged or truncated file is not
+//! used.
 
 use super::{Scratch, folder};
 use crate::folder::storage;
@@ -10,16 +10,16 @@ use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 use survey::Progress;
 
-/// Files kept of each kind: the present one, and those that a few undos lead back to.
+/// Number of files stored for each kind: the present one, and those that a few undos lead back to.
 pub(super) const KEPT: usize = 4;
 
-/// What a file holds.
+/// A kind of derived data.
 pub(super) struct Kind {
-    /// Begins its name.
+    /// Prefix of the file's name.
     pub prefix: &'static str,
-    /// Begins the file; the last byte is the version.
+    /// First bytes of the file; the last of them is the version.
     pub magic: &'static [u8; 8],
-    /// In words.
+    /// The kind in words.
     pub what: &'static str,
 }
 
@@ -32,7 +32,7 @@ impl Kind {
         folder(root).join(self.file(key))
     }
 
-    /// Keeps what `body` writes under `key`; warns when it cannot.
+    /// Stores what `body` writes under `key`; warns if that fails.
     pub(super) fn keep(
         &self,
         root: &Path,
@@ -51,8 +51,8 @@ impl Kind {
         }
     }
 
-    /// What `body` reads from the file kept under `key`; it is also told the length of the file. `None` where
-    /// there is none that is whole.
+    /// What `body` reads from the file stored under `key`, whose length it is also given; `None` if there is no intact
+    /// file.
     pub(super) fn load<T>(
         &self,
         root: &Path,
@@ -105,14 +105,14 @@ impl Kind {
     }
 }
 
-/// A header as JSON, its length before it.
+/// Writes a header as JSON, preceded by its length.
 pub(super) fn write_header(out: &mut dyn Write, header: &impl Serialize) -> io::Result<()> {
     let header = serde_json::to_vec(header)?;
     out.write_all(&(header.len() as u64).to_le_bytes())?;
     out.write_all(&header)
 }
 
-/// The header that [`write_header`] wrote to a file of so many bytes.
+/// Reads the header that [`write_header`] wrote to a file of this length.
 pub(super) fn read_header<T: DeserializeOwned>(input: &mut dyn Read, length: u64) -> io::Result<T> {
     let mut count = [0u8; 8];
     input.read_exact(&mut count)?;
@@ -120,7 +120,7 @@ pub(super) fn read_header<T: DeserializeOwned>(input: &mut dyn Read, length: u64
     Ok(serde_json::from_slice(&text)?)
 }
 
-/// So many numbers of a file of `length` bytes; takes no memory for more than it can hold.
+/// Reads this many numbers from a file of `length` bytes; never allocates more than the file can hold.
 pub(super) fn read_array<T: bytemuck::Pod>(input: &mut dyn Read, count: usize, length: u64) -> io::Result<Vec<T>> {
     if count as u64 > length / size_of::<T>() as u64 {
         return Err(damaged());
@@ -130,12 +130,12 @@ pub(super) fn read_array<T: bytemuck::Pod>(input: &mut dyn Read, count: usize, l
     Ok(values)
 }
 
-/// What is read is not what was written.
+/// The content is not what was written.
 pub(super) fn damaged() -> io::Error {
     io::Error::from(io::ErrorKind::InvalidData)
 }
 
-/// Hashes what passes through.
+/// Hashes the bytes that pass through.
 struct Hashing<T> {
     inner: T,
     hash: blake3::Hasher,

@@ -1,5 +1,5 @@
-//! Results that are computed from a project and kept beside it, so that nothing is computed twice and nothing
-//! stale is used.
+//! Results that are computed from a project and stored beside it, so that nothing is computed twice and nothing
+//! outdated is used.
 //!
 //! ```text
 //! derived/blocks-KEY.bin          the faults continued through the volume, and the blocks between them
@@ -7,11 +7,11 @@
 //! derived/parameterization.zarr   the same sampled on a lattice: i, j, k, layer, block, for other programs; its key inside
 //! ```
 //!
-//! A key is the BLAKE3 hash of everything the result depends on: the revision of the method ([`revision`]),
-//! the frame, the hashes of faults, for the parameterization those of horizons and their contacts, and the
-//! settings. A file with another key is not read. Undoing a change therefore finds the earlier result again,
-//! as long as it is among the last few kept. Everything here may be deleted, and a result that cannot be kept
-//! (a full disk, a read-only project) is still used.
+//! A key is the BLAKE3 hash of everything the result depends on: the revision of the method ([`revision`]), the survey
+//! geometry, the hashes of the faults, for the parameterization those of the horizons and their contacts, and the
+//! settings. A file with another key is not read. Undoing a change therefore finds the earlier result again, as long as
+//! it is among the last few that are stored. Everything here may be deleted, and a result that cannot be stored (the
+//! disk is full, the project is read-only) is used all the same.
 
 mod blocks;
 mod grids;
@@ -31,7 +31,7 @@ pub(crate) fn folder(root: &Path) -> PathBuf {
     root.join("derived")
 }
 
-/// The key of what is computed from `inputs`, which hold numbers and strings only: these always serialise.
+/// The key of a result that is computed from `inputs`, which hold numbers and strings only: these always serialise.
 pub(crate) fn key_of(inputs: &impl Serialize) -> String {
     let text = serde_json::to_vec(inputs).unwrap_or_default();
     blake3::hash(&text).to_hex()[..32].to_owned()

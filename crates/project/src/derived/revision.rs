@@ -1,8 +1,8 @@
 //! Revisions of the methods that compute derived data. They are part of every key, so that a result of an
 //! earlier method is not mistaken for one of the present method.
 //!
-//! Whoever changes a method so that its results change raises its revision. A test holds a fingerprint of a
-//! small result of each method beside its revision, and fails when one changes without the other.
+//! Whoever changes a method so that its results change raises its revision. A test compares a fingerprint of a small
+//! result of each method with its revision, and fails when one changes without the other.
 
 /// The structural model: fault blocks, extension of horizons, contacts.
 pub const MODEL: u32 = 1;

@@ -1,8 +1,9 @@
-//! Where derived data are written until they are complete: `derived/unfinished/`, a folder for each writer.
+//! The place where derived data are written until they are complete: `derived/unfinished/`, with a folder for each
+//! writer.
 //!
-//! Derived data are kept without the project's lock, and several programs may do so at once. Each writer
-//! therefore has a folder of its own, beside a lock file that the system releases however the program ends.
-//! The next writer removes the folders whose lock is free.
+//! Derived data are stored without the project's lock, and several programs may do so at once. Each writer therefore
+//! has a folder of its own, beside a lock file that the system releases however the program ends. The next writer
+//! removes the folders whose lock is free.
 
 use super::folder;
 use crate::error::ProjectError;
@@ -14,7 +15,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 /// Folder of all writers, relative to the project.
 const UNFINISHED: &str = "derived/unfinished";
 
-/// A writer's folder. Dropped, it takes along what was not published.
+/// The folder of one writer. When it is dropped, what was not published is removed.
 #[derive(Debug)]
 pub(crate) struct Scratch {
     root: PathBuf,
@@ -23,10 +24,10 @@ pub(crate) struct Scratch {
 }
 
 impl Scratch {
-    /// A new folder, after what killed programs left is gone.
+    /// Makes a new folder, after removing those that killed programs left behind.
     ///
     /// # Errors
-    /// The project holds a link, or cannot be written.
+    /// The project contains a link, or cannot be written.
     pub(crate) fn begin(root: &Path) -> Result<Self, ProjectError> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         storage::refuse_links(root)?;
@@ -35,22 +36,22 @@ impl Scratch {
         remove_leftovers(root);
         let name = format!("{}-{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed));
         let made = || fs::create_dir_all(&all).and_then(|()| File::create(all.join(lock_of(&name))));
-        // Another writer that is done may remove the folder just now.
+        // Another writer that has finished may remove the parent folder at this moment.
         let lock = made().or_else(|_| made()).map_err(fail)?;
         lock.lock().map_err(fail)?;
         fs::create_dir_all(all.join(&name)).map_err(fail)?;
         Ok(Self { root: root.to_owned(), name, _lock: lock })
     }
 
-    /// Where to write what will be `derived/FILE`.
+    /// The path at which to write what will become `derived/FILE`.
     pub(crate) fn path(&self, file: &str) -> PathBuf {
         self.root.join(UNFINISHED).join(&self.name).join(file)
     }
 
-    /// Puts what was written into its place; what was there before is gone.
+    /// Moves what was written to its place; what was there before is replaced.
     ///
     /// # Errors
-    /// It cannot be renamed.
+    /// The file cannot be renamed.
     pub(crate) fn publish(&self, file: &str) -> Result<(), ProjectError> {
         let target = folder(&self.root).join(file);
         if target.is_dir() {
@@ -64,7 +65,7 @@ impl Drop for Scratch {
     fn drop(&mut self) {
         storage::remove(&self.root, &format!("{UNFINISHED}/{}", self.name));
         storage::remove(&self.root, &format!("{UNFINISHED}/{}", lock_of(&self.name)));
-        // Only when no other writer is at work.
+        // This succeeds only when no other writer is at work.
         let _ = fs::remove_dir(self.root.join(UNFINISHED));
     }
 }
@@ -81,7 +82,7 @@ pub(crate) fn remove_leftovers(root: &Path) {
             Some(writer) => (writer.to_owned(), entry.clone()),
             None => (entry.clone(), lock_of(&entry)),
         };
-        // Of a folder without a lock the writer is gone, too: the lock is made first and removed last.
+        // A folder without a lock file has no writer either: the lock is made first and removed last.
         let is_free = File::open(all.join(&lock)).map_or(true, |file| file.try_lock().is_ok());
         if is_free {
             storage::remove(root, &format!("{UNFINISHED}/{writer}"));

@@ -1,5 +1,4 @@
-//! Comments of `project.toml`: what a person wrote between the lines stays when a command writes the file
-//! again.
+//! Comments of `project.toml`: what a person wrote between the lines stays when a command writes the file again.
 //!
 //! A comment belongs to the key, table or entry below it, or to the value before it on the same line. It
 //! stays as long as that item exists. Entries of a list are recognised by their `name` or `layer`.
@@ -52,7 +51,7 @@ fn name_of(entry: &Table) -> Option<String> {
     name.map(str::to_owned)
 }
 
-/// Takes over what holds a comment; blank space stays as it is written.
+/// Takes over text that holds a comment; blank space stays as it is written.
 fn keep_decor(old: &Decor, new: &mut Decor) {
     let comment = |text: Option<&toml_edit::RawString>| {
         text.and_then(|text| text.as_str()).filter(|text| text.contains('#')).map(str::to_owned)

@@ -1,10 +1,9 @@
-//! Names of data files: exactly `KIND/NAME`, so that a state can only name data of its own project.
+//! Names of data files: exactly `KIND/NAME`, so that a state can name only data of its own project.
 
 /// Folders of data, one for each kind.
 pub(crate) const KINDS: [&str; 5] = ["volumes", "horizons", "faults", "wells", "textures"];
 
-/// Whether `file` names data of the kind `kind`: `KIND/NAME` with one plain name that no other file system
-/// reads as a path.
+/// Whether `file` names data of the kind `kind`: `KIND/NAME` with one plain name that no file system reads as a path.
 pub(crate) fn is_data_file(kind: &str, file: &str) -> bool {
     let Some(name) = file.strip_prefix(kind).and_then(|rest| rest.strip_prefix('/')) else { return false };
     !name.is_empty()

@@ -1,5 +1,5 @@
-//! The named things of a project as `project.toml` lists them. Files are relative to the project's folder; a
-//! hash identifies data by its content.
+//! The named entries of a project as `project.toml` lists them. Files are relative to the project's folder; a hash
+//! identifies data by its content.
 
 use super::picks::Assembly;
 use render::Scene;
@@ -32,7 +32,7 @@ impl std::fmt::Display for Polarity {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Source {
-    /// The file as it was named when it was read.
+    /// The path of the file when it was read.
     pub path: PathBuf,
     /// Its length in bytes.
     pub bytes: u64,
@@ -53,32 +53,32 @@ pub struct VolumeEntry {
     /// What a positive amplitude means.
     #[serde(default)]
     pub polarity: Polarity,
-    /// The value that 99 % of the samples do not exceed in size: where colours are clipped.
+    /// The value that 99 % of the samples do not exceed in magnitude; colours are clipped there.
     pub clip: f32,
-    /// The smallest sample; not negative: an attribute without a natural zero.
+    /// The smallest sample; if it is not negative, the volume is an attribute without a natural zero.
     pub lowest: f32,
     /// Where it came from.
     pub source: Source,
-    /// Its own lattice, where that is not the project's.
+    /// Its own lattice, if it differs from the project's.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub geometry: Option<SurveyGeometry>,
 }
 
-/// An extraction of horizon candidates; what was found lies in `derived/` under its key.
+/// An extraction of horizon candidates; the candidates are stored in `derived/` under its key.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ExtractionEntry {
-    /// Identifies volume, settings and method.
+    /// Key: identifies volume, settings and method.
     pub key: String,
-    /// Name that the volume had.
+    /// The name of the volume at the time.
     pub volume: String,
 }
 
-/// Faults that were proposed; they lie in `derived/` under their key.
+/// Proposed faults; they are stored in `derived/` under their key.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProposalsEntry {
-    /// Identifies horizons, faults, settings and method.
+    /// Key: identifies horizons, faults, settings and method.
     pub key: String,
 }
 
@@ -88,7 +88,7 @@ pub struct ProposalsEntry {
 pub struct HorizonEntry {
     /// Unique name.
     pub name: String,
-    /// What it does to its neighbours.
+    /// Its contact with its neighbours.
     #[serde(default)]
     pub contact: Contact,
     /// Data, relative to the project's folder.
@@ -97,7 +97,7 @@ pub struct HorizonEntry {
     pub hash: String,
     /// Where it came from.
     pub source: Source,
-    /// How it was assembled, if it was not imported.
+    /// How it was assembled from picks; `None` if it was imported.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub assembly: Option<Assembly>,
 }
@@ -137,7 +137,7 @@ pub struct WellEntry {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TextureEntry {
-    /// Unique name, by which layers call it: the file's name without its ending.
+    /// Unique name, by which layers refer to it: the file's name without its extension.
     pub name: String,
     /// The picture, relative to the project's folder.
     pub file: String,
@@ -147,8 +147,8 @@ pub struct TextureEntry {
     pub source: Source,
 }
 
-/// How everything is coloured and textured; what is absent gets a default when it is drawn. Blend and
-/// frequency belong to the scenes.
+/// How everything is coloured and textured; what is not set gets a default when it is drawn. Blend and frequency belong
+/// to the scenes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Style {
@@ -162,7 +162,7 @@ pub struct Style {
 }
 
 impl Style {
-    /// The same as transfer functions.
+    /// The style as transfer functions.
     pub fn functions(&self) -> TransferFunctions {
         TransferFunctions {
             settings: TtfSettings::default(),
@@ -173,12 +173,12 @@ impl Style {
     }
 }
 
-/// A view with a name.
+/// A named scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SceneEntry {
     /// Unique name.
     pub name: String,
-    /// What it shows.
+    /// The scene.
     pub scene: Scene,
 }

@@ -1,4 +1,4 @@
-//! Layers of a project: their names, and how their styles survive a change of the horizons.
+//! Layers of a project: their names, and how their styles persist when the horizons change.
 //!
 //! Styles belong to layers by name. A horizon put into a layer splits it: the part that keeps the old base
 //! keeps the name and the style, the part above the new horizon starts without them. Removing a horizon joins
@@ -14,7 +14,8 @@ impl Document {
         self.stratigraphy().layer_names_bottom_up().into_iter().rev().collect()
     }
 
-    /// The definition of k of each layer, deepest first: the one stated, or the one its contacts ask for.
+    /// The definition of k of each layer, deepest first: the one that was stated, or the one that its contacts call
+    /// for.
     pub fn k_definitions(&self) -> Vec<KDefinition> {
         let stratigraphy = self.stratigraphy();
         let names = stratigraphy.layer_names_bottom_up();
@@ -22,7 +23,7 @@ impl Document {
         names.iter().zip(by_contact).map(|(name, usual)| self.k.get(name).copied().unwrap_or(usual)).collect()
     }
 
-    /// Runs a change that keeps the number of layers, and takes styles along when their layers' names change.
+    /// Makes a change that keeps the number of layers, and moves the styles when the names of their layers change.
     pub fn keep_styles<E>(&mut self, change: impl FnOnce(&mut Self) -> Result<(), E>) -> Result<(), E> {
         let before = self.layers();
         change(self)?;
@@ -31,7 +32,7 @@ impl Document {
         Ok(())
     }
 
-    /// Puts a horizon's layer boundary at `position` (0 = youngest); `insert` adds the horizon itself.
+    /// Inserts the layer boundary of a horizon at `position` (0 = youngest); `insert` adds the horizon itself.
     pub fn split_layer(&mut self, position: usize, insert: impl FnOnce(&mut Self)) {
         let before = self.layers();
         insert(self);
@@ -43,7 +44,7 @@ impl Document {
         self.rename_styles(before.iter().enumerate().map(|(index, name)| (name.as_str(), now(index))));
     }
 
-    /// Takes the layer boundary at `position` away; `remove` takes away the horizon itself.
+    /// Removes the layer boundary at `position`; `remove` removes the horizon itself.
     pub fn join_layers(&mut self, position: usize, remove: impl FnOnce(&mut Self)) {
         let before = self.layers();
         remove(self);
@@ -59,7 +60,7 @@ impl Document {
         self.rename_styles(before.iter().enumerate().map(|(index, name)| (name.as_str(), now(index))));
     }
 
-    /// Gives a layer a name of its own.
+    /// Renames a layer.
     ///
     /// # Errors
     /// The name cannot be used or is taken by another layer.
@@ -76,8 +77,7 @@ impl Document {
         })
     }
 
-    /// Moves styles and definitions of k from old to new layer names at once; those without a new name are
-    /// dropped.
+    /// Moves styles and definitions of k from old to new layer names at once; those without a new name are dropped.
     fn rename_styles<'a>(&mut self, names: impl Iterator<Item = (&'a str, Option<&'a str>)>) {
         let names: Vec<_> = names.collect();
         let styles = std::mem::take(&mut self.style.layers.styles);

@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use survey::{StratigraphicHorizon, Stratigraphy, SurveyGeometry};
 
-/// The version this program writes, and the newest it reads.
+/// The version that this program writes, and the newest that it reads.
 pub const VERSION: u32 = 1;
 
 /// The state of a project.
@@ -33,16 +33,16 @@ pub struct Document {
     pub version: u32,
     /// Position in the history: the number of the command that led here.
     pub step: u32,
-    /// The lattice that everything is placed in; absent until a volume is imported or bounds are given.
+    /// The lattice in which everything is placed; `None` until a volume is imported or bounds are given.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub geometry: Option<SurveyGeometry>,
-    /// Names of the layers, youngest first; empty = named after the horizons.
+    /// Names of the layers, youngest first; if empty, they are named after the horizons.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub layer_names: Vec<String>,
     /// Volumes in order of import; the first is the one shown as raw data.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub volumes: Vec<VolumeEntry>,
-    /// The extraction that picks are made from.
+    /// The extraction on which picks are made.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extraction: Option<ExtractionEntry>,
     /// The faults that were proposed last.
@@ -66,20 +66,20 @@ pub struct Document {
     /// Textures of layers and volumes, colours of raw data.
     #[serde(default)]
     pub style: Style,
-    /// Definitions of k by layer name; others have the usual one.
+    /// Definitions of k by layer name; other layers have the default one.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub k: BTreeMap<String, KDefinition>,
-    /// Named views.
+    /// Named scenes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneEntry>,
 }
 
-/// Says at the top of the file what it is.
+/// The comment at the top of the file.
 const HEADER: &str = "# A Petroglyph project. Commands change this file and remember its former states in \
                       history/; `petroglyph undo` goes back.\n\n";
 
 impl Document {
-    /// A project with nothing in it.
+    /// A project without content.
     pub fn empty(geometry: Option<SurveyGeometry>) -> Self {
         Self {
             version: VERSION,
@@ -100,7 +100,7 @@ impl Document {
         }
     }
 
-    /// The text of `project.toml`, with the comments that its former text `old` has.
+    /// The text of `project.toml`, with the comments of its former text `old`.
     pub(crate) fn to_text_after(&self, old: &str, path: &Path) -> Result<String, ProjectError> {
         Ok(comments::keep_comments(old, self.to_text(path)?))
     }
@@ -115,7 +115,7 @@ impl Document {
     /// Reads the text of `project.toml`; `path` is named in errors.
     ///
     /// # Errors
-    /// [`ProjectError::Newer`] before anything else is looked at; [`ProjectError::Malformed`] otherwise.
+    /// [`ProjectError::Newer`] before anything else is checked; [`ProjectError::Malformed`] otherwise.
     pub fn from_text(text: &str, path: &Path) -> Result<Self, ProjectError> {
         let malformed = |detail: String| ProjectError::Malformed { path: path.to_owned(), detail };
         #[derive(Deserialize)]
@@ -131,7 +131,7 @@ impl Document {
         Ok(document)
     }
 
-    /// What the types cannot say.
+    /// Checks what the types cannot express.
     fn check(&self) -> Result<(), String> {
         if let Some(geometry) = &self.geometry {
             geometry.validate().map_err(|error| error.to_string())?;
@@ -157,8 +157,7 @@ impl Document {
             }
         }
         self.check_truncation().map_err(|error| error.to_string())?;
-        // Whatever else a name says would let a project read, and a later command delete, what is not its
-        // own.
+        // With any other name a project could read data that is not its own, and a later command could delete it.
         for (kind, file) in self.files_by_kind() {
             if !data_file::is_data_file(kind, file) {
                 return Err(format!("the file \"{file}\" is not of the form {kind}/NAME"));
@@ -185,7 +184,7 @@ impl Document {
         self.files_by_kind().map(|(_, file)| file)
     }
 
-    /// All data files with the folder each must lie in.
+    /// All data files with the folder in which each must lie.
     fn files_by_kind(&self) -> impl Iterator<Item = (&'static str, &str)> {
         let volumes = self.volumes.iter().map(|entry| ("volumes", entry.file.as_str()));
         let horizons = self.horizons.iter().map(|entry| ("horizons", entry.file.as_str()));
@@ -201,7 +200,7 @@ impl Document {
         Stratigraphy { horizons: self.horizons.iter().map(horizon).collect(), layer_names: self.layer_names.clone() }
     }
 
-    /// The survey frame.
+    /// The survey geometry.
     ///
     /// # Errors
     /// [`ProjectError::NoGeometry`] while there is none.
@@ -209,7 +208,7 @@ impl Document {
         self.geometry.as_ref().ok_or(ProjectError::NoGeometry)
     }
 
-    /// Refuses faults that end at one another in a circle, and at faults there are not.
+    /// Refuses faults that end at one another in a circle, and faults that end at a fault that does not exist.
     ///
     /// # Errors
     /// [`ProjectError::Unknown`] or [`ProjectError::CircularTruncation`].
@@ -229,10 +228,10 @@ impl Document {
         Ok(())
     }
 
-    /// The position of a named thing.
+    /// The position of a named entry.
     ///
     /// # Errors
-    /// [`ProjectError::Unknown`] with the names there are.
+    /// [`ProjectError::Unknown`] with the names that exist.
     pub fn position(&self, noun: Noun, name: &str) -> Result<usize, ProjectError> {
         let names = self.names(noun);
         names.iter().position(|present| present == name).ok_or_else(|| ProjectError::Unknown {
@@ -242,11 +241,11 @@ impl Document {
         })
     }
 
-    /// Checks that a name may be given to something new.
+    /// Checks that a name can be given to something new.
     ///
     /// # Errors
-    /// [`ProjectError::BadName`]; [`ProjectError::Duplicate`], also when only the case differs, because file
-    /// systems and people do not tell such names apart.
+    /// [`ProjectError::BadName`]; [`ProjectError::Duplicate`], also if only the case differs, because file systems and
+    /// people do not distinguish such names.
     pub fn check_new_name(&self, noun: Noun, name: &str) -> Result<(), ProjectError> {
         let bad = |fact| Err(ProjectError::BadName { noun, name: name.to_owned(), fact });
         if name.trim().is_empty() {

@@ -1,8 +1,8 @@
 //! How a horizon was assembled: its log of picks, in the order they were made.
 //!
-//! The horizon's sheets are primary data. The log tells how they were made, and it is what is needed to move
-//! a pick later or to make the same picks again on another extraction. Places are line numbers and vertical
-//! values, so that they can be read and typed.
+//! The horizon's sheets are primary data. The log records how they were made; with it a pick can be moved later, or the
+//! same picks repeated on another extraction. Places are line numbers and vertical values, so that they can be read and
+//! typed.
 
 use interp::assembly::{Fingerprint, Operation};
 use interp::holes::FillSettings;
@@ -15,7 +15,7 @@ use ttf::Colour;
 pub struct Assembly {
     /// Colour it is shown in.
     pub colour: Colour,
-    /// How its holes are filled; absent: they stay.
+    /// How its holes are filled; `None`: they stay.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fill: Option<FillSettings>,
     /// Its picks, first to last.
@@ -30,21 +30,20 @@ pub struct PickEntry {
     pub id: u32,
     /// Inline, crossline and vertical value of the place picked.
     pub at: [f64; 3],
-    /// Whether its node is part of the horizon or is taken out of it.
+    /// Whether its node is added to the horizon or removed from it.
     #[serde(default)]
     pub operation: Operation,
-    /// Leaf at that place.
+    /// The leaf at that place.
     pub leaf: u32,
     /// Levels climbed above it.
     pub up: u32,
-    /// Key of the extraction that leaf and levels are of.
+    /// Key of the extraction that leaf and levels refer to.
     pub extraction: String,
-    /// What the node was.
+    /// A fingerprint of the node.
     pub node: Fingerprint,
 }
 
-/// A fault that is being drawn: sticks as they were picked. With two or more sticks there is a fault of that
-/// name.
+/// A fault that is drawn as sticks. From two sticks on there is a fault of that name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FaultSticks {

@@ -1,4 +1,4 @@
-//! The interpreter's view: what is read from a project, together with what only the view itself knows.
+//! The interpreter's view: what is read from a project, together with what only the view knows.
 
 use crate::content;
 use crate::error::ProjectError;
@@ -15,23 +15,23 @@ use ttf::Colour;
 /// Sticks of faults that are part of the project.
 const STICK: Colour = Colour::BLACK;
 
-/// What only an interpreter's own view knows: nothing of it is part of the project.
+/// What only an interpreter's view knows; none of it is part of the project.
 #[derive(Debug, Clone, Default)]
 pub struct InterpreterView {
     /// The horizon that picks go to.
     pub picked: Option<String>,
-    /// Whether minor proposals are seen, too.
+    /// Whether minor proposals are shown, too.
     pub minor: bool,
-    /// Proposals that are not to be seen, by number.
+    /// Proposals that are not shown, by number.
     pub dismissed: Vec<u32>,
-    /// Sticks that are drawn and not part of the project yet: line numbers and vertical values.
+    /// Sticks that are drawn but not part of the project yet: line numbers and vertical values.
     pub sticks: Vec<(Vec<[f64; 3]>, Colour)>,
     /// The node that is selected and not accepted yet.
     pub selection: Option<(Vec<VoxelSheet>, Colour)>,
 }
 
 impl InterpreterView {
-    /// Whether a proposal is seen.
+    /// Whether a proposal is shown.
     pub fn shows(&self, proposal: &Proposal) -> bool {
         (self.minor || !proposal.is_minor) && !self.dismissed.contains(&proposal.id)
     }
@@ -61,7 +61,7 @@ pub(super) struct Picks<'a> {
 }
 
 impl<'a> Picks<'a> {
-    /// Reads it.
+    /// Reads the interpretation.
     pub(super) fn read(
         project: &Project,
         view: &'a InterpreterView,
@@ -98,7 +98,7 @@ impl<'a> Picks<'a> {
         })
     }
 
-    /// As figures take it.
+    /// The interpretation in the form that figures take.
     pub(super) fn borrowed(&self) -> Interpretation<'_> {
         Interpretation {
             horizons: self.horizons.iter().map(Picked::borrowed).collect(),
@@ -132,12 +132,12 @@ impl Mesh {
     }
 }
 
-/// A sheet as figures take it.
+/// A sheet in the form that figures take.
 pub fn borrowed(sheet: &VoxelSheet) -> TraceSheet<'_> {
     TraceSheet { block: sheet.block, z: &sheet.z, quality: &sheet.quality }
 }
 
-/// Voxel positions of a stick's places.
+/// Voxel positions of the points of a stick.
 fn voxels(stick: &[[f64; 3]], geometry: &SurveyGeometry) -> Vec<DVec3> {
     let voxel = |[inline, crossline, value]: &[f64; 3]| {
         geometry.voxel_from_lines(*inline, *crossline).extend(geometry.vertical.index_of(*value))

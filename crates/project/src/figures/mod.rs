@@ -1,8 +1,8 @@
 //! Figures of a project. The command line and the window load what a figure needs, and make its page, in the
 //! same way.
 //!
-//! A figure with a block needs what the block's scene needs. One of sections and maps alone needs the model
-//! but no layer coordinates, and what an interpreter sees needs no model at all.
+//! A figure with a block needs what the block's scene needs. A figure of sections and maps alone needs the model but no
+//! layer coordinates, and what an interpreter sees needs no model at all.
 
 mod interpreter;
 
@@ -24,28 +24,28 @@ use render::{FaceData, Scene};
 use survey::Progress;
 use ttf::{LayerStyle, LayerTtf, TextureLibrary};
 
-/// A figure's page, and how it came about.
+/// The page of a figure, and how it was made.
 pub struct MadeFigure {
     /// The page.
     pub page: DisplayList,
-    /// What drew its blocks; absent where it has none.
+    /// The device that drew its blocks; `None` if it has none.
     pub device: Option<String>,
-    /// How long the stages took.
+    /// The duration of the stages.
     pub stages: Vec<Stage>,
 }
 
-/// How a figure is made.
+/// Settings for making a figure.
 pub struct FigureSettings {
-    /// What draws blocks.
+    /// The painter for blocks.
     pub device: Device,
-    /// Most bytes for the samples of a volume.
+    /// Largest memory for the samples of a volume, bytes.
     pub volume_bytes: u64,
 }
 
-/// Loads what a figure needs, and makes its page. `view` is what only an interpreter's own view knows.
+/// Loads what a figure needs, and makes its page. `view` is what only an interpreter's view knows.
 ///
 /// # Errors
-/// Damaged data, places or horizons that are not there, a page without room, or cancelled.
+/// Data are damaged, a place or horizon does not exist, the page has no room, or the user cancelled.
 pub fn make(
     project: &Project,
     figure: &Figure,
@@ -78,7 +78,7 @@ pub fn make(
             Some(painter) => painter,
             empty => empty.insert(Painter::new(settings.device, progress)?),
         };
-        // A project that is being interpreted has no model to take the relief from.
+        // While a project is being interpreted it has no model to take the relief from.
         let ground = scene.ground.filter(|_| loaded.rock.is_some());
         let (image, stage) = painter.draw(&Scene { ground, ..scene.clone() }, &loaded, progress)?;
         stages.push(stage);
@@ -88,7 +88,7 @@ pub fn make(
     Ok(MadeFigure { page, device: painter.map(|painter| painter.device().to_owned()), stages })
 }
 
-/// What is read and computed for a figure: a model of its own where no block brings one.
+/// The data of a figure: a model of its own where no block brings one.
 fn load(
     project: &Project,
     figure: &Figure,
@@ -111,7 +111,7 @@ fn load(
     Ok((loaded, model, stages))
 }
 
-/// A scene that needs all that the parts of a figure need.
+/// A scene that needs everything that the parts of a figure need.
 fn needs(figure: &Figure) -> Scene {
     let mut scene = Scene::default();
     let mut is_raw = false;
@@ -131,7 +131,7 @@ fn needs(figure: &Figure) -> Scene {
         scene.face_data = shown;
     }
     if is_raw {
-        // Half-way needs everything that any blend needs.
+        // A blend in between needs everything that any blend needs.
         scene.blend = 0.5;
     }
     scene
@@ -147,7 +147,7 @@ pub fn horizons(document: &Document) -> Vec<NamedColour> {
     named.collect()
 }
 
-/// The layers as they are drawn, youngest first: by their own style, or the one they get by default.
+/// The styles of the layers, youngest first: their own, or the default ones.
 pub fn layer_styles(document: &Document, library: &TextureLibrary) -> Vec<LayerStyle> {
     let names = document.layers();
     let style = |(index, name): (usize, &String)| match document.style.layers.style(name) {

@@ -5,12 +5,12 @@ use crate::document::Document;
 use crate::error::ProjectError;
 use std::path::{Path, PathBuf};
 
-/// A copy of the state to change, and a place to write new data to. Dropped without being kept, it removes
+/// A copy of the state to change, and a place to write new data to. If it is dropped without being kept, it removes
 /// what was written.
 #[derive(Debug)]
 pub struct Draft {
     root: PathBuf,
-    /// The state the command is to leave behind.
+    /// The state that the command leaves behind.
     pub document: Document,
     written: Vec<String>,
     kept: bool,
@@ -26,11 +26,11 @@ impl Draft {
         &self.root
     }
 
-    /// A new place for data of a kind (`volumes`, `horizons` …): the file to put into the document, and the
-    /// path to write to now.
+    /// A new place for data of a kind (`volumes`, `horizons` …): the file name to enter in the document, and the path
+    /// to write to now.
     ///
-    /// The file is named after `name` as far as file systems allow, with a number where an older generation
-    /// of that name is still remembered.
+    /// The file is named after `name` as far as file systems allow, with a number where an older generation of that
+    /// name is still in the history.
     ///
     /// # Errors
     /// The folder to write to cannot be made.
@@ -53,12 +53,12 @@ impl Draft {
         Ok((file, path))
     }
 
-    /// Flushes the data and gives it its names.
+    /// Flushes the data and moves it to its place.
     pub(crate) fn publish(&self) -> Result<(), ProjectError> {
         self.written.iter().try_for_each(|file| storage::publish(&self.root, file))
     }
 
-    /// The state was saved: the data stays.
+    /// The state was saved, so the data stays.
     pub(crate) fn keep(mut self) {
         self.kept = true;
     }
@@ -67,7 +67,7 @@ impl Draft {
 impl Drop for Draft {
     fn drop(&mut self) {
         if !self.kept {
-            // What was published before the save failed; a state that was saved after all keeps its data.
+            // Removes what was published before saving failed; if the state was saved after all, its data stays.
             let _ = history::release(&self.root, self.written.iter().cloned().collect());
         }
         storage::remove(&self.root, storage::UNFINISHED);

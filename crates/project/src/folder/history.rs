@@ -1,17 +1,16 @@
-//! The commands of a project, each with the state it led to: what undo and redo walk along.
+//! The commands of a project, each with the state it led to: undo and redo move along them.
 //!
-//! `history/0007.toml` holds command 7 and the text of `project.toml` after it. Undo writes the text of step
-//! 6 back, redo that of step 8, so both restore it byte for byte, from any process. Data files that a
-//! remembered state refers to stay where they are until the last such state is forgotten: by a command given
-//! after an undo, by the limit on the length, or by [`super::Project::prune`].
+//! `history/0007.toml` holds command 7 and the text of `project.toml` after it. Undo writes the text of step 6 back,
+//! redo that of step 8, so both restore it byte for byte, from any process. Data files that a state of the history
+//! refers to stay where they are until the last such state is dropped: by a command given after an undo, by the limit
+//! on the length, or by [`super::Project::prune`].
 //!
-//! A step waits in `unfinished/` while `project.toml` is replaced and gets its place after it; a writer that
-//! finds one there can tell by `project.toml` whether the command was completed ([`recover`]). A step that is
-//! to be forgotten moves there, too, and is deleted after the data that only it refers to, so that a kill in
-//! between leaves nothing behind.
+//! A step waits in `unfinished/` while `project.toml` is replaced and is moved to its place afterwards; a writer that
+//! finds one there can tell from `project.toml` whether the command was completed ([`recover`]). A step that is to be
+//! dropped is moved there, too, and is deleted after the data that only it refers to, so that a kill in between leaves
+//! nothing behind.
 //!
-//! A step that can no longer be read is reported as such and is no reason to refuse work. Whatever it may
-//! refer to is kept.
+//! A step that can no longer be read is reported as such, but does not stop work. Whatever it may refer to is kept.
 
 use super::storage;
 use crate::document::{Document, data_file};
@@ -20,28 +19,28 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Remembered steps; the oldest are forgotten first. Long enough for a day's work, short enough that removed
-/// volumes do not fill the disk for ever.
+/// Number of steps in the history; the oldest are dropped first. Long enough for a day's work, short enough that
+/// removed volumes do not fill the disk for ever.
 pub const HISTORY_LIMIT: u32 = 200;
 
-/// One remembered command.
+/// One step of the history.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Step {
-    /// What happened, in a few words.
+    /// The effect, in a few words.
     pub summary: String,
     /// The text of `project.toml` after it.
     pub project: String,
-    /// The command as data; absent for an edit by hand.
+    /// The command as data; `None` for an edit by hand.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub command: Option<toml::Value>,
 }
 
-/// Where a step is, relative to the project.
+/// The path of a step, relative to the project.
 fn file_of(number: u32) -> String {
     format!("history/{number:04}.toml")
 }
 
-/// Where a step waits to be forgotten, relative to the project.
+/// The path of a step that waits to be dropped, relative to the project.
 fn forgotten_file_of(number: u32) -> String {
     format!("{}/forgotten/{number:04}.toml", storage::UNFINISHED)
 }
@@ -54,12 +53,12 @@ fn numbers_in(folder: &Path) -> Vec<u32> {
     numbers
 }
 
-/// Numbers of the remembered steps, ascending.
+/// The numbers of the steps in the history, ascending.
 pub(crate) fn numbers(root: &Path) -> Vec<u32> {
     numbers_in(&root.join("history"))
 }
 
-/// Reads step `number`; `None` when it is not remembered.
+/// Reads step `number`; `None` if it is not in the history.
 pub(crate) fn read(root: &Path, number: u32) -> Result<Option<Step>, ProjectError> {
     let path = root.join(file_of(number));
     if path.exists() { read_step(&path).map(Some) } else { Ok(None) }
@@ -77,15 +76,15 @@ pub(crate) fn prepare(root: &Path, number: u32, step: &Step) -> Result<(), Proje
     storage::write_unfinished(root, &file_of(number), text.as_bytes())
 }
 
-/// Makes a prepared step the last one: what was undone before it is forgotten, and so are steps beyond the
-/// limit, with their data.
+/// Makes a prepared step the last one: steps that were undone before it are dropped, and so are steps beyond the limit,
+/// with their data.
 pub(crate) fn complete(root: &Path, number: u32) -> Result<(), ProjectError> {
     forget(root, |old| old >= number || old.saturating_add(HISTORY_LIMIT) <= number)?;
     storage::rename(&storage::unfinished(root, &file_of(number)), &root.join(file_of(number)))?;
     release_forgotten(root)
 }
 
-/// Forgets everything but step `number`, and the data only that kept.
+/// Drops everything but step `number`, and the data that only the dropped steps refer to.
 pub(crate) fn forget_all_but(root: &Path, number: u32) -> Result<(), ProjectError> {
     forget(root, |old| old != number)?;
     release_forgotten(root)?;
@@ -101,7 +100,7 @@ fn forget(root: &Path, which: impl Fn(u32) -> bool) -> Result<(), ProjectError> 
     Ok(())
 }
 
-/// Deletes the forgotten steps, after the data that only they refer to.
+/// Deletes the dropped steps, after the data that only they refer to.
 fn release_forgotten(root: &Path) -> Result<(), ProjectError> {
     for number in numbers_in(&storage::unfinished(root, "forgotten")) {
         let file = forgotten_file_of(number);
@@ -111,8 +110,7 @@ fn release_forgotten(root: &Path) -> Result<(), ProjectError> {
     Ok(())
 }
 
-/// Cleans up after a writer that did not come to its end: a completed command gets its step, an incomplete
-/// one leaves nothing.
+/// Cleans up after a writer that did not finish: a completed command gets its step, an incomplete one leaves nothing.
 pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectError> {
     if !root.join(storage::UNFINISHED).exists() {
         return Ok(());
@@ -121,7 +119,7 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
         match read_step(&storage::unfinished(root, &file_of(number))) {
             Ok(step) if step.project == project_text => complete(root, number)?,
             Ok(step) => release(root, files_of(Some(&step)))?,
-            // Written in part: nothing of it was published yet.
+            // It was written in part, so nothing of it was published yet.
             Err(_) => {}
         }
     }
@@ -130,8 +128,8 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
     Ok(())
 }
 
-/// Whether the present or any remembered state has this text somewhere: keys of derived data are looked for
-/// so.
+/// Whether the present state or any state of the history contains this text; this is how keys of derived data are
+/// looked for.
 pub(crate) fn is_named(root: &Path, text: &str) -> bool {
     let states = numbers(root).into_iter().map(|number| root.join(file_of(number))).chain([root.join(storage::STATE)]);
     // A state that cannot be read may name anything.
@@ -144,7 +142,7 @@ fn files_of(step: Option<&Step>) -> BTreeSet<String> {
     document.iter().flat_map(|document| document.files().map(str::to_owned)).collect()
 }
 
-/// Deletes those of `files` that neither the present nor any remembered state refers to. What is not
+/// Deletes those of `files` that neither the present state nor any state of the history refers to. What is not
 /// `KIND/NAME` is no data of a project and stays. While the present state cannot be read, everything stays.
 pub(crate) fn release(root: &Path, mut files: BTreeSet<String>) -> Result<(), ProjectError> {
     files.retain(|file| data_file::is_any_data_file(file));
@@ -164,8 +162,8 @@ pub(crate) fn release(root: &Path, mut files: BTreeSet<String>) -> Result<(), Pr
     Ok(())
 }
 
-/// Takes out of `files` what a damaged step may still refer to: everything it names, or everything when it
-/// cannot be read at all.
+/// Removes from `files` what a damaged step may still refer to: everything it names, or everything if it cannot be read
+/// at all.
 fn keep_what_is_named_in(step: &Path, files: &mut BTreeSet<String>) {
     match std::fs::read(step) {
         Ok(bytes) => {

@@ -4,14 +4,14 @@
 //! Data that a state refers to is exactly `KIND/NAME` ([`crate::document::data_file`]), a real file or folder
 //! and not a link.
 //!
-//! Nothing that a saved state refers to is ever overwritten. What is being written lies in the folder
-//! `unfinished/` under the same relative path, and is renamed to its place when it is complete ([`publish`],
-//! [`replace`]). What a killed program leaves there was never part of a project; the next writer removes the
-//! folder. Names of data therefore never decide what is a leftover.
+//! Nothing that a saved state refers to is ever overwritten. What is being written lies in the folder `unfinished/`
+//! under the same relative path, and is renamed to its place when it is complete ([`publish`], [`replace`]). What a
+//! killed program leaves there was never part of a project; the next writer removes the folder. So the name of a file
+//! never decides whether it is a leftover.
 //!
-//! [`remove`] deletes single files of the project's own making and works through a handle on the folder,
-//! which cannot be led outside by a link. Data files go through [`super::history::release`] instead, which
-//! first asks every remembered state.
+//! [`remove`] deletes single files that the project itself made and works through a handle on the folder, which no link
+//! can lead outside. Data files go through [`super::history::release`] instead, which first checks every state of the
+//! history.
 
 use crate::document::data_file::KINDS;
 use crate::error::ProjectError;
@@ -22,27 +22,27 @@ use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The state.
+/// The file of the state.
 pub(crate) const STATE: &str = "project.toml";
 
-/// Folder of what is not complete; only the holder of the project's lock writes here.
+/// Folder of incomplete data; only the holder of the project's lock writes here.
 pub(crate) const UNFINISHED: &str = "unfinished";
 
-/// Folder of what was computed; may be deleted.
+/// Folder of computed data; it may be deleted.
 pub(crate) const DERIVED: &str = "derived";
 
-/// Folder of an import that is not complete. A killed one leaves it, the next goes on there.
+/// Folder of an incomplete import. An import that was killed leaves it, and the next one continues from it.
 pub(crate) const IMPORTING: &str = "importing";
 
-/// Everything a project has at its top: folders first, then files.
+/// Everything at the top level of a project: folders first, then files.
 const FOLDERS: [&str; 4] = ["history", DERIVED, UNFINISHED, IMPORTING];
 const FILES: [&str; 4] = [STATE, "lock", "creating", "window.lock"];
 
-/// Refuses a project in which a link could lead a writer outside: every folder and file that commands write
-/// to, and everything in it, must be what it seems. Nothing is written before this has passed.
+/// Refuses a project in which a link could lead a writer outside: every folder and file that commands write to, and
+/// everything in it, must be a real folder or file. Nothing is written before this check has passed.
 ///
 /// # Errors
-/// [`ProjectError::Link`] with the first link found, or a folder that cannot be read.
+/// [`ProjectError::Link`] with the first link found, or a folder cannot be read.
 pub(crate) fn refuse_links(root: &Path) -> Result<(), ProjectError> {
     FILES.iter().chain(&FOLDERS).chain(&KINDS).try_for_each(|name| refuse_links_in(root, Path::new(name)))
 }
@@ -72,12 +72,12 @@ fn refuse_links_in(root: &Path, relative: &Path) -> Result<(), ProjectError> {
     Ok(())
 }
 
-/// Where `file` is written until it is complete.
+/// The path at which `file` is written until it is complete.
 pub(crate) fn unfinished(root: &Path, file: &str) -> PathBuf {
     root.join(UNFINISHED).join(file)
 }
 
-/// The same, with its folder made.
+/// The same path, after its folder was made.
 ///
 /// # Errors
 /// The folder cannot be made.
@@ -88,27 +88,27 @@ pub(crate) fn begin(root: &Path, file: &str) -> Result<PathBuf, ProjectError> {
     Ok(path)
 }
 
-/// Where `file` can be read now: what a command under way has written and not yet published lies in
+/// The path at which `file` can be read now: what the present command has written and not yet published lies in
 /// `unfinished/`.
 pub fn at_hand(root: &Path, file: &str) -> PathBuf {
     let (path, unfinished) = (root.join(file), unfinished(root, file));
     if !path.exists() && unfinished.exists() { unfinished } else { path }
 }
 
-/// Flushes what was written for `file` and gives it its place.
+/// Flushes what was written for `file` and moves it to its place.
 pub(crate) fn publish(root: &Path, file: &str) -> Result<(), ProjectError> {
     let from = unfinished(root, file);
     sync_tree(&from)?;
     rename(&from, &root.join(file))
 }
 
-/// Writes `bytes` to where `file` waits for being published.
+/// Writes `bytes` to the path where `file` waits to be published.
 pub(crate) fn write_unfinished(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
     let path = begin(root, file)?;
     write_durably(&path, bytes)
 }
 
-/// Replaces `file` by `bytes`: either the old or the new content is there, whatever happens.
+/// Replaces `file` by `bytes`: at any moment either the old or the new content is there.
 pub(crate) fn replace(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
     write_unfinished(root, file, bytes)?;
     rename(&unfinished(root, file), &root.join(file))
@@ -155,11 +155,10 @@ fn sync_tree(path: &Path) -> Result<(), ProjectError> {
     }
 }
 
-/// Removes a file or folder of the project, if it is there: the one place where something in a project is
-/// deleted.
+/// Removes a file or folder of the project, if it exists: the only place where something in a project is deleted.
 ///
-/// `file` must lie inside the project; of a link the link itself goes, never what it points to. What cannot
-/// be removed stays behind as something that no state refers to.
+/// `file` must lie inside the project. Of a link, the link itself is removed, never its target. What cannot be removed
+/// stays behind as something that no state refers to.
 pub(crate) fn remove(root: &Path, file: &str) {
     let plain =
         !file.is_empty() && Path::new(file).components().all(|part| matches!(part, std::path::Component::Normal(_)));
@@ -182,8 +181,7 @@ fn remove_inside(root: &Path, file: &str) -> io::Result<()> {
     Ok(())
 }
 
-/// Opens a file at the top of the project for reading and writing, made if it is not there; a link is not
-/// followed.
+/// Opens a file at the top of the project for reading and writing, and creates it if necessary; a link is not followed.
 ///
 /// # Errors
 /// It is a link, or cannot be opened.
@@ -199,7 +197,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, ProjectError> {
     fs::read_to_string(path).map_err(|source| ProjectError::io("read", path, source))
 }
 
-/// Names of a folder's entries, in order; none when it is missing.
+/// The names of a folder's entries, sorted; none if the folder does not exist.
 pub(crate) fn names_in(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     let mut found: Vec<String> = entries.filter_map(|entry| entry.file_name().into_string().ok()).collect();
@@ -207,7 +205,7 @@ pub(crate) fn names_in(folder: &Path) -> Vec<String> {
     found
 }
 
-/// Keeps other writers out for as long as it lives. The system releases it when the process ends, however it
+/// Keeps other writers out for as long as it lives. The system releases the lock when the process ends, however it
 /// ends.
 #[derive(Debug)]
 pub(crate) struct Lock {
