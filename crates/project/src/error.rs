@@ -45,21 +45,21 @@ impl std::fmt::Display for Noun {
 /// Why something could not be done with a project. The project is as it was before.
 #[derive(Debug, thiserror::Error)]
 pub enum ProjectError {
-    /// Nothing is there.
+    /// There is no project at the path.
     #[error("there is no project at {}", path.display())]
     NotFound {
-        /// Where it was looked for.
+        /// The path.
         path: PathBuf,
     },
-    /// Something else is there.
+    /// There is something else at the path.
     #[error("{} is not a Petroglyph project: {fact}", path.display())]
     NotAProject {
-        /// What was opened.
+        /// The path.
         path: PathBuf,
         /// What it is or lacks.
         fact: &'static str,
     },
-    /// Something is there already.
+    /// Something exists already at the path.
     #[error("{} exists already", path.display())]
     Exists {
         /// Where the project was to be created.
@@ -103,7 +103,7 @@ pub enum ProjectError {
         /// The file or folder.
         path: PathBuf,
     },
-    /// No space left.
+    /// The disk is full.
     #[error("the disk is full: {} could not be written", path.display())]
     DiskFull {
         /// The file or folder.
@@ -140,14 +140,14 @@ pub enum ProjectError {
     /// A name that cannot be used.
     #[error("\"{name}\" cannot be the name of a {noun}: {fact}")]
     BadName {
-        /// What was to be named.
+        /// The kind of thing that was to be named.
         noun: Noun,
         /// The name given.
         name: String,
         /// What is wrong with it.
         fact: &'static str,
     },
-    /// A survey frame that conversions cannot work with.
+    /// A survey geometry that conversions cannot work with.
     #[error("the survey geometry cannot be used: {0}")]
     Geometry(#[from] survey::geometry::GeometryError),
     /// A volume that does not lie in the project's survey.
@@ -177,7 +177,7 @@ pub enum ProjectError {
         younger: String,
         /// The horizon that should be below.
         older: String,
-        /// Share of the common traces that cross, 0 to 1.
+        /// Share of the common traces at which they cross, 0 to 1.
         share: f64,
         /// Largest crossing.
         worst: f32,
@@ -239,13 +239,13 @@ pub enum ProjectError {
     /// Horizon candidates could not be extracted or read.
     #[error(transparent)]
     Interp(interp::Error),
-    /// No candidates yet.
+    /// There are no candidates yet.
     #[error("the project has no horizon candidates yet")]
     NotExtracted,
-    /// Nothing to compute from.
+    /// There is no volume to compute from.
     #[error("the project has no volume on its own lattice")]
     NoVolume,
-    /// A volume whose voxels are not the project's.
+    /// A volume whose lattice is not the project's.
     #[error("volume \"{volume}\" lies on another lattice than the project")]
     OtherLattice {
         /// Its name.
@@ -266,7 +266,7 @@ pub enum ProjectError {
         /// First and last vertical value.
         vertical: [f64; 2],
     },
-    /// A place with no candidate near it.
+    /// There is no candidate near a place.
     #[error(
         "no candidate lies within {max_distance} voxels of inline {}, crossline {}, {}: the nearest is \
          {distance:.1} voxels away, at inline {:.1}, crossline {:.1}, {:.1}",
@@ -279,7 +279,7 @@ pub enum ProjectError {
         nearest: [f64; 3],
         /// Its distance, voxels.
         distance: f32,
-        /// How far the extraction reaches, voxels.
+        /// Largest distance of the extraction, voxels.
         max_distance: f32,
     },
     /// A node could not be found.
@@ -291,22 +291,22 @@ pub enum ProjectError {
         /// Its name.
         horizon: String,
     },
-    /// Nothing of a horizon is left.
-    #[error("nothing of horizon \"{horizon}\" would be left")]
+    /// Nothing would be left of a horizon.
+    #[error("nothing would be left of horizon \"{horizon}\"")]
     NothingLeft {
         /// Its name.
         horizon: String,
     },
-    /// The node is part of the horizon already.
-    #[error("horizon \"{horizon}\" has all of the node at leaf {leaf} already")]
+    /// The node is already part of the horizon.
+    #[error("horizon \"{horizon}\" already contains all of the node at leaf {leaf}")]
     AlreadyPicked {
         /// The horizon.
         horizon: String,
         /// The leaf.
         leaf: u32,
     },
-    /// The node is no part of the horizon.
-    #[error("horizon \"{horizon}\" has nothing of the node at leaf {leaf}")]
+    /// The node is not part of the horizon.
+    #[error("horizon \"{horizon}\" contains nothing of the node at leaf {leaf}")]
     NotPicked {
         /// The horizon.
         horizon: String,
@@ -319,15 +319,18 @@ pub enum ProjectError {
         /// Two of them.
         horizons: [String; 2],
     },
-    /// A pick that is not there.
-    #[error("there is no pick {pick}; {}", if known.is_empty() { "nothing was picked yet".to_owned() } else { format!("there are: {known:?}") })]
+    /// There is no pick of this number.
+    #[error(
+        "there is no pick {pick}; {}",
+        if known.is_empty() { "there are no picks yet".to_owned() } else { format!("the picks are {known:?}") }
+    )]
     UnknownPick {
         /// Its number.
         pick: u32,
-        /// Those there are.
+        /// The numbers that exist.
         known: Vec<u32>,
     },
-    /// A pick that cannot go down so far.
+    /// A pick that cannot descend that far.
     #[error("pick {pick} is {up} levels above its leaf and cannot descend further than that")]
     AtLeaf {
         /// Its number.
@@ -335,7 +338,7 @@ pub enum ProjectError {
         /// Levels above its leaf.
         up: u32,
     },
-    /// Picks of another extraction.
+    /// Picks made on another extraction.
     #[error("the extraction has changed since picks {picks:?} of horizon \"{horizon}\" were made")]
     OutdatedPicks {
         /// The horizon.
@@ -343,59 +346,59 @@ pub enum ProjectError {
         /// Their numbers.
         picks: Vec<u32>,
     },
-    /// Picks that mean something else now.
-    #[error("picks {picks:?} of horizon \"{horizon}\" no longer fit: their nodes are different ones, or gone")]
+    /// Picks whose nodes have changed.
+    #[error("picks {picks:?} of horizon \"{horizon}\" no longer fit: their nodes have changed or no longer exist")]
     UnfitPicks {
         /// The horizon.
         horizon: String,
         /// Their numbers.
         picks: Vec<u32>,
     },
-    /// A stick of one place.
-    #[error("stick {stick} has one place; a stick is a line of at least two")]
+    /// A stick of one point.
+    #[error("stick {stick} has one point; a stick is a line of at least two")]
     ShortStick {
         /// Which one, from 1.
         stick: usize,
     },
-    /// Sticks that make no surface.
+    /// Sticks that span no surface.
     #[error("the sticks of fault \"{fault}\" span no surface")]
     FlatSticks {
         /// The fault.
         fault: String,
     },
-    /// A fault that was not drawn here.
-    #[error("fault \"{fault}\" was not drawn by sticks")]
+    /// A fault that was not drawn as sticks.
+    #[error("fault \"{fault}\" was not drawn as sticks")]
     NotDrawn {
         /// Its name.
         fault: String,
     },
-    /// No horizons to find faults in.
-    #[error("the project has no horizons whose offsets could speak for faults")]
+    /// There are no horizons from which to propose faults.
+    #[error("the project has no horizons whose offsets could indicate faults")]
     NoEvidence,
-    /// Nothing was proposed.
-    #[error("no faults were proposed yet")]
+    /// No faults were proposed.
+    #[error("no faults have been proposed yet")]
     NoProposals,
-    /// Proposals of another state.
+    /// Proposals for another state.
     #[error("the horizons have changed since faults were proposed")]
     OutdatedProposals,
-    /// A proposal that is not there.
+    /// There is no proposal of this number.
     #[error("there is no proposal {proposal}; they are numbered from 1 to {known}")]
     UnknownProposal {
         /// Its number.
         proposal: u32,
-        /// How many there are.
+        /// Number of proposals.
         known: u32,
     },
-    /// The user stopped it.
+    /// The user cancelled.
     #[error("cancelled")]
     Cancelled(#[from] survey::Cancelled),
-    /// Interpretation without a frame to place it in.
-    #[error("the project has no survey frame yet")]
+    /// There is no survey geometry yet.
+    #[error("the project has no survey geometry yet")]
     NoGeometry,
-    /// At the first step.
+    /// The history is at its first step.
     #[error("there is nothing to undo")]
     NothingToUndo,
-    /// At the last step.
+    /// The history is at its last step.
     #[error("there is nothing to redo")]
     NothingToRedo,
 }
@@ -418,7 +421,7 @@ fn listed(names: &[String]) -> String {
 }
 
 impl ProjectError {
-    /// Sorts a failure of the file system into what the user can act on.
+    /// Turns a failure of the file system into an error that the user can act on.
     pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();
         match source.kind() {
@@ -430,8 +433,8 @@ impl ProjectError {
         }
     }
 
-    /// What to do next, where it is the same wherever the error is shown. Whoever shows the others has words of its own for them, or
-    /// they say it themselves.
+    /// What to do next, if the advice is the same wherever the error is shown. The other errors get advice from the
+    /// program that shows them, or contain it themselves.
     pub fn advice(&self) -> Option<&'static str> {
         Some(match self {
             Self::NotAProject { .. } => "give the folder that holds project.toml, usually NAME.petro",
@@ -440,19 +443,19 @@ impl ProjectError {
             Self::Malformed { .. } => "undo the last edit by hand, or copy the last good state from history/",
             Self::Locked { .. } => "wait until the other command has finished, then try again; nothing was changed",
             Self::Link { .. } => {
-                "if you trust where the project comes from, put a copy of the file or folder in the link's place; nothing was changed"
+                "if you trust the origin of the project, replace the link by a copy of the file or folder; nothing was changed"
             }
             Self::ReadOnly { .. } => "copy the project to a folder you may write to; nothing was changed",
-            Self::SeveralHorizons { .. } => "make the picks of each horizon in a step of their own",
-            Self::FlatSticks { .. } => "draw sticks beside one another, along the fault's dip",
+            Self::SeveralHorizons { .. } => "make the picks of each horizon in a separate step",
+            Self::FlatSticks { .. } => "draw sticks next to one another, each along the dip of the fault",
             Self::NoEvidence => "assemble or import horizons first",
             Self::BadName { .. } => "use letters, digits, blanks, - and _",
             Self::Cancelled(_) => "nothing was changed",
             Self::OtherLattice { .. } => {
-                "extract from a volume on the project's lattice, or import this one into a project of its own"
+                "extract from a volume on the project's lattice, or import this one into a new project"
             }
-            Self::Geometry(_) => "check the header bytes and bounds the geometry is made from",
-            Self::CircularTruncation { .. } => "take one of these truncations away",
+            Self::Geometry(_) => "check the header bytes or bounds from which the geometry is made",
+            Self::CircularTruncation { .. } => "remove one of these truncations",
             Self::Io { .. }
             | Self::Segy(_)
             | Self::Format(_)
@@ -499,7 +502,7 @@ impl ProjectError {
         })
     }
 
-    /// What can be stated about a file so that this does not happen again, where that is known.
+    /// What can be stated about a file so that the error does not occur again, if that is known.
     pub fn remedy(&self) -> Option<Remedy> {
         match self {
             Self::Segy(error) => error.remedy(),
@@ -510,7 +513,7 @@ impl ProjectError {
     }
 }
 
-/// What can be stated about a file against an error, wherever in its chain of causes that is known.
+/// What can be stated about a file to resolve an error, wherever in its chain of causes that is known.
 pub fn remedy_of(error: &(dyn std::error::Error + 'static)) -> Option<Remedy> {
     std::iter::successors(Some(error), |error| error.source()).find_map(|error| {
         if let Some(error) = error.downcast_ref::<ProjectError>() {

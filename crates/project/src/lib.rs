@@ -1,8 +1,8 @@
 //! A project: what was imported and interpreted, how it is drawn, and the commands that change it.
 //!
-//! The command line, the window and scripts share this crate. A [`Project`] is a folder on disk; every change
-//! to it is a [`Command`], which can be undone, also by another process later. Results that are computed from
-//! a project are kept beside it under a key made of their input.
+//! The command line, the window and scripts share this crate. A [`Project`] is a folder on disk; every change to it is
+//! a [`Command`], which can be undone, even by another process later. Results that are computed from a project are
+//! stored beside it under a key, which is a hash of their input.
 //!
 //! The modules build on one another in this order:
 //!
@@ -20,8 +20,9 @@
 //! | [`figures`] | what a figure needs, loaded, and its page made |
 //! | [`demo`], [`segy_export`] | the demonstration; a volume written as SEG-Y |
 //!
-//! Deliberately absent: the words of a command line or a window. An error says what is wrong and what helps.
-//! The names of options and fields are known only to the program that shows the error.
+//! Deliberately absent: the words of a command line or a window. An error says what is wrong; what helps is said here
+//! only where it is the same everywhere. The names of options and fields are known only to the program that shows the
+//! error.
 
 pub mod command;
 pub mod content;

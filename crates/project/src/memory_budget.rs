@@ -1,11 +1,11 @@
-//! How much memory is available.
+//! The memory that is available.
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-/// Enough for a section of any survey, where a system of a kind that cannot be asked runs the program.
+/// Used where the system cannot be asked: enough for a section of any survey.
 const UNKNOWN: u64 = 1 << 30;
 
-/// Half of the memory that is available now, bytes; of a control group's limit where one is set.
+/// Half of the memory that is available now, bytes; of a control group's limit if one is set.
 pub fn half_of_available() -> u64 {
     let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
     let Ok(system) = System::new_with_specifics(memory) else { return UNKNOWN };
@@ -13,7 +13,7 @@ pub fn half_of_available() -> u64 {
     system.available_memory().min(limit) / 2
 }
 
-/// Bytes of `2G`, `512M`, `800K` or a plain number.
+/// Parses a number of bytes such as `2G`, `512M`, `800K` or a plain number.
 pub fn parse_bytes(text: &str) -> Option<u64> {
     let text = text.trim();
     let (number, unit) = match text.char_indices().next_back()? {

@@ -1,8 +1,8 @@
-//! Where a volume with a lattice of its own lies in the project's voxel space.
+//! The place of a volume with its own lattice in the project's voxel space.
 //!
-//! A volume of another size and extent can be shown when its lines run along the project's, in the same
-//! direction, and it covers a part of the same rock in the same vertical unit (P-illus 5.1: volumes of
-//! different size and extent). Then its first and last samples are the corners of a box in voxel space.
+//! A volume of another size and extent can be shown if its lines run along the project's, in the same direction, and if
+//! it covers part of the same rock in the same vertical unit (P-illus 5.1: volumes of different size and extent). Then
+//! its first and last samples are the corners of a box in voxel space.
 
 use glam::{DVec2, DVec3};
 use render::VoxelBox;
@@ -19,7 +19,7 @@ pub enum PlacementError {
         /// The volume's unit.
         found: &'static str,
     },
-    /// The lines are turned against the project's.
+    /// The lines run in another direction than the project's.
     #[error(
         "its {lines} run at {found_deg:.1} degrees from east, the project's at {expected_deg:.1}; the two \
          surveys are turned against one another"
@@ -50,14 +50,14 @@ pub enum PlacementError {
     },
 }
 
-/// Largest difference of direction, as a shift at the far end of a line: a quarter of a bin would be seen.
+/// Largest difference of direction, as a shift at the far end of a line: a quarter of a bin would be visible.
 const MAX_SHIFT_BINS: f64 = 0.25;
 
 /// The voxel positions of the first and the last sample of a volume on the lattice `other`, in the project's
 /// `frame`.
 ///
 /// # Errors
-/// [`PlacementError`] when its lines do not run along the project's or it lies elsewhere.
+/// [`PlacementError`] if its lines do not run along the project's or it lies elsewhere.
 pub fn covers(frame: &SurveyGeometry, other: &SurveyGeometry) -> Result<VoxelBox, PlacementError> {
     if frame.vertical.unit != other.vertical.unit {
         let word = |unit| match unit {

@@ -1,5 +1,5 @@
-//! A volume of a project as a SEG-Y file: streamed by as many inlines at a time as a shard holds, so that a
-//! volume of any size can be written.
+//! Writes a volume of a project as a SEG-Y file: it is streamed by as many inlines at a time as a shard holds, so that
+//! a volume of any size can be written.
 
 use crate::Project;
 use crate::error::{Noun, ProjectError};
@@ -11,24 +11,24 @@ use std::path::{Path, PathBuf};
 use store::StoredVolume;
 use survey::{Progress, SurveyGeometry};
 
-/// Memory that the samples on their way may take, bytes.
+/// Largest memory for the samples being copied, bytes.
 const SLAB_BYTES: usize = 512 << 20;
 
-/// What was written.
+/// The report of the export.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct VolumeWritten {
     /// The file.
     pub file: PathBuf,
     /// The volume.
     pub volume: String,
-    /// Traces; those that were not recorded are left out.
+    /// Number of traces; those that were not recorded are left out.
     pub traces: usize,
     /// Length of the file.
     pub bytes: u64,
     /// Code of the sample format.
     pub format_code: u16,
-    /// Samples beyond the range of an integer format, written as its limit; and samples that are no numbers,
-    /// as 0.
+    /// Number of samples beyond the range of an integer format, written as its limit; and of samples that are not a
+    /// number, written as 0.
     pub clipped: u64,
 }
 
@@ -50,11 +50,11 @@ impl std::fmt::Display for VolumeWritten {
     }
 }
 
-/// Writes the volume `name` of a project; `format` is by default the one its samples are stored in.
+/// Writes the volume `name` of a project; `format` is by default the one in which its samples are stored.
 ///
 /// # Errors
-/// No such volume, damaged data, what SEG-Y cannot hold, a full disk, or cancelled; `out` is then what it was
-/// before.
+/// There is no such volume, data are damaged, SEG-Y cannot hold the volume, the disk is full, or the user cancelled;
+/// `out` is then what it was before.
 pub fn write(
     project: &Project,
     out: &Path,

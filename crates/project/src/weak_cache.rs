@@ -1,19 +1,19 @@
-//! A weak cache: several independent callers share a value. The value made last is found again for as long as
-//! someone holds it.
+//! A weak cache, through which several independent callers share a value. The value made last is found again for as
+//! long as someone holds it.
 
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-/// A value and what it was made of.
+/// A value and its key.
 pub(crate) struct WeakCache<K, V>(Mutex<Option<(K, Weak<V>)>>);
 
 impl<K: PartialEq, V> WeakCache<K, V> {
-    /// Nothing yet.
+    /// An empty cache.
     pub(crate) const fn nothing() -> Self {
         Self(Mutex::new(None))
     }
 
-    /// The value made of `key` that someone holds, or else a new one. While it is being made nothing is
-    /// locked: of two who ask at once, both make it.
+    /// The value of `key` if someone holds it, otherwise a new one. While it is being made nothing is locked: if two
+    /// callers ask at once, both make it.
     pub(crate) fn get_or_make<E>(&self, key: K, make: impl FnOnce() -> Result<V, E>) -> Result<Arc<V>, E> {
         let last = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let known = last().as_ref().filter(|(of, _)| *of == key).and_then(|(_, known)| known.upgrade());

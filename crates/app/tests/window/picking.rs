@@ -190,7 +190,7 @@ fn shift_adds_alt_takes_out_and_the_pick_list_moves_and_takes_back() {
     // What is not part of the horizon cannot be taken out, and this is said.
     act(&mut harness, PickingStep::At(DVec3::new(22.0, 18.0, on_a_trough().z), How::Remove));
     wait(&mut harness, "it is said", |harness| !state(harness).notices.is_empty());
-    assert!(state(&harness).notices[0].text.contains("has nothing of"), "{:?}", state(&harness).notices);
+    assert!(state(&harness).notices[0].text.contains("contains nothing of"), "{:?}", state(&harness).notices);
 }
 
 #[test]

@@ -23,31 +23,31 @@ use std::sync::Arc;
 use survey::{Contact, Horizon, Progress, SurveyGeometry};
 use ttf::Colour;
 
-/// What a horizon is after its picks.
+/// The state of a horizon after its picks.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct AssemblyReport {
-    /// Its sheets; more than one in a fault block overlap.
+    /// Its sheets; if a fault block has more than one, they overlap.
     pub sheets: usize,
     /// Nodes with a depth.
     pub nodes: usize,
     /// Share of the survey's traces that have a node.
     pub share: f64,
-    /// Where sheets of one fault block lie over one another.
+    /// Where sheets of one fault block overlap.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub overlap: Option<ReportedOverlap>,
-    /// Nodes left out because they were tracked past a fault, where the sheet of the other side runs.
+    /// Number of nodes left out because they were tracked past a fault, where the sheet of the other side runs.
     #[serde(skip_serializing_if = "is_zero")]
     pub past_faults: usize,
-    /// What is missing inside it.
+    /// The holes in it.
     pub holes: HoleReport,
     /// What was filled.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub filled: Option<Filled>,
-    /// Contradictions with other horizons.
+    /// Conflicts with other horizons.
     pub conflicts: Vec<ReportedConflict>,
 }
 
-/// An overlap ([`Overlap`]) at its place in line numbers.
+/// An overlap ([`Overlap`]) with its place in line numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ReportedOverlap {
     /// Count of vertices that share trace and fault block with an earlier vertex.
@@ -70,7 +70,7 @@ impl ReportedOverlap {
     }
 }
 
-/// A conflict ([`Conflict`]) at its place in line numbers.
+/// A conflict ([`Conflict`]) with its place in line numbers.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "conflict", rename_all = "kebab-case")]
 pub enum ReportedConflict {
@@ -135,14 +135,14 @@ fn is_zero(count: &usize) -> bool {
     *count == 0
 }
 
-/// The holes that a horizon's nodes enclose.
+/// The holes that the nodes of a horizon enclose.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct HoleReport {
-    /// Holes.
+    /// Number of holes.
     pub count: usize,
-    /// Traces without a node in all of them.
+    /// Number of traces without a node in all of them.
     pub traces: usize,
-    /// Traces of the largest.
+    /// Number of traces of the largest.
     pub largest: usize,
     /// Inline and crossline of its middle.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -199,8 +199,8 @@ pub fn sentence(conflict: &ReportedConflict) -> String {
     }
 }
 
-/// The faults of the project as blocks; they take longer to make than all else that a pick needs, so they are
-/// kept beside the project, and whoever makes several picks holds them.
+/// The fault blocks of the project. They take longer to compute than everything else that a pick needs, so they are
+/// stored beside the project, and a caller that makes several picks holds them.
 pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
     static HELD: WeakCache<(SurveyGeometry, Vec<String>), FaultNetwork> = WeakCache::nothing();
     let geometry = document.frame()?;
@@ -222,10 +222,10 @@ pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<A
     })
 }
 
-/// The nodes of a log on the extraction at hand.
+/// The nodes of a log on the present extraction.
 ///
 /// # Errors
-/// [`ProjectError::OutdatedPicks`] when some of them are of another extraction.
+/// [`ProjectError::OutdatedPicks`] if some of the picks were made on another extraction.
 pub fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<Selection, ProjectError> {
     let outdated: Vec<u32> =
         log.picks.iter().filter(|pick| pick.extraction != candidates.key).map(|pick| pick.id).collect();
@@ -235,10 +235,10 @@ pub fn selection(name: &str, log: &Assembly, candidates: &Candidates) -> Result<
     Ok(picked_selection(log, &candidates.forest)?)
 }
 
-/// The nodes of a log whose picks are all of the extraction that the trees are of.
+/// The nodes of a log whose picks were all made on the extraction of the given trees.
 ///
 /// # Errors
-/// A pick above its tree.
+/// A pick lies above the root of its tree.
 pub(crate) fn picked_selection(log: &Assembly, forest: &Forest) -> Result<Selection, AssemblyError> {
     let mut nodes = Vec::with_capacity(log.picks.len());
     for pick in &log.picks {
@@ -253,8 +253,7 @@ pub fn next_colour(document: &Document) -> Colour {
     horizon_colour(None, assembled)
 }
 
-/// Makes the sheets of horizon `name` from `log` and puts both into the draft, the horizon at its place by
-/// depth.
+/// Makes the sheets of horizon `name` from `log` and puts both into the draft, with the horizon at its place by depth.
 pub(crate) fn rebuild(
     draft: &mut Draft,
     candidates: &Candidates,
@@ -290,7 +289,7 @@ pub(crate) fn rebuild(
     Ok(report)
 }
 
-/// Counts and holes of sheets.
+/// Counts nodes, traces and holes of sheets.
 pub fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyReport {
     let [nx, ny, _] = geometry.size();
     let traces = (0..nx * ny).filter(|&n| sheets.iter().any(|sheet| sheet.z[n].is_finite())).count();
@@ -311,7 +310,7 @@ pub fn report_on(sheets: &[VoxelSheet], geometry: &SurveyGeometry) -> AssemblyRe
     }
 }
 
-/// Writes a horizon and its entry. One that is there keeps its contact; its place follows its depth.
+/// Writes a horizon and its entry. An existing horizon keeps its contact; its place follows its depth.
 pub(crate) fn put(
     draft: &mut Draft,
     horizon: &Horizon,
@@ -356,7 +355,7 @@ pub(crate) fn put(
     Ok(())
 }
 
-/// Ends the record of a horizon whose holes were filled.
+/// Completes the record of a horizon whose holes were filled.
 const FILLED: &str = "; holes filled";
 
 /// Conflicts that involve horizon `name`, in line numbers.
@@ -406,7 +405,7 @@ pub fn conflicts_of(
     Ok(found.into_iter().map(|conflict| ReportedConflict::new(conflict, geometry)).collect())
 }
 
-/// Remakes all assembled horizons after the faults have changed. Horizons whose picks belong to another
+/// Assembles all horizons with picks again after the faults have changed. Horizons whose picks were made on another
 /// extraction stay as they are, and a warning says so.
 pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), ProjectError> {
     let logs: Vec<(String, Assembly)> = draft
@@ -435,7 +434,7 @@ pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
     Ok(())
 }
 
-/// The log of an assembled horizon.
+/// The log of a horizon that was assembled from picks.
 ///
 /// # Errors
 /// There is no such horizon, or it was imported.

@@ -1,7 +1,7 @@
-//! The present extraction as picks see it: the trees, and what identifies them.
+//! The present extraction as picks need it: its trees and its key.
 //!
-//! A caller that makes several picks holds the result of [`Candidates::load`]. While it lives, callers that
-//! ask for the same extraction get it without reading anything but its facts.
+//! A caller that makes several picks holds the result of [`Candidates::load`]. While it lives, callers that ask for the
+//! same extraction get it without reading anything but its report.
 
 use super::extraction;
 use crate::document::Document;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 use store::StoredCandidates;
 use survey::{Progress, SurveyGeometry};
 
-/// By place and key.
+/// Key of the weak cache: path and key of the extraction.
 static HELD: WeakCache<(PathBuf, String), Candidates> = WeakCache::nothing();
 
 /// Candidates to pick from.
@@ -23,18 +23,18 @@ static HELD: WeakCache<(PathBuf, String), Candidates> = WeakCache::nothing();
 pub struct Candidates {
     /// Surfaces and trees.
     pub forest: Forest,
-    /// Identifies volume and settings.
+    /// Key: identifies volume, settings and method.
     pub key: String,
-    /// Distance within which a place belongs to a leaf, voxels.
+    /// Largest distance of a place from the leaf that it belongs to, voxels.
     pub max_distance: f32,
 }
 
 impl Candidates {
-    /// Those of the project in `root`: the ones that someone holds, where they are the present extraction, or
-    /// else read.
+    /// The candidates of the project in `root`: those that someone holds, if they are of the present extraction,
+    /// otherwise read from disk.
     ///
     /// # Errors
-    /// [`ProjectError::NotExtracted`] when there are none; damaged data, or cancelled.
+    /// [`ProjectError::NotExtracted`] if there are none; data are damaged, or the user cancelled.
     pub fn load(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<Self>, ProjectError> {
         let path = extraction::candidates_path(root, document)?;
         let stored = StoredCandidates::open(&path)?;
@@ -44,10 +44,10 @@ impl Candidates {
         })
     }
 
-    /// The leaf at a place in line numbers and the vertical unit, within the reach of the extraction.
+    /// The leaf at a place given by line numbers and the vertical unit, within the largest distance of the extraction.
     ///
     /// # Errors
-    /// The place lies outside the survey, or no candidate is near.
+    /// The place lies outside the survey, or there is no candidate near it.
     pub fn leaf_near(&self, geometry: &SurveyGeometry, at: [f64; 3]) -> Result<ClosestLeaf, ProjectError> {
         let place = geometry.voxel_from_lines(at[0], at[1]);
         let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
@@ -67,7 +67,7 @@ impl Candidates {
         })
     }
 
-    /// Levels from a leaf to the root of its tree.
+    /// Number of levels from a leaf to the root of its tree.
     pub fn levels(&self, leaf: u32) -> u32 {
         let mut node = self.forest.leaves[leaf as usize - 1];
         let mut levels = 0;

@@ -1,6 +1,6 @@
-//! Horizon candidates of a project, extracted once for a volume and settings and kept in `derived/` for as
-//! long as a remembered state names them: `candidates.zarr` is the present extraction, `candidates-KEY.zarr`
-//! those that undo and redo lead to.
+//! Horizon candidates of a project, extracted once for a volume and settings and stored in `derived/` for as long as a
+//! state of the history names them: `candidates.zarr` is the present extraction, `candidates-KEY.zarr` are those that
+//! undo and redo lead to.
 //!
 //! The key is the BLAKE3 hash of everything the result depends on: the revision of the method, the volume's
 //! samples, the settings. The number of inlines that are read at a time is not part of it. Candidates lie on
@@ -19,21 +19,21 @@ use std::path::{Path, PathBuf};
 use store::{CandidateWriter, Replacement, StoredCandidates, StoredVolume};
 use survey::Progress;
 
-/// Inlines of a stored volume that are read at a time: an edge of its bricks.
+/// Number of inlines of a stored volume that are read at a time: the edge length of its bricks.
 const SLAB_INLINES: usize = 64;
 
-/// What an extraction did.
+/// The report of an extraction.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Extracted {
-    /// Where the candidates are.
+    /// The path of the candidates.
     pub file: PathBuf,
-    /// The volume they are of.
+    /// The volume that they were extracted from.
     pub volume: String,
-    /// Identifies volume and settings.
+    /// Key: identifies volume, settings and method.
     pub key: String,
     /// Whether anything had to be computed.
     pub computed: bool,
-    /// What was found.
+    /// The facts of the extraction.
     #[serde(flatten)]
     pub report: ExtractReport,
 }
@@ -49,25 +49,24 @@ impl fmt::Display for Extracted {
     }
 }
 
-/// The extraction that the present state names, in `derived/`.
+/// The path in `derived/` of the extraction that the present state names.
 const PRESENT: &str = "candidates.zarr";
 
-/// Another extraction that a remembered state names, in `derived/`.
+/// The path in `derived/` of another extraction that a state of the history names.
 fn parked(key: &str) -> String {
     format!("candidates-{key}.zarr")
 }
 
-/// The key of the candidates stored at a place; none where there are none that can be read.
+/// The key of the candidates stored at a path; `None` if there are none that can be read.
 fn key_at(path: &Path) -> Option<String> {
     StoredCandidates::open(path).ok().map(|stored| stored.info().key.clone())
 }
 
-/// Where the extraction lies that a state names: the present one, or one that waits for an undo. A project of
-/// before extractions were part of the history names none and has the one that is there.
+/// The path of the extraction that a state names: the present one, or one that waits for an undo. A project from before
+/// extractions were part of the history names none and has the one that is stored.
 ///
 /// # Errors
-/// [`ProjectError::NotExtracted`] when the state names none or it is gone, [`ProjectError::Store`] when it is
-/// there and damaged.
+/// [`ProjectError::NotExtracted`] if the state names none or it is missing, [`ProjectError::Store`] if it is damaged.
 pub fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, ProjectError> {
     let present = folder(root).join(PRESENT);
     let Some(entry) = &document.extraction else {
@@ -85,8 +84,8 @@ pub fn candidates_path(root: &Path, document: &Document) -> Result<PathBuf, Proj
     if stored.info().key == entry.key { Ok(present) } else { Err(ProjectError::NotExtracted) }
 }
 
-/// Gives the extraction that the state names the place of the present one; what was there waits under its
-/// key. Called by whoever holds the project's lock. Where it fails, the extraction is still found by its key.
+/// Moves the extraction that the state names to the path of the present one; the former one is stored under its key.
+/// Called by whoever holds the project's lock. If it fails, the extraction is still found by its key.
 pub(crate) fn make_present(root: &Path, document: &Document) {
     let present = folder(root).join(PRESENT);
     let wanted = document.extraction.as_ref().map(|entry| entry.key.as_str());
@@ -105,7 +104,7 @@ pub(crate) fn make_present(root: &Path, document: &Document) {
     }
 }
 
-/// Removes extractions that no remembered state names any more.
+/// Removes extractions that no state of the history names any more.
 pub(crate) fn forget_unnamed(root: &Path) {
     for file in storage::names_in(&folder(root)) {
         let key = file.strip_prefix("candidates-").and_then(|rest| rest.strip_suffix(".zarr"));
@@ -115,7 +114,7 @@ pub(crate) fn forget_unnamed(root: &Path) {
     }
 }
 
-/// Where the present extraction lies.
+/// The path of the present extraction.
 pub fn present_path(root: &Path) -> PathBuf {
     folder(root).join(PRESENT)
 }
@@ -123,12 +122,12 @@ pub fn present_path(root: &Path) -> PathBuf {
 /// The candidates that a state names.
 ///
 /// # Errors
-/// [`ProjectError::NotExtracted`] when there are none, or damaged data.
+/// [`ProjectError::NotExtracted`] if there are none, or data are damaged.
 pub fn open(root: &Path, document: &Document) -> Result<StoredCandidates, ProjectError> {
     Ok(StoredCandidates::open(&candidates_path(root, document)?)?)
 }
 
-/// What the extraction that made these candidates reported; none where that cannot be read.
+/// The report of the extraction that made these candidates; `None` if it cannot be read.
 pub fn report(candidates: &StoredCandidates) -> Option<ExtractReport> {
     serde_json::from_value(candidates.info().report.clone()).ok()
 }
@@ -136,12 +135,12 @@ pub fn report(candidates: &StoredCandidates) -> Option<ExtractReport> {
 /// Surfaces and trees of a project's candidates.
 ///
 /// # Errors
-/// Damaged data, or cancelled.
+/// Data are damaged, or the user cancelled.
 pub fn forest(candidates: &StoredCandidates, progress: &Progress) -> Result<Forest, ProjectError> {
     Ok(Forest::from_tables(candidates.read_forest(progress)?, candidates.info().size)?)
 }
 
-/// The volume to extract from: the one that was named, else the first on the project's lattice.
+/// The volume to extract from: the one that is named, otherwise the first on the project's lattice.
 fn choose<'a>(document: &'a Document, volume: Option<&str>) -> Result<&'a VolumeEntry, ProjectError> {
     let entry = match volume {
         Some(name) => &document.volumes[document.position(crate::error::Noun::Volume, name)?],
@@ -156,17 +155,17 @@ fn choose<'a>(document: &'a Document, volume: Option<&str>) -> Result<&'a Volume
     Ok(entry)
 }
 
-/// Identifies candidates by what they are extracted from.
+/// The key of candidates: a hash of everything that they are extracted from.
 fn key(entry: &VolumeEntry, settings: &ExtractSettings) -> String {
     key_of(&(revision::EXTRACTION, &entry.hash, settings))
 }
 
-/// Extracts the candidates of a volume, unless they are there, and keeps them under their key; the state that
-/// names them comes with [`crate::command::Extract`]. Needs no lock.
+/// Extracts the candidates of a volume, unless they exist, and stores them under their key; [`crate::command::Extract`]
+/// makes the state that names them. Needs no lock.
 ///
 /// # Errors
-/// No such volume, settings that make no sense, damaged data, a full disk, or cancelled; former candidates
-/// are then still there.
+/// There is no such volume, the settings are invalid, data are damaged, the disk is full, or the user cancelled; former
+/// candidates are then still there.
 pub(crate) fn compute(
     root: &Path,
     document: &Document,
@@ -205,12 +204,12 @@ pub(crate) fn compute(
     Ok(answer(folder(root).join(file), report, true))
 }
 
-/// Writes all candidates as points: inline, crossline, z in the vertical unit, leaf and surface, both
-/// numbered from 1. A point on the border of leaves is told once, with the least of them. Answers the count
-/// of points.
+/// Writes all candidates as points: inline, crossline, z in the vertical unit, leaf and surface, both numbered from 1.
+/// A point on the border of several leaves is written once, with the smallest of their numbers. Returns the number of
+/// points.
 ///
 /// # Errors
-/// No candidates, damaged data, a file that cannot be written, or cancelled.
+/// There are no candidates, data are damaged, the file cannot be written, or the user cancelled.
 pub fn export_points(root: &Path, document: &Document, out: &Path, progress: &Progress) -> Result<usize, ProjectError> {
     let forest = forest(&open(root, document)?, progress)?;
     let frame = document.frame()?;

@@ -1,19 +1,19 @@
 //! Which of two horizons is above the other, and whether they cross.
 //!
-//! The horizons are compared at the traces of the survey. A horizon may have several depths at one trace (a
-//! reverse fault); the shallowest are compared with the shallowest and the deepest with the deepest, because
-//! the order holds in each fault block though not between them. Fault blocks are not known here, so that next
-//! to a fault two horizons may seem to cross when they do not; a small share of such traces is let pass, and
-//! the structural model, which knows the blocks, has the last word.
+//! The horizons are compared at the traces of the survey. A horizon may have several depths at one trace (at a reverse
+//! fault); the shallowest are compared with the shallowest and the deepest with the deepest, because the order holds
+//! within each fault block but not between blocks. Fault blocks are not known here, so next to a fault two horizons may
+//! seem to cross when they do not. A small share of such traces is tolerated; the structural model, which knows the
+//! blocks, decides.
 
 use crate::error::ProjectError;
 use survey::{Horizon, NodeGrid, SurveyGeometry};
 
 /// Share of the common traces that may seem to cross.
 const TOLERATED_SHARE: f64 = 0.02;
-/// Depth by which traces cross before they are counted, samples.
+/// Depth by which the horizons must cross at a trace for the trace to count, samples.
 const TOLERANCE_SAMPLES: f32 = 1.0;
-/// Traces compared along each axis at most.
+/// Largest number of traces that are compared along each axis.
 const TRACES_ENOUGH: usize = 256;
 
 /// Shallowest and deepest value of a horizon at a trace, and the trace.
@@ -23,7 +23,7 @@ struct Depths {
     deep: f32,
 }
 
-/// Whether `a` is on the whole above `b`; horizons without a common trace are compared by their mean depth.
+/// Whether `a` lies above `b` at most traces; horizons without a common trace are compared by their mean depth.
 pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
     let (mut difference, mut common) = (0.0f64, 0usize);
     for (a, b) in common_traces(a, b, geometry) {
@@ -38,10 +38,10 @@ fn mean(horizon: &Horizon) -> f64 {
     depths().map(|depth| f64::from(*depth)).sum::<f64>() / depths().count().max(1) as f64
 }
 
-/// Refuses two horizons of which the younger runs below the older.
+/// Refuses two horizons of which the younger lies below the older.
 ///
 /// # Errors
-/// [`ProjectError::Crossing`] with where and by how much.
+/// [`ProjectError::Crossing`] with the place and the amount.
 pub(crate) fn check(younger: &Horizon, older: &Horizon, geometry: &SurveyGeometry) -> Result<(), ProjectError> {
     let tolerance = TOLERANCE_SAMPLES * geometry.vertical.interval as f32;
     let (mut common, mut crossing) = (0usize, 0usize);
@@ -70,7 +70,7 @@ pub(crate) fn check(younger: &Horizon, older: &Horizon, geometry: &SurveyGeometr
     })
 }
 
-/// Depths of both at the traces where both have some.
+/// The depths of both horizons at the traces where both have some.
 fn common_traces<'a>(
     a: &'a Horizon,
     b: &'a Horizon,

@@ -1,9 +1,8 @@
-//! Proposed faults, kept until one of them is accepted.
+//! Proposed faults, stored for as long as a state of the history names them.
 //!
-//! `derived/fault-proposals-KEY.json` holds what was found, for as long as a remembered state names it; the
-//! key stands for horizons, faults, volume and settings. Proposals of another state are not accepted, unless
-//! that state differs only by faults accepted from them. A fault that the project already has is not proposed
-//! but reported.
+//! `derived/fault-proposals-KEY.json` holds the proposals of the horizons, faults, volume and settings that the key
+//! identifies. Proposals of another state cannot be accepted, unless that state differs only by faults accepted from
+//! them. A fault that the project already has is reported but not proposed.
 
 use crate::content;
 use crate::derived::{Scratch, folder, key_of, revision};
@@ -20,14 +19,14 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use survey::Progress;
 
-/// What was proposed, and for which state.
+/// The proposals, and the state that they were made for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Proposals {
     /// Hashes of the horizons.
     pub horizons: Vec<String>,
-    /// The faults, the largest first, minor ones last.
+    /// The proposed faults, the largest first, minor ones last.
     pub proposals: Vec<Proposal>,
-    /// Faults of the project that were found again, and are not proposed.
+    /// Faults of the project that were found again and are therefore not proposed.
     #[serde(default)]
     pub repeats: Vec<Repeat>,
     /// Unit of vertical values.
@@ -35,7 +34,7 @@ pub struct Proposals {
 }
 
 impl Proposals {
-    /// What to say where there are none.
+    /// The message if there are none.
     pub fn nothing_new(&self) -> Option<&'static str> {
         match (self.proposals.is_empty(), self.repeats.is_empty()) {
             (true, true) => Some("the horizons are offset nowhere: no fault is proposed"),
@@ -105,17 +104,17 @@ impl fmt::Display for Proposals {
     }
 }
 
-/// Where the proposals of a key are, in `derived/`.
+/// The path in `derived/` of the proposals with this key.
 fn file_of(key: &str) -> String {
     format!("fault-proposals-{key}.json")
 }
 
-/// Where proposals of a state and settings are kept.
+/// The path of the proposals of a state and settings.
 pub fn path(root: &Path, document: &Document, settings: &ProposeSettings) -> PathBuf {
     folder(root).join(file_of(&key(document, settings)))
 }
 
-/// Identifies proposals by what they are made from.
+/// The key of proposals: a hash of everything that they are made from.
 fn key(document: &Document, settings: &ProposeSettings) -> String {
     let faults: Vec<_> = document.faults.iter().map(|entry| (&entry.name, &entry.hash, &entry.truncated_by)).collect();
     let volume = document.volumes.iter().find(|entry| entry.geometry.is_none()).map(|entry| &entry.hash);
@@ -127,11 +126,11 @@ fn hashes(document: &Document) -> Vec<String> {
     document.horizons.iter().map(|entry| entry.hash.clone()).collect()
 }
 
-/// Looks for faults in the project's horizons, unless that was done, and keeps what is found under its key;
-/// the state that names it comes with [`crate::command::ProposeFaults`]. Needs no lock.
+/// Proposes faults from the project's horizons, unless that was done, and stores the proposals under their key;
+/// [`crate::command::ProposeFaults`] makes the state that names them. Needs no lock.
 ///
 /// # Errors
-/// No horizons, data that cannot be read, or cancelled.
+/// There are no horizons, data cannot be read, or the user cancelled.
 pub(crate) fn compute(
     root: &Path,
     document: &Document,
@@ -179,13 +178,13 @@ pub(crate) fn compute(
     Ok((key, proposals))
 }
 
-/// The proposals kept under a key, if they are there and whole.
+/// The proposals stored under a key, if there is an intact file.
 fn read(root: &Path, key: &str) -> Option<Proposals> {
     let text = std::fs::read_to_string(folder(root).join(file_of(key))).ok()?;
     serde_json::from_str(&text).ok()
 }
 
-/// Removes proposals that no remembered state names any more.
+/// Removes proposals that no state of the history names any more.
 pub(crate) fn forget_unnamed(root: &Path) {
     for file in storage::names_in(&folder(root)) {
         let key = file.strip_prefix("fault-proposals-").and_then(|rest| rest.strip_suffix(".json"));
@@ -195,11 +194,11 @@ pub(crate) fn forget_unnamed(root: &Path) {
     }
 }
 
-/// The proposal with a number, if it was made for these horizons, up to what accepting others of them has
+/// The proposal with a number, if it was made for these horizons, apart from what accepting other proposals has
 /// changed.
 ///
 /// # Errors
-/// There is none, or it is of another state.
+/// There is no such proposal, or it was made for another state.
 pub fn find(root: &Path, document: &Document, id: u32) -> Result<Proposal, ProjectError> {
     let kept = kept(root, document)?;
     let known = kept.proposals.len() as u32;
@@ -209,14 +208,14 @@ pub fn find(root: &Path, document: &Document, id: u32) -> Result<Proposal, Proje
         .ok_or(ProjectError::UnknownProposal { proposal: id, known })
 }
 
-/// The proposals that were made for these horizons, up to what accepting some of them has changed.
+/// The proposals that were made for these horizons, apart from what accepting some of them has changed.
 ///
 /// # Errors
-/// There are none, or they are of another state.
+/// There are none, or they were made for another state.
 pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError> {
     let entry = document.fault_proposals.as_ref().ok_or(ProjectError::NoProposals)?;
     let kept = read(root, &entry.key).ok_or(ProjectError::NoProposals)?;
-    // Accepting one proposal makes the sheets anew; the others were made from the same picks.
+    // Accepting one proposal makes the sheets again; the other proposals were made from the same picks.
     let accepted = document.faults.iter().any(|fault| fault.source.path == Path::new("proposal"));
     if !accepted && kept.horizons != hashes(document) {
         return Err(ProjectError::OutdatedProposals);
@@ -224,8 +223,8 @@ pub fn kept(root: &Path, document: &Document) -> Result<Proposals, ProjectError>
     Ok(kept)
 }
 
-/// The proposals for the horizons as they are, but for those accepted; none where there are none, or of
-/// another state.
+/// The proposals for the present horizons without those that were accepted; `None` if there are none, or they were made
+/// for another state.
 pub fn open(root: &Path, document: &Document) -> Vec<Proposal> {
     let Ok(kept) = kept(root, document) else { return Vec::new() };
     let accepted = |proposal: &Proposal| {

@@ -1,9 +1,9 @@
-//! Distances to the horizons of an interpretation, in the form that an extraction has, so that imported
-//! horizons can be shown in volumes and on faces, too (P-horiz 5.2).
+//! Distances to the horizons of an interpretation in the format of an extraction, so that imported horizons can be
+//! shown in volumes and on faces, too (P-horiz 5.2).
 //!
-//! The distance of a voxel to a sheet z = h(x, y) is |z − h|/√(1 + |∇h|²), exact for a plane, up to the
-//! largest distance that the codes can hold. Where there are candidates already, a horizon replaces them
-//! within two voxels and wherever it is nearer. Voxel space.
+//! The distance of a voxel to a sheet z = h(x, y) is |z − h|/√(1 + |∇h|²), exact for a plane, up to the largest
+//! distance that the codes can hold. Where there are candidates already, a horizon replaces them within two voxels and
+//! wherever it is nearer. Voxel space.
 
 use glam::Vec3;
 use model::StructuralModel;
@@ -11,24 +11,24 @@ use rayon::prelude::*;
 use survey::candidates::{BEYOND, CandidateBox};
 use survey::{Cancelled, Progress};
 
-/// Greatest distance told where nothing else says so, voxels.
+/// Largest distance that is stored if nothing else determines it, voxels.
 pub const FARTHEST: f32 = 10.0;
-/// The code of the greatest distance.
+/// The code of the largest distance.
 const STEPS: f32 = (BEYOND - 1) as f32;
-/// So near, a horizon wins over candidates: it may run along one of them.
+/// Distance within which a horizon takes precedence over candidates, since it may run along one of them.
 const OWN: f32 = 2.0;
 
-/// A lattice far from everything.
+/// A lattice whose voxels are all far from everything.
 pub fn nothing_near(size: [usize; 3]) -> CandidateBox {
     let count = size.iter().product();
     CandidateBox { size, distance: vec![BEYOND; count], leaf: vec![0; count] }
 }
 
-/// Adds the horizons numbered `which` of a model to distances up to `farthest` voxels; the id of the n-th of
-/// the model's is `first_id + n`.
+/// Adds the horizons numbered `which` of a model to distances up to `farthest` voxels; the id of the model's n-th
+/// horizon is `first_id + n`.
 ///
 /// # Errors
-/// Cancelled.
+/// The user cancelled.
 pub fn add_horizons(
     model: &StructuralModel,
     which: &[usize],
@@ -59,7 +59,7 @@ struct Adding<'a> {
 }
 
 impl Adding<'_> {
-    /// One trace: each block's sheets, where that block is.
+    /// One trace: the sheets of each block, in the part of the trace that lies in the block.
     fn fill(&self, [x, y]: [usize; 2], distance: &mut [u8], leaf: &mut [u32]) {
         let (fx, fy) = (x as f32, y as f32);
         let own = (OWN * STEPS / self.farthest).round() as u8;

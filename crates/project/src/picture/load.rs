@@ -1,5 +1,5 @@
-//! From a project to the input of renderers: data is read, the model built, layers are parameterized and
-//! styles compiled. Each step does only what is needed, and earlier results are taken from `derived/`.
+//! Loads the input of renderers from a project: reads data, builds the model, parameterizes layers and compiles styles.
+//! Each step does only what is needed, and earlier results are taken from `derived/`.
 
 use crate::Project;
 use crate::document::Document;
@@ -17,48 +17,48 @@ use std::time::{Duration, Instant};
 use survey::{Progress, SurveyGeometry, Volume};
 use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
 
-/// Printed length of the block's longer side that patterns are sized for, mm: a picture across a page.
+/// Printed length of the block's longer side for which patterns are sized, mm: a picture across a page.
 const PRINTED_MM: f64 = 150.0;
-/// Samples along each axis at which mean thicknesses are measured.
+/// Number of samples along each axis at which mean thicknesses are measured.
 const THICKNESS_SAMPLES: usize = 48;
 
-/// How long something took.
+/// The duration of a stage.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Stage {
-    /// What.
+    /// The stage.
     pub stage: &'static str,
     /// Seconds.
     pub seconds: f64,
 }
 
 impl Stage {
-    /// A stage by its name.
+    /// A stage with its name.
     pub fn new(stage: &'static str, took: Duration) -> Self {
         Self { stage, seconds: took.as_secs_f64() }
     }
 }
 
-/// The interpretation made solid, with its map to flat space.
+/// The interpretation as a solid model, with its map to flat space.
 pub struct Rock {
     /// Regions of every point.
     pub model: StructuralModel,
     /// i, j, k.
     pub parameterization: Parameterization,
-    /// Identifies what it was computed from.
+    /// Key: identifies what it was computed from.
     pub key: String,
-    /// What was done, and how long it took; nothing for what was kept from before.
+    /// The stages and their durations; empty for results that were stored before.
     pub stages: Vec<Stage>,
 }
 
-/// The settings that a project is parameterized with.
+/// The settings with which a project is parameterized.
 pub fn param_settings(document: &Document) -> ParamSettings {
     ParamSettings { definitions: document.k_definitions(), ..ParamSettings::default() }
 }
 
-/// Builds the model alone, which sections and maps are cut from; `None` for a project without horizons.
+/// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons.
 ///
 /// # Errors
-/// Damaged data, an interpretation that makes no solid model, or cancelled.
+/// Data are damaged, the interpretation does not make a solid model, or the user cancelled.
 pub fn structural_model(
     project: &Project,
     progress: &Progress,
@@ -80,7 +80,7 @@ pub fn structural_model(
 /// Builds the model and its parameterization; `None` for a project without horizons.
 ///
 /// # Errors
-/// Damaged data, an interpretation that makes no solid model, or cancelled.
+/// Data are damaged, the interpretation does not make a solid model, or the user cancelled.
 pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, ProjectError> {
     let document = project.document();
     let Some((model, stage)) = structural_model(project, progress)? else { return Ok(None) };
@@ -101,10 +101,10 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
 }
 
 impl Rock {
-    /// The parameterization sampled on a lattice: the one kept, or sampled now.
+    /// The parameterization sampled on a lattice: the stored one, otherwise sampled now.
     ///
     /// # Errors
-    /// A size without samples, or cancelled.
+    /// The size has no samples, or the user cancelled.
     pub fn voxels(
         &self,
         project: &Project,
@@ -117,8 +117,8 @@ impl Rock {
         }
     }
 
-    /// Metres that k = 0 … 1 stands for in each layer, bottom to top: the mean thickness where the layer is
-    /// there, or the reference thickness of an open one.
+    /// Metres that k = 0 … 1 spans in each layer, bottom to top: the mean thickness where the layer exists, or the
+    /// reference thickness of an open layer.
     fn thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
         let size = self.model.size();
         let counts = size.map(|n| n.min(THICKNESS_SAMPLES));
@@ -149,7 +149,7 @@ impl Rock {
     }
 }
 
-/// A volume of the project and where it lies.
+/// A volume of the project and its place.
 pub struct LoadedVolume {
     /// Its name.
     pub name: String,
@@ -169,30 +169,30 @@ pub struct LoadedWell {
     pub tops: Vec<DVec3>,
 }
 
-/// Everything a scene of a project is drawn from.
+/// Everything that a scene of a project is drawn from.
 pub struct Loaded {
-    /// The frame.
+    /// The survey geometry.
     pub geometry: SurveyGeometry,
     /// The interpretation, if there is one and the scene shows it.
     pub rock: Option<Rock>,
-    /// Volumes the scene shows.
+    /// The volumes that the scene shows.
     pub volumes: Vec<LoadedVolume>,
-    /// The packed volume, for that lookup.
+    /// The packed volume, for the lookup that needs it.
     pub packed: Option<PackedVolume>,
     /// The volume shown as raw data and its colours.
     pub raw: Option<RawColour>,
     /// Wells, in voxels.
     pub wells: Vec<LoadedWell>,
-    /// Horizon candidates, where the scene shows them or horizons in volumes.
+    /// Horizon candidates, if the scene shows them or horizons in volumes.
     pub candidates: Option<ShownCandidates>,
     /// Compiled styles.
     pub tables: Option<TtfTables>,
-    /// Unlike that of anything else loaded by this process: renderers keep what they uploaded while it stays
-    /// the same.
+    /// A number that no other loaded data of this process have: renderers keep what they uploaded while it stays the
+    /// same.
     pub version: u64,
 }
 
-/// A number not given before.
+/// A number that was not given before.
 pub fn new_version() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(1);
     NEXT.fetch_add(1, Ordering::Relaxed)
@@ -201,13 +201,13 @@ pub fn new_version() -> u64 {
 /// Reads and computes what `scene` needs.
 ///
 /// # Errors
-/// Damaged data, an interpretation that makes no solid model, styles that cannot be drawn, or cancelled.
+/// Data are damaged, the interpretation does not make a solid model, styles cannot be drawn, or the user cancelled.
 pub fn load(project: &Project, scene: &Scene, progress: &Progress) -> Result<Loaded, ProjectError> {
     load_within(project, scene, memory_budget::half_of_available(), progress)
 }
 
-/// The same with at most so many bytes for the samples of each volume; larger ones come from a coarser level
-/// of their pyramid, and a warning says so.
+/// The same with at most this many bytes for the samples of each volume; larger volumes are read at a coarser level of
+/// their pyramid, and a warning says so.
 ///
 /// # Errors
 /// As [`load`].
@@ -265,8 +265,8 @@ pub fn load_within(
     })
 }
 
-/// The volumes that a scene shows within the block: media, isosurfaces, and those that horizons are painted
-/// with. Whoever loads for a scene asks here.
+/// The volumes that a scene shows within the block: those of media and isosurfaces, and those painted on horizons.
+/// Every loader asks here.
 pub fn volumes_within(scene: &Scene) -> impl Iterator<Item = &str> {
     let media = &scene.media;
     let painted = media.horizons.iter().filter_map(|horizon| Some(horizon.paint.as_ref()?.volume.as_str()));
@@ -277,7 +277,7 @@ pub fn volumes_within(scene: &Scene) -> impl Iterator<Item = &str> {
         .chain(painted)
 }
 
-/// What a scene shows beyond what was loaded.
+/// What a scene shows beyond what is loaded.
 pub struct More {
     volumes: Vec<LoadedVolume>,
     candidates: Option<ShownCandidates>,
@@ -287,7 +287,7 @@ pub struct More {
 /// model stays as it is.
 ///
 /// # Errors
-/// Damaged data, or cancelled.
+/// Data are damaged, or the user cancelled.
 pub fn read_more(project: &Project, loaded: &Loaded, scene: &Scene, progress: &Progress) -> Result<More, ProjectError> {
     let document = project.document();
     let missing: Vec<&str> = volumes_within(scene).filter(|name| !loaded.has_volume(name)).collect();
@@ -298,7 +298,7 @@ pub fn read_more(project: &Project, loaded: &Loaded, scene: &Scene, progress: &P
 }
 
 impl More {
-    /// Puts it to what is loaded.
+    /// Adds the data to what is loaded.
     pub fn add_to(self, loaded: &mut Loaded) {
         loaded.volumes.extend(self.volumes);
         loaded.candidates = self.candidates;
@@ -306,11 +306,11 @@ impl More {
     }
 }
 
-/// Reads what interpreting needs: the raw volume, the wells, and of the extraction what `scene` shows; no
+/// Reads what interpreting needs: the raw volume, the wells, and the part of the extraction that `scene` shows; no
 /// model, whatever horizons there are.
 ///
 /// # Errors
-/// Damaged data, or cancelled.
+/// Data are damaged, or the user cancelled.
 pub fn load_bare(
     project: &Project,
     scene: &Scene,
@@ -371,8 +371,8 @@ fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Re
     Ok(wells)
 }
 
-/// Voxel positions of the first and last sample of a level of a pyramid, whose sample m lies at m·2^level of
-/// the full volume.
+/// Voxel positions of the first and last sample at a level of a pyramid, whose sample m lies at m·2^level of the full
+/// volume.
 fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) -> VoxelBox {
     let max = |axis: usize| {
         let share = ((size[axis].saturating_sub(1)) << level) as f64 / full[axis].saturating_sub(1).max(1) as f64;
@@ -381,8 +381,8 @@ fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) 
     VoxelBox { min: covers.min, max: [max(0), max(1), max(2)] }
 }
 
-/// What styles are compiled for: sizes in metres, and the layers' names, bottom to top. Thicknesses are those
-/// of the exaggerated display, so that tiles print in their own shape.
+/// What styles are compiled for: sizes in metres, and the names of the layers, bottom to top. Thicknesses are those of
+/// the exaggerated display, so that tiles are printed undistorted.
 pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
     let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
     let extent = [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny];
@@ -397,7 +397,7 @@ pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, 
 }
 
 impl Loaded {
-    /// Whether all is here that a scene sees through.
+    /// Whether everything that the volume rendering of a scene needs is loaded.
     pub fn holds_media(&self, media: &Media) -> bool {
         let knows = |name: &str| self.candidates.as_ref().is_some_and(|known| !known.leaves_of(name).is_empty());
         media.all().all(|medium| self.has_volume(&medium.volume))
@@ -408,8 +408,8 @@ impl Loaded {
         self.volumes.iter().any(|volume| volume.name == name)
     }
 
-    /// A scene with all that only the project knows: colours of raw data where it states none, and the leaves
-    /// of horizons it names.
+    /// Completes a scene with what only the project knows: colours of raw data if it states none, and the leaves of the
+    /// horizons that it names.
     pub fn complete(&self, scene: &Scene) -> Scene {
         let mut scene = Scene { raw: scene.raw.clone().or_else(|| self.raw.clone()), ..scene.clone() };
         match &self.candidates {
@@ -419,18 +419,18 @@ impl Loaded {
         scene
     }
 
-    /// The volumes as renderers take them.
+    /// The volumes in the form that renderers take.
     pub fn named_volumes(&self) -> Vec<NamedVolume<'_>> {
         let named = self.volumes.iter();
         named.map(|loaded| NamedVolume { name: &loaded.name, volume: &loaded.volume, covers: loaded.covers }).collect()
     }
 
-    /// The wells as renderers take them.
+    /// The wells in the form that renderers take.
     pub fn well_paths(&self) -> Vec<DrawnWell<'_>> {
         self.wells.iter().map(|well| DrawnWell { name: &well.name, path: &well.path, tops: &well.tops }).collect()
     }
 
-    /// Everything as renderers take it.
+    /// Everything in the form that renderers take.
     pub fn inputs<'a>(&'a self, volumes: &'a [NamedVolume<'a>], wells: &'a [DrawnWell<'a>]) -> Inputs<'a> {
         Inputs {
             geometry: &self.geometry,

@@ -1,4 +1,4 @@
-//! Pictures of a project, and PNG files that know their printed size.
+//! Draws pictures of a project, and writes PNG files with their printed size.
 
 use crate::error::ProjectError;
 use crate::picture::load::{Loaded, Stage};
@@ -12,7 +12,7 @@ use std::time::Instant;
 use store::Replacement;
 use survey::Progress;
 
-/// What draws.
+/// The device that draws.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Device {
     /// The graphics adapter; the processor when there is none, or when the adapter is a driver that runs on
@@ -25,8 +25,8 @@ pub enum Device {
     Cpu,
 }
 
-/// How the names of drivers begin that run on the processor. Our own code for the processor is faster than
-/// shaders run there (0.6 of llvmpipe's processor time for the demonstration's pictures), and draws the same.
+/// Prefixes of the names of drivers that run on the processor. Our own CPU renderer is faster than shaders run there
+/// (0.6 of llvmpipe's processor time for the demonstration's pictures), and draws the same.
 const SOFTWARE_DRIVERS: [&str; 2] = ["llvmpipe", "SwiftShader"];
 
 /// Draws pictures one after the other; an adapter is looked for once.
@@ -37,10 +37,10 @@ pub struct Painter {
 }
 
 impl Painter {
-    /// Finds what draws; warns when [`Device::Auto`] falls back on the processor.
+    /// Finds the device that draws; warns if [`Device::Auto`] falls back to the processor.
     ///
     /// # Errors
-    /// [`Device::Gpu`] was asked for and there is none.
+    /// [`Device::Gpu`] was asked for and there is no adapter.
     pub fn new(device: Device, progress: &Progress) -> Result<Self, RenderError> {
         let renderer = match device {
             Device::Cpu => None,
@@ -59,17 +59,16 @@ impl Painter {
         Ok(Self { renderer, processor: CpuRenderer::default(), device })
     }
 
-    /// What draws, by name.
+    /// The name of the device that draws.
     pub fn device(&self) -> &str {
         self.renderer.as_ref().map_or("processor", Renderer::adapter_name)
     }
 
-    /// Draws a scene; raw data in the project's colours where the scene states none. A picture that the
-    /// adapter cannot hold, or was lost over, is drawn on the processor unless the adapter was asked for;
-    /// this warns, and stays so.
+    /// Draws a scene, with raw data in the project's colours if the scene states none. If the adapter cannot hold a
+    /// picture or is lost, the processor draws from then on, with a warning, unless the adapter was asked for.
     ///
     /// # Errors
-    /// A scene that shows nothing, or a device that fails.
+    /// The scene shows nothing, or the device failed.
     pub fn draw(
         &mut self,
         scene: &Scene,
@@ -100,10 +99,10 @@ impl Painter {
 /// Metres in an inch.
 const INCH_M: f64 = 0.0254;
 
-/// Writes a PNG whose printed size follows from `dpi`; complete or not at all.
+/// Writes a PNG whose printed size follows from `dpi`, completely or not at all.
 ///
 /// # Errors
-/// The file could not be written; what was there before is still there.
+/// The file could not be written; an earlier file is then still there.
 pub fn write_png(path: &Path, image: &RgbaImage, dpi: f64) -> Result<(), ProjectError> {
     let replacement = Replacement::of(path)?;
     encode(replacement.path(), image, dpi).map_err(|source| ProjectError::io("written", path, source))?;

@@ -1,4 +1,4 @@
-//! The view of a project that is drawn by default.
+//! The default view of a project, and the techniques of drawing.
 
 use crate::document::Document;
 use crate::error::{Noun, ProjectError};
@@ -11,10 +11,10 @@ use render::{
 };
 use ttf::{Colour, ColourMap, RgbaFunction, RgbaStop};
 
-/// The scene of that name; without a name the project's first scene, or else the default view.
+/// The scene of that name; without a name the project's first scene, otherwise the default view.
 ///
 /// # Errors
-/// No such scene, or no survey frame to draw in.
+/// There is no such scene, or no survey geometry to draw in.
 pub fn choose(document: &Document, name: Option<&str>) -> Result<Scene, ProjectError> {
     match (name, document.scenes.first()) {
         (Some(name), _) => {
@@ -26,9 +26,9 @@ pub fn choose(document: &Document, name: Option<&str>) -> Result<Scene, ProjectE
     }
 }
 
-/// A three-quarter view with the nearest corner cut off, exaggerated so that flat surveys read as blocks,
-/// with the topmost of several horizons as ground. Without a volume the view is illustrative, without
-/// horizons it shows raw data.
+/// A three-quarter view with the nearest corner cut off, exaggerated so that flat surveys look like blocks, with the
+/// topmost of several horizons as ground. Without a volume the view is illustrative, without horizons it shows raw
+/// data.
 ///
 /// # Errors
 /// [`ProjectError::NoGeometry`].
@@ -42,7 +42,7 @@ pub fn default_view(document: &Document) -> Result<Scene, ProjectError> {
     if document.horizons.is_empty() {
         scene.blend = 1.0;
     } else {
-        // Above a single horizon is half of what there is to see.
+        // With a single horizon the layer above it is half of what there is to see.
         scene.ground = (document.horizons.len() > 1).then(Ground::default);
         let block = scene.box_in(geometry);
         let corner = scene.view(geometry).nearest_corner(&block);
@@ -51,36 +51,35 @@ pub fn default_view(document: &Document) -> Result<Scene, ProjectError> {
     Ok(scene)
 }
 
-/// A technique of drawing, named by one word.
+/// A technique of drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Technique {
     /// Textured faces.
     Illustrate,
-    /// Volume rendering, shaded by what lies in front (P-horiz 5.1).
+    /// Volume rendering, shaded by occlusion (P-horiz 5.1).
     Occlusion,
     /// Volume rendering, shaded by the gradients of the volume.
     Phong,
     /// Volume rendering without shading.
     Volume,
-    /// Volume rendering, shaded in alternating stripes by the gradients and by what lies in front (P-horiz,
-    /// figure 5).
+    /// Volume rendering, shaded in alternating stripes by gradients and by occlusion (P-horiz, figure 5).
     Interleaved,
 }
 
-/// What a view shows through, where it was said.
+/// The options of volume rendering, as far as they were given.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SeeThrough {
-    /// How.
+    /// The technique.
     pub technique: Option<Technique>,
-    /// Which volume.
+    /// The volume.
     pub medium: Option<String>,
-    /// Values up to this share of the volume's clip are clear.
+    /// Values up to this share of the volume's clip are transparent.
     pub clear_below: f32,
-    /// Horizons shown in it.
+    /// Horizons shown in the volume.
     pub horizons: Vec<ShownHorizon>,
-    /// Surfaces of one value; with these and no volume named the volume itself is not shown.
+    /// Isosurfaces; with these and no volume named, the volume itself is not shown.
     pub isosurfaces: Vec<ShownIsosurface>,
-    /// Where the volume shows.
+    /// Where the volume is shown.
     pub scope: Scope,
 }
 
@@ -89,7 +88,7 @@ pub struct SeeThrough {
 pub struct ShownHorizon {
     /// Its name.
     pub name: String,
-    /// Its colour; absent: one of its own.
+    /// Its colour; `None`: its own in the project.
     pub colour: Option<Colour>,
     /// Its opacity.
     pub opacity: f32,
@@ -97,33 +96,33 @@ pub struct ShownHorizon {
     pub emission: f32,
 }
 
-/// A surface of one value, of a volume or of k'.
+/// An isosurface of a volume or of k'.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ShownIsosurface {
-    /// Of what.
+    /// The source of the values.
     pub of: IsosurfaceSource,
     /// The value.
     pub value: f32,
-    /// Its colour; absent: one of its own.
+    /// Its colour; `None`: the next default colour.
     pub colour: Option<Colour>,
     /// Its opacity.
     pub opacity: f32,
 }
 
-/// Colours of isosurfaces shown without one.
+/// Default colours of isosurfaces.
 const ISOSURFACE_COLOURS: [Colour; 3] =
     [Colour::new(0xd8, 0xb3, 0x65), Colour::new(0x5a, 0xb4, 0xac), Colour::new(0xc5, 0x7d, 0x8f)];
 
-/// Background of volume renderings: their white needs something darker behind it.
+/// Background of volume rendering: white volumes need something darker behind them.
 const BEHIND_VOLUMES: Colour = Colour::new(0x2c, 0x33, 0x3a);
-/// Edges before that background.
+/// Colour of the edges in front of that background.
 const EDGES_OF_VOLUMES: Colour = Colour::new(0x9a, 0xa4, 0xad);
 
 impl SeeThrough {
-    /// Changes a view.
+    /// Applies the options to a scene.
     ///
     /// # Errors
-    /// The project has no such volume, or none at all.
+    /// The project does not have this volume, or has none at all.
     pub fn change(&self, scene: &mut Scene, document: &Document) -> Result<(), ProjectError> {
         for shown in &self.horizons {
             let index = document.position(Noun::Horizon, &shown.name)?;
@@ -183,13 +182,13 @@ impl SeeThrough {
         Ok(())
     }
 
-    /// Fills the cut-outs of an illustration with the volume in its raw colours, more opaque the larger its
-    /// values are.
+    /// Fills the cut-outs of an illustration with the volume in its raw colours; the larger its values, the more opaque
+    /// it is.
     fn fill_cut_outs(&self, scene: &mut Scene, document: &Document) -> Result<(), ProjectError> {
         if self.technique == Some(Technique::Illustrate) {
             scene.media.faces = Faces::All;
         }
-        // Surfaces of one colour have no shape without light.
+        // Surfaces of one colour have no shape without shading.
         let surfaces = !(self.horizons.is_empty() && self.isosurfaces.is_empty());
         if surfaces && scene.media.shading == Shading::Unshaded {
             scene.media.shading = Shading::Occlusion(Occlusion::default());
@@ -215,8 +214,8 @@ impl SeeThrough {
     }
 }
 
-/// Where no face of rock shows leaves, the horizons shown in the volume tell theirs apart; without one, all
-/// candidates are shown.
+/// If no face of rock shows leaves, the horizons shown in the volume are coloured by their leaves; without such
+/// horizons all candidates are shown.
 pub fn leaves_in_volume(scene: &mut Scene) {
     if scene.face_data != FaceData::Leaves || scene.media.faces != Faces::None {
         return;
@@ -229,7 +228,7 @@ pub fn leaves_in_volume(scene: &mut Scene) {
     scene.face_data = FaceData::Rock;
 }
 
-/// The stops of a function, and enough between them to bend its opacity.
+/// The stops of a function, with enough additional stops to change its opacity smoothly.
 fn resampled(function: &RgbaFunction) -> Vec<RgbaStop> {
     const BETWEEN: usize = 32;
     let [low, high] = function.domain;
@@ -242,13 +241,13 @@ fn resampled(function: &RgbaFunction) -> Vec<RgbaStop> {
     (0..=BETWEEN).map(stop).collect()
 }
 
-/// Height of the drawn block over its longer side that the exaggeration aims at: a block, neither a tile nor
-/// a tower.
+/// Ratio of the height of the drawn block to its longer side at which the exaggeration aims: a block, neither a tile
+/// nor a tower.
 const TARGET_HEIGHT: f64 = 0.45;
 /// Shares of the block along inlines and crosslines that the default corner cut takes.
 const CUT_SHARE: [f64; 2] = [0.45, 0.45];
 
-/// The nearest exaggeration that is easily said: 1, 1.5, 2, 3, 4, 5, 8, 10 ... never less than 1.
+/// The nearest round exaggeration: 1, 1.5, 2, 3, 4, 5, 8, 10 ..., never less than 1.
 fn whole_exaggeration(wanted: f64) -> f64 {
     const STEPS: [f64; 10] = [1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0];
     let decade = 10f64.powf(wanted.max(1.0).log10().floor());

@@ -1,5 +1,5 @@
-//! Horizon candidates as pictures show them: the project's extraction with the horizons picked from it, and
-//! sheets where there are no picks.
+//! Horizon candidates in the form that pictures show: the project's extraction with the horizons picked from it, and
+//! the sheets of horizons without picks.
 //!
 //! | a scene shows | drawn from |
 //! |---|---|
@@ -26,34 +26,34 @@ use store::StoredCandidates;
 use survey::CandidateBox;
 use survey::Progress;
 
-/// The code of the greatest distance.
+/// The code of the largest distance.
 const STEPS: f32 = 254.0;
 
 /// What a scene shows of candidates and horizons.
 pub struct ShownCandidates {
     voxels: CandidateBox,
     voxels_per_step: f32,
-    /// Identifies the extraction; absent where sheets stand for it.
+    /// Key of the extraction; `None` where sheets are shown instead.
     key: Option<String>,
     trees: Forest,
     level: u32,
     groups: Option<Vec<u32>>,
-    /// Ids by the horizon's name.
+    /// Ids by the name of the horizon.
     picked: BTreeMap<String, Vec<u32>>,
     sheets: BTreeMap<String, u32>,
 }
 
-/// Whether a scene shows anything of this.
+/// Whether a scene shows any of this.
 pub fn is_shown(scene: &Scene) -> bool {
     !scene.media.horizons.is_empty() || scene.face_data != FaceData::Rock
 }
 
 impl ShownCandidates {
-    /// Reads what `scene` shows; `None` where that is nothing.
+    /// Reads what `scene` shows; `None` if that is nothing.
     ///
     /// # Errors
-    /// [`ProjectError::NotExtracted`] where there is neither an extraction nor a horizon to show in its
-    /// place; an unknown horizon, damaged data, or cancelled.
+    /// [`ProjectError::NotExtracted`] if there is neither an extraction nor a horizon to show instead; a horizon is
+    /// unknown, data are damaged, or the user cancelled.
     pub fn load(
         project: &Project,
         scene: &Scene,
@@ -121,13 +121,13 @@ impl ShownCandidates {
         Ok(Some(shown))
     }
 
-    /// Identifies the extraction that leaves are of; `None` where sheets stand for it.
+    /// Key of the extraction that the leaves belong to; `None` where sheets are shown instead.
     pub fn key(&self) -> Option<&str> {
         self.key.as_deref()
     }
 
-    /// Takes the picks of a project's state: voxels stay as they are. Picks of another extraction are not
-    /// taken.
+    /// Takes over the picks of a project's state; the voxels stay as they are. Picks made on another extraction are
+    /// left out.
     pub fn take_picks(&mut self, document: &Document) {
         self.picked.clear();
         let Some(key) = &self.key else { return };
@@ -147,12 +147,12 @@ impl ShownCandidates {
         }
     }
 
-    /// Tells leaves apart by the nodes at a level of their trees; 0 = by themselves.
+    /// Distinguishes leaves by the nodes at a level of their trees; 0 = by themselves.
     pub fn show_level(&mut self, level: u32) {
         self.level = level;
         self.groups = (level > 0 && self.trees.leaf_count() > 0).then(|| {
             let mut groups = self.trees.nodes_at_level(level);
-            // Sheets, which have no tree, follow the nodes.
+            // Sheets have no tree; their ids follow those of the nodes.
             let last = self.sheets.values().copied().max().unwrap_or(0) as usize;
             let nodes = self.trees.nodes.len() as u32;
             groups.extend((groups.len()..=last).map(|id| nodes + id as u32));
@@ -160,23 +160,23 @@ impl ShownCandidates {
         });
     }
 
-    /// The level shown.
+    /// The level that is shown.
     pub fn level(&self) -> u32 {
         self.level
     }
 
-    /// The trees without vertices and triangles; empty where sheets stand for an extraction.
+    /// The trees without vertices and triangles; empty where sheets are shown instead of an extraction.
     pub fn trees(&self) -> &Forest {
         &self.trees
     }
 
-    /// Ids of a horizon's leaves, or of its sheets; empty for one that was not asked for.
+    /// Ids of the leaves of a horizon, or of its sheets; empty for a horizon that was not asked for.
     pub fn leaves_of(&self, horizon: &str) -> Vec<u32> {
         let picked = self.picked.get(horizon).cloned();
         picked.unwrap_or_else(|| self.sheets.get(horizon).copied().into_iter().collect())
     }
 
-    /// As renderers take them.
+    /// The candidates in the form that renderers take.
     pub fn candidates(&self) -> CandidateVolume<'_> {
         CandidateVolume {
             size: self.voxels.size,
@@ -187,7 +187,7 @@ impl ShownCandidates {
         }
     }
 
-    /// Puts leaves to the names of a scene's horizons, and takes out those that there is nothing of.
+    /// Resolves the names of a scene's horizons to leaves, and removes horizons of which there is nothing to show.
     pub fn complete(&self, scene: &mut Scene) {
         for horizon in &mut scene.media.horizons {
             if let Some(name) = &horizon.name {

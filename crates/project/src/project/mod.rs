@@ -1,4 +1,4 @@
-//! A project: a folder `NAME.petro` with what was imported, how it is to be drawn, and how that came about.
+//! A project: a folder `NAME.petro` with what was imported and interpreted, how it is drawn, and the history of both.
 //!
 //! ```text
 //! project.toml        the state (see [`crate::document`]); replaced as a whole, never changed in place
@@ -10,11 +10,11 @@
 //! lock                held while a command runs
 //! ```
 //!
-//! [`Project::apply`] is the only way to change a project. It takes the lock, reads the state again if
-//! another process has changed it, lets the [`Command`] write new data and a new state, and then replaces
-//! `project.toml` by a rename. Before that moment the old state is valid, after it the new one. When anything
-//! fails, what was written is removed. A project may come from a stranger: before anything is written or
-//! deleted, no part of it may be a link, and every data file that a state names must be `KIND/NAME`.
+//! [`Project::apply`] is the only way to change a project. It takes the lock, reads the state again if another process
+//! has changed it, lets the [`Command`] write new data and a new state, and then replaces `project.toml` by a rename.
+//! Before that moment the old state is valid, after it the new one. If anything fails, what was written is removed. A
+//! project may come from a stranger: before anything is written or deleted, no part of it may be a link, and every data
+//! file that a state names must be `KIND/NAME`.
 //!
 //! Deliberately absent: no state is kept in memory that is not on disk, and nothing that is saved is edited
 //! in place.
@@ -42,7 +42,7 @@ pub struct Project {
 pub struct HistoryLine {
     /// Number of the step.
     pub step: u32,
-    /// What happened.
+    /// What the command did.
     pub summary: String,
     /// Whether it is in effect (false: undone, can be redone).
     pub in_effect: bool,
@@ -52,7 +52,7 @@ impl Project {
     /// Opens the project in the folder `root`.
     ///
     /// # Errors
-    /// Missing, not a project, written by a newer version, or unreadable.
+    /// The project is missing, is not a project, was written by a newer version, or cannot be read.
     pub fn open(root: &Path) -> Result<Self, ProjectError> {
         let not_a_project = |fact| Err(ProjectError::NotAProject { path: root.to_owned(), fact });
         if !root.exists() {
@@ -70,10 +70,10 @@ impl Project {
         Ok(Self { root: root.to_owned(), text, document })
     }
 
-    /// Begins a new project that will be at `root`; nothing is there before [`NewProject::publish`].
+    /// Starts a new project that will be at `root`; nothing is there before [`NewProject::publish`].
     ///
     /// # Errors
-    /// Something is at `root`, or the folder it would be in cannot be written.
+    /// Something exists at `root`, or its parent folder cannot be written.
     pub fn create(root: &Path, geometry: Option<SurveyGeometry>) -> Result<NewProject, ProjectError> {
         NewProject::begin(root, geometry)
     }
@@ -91,8 +91,8 @@ impl Project {
     /// Carries out a command and saves the project.
     ///
     /// # Errors
-    /// The reason why the command could not be carried out. The project is then as it was before, on disk and
-    /// in memory.
+    /// The reason why the command could not be carried out. The project is then as it was before, on disk and in
+    /// memory.
     pub fn apply(&mut self, command: &Command, progress: &Progress) -> Result<Effect, ProjectError> {
         let computed = command.prepare(&self.root, &self.document, progress)?;
         let _lock = self.lock()?;
@@ -106,7 +106,7 @@ impl Project {
         Ok(effect)
     }
 
-    /// Goes back by one command; answers what was undone.
+    /// Undoes the last command; returns what was undone.
     ///
     /// # Errors
     /// [`ProjectError::NothingToUndo`] at the beginning of the remembered history.
@@ -119,7 +119,7 @@ impl Project {
         Ok(undone.summary)
     }
 
-    /// Goes forward by one undone command; answers what was done again.
+    /// Redoes the command that was undone last; returns what was redone.
     ///
     /// # Errors
     /// [`ProjectError::NothingToRedo`] when nothing was undone.
@@ -131,7 +131,7 @@ impl Project {
         Ok(summary)
     }
 
-    /// Forgets the history and frees the data only it refers to.
+    /// Deletes the history and the data that only it refers to.
     ///
     /// # Errors
     /// The lock is taken or the folder cannot be read.
@@ -142,7 +142,7 @@ impl Project {
         Ok(())
     }
 
-    /// What is remembered, oldest first; a step that cannot be read says so.
+    /// The steps of the history, oldest first; a step that cannot be read says so.
     pub fn history(&self) -> Vec<HistoryLine> {
         let mut lines = Vec::new();
         for step in history::numbers(&self.root) {
@@ -171,10 +171,9 @@ impl Project {
         Ok(lock)
     }
 
-    /// An edit of `project.toml` by hand becomes a step of its own, so that undoing a later command does not
-    /// lose it.
+    /// Makes an edit of `project.toml` by hand a step of its own, so that undoing a later command does not lose it.
     fn adopt_edit(&mut self) -> Result<(), ProjectError> {
-        // A step that cannot be read says nothing about an edit.
+        // A step that cannot be read does not show whether there was an edit.
         let known = history::read(&self.root, self.document.step).ok().flatten();
         if known.is_none_or(|step| step.project == self.text) {
             return Ok(());
@@ -196,15 +195,14 @@ impl Project {
         storage::replace(&self.root, storage::STATE, text.as_bytes())?;
         self.text = text;
         self.document = document;
-        // The new state is saved; if tidying up fails, the next writer does it.
+        // The new state is saved; if cleaning up fails, the next writer does it.
         let _ = history::complete(&self.root, number);
         draft.keep();
         self.settle_derived();
         Ok(())
     }
 
-    /// Puts the extraction that the state names into its place, and lets go of what no remembered state
-    /// names.
+    /// Moves the extraction that the state names to its place, and removes what no state of the history names.
     fn settle_derived(&self) {
         extraction::make_present(&self.root, &self.document);
         extraction::forget_unnamed(&self.root);
@@ -223,16 +221,16 @@ impl Project {
     }
 }
 
-/// A command as the history keeps it.
+/// A command in the form that the history keeps.
 fn recorded(command: &Command) -> Result<toml::Value, ProjectError> {
     toml::Value::try_from(command)
         .map_err(|error| ProjectError::Malformed { path: PathBuf::from("history"), detail: error.to_string() })
 }
 
-/// Marks the folder of a project in the making; locked by whoever makes it.
+/// Marks the folder of a project that is being created; locked by its creator.
 const CREATING: &str = "creating";
 
-/// Where the project for `destination` is made: `.NAME.new` beside it.
+/// The folder in which the project for `destination` is created: `.NAME.new` beside it.
 fn in_the_making(destination: &Path) -> Result<PathBuf, ProjectError> {
     let name = destination.file_name().ok_or(ProjectError::NotFound { path: destination.to_owned() })?;
     let mut hidden = std::ffi::OsString::from(".");
@@ -241,8 +239,8 @@ fn in_the_making(destination: &Path) -> Result<PathBuf, ProjectError> {
     Ok(destination.with_file_name(hidden))
 }
 
-/// A project in the making, in a hidden folder beside its destination. Dropped without
-/// [`NewProject::publish`], it leaves nothing.
+/// A project that is being created, in a hidden folder beside its destination. If it is dropped without
+/// [`NewProject::publish`], nothing remains.
 #[derive(Debug)]
 pub struct NewProject {
     project: Project,
@@ -264,13 +262,13 @@ impl NewProject {
         }
         fs::create_dir_all(&root).map_err(fail)?;
         storage::refuse_links(&root)?;
-        // Two processes may want to create the same project; the one in the making is locked under another
-        // name than its own commands use.
+        // Two processes may want to create the same project. The folder is locked under another name than the one that
+        // the project's own commands use.
         let lock = Lock::take_named(&root, CREATING)?;
         let path = root.join(storage::STATE);
         let document = Document::empty(geometry);
         let text = document.to_text(&path)?;
-        // From here on, whatever fails removes the folder.
+        // From here on, any failure removes the folder.
         let begun = Self {
             project: Project { root, text: text.clone(), document: document.clone() },
             destination: destination.to_owned(),
@@ -278,7 +276,7 @@ impl NewProject {
             _lock: lock,
         };
         let root = &begun.project.root;
-        // What a killed creation left; what it had imported is kept to go on with.
+        // A creation that was killed left this behind; what it had imported is kept, so that the import can continue.
         for folder in [storage::UNFINISHED, storage::DERIVED] {
             storage::remove(root, folder);
         }
@@ -298,21 +296,21 @@ impl NewProject {
         Ok(begun)
     }
 
-    /// The project, to apply commands to before it is seen.
+    /// The project, to which commands can be applied before it is visible.
     pub fn project(&mut self) -> &mut Project {
         &mut self.project
     }
 
-    /// Gives the project its name.
+    /// Moves the project to its destination.
     ///
     /// # Errors
-    /// Something has come to be there in the meantime, or the folder cannot be renamed.
+    /// Something has appeared there in the meantime, or the folder cannot be renamed.
     pub fn publish(mut self) -> Result<Project, ProjectError> {
         if self.destination.exists() {
             return Err(ProjectError::Exists { path: self.destination.clone() });
         }
         storage::remove(&self.project.root, CREATING);
-        // What an import that was killed had written to a project of this name.
+        // What a killed import had written for a project of this name.
         storage::remove(&self.project.root, IMPORTING);
         storage::rename(&self.project.root, &self.destination)?;
         self.published = true;
@@ -323,8 +321,7 @@ impl NewProject {
 impl Drop for NewProject {
     fn drop(&mut self) {
         if !self.published {
-            // A folder that cannot be removed is found by its marker when a project of this name is created
-            // again.
+            // A folder that cannot be removed is recognised by its marker when a project of this name is created again.
             let _ = fs::remove_dir_all(&self.project.root);
         }
     }

@@ -1,4 +1,4 @@
-//! The patterns a project can use: the built-in ones and its own tiles.
+//! The patterns that a project can use: the built-in ones and its own tiles.
 
 use crate::document::Document;
 use crate::error::ProjectError;
@@ -8,7 +8,7 @@ use ttf::TextureLibrary;
 /// The built-in patterns and the tiles of the project in `root`.
 ///
 /// # Errors
-/// A tile of the project cannot be read any more.
+/// A tile of the project can no longer be read.
 pub fn pattern_library(root: &Path, document: &Document) -> Result<TextureLibrary, ProjectError> {
     let mut library = TextureLibrary::builtin()?;
     for entry in &document.textures {

@@ -1,14 +1,14 @@
-//! Colours of raw data that fit a project's volumes.
+//! Default colours of raw data for a project's volumes.
 
 use crate::document::Document;
 use crate::error::{Noun, ProjectError};
 use ttf::{ColourMap, RawColour, RgbaFunction, TransferFunctions};
 
-/// A volume of the project in the colours of a map: over `range`, or centred on zero and clipped where 99 %
-/// of the samples end. Without a name it is the volume shown at present, or else the first.
+/// A volume of the project in the colours of a map: over `range`, or centred on zero and clipped at the value that 99 %
+/// of the samples do not exceed. Without a name it is the volume shown at present, otherwise the first.
 ///
 /// # Errors
-/// No such volume.
+/// There is no such volume.
 pub fn raw_colour(
     document: &Document,
     volume: Option<&str>,
