@@ -1,7 +1,8 @@
 //! Measures the rows of `docs/accuracy.md`: `cargo run --example accuracy > docs/accuracy.md`.
 //!
-//! Closed-form models and the synthetic survey, whose truth is a closed form too; the exact lookup and the paper's packed,
-//! extrapolated one (P-illus 3.3 and 3.4) side by side, at the same places, by the same yardstick. Lengths are voxels, angles degrees.
+//! Closed-form models and the synthetic survey, whose truth is a closed form too; the exact lookup and the paper's
+//! packed, extrapolated one (P-illus 3.3 and 3.4) side by side, at the same places, by the same yardstick. Lengths are
+//! voxels, angles degrees.
 
 use anyhow::{Context, Result};
 use glam::{DVec3, Vec3};

@@ -1,7 +1,8 @@
 //! What the fuzz targets share: a file for parsers that read from disk, a small survey, and a limit on allocations.
 //!
 //! A target fails by a panic, by a sample that takes more than ten seconds, and by one allocation of more than
-//! [`LARGEST_ALLOCATION`] bytes: inputs are a few kilobytes, and no header may make a parser reserve what the file cannot fill.
+//! [`LARGEST_ALLOCATION`] bytes: inputs are a few kilobytes, and no header may make a parser reserve what the file
+//! cannot fill.
 
 pub mod inputs;
 pub mod seeds;

@@ -1,8 +1,8 @@
 //! Writes the measured model as NumPy files, so that other programs can be timed on it.
 //!
-//! `region.npy` uint16 `[inline][crossline][sample]`: layer + layers · block. `sheets.npy` float32 `[horizon][block][x][y]`: voxel z of the
-//! extended sheets. `meta.json`: `size`, `margin` (nodes around the survey), `metric_m` (metres per voxel along
-//! x, y, z), `layers`, `blocks`.
+//! `region.npy` uint16 `[inline][crossline][sample]`: layer + layers · block. `sheets.npy` float32
+//! `[horizon][block][x][y]`: voxel z of the extended sheets. `meta.json`: `size`, `margin` (nodes around the survey),
+//! `metric_m` (metres per voxel along x, y, z), `layers`, `blocks`.
 
 use glam::Vec3;
 use model::StructuralModel;
@@ -58,7 +58,8 @@ pub(super) fn write(folder: &Path, model: &StructuralModel, progress: &Progress)
     fs::write(folder.join("meta.json"), meta.to_string()).map_err(fail)
 }
 
-/// Writes version 1.0 of the NumPy format: magic, length of the header, a Python literal padded to 64 bytes, the values in C order.
+/// Writes version 1.0 of the NumPy format: magic, length of the header, a Python literal padded to 64 bytes, the values
+/// in C order.
 pub(super) fn write_npy<'a>(
     path: &Path,
     kind: &str,

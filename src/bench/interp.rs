@@ -1,4 +1,5 @@
-//! The extraction of horizon candidates: growing, trees, distances with leaf ids, on cubes of the synthetic survey at SNR 3.
+//! The extraction of horizon candidates: growing, trees, distances with leaf ids, on cubes of the synthetic survey at
+//! SNR 3.
 //!
 //! Memory is the peak of the process beyond the volume, which it held before. With a dump, the amplitudes of the
 //! middle cube are written as `amplitude.npy` (float32, `[inline][crossline][sample]`), so that other programs can

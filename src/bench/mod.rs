@@ -1,10 +1,11 @@
-//! `petroglyph bench`: how long the stages take on this machine, as ratios where possible, since these differ less between
-//! machines.
+//! `petroglyph bench`: how long the stages take on this machine, as ratios where possible, since these differ less
+//! between machines.
 //!
-//! The model is closed form: four folded layers cut by two faults, a cube of n³ voxels. Measured are the structural model, the
-//! parameterization (k with its refinement to the surface, and the traces that give i and j), i, j, k at every voxel, and a picture
-//! of three textured faces by the exact lookup and by the packed one of the paper. Growth is the time per voxel of the
-//! largest cube over that of the smallest. Memory is the peak of the process beyond what it held before, in bytes a voxel.
+//! The model is closed form: four folded layers cut by two faults, a cube of n³ voxels. Measured are the structural
+//! model, the parameterization (k with its refinement to the surface, and the traces that give i and j), i, j, k at
+//! every voxel, and a picture of three textured faces by the exact lookup and by the packed one of the paper. Growth is
+//! the time per voxel of the largest cube over that of the smallest. Memory is the peak of the process beyond what it
+//! held before, in bytes a voxel.
 
 mod dump;
 mod interp;
@@ -181,7 +182,8 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
     let start = Instant::now();
     let parameterization = Parameterization::compute(&model, &ParamSettings::default(), progress)?;
     let took = start.elapsed();
-    // Both run side by side in every thread, so their shares of the processor time are their shares of the elapsed time.
+    // Both run side by side in every thread, so their shares of the processor time are their shares of the elapsed
+    // time.
     let cost = parameterization.cost;
     let share = cost.closest_points.as_secs_f64() / (cost.closest_points + cost.traces).as_secs_f64().max(1e-9);
     stages.push(Stage::new("k (closest points)", took.mul_f64(share)));
@@ -218,8 +220,8 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
     ))
 }
 
-/// Seconds for a picture by each lookup when it is drawn for the second time, so that compiling shaders and uploading are
-/// not counted.
+/// Seconds for a picture by each lookup when it is drawn for the second time, so that compiling shaders and uploading
+/// are not counted.
 fn draw(painter: &mut Painter, loaded: &Loaded, progress: &Progress) -> Result<(f64, f64), ProjectError> {
     let mut seconds = |lookup| {
         let scene = Scene { size_px: [800, 600], samples: 2, lookup, ..Scene::default() };

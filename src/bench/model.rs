@@ -1,7 +1,9 @@
-//! The closed-form model that is measured: folds of two wavelengths in four layers, a normal fault across and one along.
+//! The closed-form model that is measured: folds of two wavelengths in four layers, a normal fault across and one
+//! along.
 //!
-//! In metres, with the cube 5000 m wide and 2000 m deep: horizon h is at `d_h + A·sin(2πX/λ₁)·cos(2πY/λ₂) + Σ throw_f` over the
-//! faults in whose hanging wall the point lies. A fault is the plane `s = s₀ + (depth − 1000)/tan 60°` with s = X or Y.
+//! In metres, with the cube 5000 m wide and 2000 m deep: horizon h is at `d_h + A·sin(2πX/λ₁)·cos(2πY/λ₂) + Σ throw_f`
+//! over the faults in whose hanging wall the point lies. A fault is the plane `s = s₀ + (depth − 1000)/tan 60°` with s
+//! = X or Y.
 
 use glam::{DVec2, DVec3};
 use model::{ModelSettings, StructuralModel};

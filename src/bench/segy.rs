@@ -1,7 +1,8 @@
-//! How fast a SEG-Y cube is read into memory: IEEE and IBM floats, headers interpreted, every trace decoded and measured.
+//! How fast a SEG-Y cube is read into memory: IEEE and IBM floats, headers interpreted, every trace decoded and
+//! measured.
 //!
-//! The file was just written, so the system holds it in memory: the times are those of our work and not of the disk. `bench/peers.py` times
-//! segyio on the same files. A third file goes into the store and out of it.
+//! The file was just written, so the system holds it in memory: the times are those of our work and not of the disk.
+//! `bench/peers.py` times segyio on the same files. A third file goes into the store and out of it.
 
 use super::StoreMeasured;
 use project::error::ProjectError;

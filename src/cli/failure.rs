@@ -29,8 +29,8 @@ pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
 /// The hint when nothing more specific is known.
 const GENERAL_HINT: &str = "`petroglyph COMMAND --help` shows an example";
 
-/// Splits an error of the other crates into the error and the hint: it ends with what to do, after a semicolon or in a sentence
-/// of its own.
+/// Splits an error of the other crates into the error and the hint: it ends with what to do, after a semicolon or in a
+/// sentence of its own.
 fn advice(sentence: String) -> (u8, String, String) {
     let own_sentence = |at: &usize| sentence[at + 2..].starts_with(char::is_uppercase);
     let stop = sentence.match_indices(". ").map(|(at, _)| at).filter(own_sentence).last();

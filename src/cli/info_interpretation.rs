@@ -29,8 +29,8 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
     }
 }
 
-/// Whether a file is a volume rather than an interpretation, judged by its extension, its length or the first bytes of a text
-/// header.
+/// Whether a file is a volume rather than an interpretation, judged by its extension, its length or the first bytes of
+/// a text header.
 fn is_volume(path: &Path) -> bool {
     let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase()).unwrap_or_default();
     let long = std::fs::metadata(path).is_ok_and(|facts| facts.len() > LARGEST);

@@ -1,8 +1,8 @@
-//! The plan of the house, held against the code: no import circle between modules of different folders, no crate, file or function that has
-//! grown too long, a module documentation at the top of every file.
+//! The plan of the house, held against the code: no import circle between modules of different folders, no crate, file
+//! or function that has grown too long, a module documentation at the top of every file.
 //!
-//! Reads the sources as text; nothing is compiled. `use` statements and paths in the code are followed to the file that defines what they
-//! name, through re-exports. Tests are left out.
+//! Reads the sources as text; nothing is compiled. `use` statements and paths in the code are followed to the file that
+//! defines what they name, through re-exports. Tests are left out.
 
 mod imports;
 mod source;
@@ -56,7 +56,8 @@ fn every_file_says_what_it_is_about() {
     assert!(silent.is_empty(), "without module documentation: {silent:?}");
 }
 
-/// The finder must be able to fail: a circle across folders is found, through re-exports too, and one within a folder is not.
+/// The finder must be able to fail: a circle across folders is found, through re-exports too, and one within a folder
+/// is not.
 #[test]
 fn a_circle_is_found_where_there_is_one() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-//! A block diagram without seismic: bounds, horizons from points, plain colours, a picture whose layers can be measured.
+//! A block diagram without seismic: bounds, horizons from points, plain colours, a picture whose layers can be
+//! measured.
 
 use crate::program::run_in;
 use std::fmt::Write;

@@ -1,5 +1,5 @@
-//! Names that look like leftovers, and projects made by someone who means harm: nothing is deleted that is not the project's own, and
-//! nothing of it that a state refers to.
+//! Names that look like leftovers, and projects made by someone who means harm: nothing is deleted that is not the
+//! project's own, and nothing of it that a state refers to.
 
 use crate::program::{bytes, project, run_in, survey};
 use std::fs;

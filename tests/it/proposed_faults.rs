@@ -43,7 +43,8 @@ fn the_dip_of_a_fault_through_one_horizon_comes_from_the_data() {
     let found =
         propose_faults(&evidence, &survey.geometry, &unknown, Some(&likeness), &settings, &Progress::silent()).unwrap();
     for truth in survey.truth.faults.iter().filter(|truth| truth.tip.is_none()) {
-        // Where it meets the horizon, on the middle crossline; its dip there is that of the middle of the volume within a few degrees.
+        // Where it meets the horizon, on the middle crossline; its dip there is that of the middle of the volume within
+        // a few degrees.
         let at = |proposal: &Proposal| {
             let middle = proposal.mesh.vertices.iter().copied().sum::<DVec3>() / proposal.mesh.vertices.len() as f64;
             truth.side_m(survey.geometry.metric_from_voxel() * survey.geometry.voxel_from_world(middle)).abs()

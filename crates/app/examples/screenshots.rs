@@ -1,11 +1,12 @@
-//! Pictures of every panel of the window, without a display: found and clicked by their labels, laid out by egui, painted by the processor.
+//! Pictures of every panel of the window, without a display: found and clicked by their labels, laid out by egui,
+//! painted by the processor.
 //!
 //! ```text
 //! screenshots DEMONSTRATION OUT [WIDTHxHEIGHT] [light|dark] [NAME…]
 //! ```
 //!
-//! DEMONSTRATION is the folder that `petroglyph demo --out` made; its project is changed on the way, so give a copy. With names, only these pictures are
-//! made.
+//! DEMONSTRATION is the folder that `petroglyph demo --out` made; its project is changed on the way, so give a copy.
+//! With names, only these pictures are made.
 
 use anyhow::{Context as _, bail};
 use app::Window;

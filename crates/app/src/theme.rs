@@ -1,6 +1,7 @@
 //! The look of the window: one accent colour, muted surfaces, text that can be read on a projector.
 //!
-//! Sizes are points (pixels at a scale of 1). Text on its background has a contrast of at least 7 : 1, weak text of 4.5 : 1.
+//! Sizes are points (pixels at a scale of 1). Text on its background has a contrast of at least 7 : 1, weak text of 4.5
+//! : 1.
 
 use eframe::egui::{
     Color32, Context, CornerRadius, FontFamily, FontId, Frame, Margin, Shadow, Stroke, Style, TextStyle, Theme, Vec2,

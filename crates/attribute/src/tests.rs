@@ -54,7 +54,10 @@ fn the_dip_of_plane_waves_is_found_below_the_sample() {
                 let error = worst(found, expected, [1, 1, 12]);
                 assert!(error < 0.02, "wavelength {wavelength}, dip {p} {q}: {error} off {expected}");
                 let error = worst(found, expected, [0, 0, 12]);
-                assert!(error < 0.25, "at the walls: wavelength {wavelength}, dip {p} {q}: {error} off {expected}");
+                assert!(
+                    error < 0.25,
+                    "at the outer boundary: wavelength {wavelength}, dip {p} {q}: {error} off {expected}"
+                );
             }
         }
     }

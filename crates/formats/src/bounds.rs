@@ -31,8 +31,8 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The bounds rounded outwards to a round number about a fortieth of each side, after the vertical grew
-    /// by 15 % both ways (never above 0 when all values are below it), so that the outer layers have a
+    /// The bounds rounded outwards to round numbers of about a fortieth of each side, after the vertical range has been
+    /// extended by 15 % at both ends (never above 0 if all values are below it), so that the outer layers have a
     /// thickness.
     ///
     /// ```
@@ -78,11 +78,10 @@ impl Bounds {
     }
 }
 
-/// The bounds of files in X, Y and the vertical unit of the survey to be, after conversion.
+/// The bounds of files in X, Y and the vertical unit of the new survey, after conversion.
 ///
 /// # Errors
-/// [`FormatError`] when a file cannot be read or has no X, Y (line numbers alone place nothing without a
-/// survey).
+/// [`FormatError`] when a file cannot be read or has no X, Y: line numbers alone place nothing without a survey.
 pub fn bounds_of(files: &[InterpretationFile], unit: VerticalUnit) -> Result<Bounds, FormatError> {
     let mut bounds = Bounds { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
     for file in files {

@@ -1,8 +1,7 @@
 //! Charisma: 3D horizon lines and fault sticks.
 //!
-//! Horizon: `INLINE : il XLINE : xl x y z`. Sticks: `INLINE- il xl x y z name stick` (or `CROSSLINE-`); il
-//! and xl may be 0 where they are not known: the point is then placed by X, Y. The format says nothing of
-//! unit or sign.
+//! Horizon: `INLINE : il XLINE : xl x y z`. Sticks: `INLINE- il xl x y z name stick` (or `CROSSLINE-`); il and xl may
+//! be 0 if they are not known: the point is then placed by X, Y. The format states neither unit nor sign.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::table::UNDEFINED;
@@ -58,7 +57,7 @@ fn point_of(source: &SourceFile, line: Line<'_>) -> Result<(Option<String>, RawP
     let wrong = || source.syntax(line.number, expected, line.text);
     let fields = text::fields(line.text, None);
     let is_stick = fields[0].text.ends_with('-');
-    // Words and colons carry no more than the numbers' order.
+    // Words and colons only mark the order of the numbers.
     let numbers: Vec<f64> = fields
         .iter()
         .filter(|f| {

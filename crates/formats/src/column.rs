@@ -25,15 +25,15 @@ pub enum Column {
     Node,
     /// Number of a sheet.
     Sheet,
-    /// How the depth came about, in the words of [`survey::Quality`].
+    /// The origin of the depth, in the words of [`survey::Quality`].
     Quality,
     /// Anything else; not read.
     Other,
 }
 
 impl Column {
-    /// Reads a column list as an option has it, `inline,crossline,z`; `-` or `_` for a column that is not
-    /// read.
+    /// Parses a list of columns as options give it, such as `inline,crossline,z`; `-` or `_` stands for a column that
+    /// is not read.
     ///
     /// # Errors
     /// The word that names no column.
@@ -65,7 +65,7 @@ pub(super) struct NamedColumn {
     pub positive: Option<ZPositive>,
 }
 
-/// Reads a column's name: `Inline`, `XL`, `twt_ms`, `Depth (ft)`, `"X"`, `INT,Inline` …
+/// Parses the name of a column: `Inline`, `XL`, `twt_ms`, `Depth (ft)`, `"X"`, `INT,Inline` …
 pub(super) fn of_name(name: &str) -> NamedColumn {
     let mut name = name.trim().trim_matches('"').to_ascii_lowercase();
     // Petrel writes the type before the name.

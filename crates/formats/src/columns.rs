@@ -39,7 +39,7 @@ pub(super) struct ColumnLayout {
 }
 
 impl ColumnLayout {
-    /// Columns without a word on the vertical.
+    /// Columns whose names state nothing about the vertical axis.
     pub fn plain(columns: Vec<Column>) -> Self {
         Self { columns, unit: None, domain: None, positive: None, notes: Vec::new() }
     }
@@ -51,7 +51,7 @@ impl ColumnLayout {
     }
 }
 
-/// Columns by the names of a header. Of several vertical columns the first of the survey's domain is taken.
+/// Assigns columns by the names of a header. Of several vertical columns the first in the survey's domain is taken.
 pub(super) fn from_header(names: &[&str], domain: Option<Domain>) -> ColumnLayout {
     let named: Vec<_> = names.iter().map(|n| of_name(n)).collect();
     let fits = |n: &NamedColumn| {
@@ -81,9 +81,9 @@ pub(super) fn from_header(names: &[&str], domain: Option<Domain>) -> ColumnLayou
     layout
 }
 
-/// Columns of a table without a header: the one reading under which points fall into the survey.
+/// Assigns the columns of a table without a header: the only reading under which the points lie in the survey.
 ///
-/// `rows` are numbers in file order, `named` whether a name stands before them.
+/// `rows` are numbers in file order, `named` states whether a name stands before them.
 pub(super) fn by_fit(
     source: &SourceFile,
     context: &ReadContext<'_>,
@@ -126,7 +126,7 @@ pub(super) fn by_fit(
     } else if context.geometry.is_none() && integers {
         return Err(unclear("there is no header, and the first two numbers may be X, Y or inline, crossline".into()));
     } else {
-        // Nothing fits: the checks against the survey will say so, with extents.
+        // No reading fits; the checks against the survey report that with the extents.
         (if integers { 3 } else { 2 }, "their size".to_string())
     };
     let mut columns = if named { vec![Column::Name] } else { Vec::new() };
@@ -139,8 +139,8 @@ pub(super) fn by_fit(
     Ok(layout)
 }
 
-/// Whether a row read in this order lies over the survey; with lines and X, Y, also whether both agree to a
-/// bin.
+/// Whether a row read in this order lies over the survey; with both line numbers and X, Y also whether the two agree to
+/// a bin.
 fn fits_survey(columns: &[Column], row: &[f64], geometry: &SurveyGeometry) -> bool {
     let at = |c| columns.iter().position(|&k| k == c).map(|n| row[n]);
     let voxel_of_lines = at(Column::Inline).zip(at(Column::Crossline)).map(|(i, x)| geometry.voxel_from_lines(i, x));
@@ -153,7 +153,7 @@ fn fits_survey(columns: &[Column], row: &[f64], geometry: &SurveyGeometry) -> bo
     }
 }
 
-/// Whether voxel x, y lies on the survey, half a bin of slack included.
+/// Whether voxel x, y lies on the survey, with a tolerance of half a bin.
 pub(super) fn is_inside(voxel: DVec2, geometry: &SurveyGeometry) -> bool {
     let [nx, ny, _] = geometry.size();
     voxel.x >= -0.5 && voxel.y >= -0.5 && voxel.x <= nx as f64 - 0.5 && voxel.y <= ny as f64 - 0.5

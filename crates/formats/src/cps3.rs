@@ -1,10 +1,11 @@
 //! CPS-3 ASCII grids: unrotated.
 //!
 //! `FSASCI 0 1 "COMPUTED" 0 null`, `FSATTR …`, `FSLIMI xmin xmax ymin ymax zmin zmax`, `FSNROW nrow ncol`,
-//! `FSXINC dx dy`, `->name`, then values; `!` lines are comments. Most programs write columns from the west,
-//! each from the north down; some write rows from the south. The file does not say which. The option
-//! `--value-order` states it; otherwise the smoother order is taken if it is at least twice as smooth, and
-//! the usual order with a warning if not. The report has the evidence in either case.
+//! `FSXINC dx dy`, `->name`, then values; `!` lines are comments.
+//!
+//! Most programs write columns from the west, each from the north down; some write rows from the south. The file does
+//! not say which. The option `--value-order` states it; otherwise the smoother order is taken if it is at least twice
+//! as smooth, and if not, the usual order with a warning. The report gives the evidence in either case.
 //!
 //! Written in columns from the north, five values per line.
 
@@ -110,7 +111,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     Ok(vec![RawSurface { name, shape, vertical: VerticalFacts::default(), notes, warnings }])
 }
 
-/// An order is believed when it is this many times smoother than the other.
+/// An order is accepted if it is this many times smoother than the other.
 const CLEAR: f64 = 2.0;
 
 /// Writes a horizon whose grid is unrotated.
@@ -137,10 +138,10 @@ fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> 
     Ok(())
 }
 
-/// Mean second difference along rows and columns; infinite when no three nodes in line have values.
+/// Mean second difference along rows and columns; infinite if no three consecutive nodes have values.
 ///
-/// A plane read in the wrong order is a sawtooth: its first differences are hardly larger, its second ones
-/// are.
+/// A plane that is read in the wrong order becomes a sawtooth, whose first differences are hardly larger, but whose
+/// second differences are.
 fn roughness(z: &[f64], nv: usize) -> f64 {
     let (mut sum, mut count) = (0.0, 0u64);
     for n in 0..z.len() {

@@ -1,9 +1,9 @@
 //! CSV and XYZ: a table with or without a header line.
 //!
-//! The header names the columns (`inline`, `crossline`, `x`, `y`, `z`, `twt_ms`, `depth (ft)` …, in any order
-//! and case); fields are separated by `;`, tab, comma or blanks. Without a header, the reading is taken under
-//! which the points fall into the survey; when two readings do, the user must state the columns. Lines
-//! beginning with `#`, `!`, `%`, `@` or `//` are comments; the last one before the data may be the header.
+//! The header names the columns (`inline`, `crossline`, `x`, `y`, `z`, `twt_ms`, `depth (ft)` …, in any order and
+//! case); fields are separated by `;`, tab, comma or blanks. Without a header, the reading is taken under which the
+//! points lie in the survey; if two readings fit, the user must state the columns. Lines beginning with `#`, `!`, `%`,
+//! `@` or `//` are comments; the last one before the data may be the header.
 //!
 //! Written: `inline,crossline,x,y,twt_ms,sheet,quality` (or `depth_m`), a row per node with a depth.
 
@@ -49,7 +49,8 @@ fn cut_of(first: &str, second: &str) -> Cut {
     Cut { decimal_comma: cut.decimal_comma || comma, ..cut }
 }
 
-/// A header has at least two fields that are no numbers; a row may have its name and words for "nothing".
+/// Whether a line is a header: it has at least two fields that are not numbers. (A row may have a name and words for
+/// "nothing".)
 fn is_header(line: &str, cut: Cut) -> bool {
     let fields = cut.fields(line);
     let words = fields.iter().filter(|f| cut.number(f.text).is_none() && f.text.chars().any(char::is_alphabetic));
@@ -57,7 +58,7 @@ fn is_header(line: &str, cut: Cut) -> bool {
     known >= 2 || words.count() > fields.len() / 2
 }
 
-/// The header line, or the last comment when its words are columns.
+/// The header line, or the last comment if its words name columns.
 fn header_of(all: &[Line<'_>], rows: &[Line<'_>], cut: Cut, context: &ReadContext<'_>) -> Option<ColumnLayout> {
     let first = rows.first()?;
     if is_header(first.text, cut) {

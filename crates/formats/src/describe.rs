@@ -10,29 +10,29 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use survey::remedy::Note;
 
-/// Columns and rows of the little map.
+/// Columns and rows of the map of characters.
 const MAP: [usize; 2] = [56, 20];
 /// Bars of the histogram.
 const BARS: usize = 12;
-/// Shallow to deep.
+/// Characters from shallow to deep.
 const SHADES: [char; 8] = ['.', ':', '-', '=', '+', '*', '%', '#'];
 
-/// What a file holds.
+/// The content of a file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FileDescription {
     /// The file.
     pub file: PathBuf,
-    /// Its length.
+    /// Its length in bytes.
     pub bytes: usize,
-    /// Its format, and how that is known.
+    /// Its format, with the evidence.
     pub format: Settled<Format>,
-    /// What it was read as.
+    /// The kind of surface that it was read as.
     pub kind: SurfaceKind,
     /// Its surfaces.
     pub surfaces: Vec<SurfaceDescription>,
 }
 
-/// A surface of a file, with its numbers as they are in the file.
+/// A surface of a file, with its numbers as in the file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SurfaceDescription {
     /// Its name there.
@@ -43,7 +43,7 @@ pub struct SurfaceDescription {
     pub values: usize,
     /// Holes.
     pub nulls: usize,
-    /// Lowest and highest X, where there are any.
+    /// Lowest and highest X, if there are any.
     pub x: Option<[f64; 2]>,
     /// Lowest and highest Y.
     pub y: Option<[f64; 2]>,
@@ -53,15 +53,15 @@ pub struct SurfaceDescription {
     pub crosslines: Option<[f64; 2]>,
     /// Lowest and highest value.
     pub range: Option<[f64; 2]>,
-    /// The vertical unit, and where it comes from.
+    /// The vertical unit and its source.
     pub unit: String,
-    /// The sign, and where it comes from.
+    /// The sign and its source.
     pub positive: String,
     /// Counts of values in equal parts of the range.
     pub histogram: Vec<usize>,
     /// A map, north up (inlines upward without X, Y): shallow to deep `. : - = + * % #`.
     pub map: Vec<String>,
-    /// Whatever else was found.
+    /// Further facts.
     pub notes: Vec<String>,
     /// What should be checked.
     pub warnings: Vec<Note>,
@@ -86,7 +86,7 @@ pub fn describe(path: &Path, options: &ImportOptions) -> Result<FileDescription,
     Ok(FileDescription { file: path.to_owned(), bytes, format, kind, surfaces })
 }
 
-/// Where the values are and what they are: (X, Y or inline, crossline), value.
+/// The positions and values: (X, Y or inline, crossline), value.
 fn places(shape: &RawShape) -> (Vec<(DVec2, f64)>, &'static str) {
     match shape {
         RawShape::Grid { grid, z } => {
@@ -189,7 +189,7 @@ fn histogram(values: &[f64], [low, high]: [f64; 2]) -> Vec<usize> {
     bars
 }
 
-/// The mean value of each character cell as a shade; a character is about twice as high as wide.
+/// The mean value of each character cell as a shade; a character is about twice as high as it is wide.
 fn map(places: &[(DVec2, f64)], range: Option<[f64; 2]>) -> Vec<String> {
     let Some([shallow, deep]) = range else { return Vec::new() };
     let known: Vec<(DVec2, f64)> = places.iter().copied().filter(|(p, z)| p.is_finite() && z.is_finite()).collect();

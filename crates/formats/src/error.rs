@@ -4,7 +4,7 @@ use super::{Format, SurfaceKind};
 use std::path::PathBuf;
 use survey::remedy::{Note, Remedy, Setting};
 
-/// X or inline range, then Y or crossline range.
+/// Ranges of X or inline, and of Y or crossline.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     /// Lowest and highest X (or inline).
@@ -14,7 +14,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// The smallest extent around `points`; infinite and inverted for none.
+    /// The smallest extent that contains `points`; infinite and inverted if there are none.
     pub fn of(points: impl IntoIterator<Item = glam::DVec2>) -> Self {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
         points.into_iter().fold(Self { first: none, second: none }, |e, p| Self {
@@ -47,7 +47,7 @@ pub enum FormatError {
         /// The formats that can be named.
         known: String,
     },
-    /// The format does not hold this kind of surface, or it is not read or written here.
+    /// The format cannot hold this kind of surface, or reading or writing it is not supported.
     #[error("{format} files cannot be {action} as a {kind}; formats that can: {instead}")]
     Unsupported {
         /// The format.
@@ -59,7 +59,7 @@ pub enum FormatError {
         /// The formats that can.
         instead: String,
     },
-    /// A line does not hold what its format says.
+    /// A line does not have the content that its format requires.
     #[error("{file}, line {line}: expected {expected}, found {found}")]
     Syntax {
         /// The file.
@@ -93,14 +93,14 @@ pub enum FormatError {
         /// What was found instead.
         why: String,
     },
-    /// The columns cannot be told apart.
+    /// The columns cannot be identified.
     #[error("{file}: {why}")]
     Columns {
         /// The file.
         file: PathBuf,
         /// What is unclear.
         why: String,
-        /// A list of columns that would settle it.
+        /// A list of columns that would resolve it.
         example: String,
     },
     /// A surface of that name is not in the file.
@@ -115,7 +115,7 @@ pub enum FormatError {
         /// The names there are.
         available: String,
     },
-    /// The file's vertical unit cannot become the survey's.
+    /// The file's vertical unit cannot be converted to the survey's.
     #[error(
         "{file}: the vertical unit is {found} ({evidence}) but the survey is in {survey}; time and depth are not converted into each other"
     )]
@@ -168,14 +168,14 @@ pub enum FormatError {
         survey: Box<[f64; 2]>,
         /// The survey's unit.
         unit: &'static str,
-        /// Values outside.
+        /// Number of values outside.
         outside: usize,
-        /// Values in all.
+        /// Number of values in all.
         total: usize,
-        /// What would make it fit, and what states that.
+        /// The statement that would make it fit.
         hint: Box<Note>,
     },
-    /// One value outside the survey occurs again and again.
+    /// A value outside the survey's range occurs repeatedly.
     #[error(
         "{file}: '{name}' has the value {value} {count} times, outside the survey's vertical range; it may mark nodes without data"
     )]
@@ -199,7 +199,7 @@ pub enum FormatError {
         /// Median distance.
         metres: f64,
     },
-    /// A grid's header makes no sense.
+    /// The header of a grid is invalid.
     #[error("{file}: the grid header is unusable: {why}")]
     BadGrid {
         /// The file.
@@ -207,7 +207,7 @@ pub enum FormatError {
         /// What is wrong.
         why: String,
     },
-    /// A fault cannot be made from so little.
+    /// There is too little to make a fault.
     #[error("{file}: fault '{name}': {why}")]
     NoSurface {
         /// The file.
@@ -217,7 +217,7 @@ pub enum FormatError {
         /// What is missing.
         why: String,
     },
-    /// The surface does not fit into the format.
+    /// The format cannot represent the surface.
     #[error("'{name}' cannot be written as {format}: {why}; {instead}")]
     NotRepresentable {
         /// The surface.
@@ -232,7 +232,7 @@ pub enum FormatError {
 }
 
 impl FormatError {
-    /// What to state so that the file is read, where that may help.
+    /// What to state so that the file can be read, where that may help.
     pub fn remedy(&self) -> Option<Remedy> {
         Some(match self {
             Self::UnknownFormat { known, .. } => Setting::Format.stated_as(format_args!("({known})")),

@@ -1,8 +1,8 @@
-//! Makes a [`Fault`] from a surface as read: converts it, places it in the world, triangulates it and checks
-//! it against the survey.
+//! Makes a [`Fault`] from a surface as read: converts it, places it in the world, triangulates it and checks it against
+//! the survey.
 //!
-//! Points with stick numbers are sticks; so are points whose lines stand in runs of equal inline, or else
-//! crossline. Other points are fitted with a surface.
+//! Points with stick numbers are sticks, and so are points that come in runs of equal inline, or else crossline. A
+//! surface is fitted to any other points.
 
 use super::columns::is_inside;
 use super::options::ImportOptions;
@@ -130,7 +130,7 @@ fn clean(mesh: &TriangleMesh) -> TriangleMesh {
     out
 }
 
-/// Indices of points, stick by stick; `None` when they are no sticks.
+/// Indices of points, stick by stick; `None` if they are not sticks.
 fn stick_groups(points: &[RawPoint]) -> Option<Vec<Vec<usize>>> {
     if points.iter().all(|p| p.stick.is_some()) {
         return Some(grouped(points, |p| p.stick));
@@ -140,7 +140,7 @@ fn stick_groups(points: &[RawPoint]) -> Option<Vec<Vec<usize>>> {
             return None;
         }
         let groups = grouped(points, line);
-        // Picked line by line, the points of a line follow one another in the file.
+        // When sticks are picked line by line, the points of a line follow one another in the file.
         let runs = 1 + points.windows(2).filter(|w| line(&w[0]) != line(&w[1])).count();
         (groups.len() >= 2 && runs == groups.len() && groups.iter().all(|g| g.len() >= 2)).then_some(groups)
     })
@@ -160,7 +160,7 @@ fn grouped(points: &[RawPoint], key: impl Fn(&RawPoint) -> Option<f64>) -> Vec<V
     groups
 }
 
-/// The nodes of a stick in order, repeated places left out.
+/// The nodes of a stick in order, without repeated places.
 fn line(group: &[usize], points: &[RawPoint], world: &[DVec3]) -> Vec<DVec3> {
     let mut order = group.to_vec();
     if order.iter().all(|&n| points[n].node.is_some()) {

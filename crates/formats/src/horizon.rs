@@ -22,7 +22,7 @@ use survey::remedy::Note;
 /// Depths at one node that differ by less than this, in samples, are the same depth given twice.
 const SAME_DEPTH: f64 = 0.05;
 
-/// Sheets, and how they came about.
+/// Sheets, and how they were made.
 struct Nodes {
     sheets: Vec<Sheet>,
     gridding: Gridding,
@@ -164,7 +164,7 @@ fn from_points(
     Ok(Nodes { sheets, gridding, outside: placed.outside, multivalued, notes, warnings: Vec::new() })
 }
 
-/// Points on their nodes; with several depths at a node, several sheets. Also counts such nodes, and repeated
+/// Puts points on their nodes; several depths at a node make several sheets. Also counts such nodes, and repeated
 /// depths.
 fn on_lattice(lattice: &Lattice, points: &[RawPoint], tolerance: f32) -> (Vec<Sheet>, usize, usize) {
     let [nu, nv] = lattice.grid.count;

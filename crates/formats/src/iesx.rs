@@ -1,9 +1,8 @@
 //! GeoFrame IESX (3d_ci7m): horizons as card images.
 //!
-//! `PROFILE name … TYPE 1  4 … 3d_ci7m.ifdf     m ms` begins a horizon and states the units of X, Y and Z;
-//! `SNAPPING PARAMETERS …` is passed over; `EOD` ends it. Rows have fixed columns
-//! `X Y (16 each) 3 3 Z (9) 10 10 crossline (5) value (14)`, then ` I` and the inline; fields of full width
-//! touch. Magnitudes from 1e29 on are undefined.
+//! `PROFILE name … TYPE 1  4 … 3d_ci7m.ifdf     m ms` begins a horizon and states the units of X, Y and Z; `SNAPPING
+//! PARAMETERS …` is ignored; `EOD` ends the horizon. Rows have fixed columns `X Y (16 each) 3 3 Z (9) 10 10 crossline
+//! (5) value (14)`, then ` I` and the inline; fields of full width touch. Magnitudes from 1e29 on are undefined.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::table::UNDEFINED;
@@ -88,8 +87,8 @@ fn point(source: &SourceFile, line: Line<'_>, indent: usize) -> Result<RawPoint,
     })
 }
 
-/// The numbers of fixed columns, of which blanks at the beginning were trimmed away; cut from the end, where
-/// widths hold.
+/// The numbers of fixed columns whose leading blanks were trimmed; they are cut from the end, where the widths are
+/// valid.
 fn fixed(left: &str, indent: usize) -> Option<Vec<f64>> {
     if !left.is_ascii() {
         return None;

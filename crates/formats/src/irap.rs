@@ -1,10 +1,9 @@
 //! Irap classic ASCII: a rotated regular grid.
 //!
-//! Header of 19 tokens: `-996 NROW XINC YINC / XMIN XMAX YMIN YMAX / NCOL ROTATION X0 Y0 / 0 0 0 0 0 0 0`,
-//! then NCOL·NROW values, i (along XINC) fastest. Node (i, j) lies at (X0, Y0) + i·XINC·(cos, sin) +
-//! j·YINC·(−sin, cos) of the rotation in degrees anticlockwise; a negative YINC mirrors. XMAX and YMAX are
-//! those of the unrotated grid and not used. Values from 9999900 on are undefined. The format says nothing of
-//! unit or sign.
+//! Header of 19 tokens: `-996 NROW XINC YINC / XMIN XMAX YMIN YMAX / NCOL ROTATION X0 Y0 / 0 0 0 0 0 0 0`, then
+//! NCOL·NROW values, i (along XINC) fastest. Node (i, j) lies at (X0, Y0) + i·XINC·(cos, sin) + j·YINC·(−sin, cos) of
+//! the rotation in degrees anticlockwise; a negative YINC mirrors. XMAX and YMAX are those of the unrotated grid and
+//! not used. Values from 9999900 on are undefined. The format states neither unit nor sign.
 
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, SourceFile};
@@ -94,7 +93,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     };
     let grid = header.grid(source)?;
     let expected = grid.count[0] * grid.count[1];
-    // The header may ask for more than there is; memory grows only with what is there.
+    // The header may announce more values than there are; memory grows only with those that are there.
     let mut values = Vec::with_capacity(expected.min(source.bytes.len() / 2));
     for (line, token) in tokens {
         let value = text::number(token).ok_or_else(|| source.syntax(line, "a grid value", token))?;
@@ -114,7 +113,7 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
     }])
 }
 
-/// All sheets as one: possible where they lie on one grid and no node has two depths.
+/// All sheets as one, which is possible if they lie on one grid and no node has two depths.
 pub(super) fn one_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, Failure> {
     let several = |why: String| {
         Failure::NotRepresentable(

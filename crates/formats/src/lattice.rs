@@ -1,13 +1,15 @@
-//! Finds the regular lattice that points lie on: a decimation of the survey's traces, or one of its own,
-//! rotated at will.
+//! Finds the regular lattice that points lie on: a decimation of the survey's traces, or a lattice of its own in any
+//! rotation.
 //!
 //! **Of the survey**: all points within 0.03 bins of traces; the step is the greatest common divisor of their
 //! indices. **Own**: the most frequent vector to the nearest neighbour is the first axis, the most frequent
 //! to the nearest one not in line with it the second. Integer coordinates are then given outwards from the
 //! middle, with the axes fitted anew by least squares each time the number of points has doubled; every point
-//! must end within 0.1 of a node. Either way the points must fill the lattice: on average at least half of a
-//! point's four neighbours exist. Points thinned at random lie on a lattice too, but as nodes between holes
-//! they would be of no use: they count as scattered.
+//! must end within 0.1 of a node.
+//!
+//! Either way the points must fill the lattice: on average at least half of a point's four neighbours must exist.
+//! Points thinned at random lie on a lattice too, but as isolated nodes between holes they would be of no use: they
+//! count as scattered.
 
 use glam::{DMat2, DVec2};
 use std::collections::{HashMap, HashSet};
@@ -16,9 +18,9 @@ use survey::horizon::NodeGrid;
 
 /// Share of a point's four neighbours that must exist on average.
 const MIN_OCCUPANCY: f64 = 0.5;
-/// How far from a trace, in bins, a point may lie to be on it; coordinates with two decimals stay far below.
+/// Largest distance from a trace, in bins, of a point that lies on it; coordinates with two decimals stay far below.
 const ON_TRACE: f64 = 0.03;
-/// How far from its node a point may end, in steps.
+/// Largest final distance of a point from its node, in steps.
 const ON_NODE: f64 = 0.1;
 
 /// A lattice and the node of each point.
@@ -28,7 +30,7 @@ pub(super) struct Lattice {
     pub nodes: Vec<[i64; 2]>,
 }
 
-/// The decimation of the survey's traces that all points lie on; None when they do not, or do not fill it.
+/// The decimation of the survey's traces that all points lie on; `None` if they do not lie on one or do not fill it.
 ///
 /// At step 1 × 1 the grid is the survey's own; otherwise it reaches from the first to the last point.
 pub(super) fn of_survey(voxels: &[DVec2], geometry: &SurveyGeometry) -> Option<(Lattice, [usize; 2])> {
@@ -66,7 +68,7 @@ fn count_of(nodes: &[[i64; 2]]) -> [usize; 2] {
     high.map(|h| h as usize + 1)
 }
 
-/// Whether the nodes have neighbours enough to be a surface.
+/// Whether the nodes have enough neighbours to form a surface.
 fn is_filled(nodes: &[[i64; 2]]) -> bool {
     let known: HashSet<[i64; 2]> = nodes.iter().copied().collect();
     let wide = |axis: usize| nodes.iter().any(|n| n[axis] != nodes[0][axis]);
@@ -81,7 +83,7 @@ fn is_filled(nodes: &[[i64; 2]]) -> bool {
     possible == 0.0 || found as f64 >= MIN_OCCUPANCY * possible * known.len() as f64
 }
 
-/// The lattice of points in world X, Y; None when there is none.
+/// The lattice of points in world X, Y; `None` if there is none.
 pub(super) fn of_points(points: &[DVec2], geometry: &SurveyGeometry) -> Option<Lattice> {
     let middle = points.iter().sum::<DVec2>() / points.len() as f64;
     let local: Vec<DVec2> = points.iter().map(|p| *p - middle).collect();
@@ -105,7 +107,7 @@ pub(super) fn of_points(points: &[DVec2], geometry: &SurveyGeometry) -> Option<L
         return None;
     }
     let count = count_of(&nodes);
-    // A few far outliers on the lattice must not ask for a huge grid.
+    // A few far outliers on the lattice must not cause a huge grid.
     if count[0].checked_mul(count[1])? > 64 * points.len() + 4096 {
         return None;
     }
@@ -251,7 +253,7 @@ fn fit(points: &[DVec2], a: DVec2, b: DVec2) -> Option<(DVec2, DMat2)> {
             origin = DVec2::new(x.z, y.z);
             axes = DMat2::from_cols(DVec2::new(x.x, y.x), DVec2::new(x.y, y.y));
         }
-        // NaN is no lattice either.
+        // NaN does not make a lattice either.
         if axes.determinant().is_nan() || axes.determinant().abs() <= 1e-9 {
             return None;
         }

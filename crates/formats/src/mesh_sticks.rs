@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 use survey::mesh::TriangleMesh;
 
-/// Most sticks that are cut.
+/// Largest number of sticks.
 const MAX_STICKS: usize = 60;
 
 /// Cuts a mesh (world X, Y in m, vertical value; `metres` per vertical unit) into sticks, top first, ordered

@@ -7,8 +7,8 @@
 //! 3. the sign is turned when the file is positive up;
 //! 4. `v` is converted from the file's unit to the survey's (s → ms, ft → m).
 //!
-//! Claudius, whose points hold Z = −3 × TWT in ms, is read with `z_factor = −1/3`, or with `z_positive = up`
-//! and `z_factor = 1/3`. Its TSurf says `ZPOSITIVE Elevation`, so there `z_factor = 1/3` is enough beside
+//! Claudius, whose points hold Z = −3 × TWT in ms, is read with `z_factor = −1/3`, or with `z_positive = up` and
+//! `z_factor = 1/3`. Its TSurf file states `ZPOSITIVE Elevation`, so there `z_factor = 1/3` suffices together with
 //! `z_unit = ms`.
 
 use super::Format;
@@ -27,7 +27,7 @@ pub enum PlaceBy {
     World,
 }
 
-/// The order in which a grid's values stand in a file that does not say it.
+/// The order of a grid's values in a file that does not state it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ValueOrder {
@@ -65,8 +65,7 @@ pub struct ImportOptions {
     /// The columns of a table, in order, instead of what its header says; `None` = by the header or by what
     /// fits the survey.
     pub columns: Option<Vec<Column>>,
-    /// What places points that have both line numbers and X, Y; `None` = lines, after a check that both
-    /// agree.
+    /// What places points that have both line numbers and X, Y; `None` = lines, after a check that both agree.
     pub place_by: Option<PlaceBy>,
     /// Scattered points: a triangle whose circumcircle has a larger radius than this, m, becomes a hole.
     /// `None` = twice the typical distance of neighbouring points.

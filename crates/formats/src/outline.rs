@@ -11,7 +11,7 @@ use super::scatter;
 use glam::DVec2;
 use survey::mesh::TriangleMesh;
 
-/// A file of closed outlines as a surface for each; anything else as it was.
+/// Makes a surface of each outline of a file of closed outlines; any other file stays as it is.
 pub(super) fn split(surface: RawSurface) -> Vec<RawSurface> {
     let parts = match &surface.shape {
         RawShape::Points(points) => closed_parts(points),
@@ -43,7 +43,7 @@ pub(super) fn split(surface: RawSurface) -> Vec<RawSurface> {
         .collect()
 }
 
-/// The triangulated outlines when all points stand in parts and most parts end where they began.
+/// The triangulated outlines, if all points are in parts and most parts end where they began.
 fn closed_parts(points: &[RawPoint]) -> Option<Vec<TriangleMesh>> {
     let mut parts: Vec<Vec<(DVec2, f64)>> = Vec::new();
     let mut last = None;

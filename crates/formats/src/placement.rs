@@ -15,9 +15,9 @@ use survey::geometry::SurveyGeometry;
 pub(super) struct Placed {
     /// Voxel x, y per point.
     pub voxels: Vec<DVec2>,
-    /// How many lie beside the survey.
+    /// Number of points that lie beside the survey.
     pub outside: usize,
-    /// What was decided.
+    /// The decision that was made.
     pub note: Option<String>,
 }
 
@@ -33,9 +33,8 @@ pub(super) fn voxel_xy(geometry: &SurveyGeometry, world: DVec2) -> DVec2 {
 
 /// Places every point.
 ///
-/// A point with both line numbers and X, Y is placed by its lines when most such points agree to half a bin.
-/// When they do not, the reading that lies over the survey is taken and reported; when both do, the user is
-/// asked.
+/// A point with both line numbers and X, Y is placed by its lines if most such points agree to half a bin. If they do
+/// not, the reading that lies over the survey is taken and reported; if both do, the user is asked.
 ///
 /// # Errors
 /// [`FormatError::OutsideSurvey`] when no point lies over the survey, [`FormatError::LinesDisagree`].
@@ -110,8 +109,7 @@ fn corners(geometry: &SurveyGeometry) -> [DVec2; 4] {
     [(0.0, 0.0), (x, 0.0), (0.0, y), (x, y)].map(|(x, y)| world_xy(geometry, DVec2::new(x, y)))
 }
 
-/// The error for a surface that lies beside the survey in world coordinates, with a hint at what would bring
-/// it there.
+/// The error for a surface that lies beside the survey in world coordinates, with a hint on what would bring it there.
 pub(super) fn outside_by_world(
     file: &Path,
     name: &str,

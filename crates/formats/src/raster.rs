@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3};
 
-/// Nodes this far outside a triangle still belong to it: coordinates in files are rounded, and a mesh from a
-/// grid has its rim exactly on nodes.
+/// Distance outside a triangle within which nodes still belong to it: coordinates in files are rounded, and the rim of
+/// a mesh made from a grid lies exactly on nodes.
 const RIM: f64 = 1e-3;
 
 /// Calls `visit(u, v, z)` for every node of a grid of `count` that lies in the triangle's projection along z,
@@ -31,8 +31,8 @@ pub(super) fn triangle(corners: [DVec3; 3], count: [usize; 2], visit: &mut dyn F
         // Both may be far outside; comparing as floats keeps the casts in range.
         if first > last { 0..0 } else { first as usize..last as usize + 1 }
     };
-    // A weight falls by 1 over the corner's height above the opposite side; in a sliver that is soon, so it
-    // is limited.
+    // A weight falls by 1 over the height of its corner above the opposite side. In a sliver that height is small, so
+    // the tolerance is limited.
     let share = |side: DVec2| (RIM * side.length() / area.abs()).min(0.05);
     let (slack_a, slack_b, slack_c) = (share(ac - ab), share(ac), share(ab));
     for u in range(low.x, high.x, count[0]) {

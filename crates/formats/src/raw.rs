@@ -11,16 +11,16 @@ use survey::remedy::Note;
 
 /// What a reader may use besides its file.
 pub(super) struct ReadContext<'a> {
-    /// The survey, when there is one; only to tell columns apart.
+    /// The survey, if there is one; it is used only to identify columns.
     pub geometry: Option<&'a SurveyGeometry>,
-    /// What the user says.
+    /// What the user states.
     pub options: &'a ImportOptions,
-    /// What is wanted from the file.
+    /// The kind of surface to read.
     pub kind: SurfaceKind,
 }
 
 impl ReadContext<'_> {
-    /// Time or depth, as the survey has it.
+    /// The domain of the survey: time or depth.
     pub fn domain(&self) -> Option<Domain> {
         self.geometry.map(|g| Domain::of(g.vertical.unit))
     }
@@ -35,17 +35,17 @@ pub(super) struct RawPoint {
     pub xy: Option<DVec2>,
     /// Vertical value; NaN = none.
     pub z: f64,
-    /// Stick it belongs to.
+    /// Its stick.
     pub stick: Option<f64>,
-    /// Place along its stick.
+    /// Its position along the stick.
     pub node: Option<f64>,
-    /// Sheet it belongs to.
+    /// Its sheet.
     pub sheet: Option<f64>,
-    /// How it came about, when the file says.
+    /// The origin of its depth, if the file states it.
     pub quality: Option<Quality>,
 }
 
-/// The geometry of a surface as its format has it.
+/// The geometry of a surface in the form of its format.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum RawShape {
     /// A regular grid with a value per node, `[u][v]`; NaN = hole.
@@ -57,7 +57,7 @@ pub(super) enum RawShape {
 }
 
 impl RawShape {
-    /// The vertical values, to read.
+    /// The vertical values, for reading.
     pub fn values(&self) -> Box<dyn Iterator<Item = f64> + '_> {
         match self {
             Self::Grid { z, .. } => Box::new(z.iter().copied()),
@@ -66,7 +66,7 @@ impl RawShape {
         }
     }
 
-    /// The vertical values, to change.
+    /// The vertical values, for changing.
     pub fn values_mut(&mut self) -> Box<dyn Iterator<Item = &mut f64> + '_> {
         match self {
             Self::Grid { z, .. } => Box::new(z.iter_mut()),
@@ -76,7 +76,7 @@ impl RawShape {
     }
 }
 
-/// What the file itself says of its vertical axis, with the words that say it.
+/// What the file states about its vertical axis, with the words in which it does.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct VerticalFacts {
     pub unit: Option<(ZUnit, String)>,

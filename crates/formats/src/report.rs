@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use survey::geometry::VerticalUnit;
 use survey::remedy::Note;
 
-/// Where a setting comes from.
+/// The source of a setting.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Provenance {
@@ -20,7 +20,7 @@ pub enum Provenance {
     Assumed,
 }
 
-/// A setting and where it comes from.
+/// A setting with its source.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Settled<T> {
     /// The setting.
@@ -30,7 +30,7 @@ pub struct Settled<T> {
 }
 
 impl<T> Settled<T> {
-    /// The option, else the file's word, else the assumption.
+    /// The option, otherwise what the file states, otherwise the assumption.
     pub(super) fn of(option: Option<T>, file: Option<(T, String)>, assumed: T) -> Self {
         match (option, file) {
             (Some(value), _) => Self { value, source: Provenance::Option },
@@ -61,7 +61,7 @@ pub enum Gridding {
     },
     /// Every point is a trace of the survey, at this step.
     SurveyTraces {
-        /// Traces from node to node along inlines index and crossline index.
+        /// Traces from node to node along the inline index and the crossline index.
         step: [usize; 2],
     },
     /// The points lie on a lattice of their own.
@@ -75,11 +75,11 @@ pub enum Gridding {
     },
     /// Scattered points, interpolated onto the survey's traces.
     Interpolated {
-        /// Gaps that hold a circle of this radius without a point in it stay holes, m.
+        /// Gaps into which a circle of this radius fits without containing a point stay holes, m.
         gap_m: f64,
-        /// Nodes at a point.
+        /// Number of nodes at a point.
         picked: usize,
-        /// Nodes between points.
+        /// Number of nodes between points.
         filled: usize,
     },
     /// Triangles, sampled at the survey's traces.
@@ -106,7 +106,7 @@ pub enum Gridding {
 pub struct ImportReport {
     /// The file.
     pub file: PathBuf,
-    /// What was read.
+    /// The name of the surface.
     pub kind: SurfaceKind,
     /// Name of the surface.
     pub name: String,
@@ -116,9 +116,9 @@ pub struct ImportReport {
     pub values: usize,
     /// Values that mark a hole: null, NaN or infinite.
     pub nulls: usize,
-    /// Points beside the survey.
+    /// Number of points beside the survey.
     pub outside_survey: usize,
-    /// Values above or below the survey.
+    /// Number of values above or below the survey.
     pub outside_range: usize,
     /// Lowest and highest value in the file.
     pub range_in_file: [f64; 2],
@@ -132,13 +132,13 @@ pub struct ImportReport {
     pub z_positive: Settled<ZPositive>,
     /// Factor applied before sign and unit.
     pub z_factor: f64,
-    /// How values came onto nodes.
+    /// How values were placed on nodes.
     pub gridding: Gridding,
-    /// Sheets of the horizon; 1 for a fault.
+    /// Number of sheets of the horizon; 1 for a fault.
     pub sheets: usize,
-    /// Nodes with more than one depth.
+    /// Number of nodes with more than one depth.
     pub multivalued: usize,
-    /// Whatever else the user should know, one sentence each.
+    /// Further facts for the user, one sentence each.
     pub notes: Vec<String>,
     /// What the user should check, one sentence each.
     pub warnings: Vec<Note>,

@@ -44,12 +44,12 @@ pub(super) struct Outliers {
     pub count: usize,
     /// World X, Y, depth and height above its neighbours' median of the one that stands out most.
     pub worst: [f64; 4],
-    /// From this height on a point stands out.
+    /// The height from which a point stands out.
     pub limit: f64,
 }
 
 impl Outliers {
-    /// For the user.
+    /// The warning for the user.
     pub fn sentence(&self, unit: VerticalUnit) -> String {
         let [x, y, z, off] = self.worst;
         let unit = unit.symbol();
@@ -61,11 +61,11 @@ impl Outliers {
     }
 }
 
-/// How many times the usual deviation (1.4826 · median |residual|) an outlier stands out.
+/// How many times the usual deviation (1.4826 · median |residual|) makes an outlier.
 const OUTLIER: f64 = 10.0;
 
-/// Points further from the median of their neighbours than [`OUTLIER`] times what is usual; also than ten
-/// tolerances.
+/// The points that are farther from the median of their neighbours than [`OUTLIER`] times the usual deviation and than
+/// ten tolerances.
 fn outliers(world: &[DVec2], values: &NodeValues, neighbours: &[Vec<usize>], tolerance: f32) -> Option<Outliers> {
     let z = |n: usize| f64::from(values.z[values.offsets[n] as usize]);
     let residual = |n: usize| {
@@ -198,8 +198,8 @@ fn gradients(world: &[DVec2], z: &[f32], triangles: &[[usize; 3]], gap_m: f64) -
                 normal += DMat2::from_cols(*d * d.x, *d * d.y) * *weight;
                 right += *d * (*rise * *weight);
             }
-            // Weights of 1/d² make the sum of squares about the count of neighbours; along a line the slope
-            // across stays 0.
+            // With weights of 1/d² the sum of squares is about the number of neighbours; along a line the slope across
+            // it stays 0.
             if normal.determinant() <= 1e-4 * (normal.x_axis.x + normal.y_axis.y).powi(2) {
                 return DVec2::ZERO;
             }
@@ -233,7 +233,7 @@ fn cubic(corners: [DVec2; 3], z: [f64; 3], gradients: [DVec2; 3], b: [f64; 3]) -
     sum + 6.0 * middle * b[0] * b[1] * b[2]
 }
 
-/// One single-valued set of points onto the survey's traces.
+/// Grids one single-valued set of points onto the survey's traces.
 fn interpolate(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: f64) -> Sheet {
     let grid = NodeGrid::of_survey(geometry);
     let [nu, nv] = grid.count;
@@ -249,7 +249,7 @@ fn interpolate(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: f64) -
             continue;
         }
         let area = (places[1] - places[0]).perp_dot(places[2] - places[0]);
-        // Only which traces lie in the triangle is asked for here.
+        // This only determines which traces lie in the triangle.
         let corners = t.map(|n| points[n].0.extend(0.0));
         raster::triangle(corners, grid.count, &mut |u, v, _| {
             let here = grid.world_at(DVec2::new(u as f64, v as f64));
@@ -266,7 +266,7 @@ fn interpolate(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: f64) -
         let near = voxel.round();
         if near.x >= 0.0 && near.y >= 0.0 && near.x < nu as f64 && near.y < nv as f64 {
             let node = near.x as usize * nv + near.y as usize;
-            // A point without a triangle (few points, or the rim) still marks its trace.
+            // A point without a triangle (few points, or a point on the rim) still marks its trace.
             if depth[node].is_nan() {
                 depth[node] = *z;
             }

@@ -1,11 +1,11 @@
 //! Splits several depths at one node into single-valued sheets, each of which is continuous.
 //!
-//! Across a reverse fault a horizon has two depths at one trace. Which of the two goes on into which
-//! neighbour is decided by continuity: (a) values at nodes with several depths are joined with their
-//! neighbours' in order of growing depth difference, never so that one group has two values at a node; (b)
-//! every other node goes to the group it is reached from over the smallest sum of depth differences
-//! (Dijkstra); (c) groups that meet are joined again, smoothest contact first, when they have no node in
-//! common; (d) what is left is packed into as few sheets as possible, the largest first.
+//! Across a reverse fault a horizon has two depths at one trace. Continuity decides which of the two continues into
+//! which neighbour: (a) values at nodes with several depths are joined with those of their neighbours in order of
+//! increasing depth difference, but never so that one group has two values at a node; (b) every other node goes to the
+//! group from which it is reached over the smallest sum of depth differences (Dijkstra); (c) groups that meet are
+//! joined, smoothest contact first, if they have no node in common; (d) the remaining groups are packed into as few
+//! sheets as possible, the largest first.
 
 use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap, HashSet};
@@ -39,7 +39,7 @@ impl NodeValues {
             for &o in &order[at..at + run] {
                 element[o as usize] = values.z.len() as u32;
             }
-            // A value alone stays as it is, to the last bit.
+            // A value that is alone at its node is kept bit for bit.
             values.z.push(if run == 1 { first } else { (sum / run as f64) as f32 });
             values.offsets[node + 1] += 1;
             at += run;
@@ -60,10 +60,10 @@ impl NodeValues {
     }
 }
 
-/// Groups that may be joined unless they have a node in common.
+/// Groups that may be joined if they have no node in common.
 struct Groups {
     parent: Vec<u32>,
-    /// The nodes with several values that a root's group has a value at.
+    /// The nodes with several values at which the group of a root has a value.
     nodes: Vec<HashSet<u32>>,
 }
 
@@ -100,8 +100,8 @@ struct Claim {
 
 impl Ord for Claim {
     fn cmp(&self, other: &Self) -> Ordering {
-        // The heap's greatest is the cheapest; ties by number, so that the result does not depend on the
-        // heap.
+        // The greatest entry of the heap is the cheapest; ties are broken by number, so that the result does not depend
+        // on the heap.
         other.cost.total_cmp(&self.cost).then(other.element.cmp(&self.element)).then(other.group.cmp(&self.group))
     }
 }
@@ -164,7 +164,7 @@ pub(super) fn split(values: &NodeValues, neighbours: &dyn Fn(usize) -> Vec<usize
         heap.push(Claim { cost: 0.0, element: e as u32, group: groups.root(n as u32) });
     }
     let node_of: Vec<u32> = (0..nodes).flat_map(|n| values.of(n).map(move |_| n as u32)).collect();
-    // A step costs a little even where it is level, so that claims spread evenly.
+    // A step costs a little even where it is level, so that groups spread evenly.
     let (low, high) = values.z.iter().fold((f32::MAX, f32::MIN), |(l, h), &z| (l.min(z), h.max(z)));
     let level = 1e-4 * (high - low).max(f32::MIN_POSITIVE);
     while let Some(Claim { cost, element, group }) = heap.pop() {

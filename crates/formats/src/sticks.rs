@@ -1,11 +1,10 @@
 //! Joins fault sticks to a triangulated surface.
 //!
-//! Sticks are ordered along strike: of the order in the file, the order along the main axis of their middles
-//! and the chains of nearest neighbours from either end, the one with the shortest way through the middles is
-//! taken (the file's own when it is as good). Each is turned to run like the one before. Between two
-//! neighbours the triangles are those whose sides across have the smallest total length (dynamic programming
-//! over the two node counts), which copes with any difference in count, length and spacing. All lengths are
-//! metric.
+//! Sticks are ordered along strike. Of the order in the file, the order along the main axis of their middles, and the
+//! chains of nearest neighbours from either end, the one with the shortest path through the middles is taken (that of
+//! the file if it is as short). Each stick is turned to run like the one before. Between two neighbours the triangles
+//! are those whose sides across have the smallest total length (dynamic programming over the two node counts), which
+//! handles any difference in count, length and spacing. All lengths are metric.
 
 use glam::DVec3;
 use survey::mesh::TriangleMesh;
@@ -60,7 +59,7 @@ fn order(sticks: &[Vec<DVec3>]) -> Vec<usize> {
     best
 }
 
-/// From `first` always on to the nearest one not yet visited.
+/// The chain that starts at `first` and always continues to the nearest stick not yet visited.
 fn chain(middles: &[DVec3], first: Option<&usize>) -> Vec<usize> {
     let mut order: Vec<usize> = first.into_iter().copied().collect();
     let mut left: Vec<usize> = (0..middles.len()).filter(|n| !order.contains(n)).collect();
@@ -83,7 +82,7 @@ fn strip(a: &[DVec3], b: &[DVec3], a0: u32, b0: u32, triangles: &mut Vec<[u32; 3
     let (mut i, mut j) = (n - 1, m - 1);
     let mut made = Vec::with_capacity(n + m - 2);
     let steps = if n * m <= MAX_TABLE { shortest_steps(a, b) } else { even_steps(a, b) };
-    // Steps are undone from the far end.
+    // The steps are recovered from the far end.
     for step_on_a in steps.into_iter().rev() {
         if step_on_a {
             made.push([a0 + i as u32 - 1, a0 + i as u32, b0 + j as u32]);
@@ -96,8 +95,7 @@ fn strip(a: &[DVec3], b: &[DVec3], a0: u32, b0: u32, triangles: &mut Vec<[u32; 3
     triangles.extend(made.into_iter().rev());
 }
 
-/// For each triangle from the near end: whether it has its base on a. The sum of |a_i b_j| over all rungs is
-/// least.
+/// For each triangle from the near end, whether its base lies on a. The sum of |a_i b_j| over all rungs is minimal.
 fn shortest_steps(a: &[DVec3], b: &[DVec3]) -> Vec<bool> {
     let (n, m) = (a.len(), b.len());
     let mut row = vec![0.0; m];
@@ -122,7 +120,7 @@ fn shortest_steps(a: &[DVec3], b: &[DVec3]) -> Vec<bool> {
     steps
 }
 
-/// As [`shortest_steps`], by equal shares of the two lengths; linear in the node count.
+/// The same as [`shortest_steps`], by equal shares of the two lengths; linear in the node count.
 fn even_steps(a: &[DVec3], b: &[DVec3]) -> Vec<bool> {
     let shares = |line: &[DVec3]| {
         let mut sum = 0.0;

@@ -14,7 +14,7 @@ pub(super) const UNDEFINED: f64 = 1e29;
 /// How the lines of a table are cut into numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Cut {
-    /// What stands between fields; `None` = blanks.
+    /// The delimiter; `None` = blanks.
     pub delimiter: Option<char>,
     /// Whether numbers have a decimal comma.
     pub decimal_comma: bool,
@@ -25,7 +25,7 @@ impl Cut {
     ///
     /// A comma between digits of a table cut by `;` or tab is a decimal comma.
     pub fn of(line: &str) -> Self {
-        // A tab beside blanks is a table with blanks; OpendTect cuts by tabs alone.
+        // A tab next to blanks belongs to a table with blanks; OpendTect separates by tabs alone.
         let delimiter = [';', '\t', ','].into_iter().find(|&d| line.contains(d));
         let delimiter =
             if delimiter == Some('\t') && !line.contains("\t\t") && !line.contains('"') { None } else { delimiter };
@@ -58,13 +58,12 @@ impl Cut {
     }
 }
 
-/// Whether a line is a comment or a mark of the end.
+/// Whether a line is a comment or an end mark.
 pub(crate) fn is_comment(line: &str) -> bool {
     line.starts_with(['#', '!', '%', '@']) || line.starts_with("//") || matches!(line, "END" | "EOD" | "EOB" | "EOF")
 }
 
-/// The numbers of up to 2000 rows spread over the table, to tell columns apart, and whether a name stands
-/// before them.
+/// The numbers of up to 2000 rows spread over the table, to identify columns, and whether a name precedes them.
 pub(super) fn sample_rows(rows: &[Line<'_>], cut: Cut) -> (Vec<Vec<f64>>, bool) {
     let stride = (rows.len() / 2000).max(1);
     let mut named = false;
@@ -184,7 +183,7 @@ fn point_of(
         }
     }
     point.lines = inline.zip(crossline).map(|(a, b)| DVec2::new(a, b));
-    // Far beyond any coordinate system the arithmetic would overflow.
+    // Beyond any coordinate system the arithmetic would overflow.
     if let Some(far) = [inline, crossline, x, y].into_iter().flatten().find(|v| v.abs() > 1e12) {
         return Err(source.syntax(line.number, "a coordinate below 1e12", &far.to_string()));
     }
@@ -206,7 +205,7 @@ pub(super) fn settle_columns(
     let (numbers, named) = sample_rows(rows, cut);
     match header {
         Some(mut layout) => {
-            // OpendTect's bulk export puts a name before the columns its header lists.
+            // OpendTect's bulk export puts a name before the columns that its header lists.
             let width = rows.first().map_or(0, |line| cut.fields(line.text).len());
             if named && !layout.columns.contains(&Column::Name) && width == layout.columns.len() + 1 {
                 layout.columns.insert(0, Column::Name);

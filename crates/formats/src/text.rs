@@ -61,7 +61,7 @@ impl SourceFile {
     }
 }
 
-/// The lines of a text, trimmed, blank ones left out.
+/// The lines of a text, trimmed and without blank ones.
 pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     // A CR alone ends a line too; in a CRLF file the empty piece between the two must not count as a line.
     let lone_cr = text.contains('\r') && !text.contains('\n');
@@ -74,7 +74,7 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
         .filter(|line| !line.text.is_empty())
 }
 
-/// The beginning of a text, quoted, for an error message.
+/// The beginning of a text, in quotes, for an error message.
 pub(crate) fn excerpt(text: &str) -> String {
     let text = text.trim();
     if text.is_empty() {

@@ -3,9 +3,9 @@
 //! One or more objects `GOCAD TSurf 1 … END`; in each a `HEADER { name: … }`, an optional coordinate system
 //! block (`AXIS_UNIT` and `ZPOSITIVE` state unit and sign), then `TFACE` parts of `VRTX id x y z` or
 //! `PVRTX id x y z p…`, `ATOM id ref` (a vertex at the place of another) and `TRGL a b c`. Ids may start
-//! anywhere. Everything else (`BSTONE`, `BORDER`, properties, colours) is passed over.
+//! anywhere. Everything else (`BSTONE`, `BORDER`, properties, colours) is ignored.
 //!
-//! Written with ZPOSITIVE Depth, a TFACE per sheet, and CNXYZ at each vertex, which strict readers ask for.
+//! Written with ZPOSITIVE Depth, one TFACE for each sheet, and CNXYZ at each vertex, which strict readers require.
 
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
@@ -39,7 +39,7 @@ fn detect(source: &SourceFile) -> Option<String> {
         .then(|| "it begins with GOCAD TSurf".to_string())
 }
 
-/// What is known of the object being read.
+/// The state of the object being read.
 #[derive(Default)]
 struct Object {
     name: Option<String>,
@@ -204,7 +204,7 @@ fn write_face(out: &mut dyn Write, mesh: &TriangleMesh, first_id: usize) -> std:
     Ok(first_id + mesh.vertices.len())
 }
 
-/// The triangles of a sheet: two a complete cell, one where one corner is missing.
+/// The triangles of a sheet: two for each complete cell, one where a corner is missing.
 pub(super) fn mesh_of(sheet: &Sheet) -> TriangleMesh {
     let [nu, nv] = sheet.grid.count;
     let mut mesh = TriangleMesh::default();

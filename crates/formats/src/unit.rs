@@ -70,7 +70,7 @@ impl ZPositive {
     }
 }
 
-/// Time or depth, when a column's name says no more.
+/// The domain, if the name of a column states no more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Domain {
     Time,

@@ -1,9 +1,9 @@
 //! Resamples a horizon onto an unrotated grid for the formats that need one: ZMAP+ and CPS-3.
 //!
-//! A grid whose axes run along X and Y is kept node for node, turned or mirrored as the format wants. Any
-//! other is sampled bilinearly at square nodes as far apart as its own are at least, over the box around its
-//! nodes with a depth; a new node beside a hole is a hole. Resampling is exact on a plane; between nodes it
-//! follows the surface that pictures show.
+//! A grid whose axes run along X and Y is kept node for node, turned or mirrored as the format requires. Any other grid
+//! is sampled bilinearly at square nodes, at least as far apart as its own, over the box around its nodes with a depth;
+//! a new node next to a hole is a hole. Resampling is exact on a plane; between nodes it follows the surface that
+//! pictures show.
 
 use super::Format;
 use super::error::FormatError;
@@ -14,7 +14,7 @@ use glam::DVec2;
 use std::borrow::Cow;
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 
-/// Most nodes a resampled grid has; beyond, its nodes are further apart.
+/// Largest number of nodes of a resampled grid; beyond it the nodes are placed farther apart.
 const MAX_NODES: f64 = 1.6e7;
 
 /// The horizon on a grid with u along +X and v along +Y, and what was done to it.
@@ -59,11 +59,11 @@ pub(super) fn of<'a>(
     Ok((alone(resampled), vec![note]))
 }
 
-/// The same nodes with u along +X and v along +Y; None when the axes do not run along X and Y.
+/// The same nodes with u along +X and v along +Y; `None` if the axes do not run along X and Y.
 fn along_axes(sheet: &Sheet) -> Option<Sheet> {
     let NodeGrid { origin, u_step, v_step, count: [nu, nv] } = sheet.grid;
     let along = |step: DVec2, axis: DVec2, count: usize| {
-        // The far end must be where an unrotated grid has it, to a thousandth of a bin.
+        // The far end must be within a thousandth of a bin of its place on an unrotated grid.
         step.perp_dot(axis).abs() * count as f64 <= 1e-3 * step.length()
     };
     let straight = along(u_step, DVec2::X, nu) && along(v_step, DVec2::Y, nv);

@@ -25,12 +25,12 @@ pub(super) struct VerticalRule {
     pub unit: Settled<ZUnit>,
     pub positive: Settled<ZPositive>,
     pub factor: f64,
-    /// Everything in one: survey value = file value · scale.
+    /// All of it combined: survey value = file value · scale.
     scale: f64,
     null: Option<f64>,
 }
 
-/// What a conversion met.
+/// What was found during conversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct VerticalCounts {
     pub values: usize,
@@ -47,7 +47,7 @@ fn domain_of(unit: ZUnit) -> Domain {
 }
 
 impl VerticalRule {
-    /// Settles unit and sign.
+    /// Determines unit and sign.
     ///
     /// # Errors
     /// [`FormatError::UnitMismatch`] when one is a time and the other a depth.
@@ -147,14 +147,14 @@ impl VerticalRule {
             }
         }
         let fit = |factor: f64| values.iter().filter(|&&v| inside(v * factor)).count();
-        // A time in seconds read as milliseconds hides in the first sample of a survey that starts at 0.
+        // A time in seconds that is read as milliseconds falls into the first sample of a survey that starts at 0.
         let largest = found[0].abs().max(found[1].abs());
         let flat = axis.unit == VerticalUnit::Milliseconds
             && self.unit.source != Provenance::Option
             && largest < 0.01 * survey[1]
             && largest * 1000.0 > 2.0 * slack
             && fit(1000.0) * 2 > values.len();
-        // Faults often reach far below a survey; it is enough that they reach into it.
+        // Faults often extend far below a survey; it suffices that they extend into it.
         let misses = match kind {
             SurfaceKind::Horizon => outside * 2 > values.len(),
             SurfaceKind::Fault => found[1] < survey[0] || found[0] > survey[1],
@@ -188,7 +188,7 @@ impl VerticalRule {
         })
     }
 
-    /// What multiplies the result by `factor` more.
+    /// The statement that multiplies the result by a further `factor`.
     fn remedy(&self, factor: f64) -> Remedy {
         let mut parts = Vec::new();
         let size = factor.abs();
@@ -223,7 +223,7 @@ fn rank(factor: f64) -> f64 {
     }
 }
 
-/// Undoes the last digits of a division, so that a null reads as it is in the file.
+/// Rounds off the last digits of a division, so that a null reads as it does in the file.
 fn round_to_file(value: f64) -> f64 {
     let rounded = (value * 1e4).round() / 1e4;
     if (rounded - value).abs() <= 1e-9 * value.abs() { rounded } else { value }

@@ -12,7 +12,7 @@ use survey::horizon::{Horizon, Quality};
 /// Why a surface was not written.
 pub(super) enum Failure {
     Io(std::io::Error),
-    /// What does not fit, and what to do.
+    /// What does not fit, and what to do instead.
     NotRepresentable(String, &'static str),
 }
 
@@ -22,7 +22,7 @@ impl From<std::io::Error> for Failure {
     }
 }
 
-/// Writes through `fill` to a file beside `path` and renames it when all is on disk.
+/// Writes through `fill` to a file beside `path` and renames it when everything is on disk.
 pub(super) fn beside(
     path: &Path,
     name: &str,
@@ -53,7 +53,7 @@ pub(super) fn beside(
     })
 }
 
-/// A node of a horizon, with all that a table may say of it.
+/// A node of a horizon, with everything that a table may state about it.
 pub(super) struct Placed {
     pub lines: DVec2,
     pub xy: DVec2,
@@ -74,7 +74,7 @@ pub(super) fn nodes<'a>(horizon: &'a Horizon, geometry: &'a SurveyGeometry) -> i
     })
 }
 
-/// A line number: whole where it is one.
+/// A line number, written as an integer if it is one.
 pub(super) fn line_number(number: f64) -> String {
     let whole = number.round();
     if (number - whole).abs() < 1e-4 { format!("{whole:.0}") } else { format!("{number:.4}") }

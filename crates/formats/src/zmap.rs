@@ -38,7 +38,7 @@ fn detect(source: &SourceFile) -> Option<String> {
         .then(|| "its header is @ … GRID".to_string())
 }
 
-/// An unrotated grid between two corners; also refuses counts and corners that make none.
+/// An unrotated grid between two corners; refuses counts and corners that do not make one.
 pub(super) fn unrotated(
     source: &SourceFile,
     counts: [f64; 2],

@@ -32,7 +32,7 @@ fn detect(source: &SourceFile) -> Option<String> {
         .then(|| "its header is @ … POINT, DATA".to_string())
 }
 
-/// Where a column stands in a row: characters from..to, and its null.
+/// The position of a column in a row: characters from..to, and its null.
 struct Place {
     from: usize,
     to: usize,
@@ -41,7 +41,7 @@ struct Place {
 
 fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
     let text = source.text();
-    // Columns count from the line's own beginning, so lines are taken untrimmed.
+    // Columns are counted from the start of the line, so lines are taken untrimmed.
     let mut lines = text.split('\n').enumerate().map(|(n, text)| Line { number: n + 1, text: text.trim_end() });
     let mut columns: Vec<(String, Place)> = Vec::new();
     let mut lines_of_header = lines.by_ref().filter(|l| !l.text.trim().is_empty() && !is_comment(l.text.trim_start()));

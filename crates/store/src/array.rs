@@ -25,7 +25,7 @@ use zarrs::storage::StorageError;
 /// Compression level: the fast end, which on seismic samples loses 1 or 2 % of the size to the slow end.
 const ZSTD_LEVEL: i32 = 1;
 
-/// Attribute that says that every shard was written.
+/// The attribute that states that every shard was written.
 const COMPLETE: &str = "complete";
 
 /// Converts an error of the library.
@@ -148,7 +148,7 @@ pub(super) fn create_volume<T: StoredSample>(
     })
 }
 
-/// How the array `name` is cut into shards, if its chunks are stored as [`create_volume`] says.
+/// The division of the array `name` into shards, if its chunks are stored as [`create_volume`] stores them.
 fn plain_shards(group: &Path, name: &str, shape: &[usize]) -> Option<ShardGrid> {
     let metadata: Value = serde_json::from_slice(&std::fs::read(group.join(name).join("zarr.json")).ok()?).ok()?;
     let edges = |value: &Value| -> Option<[usize; 3]> {
@@ -184,8 +184,8 @@ pub struct ArrayWriter<T> {
 }
 
 impl<T: StoredSample> ArrayWriter<T> {
-    /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is what a reader finds
-    /// where nothing was written.
+    /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is the value of elements that were
+    /// not written.
     pub fn create(group: &Path, name: &str, layout: Layout, fill: T) -> Result<Self, StoreError> {
         let array = create(group, name, &layout, fill, Arc::new(ZstdCodec::new(ZSTD_LEVEL, true)))?;
         Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, of: std::marker::PhantomData })
@@ -196,11 +196,11 @@ impl<T: StoredSample> ArrayWriter<T> {
         &self.layout
     }
 
-    /// Writes the shard at `index`, `[…]` of the file shape, filled up where it reaches beyond the array.
+    /// Writes the shard at `index`: `[…]` of the file's shape, padded where it reaches beyond the array.
     pub fn write_shard(&self, index: &[usize], values: Vec<T>) -> Result<(), StoreError> {
         let index: Vec<u64> = index.iter().map(|&n| n as u64).collect();
-        // On one thread: the library puts a shard's chunks in the order in which its threads finish them, and
-        // the same input has to make the same bytes. Shards are written in parallel instead.
+        // On one thread: the library writes the chunks of a shard in the order in which its threads finish them, and
+        // the same input must give the same bytes. Shards are written in parallel instead.
         let options = CodecOptions::default().with_store_empty_chunks(true).with_concurrent_target(1);
         self.array
             .store_chunk_opt(&index, values, &options)
@@ -240,7 +240,7 @@ pub struct StoredArray {
     name: String,
     shape: Vec<usize>,
     array: Array<FilesystemStore>,
-    /// Its files, where they can be read without the library.
+    /// Its files, if they can be read without the library.
     shards: Option<Shards>,
 }
 
@@ -270,12 +270,12 @@ impl StoredArray {
         &self.shape
     }
 
-    /// Its files, where they are those of a volume.
+    /// Its files, if they are those of a volume.
     pub(super) fn shards(&self) -> Option<&Shards> {
         self.shards.as_ref()
     }
 
-    /// Gives back the memory of files that were read.
+    /// Releases the memory of files that were read.
     pub(super) fn release(&mut self) {
         if let Some(shards) = &mut self.shards {
             shards.release();
@@ -291,7 +291,7 @@ impl StoredArray {
             .map_or_else(|| "an unknown type".to_owned(), |name| name.into_owned())
     }
 
-    /// Whether its elements are `T`s.
+    /// Whether its elements are of type `T`.
     pub fn holds<T: StoredSample>(&self) -> bool {
         *self.array.data_type() == T::data_type()
     }
@@ -303,7 +303,7 @@ impl StoredArray {
         Ok(shape.iter().map(|n| n.get() as usize).collect())
     }
 
-    /// Fails when a file that the box needs is missing, where every one was written.
+    /// Fails if a file that the box needs is missing, in an array of which every file was written.
     fn check_files(&self, start: &[usize], size: &[usize]) -> Result<(), StoreError> {
         if self.array.attributes().get(COMPLETE) != Some(&Value::Bool(true)) {
             return Ok(());

@@ -10,9 +10,9 @@
 //! forest/nodes               uint32 [node][6]: parent, two children (all ones = none), surface, first triangle, end
 //! ```
 //!
-//! A voxel of a level stands for the 2 × 2 × 2 voxels of the level before and takes the least of their
-//! distances with its leaf (of equal ones the lesser), so that no surface is lost however coarse the level;
-//! distances remain voxels of level 0. What leaves and nodes mean is defined by the extraction; here they are
+//! A voxel of a level stands for the 2 × 2 × 2 voxels of the level before and takes the smallest of their distances
+//! with its leaf (of equal distances the one with the smaller id), so that no surface is lost however coarse the level
+//! is. Distances remain in voxels of level 0. The extraction defines what leaves and nodes mean; here they are only
 //! tables.
 //!
 //! Memory while writing: an eighth of the volume's voxels at 5 bytes each for the pyramid, and one file per
@@ -39,7 +39,7 @@ const KIND: &str = "candidates";
 /// Rows of a table in one file.
 const ROWS: usize = 1 << 20;
 
-/// Leaf ids being written in as few bytes as they need.
+/// Leaf ids while they are written, in as few bytes as they need.
 enum LeafWriter {
     Narrow(ArrayWriter<u16>),
     Wide(ArrayWriter<u32>),
@@ -63,14 +63,14 @@ pub struct CandidateWriter {
 }
 
 impl CandidateWriter {
-    /// Begins to replace what is at `path`; `leaves` is the greatest id there will be.
+    /// Begins to replace what is at `path`; `leaves` is the largest id that will occur.
     ///
     /// # Errors
     /// [`StoreError`].
     pub fn create(path: &Path, size: [usize; 3], leaves: usize) -> Result<Self, StoreError> {
         let replacement = Replacement::of(path)?;
         let group = replacement.path();
-        // The facts follow at the end; this makes the folder.
+        // This creates the folder; the facts are written at the end.
         write_group(group, "", serde_json::Map::new())?;
         let layout = Layout::volume(size);
         let distance = ArrayWriter::create(group, "distance", layout.clone(), BEYOND)?;
@@ -81,7 +81,7 @@ impl CandidateWriter {
         Ok(Self { replacement, size, distance, leaf, half })
     }
 
-    /// Inlines of a slab but for the last: what fills files.
+    /// Number of inlines of each slab but the last: as many as fill the files.
     pub fn slab_inlines(&self) -> usize {
         self.distance.layout().file_shape()[0]
     }
@@ -90,7 +90,7 @@ impl CandidateWriter {
     /// `[inline][crossline][sample]`.
     ///
     /// # Errors
-    /// [`StoreError`], [`StoreError::SizeMismatch`] when it is not a slab.
+    /// [`StoreError`], [`StoreError::SizeMismatch`] if the samples are not a slab.
     pub fn write_slab(
         &mut self,
         first: usize,
@@ -229,7 +229,7 @@ impl Level {
     }
 }
 
-/// Takes the least of 2 × 2 × 2 distances with its leaf. The coarse arrays hold the halved size.
+/// Takes the smallest of 2 × 2 × 2 distances with its leaf. The coarse arrays have half the size.
 fn halve(size: [usize; 3], distance: &[u8], leaf: &[u32], half_distance: &mut [u8], half_leaf: &mut [u32]) {
     let [nx, ny, nz] = size;
     let [_, half_ny, half_nz] = halved(size);
@@ -305,12 +305,12 @@ impl StoredCandidates {
         Ok(Self { path: path.to_owned(), info, levels: opened })
     }
 
-    /// Where they are.
+    /// The path.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What is known of them.
+    /// The facts of the extraction.
     pub fn info(&self) -> &CandidateInfo<Value> {
         &self.info
     }
@@ -323,13 +323,13 @@ impl StoredCandidates {
     /// Voxels of a level.
     ///
     /// # Panics
-    /// When there is no such level.
+    /// If there is no such level.
     pub fn size(&self, level: usize) -> [usize; 3] {
         let shape = self.levels[level][0].shape();
         [shape[0], shape[1], shape[2]]
     }
 
-    /// The distance in voxels of level 0 that a code stands for.
+    /// The distance that a code stands for, voxels of level 0.
     pub fn distance(&self, code: u8) -> Option<f32> {
         (code != BEYOND).then(|| f32::from(code) * self.info.max_distance / f32::from(BEYOND - 1))
     }
@@ -403,7 +403,7 @@ impl StoredCandidates {
     }
 }
 
-/// Ids of two bytes as ids of four.
+/// Widens ids of two bytes to four.
 fn widened(ids: &[u16]) -> Vec<u32> {
     ids.iter().map(|&id| id.into()).collect()
 }

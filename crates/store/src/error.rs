@@ -27,13 +27,13 @@ pub enum StoreError {
         /// What was looked for.
         path: PathBuf,
     },
-    /// A volume whose writing was interrupted.
+    /// Writing the volume was interrupted.
     #[error("{} was not written to its end; run the same import again to finish it", path.display())]
     Unfinished {
         /// The folder.
         path: PathBuf,
     },
-    /// A Zarr group lacks an array.
+    /// A Zarr group has no such array.
     #[error("{} has no array {array:?}; it was not written by this program or is incomplete: import the data again", path.display())]
     MissingArray {
         /// The group.
@@ -48,7 +48,7 @@ pub enum StoreError {
         path: PathBuf,
         /// What was expected, with its article.
         expected: &'static str,
-        /// What was found.
+        /// What it is instead.
         reason: String,
     },
     /// Written by a newer version.
@@ -94,7 +94,7 @@ pub enum StoreError {
         start: Vec<usize>,
         /// Elements asked for.
         size: Vec<usize>,
-        /// Elements there are.
+        /// Number of elements.
         shape: Vec<usize>,
     },
     /// Parts that do not fit together.

@@ -1,11 +1,9 @@
 //! Writing volumes: level 0 block by block, then level after level, in memory that is bounded whatever the
 //! volume's size.
-//!
-//! A block is a range of inlines and of crosslines with all their samples, whole shards of them, as many as
-//! half the memory holds; its shards are written by all threads. Each further level is made shard by shard
-//! from the level before. [`resume_blocks`] keeps the shards that an earlier call, ended by a kill or a power
-//! cut, left whole: shards get their names only when they are complete, and their checksums are verified
-//! before they are kept.
+//! A block is a range of inlines and of crosslines with all their samples. It consists of whole shards, as many as fit
+//! into half the memory; its shards are written by all threads. Each further level is made shard by shard from the
+//! level before. [`resume_blocks`] keeps the intact shards of an earlier call that was ended by a kill or a power cut:
+//! shards get their names only when they are complete, and their checksums are verified before they are kept.
 
 use super::array::{create_volume, write_array, write_group};
 use super::error::StoreError;
@@ -31,11 +29,11 @@ use survey::volume::Volume;
 /// The file that marks a folder as being written; it is removed when the volume is complete.
 const MARKER: &str = "unfinished";
 
-/// Bytes that making one shard of a further level takes at most: the mapped files of 262³ samples, and what
-/// they become.
+/// Largest memory for making one shard of a further level, bytes: the mapped files of 262³ samples, and the samples
+/// made from them.
 const LEVEL_BYTES: u64 = 160 << 20;
 
-/// Shards of a further level that a thread makes, at most, before files are unmapped.
+/// Largest number of shards of a further level that a thread makes before files are unmapped.
 const SHARDS_TOGETHER: u64 = 4;
 
 /// Default memory for writing a volume, bytes.
@@ -44,9 +42,9 @@ pub const MEMORY_BYTES: u64 = 2 << 30;
 /// How a volume is written.
 #[derive(Debug, Clone, Copy)]
 struct WriteSettings {
-    /// Memory to use, bytes; what one column of shards needs (128 × 128 traces, twice) is used in any case.
+    /// Memory to use, bytes; the need of one column of shards (128 × 128 traces, twice) is used in any case.
     memory_bytes: u64,
-    /// How the source is ordered.
+    /// The order in which the source delivers samples.
     order: LineOrder,
 }
 
@@ -55,7 +53,7 @@ struct WriteSettings {
 pub struct Ingested {
     /// Count of shards of all levels.
     pub files: usize,
-    /// Count of those that an earlier call had written.
+    /// Count of those that an earlier call had written already.
     pub kept: usize,
 }
 
@@ -72,7 +70,7 @@ pub fn write_volume<T: StoredSample>(
     let size = volume.size();
     let [_, ny, nz] = size;
     let mask = mask_of(size, volume.live(), info)?;
-    // Blocks of whole inlines are borrowed as they are.
+    // Blocks of whole inlines are borrowed without a copy.
     let settings = WriteSettings { memory_bytes: u64::MAX, order: LineOrder::Inlines };
     let block = |block: &Block, _| {
         Ok(Cow::Borrowed(&volume.samples()[block.inlines.start * ny * nz..block.inlines.end * ny * nz]))
@@ -127,8 +125,7 @@ fn ingest_blocks(
     memory_bytes: u64,
     progress: &Progress,
 ) -> Result<Ingested, StoreError> {
-    // The type is chosen here, so that what is made for it is compiled with this crate's optimisations
-    // whoever calls.
+    // The type is chosen here, so that the code for it is compiled with this crate's optimisations whoever calls.
     let ingest = match source.sample_type() {
         SampleType::Int8 => ingest_as::<i8>,
         SampleType::Uint8 => ingest_as::<u8>,
@@ -160,7 +157,7 @@ fn ingest_as<T: StoredSample>(
     Ingest { group, path, mask, settings, progress }.run(size, info, supply)
 }
 
-/// Writes into `path` itself by `write`, between the marks that say that it is being written.
+/// Lets `write` write into `path` itself, with a mark that says that it is being written.
 fn resume(
     path: &Path,
     fingerprint: &str,
@@ -180,7 +177,7 @@ fn resume(
     Ok(done)
 }
 
-/// Whether the folder holds a volume that was not written to its end.
+/// Whether the folder holds a volume that was not completed.
 pub(super) fn is_unfinished(group: &Path) -> bool {
     group.join(MARKER).exists()
 }
@@ -204,7 +201,7 @@ fn every_second(mask: &[bool], [nx, ny]: [usize; 2]) -> Vec<bool> {
 struct Ingest<'a> {
     /// The folder to write into.
     group: &'a Path,
-    /// The folder that the volume will be in, for errors.
+    /// The folder of the complete volume, for errors.
     path: &'a Path,
     mask: Vec<bool>,
     settings: WriteSettings,
@@ -299,7 +296,7 @@ impl Ingest<'_> {
         Ok((done, grid))
     }
 
-    /// Writes a shard from samples that hold all of it, and finds the ranges of its bricks.
+    /// Writes a shard from samples that contain all of it, and determines the ranges of its bricks.
     fn write_shard<T: StoredSample>(
         &self,
         grid: &ShardGrid,
@@ -389,7 +386,7 @@ impl<R: Default> Rooms<R> {
     }
 }
 
-/// What making a shard of a further level needs.
+/// The buffers for making a shard of a further level.
 struct LevelRoom<T> {
     halving: Halving,
     coarse: Vec<T>,
@@ -403,8 +400,8 @@ impl<T> Default for LevelRoom<T> {
 }
 
 impl<T: StoredSample> LevelRoom<T> {
-    /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, the masks
-    /// likewise.
+    /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, and the masks are
+    /// given in the same way.
     fn fill(
         &mut self,
         source: &Shards,

@@ -55,7 +55,7 @@ impl Layout {
     }
 }
 
-/// Copies the box at `start` out of row-major `values` of `shape`, filling up to `size` beyond the end.
+/// Copies the box at `start` out of row-major `values` of `shape`, padded to `size` beyond the end.
 pub(super) fn gather<T: StoredSample>(values: &[T], shape: &[usize], start: &[usize], size: &[usize]) -> Vec<T> {
     let mut out = Vec::with_capacity(size.iter().product());
     gather_axis(values, shape, start, size, &mut out);

@@ -111,12 +111,12 @@ impl StoredParameterization {
         self.header.size
     }
 
-    /// What identifies the input that it was computed from.
+    /// The key of the input that it was computed from.
     pub fn key(&self) -> &str {
         &self.header.key
     }
 
-    /// All of it.
+    /// Reads all of it.
     ///
     /// # Errors
     /// [`StoreError`].
@@ -130,7 +130,7 @@ impl StoredParameterization {
         Ok(ParameterizationVolumes { i: field(0)?, j: field(1)?, k: field(2)?, layer: ids(0)?, block: ids(1)? })
     }
 
-    /// A box of it.
+    /// Reads a box of it.
     ///
     /// # Errors
     /// [`StoreError`], [`StoreError::OutOfBounds`] when the box is not inside.
@@ -149,7 +149,7 @@ impl StoredParameterization {
     }
 }
 
-/// Ids of one byte as ids of two.
+/// Widens ids of one byte to two.
 fn widened(bytes: &[u8]) -> Vec<u16> {
     bytes.iter().map(|&id| if id == u8::MAX { NO_ID } else { id.into() }).collect()
 }

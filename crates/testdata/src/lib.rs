@@ -1,7 +1,7 @@
 //! Where tests find the real data files: the folder that `PETROGLYPH_DATA` names.
 //!
-//! Without it a test on real data says that it is skipped. Where the data are promised, because the variable is set or because
-//! continuous integration runs (`CI=true`), their absence is a failure. Used by tests only.
+//! Without it a test on real data says that it is skipped. Where the data are promised, because the variable is set or
+//! because continuous integration runs (`CI=true`), their absence is a failure. Used by tests only.
 
 use std::env;
 use std::path::PathBuf;

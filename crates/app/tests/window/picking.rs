@@ -1,4 +1,5 @@
-//! Interpreting in the window, by labels, keys and clicks: what is done becomes the commands that the command line gives.
+//! Interpreting in the window, by labels, keys and clicks: what is done becomes the commands that the command line
+//! gives.
 
 use super::driven::{Driven, click, document, driven, project, state, wait};
 use app::state::{Action, How, Layout, Panel, PickingStep, Tool};

@@ -229,7 +229,7 @@ mod tests {
     #[test]
     fn a_bridge_leads_across_a_hole_and_nowhere_else() {
         let mut sheet = plane();
-        // The trace (4, 3) is missing at the wall, which is no hole.
+        // The trace (4, 3) is missing at the outer boundary, which is not a hole.
         sheet.z[4 * 4 + 3] = f32::NAN;
         let sheet = sheet.sheet();
         let holes = [SheetHole { block: 0, traces: &[2 * 4 + 1] }];
@@ -244,13 +244,13 @@ mod tests {
     #[test]
     fn a_fault_meets_each_leg_of_a_fence_within_it() {
         // The plane x = 2 between z = 0 and 8, and a fence that crosses it twice and once turns before it.
-        let wall = [
+        let corner = [
             DVec3::new(2.0, -9.0, 0.0),
             DVec3::new(2.0, 9.0, 0.0),
             DVec3::new(2.0, 9.0, 8.0),
             DVec3::new(2.0, -9.0, 8.0),
         ];
-        let triangles = [[wall[0], wall[1], wall[2]], [wall[0], wall[2], wall[3]]];
+        let triangles = [[corner[0], corner[1], corner[2]], [corner[0], corner[2], corner[3]]];
         let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0], [1.0, 2.0]].map(DVec2::from_array);
         let lines = mesh_along(&triangles, &corners);
         let mut at: Vec<f64> = lines.iter().flatten().map(|point| point.x).collect();

@@ -37,7 +37,8 @@ impl Cells {
             nodes
         };
         let (xs, ys) = (nodes(nx), nodes(ny));
-        // Where the trace itself has no value, one beside it stands in: holes smaller than a cell are not to be seen here.
+        // Where the trace itself has no value, one beside it stands in: holes smaller than a cell are not to be seen
+        // here.
         let value = |x: usize, y: usize| {
             let reach = stride / 2;
             let own = sheet.z[x * ny + y];

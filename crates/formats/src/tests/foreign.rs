@@ -188,7 +188,9 @@ fn iesx_says_its_unit_and_name() {
 
 #[test]
 fn petromod_turns_about_its_own_pivot() {
-    let header = "Content=Map,DataUnitDistance=15,DataUnitZ=10,GridNoX=3,GridNoY=2,GridStepX=10,GridStepY=20,MapType=GridMap,OriginX=100,OriginY=100,RotationAngle=90,RotationOriginX=100,RotationOriginY=100,Undefined=99999,Version=1.0";
+    let header = "Content=Map,DataUnitDistance=15,DataUnitZ=10,GridNoX=3,GridNoY=2,GridStepX=10,GridStepY=20,\
+                  MapType=GridMap,OriginX=100,OriginY=100,RotationAngle=90,RotationOriginX=100,RotationOriginY=100,\
+                  Undefined=99999,Version=1.0";
     let mut file = vec![0x23, 0x03, 0x19, 0x64];
     file.extend(header.as_bytes());
     file.push(0);

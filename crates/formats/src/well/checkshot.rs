@@ -1,7 +1,7 @@
 //! Files of time–depth tables: CSV or blanks, with named columns or with two.
 //!
-//! Whether a table is in seconds or milliseconds, if it does not say, is settled by physics: only one of the
-//! two gives interval velocities between 300 and 10 000 m/s.
+//! If a table does not state whether it is in seconds or milliseconds, physics decides: only one of the two gives
+//! interval velocities between 300 and 10 000 m/s.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;

@@ -1,4 +1,4 @@
-//! What the columns of well tables hold, by their names.
+//! The content of the columns of well tables, by their names.
 
 use crate::unit::ZUnit;
 
@@ -9,7 +9,7 @@ pub(super) enum WellColumn {
     Md,
     /// Angle from the vertical, degrees.
     Inclination,
-    /// Azimuth from grid north, or from a north that is not named.
+    /// Azimuth from grid north, or from a north that is not specified.
     Azimuth,
     /// Azimuth from true north.
     AzimuthTrue,

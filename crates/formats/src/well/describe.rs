@@ -7,7 +7,7 @@ use super::table::Table;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// What kind of a well's file it is.
+/// The kinds of well files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum WellFileKind {
@@ -24,26 +24,26 @@ pub enum WellFileKind {
 /// A column or curve of a well's file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WellColumnDescription {
-    /// Its name there.
+    /// Its name in the file.
     pub name: String,
-    /// Its unit there; empty when it states none.
+    /// Its unit in the file; empty if none is stated.
     pub unit: String,
-    /// What it is, as the file says.
+    /// Its description in the file.
     pub description: String,
-    /// Count of numbers in it, nulls left out.
+    /// Number of values, without nulls.
     pub values: usize,
     /// Lowest and highest number.
     pub range: Option<[f64; 2]>,
 }
 
-/// What a well's file holds.
+/// The content of a well file.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct WellFileDescription {
     /// The file.
     pub file: PathBuf,
-    /// What kind it is.
+    /// Its kind.
     pub kind: WellFileKind,
-    /// How that is known.
+    /// The evidence for the kind.
     pub evidence: String,
     /// Facts in its header.
     pub facts: Vec<String>,
@@ -68,8 +68,8 @@ fn column(name: &str, unit: &str, description: &str, values: impl Iterator<Item 
     }
 }
 
-/// Describes a file when it is a well's: LAS, or a table whose columns are those of a deviation, of tops or
-/// of checkshots. None for anything else.
+/// Describes a file if it belongs to a well: LAS, or a table whose columns are those of a deviation, of tops or of
+/// checkshots. `None` for any other file.
 ///
 /// # Errors
 /// [`WellFileError`] for a LAS file that is broken.

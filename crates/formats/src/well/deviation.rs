@@ -6,10 +6,10 @@
 //! | X, Y and TVDSS, Z or TVD; MD where known | straight between the places |
 //! | dX, dY (from the head) and TVD, TVDSS or Z | straight between the places |
 //!
-//! A file with both angles and places is read by its angles, and the note says how far the places are off.
-//! The head comes from the option, the comments (`# WELL HEAD X-COORDINATE: …`), or the first row's X, Y; the
-//! datum from the option or the comments, else it is taken as 0 and reported. The sign of Z is determined by
-//! its course: a hole goes down.
+//! A file with both angles and places is read by its angles, and a note states how far the places are off. The head
+//! comes from the option, the comments (`# WELL HEAD X-COORDINATE: …`), or X, Y of the first row; the datum comes from
+//! the option or the comments, otherwise it is taken as 0 and reported. The sign of Z is determined by its trend: a
+//! hole goes down.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
@@ -33,7 +33,7 @@ pub struct Deviation {
     pub warnings: Vec<Note>,
 }
 
-/// A header that would do.
+/// An example of a header that suffices.
 const EXAMPLE: &str = "md_m,inclination_deg,azimuth_deg or md_m,x,y,tvdss_m";
 
 /// Reads a deviation.
@@ -195,7 +195,7 @@ impl Reading<'_> {
     /// A length column, in m.
     fn column(&mut self, column: WellColumn) -> Result<Option<Vec<f64>>, WellFileError> {
         let Some(at) = self.table.position(column) else { return Ok(None) };
-        // X, Y are in the survey's metres unless their name says otherwise, whatever the unit of depths.
+        // X, Y are in the survey's metres unless their names say otherwise, whatever the unit of depths.
         let told = match column {
             WellColumn::X | WellColumn::Y => self.table.units[at].or(Some(crate::unit::ZUnit::Metres)),
             _ => self.options.md_unit,
@@ -222,7 +222,7 @@ impl Reading<'_> {
         let (Some(dx), Some(dy)) = (dx, dy) else { return Ok(None) };
         let head = match self.head(None) {
             Ok(head) => head,
-            // The angles may still give the path; without them, the missing head is reported there.
+            // The angles may still give the path; if they do not, the missing head is reported there.
             Err(error) if self.table.position(WellColumn::Inclination).is_none() => return Err(error),
             Err(_) => return Ok(None),
         };

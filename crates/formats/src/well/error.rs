@@ -15,7 +15,7 @@ pub enum WellFileError {
         /// What the system says.
         source: std::io::Error,
     },
-    /// A line does not hold what it should.
+    /// A line does not have the required content.
     #[error("{file}, line {line}: expected {expected}, found {found}")]
     Syntax {
         /// The file.
@@ -27,14 +27,14 @@ pub enum WellFileError {
         /// What is there.
         found: String,
     },
-    /// The columns do not say where the well is.
+    /// The columns do not state where the well is.
     #[error("{file}: {why}; name the columns in a header line, for example {example}")]
     Columns {
         /// The file.
         file: PathBuf,
         /// What is missing.
         why: String,
-        /// A header that would do.
+        /// An example of a header that suffices.
         example: &'static str,
     },
     /// There are no rows.
@@ -51,7 +51,7 @@ pub enum WellFileError {
         /// The file.
         file: PathBuf,
     },
-    /// A file of several wells has none of the name.
+    /// A file of several wells contains none of this name.
     #[error("{file} has no well named '{wanted}'; it has: {available}")]
     NoSuchWell {
         /// The file.
@@ -64,7 +64,7 @@ pub enum WellFileError {
     /// The numbers are not a valid path or time–depth table.
     #[error(transparent)]
     Well(#[from] WellError),
-    /// The unit is not known.
+    /// The unit cannot be determined.
     #[error("{file}: {what} could be in {candidates}; say which in its header, for example {header}")]
     UnclearUnit {
         /// The file.
@@ -73,7 +73,7 @@ pub enum WellFileError {
         what: String,
         /// Units that would fit.
         candidates: &'static str,
-        /// A header that settles it.
+        /// An example of a header that settles it.
         header: &'static str,
     },
     /// A LAS file of a version that is not read.
@@ -84,7 +84,7 @@ pub enum WellFileError {
         /// Its version.
         version: String,
     },
-    /// A LAS file that lacks something.
+    /// A LAS file that is incomplete or wrong.
     #[error("{file}: {why}; check that it is a LAS 2.0 file that was copied in full")]
     Las {
         /// The file.
@@ -92,7 +92,7 @@ pub enum WellFileError {
         /// What is missing or wrong.
         why: String,
     },
-    /// The index of a LAS file cannot be laid along the well.
+    /// The index of a LAS file cannot be placed along the well.
     #[error("{file}: the index {mnemonic} is in '{unit}'; {instead}")]
     LasIndex {
         /// The file.
@@ -103,13 +103,13 @@ pub enum WellFileError {
         unit: String,
         /// What to do.
         instead: &'static str,
-        /// Whether the well's checkshots would do.
+        /// Whether the well's checkshots would suffice.
         needs_checkshot: bool,
     },
 }
 
 impl WellFileError {
-    /// What to state so that the well is read, where that may help.
+    /// What to state so that the well can be read, where that may help.
     pub fn remedy(&self) -> Option<Remedy> {
         Some(match self {
             Self::NoHead { .. } => Setting::Head.stated(),

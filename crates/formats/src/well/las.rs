@@ -29,7 +29,7 @@ pub struct Las {
     pub version: f64,
     /// Whether the values of a depth run over several lines.
     pub wrapped: bool,
-    /// The value that marks nothing.
+    /// The null value.
     pub null: Option<f64>,
     /// Section W.
     pub well: Vec<LasItem>,

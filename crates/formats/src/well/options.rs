@@ -15,6 +15,6 @@ pub struct WellOptions {
     pub head: Option<[f64; 2]>,
     /// Height of the datum above mean sea level, m; `None` = as the file says, else 0, with a warning.
     pub datum_m: Option<f64>,
-    /// Unit of lengths along the well where columns do not say; `None` = metres, reported.
+    /// Unit of lengths along the well if columns do not state one; `None` = metres, reported.
     pub md_unit: Option<ZUnit>,
 }

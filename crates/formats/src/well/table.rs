@@ -15,20 +15,20 @@ use survey::remedy::{Note, Setting};
 /// Metres in an international foot.
 pub(super) const FOOT_M: f64 = 0.3048;
 
-/// A row and where it stands.
+/// A row and its line number.
 pub(super) struct Row<'a> {
     pub line: Line<'a>,
     pub fields: Vec<Field<'a>>,
 }
 
-/// A table as it stands in the file.
+/// A table as in the file.
 pub(super) struct Table<'a> {
     file: PathBuf,
     /// Comments and lines `KEY: value`: lower-case key and value.
     pub facts: Vec<(String, String)>,
-    /// The columns' names, as they stand there.
+    /// The names of the columns, as in the file.
     pub names: Vec<String>,
-    /// What the columns hold; empty when nothing names them.
+    /// The content of the columns; empty if nothing names them.
     pub columns: Vec<WellColumn>,
     /// The unit each column's name states.
     pub units: Vec<Option<ZUnit>>,
@@ -41,7 +41,7 @@ fn fact(line: &str) -> Option<(String, String)> {
     let bare = line.trim_start_matches(['#', '!', '%', '/', ' ', '\t']);
     let (key, value) = bare.split_once(':').or_else(|| bare.split_once('='))?;
     let (key, value) = (key.trim(), value.trim());
-    // A row of numbers or a time of day is no fact.
+    // A row of numbers or a time of day is not a fact.
     (!key.is_empty() && !value.is_empty() && key.chars().next().is_some_and(char::is_alphabetic))
         .then(|| (key.to_ascii_lowercase(), value.to_string()))
 }
@@ -122,7 +122,7 @@ impl<'a> Table<'a> {
         table.rows = data.into_iter().map(|line| Row { line, fields: cut.fields(line.text) }).collect();
         for name in &names {
             let (column, unit) = columns::of_name(name);
-            // The first of a kind is the one meant.
+            // Of several of a kind the first is meant.
             let again = table.columns.contains(&column);
             table.columns.push(if again { WellColumn::Other } else { column });
             table.units.push(unit);
@@ -131,13 +131,13 @@ impl<'a> Table<'a> {
         table
     }
 
-    /// Names the columns of a table that names none.
+    /// Names the columns of a table without names.
     pub fn assume(&mut self, columns: &[WellColumn]) {
         self.columns = columns.to_vec();
         self.units = vec![None; columns.len()];
     }
 
-    /// Where a column stands.
+    /// The position of a column.
     pub fn position(&self, column: WellColumn) -> Option<usize> {
         self.columns.iter().position(|c| *c == column)
     }
@@ -186,7 +186,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Metres in one unit of a length column: as its name says, else as the user states, else metres,
+    /// Metres in one unit of a length column: as its name states, otherwise as the user states, otherwise metres,
     /// reported in `notes`.
     pub fn length_to_m(&self, at: usize, told: Option<ZUnit>, notes: &mut Vec<Note>) -> Result<f64, WellFileError> {
         let unit = self.units[at].or(told);
@@ -213,8 +213,8 @@ impl<'a> Table<'a> {
         self.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned())
     }
 
-    /// Keeps the rows of one well when a column names wells: the one told, else one of `names`, else the only
-    /// one.
+    /// Keeps the rows of one well if a column names wells: the one that is given, otherwise one of `names`, otherwise
+    /// the only one.
     ///
     /// # Errors
     /// [`WellFileError::NoSuchWell`] when it is not there or several are.

@@ -1,8 +1,7 @@
 //! Tops: the name of a surface and the depth at which the well penetrates it, as MD, TVD, TVDSS or Z.
 //!
-//! CSV or blanks with a header, Petrel well tops (`BEGIN HEADER` … `END HEADER`), or two columns without a
-//! header, depth and name (taken as measured depth). Vertical depths are brought onto the path at its first
-//! crossing of that depth.
+//! CSV or blanks with a header, Petrel well tops (`BEGIN HEADER` … `END HEADER`), or two columns without a header,
+//! depth and name (taken as measured depth). Vertical depths are placed on the path where it first crosses that depth.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;
@@ -13,7 +12,7 @@ use std::path::Path;
 use survey::remedy::Note;
 use survey::well::{Top, WellPath};
 
-/// A top as it stands in a file.
+/// A top as in the file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TopRow {
     /// Name of the surface.
@@ -64,7 +63,7 @@ pub fn parse_tops(
     let (mut twice, mut negative) = (Vec::new(), 0usize);
     for row in &table.rows {
         let name = table.text(row, name_at)?.to_string();
-        // Petrel leaves MD empty where only a place was picked: the first depth that is there counts.
+        // Petrel leaves MD empty where only a place was picked: the first depth that is given counts.
         let known = depth.iter().zip(&to_m).find_map(|((c, at), f)| Some((*c, table.optional(row, *at)? * f)));
         let md_m = match known {
             None => return Err(table.syntax(row, "a depth")),

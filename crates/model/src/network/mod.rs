@@ -304,16 +304,16 @@ fn extent(
         let steep = gradient.length();
         (steep > 1e-9).then(|| (-gradient / steep, value / steep)).filter(|&(_, cells)| cells <= tolerance)
     };
-    let mut walls: Vec<Box<dyn Fn(DVec3) -> Target>> = Vec::new();
+    let mut boundary: Vec<Box<dyn Fn(DVec3) -> Target>> = Vec::new();
     for axis in 0..3 {
         let last = geometry.size()[axis] as f64 - 1.0;
-        walls.push(Box::new(move |q| towards(voxel(q)[axis], DVec3::AXES[axis])));
-        walls.push(Box::new(move |q| towards(last - voxel(q)[axis], -DVec3::AXES[axis])));
+        boundary.push(Box::new(move |q| towards(voxel(q)[axis], DVec3::AXES[axis])));
+        boundary.push(Box::new(move |q| towards(last - voxel(q)[axis], -DVec3::AXES[axis])));
     }
     // Past the outer boundary of the volume the strip continues to the end of the grid, past a fault by half
     // the tolerance.
     let [nu, nv] = surface.surface.size;
-    let mut reaches: Vec<(Reach, f64)> = walls.iter().map(|w| (&**w as Reach, (nu + nv) as f64)).collect();
+    let mut reaches: Vec<(Reach, f64)> = boundary.iter().map(|face| (&**face as Reach, (nu + nv) as f64)).collect();
     let by = truncation.map(|t| (&built[t.by].surface, if t.positive { 1.0 } else { -1.0 }));
     let to_fault = by.map(|(other, sign)| {
         move |q: DVec3| {
