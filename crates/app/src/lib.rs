@@ -1,13 +1,13 @@
 //! `petroglyph view`: the whole workflow in one window.
 //!
-//! Three parts, each of which knows only of those above it:
+//! Three parts. The state knows of no other, the workers know the state, and the panels know both:
 //!
 //! - [`state`]: what is open, selected and displayed, as plain values. [`state::State::apply`] turns an
-//! [`state::Action`] into a new state and a list of [`state::Task`]s for the workers. No window, no file, no thread.
+//!   [`state::Action`] into a new state and a list of [`state::Task`]s for the workers. No window, no file, no thread.
 //! - [`work`]: everything that takes time, on threads of its own, with progress and cancellation; results come back as
-//! [`work::Event`]s.
+//!   [`work::Event`]s.
 //! - [`views`]: one file or folder for each panel. A panel draws the state and returns actions; it changes nothing
-//! itself.
+//!   itself.
 //!
 //! Every change to a project goes through [`project::Command`] and the project's history, as on the command line.
 //! Pictures come from the same [`project::picture::Painter`] as those of `petroglyph render`, so the window and the

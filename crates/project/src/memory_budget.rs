@@ -14,6 +14,11 @@ pub fn half_of_available() -> u64 {
 }
 
 /// Parses a number of bytes such as `2G`, `512M`, `800K` or a plain number.
+///
+/// ```
+/// assert_eq!(project::memory_budget::parse_bytes("512M"), Some(512 * 1024 * 1024));
+/// assert_eq!(project::memory_budget::parse_bytes("much"), None);
+/// ```
 pub fn parse_bytes(text: &str) -> Option<u64> {
     let text = text.trim();
     let (number, unit) = match text.char_indices().next_back()? {

@@ -32,6 +32,22 @@ pub fn hold(before: &View, scene: &mut Scene, geometry: &SurveyGeometry, size: D
 
 /// Turns the block by a drag of `delta` points: a drag to the right turns it to the right, a drag up tips it towards
 /// the viewer.
+///
+/// ```
+/// use app::state::camera;
+/// use glam::DVec2;
+/// use render::Scene;
+/// use survey::{SurveyGeometry, VerticalUnit};
+///
+/// let geometry = SurveyGeometry::regular([61, 41, 51], 25.0, 8.0, VerticalUnit::Metres);
+/// let size = DVec2::new(640.0, 420.0);
+/// let mut scene = Scene::default();
+/// let middle = scene.box_in(&geometry).centre();
+/// let before = camera::view(&scene, &geometry, size).project(middle);
+/// camera::orbit(&mut scene, &geometry, size, DVec2::new(100.0, 0.0));
+/// let after = camera::view(&scene, &geometry, size).project(middle);
+/// assert!((after - before).length() < 1e-6, "the middle of the block keeps its pixel");
+/// ```
 pub fn orbit(scene: &mut Scene, geometry: &SurveyGeometry, size: DVec2, delta: DVec2) {
     let before = view(scene, geometry, size);
     let block = scene.box_in(geometry);

@@ -32,6 +32,23 @@ pub use session::{Session, Snapshot};
 pub use view::{Compare, Layout, Panel, SectionKind, StandardView, View};
 
 /// Everything that the window shows.
+///
+/// ```
+/// use app::state::{Action, Remembered, Snapshot, State, Task};
+/// use project::document::Document;
+/// use survey::{SurveyGeometry, VerticalUnit};
+///
+/// let mut state = State::new(Remembered::default());
+/// let tasks = state.apply(Action::Open("north.petro".into()));
+/// assert!(matches!(&tasks[..], [Task::Open(_)]));
+/// assert!(state.session.is_none(), "the workers have not read the project yet");
+///
+/// let geometry = SurveyGeometry::regular([40, 30, 20], 25.0, 4.0, VerticalUnit::Milliseconds);
+/// let document = Document::empty(Some(geometry));
+/// let snapshot = Snapshot { root: "north.petro".into(), document, history: Vec::new() };
+/// state.apply(Action::Opened(Box::new(snapshot)));
+/// assert_eq!(state.session.map(|session| session.name()), Some("north".to_owned()));
+/// ```
 #[derive(Debug, Clone, Default)]
 pub struct State {
     /// What outlives the window: recent projects, appearance, the view of the last project.

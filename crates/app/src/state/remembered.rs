@@ -55,6 +55,17 @@ pub struct Left {
 }
 
 /// What outlives the window.
+///
+/// ```
+/// use app::state::Remembered;
+/// use std::path::Path;
+///
+/// let mut remembered = Remembered::default();
+/// for name in ["a.petro", "b.petro", "a.petro"] {
+///     remembered.add(Path::new(name));
+/// }
+/// assert_eq!(remembered.recent, [Path::new("a.petro"), Path::new("b.petro")]);
+/// ```
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Remembered {

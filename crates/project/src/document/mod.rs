@@ -26,6 +26,17 @@ use survey::{StratigraphicHorizon, Stratigraphy, SurveyGeometry};
 pub const VERSION: u32 = 1;
 
 /// The state of a project.
+///
+/// ```
+/// use project::document::Document;
+/// use std::path::Path;
+///
+/// let path = Path::new("north.petro/project.toml");
+/// let document = Document::empty(None);
+/// let text = document.to_text(path)?;
+/// assert_eq!(Document::from_text(&text, path)?, document);
+/// # Ok::<(), project::ProjectError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Document {

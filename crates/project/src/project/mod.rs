@@ -30,6 +30,25 @@ use std::path::{Path, PathBuf};
 use survey::{Progress, SurveyGeometry};
 
 /// An open project. It is changed by [`Command`]s, each of which can be undone.
+///
+/// ```
+/// use project::command::SetVelocity;
+/// use project::{Command, Project};
+/// use survey::{Progress, SurveyGeometry, VerticalUnit};
+///
+/// let folder = tempfile::tempdir()?;
+/// let geometry = SurveyGeometry::regular([11, 11, 51], 25.0, 4.0, VerticalUnit::Milliseconds);
+/// let mut project = Project::create(&folder.path().join("north.petro"), Some(geometry))?.publish()?;
+/// let command = Command::SetVelocity(SetVelocity { velocity_m_s: 2500.0 });
+/// project.apply(&command, &Progress::silent())?;
+///
+/// let velocity = |project: &Project| project.document().geometry.as_ref().map(|geometry| geometry.velocity_m_s);
+/// let mut again = Project::open(project.root())?;
+/// assert_eq!(velocity(&again), Some(2500.0));
+/// again.undo()?;
+/// assert_eq!(velocity(&again), Some(2000.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Debug)]
 pub struct Project {
     root: PathBuf,
