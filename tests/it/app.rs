@@ -57,7 +57,7 @@ fn step(at: &Path) -> u64 {
 }
 
 #[test]
-fn the_real_window_obeys_the_keyboard() {
+fn the_real_window_undoes_on_a_key_and_is_remembered_when_killed() {
     let Some((_server, display)) = display() else {
         eprintln!("skipped: Xvfb and xdotool are not installed");
         return;

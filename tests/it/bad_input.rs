@@ -190,7 +190,7 @@ fn pictures_that_there_are_none_of() {
 }
 
 #[test]
-fn volumes_with_holes_are_seen_through_around_them() {
+fn volumes_with_holes_are_rendered_around_them() {
     let folder = survey();
     let at = folder.path();
     // Whole traces, and samples of the others: not numbers, or infinite.

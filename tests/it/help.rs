@@ -27,7 +27,7 @@ const COMMANDS: [&str; 21] = [
 ];
 
 #[test]
-fn every_help_shows_an_example() {
+fn the_help_of_these_commands_shows_an_example() {
     let more = [
         "view",
         "attribute",
@@ -58,7 +58,7 @@ fn every_help_shows_an_example() {
 }
 
 #[test]
-fn what_is_not_built_yet_is_not_promised() {
+fn no_command_review_is_promised() {
     let help = run(["--help"]).done().stdout;
     let later = "review";
     assert!(!help.lines().any(|line| line.trim_start().starts_with(later)), "{later}: {help}");

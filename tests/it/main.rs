@@ -14,6 +14,6 @@ mod kill;
 mod program;
 mod proposed_faults;
 mod safety;
-mod see_through;
 mod store;
+mod volume_rendering;
 mod well;

@@ -105,7 +105,7 @@ fn a_second_writer_is_told_and_readers_are_not_disturbed() {
 
 #[test]
 #[cfg(unix)]
-fn an_interruption_leaves_nothing() {
+fn an_interruption_is_obeyed_and_leaves_no_survey() {
     let folder = survey();
     let at = folder.path();
     // Large enough to be in the middle of something a moment later.

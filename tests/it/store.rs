@@ -64,7 +64,7 @@ fn integers_stay_integers_in_the_store_and_come_back_exactly() {
 }
 
 #[test]
-fn any_trace_order_and_any_memory_make_the_same_volume() {
+fn two_trace_orders_and_three_memories_make_the_same_volume() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     let size = [131, 140, 30];

@@ -69,7 +69,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_can_be_written_nobody_holds_anything() {
+    fn a_folder_that_does_not_exist_is_held_by_nobody() {
         assert!(matches!(Hold::take(Path::new("/nowhere/at/all")), Taken::Here(None)));
     }
 }

@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn open_layers_are_parallel_whatever_is_asked() {
+    fn open_layers_are_parallel_to_their_horizon_by_default() {
         let settings = ParamSettings::default();
         assert_eq!(settings.definition(0, 3), Some(KDefinition::ParallelToTop));
         assert_eq!(settings.definition(1, 3), Some(KDefinition::DistanceRatio));

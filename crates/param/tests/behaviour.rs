@@ -29,7 +29,7 @@ fn rough() -> ClosedForm {
 }
 
 #[test]
-fn any_number_of_threads_gives_the_same_bytes() {
+fn one_thread_and_five_give_the_same_bytes() {
     let model = rough();
     let with_threads = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();

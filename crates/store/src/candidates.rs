@@ -473,7 +473,7 @@ mod tests {
     }
 
     #[test]
-    fn every_level_has_the_least_distance_and_its_leaf() {
+    fn levels_have_the_least_distance_and_its_leaf_at_corners_and_inside() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("candidates.zarr");
         let size = [131, 9, 77];

@@ -98,7 +98,7 @@ fn restoration_finds_the_stratigraphic_depth_of_every_node() {
 }
 
 #[test]
-fn dips_throws_erosion_and_spacing_are_as_promised_at_any_size_and_seed() {
+fn dips_throws_erosion_and_spacing_are_as_promised_at_several_sizes_and_seeds() {
     for (size, seed) in [
         ([72, 64, 96], 1),
         ([48, 40, 48], 2),

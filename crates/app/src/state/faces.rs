@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn three_faces_of_the_block_and_two_walls_of_a_corner_cut_are_seen() {
+    fn three_faces_of_the_block_and_two_of_a_corner_cut_are_seen() {
         let (scene, geometry) = scene();
         let found = handles(&scene, &geometry, SIZE);
         let of_block = found.iter().filter(|handle| handle.face.owner == Owner::Block).count();

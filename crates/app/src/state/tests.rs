@@ -53,7 +53,7 @@ fn undo_and_redo_say_what_they_would_do() {
 }
 
 #[test]
-fn without_a_project_nothing_is_changed() {
+fn without_a_project_undo_and_camera_ask_for_nothing() {
     let mut state = State::default();
     assert!(state.apply(Action::Undo).is_empty());
     assert!(state.apply(Action::Stand(StandardView::Top)).is_empty());

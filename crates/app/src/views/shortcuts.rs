@@ -268,7 +268,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_key_means_two_things() {
+    fn no_key_means_two_things_within_a_table() {
         for table in [SHORTCUTS, INTERPRETING] {
             for (index, shortcut) in table.iter().enumerate() {
                 for other in &table[..index] {

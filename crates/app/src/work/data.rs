@@ -274,7 +274,7 @@ mod tests {
     use ttf::RgbaFunction;
 
     #[test]
-    fn a_view_lists_every_volume_it_shows() {
+    fn volumes_of_isosurfaces_and_painted_horizons_are_listed() {
         let mut scene = Scene::default();
         assert_eq!(Seen::of(&scene), Seen::default());
         let of = IsosurfaceSource::Volume("impedance".into());

@@ -77,7 +77,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_late_answer_to_an_older_look_is_nothing() {
+    fn a_late_result_of_an_older_attempt_is_ignored() {
         let latest = Latest::default();
         let (first, progress) = (latest.begin(), Progress::silent());
         latest.stop_by(first, &progress);

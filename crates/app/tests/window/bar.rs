@@ -5,7 +5,7 @@ use eframe::egui::vec2;
 use egui_kittest::kittest::Queryable;
 
 #[test]
-fn nothing_lies_over_anything_else_in_any_window() {
+fn the_parts_of_the_toolbar_keep_apart_at_four_widths() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path().join("a_survey_with_a_name_that_is_longer_than_most_2026_int16.petro");
     std::fs::rename(project(folder.path()), &root).unwrap();

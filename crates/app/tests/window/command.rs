@@ -195,7 +195,7 @@ fn raw_colours_and_textures_by_value_are_changed_and_taken_away() {
 }
 
 #[test]
-fn a_tile_of_ones_own_and_a_kept_view_come_and_go() {
+fn a_tile_of_ones_own_is_added_and_a_scene_comes_and_goes() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     let tile = folder.path().join("dots.png");

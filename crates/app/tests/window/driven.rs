@@ -218,7 +218,7 @@ fn a_layer_gets_a_pattern_and_undo_takes_it_back() {
 }
 
 #[test]
-fn views_are_arranged_compared_and_kept() {
+fn views_are_arranged_and_compared_and_a_scene_is_saved() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     click(&mut harness, "Sections");
@@ -273,7 +273,7 @@ fn the_shortcuts_are_shown_on_a_question_mark() {
 }
 
 #[test]
-fn data_is_listed_renamed_and_removed() {
+fn data_is_listed_and_removed() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     click(&mut harness, "Data");

@@ -256,7 +256,7 @@ fn a_project_left_open_can_be_let_go_and_one_that_is_gone_is_not_opened() {
 }
 
 #[test]
-fn the_controls_cut_and_turn_the_block() {
+fn the_controls_set_projection_cut_outs_box_and_ground_and_choose_the_map() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     let scene = |harness: &Driven| state(harness).session.as_ref().unwrap().view.scene.clone();

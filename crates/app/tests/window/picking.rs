@@ -281,7 +281,7 @@ fn a_new_horizon_is_named_coloured_and_a_selection_outlives_the_window() {
 }
 
 #[test]
-fn the_block_is_seen_through_or_not_on_a_key() {
+fn a_key_switches_between_volume_rendering_and_faces() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
     let is_clear = |harness: &Driven| {

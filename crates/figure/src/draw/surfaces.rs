@@ -177,7 +177,7 @@ mod tests {
     use survey::Quality;
 
     #[test]
-    fn a_large_sheet_is_drawn_in_few_cells_over_all_of_it() {
+    fn a_large_sheet_is_drawn_in_few_cells_up_to_its_far_corner() {
         let [nx, ny] = [301, 120];
         let (z, quality) = (vec![7.0; nx * ny], vec![Quality::Tracked; nx * ny]);
         let cells = Cells::of(&TraceSheet { block: 0, z: &z, quality: &quality }, [nx, ny]).cells;

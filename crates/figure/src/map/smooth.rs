@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn no_trace_moves_by_more_than_half_an_interval() {
+    fn a_step_moves_by_half_an_interval_and_no_more() {
         let step = Grid::by(SIZE, |x, _| Node { value: if x < 20 { 0.0 } else { 40.0 }, block: 0, is_open: false });
         let moved = apart(&step, &smoothed(&step, 5.0));
         assert!((moved - 2.5).abs() < 1e-9, "{moved}");

@@ -145,7 +145,7 @@ fn a_halo_lies_under_its_letters_and_around_them() {
 }
 
 #[test]
-fn the_same_page_is_the_same_bytes_on_any_number_of_threads_and_sizes_are_printed_sizes() {
+fn the_same_page_is_the_same_bytes_on_one_thread_and_four_and_sizes_are_printed_sizes() {
     let mut items: Vec<Item> = Vec::new();
     for n in 0..40 {
         let at = DVec2::new(36.0, 24.0) + 20.0 * DVec2::from_angle(f64::from(n));

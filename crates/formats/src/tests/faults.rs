@@ -94,7 +94,7 @@ fn points_without_sticks_are_fitted() {
 }
 
 #[test]
-fn tsurf_with_all_its_liberties() {
+fn tsurf_with_atoms_parts_properties_and_feet() {
     let text = "GOCAD TSurf 1 \r\nHEADER {\r\n*solid*color: 1 0 0 1\r\nname:  Big fault \r\n}\r\nPROPERTIES a b\r\nTFACE\r\n\
         PVRTX 10 7300 100 0 1.5 2\r\nVRTX 11 7700 100 800 CNXYZ\r\nVRTX 13 7300 900 0\r\nTRGL 10 11 13\r\
         \nTFACE\r\nATOM 20 11\r\nATOM 21 13\r\n\

@@ -121,7 +121,7 @@ fn empty_all_null_and_unknown_files() {
 }
 
 #[test]
-fn a_read_only_folder_leaves_nothing_behind() {
+fn a_path_that_cannot_be_written_leaves_nothing_behind() {
     let (horizon, _) = horizon(&rows("x,y,z\n", |x, y| format!("{x},{y},100")), &survey(), &ImportOptions::default());
     let folder = tempfile::tempdir().unwrap();
     // A folder in the target's place cannot be replaced by a file, whoever runs the test.

@@ -60,7 +60,7 @@ fn random_horizon(random: &mut Random, geometry: &SurveyGeometry) -> Horizon {
 }
 
 #[test]
-fn horizons_survive_every_format_on_random_surveys() {
+fn horizons_survive_every_written_format_on_random_surveys() {
     let mut random = Random(5);
     let folder = tempfile::tempdir().unwrap();
     for round in 0..40 {

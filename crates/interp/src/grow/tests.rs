@@ -53,7 +53,7 @@ fn check(surfaces: &Surfaces) {
 }
 
 #[test]
-fn dipping_layers_are_one_surface_each_with_every_trace() {
+fn dipping_layers_make_surfaces_of_every_trace() {
     // 0.4 samples a trace: both methods follow it.
     let volume = layered([24, 20, 64], 10.0, |x, y| 15.0 + 0.4 * x as f32 - 0.2 * y as f32);
     for settings in both() {
@@ -147,7 +147,7 @@ fn a_neck_narrower_than_the_front_does_not_connect() {
 }
 
 #[test]
-fn threads_slabs_and_transposition_do_not_matter() {
+fn threads_and_slabs_do_not_matter() {
     let settings = SynthSettings { size: [40, 36, 64], seed: 5, snr: Some(2.0), ..SynthSettings::default() };
     let volume = Synthetic::generate(&settings, &Progress::silent()).unwrap().seismic;
     let reference = grown(&volume, &GrowSettings::default());

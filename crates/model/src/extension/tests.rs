@@ -36,7 +36,7 @@ fn worst(size: [usize; 2], a: &[f32], b: &[f32], ask: impl Fn(f32, f32) -> bool)
 }
 
 #[test]
-fn a_plane_stays_a_plane_whatever_is_missing() {
+fn a_plane_stays_a_plane_in_a_hole_and_beyond_its_rim() {
     let size = [150, 130];
     let hole = |x: f32, y: f32| (x - 70.0).hypot(y - 60.0) < 15.0;
     let inside = |x: f32, y: f32| x > 30.0 && x < 110.0 && y > 20.0 + 0.3 * x && y < 100.0 && !hole(x, y);

@@ -83,7 +83,7 @@ fn a_dipping_plane_cuts_in_two_far_beyond_its_mesh() {
 }
 
 #[test]
-fn a_rim_near_a_wall_reaches_it_and_a_tip_stays_where_it_is() {
+fn a_rim_near_the_outer_boundary_reaches_it_and_a_tip_stays_where_it_is() {
     // From 2 samples below the top to 3 above the bottom, and from y = 0 to a tip at y = 25.
     let at = |a: f64, b: f64| DVec3::new(20.0, 25.0 * a, 2.0 + 54.0 * b);
     let n = network(&[fault("F", mesh(8, at), None)]);

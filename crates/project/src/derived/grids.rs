@@ -214,7 +214,7 @@ mod tests {
     }
 
     #[test]
-    fn only_the_last_few_are_kept() {
+    fn only_a_few_are_kept() {
         let folder = tempfile::tempdir().unwrap();
         for n in 0..KEPT + 3 {
             keep_grids(folder.path(), &format!("{n}"), &parameterization(), &Progress::silent());

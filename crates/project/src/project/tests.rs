@@ -21,7 +21,7 @@ fn bytes(project: &Project) -> String {
 }
 
 #[test]
-fn undo_and_redo_restore_every_state_byte_for_byte_in_other_processes() {
+fn undo_and_redo_restore_every_state_byte_for_byte_through_other_handles() {
     let folder = tempfile::tempdir().unwrap();
     let mut project = begun(folder.path());
     let mut states = vec![bytes(&project)];

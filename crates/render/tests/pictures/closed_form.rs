@@ -161,7 +161,7 @@ fn a_cut_out_shows_its_back_faces() {
 }
 
 #[test]
-fn one_place_looks_the_same_whatever_way_its_survey_runs() {
+fn one_place_looks_the_same_in_a_mirrored_and_in_an_exchanged_survey() {
     let straight = SurveyGeometry::regular([31, 31, 21], 20.0, 10.0, VerticalUnit::Metres);
     let value = |world: DVec3| (0.002 * world.x + 0.004 * world.y + 0.5 * (0.01 * world.z).sin()) as f32;
     let picture = |geometry: &SurveyGeometry| {

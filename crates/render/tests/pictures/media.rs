@@ -140,7 +140,7 @@ fn volumes_of_any_size_and_extent_mix_by_their_extinction_and_no_data_is_clear()
 }
 
 #[test]
-fn skipping_changes_nothing() {
+fn skipping_changes_nothing_unshaded_or_shaded_by_gradients() {
     let geometry = cubic(40);
     let values = (0..40 * 40 * 40).map(|n| if (n / 160) % 97 == 3 { (n % 53) as f32 / 53.0 } else { 0.0 }).collect();
     let volume = Volume::from_samples([40; 3], values).unwrap();

@@ -55,7 +55,7 @@ fn conventions_are_recognised() {
 }
 
 #[test]
-fn the_swapped_reading_is_always_shown_and_can_be_chosen() {
+fn the_swapped_reading_is_shown_and_can_be_chosen() {
     let info = grid().info();
     assert!(has(&info.evidence, "the swapped reading is bytes 193 and 189 for 6 (7..12) inlines"));
     assert!(has(&info.evidence, "(if not: --inline-byte 193 --crossline-byte 189)"));

@@ -157,7 +157,7 @@ fn the_text_header_is_ours_or_theirs() {
 }
 
 #[test]
-fn the_same_bytes_and_figures_on_any_number_of_threads() {
+fn the_same_bytes_and_figures_on_one_thread_and_three() {
     let folder = tempfile::tempdir().unwrap();
     let mut random = Random(5);
     let geometry = SurveyGeometry::regular([30, 40, 50], 25.0, 4.0, VerticalUnit::Milliseconds);

@@ -17,7 +17,7 @@ fn light(image: &RgbImage) -> usize {
 }
 
 #[test]
-fn a_volume_alone_is_seen_through_in_three_ways() {
+fn a_volume_alone_is_rendered_in_three_ways() {
     let folder = survey();
     let at = folder.path();
     run_in(at, "import s/survey.sgy p.petro").done();
