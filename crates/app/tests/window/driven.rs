@@ -287,7 +287,7 @@ fn data_is_listed_and_removed() {
 }
 
 #[test]
-fn values_get_colours_and_textures() {
+fn values_have_a_histogram_and_get_textures() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     click(&mut harness, "Values");

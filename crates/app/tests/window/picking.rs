@@ -195,7 +195,7 @@ fn shift_adds_alt_takes_out_and_the_pick_list_moves_and_takes_back() {
 }
 
 #[test]
-fn a_lasso_on_a_slice_erases_whole_leaves_in_one_step() {
+fn a_lasso_on_a_slice_erases_part_of_a_horizon_in_one_step() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
     act(&mut harness, PickingStep::At(on_a_trough(), How::Replace));
@@ -300,7 +300,7 @@ fn a_key_switches_between_volume_rendering_and_faces() {
 }
 
 #[test]
-fn a_fence_runs_along_the_corners_clicked_on_the_slice() {
+fn corners_clicked_on_the_slice_make_a_fence_that_takes_picks() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
     harness.key_press(Key::Num4);
@@ -337,7 +337,7 @@ fn a_well_comes_in_through_its_dialogue() {
 }
 
 #[test]
-fn going_back_to_the_layers_waits_for_the_relief_without_complaint() {
+fn going_back_to_the_layers_draws_without_complaint() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = interpreting(folder.path());
     assert!(state(&harness).session.as_ref().unwrap().view.scene.ground.is_some());

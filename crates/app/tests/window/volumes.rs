@@ -46,7 +46,7 @@ fn a_volume_fills_the_cut_outs_and_the_block() {
 }
 
 #[test]
-fn a_horizon_glows_in_the_cut_out() {
+fn a_horizon_is_shown_in_the_rendered_volume_with_fields_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     click(&mut harness, "Values");

@@ -42,7 +42,7 @@ fn surfaces_around_a_salt_dome_follow_strong_reflectors_and_not_one_another() {
 }
 
 #[test]
-fn few_surfaces_cover_a_faulted_horizon() {
+fn four_surfaces_are_worth_nearly_half_of_a_faulted_horizon() {
     let Some(data) = testdata::folder() else { return };
     let (_, surfaces) = grown(&data.join("volumes/penobscot_il1207-1456_xl1253-1402_t876-1032_int16.sgy"));
     let truth =

@@ -245,7 +245,7 @@ fn half_chaotic(size: [usize; 3]) -> Volume<f32> {
 }
 
 #[test]
-fn a_surface_does_not_lie_over_itself_where_reflectors_are_chaotic() {
+fn surfaces_hardly_lie_over_themselves_where_reflectors_are_chaotic() {
     let surfaces = grown(&half_chaotic([64, 64, 120]), &GrowSettings::default());
     check(&surfaces);
     let mut regular = 0;

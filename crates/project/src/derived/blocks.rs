@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_key_sees_faults_and_frame_and_no_horizons() {
+    fn the_key_sees_the_geometry_and_no_layer_names() {
         let geometry = geometry();
         let document = Document::empty(Some(geometry));
         let key = |document: &Document| blocks_key(document, &ModelSettings::default());

@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn the_key_sees_what_matters_and_no_names() {
+    fn the_key_sees_geometry_and_settings_and_no_layer_names() {
         let geometry = survey::SurveyGeometry::regular([4, 5, 6], 25.0, 4.0, survey::VerticalUnit::Milliseconds);
         let document = Document::empty(Some(geometry));
         let key =
