@@ -27,14 +27,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use survey::SurveyGeometry;
 
-/// What the harness leaves around the window, points.
+/// Margin that the harness leaves around the window, points.
 const MARGIN: f32 = 8.0;
 /// Longest wait for a picture to be drawn.
 const PATIENCE: Duration = Duration::from_secs(300);
-/// For what is not counted among the work under way: sections, maps, swatches.
+/// Time for work that is not listed as under way: sections, maps, swatches.
 const SOON: Duration = Duration::from_millis(1500);
 
-/// Keeps the textures for when a picture is wanted.
+/// Keeps the textures until a picture is wanted.
 struct Keep(Arc<Mutex<Raster>>);
 
 impl TestRenderer for Keep {
@@ -100,11 +100,11 @@ impl Tour {
         session.document.geometry.clone().expect("it has a frame")
     }
 
-    /// Clicks what has a label, the last where several have.
+    /// Clicks the widget with a label, the last if there are several.
     fn click(&mut self, label: &str) {
         let at = match self.harness.query_all_by_label(label).last() {
             Some(node) => node.rect().center(),
-            None => return eprintln!("nothing is called {label}"),
+            None => return eprintln!("no widget has the label {label}"),
         };
         self.press(at);
     }
@@ -125,7 +125,7 @@ impl Tour {
         self.harness.run_steps(3);
     }
 
-    /// The picture of what is shown, once nothing is under way.
+    /// Takes a picture of the window once nothing is under way.
     fn shoot(&mut self, name: &str) -> anyhow::Result<()> {
         if !self.is_wanted(name) {
             return Ok(());
@@ -240,7 +240,7 @@ impl Tour {
         Ok(())
     }
 
-    /// Has a horizon give off light in what is seen through.
+    /// Makes a horizon in the volume rendering give off light.
     fn glow(&mut self, name: &str) {
         let Some(mut scene) = self.window().state().session.as_ref().map(|session| session.view.scene.clone()) else {
             return;
@@ -408,7 +408,7 @@ fn main() -> anyhow::Result<()> {
     };
     std::fs::create_dir_all(&out)?;
     let out = std::path::absolute(Path::new(&out))?;
-    // Recent projects of a run before are not this run's.
+    // Recent projects of an earlier run do not belong to this one.
     let _ = std::fs::remove_file(out.join("window.toml"));
     let folder = std::path::absolute(Path::new(&folder))?;
     let mut tour = Tour::begin(folder, out, size, appearance, words.collect());
@@ -417,7 +417,7 @@ fn main() -> anyhow::Result<()> {
     tour.styles()?;
     tour.dialogues()?;
     tour.interpretation()?;
-    // Gone without being closed, as after a crash: the next one offers to go on.
+    // Gone without being closed, as after a crash: the next window offers to continue.
     let Tour { harness, folder, out, size, names, .. } = tour;
     drop(harness);
     let mut next = Tour::begin(folder, out, size, appearance, names);

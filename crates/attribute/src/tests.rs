@@ -192,8 +192,11 @@ fn settings_out_of_range_and_dips_of_another_volume_are_refused() {
 #[test]
 fn cancelling_stops_every_attribute() {
     let flat = Volume::filled([3, 3, 8], 1.0f32);
+    let dips = dips_of(&flat);
     let progress = Progress::silent();
     progress.cancel();
+    let semblance = semblance(&flat, &dips, &SemblanceSettings::default(), &progress);
+    assert!(matches!(semblance, Err(AttributeError::Cancelled(_))));
     assert!(matches!(dip(&flat, &DipSettings::default(), &progress), Err(AttributeError::Cancelled(_))));
     assert!(matches!(envelope(&flat, &progress), Err(AttributeError::Cancelled(_))));
 }

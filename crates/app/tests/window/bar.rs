@@ -1,4 +1,4 @@
-//! The bar above the views, in windows of all widths.
+//! The toolbar, in windows of several widths.
 
 use crate::driven::{driven, project, state, wait};
 use eframe::egui::vec2;

@@ -1,4 +1,4 @@
-//! What the other tests leave out of the panels and commands: each by its label, each seen in the project.
+//! The panels and commands that the other tests leave out: each is used by its label and checked in the project.
 
 use super::driven::{Driven, click, document, open, state, wait};
 use app::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
@@ -45,7 +45,7 @@ fn fault() -> Command {
     Command::PickFault(PickFault { name: "East".into(), sticks: vec![stick(2.0), stick(18.0)] })
 }
 
-/// Two proposals and a minor one for the horizons as they are, as looking for faults leaves them.
+/// Two proposals and a minor one for the present horizons, as proposing faults leaves them.
 fn proposed(project: &mut Project) {
     let mesh = |x: f64| {
         let corner = |y: f64, z: f64| DVec3::new(x + z, y, z);
@@ -73,7 +73,7 @@ fn proposed(project: &mut Project) {
     let listed = vec![proposal(1, 150.0), proposal(2, 350.0), proposal(3, 450.0)];
     let found = Proposals { horizons, proposals: listed, repeats: Vec::new(), unit: "ms".into() };
     std::fs::create_dir_all(project.root().join("derived")).unwrap();
-    // What was found before is not looked for again.
+    // Proposals that exist already are not made again.
     let path = proposals::path(project.root(), project.document(), &ProposeSettings::default());
     std::fs::write(path, serde_json::to_string(&found).unwrap()).unwrap();
     project.apply(&Command::ProposeFaults(ProposeFaults::default()), &Progress::silent()).unwrap();
@@ -103,7 +103,7 @@ fn proposed_faults_are_accepted_and_dismissed() {
     wait(&mut harness, "it is no proposal any more", |harness| {
         harness.query_all_by_label_contains("Proposal").count() == 0
     });
-    // Looking again makes another list, in which nothing is dismissed; flat horizons have no offset.
+    // Proposing again makes another list, in which nothing is dismissed; flat horizons have no offset.
     click_last(&mut harness, "Propose faults");
     assert!(state(&harness).session.as_ref().unwrap().view.picking.dismissed.is_empty());
     wait(&mut harness, "it is said that there are none", |harness| !state(harness).notices.is_empty());

@@ -1,4 +1,4 @@
-//! A window in a test harness, and what the other tests do with it.
+//! A window in a test harness, the helpers of the other tests, and tests of the main workflow.
 
 use app::state::{Compare, Dialogue, Interpreted, Layout, State, Target};
 use app::window::Window;

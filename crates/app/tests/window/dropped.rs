@@ -1,4 +1,4 @@
-//! Files let go of over the window.
+//! Files dropped on the window.
 
 use crate::driven::{Driven, click, document, driven, open, project, state, survey, wait};
 use app::state::{Dialogue, Interpreted};
@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A file that the pointer lets go of.
+/// A file that is dropped.
 #[derive(Debug)]
 struct Held(PathBuf);
 

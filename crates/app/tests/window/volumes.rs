@@ -1,4 +1,4 @@
-//! Volumes and horizons seen through, by labels.
+//! Volume rendering of volumes and horizons, by labels.
 
 use super::command::{choose, click_last};
 use super::driven::{Driven, click, open, state, wait};
