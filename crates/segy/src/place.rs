@@ -217,7 +217,7 @@ mod tests {
         let affine = Affine::fit(&points).unwrap();
         assert!((affine.origin - map(DVec2::ZERO)).length() < 1e-6);
         assert!((affine.linear.y_axis - DVec2::new(-4.0, 24.0)).length() < 1e-9);
-        assert!(affine.residual_bins(DVec2::ONE, map(DVec2::new(1.0, 1.75))) - 0.75 < 1e-6);
+        assert!((affine.residual_bins(DVec2::ONE, map(DVec2::new(1.0, 1.75))) - 0.75).abs() < 1e-6);
     }
 
     #[test]

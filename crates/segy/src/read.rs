@@ -180,7 +180,7 @@ impl SegyFile {
         let mut info = self.info().clone();
         if amplitudes.non_finite > 0 {
             let warning =
-                format!("{} samples are no numbers (NaN or infinite) and are read as 0", amplitudes.non_finite);
+                format!("{} samples are not numbers (NaN or infinite) and are read as 0", amplitudes.non_finite);
             progress.warn(&warning);
             info.warnings.push(warning.into());
         }

@@ -98,7 +98,7 @@ impl SetTruncation {
         rebuild_all(draft, progress)?;
         let summary = match &self.by {
             Some(by) => format!("fault {} ends at {by}", self.fault),
-            None => format!("fault {} ends at none", self.fault),
+            None => format!("fault {} ends at no other fault", self.fault),
         };
         Ok(Effect::Changed { summary })
     }
@@ -113,6 +113,6 @@ impl RemoveFault {
             fault.truncated_by = fault.truncated_by.take().filter(|by| *by != self.name);
         }
         rebuild_all(draft, progress)?;
-        Ok(Effect::Changed { summary: format!("no fault {}", self.name) })
+        Ok(Effect::Changed { summary: format!("removed fault {}", self.name) })
     }
 }

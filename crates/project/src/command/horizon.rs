@@ -169,6 +169,6 @@ impl RemoveHorizon {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Horizon, &self.name)?;
         draft.document.join_layers(index, |document| drop(document.horizons.remove(index)));
-        Ok(Effect::Changed { summary: format!("no horizon {}", self.name) })
+        Ok(Effect::Changed { summary: format!("removed horizon {}", self.name) })
     }
 }

@@ -158,12 +158,12 @@ impl ImportVolume {
         let non_finite = blocks.non_finite();
         if done.kept > 0 {
             progress.warn(format!(
-                "an interrupted import of this file went on: {} of {} files were there and whole",
+                "continued an interrupted import of this file: {} of {} files were complete already",
                 done.kept, done.files
             ));
         }
         if non_finite > 0 {
-            progress.warn(format!("{non_finite} samples are no numbers (NaN or infinite) and are read as 0"));
+            progress.warn(format!("{non_finite} samples are not numbers (NaN or infinite) and are read as 0"));
         }
         Ok(done)
     }
@@ -241,6 +241,6 @@ impl RemoveVolume {
         style.scalars.retain(|function| function.volume != self.name);
         style.raw = style.raw.take().filter(|raw| raw.volume != self.name);
         draft.document.volumes.remove(index);
-        Ok(Effect::Changed { summary: format!("no volume {}", self.name) })
+        Ok(Effect::Changed { summary: format!("removed volume {}", self.name) })
     }
 }

@@ -237,7 +237,7 @@ impl Effect {
             Self::FaultsProposed(done) => format!("{} faults proposed", done.proposals.len()),
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
             Self::Picked(done) => format!("pick {} of {}", done.pick, done.horizon),
-            Self::Replayed(done) => format!("{} picks made again", done.picks.len()),
+            Self::Replayed(done) => format!("{} picks repeated", done.picks.len()),
             Self::HorizonFilled(done) => format!("holes of {} filled", done.horizon),
             Self::FaultAdded(done) => format!("fault {}", done.report.name),
             Self::WellAdded(done) => format!("well {}", done.name),

@@ -108,7 +108,7 @@ pub struct Picked {
 
 impl std::fmt::Display for Picked {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let verb = if self.operation == Operation::Add { "added to" } else { "taken out of" };
+        let verb = if self.operation == Operation::Add { "added to" } else { "removed from" };
         write!(
             f,
             "pick {}: leaf {}, {} of {} levels up, {} triangles, {verb} \"{}\"",
@@ -144,11 +144,11 @@ pub struct ReplayedPick {
 impl std::fmt::Display for Replayed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let count = |fit| self.picks.iter().filter(|pick| pick.fit == fit).count();
-        write!(f, "{} picks are what they were, {} nearly", count(NodeFit::Same), count(NodeFit::Similar))?;
+        write!(f, "{} picks are unchanged, {} nearly so", count(NodeFit::Same), count(NodeFit::Similar))?;
         let dropped: Vec<String> =
             self.picks.iter().filter(|p| p.fit == NodeFit::Different).map(|p| p.pick.to_string()).collect();
         if !dropped.is_empty() {
-            write!(f, "; no longer fit and are gone: {}", dropped.join(", "))?;
+            write!(f, "; these no longer fit and were removed: {}", dropped.join(", "))?;
         }
         self.horizons.iter().try_for_each(|(name, report)| write!(f, "\n{name}: {report}"))
     }
@@ -288,7 +288,7 @@ impl RemovePick {
         let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
         rebuild(draft, &candidates, &blocks, &name, log, progress)?;
-        Ok(Effect::Changed { summary: format!("pick {} taken back", self.id) })
+        Ok(Effect::Changed { summary: format!("removed pick {}", self.id) })
     }
 }
 

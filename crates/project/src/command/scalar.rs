@@ -44,7 +44,7 @@ impl RemoveScalar {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         draft.document.position(Noun::Volume, &self.volume)?;
         draft.document.style.scalars.retain(|present| present.volume != self.volume);
-        Ok(Effect::Changed { summary: format!("no textures of volume {}", self.volume) })
+        Ok(Effect::Changed { summary: format!("removed the textures of volume {}", self.volume) })
     }
 }
 

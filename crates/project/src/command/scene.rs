@@ -35,6 +35,6 @@ impl RemoveScene {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Scene, &self.name)?;
         draft.document.scenes.remove(index);
-        Ok(Effect::Changed { summary: format!("no scene {}", self.name) })
+        Ok(Effect::Changed { summary: format!("removed scene {}", self.name) })
     }
 }

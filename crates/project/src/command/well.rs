@@ -177,7 +177,7 @@ impl fmt::Display for WellAdded {
                 "  in survey   MD {first:.0} to {last:.0} m, {:.0} % of its length",
                 100.0 * placement.inside_share
             )?,
-            None => writeln!(f, "  in survey   nowhere: it passes beside it; check --head and --kb")?,
+            None => writeln!(f, "  in survey   nowhere: the well passes beside it; check --head and --kb")?,
         }
         writeln!(f, "  vertical    {}", placement.time_depth)?;
         if self.dogleg_severity > 0.0 {
@@ -256,6 +256,6 @@ impl RemoveWell {
     pub(super) fn execute(&self, draft: &mut Draft) -> Result<Effect, ProjectError> {
         let index = draft.document.position(Noun::Well, &self.name)?;
         draft.document.wells.remove(index);
-        Ok(Effect::Changed { summary: format!("no well {}", self.name) })
+        Ok(Effect::Changed { summary: format!("removed well {}", self.name) })
     }
 }

@@ -47,7 +47,7 @@ impl Kind {
         });
         match written {
             Ok(()) => self.forget_old(root),
-            Err(error) => progress.warn(format!("{}: used, but not kept: {error}", self.what)),
+            Err(error) => progress.warn(format!("{}: used, but could not be stored: {error}", self.what)),
         }
     }
 

@@ -426,7 +426,7 @@ pub(crate) fn rebuild_all(draft: &mut Draft, progress: &Progress) -> Result<(), 
         match rebuild(draft, &candidates, &blocks, &name, log, progress) {
             Ok(_) => {}
             Err(ProjectError::OutdatedPicks { .. }) => progress.warn(format!(
-                "horizon \"{name}\" is as it was: its picks are of another extraction and have to be made again"
+                "horizon \"{name}\" was left unchanged: its picks were made on another extraction and have to be repeated"
             )),
             Err(error) => return Err(error),
         }

@@ -37,8 +37,10 @@ impl Proposals {
     /// The message if there are none.
     pub fn nothing_new(&self) -> Option<&'static str> {
         match (self.proposals.is_empty(), self.repeats.is_empty()) {
-            (true, true) => Some("the horizons are offset nowhere: no fault is proposed"),
-            (true, false) => Some("the horizons are offset where the project has faults already: no fault is proposed"),
+            (true, true) => Some("the horizons are not offset anywhere: no fault is proposed"),
+            (true, false) => {
+                Some("the horizons are offset only where the project has faults already: no fault is proposed")
+            }
             _ => None,
         }
     }
