@@ -1,18 +1,18 @@
-# The habits of this project. Everything runs on a fresh Debian that has Rust.
+# The commands of everyday work. Everything runs on a fresh Debian that has Rust.
 #
 #   make demo    synthetic survey -> SEG-Y -> import -> layers -> three pictures in out/demo
 #   make test    all tests
 #   make check   formatting, lints and documentation, warnings denied
-#   make bench   how long our stages take on this machine
+#   make bench   how long the stages take on this machine
 #   make speed   how long pictures take, on the graphics driver and on the processor (small in CI: SPEED_SIDE, SPEED_SIZE)
-#   make check-peers   what we write, reopened by other programs' libraries (Python: numpy, scipy, xtgeo, segyio, lasio)
-#   make fuzz    a second of made-up input for every parser; make fuzz-long ten minutes each
-#   make scenario   the interpreter's day by mouse and keys in the real window (Xvfb, xdotool, ImageMagick)
+#   make check-peers   opens the files that we write with libraries of other programs (Python: numpy, scipy, xtgeo, segyio, lasio)
+#   make fuzz    a second of fuzzing for every parser; make fuzz-long ten minutes each
+#   make scenario   an interpreter's session by mouse and keys in the real window (Xvfb, xdotool, ImageMagick)
 #   make gallery the pictures of docs/gallery.md
 #   make screenshots   every panel of the window, without a display (SIZES, APPEARANCES)
-#   make accuracy   measures accuracy anew into docs/accuracy.md
-#   make extraction measures the quality of horizon candidates into docs/extraction.md
-#   make picks      measures what they are worth to someone who picks, into docs/picks.md
+#   make accuracy   measures the accuracy again, for docs/accuracy.md
+#   make extraction measures the quality of horizon candidates, for docs/extraction.md
+#   make picks      counts the picks that horizons take, for docs/picks.md
 
 OUT ?= out/demo
 OUT_ACCURACY ?= docs/accuracy.md

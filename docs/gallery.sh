@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Draws the pictures of docs/gallery.md:
 #   docs/gallery.sh DEMO FOLDER
-# DEMO is the folder of `petroglyph demo`; a second survey with little noise is made beside it for horizons that are picked. With PETROGLYPH_DATA, the folder of the
-# data files, F3 is drawn too. Extra options go to every picture: GALLERY_OPTIONS='--size 1600x1200'.
+# DEMO is the folder of `petroglyph demo`; a second survey with little noise is made beside it for horizons that are
+# picked. With PETROGLYPH_DATA, the folder of the data files, F3 is drawn, too. Options for every picture can be given:
+# GALLERY_OPTIONS='--size 1600x1200'.
 set -euo pipefail
 demo=$1
 folder=$2
@@ -24,7 +25,7 @@ draw "$illus" illus-08-textures-of-a-volume $cut --ground on
 draw "$illus" illus-09-with-colour $cut --ground on --blend 0.45
 "$petroglyph" undo "$illus"
 "$petroglyph" undo "$illus"
-# P-illus 10: a volume in the cut-out before textured back faces.
+# P-illus 10: a volume in the cut-out in front of textured back faces.
 draw "$illus" illus-10-volume-in-the-cut-out $cut --ground off --medium seismic --clear-below 0.55
 # P-illus 11: a layer left standing, high amplitudes in turquoise.
 "$petroglyph" layer set "$illus" Limestone --opacity 1

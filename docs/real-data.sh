@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Draws the pictures of docs/real-data.md. PETROGLYPH_DATA is the folder with the data files, $1 the folder for projects, $2 that for pictures.
+# Draws the pictures of docs/real-data.md. PETROGLYPH_DATA is the folder with the data files, $1 the folder for projects,
+# $2 the folder for pictures.
 set -euo pipefail
 data=${PETROGLYPH_DATA:?set PETROGLYPH_DATA to the folder with the real data}
 out=${1:-out/real-data}
@@ -8,7 +9,8 @@ petroglyph=${PETROGLYPH:-target/debug/petroglyph}
 mkdir -p "$out" "$pictures"
 rm -rf "$out"/claudius.petro "$out"/penobscot.petro "$out"/f3.petro
 
-# Claudius: four horizons with gaps and a fault, no seismic. The points hold Z = -3 x TWT in ms, the fault says "Elevation" itself.
+# Claudius: four horizons with gaps and a fault, no seismic. The points hold Z = -3 x TWT in ms, the fault
+# states "Elevation" itself.
 claudius=$data/interpretation/claudius
 project=$out/claudius.petro
 "$petroglyph" create "$project" --bounds 548876.81,552451.81,7816647.43,7821846.72,2760,3640 --size 144x140x177 --z-unit ms

@@ -1,11 +1,12 @@
 #!/bin/sh
-# The interpreter's day by mouse and keys, against the real window on a display of its own: two horizons put together, the holes of one
-# filled, illustrated, exported; the window killed on the way. Then the same picks are made by commands, and the two projects compared.
+# An interpreter's session by mouse and keys, in the real window on a display of its own: two horizons are assembled, the
+# holes of one are filled, the block is illustrated and exported; the window is killed on the way. Then the same picks
+# are made by commands, and the two projects are compared.
 #
 #   tests/scenario.sh PROGRAM OUT_DIR [WIDTHxHEIGHT]
 #
-# Leaves screenshots and the exported picture in OUT_DIR. Skips with a message, exit code 0, where Xvfb, xdotool, ImageMagick's import or
-# Python is missing.
+# Leaves screenshots and the exported picture in OUT_DIR. Skips with a message and exit code 0 if Xvfb, xdotool,
+# ImageMagick's import or Python is missing.
 set -eu
 
 program=$(realpath "$1") out=$2 size=${3:-1280x800}

@@ -3,8 +3,8 @@
 #
 #   tests/window.sh PROGRAM PROJECT OUT_DIR [WIDTHxHEIGHT]
 #
-# Leaves screenshots and the exported picture in OUT_DIR. Skips with a message, exit code 0, where Xvfb, xdotool or ImageMagick's
-# import is missing.
+# Leaves screenshots and the exported picture in OUT_DIR. Skips with a message and exit code 0 if Xvfb, xdotool or
+# ImageMagick's import is missing.
 set -eu
 
 program=$1 project=$2 out=$3 size=${4:-1280x800}
@@ -14,7 +14,7 @@ done
 mkdir -p "$out"
 width=${size%x*} height=${size#*x}
 
-# A display nobody else has: Xvfb picks it and says which.
+# A display that nobody else uses: Xvfb chooses it and prints its number.
 exec 3>"$out/display"
 Xvfb -displayfd 3 -screen 0 "${size}x24" >"$out/xvfb.log" 2>&1 &
 server=$!
