@@ -216,6 +216,18 @@ pub enum FormatError {
         /// What is missing.
         why: String,
     },
+    /// The format holds unrotated grids only.
+    #[error(
+        "'{name}' cannot be written as {format}: its grid is rotated by {degrees:.3} degrees, which irap, csv, opendtect and tsurf can hold"
+    )]
+    Rotated {
+        /// The surface.
+        name: String,
+        /// The format.
+        format: Format,
+        /// Angle of the grid's first direction from +X, counterclockwise.
+        degrees: f64,
+    },
     /// The surface does not fit into the format.
     #[error("'{name}' cannot be written as {format}: {why}; {instead}")]
     NotRepresentable {
@@ -236,6 +248,7 @@ impl FormatError {
         Some(match self {
             Self::UnknownFormat { known, .. } => Setting::Format.stated_as(format_args!("({known})")),
             Self::Columns { example, .. } => Setting::Columns.stated_as(example),
+            Self::Rotated { .. } => Setting::RotatedGrids.stated_as("resample"),
             Self::UnitMismatch { .. } => Setting::ZUnit.stated(),
             Self::OutsideSurvey { exchanged: true, .. } => Setting::Columns.stated(),
             Self::OutsideRange { hint, .. } => hint.otherwise.clone()?,

@@ -70,6 +70,12 @@ impl SegyFile {
         &self.info
     }
 
+    /// Every note whose remedy a user interface may reword.
+    pub fn notes_mut(&mut self) -> impl Iterator<Item = &mut Note> {
+        let info = &mut self.info;
+        info.evidence.iter_mut().chain(&mut info.assumptions).chain(&mut info.warnings)
+    }
+
     /// The survey, in ms or m.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! The page that `petroglyph info` prints for a SEG-Y file.
+//! A page of text about a SEG-Y file.
 
 use std::fmt::{Result, Write as _};
 
