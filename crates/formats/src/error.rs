@@ -6,14 +6,14 @@ use survey::remedy::{Note, Remedy, Setting};
 
 /// X or inline range, then Y or crossline range.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
+pub struct HorizontalExtent {
     /// Lowest and highest X (or inline).
     pub first: [f64; 2],
     /// Lowest and highest Y (or crossline).
     pub second: [f64; 2],
 }
 
-impl Extent {
+impl HorizontalExtent {
     /// The smallest extent around `points`; infinite and inverted for none.
     pub fn of(points: impl IntoIterator<Item = glam::DVec2>) -> Self {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
@@ -143,9 +143,9 @@ pub enum FormatError {
         /// "X and Y" or "inlines and crosslines".
         axes: &'static str,
         /// Extent of the surface.
-        found: Box<Extent>,
+        found: Box<HorizontalExtent>,
         /// Extent of the survey.
-        survey: Box<Extent>,
+        survey: Box<HorizontalExtent>,
         /// What may be wrong.
         hint: String,
         /// Whether it would lie over the survey with its first two columns exchanged.

@@ -9,7 +9,7 @@ use super::Format;
 use super::error::FormatError;
 use super::export::{ExportOptions, WhenRotated};
 use super::irap;
-use super::write::Failure;
+use super::write::WriteFailure;
 use glam::DVec2;
 use std::borrow::Cow;
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
@@ -31,8 +31,8 @@ pub(super) fn of<'a>(
     };
     let sheet = match irap::one_sheet(horizon) {
         Ok(sheet) => sheet,
-        Err(Failure::NotRepresentable(why, instead)) => return Err(refused(why, instead)),
-        Err(Failure::Io(source)) => {
+        Err(WriteFailure::NotRepresentable(why, instead)) => return Err(refused(why, instead)),
+        Err(WriteFailure::Io(source)) => {
             return Err(FormatError::Io { action: "write", file: std::path::PathBuf::new(), source });
         }
     };
