@@ -1,7 +1,7 @@
 //! Failures on the terminal: an error in one sentence, and a hint.
 
-use super::hint;
 use super::run::Failure;
+use super::{hint, option};
 use project::error::remedy_of;
 use std::process::ExitCode;
 
@@ -11,7 +11,8 @@ pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
         Failure::Usage(reason) => (2, reason.clone(), GENERAL_HINT.to_owned()),
         Failure::Failed(error) => {
             let sentence = sentence(error);
-            match hint::of(error.as_ref()).or_else(|| remedy_of(error.as_ref()).map(|remedy| format!("state {remedy}")))
+            match hint::of(error.as_ref())
+                .or_else(|| remedy_of(error.as_ref()).map(|ways| format!("state {}", option::remedy(&ways))))
             {
                 Some(hint) => (1, sentence, hint),
                 None => advice(sentence),

@@ -1,7 +1,7 @@
 //! `petroglyph info`: what a file or a project holds.
 
-use super::info_interpretation;
 use super::report::Report;
+use super::{info_interpretation, option};
 use formats::ImportOptions;
 use project::Project;
 use project::error::Noun;
@@ -24,7 +24,8 @@ pub(super) fn describe(
     if let Some(report) = info_interpretation::describe(path, reading)? {
         return Ok(report);
     }
-    let file = SegyFile::open(path, options, progress)?;
+    let mut file = SegyFile::open(path, options, progress)?;
+    option::name_in(file.notes_mut());
     let statistics = file.statistics(progress)?;
     let mut report = Report::line(file.page(&statistics).trim_end());
     report.fields(file.info());

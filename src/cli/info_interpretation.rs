@@ -1,5 +1,6 @@
 //! `petroglyph info` of horizon, fault and well files: what they hold before they are imported.
 
+use super::option;
 use super::report::Report;
 use formats::well::{self, WellFileDescription};
 use formats::{FileDescription, FormatError, ImportOptions, SurfaceDescription};
@@ -23,7 +24,10 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
         }
     }
     match formats::describe(path, options) {
-        Ok(found) => Ok(Some(interpretation(&found))),
+        Ok(mut found) => {
+            found.surfaces.iter_mut().for_each(|surface| option::name_in(surface.notes_mut()));
+            Ok(Some(interpretation(&found)))
+        }
         Err(FormatError::UnknownFormat { .. }) if may_be_segy(path) => Ok(None),
         Err(error) => Err(error.into()),
     }

@@ -13,6 +13,7 @@ mod info;
 mod info_interpretation;
 mod interpretation;
 mod list;
+mod option;
 mod page;
 mod report;
 mod request;

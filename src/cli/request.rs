@@ -5,7 +5,7 @@ use super::args::{
     VolumeAction,
 };
 use super::page::PageRequest;
-use super::view::View;
+use super::view::ViewChanges;
 use super::well;
 use super::{assembly, extraction, interpretation};
 use crate::bench;
@@ -47,7 +47,7 @@ pub(super) enum Request {
     /// Propose faults.
     ProposeFaults { project: PathBuf, settings: ProposeSettings },
     /// Save a scene that is based on one of the project or of a file.
-    AddScene { project: PathBuf, name: String, from: Option<PathBuf>, view: View },
+    AddScene { project: PathBuf, name: String, from: Option<PathBuf>, view: ViewChanges },
     /// Set the colours of raw data.
     SetRaw { project: PathBuf, volume: Option<String>, map: ColourMap, range: Option<[f32; 2]> },
     /// List parts of a project.
@@ -87,7 +87,7 @@ pub(super) struct RenderRequest {
     pub(super) out: PathBuf,
     /// Name of a scene, or a TOML file.
     pub(super) scene: Option<String>,
-    pub(super) view: View,
+    pub(super) view: ViewChanges,
     pub(super) dpi: f64,
     pub(super) device: Device,
     /// Largest memory for the samples of a volume, bytes.
@@ -139,7 +139,7 @@ impl TryFrom<Action> for Request {
                 segy: super::segy::segy_options(&segy)?,
                 reading: interpretation::import_options(reading)?,
             },
-            Action::View { project, frame_times } => Self::Window { project, frame_times },
+            Action::ViewChanges { project, frame_times } => Self::Window { project, frame_times },
             Action::Import(typed) => {
                 Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
             }
@@ -349,7 +349,7 @@ fn shown_isosurface(text: &str) -> Result<ShownIsosurface, Usage> {
 }
 
 fn colour(text: &str) -> Result<Colour, Usage> {
-    text.parse().map_err(|error: ttf::Error| error.to_string())
+    text.parse().map_err(|error: ttf::TtfError| error.to_string())
 }
 
 /// `LOW,HIGH,PATTERN[,OPACITY]`

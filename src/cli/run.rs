@@ -3,7 +3,7 @@
 use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
-use super::{assembly, draw, info, list};
+use super::{assembly, draw, info, list, option};
 use crate::bench;
 use anyhow::Context;
 use formats::{ExportOptions, Format};
@@ -144,7 +144,8 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
 
 /// Applies a command and reports what it did.
 fn change(mut project: Project, command: &Command, progress: &Progress) -> anyhow::Result<Report> {
-    let effect = project.apply(command, progress)?;
+    let mut effect = project.apply(command, progress)?;
+    option::name_in(effect.notes_mut());
     let mut report = Report::line(effect.to_string().trim_end());
     report.fields(&effect);
     Ok(report)
@@ -170,7 +171,8 @@ fn import(path: &Path, command: ImportVolume, progress: &Progress) -> anyhow::Re
         return change(Project::open(path)?, &command, progress);
     }
     let mut project = Project::create(path, None)?;
-    let effect = project.project().apply(&command, progress)?;
+    let mut effect = project.project().apply(&command, progress)?;
+    option::name_in(effect.notes_mut());
     project.publish()?;
     let mut report = Report::line(format!("created {}", path.display()));
     report.say(effect.to_string().trim_end()).fields(&effect).field("project", path);

@@ -1,5 +1,6 @@
 //! Progress on stderr, and Ctrl-C.
 
+use super::option;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::sync::{Arc, Mutex, PoisonError};
 use survey::progress::ProgressSink;
@@ -53,6 +54,8 @@ impl ProgressSink for Terminal {
     }
 
     fn warn(&self, note: &Note) {
+        let mut note = note.clone();
+        option::name_in([&mut note]);
         self.bar.suspend(|| eprintln!("warning: {note}"));
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(note.to_string());
     }

@@ -8,7 +8,7 @@ use survey::SurveyGeometry;
 
 /// Changes to a scene; what is `None` stays.
 #[derive(Debug, Default, Clone, PartialEq)]
-pub(super) struct View {
+pub(super) struct ViewChanges {
     size_px: Option<[u32; 2]>,
     blend: Option<f32>,
     lookup: Option<Lookup>,
@@ -41,7 +41,7 @@ enum Cut {
 /// Share of the block that a corner cut takes by default.
 const CUT_SHARE: f64 = 0.45;
 
-impl TryFrom<ViewArgs> for View {
+impl TryFrom<ViewArgs> for ViewChanges {
     type Error = Usage;
 
     fn try_from(typed: ViewArgs) -> Result<Self, Usage> {
@@ -69,7 +69,7 @@ impl TryFrom<ViewArgs> for View {
         let background = match typed.background.as_deref() {
             None => None,
             Some("transparent") => Some(Background::Transparent),
-            Some(text) => Some(Background::Colour(text.parse().map_err(|error: ttf::Error| error.to_string())?)),
+            Some(text) => Some(Background::Colour(text.parse().map_err(|error: ttf::TtfError| error.to_string())?)),
         };
         Ok(Self {
             size_px,
@@ -133,7 +133,7 @@ fn corner_cut(text: &str) -> Result<Cut, Usage> {
     }
 }
 
-impl View {
+impl ViewChanges {
     /// Applies the changes to `scene`. Cuts, if any are given, replace the scene's own.
     pub(super) fn change(&self, scene: &mut Scene, geometry: &SurveyGeometry) {
         scene.size_px = self.size_px.unwrap_or(scene.size_px);
@@ -209,7 +209,7 @@ mod tests {
     fn boxes_are_given_in_line_numbers_also_where_they_count_down() {
         let typed = ViewArgs { roaming_box: Some("130,110,1,11,8,40".into()), ..ViewArgs::default() };
         let mut scene = Scene::default();
-        View::try_from(typed).unwrap().change(&mut scene, &geometry());
+        ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry());
         let block = scene.roaming_box.unwrap();
         assert_eq!((block.min, block.max), ([10.0, 0.0, 2.0], [30.0, 10.0, 10.0]));
     }
@@ -219,7 +219,7 @@ mod tests {
         let cut = |azimuth| {
             let typed = ViewArgs { cut: vec!["nearest,0.5,0.5".into()], azimuth: Some(azimuth), ..ViewArgs::default() };
             let mut scene = Scene::default();
-            View::try_from(typed).unwrap().change(&mut scene, &geometry());
+            ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry());
             scene.cut_outs[0]
         };
         assert_ne!(cut(30.0), cut(210.0));
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn nonsense_is_a_usage_error() {
-        let refused = |typed: ViewArgs| View::try_from(typed).unwrap_err();
+        let refused = |typed: ViewArgs| ViewChanges::try_from(typed).unwrap_err();
         refused(ViewArgs { cut: vec!["left".into()], ..ViewArgs::default() });
         refused(ViewArgs { cut: vec!["nearest,0.5".into()], ..ViewArgs::default() });
         refused(ViewArgs { cut: vec!["nearest,0,1".into()], ..ViewArgs::default() });

@@ -31,32 +31,37 @@ pub fn field(setting: Setting) -> Option<&'static str> {
         Setting::Head => "Head X, Y, m",
         Setting::WellInFile => "Name in the files",
         Setting::Checkshot => "Checkshots",
-        Setting::SampleFormat | Setting::CoordinateType | Setting::LineType | Setting::ScalarByte => return None,
+        Setting::SampleFormat
+        | Setting::CoordinateType
+        | Setting::LineType
+        | Setting::ScalarByte
+        | Setting::RotatedGrids => return None,
     })
 }
 
 /// Advice on what to do next.
 pub fn advice(remedy: &Remedy) -> String {
-    let ways = ways(remedy);
-    if ways.is_empty() {
-        return format!("this can be stated on the command line only: {remedy}");
+    match ways(remedy) {
+        Some(ways) => format!("state {ways}"),
+        None => format!("this can be stated on the command line only: {remedy}"),
     }
-    format!("state {ways}")
 }
 
 /// The note, followed by the fields in which something else can be stated.
 pub fn note(note: &Note) -> String {
-    let ways = note.otherwise.as_ref().map(ways).unwrap_or_default();
-    if ways.is_empty() { note.fact.clone() } else { format!("{} (if not: {ways})", note.fact) }
+    let mut note = note.clone();
+    note.reword(ways);
+    note.fact
 }
 
-/// The alternatives that can be stated entirely through fields.
-fn ways(remedy: &Remedy) -> String {
+/// The alternatives that can be stated entirely through fields, if there are any.
+fn ways(remedy: &Remedy) -> Option<String> {
     let named = |way: &Vec<Statement>| -> Option<String> {
         let names: Option<Vec<String>> = way.iter().map(named).collect();
         names.map(|names| names.join(" and "))
     };
-    remedy.ways.iter().filter_map(named).collect::<Vec<_>>().join(", or ")
+    let ways: Vec<String> = remedy.ways.iter().filter_map(named).collect();
+    (!ways.is_empty()).then(|| ways.join(", or "))
 }
 
 fn named(statement: &Statement) -> Option<String> {
@@ -75,7 +80,7 @@ mod tests {
         let bytes = Remedy::all([Setting::InlineByte.stated_as(9), Setting::CrosslineByte.stated_as(21)]);
         let typed = Remedy::all([bytes.clone(), Setting::LineType.stated_as("i16")]);
         assert_eq!(advice(&Remedy::any([typed, bytes])), "state 9 under “Inline” and 21 under “Crossline”");
-        assert!(advice(&Setting::SampleFormat.stated()).ends_with("on the command line only: --sample-format"));
+        assert!(advice(&Setting::SampleFormat.stated()).ends_with("on the command line only: sample format"));
         assert_eq!(note(&Note::unless("so", Setting::Datum.stated())), "so (if not: “Datum above sea level, m”)");
         assert_eq!(note(&Note::unless("so", Setting::CoordinateType.stated())), "so");
     }

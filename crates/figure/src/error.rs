@@ -65,5 +65,5 @@ pub enum FigureError {
     Render(#[from] RenderError),
     /// A pattern could not be drawn.
     #[error(transparent)]
-    Pattern(#[from] ttf::Error),
+    Pattern(#[from] ttf::TtfError),
 }

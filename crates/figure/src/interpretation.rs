@@ -60,7 +60,7 @@ pub struct Stick {
 
 /// The node that is selected and not accepted yet.
 #[derive(Debug, Clone)]
-pub struct Selection<'a> {
+pub struct DrawnSelection<'a> {
     /// Where it is.
     pub sheets: Vec<TraceSheet<'a>>,
     /// Colour of the horizon it may become part of.
@@ -69,7 +69,7 @@ pub struct Selection<'a> {
 
 /// The interpretation as it is.
 #[derive(Debug, Clone, Default)]
-pub struct Interpretation<'a> {
+pub struct DrawnInterpretation<'a> {
     /// Horizons, youngest first.
     pub horizons: Vec<PickedSheets<'a>>,
     /// Faults.
@@ -79,7 +79,7 @@ pub struct Interpretation<'a> {
     /// Sticks.
     pub sticks: Vec<Stick>,
     /// What is selected.
-    pub selection: Option<Selection<'a>>,
+    pub selection: Option<DrawnSelection<'a>>,
     /// The horizon that picks go to: it stands out before the block.
     pub picked: Option<&'a str>,
 }

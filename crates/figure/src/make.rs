@@ -1,7 +1,7 @@
 //! From what a figure shows to its page: the one way that figures are made.
 
 use crate::Rect;
-use crate::cut::{FenceCut, SectionCut, SectionKind, Source, length_m, stations, value_at};
+use crate::cut::{FenceCut, SectionCut, SectionKind, SectionSource, length_m, stations, value_at};
 use crate::draw::axes::Axis;
 use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
 use crate::draw::legend::Legend;
@@ -10,7 +10,7 @@ use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
 use crate::draw::{NamedColour, scale};
 use crate::error::FigureError;
-use crate::interpretation::Interpretation;
+use crate::interpretation::DrawnInterpretation;
 use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use crate::map::{HorizonMap, MapSource, Mapped};
 use crate::spec::{BlockPart, FencePart, Figure, MapPart, Part, SectionPart};
@@ -35,7 +35,7 @@ const FIRST: f64 = 0.42;
 #[derive(Clone, Copy)]
 pub struct FigureInputs<'a> {
     /// Geometry, model, volumes, candidates, and how raw data are coloured.
-    pub source: Source<'a>,
+    pub source: SectionSource<'a>,
     /// Horizons with their colours, youngest first.
     pub horizons: &'a [NamedColour],
     /// Names of the faults.
@@ -45,7 +45,7 @@ pub struct FigureInputs<'a> {
     /// Patterns of the layers.
     pub library: Option<&'a TextureLibrary>,
     /// What an interpreter sees.
-    pub interpretation: Option<&'a Interpretation<'a>>,
+    pub interpretation: Option<&'a DrawnInterpretation<'a>>,
 }
 
 /// Makes the page of a figure; `painter` draws its blocks.
@@ -144,7 +144,7 @@ impl<'a> Maker<'a> {
         FigureError::NoRoom { what: "the figure", size_cm }
     }
 
-    fn interpretation(&self) -> Result<Option<&'a Interpretation<'a>>, FigureError> {
+    fn interpretation(&self) -> Result<Option<&'a DrawnInterpretation<'a>>, FigureError> {
         match (self.figure.interpretation, self.inputs.interpretation) {
             (false, _) => Ok(None),
             (true, Some(shown)) => Ok(Some(shown)),

@@ -1,6 +1,6 @@
 //! Whole pages of a closed-form survey: two flat horizons and a fault that moves nothing.
 
-use figure::cut::Source;
+use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
 use figure::list::{DisplayList, Text};
@@ -45,7 +45,7 @@ fn made(figure: &Figure) -> Result<DisplayList, FigureError> {
     let horizons = [("Top", Colour::new(255, 0, 0)), ("Base", Colour::new(0, 0, 255))]
         .map(|(name, colour)| NamedColour { name: name.into(), colour });
     let inputs = FigureInputs {
-        source: Source { data, raw: Some(&raw) },
+        source: SectionSource { data, raw: Some(&raw) },
         horizons: &horizons,
         faults: &[],
         layers: &[],

@@ -12,7 +12,7 @@
 use super::options::ValueOrder;
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, SourceFile};
-use super::write::Failure;
+use super::write::WriteFailure;
 use super::zmap::{from_columns, in_columns, unrotated};
 use super::{Codec, Format, FormatError, irap};
 use std::io::Write;
@@ -115,7 +115,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
 const CLEAR: f64 = 2.0;
 
 /// Writes a horizon whose grid is unrotated.
-fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> Result<(), Failure> {
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> Result<(), WriteFailure> {
     let sheet = irap::only_sheet(horizon)?;
     let NodeGrid { origin, u_step, v_step, count: [nu, nv] } = sheet.grid;
     let far = origin + u_step * (nu as f64 - 1.0) + v_step * (nv as f64 - 1.0);

@@ -99,7 +99,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     table::surfaces(source, &rows, cut, layout, context)
 }
 
-fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), write::Failure> {
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), write::WriteFailure> {
     let z = match geometry.vertical.unit {
         VerticalUnit::Milliseconds => "twt_ms",
         VerticalUnit::Metres => "depth_m",

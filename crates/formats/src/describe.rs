@@ -1,14 +1,15 @@
-//! The description of a horizon or fault file before its import, for `petroglyph info`.
+//! The description of a horizon or fault file before its import.
 
 use super::options::ImportOptions;
 use super::raw::{RawShape, RawSurface};
 use super::report::Settled;
 use super::text::SourceFile;
+use super::unit::ZPositive;
 use super::{Format, FormatError, SurfaceKind, read_source};
 use glam::DVec2;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use survey::remedy::Note;
+use survey::remedy::{Note, Setting};
 
 /// Columns and rows of the map of characters.
 const MAP: [usize; 2] = [56, 20];
@@ -54,9 +55,9 @@ pub struct SurfaceDescription {
     /// Lowest and highest value.
     pub range: Option<[f64; 2]>,
     /// The vertical unit and its source.
-    pub unit: String,
+    pub unit: Note,
     /// The sign and its source.
-    pub positive: String,
+    pub positive: Note,
     /// Counts of values in equal parts of the range.
     pub histogram: Vec<usize>,
     /// A map, north up (inlines upward without X, Y): shallow to deep `. : - = + * % #`.
@@ -65,6 +66,13 @@ pub struct SurfaceDescription {
     pub notes: Vec<String>,
     /// What should be checked.
     pub warnings: Vec<Note>,
+}
+
+impl SurfaceDescription {
+    /// Every note whose remedy a user interface may reword.
+    pub fn notes_mut(&mut self) -> impl Iterator<Item = &mut Note> {
+        [&mut self.unit, &mut self.positive].into_iter().chain(&mut self.warnings)
+    }
 }
 
 /// Describes a file as a horizon, or as a fault when it holds no horizon.
@@ -148,17 +156,18 @@ fn surface(raw: &RawSurface) -> SurfaceDescription {
     let says = |words: Option<&String>| words.map_or_else(String::new, |w| format!(" (the file says {w})"));
     let facts = &raw.vertical;
     let unit = match (&facts.unit, &facts.domain) {
-        (Some((unit, words)), _) => format!("{}{}", unit.symbol(), says(Some(words))),
-        (None, Some((domain, words))) => format!("{domain:?}{}; which unit is not said", says(Some(words))),
-        (None, None) => "not said: the survey's is assumed on import (--z-unit)".into(),
+        (Some((unit, words)), _) => Note::from(format!("{}{}", unit.symbol(), says(Some(words)))),
+        (None, Some((domain, words))) => format!("{domain:?}{}; which unit is not said", says(Some(words))).into(),
+        (None, None) => Note::unless("not said; the survey's is assumed on import", Setting::ZUnit.stated()),
     };
     let positive = match &facts.positive {
-        Some((positive, words)) => format!("{}{}", positive.word(), says(Some(words))),
+        Some((positive, words)) => Note::from(format!("{}{}", positive.word(), says(Some(words)))),
         None => match found {
             Some([_, high]) if high <= 0.0 => {
-                "not said; all values are negative, so probably up: say --z-positive up".into()
+                let fact = "not said; all values are negative, so probably up, but down is assumed on import";
+                Note::unless(fact, Setting::ZPositive.stated_as(ZPositive::Up.word()))
             }
-            _ => "not said: down is assumed on import (--z-positive)".into(),
+            _ => Note::unless("not said; down is assumed on import", Setting::ZPositive.stated()),
         },
     };
     SurfaceDescription {

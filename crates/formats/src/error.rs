@@ -6,14 +6,14 @@ use survey::remedy::{Note, Remedy, Setting};
 
 /// Ranges of X or inline, and of Y or crossline.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Extent {
+pub struct HorizontalExtent {
     /// Lowest and highest X (or inline).
     pub first: [f64; 2],
     /// Lowest and highest Y (or crossline).
     pub second: [f64; 2],
 }
 
-impl Extent {
+impl HorizontalExtent {
     /// The smallest extent that contains `points`; infinite and inverted if there are none.
     pub fn of(points: impl IntoIterator<Item = glam::DVec2>) -> Self {
         let none = [f64::INFINITY, f64::NEG_INFINITY];
@@ -143,9 +143,9 @@ pub enum FormatError {
         /// "X and Y" or "inlines and crosslines".
         axes: &'static str,
         /// Extent of the surface.
-        found: Box<Extent>,
+        found: Box<HorizontalExtent>,
         /// Extent of the survey.
-        survey: Box<Extent>,
+        survey: Box<HorizontalExtent>,
         /// What may be wrong.
         hint: String,
         /// Whether it would lie over the survey with its first two columns exchanged.
@@ -217,6 +217,19 @@ pub enum FormatError {
         /// What is missing.
         why: String,
     },
+    /// The format holds unrotated grids only.
+    #[error(
+        "'{name}' cannot be written as {format}: its grid is rotated by {degrees:.3} degrees, which irap, csv, \
+         opendtect and tsurf can hold"
+    )]
+    Rotated {
+        /// The surface.
+        name: String,
+        /// The format.
+        format: Format,
+        /// Angle of the grid's first direction from +X, counterclockwise.
+        degrees: f64,
+    },
     /// The format cannot represent the surface.
     #[error("'{name}' cannot be written as {format}: {why}; {instead}")]
     NotRepresentable {
@@ -237,6 +250,7 @@ impl FormatError {
         Some(match self {
             Self::UnknownFormat { known, .. } => Setting::Format.stated_as(format_args!("({known})")),
             Self::Columns { example, .. } => Setting::Columns.stated_as(example),
+            Self::Rotated { .. } => Setting::RotatedGrids.stated_as("resample"),
             Self::UnitMismatch { .. } => Setting::ZUnit.stated(),
             Self::OutsideSurvey { exchanged: true, .. } => Setting::Columns.stated(),
             Self::OutsideRange { hint, .. } => hint.otherwise.clone()?,

@@ -2,7 +2,7 @@
 //! checks it against the survey.
 
 use super::columns::is_inside;
-use super::lattice::{self, Lattice};
+use super::lattice::{self, FittedLattice};
 use super::options::ImportOptions;
 use super::placement::{self, voxel_xy};
 use super::raster;
@@ -166,7 +166,7 @@ fn from_points(
 
 /// Puts points on their nodes; several depths at a node make several sheets. Also counts such nodes, and repeated
 /// depths.
-fn on_lattice(lattice: &Lattice, points: &[RawPoint], tolerance: f32) -> (Vec<Sheet>, usize, usize) {
+fn on_lattice(lattice: &FittedLattice, points: &[RawPoint], tolerance: f32) -> (Vec<Sheet>, usize, usize) {
     let [nu, nv] = lattice.grid.count;
     let own: Vec<(usize, &RawPoint)> = lattice
         .nodes

@@ -7,7 +7,7 @@
 
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, SourceFile};
-use super::write::Failure;
+use super::write::WriteFailure;
 use super::{Codec, Format, FormatError};
 use glam::DVec2;
 use std::borrow::Cow;
@@ -114,9 +114,9 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
 }
 
 /// All sheets as one, which is possible if they lie on one grid and no node has two depths.
-pub(super) fn one_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, Failure> {
+pub(super) fn one_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, WriteFailure> {
     let several = |why: String| {
-        Failure::NotRepresentable(
+        WriteFailure::NotRepresentable(
             format!("it has {} sheets, {why}, and the format holds one depth a node", horizon.sheets.len()),
             "write csv, opendtect or tsurf, which hold several",
         )
@@ -140,11 +140,11 @@ pub(super) fn one_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, Failure> {
 }
 
 /// The single sheet a one-depth grid format can hold, on an orthogonal grid.
-pub(super) fn only_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, Failure> {
+pub(super) fn only_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, WriteFailure> {
     let sheet = one_sheet(horizon)?;
     let (u, v) = (sheet.grid.u_step, sheet.grid.v_step);
     if u.dot(v).abs() > 1e-4 * u.length() * v.length() {
-        return Err(Failure::NotRepresentable(
+        return Err(WriteFailure::NotRepresentable(
             "its grid is not orthogonal".into(),
             "write csv, opendtect or tsurf, which hold any grid",
         ));
@@ -152,7 +152,7 @@ pub(super) fn only_sheet(horizon: &Horizon) -> Result<Cow<'_, Sheet>, Failure> {
     Ok(sheet)
 }
 
-fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> Result<(), Failure> {
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> Result<(), WriteFailure> {
     let sheet = only_sheet(horizon)?;
     let NodeGrid { origin, u_step, v_step, count: [nu, nv] } = sheet.grid;
     let (xinc, mirrored) = (u_step.length(), u_step.perp_dot(v_step) < 0.0);

@@ -24,7 +24,7 @@ const ON_TRACE: f64 = 0.03;
 const ON_NODE: f64 = 0.1;
 
 /// A lattice and the node of each point.
-pub(super) struct Lattice {
+pub(super) struct FittedLattice {
     pub grid: NodeGrid,
     /// Node `[u, v]` per point; negative or beyond the count for points beside a survey grid.
     pub nodes: Vec<[i64; 2]>,
@@ -33,7 +33,7 @@ pub(super) struct Lattice {
 /// The decimation of the survey's traces that all points lie on; `None` if they do not lie on one or do not fill it.
 ///
 /// At step 1 × 1 the grid is the survey's own; otherwise it reaches from the first to the last point.
-pub(super) fn of_survey(voxels: &[DVec2], geometry: &SurveyGeometry) -> Option<(Lattice, [usize; 2])> {
+pub(super) fn of_survey(voxels: &[DVec2], geometry: &SurveyGeometry) -> Option<(FittedLattice, [usize; 2])> {
     if voxels.iter().any(|v| !((*v - v.round()).abs().max_element() <= ON_TRACE && v.abs().max_element() < 1e9)) {
         return None;
     }
@@ -48,7 +48,7 @@ pub(super) fn of_survey(voxels: &[DVec2], geometry: &SurveyGeometry) -> Option<(
     }
     let own = NodeGrid::of_survey(geometry);
     if step == [1, 1] {
-        return Some((Lattice { grid: own, nodes: traces }, [1, 1]));
+        return Some((FittedLattice { grid: own, nodes: traces }, [1, 1]));
     }
     let grid = NodeGrid {
         origin: own.world_at(DVec2::new(low[0] as f64, low[1] as f64)),
@@ -56,7 +56,7 @@ pub(super) fn of_survey(voxels: &[DVec2], geometry: &SurveyGeometry) -> Option<(
         v_step: own.v_step * step[1] as f64,
         count: count_of(&nodes),
     };
-    Some((Lattice { grid, nodes }, step.map(|s| s as usize)))
+    Some((FittedLattice { grid, nodes }, step.map(|s| s as usize)))
 }
 
 fn gcd(a: i64, b: i64) -> i64 {
@@ -84,7 +84,7 @@ fn is_filled(nodes: &[[i64; 2]]) -> bool {
 }
 
 /// The lattice of points in world X, Y; `None` if there is none.
-pub(super) fn of_points(points: &[DVec2], geometry: &SurveyGeometry) -> Option<Lattice> {
+pub(super) fn of_points(points: &[DVec2], geometry: &SurveyGeometry) -> Option<FittedLattice> {
     let middle = points.iter().sum::<DVec2>() / points.len() as f64;
     let local: Vec<DVec2> = points.iter().map(|p| *p - middle).collect();
     let unique = distinct(&local);
@@ -112,7 +112,7 @@ pub(super) fn of_points(points: &[DVec2], geometry: &SurveyGeometry) -> Option<L
         return None;
     }
     let grid = NodeGrid { origin: origin + middle, u_step: axes.x_axis, v_step: axes.y_axis, count };
-    Some(Lattice { grid, nodes })
+    Some(FittedLattice { grid, nodes })
 }
 
 fn distinct(points: &[DVec2]) -> Vec<DVec2> {

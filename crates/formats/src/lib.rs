@@ -95,7 +95,7 @@ mod zmap_points;
 pub use bounds::{Bounds, InterpretationFile, bounds_of, survey_from_points};
 pub use column::Column;
 pub use describe::{FileDescription, SurfaceDescription, describe};
-pub use error::{Extent, FormatError};
+pub use error::{FormatError, HorizontalExtent};
 pub use export::{ExportOptions, ExportReport, WhenRotated};
 pub use options::{ImportOptions, PlaceBy, ValueOrder};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
@@ -179,8 +179,8 @@ impl fmt::Display for SurfaceKind {
 }
 
 type Reader = fn(&SourceFile, &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError>;
-type HorizonWriter = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::Failure>;
-type FaultWriter = fn(&mut dyn Write, &Fault, &SurveyGeometry) -> Result<(), write::Failure>;
+type HorizonWriter = fn(&mut dyn Write, &Horizon, &SurveyGeometry) -> Result<(), write::WriteFailure>;
+type FaultWriter = fn(&mut dyn Write, &Fault, &SurveyGeometry) -> Result<(), write::WriteFailure>;
 
 /// The capabilities of a format.
 struct Codec {

@@ -11,7 +11,7 @@ use super::mesh_sticks;
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
 use super::text::{self, SourceFile};
-use super::write::{self, Failure, Placed};
+use super::write::{self, Placed, WriteFailure};
 use super::{Codec, Format, FormatError};
 use std::io::Write;
 use survey::fault::Fault;
@@ -81,7 +81,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     table::surfaces(source, &rows, cut, layout, context)
 }
 
-fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), Failure> {
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), WriteFailure> {
     writeln!(out, "# \"X\"\t\"Y\"\t\"Inline\"\t\"Crossline\"\t\"Z\"")?;
     writeln!(out, "# - - - - - - - - - -")?;
     for Placed { lines, xy, z, .. } in write::nodes(horizon, geometry) {
@@ -91,10 +91,10 @@ fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeomet
     Ok(())
 }
 
-fn write_fault(out: &mut dyn Write, fault: &Fault, geometry: &SurveyGeometry) -> Result<(), Failure> {
+fn write_fault(out: &mut dyn Write, fault: &Fault, geometry: &SurveyGeometry) -> Result<(), WriteFailure> {
     let sticks = mesh_sticks::cut(&fault.mesh, geometry.metres_per_vertical_unit());
     if sticks.len() < 2 {
-        return Err(Failure::NotRepresentable(
+        return Err(WriteFailure::NotRepresentable(
             "fewer than two sticks can be cut from it".into(),
             "write tsurf, which holds the triangles",
         ));

@@ -3,7 +3,7 @@
 
 use super::FormatError;
 use super::columns::is_inside;
-use super::error::Extent;
+use super::error::HorizontalExtent;
 use super::options::PlaceBy;
 use super::raw::RawPoint;
 use glam::{DVec2, DVec3};
@@ -117,7 +117,7 @@ pub(super) fn outside_by_world(
     geometry: &SurveyGeometry,
 ) -> FormatError {
     let points: Vec<DVec2> = points.filter(|p| p.is_finite()).collect();
-    let survey = Extent::of(corners(geometry));
+    let survey = HorizontalExtent::of(corners(geometry));
     let fits = |f: &dyn Fn(DVec2) -> DVec2| {
         points.iter().filter(|p| is_inside(voxel_xy(geometry, f(**p)), geometry)).count() * 2 > points.len()
     };
@@ -138,7 +138,7 @@ pub(super) fn outside_by_world(
         file: file.to_path_buf(),
         name: name.into(),
         axes: "X and Y",
-        found: Box::new(Extent::of(points)),
+        found: Box::new(HorizontalExtent::of(points)),
         survey: Box::new(survey),
         hint,
         exchanged,
@@ -146,7 +146,7 @@ pub(super) fn outside_by_world(
 }
 
 fn outside_by_lines(file: &Path, name: &str, voxels: &[DVec2], geometry: &SurveyGeometry) -> FormatError {
-    let found = Extent::of(voxels.iter().map(|v| geometry.lines_from_voxel(*v)));
+    let found = HorizontalExtent::of(voxels.iter().map(|v| geometry.lines_from_voxel(*v)));
     let swapped = voxels.iter().filter(|v| {
         let lines = geometry.lines_from_voxel(**v);
         is_inside(geometry.voxel_from_lines(lines.y, lines.x), geometry)
@@ -164,7 +164,7 @@ fn outside_by_lines(file: &Path, name: &str, voxels: &[DVec2], geometry: &Survey
         name: name.into(),
         axes: "inlines and crosslines",
         found: Box::new(found),
-        survey: Box::new(Extent::of([first, last])),
+        survey: Box::new(HorizontalExtent::of([first, last])),
         hint: hint.into(),
         exchanged,
     }

@@ -16,13 +16,13 @@ use survey::mesh::TriangleMesh;
 const CELLS: f64 = 40.0;
 
 /// Principal axes of points: mean, directions by falling extent, variances along them.
-pub(super) struct Frame {
+pub(super) struct PrincipalFrame {
     pub mean: DVec3,
     pub axes: [DVec3; 3],
     pub variance: [f64; 3],
 }
 
-impl Frame {
+impl PrincipalFrame {
     /// The frame of points; the coordinate axes for none.
     pub fn of(points: &[DVec3]) -> Self {
         let count = points.len().max(1) as f64;
@@ -74,7 +74,7 @@ fn eigen(mut m: DMat3) -> ([f64; 3], [DVec3; 3]) {
 /// `None` for fewer than three points and for points along a line.
 pub(super) fn fit(points: &[DVec3], metres: f64) -> Option<(TriangleMesh, f64)> {
     let metric: Vec<DVec3> = points.iter().map(|p| *p * DVec3::new(1.0, 1.0, metres)).collect();
-    let frame = Frame::of(&metric);
+    let frame = PrincipalFrame::of(&metric);
     let spans = frame.variance[1] > 1e-6 * frame.variance[0];
     if points.len() < 3 || !spans {
         return None;

@@ -45,7 +45,7 @@ fn order(sticks: &[Vec<DVec3>]) -> Vec<usize> {
     let middles: Vec<DVec3> = sticks.iter().map(|s| s.iter().sum::<DVec3>() / s.len() as f64).collect();
     let length = |order: &[usize]| order.windows(2).map(|w| middles[w[0]].distance(middles[w[1]])).sum::<f64>();
     let file: Vec<usize> = (0..sticks.len()).collect();
-    let axis = super::plane_fit::Frame::of(&middles).axes[0];
+    let axis = super::plane_fit::PrincipalFrame::of(&middles).axes[0];
     let mut along = file.clone();
     along.sort_by(|&a, &b| middles[a].dot(axis).total_cmp(&middles[b].dot(axis)).then(a.cmp(&b)));
     let mut best = file;

@@ -10,7 +10,7 @@
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
 use super::unit::{Domain, ZPositive, ZUnit};
-use super::write::Failure;
+use super::write::WriteFailure;
 use super::{Codec, Format, FormatError};
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
@@ -230,10 +230,10 @@ pub(super) fn mesh_of(sheet: &Sheet) -> TriangleMesh {
     mesh
 }
 
-fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), Failure> {
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), WriteFailure> {
     let meshes: Vec<_> = horizon.sheets.iter().map(mesh_of).filter(|m| !m.triangles.is_empty()).collect();
     if meshes.is_empty() {
-        return Err(Failure::NotRepresentable(
+        return Err(WriteFailure::NotRepresentable(
             "no three neighbouring nodes have a depth".into(),
             "write csv, which holds single nodes",
         ));
@@ -247,7 +247,7 @@ fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeomet
     Ok(())
 }
 
-fn write_fault(out: &mut dyn Write, fault: &Fault, geometry: &SurveyGeometry) -> Result<(), Failure> {
+fn write_fault(out: &mut dyn Write, fault: &Fault, geometry: &SurveyGeometry) -> Result<(), WriteFailure> {
     write_head(out, &fault.name, geometry)?;
     write_face(out, &fault.mesh, 1)?;
     writeln!(out, "END")?;

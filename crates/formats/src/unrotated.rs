@@ -9,7 +9,7 @@ use super::Format;
 use super::error::FormatError;
 use super::export::{ExportOptions, WhenRotated};
 use super::irap;
-use super::write::Failure;
+use super::write::WriteFailure;
 use glam::DVec2;
 use std::borrow::Cow;
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
@@ -31,8 +31,8 @@ pub(super) fn of<'a>(
     };
     let sheet = match irap::one_sheet(horizon) {
         Ok(sheet) => sheet,
-        Err(Failure::NotRepresentable(why, instead)) => return Err(refused(why, instead)),
-        Err(Failure::Io(source)) => {
+        Err(WriteFailure::NotRepresentable(why, instead)) => return Err(refused(why, instead)),
+        Err(WriteFailure::Io(source)) => {
             return Err(FormatError::Io { action: "write", file: std::path::PathBuf::new(), source });
         }
     };
@@ -42,13 +42,10 @@ pub(super) fn of<'a>(
     }
     let degrees = sheet.grid.u_step.to_angle().to_degrees();
     if options.when_rotated == WhenRotated::Refuse {
-        return Err(refused(
-            format!("its grid is rotated by {degrees:.3} degrees and the format holds unrotated grids alone"),
-            "write irap, csv, opendtect or tsurf, or allow resampling with --when-rotated resample",
-        ));
+        return Err(FormatError::Rotated { name: horizon.name.clone(), format, degrees });
     }
     let Some(resampled) = resample(&sheet) else {
-        return Err(refused("it has no node with a depth".into(), "check the horizon with `petroglyph horizon show`"));
+        return Err(refused("it has no node with a depth".into(), "check the horizon"));
     };
     let [nu, nv] = resampled.grid.count;
     let note = format!(

@@ -273,24 +273,24 @@ mod tests {
     }
 
     #[test]
-    fn a_wrong_unit_or_sign_names_the_option_that_fits() {
+    fn a_wrong_unit_or_sign_names_the_setting_that_fits() {
         let time = axis(800.0, 100, VerticalUnit::Milliseconds);
         let plain = ImportOptions::default();
-        assert!(hint(&[0.9, 1.0, 1.1], &plain, &time).contains("--z-unit s"));
-        assert!(hint(&[-900.0, -1000.0], &plain, &time).contains("--z-positive up"));
+        assert!(hint(&[0.9, 1.0, 1.1], &plain, &time).contains("vertical unit s"));
+        assert!(hint(&[-900.0, -1000.0], &plain, &time).contains("sign of depths up"));
         let both = hint(&[-0.9, -1.0], &plain, &time);
-        assert!(both.contains("--z-unit s") && both.contains("--z-positive up"), "{both}");
+        assert!(both.contains("vertical unit s") && both.contains("sign of depths up"), "{both}");
         let depth = axis(1000.0, 100, VerticalUnit::Metres);
-        assert!(hint(&[3600.0, 3700.0], &plain, &depth).contains("--z-unit ft"));
+        assert!(hint(&[3600.0, 3700.0], &plain, &depth).contains("vertical unit ft"));
         assert!(hint(&[77.0, 78.0], &plain, &depth).contains("No change"));
         let up = ImportOptions { z_positive: Some(ZPositive::Up), ..ImportOptions::default() };
-        assert!(hint(&[1100.0, 1200.0], &up, &depth).contains("--z-positive down"));
+        assert!(hint(&[1100.0, 1200.0], &up, &depth).contains("sign of depths down"));
     }
 
     #[test]
     fn seconds_do_not_hide_in_the_first_sample() {
         let time = axis(0.0, 500, VerticalUnit::Milliseconds);
-        assert!(hint(&[0.9, 1.0, 1.1], &ImportOptions::default(), &time).contains("--z-unit s"));
+        assert!(hint(&[0.9, 1.0, 1.1], &ImportOptions::default(), &time).contains("vertical unit s"));
         let told = ImportOptions { z_unit: Some(ZUnit::Milliseconds), ..ImportOptions::default() };
         assert!(read(&[0.9, 1.0, 1.1], &told, &time).is_ok());
     }

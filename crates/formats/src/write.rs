@@ -10,13 +10,13 @@ use survey::geometry::SurveyGeometry;
 use survey::horizon::{Horizon, Quality};
 
 /// Why a surface was not written.
-pub(super) enum Failure {
+pub(super) enum WriteFailure {
     Io(std::io::Error),
     /// What does not fit, and what to do instead.
     NotRepresentable(String, &'static str),
 }
 
-impl From<std::io::Error> for Failure {
+impl From<std::io::Error> for WriteFailure {
     fn from(error: std::io::Error) -> Self {
         Self::Io(error)
     }
@@ -27,13 +27,13 @@ pub(super) fn beside(
     path: &Path,
     name: &str,
     format: Format,
-    fill: impl FnOnce(&mut dyn Write) -> Result<(), Failure>,
+    fill: impl FnOnce(&mut dyn Write) -> Result<(), WriteFailure>,
 ) -> Result<(), FormatError> {
     let io = |source| FormatError::Io { action: "write", file: path.to_path_buf(), source };
     let mut part = path.as_os_str().to_owned();
     part.push(format!(".{}.part", std::process::id()));
     let part = std::path::PathBuf::from(part);
-    let written = fs::File::create(&part).map_err(Failure::Io).and_then(|file| {
+    let written = fs::File::create(&part).map_err(WriteFailure::Io).and_then(|file| {
         let mut out = BufWriter::new(file);
         fill(&mut out)?;
         let file = out.into_inner().map_err(std::io::IntoInnerError::into_error)?;
@@ -45,8 +45,8 @@ pub(super) fn beside(
         // No partial file may remain. A failure to remove it is not reported: the user sees the first error.
         let _ = fs::remove_file(&part);
         match failure {
-            Failure::Io(source) => io(source),
-            Failure::NotRepresentable(why, instead) => {
+            WriteFailure::Io(source) => io(source),
+            WriteFailure::NotRepresentable(why, instead) => {
                 FormatError::NotRepresentable { name: name.into(), format, why, instead }
             }
         }

@@ -9,7 +9,7 @@
 
 use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
-use super::write::Failure;
+use super::write::WriteFailure;
 use super::{Codec, Format, FormatError, SurfaceKind, irap};
 use glam::DVec2;
 use std::io::Write;
@@ -73,7 +73,7 @@ pub(super) fn in_columns(depth: &[f32], nv: usize) -> impl Iterator<Item = Vec<f
 }
 
 /// Writes a horizon whose grid is unrotated.
-fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> Result<(), Failure> {
+fn write_horizon(out: &mut dyn Write, horizon: &Horizon, _: &SurveyGeometry) -> Result<(), WriteFailure> {
     let sheet = irap::only_sheet(horizon)?;
     let NodeGrid { origin, u_step, v_step, count: [nu, nv] } = sheet.grid;
     let far = origin + u_step * (nu as f64 - 1.0) + v_step * (nv as f64 - 1.0);

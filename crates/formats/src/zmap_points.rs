@@ -33,7 +33,7 @@ fn detect(source: &SourceFile) -> Option<String> {
 }
 
 /// The position of a column in a row: characters from..to, and its null.
-struct Place {
+struct ColumnSpan {
     from: usize,
     to: usize,
     null: Option<f64>,
@@ -43,7 +43,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let text = source.text();
     // Columns are counted from the start of the line, so lines are taken untrimmed.
     let mut lines = text.split('\n').enumerate().map(|(n, text)| Line { number: n + 1, text: text.trim_end() });
-    let mut columns: Vec<(String, Place)> = Vec::new();
+    let mut columns: Vec<(String, ColumnSpan)> = Vec::new();
     let mut lines_of_header = lines.by_ref().filter(|l| !l.text.trim().is_empty() && !is_comment(l.text.trim_start()));
     lines_of_header.next();
     for line in lines_of_header {
@@ -57,7 +57,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
             return Err(source.syntax(line.number, "a column with its first and last character", line.text));
         };
         let null = fields.get(7).and_then(|f| text::number(f));
-        columns.push((fields[0].to_ascii_uppercase(), Place { from: from - 1, to, null }));
+        columns.push((fields[0].to_ascii_uppercase(), ColumnSpan { from: from - 1, to, null }));
     }
     let column = |word: &str| columns.iter().find(|(name, _)| name.starts_with(word)).map(|(_, place)| place);
     let (Some(x), Some(y), Some(z)) = (column("X"), column("Y"), column("Z")) else {
@@ -66,12 +66,12 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let segment = column("SEG");
     let mut points = Vec::new();
     for line in lines.filter(|l| !l.text.trim().is_empty() && !is_comment(l.text.trim_start())) {
-        let number = |place: &Place| {
+        let number = |place: &ColumnSpan| {
             let end = place.to.min(line.text.len());
             line.text.get(place.from..end).and_then(text::number)
         };
         let wrong = |what: &str| source.syntax(line.number, format!("a number for {what}"), line.text);
-        let coordinate = |place: &Place, what: &str| {
+        let coordinate = |place: &ColumnSpan, what: &str| {
             number(place).filter(|v| v.is_finite() && v.abs() < 1e12).ok_or_else(|| wrong(what))
         };
         let value = number(z).ok_or_else(|| wrong("Z"))?;

@@ -26,7 +26,7 @@ mod search;
 mod tests;
 mod triangle;
 
-use crate::error::Error;
+use crate::error::InterpError;
 use crate::forest::Forest;
 use crate::lanes::widest;
 use index::{CellIndex, TriangleLists};
@@ -124,7 +124,7 @@ pub struct CandidateColumns {
 /// // On a trace, the distance is that in depth; sample 7 is farther than 4 voxels from the leaf.
 /// assert_eq!(settings.decode(found.distance[4]), Some(2.0));
 /// assert_eq!(found.leaf, [1, 1, 1, 1, 1, 1, 1, 0]);
-/// # Ok::<(), interp::Error>(())
+/// # Ok::<(), interp::InterpError>(())
 /// ```
 pub struct LeafDistances<'a> {
     forest: &'a Forest,
@@ -136,11 +136,11 @@ impl<'a> LeafDistances<'a> {
     /// Prepares the search.
     ///
     /// # Errors
-    /// [`Error::Setting`], and [`Error::MalformedSurfaces`] when a triangle spans more than one cell of the
+    /// [`InterpError::Setting`], and [`InterpError::MalformedSurfaces`] when a triangle spans more than one cell of the
     /// lattice.
-    pub fn new(forest: &'a Forest, settings: &DistanceSettings) -> Result<Self, Error> {
+    pub fn new(forest: &'a Forest, settings: &DistanceSettings) -> Result<Self, InterpError> {
         if !(settings.max_distance > 0.0 && settings.max_distance <= LIMIT) {
-            return Err(Error::Setting {
+            return Err(InterpError::Setting {
                 setting: "max_distance",
                 value: settings.max_distance.into(),
                 expected: "a number of voxels above 0 and up to 64",
@@ -152,11 +152,16 @@ impl<'a> LeafDistances<'a> {
     /// Computes the columns of a box of inline indices `x` and crossline indices `y`, in parallel.
     ///
     /// # Errors
-    /// [`Error::Cancelled`].
+    /// [`InterpError::Cancelled`].
     ///
     /// # Panics
     /// When the box is not inside the volume.
-    pub fn columns(&self, x: Range<usize>, y: Range<usize>, progress: &Progress) -> Result<CandidateColumns, Error> {
+    pub fn columns(
+        &self,
+        x: Range<usize>,
+        y: Range<usize>,
+        progress: &Progress,
+    ) -> Result<CandidateColumns, InterpError> {
         self.columns_of(x, y, &mut CellIndex::new(self.forest.surfaces.size), progress)
     }
 
@@ -167,7 +172,7 @@ impl<'a> LeafDistances<'a> {
         y: Range<usize>,
         index: &mut CellIndex,
         progress: &Progress,
-    ) -> Result<CandidateColumns, Error> {
+    ) -> Result<CandidateColumns, InterpError> {
         let size @ [nx, ny, nz] = self.forest.surfaces.size;
         assert!(x.end <= nx && y.end <= ny, "columns {x:?} {y:?} of {nx} x {ny}");
         let count = x.len() * y.len() * nz;
@@ -195,7 +200,7 @@ impl<'a> LeafDistances<'a> {
                 progress.check()?;
                 let done = (lines.len() * columns.len()) as u64;
                 widest(ColumnBlock { size, settings: &self.settings, index, x: lines.clone(), y: columns, rows });
-                Ok::<(), Error>(progress.step(done)?)
+                Ok::<(), InterpError>(progress.step(done)?)
             })?;
         }
         Ok(CandidateColumns { x, y, distance, leaf })
@@ -205,8 +210,8 @@ impl<'a> LeafDistances<'a> {
     /// only the memory.
     ///
     /// # Errors
-    /// [`Error::Cancelled`], and errors of `take`.
-    pub fn slabs<E: From<Error>>(
+    /// [`InterpError::Cancelled`], and errors of `take`.
+    pub fn slabs<E: From<InterpError>>(
         &self,
         lines: usize,
         progress: &Progress,

@@ -5,7 +5,7 @@ use survey::source::SourceError;
 
 /// Why an extraction failed.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum InterpError {
     /// The user cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

@@ -8,7 +8,7 @@
 mod tests;
 
 use crate::distance::{DistanceSettings, LeafDistances};
-use crate::error::Error;
+use crate::error::InterpError;
 use crate::extrema::ExtremaError;
 use crate::forest::{Forest, ForestSettings};
 use crate::grow::{GrowError, GrowSettings, grow_slabs};
@@ -130,7 +130,7 @@ pub struct Extraction {
 /// Extracts the candidates of a volume.
 ///
 /// # Errors
-/// [`Error`]: a setting is out of range, the source fails, or the user cancels. Finding no surface is no
+/// [`InterpError`]: a setting is out of range, the source fails, or the user cancels. Finding no surface is no
 /// error.
 ///
 /// # Examples
@@ -148,9 +148,9 @@ pub struct Extraction {
 /// assert_eq!((found.report.surfaces, found.report.leaves), (1, 1));
 /// // With 254 codes for 10 voxels, sample 15 is 127 codes away from the leaf.
 /// assert_eq!((found.candidates.distance[15], found.candidates.leaf[15]), (127, 1));
-/// # Ok::<(), interp::Error>(())
+/// # Ok::<(), interp::InterpError>(())
 /// ```
-pub fn extract<S>(source: &S, settings: &ExtractSettings, progress: &Progress) -> Result<Extraction, Error>
+pub fn extract<S>(source: &S, settings: &ExtractSettings, progress: &Progress) -> Result<Extraction, InterpError>
 where
     S: SlabSource,
     GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
@@ -175,14 +175,14 @@ where
 /// `key` identifies source and settings.
 ///
 /// # Errors
-/// As [`extract`], and [`Error::Sink`]; the sink is then dropped before its end.
+/// As [`extract`], and [`InterpError::Sink`]; the sink is then dropped before its end.
 pub fn extract_into<S, K>(
     begin: impl FnOnce([usize; 3], usize) -> Result<K, SourceError>,
     key: &str,
     source: &S,
     settings: &ExtractSettings,
     progress: &Progress,
-) -> Result<ExtractReport, Error>
+) -> Result<ExtractReport, InterpError>
 where
     S: SlabSource,
     GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
@@ -191,16 +191,16 @@ where
     let start = Instant::now();
     let (forest, mut report) = grow_forest(source, settings, progress)?;
     let size = source.size();
-    let mut sink = begin(size, forest.leaf_count()).map_err(Error::Sink)?;
+    let mut sink = begin(size, forest.leaf_count()).map_err(InterpError::Sink)?;
     let measuring = Instant::now();
     let distances = LeafDistances::new(&forest, &settings.distance)?;
     let (mut reached, mut storing) = (0, 0.0);
     distances.slabs(sink.slab_inlines(), progress, |slab| {
         let writing = Instant::now();
         reached += slab.leaf.iter().filter(|&&leaf| leaf != 0).count();
-        sink.write_slab(slab.x.start, &slab.distance, &slab.leaf, progress).map_err(Error::Sink)?;
+        sink.write_slab(slab.x.start, &slab.distance, &slab.leaf, progress).map_err(InterpError::Sink)?;
         storing += writing.elapsed().as_secs_f64();
-        Ok::<(), Error>(())
+        Ok::<(), InterpError>(())
     })?;
     drop(distances);
     report.seconds.distances = measuring.elapsed().as_secs_f64() - storing;
@@ -219,14 +219,18 @@ where
         report: report.clone(),
     };
     drop(forest);
-    sink.finish(&info, &tables, progress).map_err(Error::Sink)?;
+    sink.finish(&info, &tables, progress).map_err(InterpError::Sink)?;
     report.seconds.storing += writing.elapsed().as_secs_f64();
     report.seconds.total = start.elapsed().as_secs_f64();
     Ok(report)
 }
 
 /// Grows the surfaces and builds their trees.
-fn grow_forest<S>(source: &S, settings: &ExtractSettings, progress: &Progress) -> Result<(Forest, ExtractReport), Error>
+fn grow_forest<S>(
+    source: &S,
+    settings: &ExtractSettings,
+    progress: &Progress,
+) -> Result<(Forest, ExtractReport), InterpError>
 where
     S: SlabSource,
     GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
@@ -234,7 +238,7 @@ where
     let start = Instant::now();
     let surfaces = grow_slabs(source, &settings.grow, progress).map_err(|error| match error {
         GrowError::Cancelled(cancelled) | GrowError::Extrema(ExtremaError::Cancelled(cancelled)) => cancelled.into(),
-        other => Error::Growing(Box::new(other)),
+        other => InterpError::Growing(Box::new(other)),
     })?;
     let growing = start.elapsed().as_secs_f64();
     let largest = surfaces.surfaces.iter().map(|part| part.triangles.len()).max().unwrap_or(0);

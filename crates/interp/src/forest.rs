@@ -36,7 +36,7 @@ mod tables;
 #[cfg(test)]
 pub(crate) mod tests;
 
-use crate::error::Error;
+use crate::error::InterpError;
 use crate::surfaces::{Surfaces, Vertex};
 use prune::PrunedTree;
 use rayon::prelude::*;
@@ -107,7 +107,7 @@ pub struct Node {
 /// assert_eq!(forest.nodes.len(), 2 * forest.leaf_count() - 1);
 /// assert_eq!(forest.nodes[0].triangles, 0..256);
 /// assert!(forest.leaves.iter().all(|&leaf| forest.nodes[leaf as usize].triangles.len() >= 64));
-/// # Ok::<(), interp::Error>(())
+/// # Ok::<(), interp::InterpError>(())
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Forest {
@@ -128,11 +128,11 @@ impl Forest {
     /// work at the same time).
     ///
     /// # Errors
-    /// [`Error::Setting`], [`Error::MalformedSurfaces`] when ranges or indices contradict each other,
-    /// [`Error::TooManyTriangles`], [`Error::Cancelled`].
-    pub fn build(mut surfaces: Surfaces, settings: &ForestSettings, progress: &Progress) -> Result<Self, Error> {
+    /// [`InterpError::Setting`], [`InterpError::MalformedSurfaces`] when ranges or indices contradict each other,
+    /// [`InterpError::TooManyTriangles`], [`InterpError::Cancelled`].
+    pub fn build(mut surfaces: Surfaces, settings: &ForestSettings, progress: &Progress) -> Result<Self, InterpError> {
         if settings.min_leaf_triangles == 0 {
-            return Err(Error::Setting { setting: "min_leaf_triangles", value: 0.0, expected: "at least 1" });
+            return Err(InterpError::Setting { setting: "min_leaf_triangles", value: 0.0, expected: "at least 1" });
         }
         check(&surfaces)?;
         progress.begin("building surface trees", surfaces.triangles.len() as u64);
@@ -182,10 +182,10 @@ impl Forest {
     /// Index of the node of a leaf.
     ///
     /// # Errors
-    /// [`Error::NoSuchLeaf`].
-    pub fn node_of_leaf(&self, leaf: u32) -> Result<u32, Error> {
+    /// [`InterpError::NoSuchLeaf`].
+    pub fn node_of_leaf(&self, leaf: u32) -> Result<u32, InterpError> {
         let index = (leaf as usize).wrapping_sub(1);
-        self.leaves.get(index).copied().ok_or(Error::NoSuchLeaf { leaf, count: self.leaves.len() })
+        self.leaves.get(index).copied().ok_or(InterpError::NoSuchLeaf { leaf, count: self.leaves.len() })
     }
 
     /// Ids of the leaves under a node. They are consecutive.
@@ -245,14 +245,14 @@ fn tree(
 }
 
 /// Checks the ranges and indices on which everything else relies.
-fn check(surfaces: &Surfaces) -> Result<(), Error> {
+fn check(surfaces: &Surfaces) -> Result<(), InterpError> {
     let triangles = surfaces.triangles.len();
     if triangles > MAX_TRIANGLES {
-        return Err(Error::TooManyTriangles { triangles, limit: MAX_TRIANGLES });
+        return Err(InterpError::TooManyTriangles { triangles, limit: MAX_TRIANGLES });
     }
     let (mut vertex, mut triangle) = (0, 0);
     for (surface, part) in surfaces.surfaces.iter().enumerate() {
-        let bad = |fact| Err(Error::MalformedSurfaces { surface, fact });
+        let bad = |fact| Err(InterpError::MalformedSurfaces { surface, fact });
         if part.vertices.start != vertex || part.vertices.end < vertex {
             return bad("its vertices do not follow those of the surface before");
         }
@@ -270,7 +270,7 @@ fn check(surfaces: &Surfaces) -> Result<(), Error> {
     }
     if vertex as usize != surfaces.vertices.len() || triangle as usize != triangles {
         let fact = "vertices or triangles follow that belong to no surface";
-        return Err(Error::MalformedSurfaces { surface: surfaces.surfaces.len(), fact });
+        return Err(InterpError::MalformedSurfaces { surface: surfaces.surfaces.len(), fact });
     }
     Ok(())
 }

@@ -41,7 +41,7 @@ mod sheet;
 pub mod surfaces;
 
 pub use distance::{CandidateColumns, DistanceSettings, LeafDistances};
-pub use error::Error;
+pub use error::InterpError;
 pub use evaluate::{EvaluateSettings, Evaluation, evaluate};
 pub use extraction::{ExtractReport, ExtractSettings, Extraction, StageSeconds, extract, extract_into};
 pub use extrema::Extrema;

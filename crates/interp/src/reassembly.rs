@@ -60,7 +60,7 @@ const NONE: u32 = u32::MAX;
 /// assert_eq!(found.sheets.len(), 1);
 /// assert_eq!(found.sheets[0].z[..3], [2.0, 2.5, 3.0]);
 /// assert!(found.sheets[0].z[3].is_nan());
-/// # Ok::<(), interp::Error>(())
+/// # Ok::<(), interp::InterpError>(())
 /// ```
 pub fn reassemble(forest: &Forest, selection: &Selection, seeds: &[u32], blocks: &FaultNetwork) -> Reassembled {
     let surfaces = &forest.surfaces;

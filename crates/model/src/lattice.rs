@@ -5,12 +5,12 @@ use survey::horizon::Quality;
 
 /// The survey lattice and its margin: node n is voxel (origin + (n / size[1], n % size[1])).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Lattice {
+pub(super) struct MarginLattice {
     pub origin: [i32; 2],
     pub size: [usize; 2],
 }
 
-impl Lattice {
+impl MarginLattice {
     pub fn with_margin(size: [usize; 3], margin: usize) -> Self {
         Self { origin: [-(margin as i32); 2], size: [size[0] + 2 * margin, size[1] + 2 * margin] }
     }

@@ -56,7 +56,7 @@ mod structural;
 
 pub use contacts::ContactRules;
 pub use network::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
-pub use report::{ModelError, ModelNote, ModelReport, Placement};
+pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport};
 pub use settings::ModelSettings;
 pub use structural::{Region, StructuralModel};
 

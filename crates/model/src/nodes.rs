@@ -4,7 +4,7 @@
 //! when its four corners belong to one block, so that nothing is interpolated across a fault. Nodes too close
 //! to a fault, or picked on the wrong side of it, are left out.
 
-use super::lattice::{Lattice, Node};
+use super::lattice::{MarginLattice, Node};
 use super::network::FaultNetwork;
 use super::report::{ModelNote, ModelReport};
 use super::settings::ModelSettings;
@@ -30,7 +30,7 @@ pub(super) struct Nodes {
 /// Gathers the nodes of `horizon`.
 pub(super) fn gather(
     geometry: &SurveyGeometry,
-    lattice: Lattice,
+    lattice: MarginLattice,
     horizon: &Horizon,
     faults: &FaultNetwork,
     settings: &ModelSettings,
@@ -154,7 +154,7 @@ impl<'a> Native<'a> {
     }
 
     /// Depths that no lattice node is near, or that lie outside the range.
-    fn outside(&self, lattice: Lattice) -> usize {
+    fn outside(&self, lattice: MarginLattice) -> usize {
         let voxel_from_node = self.node_from_voxel.inverse();
         let nv = self.sheet.grid.count[1];
         (0..self.z.len())

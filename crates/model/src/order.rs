@@ -6,7 +6,7 @@
 //! horizon ends at the older).
 
 use super::contacts::ContactRules;
-use super::lattice::Lattice;
+use super::lattice::MarginLattice;
 use super::network::FaultNetwork;
 use super::report::{ModelError, ModelNote};
 use super::settings::ModelSettings;
@@ -17,7 +17,7 @@ use survey::geometry::SurveyGeometry;
 /// node is inside its block.
 pub(super) fn keep_order(
     geometry: &SurveyGeometry,
-    lattice: Lattice,
+    lattice: MarginLattice,
     rules: &ContactRules,
     names: &[&str],
     sheets: &mut [Vec<ExtendedSheet>],
@@ -76,7 +76,7 @@ pub(super) fn keep_order(
 /// An error when picks of `pair` cross in block `b`.
 fn check(
     geometry: &SurveyGeometry,
-    lattice: Lattice,
+    lattice: MarginLattice,
     names: &[&str],
     sheets: &[Vec<ExtendedSheet>],
     pair: (usize, usize),

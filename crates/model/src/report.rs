@@ -115,7 +115,7 @@ pub enum ModelError {
 
 /// How a horizon was placed in a block in which it was not picked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Placement {
+pub enum InferredPlacement {
     /// By its thickness, or its share of the interval, between its neighbours in another block.
     Thickness {
         /// The block the thickness was taken from.
@@ -188,7 +188,7 @@ pub enum ModelNote {
         /// Fault block.
         block: u16,
         /// How.
-        by: Placement,
+        by: InferredPlacement,
     },
     /// Continued parts of two horizons crossed and were pulled together.
     Clamped {
@@ -233,12 +233,12 @@ impl fmt::Display for ModelNote {
             Self::Extended { horizon, block, traces } => {
                 write!(f, "horizon \"{horizon}\" was continued over {traces} traces of fault block {block}")
             }
-            Self::Placed { horizon, block, by: Placement::Thickness { donor } } => write!(
+            Self::Placed { horizon, block, by: InferredPlacement::Thickness { donor } } => write!(
                 f,
                 "horizon \"{horizon}\" has no or too few picks in fault block {block} and was placed by the \
                  thickness it has in block {donor}"
             ),
-            Self::Placed { horizon, block, by: Placement::OtherBlocks } => write!(
+            Self::Placed { horizon, block, by: InferredPlacement::OtherBlocks } => write!(
                 f,
                 "horizon \"{horizon}\" has no or too few picks in fault block {block} and was continued from the other blocks"
             ),

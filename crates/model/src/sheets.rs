@@ -7,10 +7,10 @@
 //! elsewhere.
 
 use super::extension::{Extension, Plane};
-use super::lattice::{Lattice, Node};
+use super::lattice::{MarginLattice, Node};
 use super::network::FaultNetwork;
 use super::nodes::Nodes;
-use super::report::{ModelNote, Placement};
+use super::report::{InferredPlacement, ModelNote};
 use super::settings::ModelSettings;
 use rayon::prelude::*;
 use survey::height_field::HeightField;
@@ -36,7 +36,7 @@ pub(super) struct ExtendedSheet {
 
 impl ExtendedSheet {
     /// Which nodes are data or within a few nodes of it.
-    pub fn near_data(&self, lattice: Lattice) -> Vec<bool> {
+    pub fn near_data(&self, lattice: MarginLattice) -> Vec<bool> {
         let mut near = self.known.clone();
         for _ in 0..SOLID_NODES {
             let before = near.clone();
@@ -59,7 +59,7 @@ fn beside(size: [usize; 2], n: usize) -> impl Iterator<Item = usize> {
 
 /// The sheets of all horizons, `[horizon][block]`.
 pub(super) fn extend_all(
-    lattice: Lattice,
+    lattice: MarginLattice,
     names: &[&str],
     nodes: &[Nodes],
     faults: &FaultNetwork,
@@ -104,7 +104,7 @@ pub(super) fn extend_all(
 }
 
 /// The mean height of all blocks' nodes, NaN without any.
-fn average(lattice: Lattice, nodes: &[Node]) -> Vec<f32> {
+fn average(lattice: MarginLattice, nodes: &[Node]) -> Vec<f32> {
     let mut sum = vec![(0.0f32, 0.0f32); lattice.len()];
     for node in nodes {
         let (z, n) = &mut sum[node.at as usize];
@@ -116,7 +116,7 @@ fn average(lattice: Lattice, nodes: &[Node]) -> Vec<f32> {
 
 /// The sheet of `block` from the nodes that count for it; `None` with fewer than `fewest`.
 fn extend_one(
-    lattice: Lattice,
+    lattice: MarginLattice,
     nodes: &[Node],
     faults: &FaultNetwork,
     block: usize,
@@ -182,13 +182,13 @@ fn grade(size: [usize; 2], quality: &mut [Quality]) {
 
 /// A sheet for horizon `h` in block `b`, where it has no data.
 fn place(
-    lattice: Lattice,
+    lattice: MarginLattice,
     sheets: &[Vec<Option<ExtendedSheet>>],
     present: &[bool],
     h: usize,
     b: usize,
     whole: &(Vec<f32>, Extension),
-) -> (HeightField, Placement) {
+) -> (HeightField, InferredPlacement) {
     let z_of = |h: usize, b: usize| sheets[h][b].as_ref().map(|s| &s.field.z);
     let own = |h: usize, b: usize| sheets[h][b].as_ref().map_or(0, |s| s.own);
     let above = (0..h).rev().find(|&a| present[a]);
@@ -218,9 +218,9 @@ fn place(
                 }
             })
             .collect();
-        return (field(z), Placement::Thickness { donor: d as u16 });
+        return (field(z), InferredPlacement::Thickness { donor: d as u16 });
     }
     let mut z = whole.0.clone();
     whole.1.extend(lattice.size, &mut z);
-    (field(z), Placement::OtherBlocks)
+    (field(z), InferredPlacement::OtherBlocks)
 }

@@ -7,7 +7,7 @@
 //! times as well.
 
 use super::extension::LocalFits;
-use super::lattice::{Lattice, Node};
+use super::lattice::{MarginLattice, Node};
 
 /// Undoubted nodes are looked for within this many nodes.
 const REACH: i32 = 8;
@@ -17,7 +17,7 @@ const LEAST: f32 = 1.5;
 const NOISE: f32 = 0.25;
 
 /// Removes the strays among the nodes of one horizon (sorted by block); returns how many there were.
-pub(super) fn take_out(lattice: Lattice, nodes: &mut Vec<Node>, radius: f32) -> usize {
+pub(super) fn take_out(lattice: MarginLattice, nodes: &mut Vec<Node>, radius: f32) -> usize {
     let blocks = nodes.last().map_or(0, |n| usize::from(n.block) + 1);
     if blocks < 2 || !nodes.iter().any(|n| n.doubtful) {
         return 0;
@@ -57,7 +57,7 @@ pub(super) fn take_out(lattice: Lattice, nodes: &mut Vec<Node>, radius: f32) -> 
 }
 
 /// The nearest known node within reach of node `n`, and the offset from it to `n`.
-fn nearest(lattice: Lattice, known: &[bool], n: usize) -> Option<(usize, i32, i32)> {
+fn nearest(lattice: MarginLattice, known: &[bool], n: usize) -> Option<(usize, i32, i32)> {
     let (x, y) = ((n / lattice.size[1]) as i32, (n % lattice.size[1]) as i32);
     let mut best: Option<(i32, usize, i32, i32)> = None;
     for i in (x - REACH).max(0)..=(x + REACH).min(lattice.size[0] as i32 - 1) {

@@ -1,7 +1,7 @@
 //! The structural model: sheets, faults and contact rules together.
 
 use super::contacts::ContactRules;
-use super::lattice::Lattice;
+use super::lattice::MarginLattice;
 use super::network::FaultNetwork;
 use super::nodes::{Nodes, gather};
 use super::order::keep_order;
@@ -92,7 +92,7 @@ impl StructuralModel {
         }
         let faults = FaultNetwork::build(geometry, faults, settings, progress)?;
         let size = geometry.size();
-        let lattice = Lattice::with_margin(size, settings.margin_for(size));
+        let lattice = MarginLattice::with_margin(size, settings.margin_for(size));
         progress.begin("nodes", ordered.len() as u64);
         let mut nodes = Vec::with_capacity(ordered.len());
         for horizon in &ordered {
@@ -248,7 +248,12 @@ fn in_order<'a>(stratigraphy: &Stratigraphy, horizons: &'a [Horizon]) -> Result<
 }
 
 /// A note for each sheet that was continued by more than a few nodes inside its own block and the volume.
-fn extended(lattice: Lattice, names: &[&str], sheets: &[Vec<ExtendedSheet>], faults: &FaultNetwork) -> Vec<ModelNote> {
+fn extended(
+    lattice: MarginLattice,
+    names: &[&str],
+    sheets: &[Vec<ExtendedSheet>],
+    faults: &FaultNetwork,
+) -> Vec<ModelNote> {
     let jobs: Vec<(usize, usize)> = (0..sheets.len()).flat_map(|h| (0..sheets[h].len()).map(move |b| (h, b))).collect();
     let count = |&(h, b): &(usize, usize)| {
         let sheet = &sheets[h][b];

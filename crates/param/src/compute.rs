@@ -51,7 +51,7 @@ impl Clock {
 const JUMP: f32 = 3.0;
 
 /// The part of the results that belongs to one column.
-struct Column<'a> {
+struct TraceColumn<'a> {
     offsets: &'a mut [[f32; 3]],
     creases: &'a mut [bool],
 }
@@ -80,7 +80,7 @@ pub fn fill(
                 let column = [origin[0] + x as i32, origin[1] + y as i32];
                 let n = x * ny + y;
                 if touched.is_wanted(n) && layer.thickness(column) >= PINCHED {
-                    filler.column(column, touched.depths[n], Column { offsets, creases });
+                    filler.column(column, touched.depths[n], TraceColumn { offsets, creases });
                 }
             }
             progress.step(1)
@@ -144,7 +144,7 @@ impl<'a> Filler<'a> {
         ((lowest.max(0.0) as usize).min(last), (highest.max(0.0) as usize).min(last))
     }
 
-    fn column(&self, column: [i32; 2], depths: Depths, mut out: Column) {
+    fn column(&self, column: [i32; 2], depths: Depths, mut out: TraceColumn) {
         let (frame, thickness) = (self.layer.frame(column), self.layer.thickness(column));
         let (first, last) = self.level_range(frame, thickness, depths);
         match (&self.bottom, &self.top) {
@@ -172,7 +172,7 @@ impl<'a> Filler<'a> {
         frame: ColumnFrame,
         thickness: f32,
         levels: std::ops::RangeInclusive<usize>,
-        out: &mut Column,
+        out: &mut TraceColumn,
     ) {
         let layer = self.layer;
         let start = |lattice: &FootLattice, surface| {
@@ -218,7 +218,7 @@ impl<'a> Filler<'a> {
         frame: ColumnFrame,
         thickness: f32,
         levels: std::ops::RangeInclusive<usize>,
-        out: &mut Column,
+        out: &mut TraceColumn,
     ) {
         let layer = self.layer;
         let (surface, upwards, reference) = match layer.kind {

@@ -215,7 +215,7 @@ pub enum ProjectError {
     Param(#[from] param::ParamError),
     /// A transfer function or texture that cannot be drawn.
     #[error(transparent)]
-    Style(#[from] ttf::Error),
+    Style(#[from] ttf::TtfError),
     /// A view that shows nothing.
     #[error(transparent)]
     Scene(#[from] render::SceneError),
@@ -238,7 +238,7 @@ pub enum ProjectError {
     },
     /// Horizon candidates could not be extracted or read.
     #[error(transparent)]
-    Interp(interp::Error),
+    Interp(interp::InterpError),
     /// There are no candidates yet.
     #[error("the project has no horizon candidates yet")]
     NotExtracted,
@@ -403,13 +403,13 @@ pub enum ProjectError {
     NothingToRedo,
 }
 
-impl From<interp::Error> for ProjectError {
-    fn from(error: interp::Error) -> Self {
+impl From<interp::InterpError> for ProjectError {
+    fn from(error: interp::InterpError) -> Self {
         match error {
-            interp::Error::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            interp::Error::Sink(error) => match error.downcast::<StoreError>() {
+            interp::InterpError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            interp::InterpError::Sink(error) => match error.downcast::<StoreError>() {
                 Ok(error) => Self::Store(*error),
-                Err(error) => Self::Interp(interp::Error::Sink(error)),
+                Err(error) => Self::Interp(interp::InterpError::Sink(error)),
             },
             other => Self::Interp(other),
         }

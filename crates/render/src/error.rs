@@ -101,7 +101,7 @@ pub enum RenderError {
     Scene(#[from] SceneError),
     /// The transfer functions cannot be drawn.
     #[error("{0}")]
-    Transfer(#[from] ttf::Error),
+    Transfer(#[from] ttf::TtfError),
     /// The scene names a volume that is not among the inputs.
     #[error("the scene shows the volume `{name}`, which the project does not have; it has {present:?}")]
     UnknownVolume {

@@ -35,7 +35,7 @@ pub(crate) struct ResolvedScene<'a> {
     /// One volume per entry of `tables.volumes`; `None` where the picture does not need it.
     pub volumes: Vec<Option<NamedVolume<'a>>>,
     /// The interpretation. `None`: the picture shows raw data alone.
-    pub interpretation: Option<Interpretation<'a>>,
+    pub interpretation: Option<ResolvedInterpretation<'a>>,
     /// Whether textures are visible at all: there is an interpretation, and the blend is not entirely raw.
     pub illustrated: bool,
     /// The ground, if the scene has one.
@@ -57,7 +57,7 @@ pub(crate) struct ResolvedScene<'a> {
 
 /// The interpretation, and the map to flat space.
 #[derive(Clone, Copy)]
-pub(crate) struct Interpretation<'a> {
+pub(crate) struct ResolvedInterpretation<'a> {
     pub model: &'a StructuralModel,
     pub flat: Flat<'a>,
 }
@@ -113,7 +113,10 @@ impl<'a> ResolvedScene<'a> {
 }
 
 /// The model and the lookup that the scene asks for; `None` if there is no interpretation.
-fn resolve_interpretation<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<Interpretation<'a>>, RenderError> {
+fn resolve_interpretation<'a>(
+    scene: &Scene,
+    inputs: &Inputs<'a>,
+) -> Result<Option<ResolvedInterpretation<'a>>, RenderError> {
     let (Some(model), Some(tables)) = (inputs.model, inputs.tables) else { return Ok(None) };
     if tables.layers.len() < model.layer_count() {
         return Err(RenderError::LayerCount { styled: tables.layers.len(), layers: model.layer_count() });
@@ -129,14 +132,14 @@ fn resolve_interpretation<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Opti
         },
         remedy: "parameterize the project first",
     })?;
-    Ok(Some(Interpretation { model, flat }))
+    Ok(Some(ResolvedInterpretation { model, flat }))
 }
 
 /// The ground, if the scene shows it.
 fn resolve_relief(
     scene: &Scene,
     inputs: &Inputs,
-    interpretation: Option<Interpretation>,
+    interpretation: Option<ResolvedInterpretation>,
 ) -> Result<Option<Relief>, RenderError> {
     match (&scene.ground, interpretation) {
         (None, _) => Ok(None),

@@ -12,7 +12,7 @@ use crate::leaves::{FaceData, cover, distance_tone, leaf_colour};
 use crate::media::Faces;
 use crate::media::bundle::gather_all;
 use crate::media::light::LightVolume;
-use crate::resolved::{Flat, Interpretation, ResolvedScene};
+use crate::resolved::{Flat, ResolvedInterpretation, ResolvedScene};
 use crate::visible::{FaceHit, Ray, TOUCH};
 use crate::wells::WellHit;
 use glam::{Vec3, Vec4};
@@ -164,7 +164,8 @@ pub(crate) fn first_hit(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayH
     let mut from = start;
     for _ in 0..=resolved.solid.cut_outs.len() + 1 {
         let Some(span) = resolved.solid.next_span(ray, from) else { return RayHit::Background };
-        let (Some(relief), Some(Interpretation { model, .. })) = (&resolved.relief, resolved.interpretation) else {
+        let (Some(relief), Some(ResolvedInterpretation { model, .. })) = (&resolved.relief, resolved.interpretation)
+        else {
             return RayHit::Face(span.entry);
         };
         if !relief.is_air(model, span.entry.point) {
@@ -253,7 +254,7 @@ fn scalar_values(resolved: &ResolvedScene, p: Vec3) -> Vec<f32> {
     resolved.volumes.iter().map(sample).collect()
 }
 
-impl Interpretation<'_> {
+impl ResolvedInterpretation<'_> {
     /// Flat coordinates and their Jacobian per voxel. The exact lookup uses the given region, or looks it up
     /// in the model.
     pub fn flat_at(&self, p: Vec3, region: Option<Region>) -> (param::FlatPoint, [[f32; 3]; 3]) {

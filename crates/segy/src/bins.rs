@@ -17,7 +17,7 @@ use std::collections::HashMap;
 use glam::{DMat2, DVec2, I64Vec2};
 
 use super::SegyOptions;
-use super::columns::{Column, Columns};
+use super::columns::{Columns, HeaderColumn};
 use super::coordinates::{Coordinates, varying};
 use super::header::NO_INTEGER;
 use super::neighbours::Neighbours;
@@ -53,9 +53,9 @@ pub(super) struct Bins {
     /// Bytes of X and Y.
     pub bytes: [u16; 2],
     /// Which inline, if traces follow one another along inlines.
-    pub along_inline: Column,
+    pub along_inline: HeaderColumn,
     /// Which crossline.
-    pub along_crossline: Column,
+    pub along_crossline: HeaderColumn,
     /// Whether the order of the traces tells the axes.
     pub is_in_order: bool,
     /// How well X and Y fit, as a clause: `holds 1200 of 1200 traces within …`.
@@ -295,7 +295,7 @@ fn inverse(across: I64Vec2, along: I64Vec2) -> [I64Vec2; 2] {
 
 /// Line numbers from 1.
 struct Lines {
-    columns: [Column; 2],
+    columns: [HeaderColumn; 2],
     counts: [usize; 2],
 }
 
@@ -308,7 +308,7 @@ impl Lines {
             for (&index, &trace) in indices.iter().zip(traces) {
                 values[trace] = i32::try_from(index[axis] - low[axis] + 1).unwrap_or(NO_INTEGER);
             }
-            Column::of(&values)
+            HeaderColumn::of(&values)
         };
         let extent = |axis: usize| usize::try_from(high[axis] - low[axis] + 1).unwrap_or(usize::MAX);
         Self { columns: [numbers(0), numbers(1)], counts: [extent(0), extent(1)] }

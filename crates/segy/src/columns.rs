@@ -28,14 +28,14 @@ enum Block {
 
 /// One field of every trace.
 #[derive(Debug, Clone)]
-pub(super) struct Column {
+pub(super) struct HeaderColumn {
     blocks: Vec<Block>,
     count: usize,
     /// Smallest and largest value.
     pub range: [i32; 2],
 }
 
-impl Column {
+impl HeaderColumn {
     /// The value in a trace.
     pub fn at(&self, trace: usize) -> i32 {
         match &self.blocks[trace >> BLOCK_BITS] {
@@ -89,11 +89,11 @@ impl Column {
 #[derive(Debug, Clone)]
 pub(super) struct Columns {
     fields: Vec<Field>,
-    columns: Vec<Column>,
+    columns: Vec<HeaderColumn>,
     order: ByteOrder,
     header_bytes: usize,
     /// What stands for a field that was not asked for: 0 throughout.
-    absent: Column,
+    absent: HeaderColumn,
 }
 
 impl Columns {
@@ -113,8 +113,8 @@ impl Columns {
                 Ok(row)
             })
             .collect::<Result<_, Cancelled>>()?;
-        let mut columns: Vec<Column> =
-            fields.iter().map(|_| Column { blocks: Vec::new(), count, range: [i32::MAX, i32::MIN] }).collect();
+        let mut columns: Vec<HeaderColumn> =
+            fields.iter().map(|_| HeaderColumn { blocks: Vec::new(), count, range: [i32::MAX, i32::MIN] }).collect();
         for row in blocks {
             for (column, block) in columns.iter_mut().zip(row) {
                 let [low, high] = block.range();
@@ -122,7 +122,7 @@ impl Columns {
                 column.blocks.push(block);
             }
         }
-        let absent = Column { blocks: vec![Block::Constant(0); count.div_ceil(BLOCK)], count, range: [0, 0] };
+        let absent = HeaderColumn { blocks: vec![Block::Constant(0); count.div_ceil(BLOCK)], count, range: [0, 0] };
         Ok(Self { fields: fields.to_vec(), columns, order: traces.order, header_bytes: traces.header_bytes, absent })
     }
 
@@ -133,7 +133,7 @@ impl Columns {
 
     /// Line numbers of any type, from the field that was read for it, or from the 4-byte field that starts
     /// there.
-    pub fn numbers(&self, byte: u16, number_type: NumberType) -> Cow<'_, Column> {
+    pub fn numbers(&self, byte: u16, number_type: NumberType) -> Cow<'_, HeaderColumn> {
         match number_type {
             NumberType::F64 => Cow::Borrowed(self.get(Field::F64(byte))),
             NumberType::I32 => Cow::Borrowed(self.get(Field::I32(byte))),
@@ -141,7 +141,7 @@ impl Columns {
             NumberType::U16 if self.fields.contains(&Field::U16(byte)) => Cow::Borrowed(self.get(Field::U16(byte))),
             _ => {
                 let values = self.get(Field::I32(byte)).iter().map(|v| reinterpret(v, number_type, self.order));
-                Cow::Owned(Column::of(&values.collect::<Vec<_>>()))
+                Cow::Owned(HeaderColumn::of(&values.collect::<Vec<_>>()))
             }
         }
     }
@@ -167,7 +167,7 @@ impl Columns {
     }
 
     /// The column of a field that was read; zeros for one that was not.
-    pub fn get(&self, field: Field) -> &Column {
+    pub fn get(&self, field: Field) -> &HeaderColumn {
         self.fields.iter().position(|f| *f == field).map_or(&self.absent, |index| &self.columns[index])
     }
 }

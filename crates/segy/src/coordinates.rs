@@ -4,13 +4,13 @@
 use glam::DVec2;
 
 use super::SegyOptions;
-use super::columns::{Column, Columns};
+use super::columns::{Columns, HeaderColumn};
 use super::error::SegyProblem;
 use super::header::{Field, at};
 use super::info::{Findings, GeometrySummary, LengthUnit};
-use super::lines::Lattice;
+use super::lines::LineLattice;
 use super::number_type::NumberType;
-use super::place::{MAX_RESIDUAL_BINS, Placement};
+use super::place::{FittedPlace, MAX_RESIDUAL_BINS};
 use super::sample::f32_from_ibm;
 use super::vertical::scaled;
 use survey::remedy::{Note, Remedy, Setting};
@@ -31,7 +31,7 @@ const MAX_SKEW: f64 = 1e-3;
 #[derive(Debug, Clone, Copy)]
 enum Scalar<'a> {
     /// The field of each trace.
-    OfTrace(&'a Column),
+    OfTrace(&'a HeaderColumn),
     Stated(i16),
 }
 
@@ -57,8 +57,8 @@ pub(super) struct Coordinates<'a> {
     pub bytes: [u16; 2],
     pub number_type: NumberType,
     columns: &'a Columns,
-    x: &'a Column,
-    y: &'a Column,
+    x: &'a HeaderColumn,
+    y: &'a HeaderColumn,
     scalar: Scalar<'a>,
 }
 
@@ -165,18 +165,18 @@ pub(super) fn varying<'a>(columns: &'a Columns, options: &SegyOptions) -> Option
 /// The first home and storage whose X and Y are affine in the lattice; failing that, the first that spans an
 /// area. `lines` are the bytes of the line numbers, which are no coordinates.
 pub(super) fn locate<'a>(
-    lattice: &Lattice,
+    lattice: &LineLattice,
     lines: [u16; 2],
     columns: &'a Columns,
     options: &SegyOptions,
-) -> Option<(Coordinates<'a>, Placement)> {
+) -> Option<(Coordinates<'a>, FittedPlace)> {
     let homes = homes(options, columns.header_bytes());
     let mut fits = homes
         .into_iter()
         .filter(|(bytes, _)| !bytes.iter().any(|byte| lines.contains(byte)))
         .map(|home| Coordinates::new(columns, home, options))
         .filter(Coordinates::vary)
-        .filter_map(|coordinates| Some((coordinates, Placement::fit(lattice, |trace| coordinates.of(trace))?)));
+        .filter_map(|coordinates| Some((coordinates, FittedPlace::fit(lattice, |trace| coordinates.of(trace))?)));
     let first = fits.next()?;
     if first.1.agrees() {
         return Some(first);
@@ -206,16 +206,16 @@ fn homes(options: &SegyOptions, header_bytes: usize) -> Vec<Home> {
 
 /// Where the lattice is, and the bytes that say so.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Place {
+pub(super) struct CoordinatePlace {
     pub bytes: Option<[u16; 2]>,
     /// In the unit of the coordinates.
     pub summary: GeometrySummary,
 }
 
-impl Place {
+impl CoordinatePlace {
     /// From X and Y; assumed where there are none, or as stated.
     pub fn find(
-        lattice: &Lattice,
+        lattice: &LineLattice,
         lines: [u16; 2],
         columns: &Columns,
         unit: LengthUnit,
@@ -245,7 +245,7 @@ impl Place {
     }
 
     fn assumed(
-        lattice: &Lattice,
+        lattice: &LineLattice,
         columns: &Columns,
         unit: LengthUnit,
         options: &SegyOptions,
@@ -297,7 +297,7 @@ fn refuse_angles(code: i32) -> Result<(), SegyProblem> {
 }
 
 /// Codes that the standard does not have.
-fn note_unknown_units(codes: &Column, findings: &mut Findings) {
+fn note_unknown_units(codes: &HeaderColumn, findings: &mut Findings) {
     if let Some(code) = codes.iter().find(|code| !(0..=1).contains(code)) {
         findings.warning(format!(
             "byte 89 holds {code}, which is no unit of coordinates (1 is length); X and Y are taken as lengths"
@@ -307,7 +307,7 @@ fn note_unknown_units(codes: &Column, findings: &mut Findings) {
 
 fn note_fit(
     coordinates: &Coordinates<'_>,
-    fit: &Placement,
+    fit: &FittedPlace,
     unit: LengthUnit,
     options: &SegyOptions,
     findings: &mut Findings,

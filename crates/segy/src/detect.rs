@@ -14,12 +14,12 @@ use rayon::prelude::*;
 use super::SegyOptions;
 use super::bins::{self, Bins};
 use super::candidate::{Candidate, Verdict};
-use super::columns::{Column, Columns};
+use super::columns::{Columns, HeaderColumn};
 use super::coordinates::{coordinate_fields, locate};
 use super::error::SegyProblem;
 use super::header::{Field, NO_INTEGER, at};
 use super::info::Findings;
-use super::lines::{Flaw, Lattice};
+use super::lines::{Flaw, LineLattice};
 use super::number_type::NumberType;
 use super::options::LineSource;
 use super::refuse;
@@ -60,7 +60,7 @@ const MIN_FILL_UNKNOWN: f64 = 0.25;
 pub(super) struct Detected {
     /// Bytes of the line numbers; none if X and Y number the lines.
     pub bytes: Option<[u16; 2]>,
-    pub lattice: Lattice,
+    pub lattice: LineLattice,
     pub candidates: Vec<Candidate>,
 }
 
@@ -141,12 +141,12 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn column(&self, byte: u16) -> &Column {
+    fn column(&self, byte: u16) -> &HeaderColumn {
         self.columns.get(Field::I32(byte))
     }
 
     /// Inline and crossline numbers of a candidate.
-    fn numbers(&self, candidate: &Candidate) -> [Cow<'_, Column>; 2] {
+    fn numbers(&self, candidate: &Candidate) -> [Cow<'_, HeaderColumn>; 2] {
         [candidate.inline_byte, candidate.crossline_byte].map(|byte| self.columns.numbers(byte, candidate.number_type))
     }
 
@@ -176,7 +176,7 @@ impl Search<'_> {
             score: 0.0,
         };
         let [inline, crossline] = self.numbers(&candidate);
-        let lattice = match Lattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default()) {
+        let lattice = match LineLattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default()) {
             Ok(lattice) => lattice,
             Err(flaw) => {
                 candidate.verdict = match flaw {
@@ -203,7 +203,8 @@ impl Search<'_> {
         };
         candidate.score = candidate.filled * (1.0 - candidate.repeated) * agreement;
         let [inlines, crosslines] = lattice.occupied_lines();
-        let is_large = |column: &Column| column.range.iter().all(|number| number.unsigned_abs() > MAX_LINE_NUMBER);
+        let is_large =
+            |column: &HeaderColumn| column.range.iter().all(|number| number.unsigned_abs() > MAX_LINE_NUMBER);
         candidate.verdict = if convention != STATED && (is_large(&inline) || is_large(&crossline)) {
             Verdict::TooLarge
         } else if candidate.repeated > MAX_DUPLICATES && self.options.duplicates.is_none() {
@@ -252,7 +253,7 @@ impl Search<'_> {
         findings: &mut Findings,
     ) -> Result<Detected, SegyProblem> {
         let [inline, crossline] = self.numbers(chosen);
-        let lattice = Lattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default())
+        let lattice = LineLattice::build(&inline, &crossline, self.options.duplicates.unwrap_or_default())
             .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
         findings.evidence(format!("line numbers: {} ({})", chosen.as_sentence(), chosen.convention));
         let swapped = chosen.swapped();
@@ -287,7 +288,7 @@ impl Search<'_> {
             _ => [&bins.along_inline, &bins.along_crossline],
         };
         let kept = self.options.duplicates.unwrap_or_default();
-        let lattice = Lattice::place(inline, crossline, Some((NO_INTEGER, NO_INTEGER)), kept)
+        let lattice = LineLattice::place(inline, crossline, Some((NO_INTEGER, NO_INTEGER)), kept)
             .map_err(|_| SegyProblem::NoLineNumbers { tried: candidates.clone() })?;
         let repeated = lattice.duplicates as f64 / (lattice.duplicates + lattice.filled()) as f64;
         if repeated > MAX_DUPLICATES && self.options.duplicates.is_none() {

@@ -6,14 +6,14 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 use memmap2::Mmap;
 
-use super::columns::{Column, Columns};
-use super::coordinates::Place;
+use super::columns::{Columns, HeaderColumn};
+use super::coordinates::CoordinatePlace;
 use super::detect::{Detected, detect, fields};
 use super::error::{SegyError, SegyProblem};
-use super::frame::Frame;
+use super::frame::FileLayout;
 use super::header::{Field, Traces, at};
 use super::info::{BytePositions, Findings, SegyInfo, corners};
-use super::lines::{Flaw, Lattice, NO_TRACE};
+use super::lines::{Flaw, LineLattice, NO_TRACE};
 use super::options::{KeptDuplicate, SegyOptions, TraceWeight};
 use super::vertical::{Vertical, coordinate_unit, note_coordinate_unit};
 use survey::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
@@ -31,14 +31,14 @@ const MAX_WEIGHT: i32 = 50;
 pub struct SegyFile {
     pub(super) path: PathBuf,
     bytes: Bytes,
-    frame: Frame,
+    frame: FileLayout,
     info: SegyInfo,
     geometry: SurveyGeometry,
-    lattice: Lattice,
+    lattice: LineLattice,
     dead: Vec<bool>,
     shifts: Option<Vec<u32>>,
     /// Trace weighting factors N that apply, by 2^(`factor_2`·N).
-    weights: Option<Column>,
+    weights: Option<HeaderColumn>,
     factor_2: i32,
 }
 
@@ -68,6 +68,12 @@ impl SegyFile {
     /// What the file holds.
     pub fn info(&self) -> &SegyInfo {
         &self.info
+    }
+
+    /// Every note whose remedy a user interface may reword.
+    pub fn notes_mut(&mut self) -> impl Iterator<Item = &mut Note> {
+        let info = &mut self.info;
+        info.evidence.iter_mut().chain(&mut info.assumptions).chain(&mut info.warnings)
     }
 
     /// The survey, in ms or m.
@@ -182,7 +188,7 @@ impl std::ops::Deref for Bytes {
 fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progress) -> Result<SegyFile, SegyProblem> {
     check_options(options)?;
     let mut findings = Findings::default();
-    let frame = Frame::read(&bytes, options, &mut findings)?;
+    let frame = FileLayout::read(&bytes, options, &mut findings)?;
     check_bytes(options, frame.header_bytes)?;
     let traces = frame.traces(&bytes);
     let mut wanted = fields(options, frame.header_bytes);
@@ -202,7 +208,7 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
     let unit = coordinate_unit(&frame, options);
     // Coordinates may number the lines, but line numbers are no coordinates.
     let lines = detected.bytes.unwrap_or_default();
-    let place = Place::find(&detected.lattice, lines, &columns, unit, options, &mut findings)?;
+    let place = CoordinatePlace::find(&detected.lattice, lines, &columns, unit, options, &mut findings)?;
     if place.bytes.is_some() {
         note_coordinate_unit(&frame, options, &mut findings);
     }
@@ -358,7 +364,7 @@ fn single_trace(columns: &Columns, options: &SegyOptions) -> Result<Detected, Se
     let crossline_byte = options.crossline_byte.unwrap_or(at::CROSSLINE);
     let number_type = options.line_type.unwrap_or_default();
     let [inline, crossline] = [inline_byte, crossline_byte].map(|byte| columns.numbers(byte, number_type));
-    let lattice = Lattice::place(&inline, &crossline, None, KeptDuplicate::First)
+    let lattice = LineLattice::place(&inline, &crossline, None, KeptDuplicate::First)
         .map_err(|_: Flaw| SegyProblem::NoLineNumbers { tried: Vec::new() })?;
     Ok(Detected { bytes: Some([inline_byte, crossline_byte]), lattice, candidates: Vec::new() })
 }
@@ -389,7 +395,7 @@ fn note_lattice(detected: &Detected, options: &SegyOptions, findings: &mut Findi
     }
 }
 
-fn weights(columns: &Columns, options: &SegyOptions, findings: &mut Findings) -> Option<Column> {
+fn weights(columns: &Columns, options: &SegyOptions, findings: &mut Findings) -> Option<HeaderColumn> {
     let weights = columns.get(Field::I16(at::WEIGHT));
     let is_used = |weight: i32| (1..=MAX_WEIGHT).contains(&weight.abs());
     if weights.constant().is_some_and(|weight| !is_used(weight)) {

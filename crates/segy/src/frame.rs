@@ -12,7 +12,7 @@ use super::text::{TEXT_BYTES, TextEncoding, decode_lines, find_end_of_text};
 
 /// What the file headers say, checked against the file's length.
 #[derive(Debug, Clone)]
-pub(super) struct Frame {
+pub(super) struct FileLayout {
     pub order: ByteOrder,
     pub format: SampleFormat,
     pub encoding: TextEncoding,
@@ -29,7 +29,7 @@ pub(super) struct Frame {
     pub stride: usize,
 }
 
-impl Frame {
+impl FileLayout {
     pub fn read(file: &[u8], options: &SegyOptions, findings: &mut Findings) -> Result<Self, SegyProblem> {
         refuse_text(file)?;
         if file.len() < FILE_HEADER_BYTES {

@@ -105,7 +105,7 @@ pub struct GeometrySummary {
 
 /// A corner of the lattice.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Corner {
+pub struct SurveyCorner {
     /// Inline number.
     pub inline: i32,
     /// Crossline number.
@@ -117,13 +117,13 @@ pub struct Corner {
 }
 
 /// The corners in order around the lattice, from the first inline and crossline along the first inline.
-pub(super) fn corners(inlines: &LineAxis, crosslines: &LineAxis, place: &GeometrySummary) -> [Corner; 4] {
+pub(super) fn corners(inlines: &LineAxis, crosslines: &LineAxis, place: &GeometrySummary) -> [SurveyCorner; 4] {
     let [last_inline, last_crossline] = [inlines.count.max(1) - 1, crosslines.count.max(1) - 1];
     [(0, 0), (0, last_crossline), (last_inline, last_crossline), (last_inline, 0)].map(|(i, x)| {
         let along = |axis: usize| {
             place.origin[axis] + i as f64 * place.inline_vector[axis] + x as f64 * place.crossline_vector[axis]
         };
-        Corner {
+        SurveyCorner {
             inline: if i == 0 { inlines.first } else { inlines.last() },
             crossline: if x == 0 { crosslines.first } else { crosslines.last() },
             x: along(0),
@@ -174,7 +174,7 @@ pub struct SegyInfo {
     /// The lattice in the world, in `coordinate_unit`.
     pub geometry: GeometrySummary,
     /// Its corners, in order around it.
-    pub corners: [Corner; 4],
+    pub corners: [SurveyCorner; 4],
     /// `0`, `1.0`, `2.0` or `2.1`.
     pub revision: String,
     /// Byte order of the numbers.

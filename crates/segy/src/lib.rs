@@ -69,12 +69,12 @@ pub use block::SegyBlocks;
 pub use candidate::{Candidate, LineSummary, Verdict};
 pub use error::{SegyError, SegyProblem};
 pub use file::SegyFile;
-pub use info::{BytePositions, Corner, FileUnit, GeometrySummary, LengthUnit, SegyInfo};
+pub use info::{BytePositions, FileUnit, GeometrySummary, LengthUnit, SegyInfo, SurveyCorner};
 pub use number_type::NumberType;
 pub use options::{KeptDuplicate, LineSource, SegyOptions, TraceWeight};
 pub use read::{Amplitudes, SegyVolume};
 pub use sample::{ByteOrder, SampleFormat, f32_from_ibm, ibm_from_f32};
-pub use statistics::{Histogram, Statistics};
+pub use statistics::{AmplitudeHistogram, Statistics};
 pub use text::TextEncoding;
 pub use write::{WriteFormat, WriteOptions, WriteReport};
 

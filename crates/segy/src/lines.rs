@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use super::columns::Column;
+use super::columns::HeaderColumn;
 use super::header::NO_INTEGER;
 use super::options::KeptDuplicate;
 use survey::geometry::LineAxis;
@@ -19,7 +19,7 @@ const MAX_PLACES_PER_TRACE: u64 = 64;
 
 /// Traces on a lattice of line numbers.
 #[derive(Debug, Clone)]
-pub(super) struct Lattice {
+pub(super) struct LineLattice {
     pub inlines: LineAxis,
     pub crosslines: LineAxis,
     /// Trace at `[inline][crossline]`, the first if there are several; [`NO_TRACE`] if there is none.
@@ -48,9 +48,9 @@ pub(super) enum Flaw {
     Scattered(u64),
 }
 
-impl Lattice {
+impl LineLattice {
     /// Places every trace by its two numbers.
-    pub fn build(inline: &Column, crossline: &Column, kept: KeptDuplicate) -> Result<Self, Flaw> {
+    pub fn build(inline: &HeaderColumn, crossline: &HeaderColumn, kept: KeptDuplicate) -> Result<Self, Flaw> {
         match (inline.constant(), crossline.constant()) {
             (Some(0), Some(0)) => return Err(Flaw::AllZero),
             (Some(number), None) => return Err(Flaw::OneInline(number)),
@@ -67,8 +67,8 @@ impl Lattice {
 
     /// Places every trace whose numbers are not `skip`, also on a single line.
     pub fn place(
-        inline: &Column,
-        crossline: &Column,
+        inline: &HeaderColumn,
+        crossline: &HeaderColumn,
         skip: Option<(i32, i32)>,
         kept: KeptDuplicate,
     ) -> Result<Self, Flaw> {
@@ -164,8 +164,8 @@ fn index_of(axis: &LineAxis, number: i32) -> usize {
 }
 
 /// Whether traces with both numbers 0 stand apart from the lattice that the others make.
-fn unnumbered(inline: &Column, crossline: &Column) -> bool {
-    let contains_zero = |column: &Column| column.range[0] <= 0 && column.range[1] >= 0;
+fn unnumbered(inline: &HeaderColumn, crossline: &HeaderColumn) -> bool {
+    let contains_zero = |column: &HeaderColumn| column.range[0] <= 0 && column.range[1] >= 0;
     if !contains_zero(inline) || !contains_zero(crossline) {
         return false;
     }

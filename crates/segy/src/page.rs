@@ -1,11 +1,11 @@
-//! The page that `petroglyph info` prints for a SEG-Y file.
+//! A page of text about a SEG-Y file.
 
 use std::fmt::{Result, Write as _};
 
 use super::file::SegyFile;
 use super::info::SegyInfo;
 use super::map::{LEGEND, place_in_words};
-use super::statistics::{Histogram, Statistics};
+use super::statistics::{AmplitudeHistogram, Statistics};
 
 /// Candidates shown.
 const MAX_CANDIDATES: usize = 8;
@@ -161,7 +161,7 @@ fn write_statistics(page: &mut String, statistics: &Statistics) -> Result {
 }
 
 /// Columns of eighths of a character.
-fn write_histogram(page: &mut String, histogram: &Histogram) -> Result {
+fn write_histogram(page: &mut String, histogram: &AmplitudeHistogram) -> Result {
     const EIGHTHS: [char; 9] = [' ', '▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
     let highest = histogram.counts.iter().copied().max().unwrap_or(0).max(1);
     let height = |count: u64| (count * 8 * ROWS as u64).div_ceil(highest) as usize;
@@ -211,7 +211,8 @@ mod tests {
     #[test]
     fn the_histogram_is_as_high_as_its_highest_column() {
         let mut page = String::new();
-        write_histogram(&mut page, &Histogram { low: -1.0, high: 1.0, counts: vec![0, 1, 96, 48, 0] }).unwrap();
+        write_histogram(&mut page, &AmplitudeHistogram { low: -1.0, high: 1.0, counts: vec![0, 1, 96, 48, 0] })
+            .unwrap();
         let rows: Vec<Vec<char>> = page.lines().map(|line| line.chars().skip(2).collect()).collect();
         assert_eq!(rows.len(), ROWS + 1);
         assert!((0..ROWS).all(|row| rows[row][2] == '█'), "{page}");

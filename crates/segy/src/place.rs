@@ -9,7 +9,7 @@
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
 
-use super::lines::{Lattice, NO_TRACE};
+use super::lines::{LineLattice, NO_TRACE};
 
 /// Half a bin: beyond it a trace would be nearer to another lattice position.
 pub(super) const MAX_RESIDUAL_BINS: f64 = 0.5;
@@ -22,7 +22,7 @@ const RUN: usize = 1 << 13;
 
 /// A fitted place, in the unit of the coordinates.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Placement {
+pub(super) struct FittedPlace {
     pub origin: DVec2,
     pub inline_vector: DVec2,
     pub crossline_vector: DVec2,
@@ -39,10 +39,10 @@ pub(super) struct Placement {
     pub without: usize,
 }
 
-impl Placement {
+impl FittedPlace {
     /// Fits X and Y, as `world_of` gives them for a trace; none if those traces, or their coordinates, lie on
     /// a line.
-    pub fn fit(lattice: &Lattice, world_of: impl Fn(usize) -> Option<DVec2> + Sync) -> Option<Self> {
+    pub fn fit(lattice: &LineLattice, world_of: impl Fn(usize) -> Option<DVec2> + Sync) -> Option<Self> {
         // In runs of places whose results are put together in order: the same on any number of threads.
         let runs = || {
             lattice.trace_of.par_chunks(RUN).enumerate().map(|(run, traces)| {

@@ -5,7 +5,7 @@ use super::candidate::{Candidate, Verdict};
 use super::columns::Columns;
 use super::error::SegyProblem;
 use super::header::{Field, at};
-use super::lines::Lattice;
+use super::lines::LineLattice;
 
 /// Several traces a bin: the line numbers of the standard (or the stated ones) repeat, or gathers are
 /// numbered.
@@ -15,7 +15,7 @@ pub(super) fn pre_stack(columns: &Columns, options: &SegyOptions, candidates: &[
     let [inline, crossline] =
         [candidate.inline_byte, candidate.crossline_byte].map(|byte| columns.numbers(byte, candidate.number_type));
     let kept = options.duplicates.unwrap_or_default();
-    let Ok(lattice) = Lattice::build(&inline, &crossline, kept) else { return Ok(()) };
+    let Ok(lattice) = LineLattice::build(&inline, &crossline, kept) else { return Ok(()) };
     let Some(example) = lattice.first_duplicate else { return Ok(()) };
     let (offsets, may_repeat) = offsets(columns);
     Err(SegyProblem::PreStack {
@@ -43,7 +43,7 @@ fn offsets(columns: &Columns) -> (String, bool) {
 }
 
 /// Evidence that traces at the same X and Y are pre-stack.
-pub(super) fn repeated_places(columns: &Columns, lattice: &Lattice) -> SegyProblem {
+pub(super) fn repeated_places(columns: &Columns, lattice: &LineLattice) -> SegyProblem {
     let (offsets, may_repeat) = offsets(columns);
     let evidence = format!(
         "{} traces stand at {} places (trace {} repeats the X and Y of an earlier one) and {offsets}",

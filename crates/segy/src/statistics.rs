@@ -19,7 +19,7 @@ const PERCENT: [f64; 9] = [0.1, 1.0, 5.0, 25.0, 50.0, 75.0, 95.0, 99.0, 99.9];
 
 /// Counts of samples over equal intervals.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Histogram {
+pub struct AmplitudeHistogram {
     /// Where the first column begins; samples below are counted in it.
     pub low: f64,
     /// Where the last column ends; samples above are counted in it.
@@ -56,7 +56,7 @@ pub struct Statistics {
     /// Samples that equal the smallest or largest one. If there are many, the data are clipped.
     pub at_limits: u64,
     /// Histogram between the outer percentiles, symmetric about 0 if there are both signs.
-    pub histogram: Histogram,
+    pub histogram: AmplitudeHistogram,
 }
 
 impl SegyFile {
@@ -126,7 +126,7 @@ fn describe(mut values: Vec<f32>) -> Statistics {
         zero_traces: 0,
         non_finite: 0,
         at_limits: at_limits as u64,
-        histogram: Histogram { low, high, counts },
+        histogram: AmplitudeHistogram { low, high, counts },
     }
 }
 

@@ -4,9 +4,9 @@
 //! that says which. The textual header usually does.
 
 use super::SegyOptions;
-use super::columns::{Column, Columns};
+use super::columns::{Columns, HeaderColumn};
 use super::error::SegyProblem;
-use super::frame::Frame;
+use super::frame::FileLayout;
 use super::header::{Field, at};
 use super::info::{FileUnit, Findings, LengthUnit, METRES_PER_FOOT};
 use survey::geometry::{VerticalAxis, VerticalUnit};
@@ -29,7 +29,7 @@ pub(super) struct Vertical {
 
 impl Vertical {
     pub fn find(
-        frame: &Frame,
+        frame: &FileLayout,
         columns: &Columns,
         dead: &[bool],
         options: &SegyOptions,
@@ -83,7 +83,7 @@ impl Vertical {
 }
 
 /// The interval in µs, mm or thousandths of a foot.
-fn interval_field(frame: &Frame, columns: &Columns, findings: &mut Findings) -> Result<f64, SegyProblem> {
+fn interval_field(frame: &FileLayout, columns: &Columns, findings: &mut Findings) -> Result<f64, SegyProblem> {
     let binary = &frame.binary;
     if binary.has_revision_2() && binary.extended_interval.is_finite() && binary.extended_interval > 0.0 {
         findings.evidence(format!("sample interval: {} at byte 3273 (revision 2)", binary.extended_interval));
@@ -131,7 +131,7 @@ fn interval_field(frame: &Frame, columns: &Columns, findings: &mut Findings) -> 
 
 /// The unit of the axis: stated; or written in the text next to the interval; or by words that mean time or
 /// depth.
-fn unit(frame: &Frame, interval: f64, options: &SegyOptions, findings: &mut Findings) -> FileUnit {
+fn unit(frame: &FileLayout, interval: f64, options: &SegyOptions, findings: &mut Findings) -> FileUnit {
     if let Some(unit) = options.vertical_unit {
         findings.evidence(format!("vertical axis: {}, as stated", unit.description()));
         return unit;
@@ -194,7 +194,7 @@ struct TextWords {
 }
 
 impl TextWords {
-    fn find(frame: &Frame, interval: f64) -> Self {
+    fn find(frame: &FileLayout, interval: f64) -> Self {
         let mut found = Self::default();
         let mut contradicted = false;
         for line in frame.text.iter().chain(&frame.extended_text) {
@@ -272,7 +272,7 @@ fn starts(
         scaled(field, scalar.at(trace))
     };
     let first_live = dead.iter().position(|dead| !dead).unwrap_or(0);
-    let constant = |column: &Column| column.constant().is_some();
+    let constant = |column: &HeaderColumn| column.constant().is_some();
     let (base, shifts) = if constant(delay) && constant(scalar) && constant(lag) {
         (start_of(first_live), None)
     } else {
@@ -317,7 +317,7 @@ pub(super) fn scaled(field: i32, scalar: i32) -> f64 {
 }
 
 /// The unit of X and Y: stated, or byte 3255.
-pub(super) fn coordinate_unit(frame: &Frame, options: &SegyOptions) -> LengthUnit {
+pub(super) fn coordinate_unit(frame: &FileLayout, options: &SegyOptions) -> LengthUnit {
     match (options.coordinate_unit, frame.binary.measurement) {
         (Some(unit), _) => unit,
         (None, 2) => LengthUnit::Feet,
@@ -326,7 +326,7 @@ pub(super) fn coordinate_unit(frame: &Frame, options: &SegyOptions) -> LengthUni
 }
 
 /// Says why X and Y are in that unit.
-pub(super) fn note_coordinate_unit(frame: &Frame, options: &SegyOptions, findings: &mut Findings) {
+pub(super) fn note_coordinate_unit(frame: &FileLayout, options: &SegyOptions, findings: &mut Findings) {
     match (options.coordinate_unit, frame.binary.measurement) {
         (Some(unit), _) => findings.evidence(format!("X and Y in {}, as stated", unit.symbol())),
         (None, 1) => {}

@@ -6,7 +6,7 @@
 //! written, even if it holds only the fill value, so that a missing file is noticed and not read as empty.
 
 use super::error::StoreError;
-use super::layout::{Layout, gather, grid_index};
+use super::layout::{ArrayLayout, gather, grid_index};
 use super::sample::StoredSample;
 use super::shard::{ShardGrid, Shards};
 use rayon::prelude::*;
@@ -109,7 +109,7 @@ pub fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError> {
 fn create<T: StoredSample>(
     group: &Path,
     name: &str,
-    layout: &Layout,
+    layout: &ArrayLayout,
     fill: T,
     codec: Arc<dyn BytesToBytesCodecTraits>,
 ) -> Result<Array<FilesystemStore>, StoreError> {
@@ -137,7 +137,7 @@ pub(super) fn create_volume<T: StoredSample>(
     name: &str,
     size: [usize; 3],
 ) -> Result<ShardGrid, StoreError> {
-    let layout = Layout::volume(size);
+    let layout = ArrayLayout::volume(size);
     create(group, name, &layout, T::from_f32(0.0), Arc::new(Crc32cCodec::new()))?;
     let three = |shape: &[usize]| [shape[0], shape[1], shape[2]];
     Ok(ShardGrid {
@@ -178,7 +178,7 @@ fn plain_shards(group: &Path, name: &str, shape: &[usize]) -> Option<ShardGrid> 
 pub struct ArrayWriter<T> {
     group: PathBuf,
     name: String,
-    layout: Layout,
+    layout: ArrayLayout,
     array: Array<FilesystemStore>,
     of: std::marker::PhantomData<T>,
 }
@@ -186,13 +186,13 @@ pub struct ArrayWriter<T> {
 impl<T: StoredSample> ArrayWriter<T> {
     /// Creates the array `name` (it may contain `/`) in the folder `group`; `fill` is the value of elements that were
     /// not written.
-    pub fn create(group: &Path, name: &str, layout: Layout, fill: T) -> Result<Self, StoreError> {
+    pub fn create(group: &Path, name: &str, layout: ArrayLayout, fill: T) -> Result<Self, StoreError> {
         let array = create(group, name, &layout, fill, Arc::new(ZstdCodec::new(ZSTD_LEVEL, true)))?;
         Ok(Self { group: group.to_owned(), name: name.to_owned(), layout, array, of: std::marker::PhantomData })
     }
 
     /// The division into chunks and shards.
-    pub fn layout(&self) -> &Layout {
+    pub fn layout(&self) -> &ArrayLayout {
         &self.layout
     }
 
@@ -213,7 +213,7 @@ impl<T: StoredSample> ArrayWriter<T> {
 pub fn write_array<T: StoredSample>(
     group: &Path,
     name: &str,
-    layout: Layout,
+    layout: ArrayLayout,
     fill: T,
     values: &[T],
     progress: &Progress,

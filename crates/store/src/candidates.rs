@@ -21,7 +21,7 @@
 use super::array::{ArrayWriter, StoredArray, write_array, write_group};
 use super::error::StoreError;
 use super::header::{read_header, write_header};
-use super::layout::{BRICK, Layout, gather};
+use super::layout::{ArrayLayout, BRICK, gather};
 use super::pyramid::halved;
 use super::replacement::Replacement;
 use super::sample::StoredSample;
@@ -72,7 +72,7 @@ impl CandidateWriter {
         let group = replacement.path();
         // This creates the folder; the facts are written at the end.
         write_group(group, "", serde_json::Map::new())?;
-        let layout = Layout::volume(size);
+        let layout = ArrayLayout::volume(size);
         let distance = ArrayWriter::create(group, "distance", layout.clone(), BEYOND)?;
         let leaf = LeafWriter::create(group, "leaf", layout, leaves)?;
         let coarse = halved(size);
@@ -138,7 +138,7 @@ impl CandidateWriter {
                 half = half.halved();
             }
             write_group(group, &format!("pyramid/{level}"), serde_json::Map::new())?;
-            let layout = Layout::volume(half.size);
+            let layout = ArrayLayout::volume(half.size);
             write_array(group, &level_name(level, "distance"), layout.clone(), BEYOND, &half.distance, progress)?;
             let name = level_name(level, "leaf");
             if info.leaves <= usize::from(u16::MAX) {
@@ -184,7 +184,7 @@ impl CandidateSink for CandidateWriter {
 }
 
 impl LeafWriter {
-    fn create(group: &Path, name: &str, layout: Layout, leaves: usize) -> Result<Self, StoreError> {
+    fn create(group: &Path, name: &str, layout: ArrayLayout, leaves: usize) -> Result<Self, StoreError> {
         Ok(if leaves <= usize::from(u16::MAX) {
             Self::Narrow(ArrayWriter::create(group, name, layout, 0)?)
         } else {
@@ -265,10 +265,13 @@ fn write_table<T: StoredSample>(
     let rows = values.len() / columns;
     let chunk = rows.clamp(1, ROWS);
     let layout = match columns {
-        1 => Layout { shape: vec![rows], chunk: vec![chunk], shard: None, axes: vec!["row"] },
-        _ => {
-            Layout { shape: vec![rows, columns], chunk: vec![chunk, columns], shard: None, axes: vec!["row", "column"] }
-        }
+        1 => ArrayLayout { shape: vec![rows], chunk: vec![chunk], shard: None, axes: vec!["row"] },
+        _ => ArrayLayout {
+            shape: vec![rows, columns],
+            chunk: vec![chunk, columns],
+            shard: None,
+            axes: vec!["row", "column"],
+        },
     };
     write_array(group, name, layout, T::FILL, values, progress)
 }

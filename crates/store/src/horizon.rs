@@ -8,7 +8,7 @@
 use super::array::{StoredArray, write_array, write_group};
 use super::error::StoreError;
 use super::header::{read_header, write_header};
-use super::layout::Layout;
+use super::layout::ArrayLayout;
 use super::replacement::Replacement;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -55,7 +55,7 @@ pub fn write_horizon(path: &Path, horizon: &Horizon, progress: &Progress) -> Res
     write_header(group, KIND, &Header { name: horizon.name.clone(), sheets })?;
     for (n, sheet) in horizon.sheets.iter().enumerate() {
         write_group(group, &n.to_string(), serde_json::Map::new())?;
-        let layout = || Layout::map(sheet.grid.count, ["inline", "crossline"]);
+        let layout = || ArrayLayout::map(sheet.grid.count, ["inline", "crossline"]);
         write_array(group, &format!("{n}/depth"), layout(), f32::NAN, &sheet.depth, progress)?;
         let quality: Vec<u8> = sheet.quality.iter().map(|&quality| quality as u8).collect();
         write_array(group, &format!("{n}/quality"), layout(), Quality::Hole as u8, &quality, progress)?;

@@ -8,7 +8,7 @@
 use super::array::{create_volume, write_array, write_group};
 use super::error::StoreError;
 use super::header::write_header;
-use super::layout::{BRICK, Layout};
+use super::layout::{ArrayLayout, BRICK};
 use super::pyramid::{Halving, LevelBox, halved, needed};
 use super::ranges::{BrickRanges, IndexedRanges, Samples};
 use super::replacement::Replacement;
@@ -218,7 +218,7 @@ impl Ingest<'_> {
         write_header(self.group, KIND, info)?;
         write_group(self.group, "minmax", serde_json::Map::new())?;
         let bytes: Vec<u8> = self.mask.iter().map(|&live| u8::from(live)).collect();
-        let layout = Layout::map([size[0], size[1]], ["inline", "crossline"]);
+        let layout = ArrayLayout::map([size[0], size[1]], ["inline", "crossline"]);
         write_array(self.group, "live", layout, 0, &bytes, self.progress)?;
         let (mut done, mut grid) = self.write_full(size, supply)?;
         let (mut fine, mut fine_mask, mut level) = (size, Cow::Borrowed(&self.mask), 0);

@@ -13,7 +13,7 @@ const MAP_CHUNK: usize = 256;
 
 /// The division of an array into chunks and shards.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Layout {
+pub struct ArrayLayout {
     /// Elements along each axis.
     pub shape: Vec<usize>,
     /// Elements of a chunk along each axis.
@@ -24,7 +24,7 @@ pub struct Layout {
     pub axes: Vec<&'static str>,
 }
 
-impl Layout {
+impl ArrayLayout {
     /// A volume, `[inline][crossline][sample]`, in bricks of 64³ (less where the volume is smaller).
     pub fn volume(size: [usize; 3]) -> Self {
         let chunk: Vec<usize> = size.iter().map(|&n| n.clamp(1, BRICK)).collect();
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn volumes_are_cut_into_bricks_and_small_ones_into_one() {
-        let layout = Layout::volume([200, 40, 64]);
+        let layout = ArrayLayout::volume([200, 40, 64]);
         assert_eq!(layout.chunk, [64, 40, 64]);
         assert_eq!(layout.shard, Some(vec![128, 40, 64]));
         assert_eq!(layout.file_counts(), [2, 1, 1]);

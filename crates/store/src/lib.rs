@@ -65,7 +65,7 @@ pub use fault::{read_fault, write_fault};
 pub use header::VERSION;
 pub use horizon::{read_horizon, write_horizon};
 pub use ingest::{Ingested, MEMORY_BYTES, resume_blocks, write_blocks, write_volume};
-pub use layout::{BRICK, Layout};
+pub use layout::{ArrayLayout, BRICK};
 pub use parameterization::{NO_ID, ParameterizationVolumes, StoredParameterization, write_parameterization};
 pub use replacement::{Replacement, replace_file};
 pub use sample::StoredSample;

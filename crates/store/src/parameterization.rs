@@ -8,7 +8,7 @@
 use super::array::{StoredArray, write_array};
 use super::error::StoreError;
 use super::header::{read_header, write_header};
-use super::layout::Layout;
+use super::layout::ArrayLayout;
 use super::replacement::Replacement;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -59,7 +59,7 @@ pub fn write_parameterization(
     let group = replacement.path();
     write_header(group, KIND, &Header { size, key: key.to_owned() })?;
     for (name, volume) in [("i", &volumes.i), ("j", &volumes.j), ("k", &volumes.k)] {
-        write_array(group, name, Layout::volume(size), f32::NAN, volume.samples(), progress)?;
+        write_array(group, name, ArrayLayout::volume(size), f32::NAN, volume.samples(), progress)?;
     }
     for (name, volume) in [("layer", &volumes.layer), ("block", &volumes.block)] {
         write_ids(group, name, size, volume.samples(), progress)?;
@@ -71,11 +71,11 @@ pub fn write_parameterization(
 fn write_ids(group: &Path, name: &str, size: [usize; 3], ids: &[u16], progress: &Progress) -> Result<(), StoreError> {
     let narrow = ids.iter().all(|&id| id == NO_ID || id < u16::from(u8::MAX));
     if !narrow {
-        return write_array(group, name, Layout::volume(size), NO_ID, ids, progress);
+        return write_array(group, name, ArrayLayout::volume(size), NO_ID, ids, progress);
     }
     // The low byte of "none" is "none".
     let bytes: Vec<u8> = ids.iter().map(|&id| id as u8).collect();
-    write_array(group, name, Layout::volume(size), u8::MAX, &bytes, progress)
+    write_array(group, name, ArrayLayout::volume(size), u8::MAX, &bytes, progress)
 }
 
 /// A parameterization on disk.

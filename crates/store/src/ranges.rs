@@ -2,7 +2,7 @@
 
 use super::array::write_array;
 use super::error::StoreError;
-use super::layout::{BRICK, Layout};
+use super::layout::{ArrayLayout, BRICK};
 use super::sample::StoredSample;
 use std::path::Path;
 use survey::progress::Progress;
@@ -96,7 +96,8 @@ impl BrickRanges {
 
     pub fn write(&self, group: &Path, level: usize) -> Result<(), StoreError> {
         let [x, y, z] = self.counts;
-        let layout = Layout::whole(&[x, y, z, 2], vec!["brick_inline", "brick_crossline", "brick_sample", "minmax"]);
+        let layout =
+            ArrayLayout::whole(&[x, y, z, 2], vec!["brick_inline", "brick_crossline", "brick_sample", "minmax"]);
         let values = self.ranges.as_flattened();
         write_array(group, &format!("minmax/{level}"), layout, f32::NAN, values, &Progress::silent())
     }

@@ -2,7 +2,7 @@
 //! carries these values as its suggested remedy.
 //!
 //! Each user interface has its own words for a setting: an option on the command line, a field in a window.
-//! `Display` gives the options of the command line.
+//! It puts them in with [`Note::reword`]; `Display` here names the settings in plain English.
 
 use serde::{Serialize, Serializer};
 use std::fmt;
@@ -60,6 +60,8 @@ pub enum Setting {
     ValueOrder,
     /// Unit of lengths along a well.
     MdUnit,
+    /// What is done with a rotated grid that a format cannot hold.
+    RotatedGrids,
     /// Height of a well's datum.
     Datum,
     /// X and Y of a well's head.
@@ -71,49 +73,39 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// The option of the command line that states it.
-    pub fn option(self) -> &'static str {
+    /// What it is called, in a few words.
+    pub fn name(self) -> &'static str {
         match self {
-            Self::SampleFormat => "--sample-format",
-            Self::Interval => "--interval",
-            Self::Start => "--start",
-            Self::VerticalUnit => "--vertical-unit",
-            Self::CoordinateUnit => "--coordinate-unit",
-            Self::CoordinateType => "--coordinate-type",
-            Self::Bin => "--bin",
-            Self::InlineByte => "--inline-byte",
-            Self::CrosslineByte => "--crossline-byte",
-            Self::LineType => "--line-type",
-            Self::LineNumbers => "--line-numbers",
-            Self::XByte => "--x-byte",
-            Self::YByte => "--y-byte",
-            Self::ScalarByte => "--scalar-byte",
-            Self::Duplicates => "--duplicates",
-            Self::TraceWeight => "--trace-weight",
-            Self::Format => "--format",
-            Self::Columns => "--columns",
-            Self::ZUnit => "--z-unit",
-            Self::ZPositive => "--z-positive",
-            Self::ZFactor => "--z-factor",
-            Self::Null => "--null",
-            Self::PlaceBy => "--place-by",
-            Self::ValueOrder => "--value-order",
-            Self::MdUnit => "--md-unit",
-            Self::Datum => "--kb",
-            Self::Head => "--head",
-            Self::WellInFile => "--well-in-file",
-            Self::Checkshot => "--checkshot",
-        }
-    }
-
-    /// The placeholder for the value on the command line, for options whose name does not explain it.
-    fn value_name(self) -> &'static str {
-        match self {
-            Self::Datum => " M",
-            Self::Head => " X,Y",
-            Self::WellInFile => " NAME",
-            Self::Checkshot => " FILE",
-            _ => "",
+            Self::SampleFormat => "sample format",
+            Self::Interval => "sample interval",
+            Self::Start => "first sample",
+            Self::VerticalUnit => "vertical unit",
+            Self::CoordinateUnit => "unit of X and Y",
+            Self::CoordinateType => "type of X and Y",
+            Self::Bin => "size of square bins",
+            Self::InlineByte => "inline byte",
+            Self::CrosslineByte => "crossline byte",
+            Self::LineType => "type of line numbers",
+            Self::LineNumbers => "source of line numbers",
+            Self::XByte => "X byte",
+            Self::YByte => "Y byte",
+            Self::ScalarByte => "coordinate scalar byte",
+            Self::Duplicates => "repeated traces",
+            Self::TraceWeight => "trace weight",
+            Self::Format => "format",
+            Self::Columns => "columns",
+            Self::ZUnit => "vertical unit",
+            Self::ZPositive => "sign of depths",
+            Self::ZFactor => "factor on depths",
+            Self::Null => "value of holes",
+            Self::PlaceBy => "placement",
+            Self::ValueOrder => "order of values",
+            Self::MdUnit => "unit along the well",
+            Self::RotatedGrids => "rotated grids",
+            Self::Datum => "datum above sea level",
+            Self::Head => "X and Y of the head",
+            Self::WellInFile => "name in the file",
+            Self::Checkshot => "checkshots",
         }
     }
 
@@ -144,7 +136,7 @@ pub struct Statement {
 /// let coordinates = Remedy::all([Setting::XByte.stated_as(73), Setting::YByte.stated_as(77)]);
 /// let either = Remedy::any([coordinates, Setting::Bin.stated()]);
 /// assert_eq!(either.ways.len(), 2);
-/// assert_eq!(either.to_string(), "--x-byte 73 --y-byte 77 or --bin");
+/// assert_eq!(either.to_string(), "X byte 73 and Y byte 77, or size of square bins");
 /// ```
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Remedy {
@@ -166,20 +158,17 @@ impl Remedy {
 
 impl fmt::Display for Statement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.setting.option())?;
-        match &self.value {
-            Some(value) => write!(f, " {value}"),
-            None => f.write_str(self.setting.value_name()),
-        }
+        f.write_str(self.setting.name())?;
+        self.value.iter().try_for_each(|value| write!(f, " {value}"))
     }
 }
 
 impl fmt::Display for Remedy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (number, way) in self.ways.iter().enumerate() {
-            f.write_str(if number == 0 { "" } else { " or " })?;
+            f.write_str(if number == 0 { "" } else { ", or " })?;
             for (number, statement) in way.iter().enumerate() {
-                f.write_str(if number == 0 { "" } else { " " })?;
+                f.write_str(if number == 0 { "" } else { " and " })?;
                 write!(f, "{statement}")?;
             }
         }
@@ -192,7 +181,7 @@ impl fmt::Display for Remedy {
 /// ```
 /// # use survey::{Note, Setting};
 /// let note = Note::unless("the interval is 4 ms", Setting::Interval.stated());
-/// assert_eq!(note.to_string(), "the interval is 4 ms (if not: --interval)");
+/// assert_eq!(note.to_string(), "the interval is 4 ms (if not, state: sample interval)");
 /// assert_eq!(Note::from("3 traces are dead").to_string(), "3 traces are dead");
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -208,6 +197,13 @@ impl Note {
     pub fn unless(fact: impl Into<String>, otherwise: Remedy) -> Self {
         Self { fact: fact.into(), otherwise: Some(otherwise) }
     }
+
+    /// Says its remedy in the words of a user interface; with no words for it, the fact alone remains.
+    pub fn reword(&mut self, words: impl Fn(&Remedy) -> Option<String>) {
+        if let Some(words) = self.otherwise.take().and_then(|remedy| words(&remedy)) {
+            self.fact += &format!(" (if not: {words})");
+        }
+    }
 }
 
 impl<S: Into<String>> From<S> for Note {
@@ -219,12 +215,12 @@ impl<S: Into<String>> From<S> for Note {
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.fact)?;
-        self.otherwise.iter().try_for_each(|remedy| write!(f, " (if not: {remedy})"))
+        self.otherwise.iter().try_for_each(|remedy| write!(f, " (if not, state: {remedy})"))
     }
 }
 
 impl Serialize for Note {
-    /// Serializes the sentence with the options, as `Display` gives it.
+    /// Serializes the sentence that `Display` gives.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_str(self)
     }
@@ -238,9 +234,15 @@ mod tests {
     fn ways_and_their_statements_are_told_apart() {
         let bytes = Remedy::all([Setting::InlineByte.stated_as(9), Setting::CrosslineByte.stated_as(21)]);
         let either = Remedy::any([bytes, Setting::LineNumbers.stated()]);
-        assert_eq!(either.to_string(), "--inline-byte 9 --crossline-byte 21 or --line-numbers");
-        assert_eq!(Setting::Head.stated().to_string(), "--head X,Y");
-        assert_eq!(Note::unless("so", Setting::MdUnit.stated_as("ft")).to_string(), "so (if not: --md-unit ft)");
+        assert_eq!(either.to_string(), "inline byte 9 and crossline byte 21, or source of line numbers");
+        assert_eq!(Setting::Head.stated().to_string(), "X and Y of the head");
+        let mut note = Note::unless("so", Setting::MdUnit.stated_as("ft"));
+        assert_eq!(note.to_string(), "so (if not, state: unit along the well ft)");
+        note.reword(|remedy| Some(format!("in {} way", remedy.ways.len())));
+        assert_eq!(note.to_string(), "so (if not: in 1 way)");
+        let mut speechless = Note::unless("so", Setting::Null.stated());
+        speechless.reword(|_| None);
+        assert_eq!(speechless.to_string(), "so");
         assert_eq!(serde_json::to_string(&Note::from("so")).unwrap(), "\"so\"");
     }
 }

@@ -16,14 +16,14 @@ const CONTRAST: [f64; 2] = [0.05, 0.10];
 
 /// Beds of one sequence, top to bottom.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Column {
+pub struct BedSequence {
     /// Stratigraphic depths of the reflectors, m, increasing.
     pub reflectors_m: Vec<f64>,
     /// Acoustic impedance of the beds, kg/(m²·s): bed i lies above reflector i, the last below all.
     pub impedance: Vec<f64>,
 }
 
-impl Column {
+impl BedSequence {
     /// Lays beds from `first_m` on, downwards to beyond `last_m` or, when that is smaller, upwards; the bed
     /// before the first reflector is soft. `trend` gives the mean impedance at a stratigraphic depth.
     pub(super) fn laid(
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn polarity_alternates_and_spacing_holds_in_both_directions() {
         for (first, last) in [(500.0, 1400.0), (500.0, -300.0)] {
-            let column = Column::laid(first, last, 80.0, |s| 5e6 + 1e3 * s, &mut Draws::new(1, 2));
+            let column = BedSequence::laid(first, last, 80.0, |s| 5e6 + 1e3 * s, &mut Draws::new(1, 2));
             assert_eq!(column.impedance.len(), column.reflectors_m.len() + 1);
             assert!(column.reflectors_m.contains(&first));
             for i in 1..column.reflectors_m.len() {
@@ -99,7 +99,7 @@ mod tests {
 
     #[test]
     fn beds_lie_above_their_reflector() {
-        let column = Column { reflectors_m: vec![10.0, 20.0], impedance: vec![1.0, 2.0, 3.0] };
+        let column = BedSequence { reflectors_m: vec![10.0, 20.0], impedance: vec![1.0, 2.0, 3.0] };
         assert_eq!([5.0, 10.0, 19.0, 21.0].map(|s| column.impedance_at(s)), [1.0, 2.0, 2.0, 3.0]);
         assert_eq!(column.nearest(17.0), 1);
         assert!((column.reflectivity(0) - 1.0 / 3.0).abs() < 1e-12);

@@ -5,7 +5,7 @@
 //! and amplitudes follow from slopes, so that dips in metric space are the same at any size. The seed turns
 //! directions and phases, shifts faults a little and draws beds.
 
-use super::column::Column;
+use super::column::BedSequence;
 use super::faulting::{Tip, TruthFault};
 use super::fold::{FoldedBeds, Undulation, Wave};
 use super::random::Draws;
@@ -101,10 +101,10 @@ pub(super) fn design(settings: &SynthSettings) -> Result<SynthTruth, SynthError>
     let mut beds = Draws::new(settings.seed, 2);
     let young_trend = |s: f64| 5.0e6 + 1.0e6 * s / extent.z;
     let old_trend = |s: f64| 6.3e6 + 1.3e6 * s / extent.z;
-    let young_column = Column::laid(base_m, at(-0.6), wavelength_m, young_trend, &mut beds);
-    let old_column = Column::laid(at(-0.3), at(1.9), wavelength_m, old_trend, &mut beds);
+    let young_column = BedSequence::laid(base_m, at(-0.6), wavelength_m, young_trend, &mut beds);
+    let old_column = BedSequence::laid(at(-0.3), at(1.9), wavelength_m, old_trend, &mut beds);
     let charlie_m = base_m + CHARLIE_BELOW * old_beds.relief.bound();
-    let named = |name: &str, sequence, column: &Column, strat_m: f64| TruthHorizon {
+    let named = |name: &str, sequence, column: &BedSequence, strat_m: f64| TruthHorizon {
         name: name.to_owned(),
         sequence,
         strat_m: column.reflectors_m[column.nearest(strat_m)],

@@ -20,7 +20,7 @@ pub struct Reflector {
 
 /// A reflector over one trace.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
+pub struct ReflectorEvent {
     /// Fractional sample.
     pub z: f64,
     /// Reflectivity, positive: harder below.
@@ -47,7 +47,7 @@ impl SynthTruth {
     }
 
     /// [`SynthTruth::reflectors`] with what each of them is.
-    pub fn events(&self, x: f64, y: f64) -> Vec<Event> {
+    pub fn events(&self, x: f64, y: f64) -> Vec<ReflectorEvent> {
         let place = DVec2::new(x, y) * self.step_m.truncate();
         let margin_m = 1.5 * self.wavelength_m;
         let range = [-margin_m, (self.size[2] - 1) as f64 * self.step_m.z + margin_m];
@@ -67,12 +67,12 @@ impl SynthTruth {
     }
 
     /// Adds the reflectors of one block between two depths; their z is still in m.
-    fn events_in(&self, block: u16, place: DVec2, [top, bottom]: [f64; 2], found: &mut Vec<Event>) {
+    fn events_in(&self, block: u16, place: DVec2, [top, bottom]: [f64; 2], found: &mut Vec<ReflectorEvent>) {
         let moved = self.displacement_m(block, place);
         let base_m = self.horizons[self.unconformity].strat_m;
         let base_depth = self.young_beds.depth_m(base_m, place) + moved;
         let (top_strat, base) = (self.young_beds.strat_m(top - moved, place), self.young_column.reflectors_m.len() - 1);
-        let event = |old, index: usize, z, reflectivity| Event {
+        let event = |old, index: usize, z, reflectivity| ReflectorEvent {
             z,
             reflectivity,
             reflector: Reflector { old, index: index as u16 },

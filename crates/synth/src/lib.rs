@@ -27,8 +27,8 @@ mod seismic;
 mod tests;
 mod truth;
 
-pub use column::Column;
-pub use events::{Event, Reflector};
+pub use column::BedSequence;
+pub use events::{Reflector, ReflectorEvent};
 pub use faulting::{Tip, TruthFault};
 pub use fold::{FoldedBeds, Undulation, Wave};
 pub use seismic::AMPLITUDE;

@@ -9,7 +9,7 @@
 //! not meet inside the volume. Beyond its tip a fault is extended (with throw 0), so the blocks on both sides
 //! keep their numbers there. Positions are fractional voxels; quantities that end in `_m` are metric.
 
-use super::column::Column;
+use super::column::BedSequence;
 use super::faulting::TruthFault;
 use super::fold::FoldedBeds;
 use glam::{DVec2, DVec3};
@@ -50,9 +50,9 @@ pub struct SynthTruth {
     /// Folds below the unconformity.
     pub old_beds: FoldedBeds,
     /// Reflectors above the unconformity; the last one is the unconformity.
-    pub young_column: Column,
+    pub young_column: BedSequence,
     /// Reflectors below the unconformity, and those that it has removed.
-    pub old_column: Column,
+    pub old_column: BedSequence,
     /// Faults from low x to high x.
     pub faults: Vec<TruthFault>,
     /// Named horizons, youngest first.

@@ -5,7 +5,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Error;
+use crate::TtfError;
 
 /// An opaque sRGB colour, eight bits a channel, written `#rrggbb`.
 ///
@@ -65,10 +65,10 @@ pub fn srgb_from_linear(linear: f32) -> f32 {
 }
 
 impl std::str::FromStr for Colour {
-    type Err = Error;
+    type Err = TtfError;
 
-    fn from_str(text: &str) -> Result<Self, Error> {
-        let bad = || Error::BadColour { text: text.to_owned() };
+    fn from_str(text: &str) -> Result<Self, TtfError> {
+        let bad = || TtfError::BadColour { text: text.to_owned() };
         let digits = text.strip_prefix('#').ok_or_else(bad)?;
         if digits.len() != 6 || !digits.bytes().all(|byte| byte.is_ascii_hexdigit()) {
             return Err(bad());
@@ -80,9 +80,9 @@ impl std::str::FromStr for Colour {
 }
 
 impl TryFrom<String> for Colour {
-    type Error = Error;
+    type Error = TtfError;
 
-    fn try_from(text: String) -> Result<Self, Error> {
+    fn try_from(text: String) -> Result<Self, TtfError> {
         text.parse()
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 /// What is wrong with a transfer function or a texture.
 #[derive(Debug, thiserror::Error)]
-pub enum Error {
+pub enum TtfError {
     /// A colour that is not `#rrggbb`.
     #[error("`{text}` is not a colour; write it as #rrggbb, for example #e8c98a")]
     BadColour {

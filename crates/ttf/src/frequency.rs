@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::Error;
+use crate::TtfError;
 
 /// Repeats of a tile over the unit range of i (horizontal) and of k (vertical).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -38,13 +38,13 @@ impl Frequency {
     /// Checks that both numbers are finite and positive.
     ///
     /// # Errors
-    /// [`Error::BadFrequency`] naming `place`.
-    pub fn validate(self, place: &str) -> Result<(), Error> {
+    /// [`TtfError::BadFrequency`] naming `place`.
+    pub fn validate(self, place: &str) -> Result<(), TtfError> {
         let usable = |value: f32| value.is_finite() && value > 0.0;
         if usable(self.horizontal) && usable(self.vertical) {
             return Ok(());
         }
-        Err(Error::BadFrequency { place: place.to_owned(), horizontal: self.horizontal, vertical: self.vertical })
+        Err(TtfError::BadFrequency { place: place.to_owned(), horizontal: self.horizontal, vertical: self.vertical })
     }
 }
 

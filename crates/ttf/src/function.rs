@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::layer::check_unit;
-use crate::{Colour, Error, LayerTtf, RgbaFunction, ScalarTtf, TextureLibrary};
+use crate::{Colour, LayerTtf, RgbaFunction, ScalarTtf, TextureLibrary, TtfError};
 
 /// The transfer functions of a scene.
 ///
@@ -75,11 +75,11 @@ impl TransferFunctions {
     ///
     /// # Errors
     /// Everything that the parts refuse, with the place named.
-    pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
+    pub fn validate(&self, library: &TextureLibrary) -> Result<(), TtfError> {
         check_unit("the settings", "the blend", self.settings.blend)?;
         let factor = self.settings.global_frequency;
         if !(factor.is_finite() && factor > 0.0) {
-            return Err(Error::BadFrequency {
+            return Err(TtfError::BadFrequency {
                 place: "the global frequency".to_owned(),
                 horizontal: factor,
                 vertical: factor,

@@ -10,7 +10,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::{Colour, Error, Frequency, TextureLibrary};
+use crate::{Colour, Frequency, TextureLibrary, TtfError};
 
 /// The styles of the layers that have one, in any order.
 ///
@@ -116,7 +116,7 @@ impl LayerStyle {
     /// # Errors
     /// Intervals that are empty, overlap or reach outside [0, 1]; opacities outside [0, 1]; frequencies that
     /// are not finite and positive; textures that the library does not have.
-    pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
+    pub fn validate(&self, library: &TextureLibrary) -> Result<(), TtfError> {
         let place = format!("layer `{}`", self.layer);
         check_unit(&place, "the cut-out opacity", self.opacity)?;
         if let Some(frequency) = self.frequency {
@@ -125,7 +125,7 @@ impl LayerStyle {
         for interval in &self.intervals {
             let [low, high] = interval.k;
             if !(low >= 0.0 && high <= 1.0 && low < high) {
-                return Err(Error::BadDepthInterval { layer: self.layer.clone(), low, high });
+                return Err(TtfError::BadDepthInterval { layer: self.layer.clone(), low, high });
             }
             check_unit(&place, "the texture's opacity", interval.opacity)?;
             if let Some(frequency) = interval.frequency {
@@ -155,10 +155,10 @@ impl LayerTtf {
     ///
     /// # Errors
     /// Two styles for one layer, and everything that [`LayerStyle::validate`] refuses.
-    pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
+    pub fn validate(&self, library: &TextureLibrary) -> Result<(), TtfError> {
         for (index, style) in self.styles.iter().enumerate() {
             if self.styles[..index].iter().any(|earlier| earlier.layer == style.layer) {
-                return Err(Error::DuplicateLayer { layer: style.layer.clone() });
+                return Err(TtfError::DuplicateLayer { layer: style.layer.clone() });
             }
             style.validate(library)?;
         }
@@ -167,20 +167,20 @@ impl LayerTtf {
 }
 
 /// Returns an error for a value outside [0, 1], NaN included.
-pub(crate) fn check_unit(place: &str, quantity: &'static str, value: f32) -> Result<(), Error> {
+pub(crate) fn check_unit(place: &str, quantity: &'static str, value: f32) -> Result<(), TtfError> {
     if (0.0..=1.0).contains(&value) {
         return Ok(());
     }
-    Err(Error::OutsideUnit { place: place.to_owned(), quantity, value })
+    Err(TtfError::OutsideUnit { place: place.to_owned(), quantity, value })
 }
 
 /// Returns an error for half-open intervals that share values. Each interval must be valid by itself.
-pub(crate) fn check_overlap(place: &str, intervals: impl Iterator<Item = [f32; 2]>) -> Result<(), Error> {
+pub(crate) fn check_overlap(place: &str, intervals: impl Iterator<Item = [f32; 2]>) -> Result<(), TtfError> {
     let mut sorted: Vec<[f32; 2]> = intervals.collect();
     sorted.sort_by(|a, b| a[0].total_cmp(&b[0]));
     match sorted.windows(2).find(|pair| pair[1][0] < pair[0][1]) {
         None => Ok(()),
-        Some(pair) => Err(Error::Overlap {
+        Some(pair) => Err(TtfError::Overlap {
             place: place.to_owned(),
             first_low: pair[0][0],
             first_high: pair[0][1],
@@ -253,19 +253,19 @@ mod tests {
             |style| style.intervals[0].k = [0.4, 0.4],
             |style| style.intervals[0].k = [0.5, 0.2],
         ] {
-            assert!(matches!(error(bad), Error::BadDepthInterval { .. }));
+            assert!(matches!(error(bad), TtfError::BadDepthInterval { .. }));
         }
-        assert!(matches!(error(|style| style.intervals[0].k = [0.0, 0.6]), Error::Overlap { .. }));
-        assert!(matches!(error(|style| style.opacity = 1.5), Error::OutsideUnit { .. }));
-        assert!(matches!(error(|style| style.intervals[0].opacity = f32::NAN), Error::OutsideUnit { .. }));
+        assert!(matches!(error(|style| style.intervals[0].k = [0.0, 0.6]), TtfError::Overlap { .. }));
+        assert!(matches!(error(|style| style.opacity = 1.5), TtfError::OutsideUnit { .. }));
+        assert!(matches!(error(|style| style.intervals[0].opacity = f32::NAN), TtfError::OutsideUnit { .. }));
         assert!(matches!(
             error(|style| style.frequency = Some(Frequency { horizontal: 0.0, vertical: 1.0 })),
-            Error::BadFrequency { .. }
+            TtfError::BadFrequency { .. }
         ));
         let unknown = error(|style| style.intervals[0].texture = "limstone".to_owned());
         assert!(unknown.to_string().contains("did you mean `limestone`?"), "{unknown}");
         let twice = LayerTtf { styles: vec![two_halves(), two_halves()] };
-        assert!(matches!(twice.validate(&library), Err(Error::DuplicateLayer { .. })));
+        assert!(matches!(twice.validate(&library), Err(TtfError::DuplicateLayer { .. })));
     }
 
     #[test]

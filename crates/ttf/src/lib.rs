@@ -37,7 +37,7 @@ pub mod texture;
 pub use colour::{Colour, linear_from_srgb, srgb_from_linear};
 pub use colour_map::ColourMap;
 pub use coordinates::{FaceFrame, Mapping, MappingWeights};
-pub use error::Error;
+pub use error::TtfError;
 pub use frequency::Frequency;
 pub use function::{RawColour, TransferFunctions, TtfSettings};
 pub use layer::{DepthInterval, LayerStyle, LayerTtf};

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::builtin::{CATALOGUE, DRAWINGS};
 use crate::raster;
-use crate::{Colour, Error, Texture};
+use crate::{Colour, Texture, TtfError};
 
 /// A texture's entry in the catalogue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -69,16 +69,16 @@ impl TextureLibrary {
     /// The patterns that come with the program.
     ///
     /// # Errors
-    /// [`Error::BadCatalogue`] if catalogue and drawings do not match. A test rules this out.
-    pub fn builtin() -> Result<Self, Error> {
+    /// [`TtfError::BadCatalogue`] if catalogue and drawings do not match. A test rules this out.
+    pub fn builtin() -> Result<Self, TtfError> {
         let catalogue: Catalogue =
-            toml::from_str(CATALOGUE).map_err(|error| Error::BadCatalogue { fact: error.to_string() })?;
+            toml::from_str(CATALOGUE).map_err(|error| TtfError::BadCatalogue { fact: error.to_string() })?;
         let mut library = Self { entries: Vec::new() };
         for pattern in catalogue.pattern {
             let (_, svg) = DRAWINGS
                 .iter()
                 .find(|(name, _)| *name == pattern.name)
-                .ok_or_else(|| Error::BadCatalogue { fact: format!("`{}` has no drawing", pattern.name) })?;
+                .ok_or_else(|| TtfError::BadCatalogue { fact: format!("`{}` has no drawing", pattern.name) })?;
             library.push(pattern, Some((*svg).to_owned()), OnceLock::new())?;
         }
         Ok(library)
@@ -93,7 +93,7 @@ impl TextureLibrary {
     /// # Errors
     /// A file that cannot be read, is not an image, has no pixels or is too large; a name that is in use
     /// already.
-    pub fn add_user(&mut self, path: &Path) -> Result<usize, Error> {
+    pub fn add_user(&mut self, path: &Path) -> Result<usize, TtfError> {
         let (texture, svg, shape) = raster::read_tile(path)?;
         let name = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
         let mean = texture.average_over([1.0; 3], None);
@@ -115,9 +115,14 @@ impl TextureLibrary {
         self.entries[index].pattern.tile_mm = tile_mm;
     }
 
-    fn push(&mut self, pattern: Pattern, svg: Option<String>, texture: OnceLock<Arc<Texture>>) -> Result<usize, Error> {
+    fn push(
+        &mut self,
+        pattern: Pattern,
+        svg: Option<String>,
+        texture: OnceLock<Arc<Texture>>,
+    ) -> Result<usize, TtfError> {
         if self.find(&pattern.name).is_some() {
-            return Err(Error::DuplicateTexture { texture: pattern.name });
+            return Err(TtfError::DuplicateTexture { texture: pattern.name });
         }
         self.entries.push(LibraryEntry { pattern, svg, texture });
         Ok(self.entries.len() - 1)
@@ -156,8 +161,8 @@ impl TextureLibrary {
     /// Index of a name, which an error text says was used at `place`.
     ///
     /// # Errors
-    /// [`Error::UnknownTexture`], with the most similar name there is.
-    pub fn index_of(&self, name: &str, place: &str) -> Result<usize, Error> {
+    /// [`TtfError::UnknownTexture`], with the most similar name there is.
+    pub fn index_of(&self, name: &str, place: &str) -> Result<usize, TtfError> {
         self.find(name).ok_or_else(|| {
             let nearest = self
                 .patterns()
@@ -165,15 +170,15 @@ impl TextureLibrary {
                 .min()
                 .filter(|(distance, nearest)| *distance <= 1 + nearest.len() / 4)
                 .map(|(_, nearest)| nearest.clone());
-            Error::UnknownTexture { place: place.to_owned(), texture: name.to_owned(), nearest }
+            TtfError::UnknownTexture { place: place.to_owned(), texture: name.to_owned(), nearest }
         })
     }
 
     /// The pixels of a texture. It is rasterised on first use and then shared.
     ///
     /// # Errors
-    /// [`Error::BadSvg`] for a built-in drawing that cannot be parsed. A test rules this out.
-    pub fn texture(&self, index: usize) -> Result<Arc<Texture>, Error> {
+    /// [`TtfError::BadSvg`] for a built-in drawing that cannot be parsed. A test rules this out.
+    pub fn texture(&self, index: usize) -> Result<Arc<Texture>, TtfError> {
         let entry = &self.entries[index];
         if let Some(texture) = entry.texture.get() {
             return Ok(Arc::clone(texture));

@@ -9,7 +9,7 @@ use std::path::Path;
 use resvg::{tiny_skia, usvg};
 
 use crate::texture::TEXTURE_SIDE_PX;
-use crate::{Error, Texture};
+use crate::{Texture, TtfError};
 
 /// Largest side of an image accepted as a tile, in pixels.
 pub const MAX_IMAGE_SIDE_PX: u32 = 4096;
@@ -21,15 +21,15 @@ pub const MAX_FILE_BYTES: u64 = 64 << 20;
 ///
 /// # Errors
 /// See [`crate::TextureLibrary::add_user`].
-pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), Error> {
+pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), TtfError> {
     let extension = path.extension().map(|text| text.to_string_lossy().to_lowercase()).unwrap_or_default();
     if !["png", "jpg", "jpeg", "svg"].contains(&extension.as_str()) {
-        return Err(Error::UnknownFormat { path: path.to_owned() });
+        return Err(TtfError::UnknownFormat { path: path.to_owned() });
     }
-    let unreadable = |source| Error::ReadTexture { path: path.to_owned(), source };
+    let unreadable = |source| TtfError::ReadTexture { path: path.to_owned(), source };
     let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
     if bytes > MAX_FILE_BYTES {
-        return Err(Error::TooManyBytes { path: path.to_owned(), bytes, limit: MAX_FILE_BYTES });
+        return Err(TtfError::TooManyBytes { path: path.to_owned(), bytes, limit: MAX_FILE_BYTES });
     }
     let content = std::fs::read(path).map_err(unreadable)?;
     if extension == "svg" {
@@ -44,11 +44,11 @@ pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), E
 /// width.
 ///
 /// # Errors
-/// [`Error::BadSvg`] with the name given.
-pub(crate) fn rasterize(name: &str, svg: &[u8]) -> Result<(Texture, f32), Error> {
+/// [`TtfError::BadSvg`] with the name given.
+pub(crate) fn rasterize(name: &str, svg: &[u8]) -> Result<(Texture, f32), TtfError> {
     let tree = usvg::Tree::from_data(svg, &usvg::Options::default())
-        .map_err(|source| Error::BadSvg { name: name.to_owned(), source })?;
-    let bad_size = || Error::BadSize {
+        .map_err(|source| TtfError::BadSvg { name: name.to_owned(), source })?;
+    let bad_size = || TtfError::BadSize {
         name: name.to_owned(),
         width: tree.size().width() as u32,
         height: tree.size().height() as u32,
@@ -69,10 +69,10 @@ pub(crate) fn rasterize(name: &str, svg: &[u8]) -> Result<(Texture, f32), Error>
     Ok((Texture::from_premultiplied(texels), height / width))
 }
 
-fn decode(path: &Path, content: &[u8]) -> Result<(Texture, f32), Error> {
-    let bad_image = |source| Error::BadImage { path: path.to_owned(), source };
+fn decode(path: &Path, content: &[u8]) -> Result<(Texture, f32), TtfError> {
+    let bad_image = |source| TtfError::BadImage { path: path.to_owned(), source };
     let bad_size =
-        |width, height| Error::BadSize { name: path.display().to_string(), width, height, limit: MAX_IMAGE_SIDE_PX };
+        |width, height| TtfError::BadSize { name: path.display().to_string(), width, height, limit: MAX_IMAGE_SIDE_PX };
     let format = image::guess_format(content).map_err(bad_image)?;
     let reader = || image::ImageReader::with_format(std::io::Cursor::new(content), format);
     let (width, height) = reader().into_dimensions().map_err(bad_image)?;
@@ -194,22 +194,22 @@ mod tests {
             std::fs::write(&path, content).unwrap();
             TextureLibrary::builtin().unwrap().add_user(&path).unwrap_err()
         };
-        assert!(matches!(file("text.png", b"no image"), Error::BadImage { .. }));
-        assert!(matches!(file("empty.png", b""), Error::BadImage { .. }));
-        assert!(matches!(file("notes.txt", b"hello"), Error::UnknownFormat { .. }));
-        assert!(matches!(file("none", b"hello"), Error::UnknownFormat { .. }));
-        assert!(matches!(file("bad.svg", b"<svg"), Error::BadSvg { .. }));
+        assert!(matches!(file("text.png", b"no image"), TtfError::BadImage { .. }));
+        assert!(matches!(file("empty.png", b""), TtfError::BadImage { .. }));
+        assert!(matches!(file("notes.txt", b"hello"), TtfError::UnknownFormat { .. }));
+        assert!(matches!(file("none", b"hello"), TtfError::UnknownFormat { .. }));
+        assert!(matches!(file("bad.svg", b"<svg"), TtfError::BadSvg { .. }));
         let flat = br##"<svg xmlns="http://www.w3.org/2000/svg" width="0" height="10"/>"##;
-        assert!(matches!(file("flat.svg", flat), Error::BadSvg { .. }));
+        assert!(matches!(file("flat.svg", flat), TtfError::BadSvg { .. }));
         let path = folder.path().join("wide.png");
         image::GrayImage::new(MAX_IMAGE_SIDE_PX + 1, 1).save(&path).unwrap();
         let error = TextureLibrary::builtin().unwrap().add_user(&path).unwrap_err();
-        assert!(matches!(error, Error::BadSize { width, .. } if width == MAX_IMAGE_SIDE_PX + 1), "{error}");
+        assert!(matches!(error, TtfError::BadSize { width, .. } if width == MAX_IMAGE_SIDE_PX + 1), "{error}");
         let missing = TextureLibrary::builtin().unwrap().add_user(&folder.path().join("missing.png"));
-        assert!(matches!(missing, Err(Error::ReadTexture { .. })));
+        assert!(matches!(missing, Err(TtfError::ReadTexture { .. })));
         let mut truncated = std::fs::read(&path).unwrap();
         truncated.truncate(40);
-        assert!(matches!(file("cut.png", &truncated), Error::BadImage { .. }));
+        assert!(matches!(file("cut.png", &truncated), TtfError::BadImage { .. }));
     }
 
     #[test]
@@ -218,6 +218,6 @@ mod tests {
         let path = folder.path().join("limestone.png");
         image::GrayImage::new(4, 4).save(&path).unwrap();
         let error = TextureLibrary::builtin().unwrap().add_user(&path).unwrap_err();
-        assert!(matches!(error, Error::DuplicateTexture { .. }));
+        assert!(matches!(error, TtfError::DuplicateTexture { .. }));
     }
 }

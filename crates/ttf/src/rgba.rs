@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::layer::{check_unit, opaque};
-use crate::{Colour, ColourMap, Error};
+use crate::{Colour, ColourMap, TtfError};
 
 /// A piecewise linear function from a value to straight RGBA.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -89,12 +89,12 @@ impl RgbaFunction {
     /// # Errors
     /// An empty or infinite domain; fewer than two stops; positions that do not rise from 0 to 1; opacities
     /// outside [0, 1].
-    pub fn validate(&self, place: &str) -> Result<(), Error> {
+    pub fn validate(&self, place: &str) -> Result<(), TtfError> {
         let [low, high] = self.domain;
         if !(low.is_finite() && high.is_finite() && low < high) {
-            return Err(Error::BadDomain { place: place.to_owned(), low, high });
+            return Err(TtfError::BadDomain { place: place.to_owned(), low, high });
         }
-        let bad = |fact: String| Err(Error::BadStops { place: place.to_owned(), fact });
+        let bad = |fact: String| Err(TtfError::BadStops { place: place.to_owned(), fact });
         if self.stops.len() < 2 {
             return bad(format!("it has {} stop(s)", self.stops.len()));
         }

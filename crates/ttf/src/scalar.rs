@@ -13,7 +13,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::layer::{check_overlap, check_unit, opaque};
-use crate::{Colour, Error, Frequency, TextureLibrary};
+use crate::{Colour, Frequency, TextureLibrary, TtfError};
 
 /// One scalar texture transfer function, bound to a volume by name.
 ///
@@ -69,12 +69,12 @@ impl ScalarTtf {
     /// # Errors
     /// Intervals that are empty, reversed or overlap; factors or opacities outside their range; unknown
     /// textures.
-    pub fn validate(&self, library: &TextureLibrary) -> Result<(), Error> {
+    pub fn validate(&self, library: &TextureLibrary) -> Result<(), TtfError> {
         let place = format!("scalar function on `{}`", self.volume);
         for interval in &self.intervals {
             let [low, high] = interval.range;
             if low.is_nan() || high.is_nan() || low >= high {
-                return Err(Error::BadValueInterval { volume: self.volume.clone(), low, high });
+                return Err(TtfError::BadValueInterval { volume: self.volume.clone(), low, high });
             }
             check_unit(&place, "the texture's opacity", interval.opacity)?;
             Frequency { horizontal: 1.0, vertical: 1.0 }.scaled(interval.factor).validate(&place)?;

@@ -4,7 +4,7 @@
 use image::{Rgba, RgbaImage};
 
 use crate::text::{draw_text, measure_text};
-use crate::{Colour, Error, Pattern, Texture, TextureLibrary};
+use crate::{Colour, Pattern, Texture, TextureLibrary, TtfError};
 
 /// Pixels per millimetre (220 dpi): patterns are as large as in a figure printed at that resolution.
 const PIXELS_PER_MM: f32 = 220.0 / 25.4;
@@ -26,7 +26,7 @@ const SMALL_LETTERS: Colour = Colour::new(0x66, 0x60, 0x58);
 ///
 /// # Errors
 /// A drawing that cannot be rasterised.
-pub fn contact_sheet(library: &TextureLibrary) -> Result<RgbaImage, Error> {
+pub fn contact_sheet(library: &TextureLibrary) -> Result<RgbaImage, TtfError> {
     let px = |mm: f32| (mm * PIXELS_PER_MM).round() as u32;
     let rows = library.len().div_ceil(COLUMNS).max(1);
     let pitch = [SWATCH_MM[0] + GAP_MM[0], SWATCH_MM[1] + GAP_MM[1]];

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
 
-use crate::{Error, Frequency, LayerStyle, LayerTtf, ScalarInterval, Texture, TextureLibrary, TransferFunctions};
+use crate::{Frequency, LayerStyle, LayerTtf, ScalarInterval, Texture, TextureLibrary, TransferFunctions, TtfError};
 
 /// Stands for "no texture" or "no volume" in the tables.
 pub const NONE: u32 = u32::MAX;
@@ -166,7 +166,7 @@ impl TtfTables {
         functions: &TransferFunctions,
         block: &BlockExtent,
         library: &TextureLibrary,
-    ) -> Result<Self, Error> {
+    ) -> Result<Self, TtfError> {
         functions.validate(library)?;
         block.validate()?;
         let mut slots = Slots::new(library);
@@ -256,9 +256,9 @@ impl BlockExtent {
         Frequency::for_tile(self.extent_i_m, thickness_m, tile_m)
     }
 
-    fn validate(&self) -> Result<(), Error> {
+    fn validate(&self) -> Result<(), TtfError> {
         let check = |quantity: &'static str, value: f32| {
-            if value.is_finite() && value > 0.0 { Ok(()) } else { Err(Error::BadExtent { quantity, value }) }
+            if value.is_finite() && value > 0.0 { Ok(()) } else { Err(TtfError::BadExtent { quantity, value }) }
         };
         check("the block's extent along x", self.extent_i_m)?;
         check("the block's extent along y", self.extent_j_m)?;
@@ -280,7 +280,7 @@ impl<'a> Slots<'a> {
         Self { library, library_indices: Vec::new(), textures: Vec::new(), volumes: Vec::new() }
     }
 
-    fn texture(&mut self, index: usize) -> Result<u32, Error> {
+    fn texture(&mut self, index: usize) -> Result<u32, TtfError> {
         if let Some(slot) = self.library_indices.iter().position(|&present| present == index) {
             return Ok(slot as u32);
         }
@@ -303,7 +303,7 @@ impl<'a> Slots<'a> {
         block: &BlockExtent,
         thickness_m: f32,
         intervals: &mut Vec<IntervalEntry>,
-    ) -> Result<(), Error> {
+    ) -> Result<(), TtfError> {
         let mut sorted: Vec<_> = style.intervals.iter().collect();
         sorted.sort_by(|a, b| a.k[0].total_cmp(&b.k[0]));
         for interval in sorted {
@@ -325,7 +325,7 @@ impl<'a> Slots<'a> {
         Ok(())
     }
 
-    fn scalar(&mut self, interval: &ScalarInterval, volume: u32) -> Result<ScalarEntry, Error> {
+    fn scalar(&mut self, interval: &ScalarInterval, volume: u32) -> Result<ScalarEntry, TtfError> {
         let index = self.library.index_of(&interval.texture, "a scalar function")?;
         Ok(ScalarEntry {
             colour: opaque_or_nothing(interval.colour),
@@ -395,13 +395,13 @@ mod tests {
             |functions: &TransferFunctions, block: &BlockExtent| TtfTables::compile(functions, block, &library);
         let mut flat = block(&["A"]);
         flat.extent_j_m = 0.0;
-        assert!(matches!(compile(&TransferFunctions::default(), &flat), Err(Error::BadExtent { .. })));
+        assert!(matches!(compile(&TransferFunctions::default(), &flat), Err(TtfError::BadExtent { .. })));
         let mut functions = TransferFunctions::default();
         functions.settings.blend = 2.0;
-        assert!(matches!(compile(&functions, &block(&["A"])), Err(Error::OutsideUnit { .. })));
+        assert!(matches!(compile(&functions, &block(&["A"])), Err(TtfError::OutsideUnit { .. })));
         functions.settings.blend = 0.0;
         functions.settings.global_frequency = f32::NAN;
-        assert!(matches!(compile(&functions, &block(&["A"])), Err(Error::BadFrequency { .. })));
+        assert!(matches!(compile(&functions, &block(&["A"])), Err(TtfError::BadFrequency { .. })));
     }
 
     #[test]

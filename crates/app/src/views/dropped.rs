@@ -7,25 +7,40 @@ use crate::views::chooser;
 use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Modal, Order};
 use std::path::{Path, PathBuf};
 
-/// Handles the first of the files that were dropped; while a file is held over the window, says what dropping it will
-/// do.
-pub fn receive(ctx: &Context, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
-    let (is_held, path) = ctx.input(|input| {
-        let dropped = input.raw.dropped_files.first().map(|file| file.path().to_owned());
-        (!input.raw.hovered_files.is_empty(), dropped)
-    });
-    if is_held {
-        let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("held file")));
-        let rect = ctx.content_rect();
-        painter.rect_filled(rect, 0.0, Color32::from_black_alpha(150));
-        let text = "Drop to open";
-        painter.text(rect.center(), Align2::CENTER_CENTER, text, FontId::proportional(24.0), Color32::WHITE);
+/// The file that was dropped last, until the window can take it in.
+#[derive(Default)]
+pub struct Dropped {
+    waiting: Option<PathBuf>,
+}
+
+impl Dropped {
+    /// Handles the first of the files that were dropped; while a file is held over the window, says what dropping it
+    /// will do.
+    ///
+    /// Without an open project the file waits while the window is busy: a project may be opening, or a volume be
+    /// scanned.
+    pub fn receive(&mut self, ctx: &Context, state: &State, is_busy: bool, actions: &mut Vec<Action>) {
+        let (is_held, path) = ctx.input(|input| {
+            let dropped = input.raw.dropped_files.first().map(|file| file.path().to_owned());
+            (!input.raw.hovered_files.is_empty(), dropped)
+        });
+        if is_held {
+            say_what_dropping_does(ctx);
+        }
+        if path.is_some() {
+            self.waiting = path;
+        }
+        if state.session.is_some() || !is_busy {
+            actions.extend(self.waiting.take().map(|path| action(&path, state)));
+        }
     }
-    match path {
-        // Finish the dialogue that is open first.
-        Some(path) if state.session.is_some() || !is_busy => actions.push(action(&path, state)),
-        _ => {}
-    }
+}
+
+fn say_what_dropping_does(ctx: &Context) {
+    let painter = ctx.layer_painter(LayerId::new(Order::Foreground, Id::unique("held file")));
+    let rect = ctx.content_rect();
+    painter.rect_filled(rect, 0.0, Color32::from_black_alpha(150));
+    painter.text(rect.center(), Align2::CENTER_CENTER, "Drop to open", FontId::proportional(24.0), Color32::WHITE);
 }
 
 /// What a dropped file can be used for.
@@ -98,5 +113,43 @@ pub fn dialogue(ctx: &Context, path: &Path, actions: &mut Vec<Action>) {
     });
     if modal.should_close() {
         actions.push(Action::Answered);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Remembered;
+    use std::sync::Arc;
+
+    #[derive(Debug)]
+    struct Held(PathBuf);
+
+    impl eframe::egui::DroppedFile for Held {
+        fn path(&self) -> &Path {
+            &self.0
+        }
+
+        fn bytes(&self) -> Result<Vec<u8>, String> {
+            Err("only where it lies matters here".to_owned())
+        }
+    }
+
+    #[test]
+    fn a_file_dropped_while_something_is_opened_is_taken_in_afterwards() {
+        let (ctx, state, mut dropped) = (Context::default(), State::new(Remembered::default()), Dropped::default());
+        let mut received = |files: Vec<Arc<dyn eframe::egui::DroppedFile + Send + Sync>>, is_busy| {
+            let mut actions = Vec::new();
+            let input = eframe::egui::RawInput { dropped_files: files, ..Default::default() };
+            let mut drawn = ctx.run_ui(input, |ui| dropped.receive(ui.ctx(), &state, is_busy, &mut actions));
+            drawn.textures_delta.clear();
+            actions
+        };
+        let path = PathBuf::from("north.petro/project.toml");
+        assert!(received(vec![Arc::new(Held(path))], true).is_empty());
+        assert!(received(Vec::new(), true).is_empty());
+        let opened = received(Vec::new(), false);
+        assert!(matches!(&opened[..], [Action::Open(root)] if root == Path::new("north.petro")));
+        assert!(received(Vec::new(), false).is_empty(), "it is opened once");
     }
 }

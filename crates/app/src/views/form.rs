@@ -9,7 +9,7 @@ pub const AS_FILE: &str = "as the file says";
 
 /// The name of a setting's field.
 pub fn name_of(setting: Setting) -> &'static str {
-    field(setting).unwrap_or_else(|| setting.option())
+    field(setting).unwrap_or_else(|| setting.name())
 }
 
 /// A choice that may be left to the file, which is then shown as `unstated`.

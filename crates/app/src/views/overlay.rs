@@ -12,7 +12,7 @@ use eframe::egui::{Painter, Rect, Ui};
 use figure::SectionKind;
 use figure::draw::overlay::{OverlayLines, SeenOn, stick};
 use figure::draw::surfaces::{Cells, OPACITY};
-use figure::interpretation::{Interpretation, Selection, Stick};
+use figure::interpretation::{DrawnInterpretation, DrawnSelection, Stick};
 use glam::DVec2;
 use project::figures::InterpreterView;
 use std::collections::HashMap;
@@ -153,12 +153,12 @@ impl Overlay {
         let [nx, ny, _] = session.document.geometry.as_ref()?.size();
         let shown = self.interpreted.as_ref()?;
         let picking = &session.view.picking;
-        let selection = self.selected.as_ref().map(|shown| Selection {
+        let selection = self.selected.as_ref().map(|shown| DrawnSelection {
             sheets: shown.sheets.iter().map(sheet).collect(),
             colour: picking.colour_in(&session.document),
         });
         let seen = shown.seen(|proposal| picking.shows(proposal));
-        Some(OverlayLines::new(&Interpretation { selection, ..seen }, [nx, ny], on))
+        Some(OverlayLines::new(&DrawnInterpretation { selection, ..seen }, [nx, ny], on))
     }
 
     /// Draws the horizons and the selection in front of the block.
@@ -197,7 +197,7 @@ impl Overlay {
 /// The lines and sticks on a section.
 fn draw(painter: &Painter, session: &Session, lines: &OverlayLines, on: SeenOn, page: impl Fn(DVec2) -> DVec2) {
     lines.drawn(&page).iter().for_each(|group| canvas::paint(painter, group, None));
-    let own = Interpretation { sticks: sticks(session), ..Interpretation::default() };
+    let own = DrawnInterpretation { sticks: sticks(session), ..DrawnInterpretation::default() };
     let near = figure::draw::overlay::sticks(&own, on, &page);
     near.iter().for_each(|group| canvas::paint(painter, group, None));
 }

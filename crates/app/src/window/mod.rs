@@ -9,11 +9,12 @@ use super::hold::Hold;
 use super::state::picking::Pick;
 use super::state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, Task};
 use super::theme;
+use super::views::dropped::{self, Dropped};
 use super::views::{
-    block::BlockView, chooser::Chooser, controls::Controls, data::Data, dropped, export, fence::FenceView,
-    functions::Functions, import::Import, interpretation::Interpretation, layers::Layers, map::MapView,
-    overlay::Overlay, patterns::Patterns, picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections,
-    shortcuts, start::StartPage, status, tiles::Tiles, well::WellDialogue,
+    block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
+    import::Import, interpretation::Interpretation, layers::Layers, map::MapView, overlay::Overlay, patterns::Patterns,
+    picking::PickingPanel, pointed::Pointed, print::Page, sections::Sections, shortcuts, start::StartPage, status,
+    tiles::Tiles, well::WellDialogue,
 };
 use super::work::{Event, Rocks, Swatches, Wake, Wanted, Work};
 use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
@@ -96,6 +97,7 @@ pub struct Window {
     tiles: Tiles,
     swatches: Swatches,
     chooser: Chooser,
+    dropped: Dropped,
     controls: Controls,
     pointed: Option<Pointed>,
     rocks: Option<(Rocks, u64)>,
@@ -142,6 +144,7 @@ impl Window {
             tiles: Tiles::default(),
             swatches: Swatches::start(wake),
             chooser: Chooser::default(),
+            dropped: Dropped::default(),
             controls: Controls::default(),
             pointed: None,
             rocks: None,
@@ -264,7 +267,7 @@ impl Window {
         let mut actions = Vec::new();
         shortcuts::obey(&ctx, &self.state, &mut actions);
         let running = self.work.running.lines();
-        dropped::receive(&ctx, &self.state, !running.is_empty(), &mut actions);
+        self.dropped.receive(&ctx, &self.state, !running.is_empty(), &mut actions);
         Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
             status::show(ui, &self.state, self.pointed.as_ref(), &running, self.block.device(), &mut actions);
         });

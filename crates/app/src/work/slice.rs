@@ -4,7 +4,7 @@ use super::fence::{self, FenceRequest};
 use super::latest_value::{Inbox, LatestValueWorker};
 use super::{Event, Outbox, Rocks};
 use crate::state::SectionKind;
-use figure::cut::{SectionCut, Source};
+use figure::cut::{SectionCut, SectionSource};
 use project::picture::load::Loaded;
 use render::{DrawnWell, FaceData, NamedVolume};
 use std::collections::HashMap;
@@ -82,8 +82,12 @@ impl Slices {
 }
 
 /// The data that sections are cut from.
-pub(super) fn source<'a>(loaded: &'a Loaded, volumes: &'a [NamedVolume<'a>], wells: &'a [DrawnWell<'a>]) -> Source<'a> {
-    Source { data: loaded.inputs(volumes, wells), raw: loaded.raw.as_ref() }
+pub(super) fn source<'a>(
+    loaded: &'a Loaded,
+    volumes: &'a [NamedVolume<'a>],
+    wells: &'a [DrawnWell<'a>],
+) -> SectionSource<'a> {
+    SectionSource { data: loaded.inputs(volumes, wells), raw: loaded.raw.as_ref() }
 }
 
 /// Cuts a section from the loaded data.

@@ -3,7 +3,7 @@
 //! Space: s, voxels along the line from its beginning; t, samples down. A leg is a plane of its own; the
 //! lines of all are put one after the other.
 
-use super::{CutLine, Source, lines_of, pixels};
+use super::{CutLine, SectionSource, lines_of, pixels};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::section::SectionPlane;
@@ -26,7 +26,7 @@ pub struct FenceCut {
 
 impl FenceCut {
     /// Cuts along a line of two corners or more; `show` says what of the candidates lies over the amplitudes.
-    pub fn new(source: &Source, corners: &[DVec2], show: FaceData) -> Self {
+    pub fn new(source: &SectionSource, corners: &[DVec2], show: FaceData) -> Self {
         let depth = source.data.geometry.size()[2].saturating_sub(1).max(1) as f64;
         let stations = stations(corners);
         let length = stations.last().copied().unwrap_or(0.0);

@@ -21,7 +21,7 @@ use ttf::RawColour;
 
 /// What sections are cut from. Cheap to copy.
 #[derive(Clone, Copy)]
-pub struct Source<'a> {
+pub struct SectionSource<'a> {
     /// Geometry, model, volumes and candidates, as renderers take them.
     pub data: Inputs<'a>,
     /// The volume that is shown, and its colours.
@@ -71,7 +71,7 @@ impl SectionCut {
     /// assert_eq!(inline.image.dimensions(), (5, 6));
     /// assert!(inline.image.pixels().all(|pixel| pixel.0 == [255; 4]));
     /// ```
-    pub fn new(source: &Source, kind: SectionKind, at: f64, show: FaceData) -> Self {
+    pub fn new(source: &SectionSource, kind: SectionKind, at: f64, show: FaceData) -> Self {
         let plane = kind.plane(at, source.data.geometry.size());
         let [width, height] = plane.extent.map(|extent| extent.round() as u32 + 1);
         let (origin, s_axis, t_axis) = (plane.origin.as_vec3(), plane.s_axis.as_vec3(), plane.t_axis.as_vec3());
@@ -81,7 +81,7 @@ impl SectionCut {
 }
 
 /// Where horizons and faults of the model meet a plane: what was interpreted, not what merely bounds it.
-fn lines_of(source: &Source, plane: &SectionPlane) -> Vec<CutLine> {
+fn lines_of(source: &SectionSource, plane: &SectionPlane) -> Vec<CutLine> {
     let Some(model) = source.data.model else { return Vec::new() };
     let section = Section::new(model, plane);
     let is_interpreted = |kind: LineKind| !matches!(kind, LineKind::Frame | LineKind::Fault { real: false, .. });

@@ -1,6 +1,6 @@
 //! The raster of a section: amplitudes, and candidates over them.
 
-use super::Source;
+use super::SectionSource;
 use crate::style::NO_DATA;
 use glam::Vec3;
 use image::{Rgba, RgbaImage};
@@ -12,7 +12,7 @@ const COLOURS: usize = 1024;
 
 /// Amplitudes, or candidates over them, at the places of a raster's pixels; grey where there are no data.
 pub(super) fn raster(
-    source: &Source,
+    source: &SectionSource,
     size: [u32; 2],
     show: FaceData,
     place: impl Fn(f32, f32) -> Vec3 + Sync,
@@ -36,7 +36,7 @@ pub(super) fn raster(
 }
 
 /// The colour of the raw data at a place; none where there are no data.
-fn raw_colour<'a>(source: &'a Source) -> impl Fn(Vec3) -> Option<[u8; 4]> + Sync + 'a {
+fn raw_colour<'a>(source: &'a SectionSource) -> impl Fn(Vec3) -> Option<[u8; 4]> + Sync + 'a {
     let volumes = source.data.volumes;
     let found = source.raw.and_then(|raw| Some((raw, volumes.iter().find(|volume| volume.name == raw.volume)?)));
     let baked = found.map(|(raw, volume)| {

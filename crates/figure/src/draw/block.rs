@@ -4,7 +4,7 @@ use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};
 use crate::Rect;
 use crate::error::FigureError;
-use crate::interpretation::Interpretation;
+use crate::interpretation::DrawnInterpretation;
 use crate::list::{Across, Group, GroupKind, POINTS_PER_INCH, Path, PathItem, Picture, Stroke, Text, Upright};
 use crate::style::{ACCENT, FRAME_PT, INK, RULE_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
@@ -103,9 +103,9 @@ pub struct BlockPanel<'a> {
     pub geometry: &'a SurveyGeometry,
     /// One picture, or two.
     pub comparison: Comparison,
-    /// Surfaces and sticks before it.
-    pub interpretation: Option<&'a Interpretation<'a>>,
-    /// Whether surfaces are laid over the picture; where it is seen through, the picture has them itself.
+    /// Surfaces and sticks in front of it.
+    pub interpretation: Option<&'a DrawnInterpretation<'a>>,
+    /// Whether surfaces are laid over the picture; in volume rendering the picture contains them.
     pub has_surfaces: bool,
     /// Dots an inch that pictures are drawn at.
     pub dpi: f64,
@@ -151,7 +151,7 @@ impl BlockPanel<'_> {
     }
 
     /// Surfaces and sticks before the block.
-    fn lay_over(&self, group: &mut Group, scene: &Scene, view: &View, shown: &Interpretation, pane: Rect) {
+    fn lay_over(&self, group: &mut Group, scene: &Scene, view: &View, shown: &DrawnInterpretation, pane: Rect) {
         let [nx, ny, _] = self.geometry.size();
         if self.has_surfaces {
             let mut cells: Vec<(Cells, ttf::Colour, f32)> = Vec::new();

@@ -6,7 +6,7 @@
 
 use crate::cut::traces::{self, Line};
 use crate::cut::{SectionKind, station_of};
-use crate::interpretation::{Interpretation, PickedSheets, SheetHole, TraceSheet};
+use crate::interpretation::{DrawnInterpretation, PickedSheets, SheetHole, TraceSheet};
 use crate::list::{Group, GroupKind, Ink, Path, PathItem, Stroke};
 use crate::style::{FAULT_PT, HORIZON_PT, PROPOSAL, RIM_OPACITY, RIM_PT};
 use glam::{DVec2, DVec3};
@@ -93,7 +93,7 @@ impl SeenOn<'_> {
 
 impl OverlayLines {
     /// Cuts an interpretation; `[inlines, crosslines]` is the survey's size.
-    pub fn new(shown: &Interpretation, size: [usize; 2], on: SeenOn) -> Self {
+    pub fn new(shown: &DrawnInterpretation, size: [usize; 2], on: SeenOn) -> Self {
         let named = |horizon: &PickedSheets, lines: Vec<Line>| NamedLines {
             name: horizon.name.to_owned(),
             colour: horizon.colour,
@@ -178,7 +178,7 @@ fn is_empty(item: &crate::list::Item) -> bool {
 }
 
 /// The sticks that lie near a section or a fence.
-pub fn sticks(shown: &Interpretation, on: SeenOn, page: impl Fn(DVec2) -> DVec2) -> Vec<Group> {
+pub fn sticks(shown: &DrawnInterpretation, on: SeenOn, page: impl Fn(DVec2) -> DVec2) -> Vec<Group> {
     let near = shown.sticks.iter().filter_map(|stick| Some((on.stick(&stick.places)?, stick.colour)));
     near.map(|(places, colour)| stick(places.into_iter().map(&page).collect(), colour)).collect()
 }

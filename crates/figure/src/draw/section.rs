@@ -8,7 +8,7 @@ use super::overlay::{self, OverlayLines, SeenOn};
 use super::{NamedColour, scale};
 use crate::Rect;
 use crate::cut::CutLine;
-use crate::interpretation::Interpretation;
+use crate::interpretation::DrawnInterpretation;
 use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Picture, Stroke, Text, Upright};
 use crate::style::{ACCENT, FAULT_PT, HORIZON_PT, INK, NUMBER_PT, QUIET_INK, RIM_OPACITY, RIM_PT, TITLE_PT};
 use glam::DVec2;
@@ -35,7 +35,7 @@ pub struct SectionContents<'a> {
     /// Names of faults, by index.
     pub faults: &'a [String],
     /// What an interpreter sees over it.
-    pub interpretation: Option<(&'a Interpretation<'a>, &'a OverlayLines, SeenOn<'a>)>,
+    pub interpretation: Option<(&'a DrawnInterpretation<'a>, &'a OverlayLines, SeenOn<'a>)>,
     /// Where other sections run.
     pub marks: Marks,
 }

@@ -15,7 +15,7 @@ pub fn draw(
     library: &TextureLibrary,
     [width, height]: [u32; 2],
     px_per_mm: f32,
-) -> Result<RgbaImage, ttf::Error> {
+) -> Result<RgbaImage, ttf::TtfError> {
     let place = format!("layer `{}`", style.layer);
     let mut textures = Vec::new();
     for interval in &style.intervals {

@@ -109,11 +109,11 @@ fn joined(pieces: &[[(Crossing, DVec2); 2]]) -> Vec<Vec<DVec2>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::grid::Node;
+    use super::super::grid::MapNode;
     use super::*;
 
     fn grid_of(size: [usize; 2], value: impl Fn(f64, f64) -> f64 + Sync) -> Grid {
-        Grid::by(size, |x, y| Node { value: value(x as f64, y as f64), block: 0, is_open: false })
+        Grid::by(size, |x, y| MapNode { value: value(x as f64, y as f64), block: 0, is_open: false })
     }
 
     #[test]

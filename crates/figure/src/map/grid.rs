@@ -4,7 +4,7 @@
 //! has it, there is no value.
 
 use super::Mapped;
-use crate::interpretation::{Interpretation, SheetHole};
+use crate::interpretation::{DrawnInterpretation, SheetHole};
 use glam::Vec3;
 use model::StructuralModel;
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use survey::{Quality, SurveyGeometry};
 
 /// What is known at a trace.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Node {
+pub(super) struct MapNode {
     /// In the survey's unit; NaN where there is none.
     pub(super) value: f64,
     /// Fault block.
@@ -24,26 +24,26 @@ pub(super) struct Node {
 /// All traces, `[inline][crossline]`.
 pub(super) struct Grid {
     pub(super) size: [usize; 2],
-    nodes: Vec<Node>,
+    nodes: Vec<MapNode>,
 }
 
 /// The shallowest place of a horizon at a trace, voxel z.
-struct Place {
+struct ShallowestPlace {
     z: f32,
     block: u16,
     is_open: bool,
 }
 
 impl Grid {
-    pub(super) fn by(size: [usize; 2], node: impl Fn(usize, usize) -> Node + Sync) -> Self {
+    pub(super) fn by(size: [usize; 2], node: impl Fn(usize, usize) -> MapNode + Sync) -> Self {
         Self { size, nodes: (0..size[0] * size[1]).into_par_iter().map(|n| node(n / size[1], n % size[1])).collect() }
     }
 
-    pub(super) fn at(&self, x: usize, y: usize) -> Node {
+    pub(super) fn at(&self, x: usize, y: usize) -> MapNode {
         self.nodes[x * self.size[1] + y]
     }
 
-    pub(super) fn nodes(&self) -> &[Node] {
+    pub(super) fn nodes(&self) -> &[MapNode] {
         &self.nodes
     }
 
@@ -60,20 +60,20 @@ impl Grid {
             });
             let (z, block) = places.min_by(|a, b| a.0.total_cmp(&b.0))?;
             let quality = model.quality_at(horizon, block, x, y);
-            Some(Place { z, block, is_open: !matches!(quality, Quality::Picked | Quality::Tracked) })
+            Some(ShallowestPlace { z, block, is_open: !matches!(quality, Quality::Picked | Quality::Tracked) })
         };
         let count = model.stratigraphy().horizons.len();
         mapped.is_among(count).then(|| Self::of(geometry, mapped, place))
     }
 
     /// Of sheets as they were picked; `None` when there is no such horizon.
-    pub(super) fn of_sheets(geometry: &SurveyGeometry, shown: &Interpretation, mapped: Mapped) -> Option<Self> {
+    pub(super) fn of_sheets(geometry: &SurveyGeometry, shown: &DrawnInterpretation, mapped: Mapped) -> Option<Self> {
         let [_, ny, _] = geometry.size();
         let place = |horizon: usize, x: usize, y: usize| {
             let n = x * ny + y;
             let sheets = shown.horizons[horizon].sheets.iter().map(|sheet| (sheet.z[n], sheet));
             let (z, sheet) = sheets.filter(|(z, _)| z.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))?;
-            Some(Place { z, block: sheet.block, is_open: sheet.quality[n] == Quality::Filled })
+            Some(ShallowestPlace { z, block: sheet.block, is_open: sheet.quality[n] == Quality::Filled })
         };
         if !mapped.is_among(shown.horizons.len()) {
             return None;
@@ -94,19 +94,19 @@ impl Grid {
     fn of(
         geometry: &SurveyGeometry,
         mapped: Mapped,
-        place: impl Fn(usize, usize, usize) -> Option<Place> + Sync,
+        place: impl Fn(usize, usize, usize) -> Option<ShallowestPlace> + Sync,
     ) -> Self {
         let vertical = &geometry.vertical;
-        let nothing = Node { value: f64::NAN, block: 0, is_open: false };
+        let nothing = MapNode { value: f64::NAN, block: 0, is_open: false };
         let [nx, ny, _] = geometry.size();
         Self::by([nx, ny], |x, y| match mapped {
-            Mapped::Structure(horizon) => place(horizon, x, y).map_or(nothing, |at| Node {
+            Mapped::Structure(horizon) => place(horizon, x, y).map_or(nothing, |at| MapNode {
                 value: vertical.value_at(f64::from(at.z)),
                 block: at.block,
                 is_open: at.is_open,
             }),
             Mapped::Thickness(upper, lower) => match (place(upper, x, y), place(lower, x, y)) {
-                (Some(top), Some(base)) => Node {
+                (Some(top), Some(base)) => MapNode {
                     value: f64::from((base.z - top.z).max(0.0)) * vertical.interval,
                     block: top.block,
                     is_open: top.is_open || base.is_open,

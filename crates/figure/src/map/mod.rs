@@ -12,7 +12,7 @@ mod smooth;
 
 pub(crate) use labels::{Room, drawn};
 
-use crate::interpretation::Interpretation;
+use crate::interpretation::DrawnInterpretation;
 use glam::DVec2;
 use grid::Grid;
 use image::{Rgba, RgbaImage};
@@ -45,7 +45,7 @@ pub enum MapSource<'a> {
     /// The model.
     Model(&'a StructuralModel),
     /// The horizons as they were picked, without a model.
-    Sheets(&'a Interpretation<'a>),
+    Sheets(&'a DrawnInterpretation<'a>),
 }
 
 /// A contour.

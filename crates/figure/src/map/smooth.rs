@@ -11,7 +11,7 @@
 //! jitter, and a step that was tracked without a fault stays one. Colours and the range are those of the
 //! picks.
 
-use super::grid::{Grid, Node};
+use super::grid::{Grid, MapNode};
 
 /// Most that a trace may be moved by, contour intervals.
 const MOST: f64 = 0.5;
@@ -26,7 +26,7 @@ pub(super) fn smoothed(grid: &Grid, interval: f64) -> Grid {
     let sigma = (SHARE * nx.max(ny) as f64).clamp(SIGMA[0], SIGMA[1]);
     let passes = (2.0 * sigma * sigma).round() as usize;
     let picked: Vec<f64> = grid.nodes().iter().map(|node| node.value).collect();
-    let joined = |a: &Node, b: &Node| a.value.is_finite() && b.value.is_finite() && a.block == b.block;
+    let joined = |a: &MapNode, b: &MapNode| a.value.is_finite() && b.value.is_finite() && a.block == b.block;
     // Traces that both neighbours along a line belong to, for inlines and crosslines.
     let lines = [(nx, ny), (ny, 1)].map(|(count, step)| {
         let nodes = grid.nodes();
@@ -48,7 +48,7 @@ pub(super) fn smoothed(grid: &Grid, interval: f64) -> Grid {
     let most = MOST * interval;
     Grid::by([nx, ny], |x, y| {
         let n = x * ny + y;
-        Node { value: picked[n] + (values[n] - picked[n]).clamp(-most, most), ..grid.at(x, y) }
+        MapNode { value: picked[n] + (values[n] - picked[n]).clamp(-most, most), ..grid.at(x, y) }
     })
 }
 
@@ -60,7 +60,7 @@ mod tests {
 
     /// In two blocks, with a hole in the first.
     fn holed(value: impl Fn(f64, f64) -> f64 + Sync) -> Grid {
-        Grid::by(SIZE, |x, y| Node {
+        Grid::by(SIZE, |x, y| MapNode {
             value: if x.abs_diff(10) < 3 && y.abs_diff(12) < 4 { f64::NAN } else { value(x as f64, y as f64) },
             block: u16::from(3 * x > 60 + y),
             is_open: false,
@@ -94,7 +94,7 @@ mod tests {
         let fold = |x: f64, y: f64| 30.0 * (x / 12.0).sin() + y;
         let noisy = Grid::by(SIZE, |x, y| {
             let (x, y) = (x as f64, y as f64);
-            Node { value: fold(x, y) + jitter(x, y), block: 0, is_open: false }
+            MapNode { value: fold(x, y) + jitter(x, y), block: 0, is_open: false }
         });
         let smooth = smoothed(&noisy, 1e9);
         let rms = |grid: &Grid| {
@@ -109,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_step_moves_by_half_an_interval_and_no_more() {
-        let step = Grid::by(SIZE, |x, _| Node { value: if x < 20 { 0.0 } else { 40.0 }, block: 0, is_open: false });
+        let step = Grid::by(SIZE, |x, _| MapNode { value: if x < 20 { 0.0 } else { 40.0 }, block: 0, is_open: false });
         let moved = apart(&step, &smoothed(&step, 5.0));
         assert!((moved - 2.5).abs() < 1e-9, "{moved}");
     }

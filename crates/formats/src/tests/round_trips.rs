@@ -114,8 +114,9 @@ fn rotated_surveys_are_resampled_for_formats_without_rotation_or_refused() {
             written.sheets[0] = Sheet::new(grid, depth, Quality::Picked);
             let path = folder.path().join("a.grid");
             let refuse = ExportOptions { when_rotated: WhenRotated::Refuse };
-            let error = write_horizon_as(&path, &written, &geometry, format, &refuse).unwrap_err().to_string();
-            assert!(error.contains("rotated") && error.contains("--when-rotated") && !path.exists(), "{error}");
+            let error = write_horizon_as(&path, &written, &geometry, format, &refuse).unwrap_err();
+            assert!(error.to_string().contains("rotated by") && !path.exists(), "{error}");
+            assert_eq!(error.remedy().unwrap().to_string(), "rotated grids resample");
             let report = write_horizon(&path, &written, &geometry, format).unwrap();
             assert!(report.notes[0].contains("resampled"), "{:?}", report.notes);
             let options = ImportOptions { value_order: Some(ValueOrder::Columns), ..ImportOptions::default() };

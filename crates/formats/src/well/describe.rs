@@ -1,4 +1,4 @@
-//! The description of a well's file before its import, for `petroglyph info`.
+//! The description of a well's file before its import.
 
 use super::columns::WellColumn;
 use super::error::WellFileError;

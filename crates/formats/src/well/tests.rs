@@ -87,17 +87,17 @@ fn what_is_missing_is_said() {
         format!("{error}; {}", error.remedy().unwrap_or_default())
     };
     let plain = WellOptions::default();
-    assert!(refused("md,inc,azi\n0,0,0\n10,0,0\n", &plain).contains("--head"));
+    assert!(refused("md,inc,azi\n0,0,0\n10,0,0\n", &plain).contains("X and Y of the head"));
     assert!(refused("a,b,c\n1,2,3\n", &options()).contains("md_m,inclination_deg"));
     assert!(refused("md,inc,azi\n0,0,0\nten,0,0\n", &options()).contains("line 3"));
     assert!(refused("md,inc,azi\n0,0,0\n0,0,0\n", &options()).contains("increase"));
     assert!(refused("md,inc,azi\n0,0,0\n100,200,0\n", &options()).contains("inclination"));
     assert!(refused("md,inc,azi\n0,0,0\n100,170,0\n", &options()).contains("170 degrees"));
-    assert!(refused("md,x,y,tvdss\n0,0,0,0\n100,0,0,328\n", &options()).contains("--md-unit"));
+    assert!(refused("md,x,y,tvdss\n0,0,0,0\n100,0,0,328\n", &options()).contains("unit along the well"));
     assert!(refused("", &options()).contains("no rows"));
     let assumed = read("md,inc,azi\n0,0,0\n100,0,0\n", &WellOptions { datum_m: None, ..options() });
-    assert!(assumed.warnings[0].to_string().contains("--kb"), "{:?}", assumed.warnings);
-    assert!(assumed.notes.iter().any(|n| n.to_string().contains("--md-unit")));
+    assert!(assumed.warnings[0].to_string().contains("datum above sea level"), "{:?}", assumed.warnings);
+    assert!(assumed.notes.iter().any(|n| n.to_string().contains("unit along the well")));
 }
 
 #[test]

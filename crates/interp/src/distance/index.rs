@@ -7,7 +7,7 @@
 //! row once.
 
 use super::triangle::CellTriangle;
-use crate::error::Error;
+use crate::error::InterpError;
 use crate::forest::Forest;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -44,11 +44,11 @@ fn cell(forest: &Forest, triangle: [u32; 3]) -> [usize; 2] {
 }
 
 impl TriangleLists {
-    pub(super) fn new(forest: &Forest) -> Result<Self, Error> {
+    pub(super) fn new(forest: &Forest) -> Result<Self, InterpError> {
         let all = &forest.surfaces.triangles;
         let chunks = (0..all.len().div_ceil(CHUNK)).into_par_iter();
         let chunks = chunks.map(|n| TriangleList::new(forest, n * CHUNK..((n + 1) * CHUNK).min(all.len())));
-        Ok(Self { chunks: chunks.collect::<Result<_, Error>>()? })
+        Ok(Self { chunks: chunks.collect::<Result<_, InterpError>>()? })
     }
 
     fn of_row(&self, row: usize) -> impl Iterator<Item = u32> {
@@ -58,7 +58,7 @@ impl TriangleLists {
 }
 
 impl TriangleList {
-    fn new(forest: &Forest, range: Range<usize>) -> Result<Self, Error> {
+    fn new(forest: &Forest, range: Range<usize>) -> Result<Self, InterpError> {
         let mut starts = vec![0u32; forest.surfaces.size[0].div_ceil(BRICK) + 1];
         let mut rows = Vec::with_capacity(range.len());
         for n in range.clone() {
@@ -66,7 +66,7 @@ impl TriangleList {
             if !within_a_cell(forest, triangle) {
                 let surface = forest.surfaces.surfaces.partition_point(|part| part.triangles.end as usize <= n);
                 let fact = "a triangle does not lie within one cell of the lattice with its corners on three traces";
-                return Err(Error::MalformedSurfaces { surface, fact });
+                return Err(InterpError::MalformedSurfaces { surface, fact });
             }
             let row = cell(forest, triangle)[0] / BRICK;
             starts[row + 1] += 1;

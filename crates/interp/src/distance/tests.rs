@@ -173,7 +173,7 @@ fn blocks_and_threads_leave_no_trace() {
     let mut slabs: Vec<u8> = Vec::new();
     let take = |slab: CandidateColumns| {
         slabs.extend(slab.distance);
-        Ok::<(), Error>(())
+        Ok::<(), InterpError>(())
     };
     distances.slabs(13, &silent, take).unwrap();
     assert_eq!(slabs, wanted.distance);
@@ -203,14 +203,17 @@ fn what_cannot_be_is_refused() {
     let settings = DistanceSettings::default();
     surfaces.triangles[0] = [0, 7, 14];
     let wide = Forest { surfaces: surfaces.clone(), ..forest(sheets([6, 6, 8], &[&|_, _| 3.0], |_, _, _| true), 500) };
-    assert!(matches!(LeafDistances::new(&wide, &settings), Err(Error::MalformedSurfaces { .. })));
+    assert!(matches!(LeafDistances::new(&wide, &settings), Err(InterpError::MalformedSurfaces { .. })));
     let none = Forest::default();
     for max_distance in [0.0, -1.0, f32::NAN, 65.0] {
-        assert!(matches!(LeafDistances::new(&none, &DistanceSettings { max_distance }), Err(Error::Setting { .. })));
+        assert!(matches!(
+            LeafDistances::new(&none, &DistanceSettings { max_distance }),
+            Err(InterpError::Setting { .. })
+        ));
     }
     let good = forest(sheets([6, 6, 8], &[&|_, _| 3.0], |_, _, _| true), 500);
     let progress = Progress::silent();
     progress.cancel();
     let cancelled = LeafDistances::new(&good, &settings).unwrap().columns(0..6, 0..6, &progress);
-    assert!(matches!(cancelled, Err(Error::Cancelled(_))));
+    assert!(matches!(cancelled, Err(InterpError::Cancelled(_))));
 }

@@ -98,7 +98,7 @@ fn slabs_give_what_memory_holds() {
     let cancelled = Progress::silent();
     cancelled.cancel();
     let again = extract_into(kept(&mut done), "other", &volume, &settings, &cancelled);
-    assert!(matches!(again, Err(Error::Cancelled(_))));
+    assert!(matches!(again, Err(InterpError::Cancelled(_))));
     assert_eq!(done, None, "a sink is not ended by a cancel");
 }
 
@@ -107,7 +107,7 @@ fn a_sink_that_fails_is_said() {
     let full = |_: [usize; 3], _: usize| -> Result<Kept<'static>, SourceError> { Err("the disk is full".into()) };
     let settings = ExtractSettings::default();
     let error = extract_into(full, "", &layered([8, 8, 40]), &settings, &Progress::silent()).unwrap_err();
-    assert!(matches!(error, Error::Sink(_)) && error.to_string() == "the disk is full");
+    assert!(matches!(error, InterpError::Sink(_)) && error.to_string() == "the disk is full");
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn settings_that_cannot_be_are_refused() {
     let volume = layered([8, 8, 40]);
     let refused = |settings: ExtractSettings| extract(&volume, &settings, &Progress::silent()).unwrap_err();
     let grow = GrowSettings { min_front_width: 0, ..GrowSettings::default() };
-    assert!(matches!(refused(ExtractSettings { grow, ..ExtractSettings::default() }), Error::Growing(_)));
+    assert!(matches!(refused(ExtractSettings { grow, ..ExtractSettings::default() }), InterpError::Growing(_)));
     let distance = DistanceSettings { max_distance: f32::NAN };
-    assert!(matches!(refused(ExtractSettings { distance, ..ExtractSettings::default() }), Error::Setting { .. }));
+    assert!(matches!(refused(ExtractSettings { distance, ..ExtractSettings::default() }), InterpError::Setting { .. }));
 }

@@ -1,7 +1,7 @@
 //! Cutting a leaf further, for an interpreter who wants less than a leaf.
 
 use super::{Forest, ForestSettings, Node, tree};
-use crate::error::Error;
+use crate::error::InterpError;
 use survey::Progress;
 
 /// The tree inside a leaf. The same forest, leaf and size always give the same tree.
@@ -21,10 +21,10 @@ impl Forest {
     /// Cuts a leaf into parts of at least `min_triangles`, starting from its single triangles.
     ///
     /// # Errors
-    /// [`Error::NoSuchLeaf`], [`Error::Setting`] when `min_triangles` is 0.
-    pub fn split(&self, leaf: u32, min_triangles: u32) -> Result<Subtree, Error> {
+    /// [`InterpError::NoSuchLeaf`], [`InterpError::Setting`] when `min_triangles` is 0.
+    pub fn split(&self, leaf: u32, min_triangles: u32) -> Result<Subtree, InterpError> {
         if min_triangles == 0 {
-            return Err(Error::Setting { setting: "min_triangles", value: 0.0, expected: "at least 1" });
+            return Err(InterpError::Setting { setting: "min_triangles", value: 0.0, expected: "at least 1" });
         }
         let node = &self.nodes[self.node_of_leaf(leaf)? as usize];
         let range = node.triangles.start as usize..node.triangles.end as usize;

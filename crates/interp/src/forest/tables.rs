@@ -1,7 +1,7 @@
 //! Conversion of a forest to the tables of the store and back.
 
 use super::{Forest, Node, check};
-use crate::error::Error;
+use crate::error::InterpError;
 use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
 use survey::candidates::ForestTables;
 
@@ -45,9 +45,9 @@ impl Forest {
     /// The forest that tables describe, in a volume of `size`.
     ///
     /// # Errors
-    /// [`Error::DamagedForest`] or [`Error::MalformedSurfaces`] when they contradict each other.
-    pub fn from_tables(tables: ForestTables, size: [usize; 3]) -> Result<Self, Error> {
-        let damaged = |fact| Err(Error::DamagedForest { fact });
+    /// [`InterpError::DamagedForest`] or [`InterpError::MalformedSurfaces`] when they contradict each other.
+    pub fn from_tables(tables: ForestTables, size: [usize; 3]) -> Result<Self, InterpError> {
+        let damaged = |fact| Err(InterpError::DamagedForest { fact });
         if tables.trace.len() != tables.z.len() {
             return damaged("vertices have not as many traces as depths");
         }
@@ -71,16 +71,16 @@ impl Forest {
     /// leaves.
     ///
     /// # Errors
-    /// [`Error::DamagedForest`] when they contradict each other.
-    pub fn of_nodes(nodes: Vec<[u32; 6]>) -> Result<Self, Error> {
+    /// [`InterpError::DamagedForest`] when they contradict each other.
+    pub fn of_nodes(nodes: Vec<[u32; 6]>) -> Result<Self, InterpError> {
         let mut forest = Self::default();
         forest.read_nodes(nodes, usize::MAX, u32::MAX)?;
         Ok(forest)
     }
 
     /// Takes rows of nodes; answers the end of the last leaf's triangles.
-    fn read_nodes(&mut self, nodes: Vec<[u32; 6]>, surfaces: usize, triangles: u32) -> Result<u32, Error> {
-        let damaged = |fact| Err(Error::DamagedForest { fact });
+    fn read_nodes(&mut self, nodes: Vec<[u32; 6]>, surfaces: usize, triangles: u32) -> Result<u32, InterpError> {
+        let damaged = |fact| Err(InterpError::DamagedForest { fact });
         let count = nodes.len() as u32;
         for (index, [parent, a, b, surface, first, end]) in nodes.into_iter().enumerate() {
             let index = index as u32;

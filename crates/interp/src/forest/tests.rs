@@ -243,7 +243,7 @@ fn a_leaf_can_be_split_further() {
     let ends: Vec<_> = part.nodes.iter().filter(|node| node.children.is_none()).collect();
     assert!(ends.len() > 2 && ends.iter().all(|node| node.triangles.len() >= 60));
     assert_eq!(part, forest.split(leaf, 60).unwrap());
-    assert!(matches!(forest.split(9999, 60), Err(Error::NoSuchLeaf { leaf: 9999, .. })));
+    assert!(matches!(forest.split(9999, 60), Err(InterpError::NoSuchLeaf { leaf: 9999, .. })));
     assert!(forest.split(leaf, 0).is_err());
     assert_eq!(forest.split(leaf, 1_000_000).unwrap().nodes.len(), 1);
 }
@@ -253,11 +253,11 @@ fn contradictory_arrays_and_cancellation_are_answered() {
     let mut surfaces = sheets([6, 6, 8], &[&|_, _| 3.0], |_, _, _| true);
     surfaces.triangles[3][1] = 36;
     let built = Forest::build(surfaces.clone(), &ForestSettings::default(), &Progress::silent());
-    assert!(matches!(built, Err(Error::MalformedSurfaces { surface: 0, .. })));
+    assert!(matches!(built, Err(InterpError::MalformedSurfaces { surface: 0, .. })));
     surfaces.triangles[3][1] = 1;
     let progress = Progress::silent();
     progress.cancel();
-    assert!(matches!(Forest::build(surfaces, &ForestSettings::default(), &progress), Err(Error::Cancelled(_))));
+    assert!(matches!(Forest::build(surfaces, &ForestSettings::default(), &progress), Err(InterpError::Cancelled(_))));
 }
 
 #[test]
@@ -268,11 +268,11 @@ fn a_forest_survives_its_tables_and_damaged_tables_are_refused() {
     assert_eq!(Forest::from_tables(forest.tables(), size).unwrap(), forest);
     let mut tables = forest.tables();
     tables.nodes[1][0] = 7;
-    assert!(matches!(Forest::from_tables(tables, size), Err(Error::DamagedForest { .. })));
+    assert!(matches!(Forest::from_tables(tables, size), Err(InterpError::DamagedForest { .. })));
     let mut tables = forest.tables();
     tables.nodes.pop();
     assert!(Forest::from_tables(tables, size).is_err());
     let mut tables = forest.tables();
     tables.triangles[5][0] = u32::MAX;
-    assert!(matches!(Forest::from_tables(tables, size), Err(Error::MalformedSurfaces { .. })));
+    assert!(matches!(Forest::from_tables(tables, size), Err(InterpError::MalformedSurfaces { .. })));
 }

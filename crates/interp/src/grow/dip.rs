@@ -9,7 +9,7 @@
 //! a trace.
 
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
-use super::smoothing::{self, Passable, Scratch};
+use super::smoothing::{self, Passable, SmoothingScratch};
 use crate::extrema::Extrema;
 use rayon::prelude::*;
 use survey::{Cancelled, Progress};
@@ -160,7 +160,7 @@ pub(super) fn along_surfaces(
     links: &Links,
     dips: &mut [[f32; 2]],
     scale: f32,
-    scratch: &mut Scratch,
+    scratch: &mut SmoothingScratch,
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     let count = extrema.len();
@@ -184,7 +184,7 @@ pub(super) fn along_surfaces(
         }
     });
     // A link contributes to both of its ends.
-    let Scratch { values, spare } = scratch;
+    let SmoothingScratch { values, spare } = scratch;
     let forward = &marks;
     let passable: Vec<u8> = values
         .par_iter_mut()

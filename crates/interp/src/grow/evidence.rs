@@ -13,7 +13,7 @@
 //! evidence. A strong extremum without a partner has the greatest E. E is stored in quarters, at most
 //! [`MOST`].
 use super::links::{BACK_X, BACK_Y, Links, NEXT_X, NEXT_Y, NONE};
-use super::smoothing::{self, Four, Scratch};
+use super::smoothing::{self, Four, SmoothingScratch};
 use super::surroundings::Surroundings;
 use crate::extrema::Extrema;
 use rayon::prelude::*;
@@ -181,7 +181,7 @@ pub(super) fn evidence(
     links: &Links,
     dips: &[[f32; 2]],
     noise: &Noise,
-    scratch: &mut Scratch,
+    scratch: &mut SmoothingScratch,
     progress: &Progress,
 ) -> Result<Vec<[u8; 2]>, Cancelled> {
     let mut found = vec![[0u8; 2]; extrema.len()];

@@ -23,7 +23,7 @@
 
 use super::evidence::MOST;
 use super::links::{Links, NEXT_X, NEXT_Y, NONE};
-use super::smoothing::{self, Four, Passable, Scratch};
+use super::smoothing::{self, Four, Passable, SmoothingScratch};
 use crate::extrema::Extrema;
 use crate::surfaces::Extremum;
 use rayon::prelude::*;
@@ -200,7 +200,7 @@ pub(super) fn part(
     own: &[f32],
     least: Least,
     evidence: &mut [[u8; 2]],
-    scratch: &mut Scratch,
+    scratch: &mut SmoothingScratch,
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     if own.is_empty() {

@@ -8,7 +8,7 @@
 
 use super::evidence::{self, Noise};
 use super::links::{self, Links, NEXT_X, NEXT_Y, NONE};
-use super::smoothing::Scratch;
+use super::smoothing::SmoothingScratch;
 use super::{GrowSettings, assemble, cells, dip, flood, lobes, merge, planes};
 use crate::extrema::Extrema;
 use crate::surfaces::Surfaces;
@@ -57,7 +57,7 @@ pub(super) fn grow(extrema: &[Extrema], settings: &GrowSettings, progress: &Prog
     progress.check()?;
     let own = if settings.lobe_share > 0.0 { lobes::own_heights(extrema) } else { vec![Vec::new(); extrema.len()] };
     progress.check()?;
-    let mut scratch = Scratch::default();
+    let mut scratch = SmoothingScratch::default();
     // One kind after the other: each is parallel inside, and the smoothing of its dips needs the most memory.
     let linked: Vec<Linked> = extrema
         .iter()
@@ -98,7 +98,7 @@ fn linked<'e>(
     own: &[f32],
     field: &dip::DipField,
     settings: &GrowSettings,
-    scratch: &mut Scratch,
+    scratch: &mut SmoothingScratch,
     progress: &Progress,
 ) -> Result<Linked<'e>, Cancelled> {
     let mut dips = field.at_extrema(extrema);

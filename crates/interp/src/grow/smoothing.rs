@@ -16,13 +16,13 @@ pub(super) type Four = [f32; 4];
 /// Two arrays for smoothing that are used again and again, because allocating fresh memory costs more than
 /// the work itself. Memory: 32 bytes an extremum.
 #[derive(Default)]
-pub(super) struct Scratch {
+pub(super) struct SmoothingScratch {
     /// The values to smooth, and afterwards the smoothed values.
     pub(super) values: Vec<Four>,
     pub(super) spare: Vec<Four>,
 }
 
-impl Scratch {
+impl SmoothingScratch {
     /// Resizes both arrays to `count` extrema. Their contents are undefined.
     pub(super) fn resize(&mut self, count: usize) {
         self.values.resize(count, [0.0; 4]);
@@ -95,7 +95,7 @@ pub(super) fn along(
     links: &Links,
     axis: usize,
     rounds: usize,
-    scratch: &mut Scratch,
+    scratch: &mut SmoothingScratch,
     progress: &Progress,
 ) -> Result<(), Cancelled> {
     let steps = Steps::new(links, Passable::All, axis);
@@ -115,7 +115,7 @@ pub(super) fn along(
     }
     for _ in 0..rounds {
         progress.check()?;
-        let Scratch { values, spare } = scratch;
+        let SmoothingScratch { values, spare } = scratch;
         extrema.split_inlines(spare).into_par_iter().enumerate().for_each(|(x, line)| {
             steps.round(extrema.on_inline(x).start, line, values, 0);
         });
@@ -125,9 +125,9 @@ pub(super) fn along(
 }
 
 /// One round along x, then one along y, on `scratch.values`.
-pub(super) fn across(extrema: &Extrema, links: &Links, passable: Passable<'_>, scratch: &mut Scratch) {
+pub(super) fn across(extrema: &Extrema, links: &Links, passable: Passable<'_>, scratch: &mut SmoothingScratch) {
     let [along_x, along_y] = [0, 1].map(|axis| Steps::new(links, passable, axis));
-    let Scratch { values, spare } = scratch;
+    let SmoothingScratch { values, spare } = scratch;
     extrema.split_inlines(spare).into_par_iter().enumerate().for_each_init(Vec::new, |between, (x, line)| {
         let first = extrema.on_inline(x).start;
         between.resize(line.len(), [0.0; 4]);

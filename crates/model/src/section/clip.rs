@@ -41,7 +41,7 @@ const WELD: f64 = 2e-3;
 
 /// What is known of a corner: sides of all faults, its block, and below which sheets of the block it lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Corner {
+struct CornerState {
     bits: u64,
     block: u16,
     below: u64,
@@ -68,7 +68,7 @@ struct Clipper<'a> {
     plane: &'a SectionPlane,
     cells: [usize; 2],
     positions: Vec<DVec2>,
-    corners: Vec<Corner>,
+    corners: Vec<CornerState>,
     /// Fault sides of vertices after the corners.
     cut_bits: Vec<u64>,
     /// Below which sheets of a block a vertex after the corners lies.
@@ -90,7 +90,7 @@ pub(super) fn arrange(model: &StructuralModel, plane: &SectionPlane) -> Arrangem
     let st =
         |i: usize, j: usize| DVec2::new(plane.extent[0] * i as f64 / ns as f64, plane.extent[1] * j as f64 / nt as f64);
     let positions: Vec<DVec2> = (0..=ns).flat_map(|i| (0..=nt).map(move |j| st(i, j))).collect();
-    let corners: Vec<Corner> = positions.par_iter().map(|&p| corner(model, plane.voxel(p))).collect();
+    let corners: Vec<CornerState> = positions.par_iter().map(|&p| corner(model, plane.voxel(p))).collect();
     let uniform: Vec<Option<Region>> = (0..ns * nt)
         .map(|c| {
             let n = c / nt * (nt + 1) + c % nt;
@@ -119,11 +119,11 @@ pub(super) fn arrange(model: &StructuralModel, plane: &SectionPlane) -> Arrangem
     clipper.finish(&uniform)
 }
 
-fn corner(model: &StructuralModel, p: DVec3) -> Corner {
+fn corner(model: &StructuralModel, p: DVec3) -> CornerState {
     let p = p.as_vec3();
     let bits = model.faults().bits_at(p);
     let block = model.faults().block_of(bits);
-    Corner { bits, block, below: model.below_at(p, block) }
+    CornerState { bits, block, below: model.below_at(p, block) }
 }
 
 impl Clipper<'_> {

@@ -46,7 +46,7 @@ use crate::interpretation::extraction::Extracted;
 use crate::interpretation::proposals::Proposals;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
-use survey::{Progress, SurveyGeometry};
+use survey::{Note, Progress, SurveyGeometry};
 
 /// A change to a project.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -217,6 +217,24 @@ impl Effect {
     /// history.
     pub(crate) fn is_nothing_new(&self) -> bool {
         matches!(self, Self::Extracted(_) | Self::FaultsProposed(_))
+    }
+
+    /// Every note whose remedy a user interface may reword.
+    pub fn notes_mut(&mut self) -> Vec<&mut Note> {
+        match self {
+            Self::VolumeImported(done) => done.evidence.iter_mut().chain(&mut done.assumptions).collect(),
+            Self::HorizonAdded(done) => done.report.warnings.iter_mut().collect(),
+            Self::FaultAdded(done) => done.report.warnings.iter_mut().collect(),
+            Self::WellAdded(done) => done.report.notes.iter_mut().chain(&mut done.report.warnings).collect(),
+            Self::Created
+            | Self::AttributeComputed(_)
+            | Self::Extracted(_)
+            | Self::FaultsProposed(_)
+            | Self::Picked(_)
+            | Self::Replayed(_)
+            | Self::HorizonFilled(_)
+            | Self::Changed { .. } => Vec::new(),
+        }
     }
 
     /// Records in the effect that something was computed before the command was carried out.

@@ -177,7 +177,10 @@ impl fmt::Display for WellAdded {
                 "  in survey   MD {first:.0} to {last:.0} m, {:.0} % of its length",
                 100.0 * placement.inside_share
             )?,
-            None => writeln!(f, "  in survey   nowhere: the well passes beside it; check --head and --kb")?,
+            None => writeln!(
+                f,
+                "  in survey   nowhere: the well passes beside it; check the X and Y of its head and its datum"
+            )?,
         }
         writeln!(f, "  vertical    {}", placement.time_depth)?;
         if self.dogleg_severity > 0.0 {

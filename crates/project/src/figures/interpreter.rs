@@ -4,7 +4,9 @@ use crate::content;
 use crate::error::ProjectError;
 use crate::interpretation::{assembly, proposals};
 use crate::project::Project;
-use figure::interpretation::{FaultMesh, Interpretation, PickedSheets, Selection, SheetHole, Stick, TraceSheet};
+use figure::interpretation::{
+    DrawnInterpretation, DrawnSelection, FaultMesh, PickedSheets, SheetHole, Stick, TraceSheet,
+};
 use glam::DVec3;
 use interp::faults::Proposal;
 use interp::holes::{Hole, find_holes};
@@ -52,7 +54,7 @@ struct Mesh {
 }
 
 /// The interpretation of a project.
-pub(super) struct Picks<'a> {
+pub(super) struct InterpreterPicks<'a> {
     view: &'a InterpreterView,
     horizons: Vec<Picked>,
     faults: Vec<Mesh>,
@@ -60,7 +62,7 @@ pub(super) struct Picks<'a> {
     sticks: Vec<Stick>,
 }
 
-impl<'a> Picks<'a> {
+impl<'a> InterpreterPicks<'a> {
     /// Reads the interpretation.
     pub(super) fn read(
         project: &Project,
@@ -99,17 +101,16 @@ impl<'a> Picks<'a> {
     }
 
     /// The interpretation in the form that figures take.
-    pub(super) fn borrowed(&self) -> Interpretation<'_> {
-        Interpretation {
+    pub(super) fn borrowed(&self) -> DrawnInterpretation<'_> {
+        DrawnInterpretation {
             horizons: self.horizons.iter().map(Picked::borrowed).collect(),
             faults: self.faults.iter().map(Mesh::borrowed).collect(),
             proposals: self.proposals.iter().map(Mesh::borrowed).collect(),
             sticks: self.sticks.clone(),
-            selection: self
-                .view
-                .selection
-                .as_ref()
-                .map(|(sheets, colour)| Selection { sheets: sheets.iter().map(borrowed).collect(), colour: *colour }),
+            selection: self.view.selection.as_ref().map(|(sheets, colour)| DrawnSelection {
+                sheets: sheets.iter().map(borrowed).collect(),
+                colour: *colour,
+            }),
             picked: self.view.picked.as_deref(),
         }
     }

@@ -14,11 +14,11 @@ use crate::picture::load::{self, Loaded, Stage};
 use crate::picture::{Device, Painter};
 use crate::project::Project;
 use crate::styles;
-use figure::cut::Source;
+use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::list::DisplayList;
 use figure::{Figure, FigureInputs, Part};
-use interpreter::Picks;
+use interpreter::InterpreterPicks;
 use model::StructuralModel;
 use render::{FaceData, Scene};
 use survey::Progress;
@@ -55,8 +55,8 @@ pub fn make(
 ) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
     let (loaded, model, mut stages) = load(project, figure, settings, progress)?;
-    let picks = if figure.interpretation { Some(Picks::read(project, view, progress)?) } else { None };
-    let shown = picks.as_ref().map(Picks::borrowed);
+    let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
+    let shown = picks.as_ref().map(InterpreterPicks::borrowed);
     let library = if figure.legend { Some(styles::pattern_library(project.root(), document)?) } else { None };
     let layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
@@ -65,7 +65,7 @@ pub fn make(
         data.model = Some(model);
     }
     let inputs = FigureInputs {
-        source: Source { data, raw: loaded.raw.as_ref() },
+        source: SectionSource { data, raw: loaded.raw.as_ref() },
         horizons: &horizons(document),
         faults: &document.faults.iter().map(|entry| entry.name.clone()).collect::<Vec<_>>(),
         layers: &layers,

@@ -3,6 +3,7 @@
 //! Every read and write of a project's own files goes through here, and so does every deletion.
 
 mod draft;
+mod handle;
 pub(crate) mod history;
 pub(crate) mod storage;
 

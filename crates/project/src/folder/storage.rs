@@ -15,9 +15,7 @@
 
 use crate::document::data_file::KINDS;
 use crate::error::ProjectError;
-use cap_fs_ext::{DirExt, FollowSymlinks, OpenOptionsFollowExt};
-use cap_std::ambient_authority;
-use cap_std::fs::{Dir, OpenOptions};
+use crate::folder::handle;
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -163,22 +161,7 @@ pub(crate) fn remove(root: &Path, file: &str) {
     let plain =
         !file.is_empty() && Path::new(file).components().all(|part| matches!(part, std::path::Component::Normal(_)));
     assert!(plain, "\"{file}\" names nothing inside a project");
-    let _ = remove_inside(root, file);
-}
-
-fn remove_inside(root: &Path, file: &str) -> io::Result<()> {
-    let mut folder = Dir::open_ambient_dir(root, ambient_authority())?;
-    let mut parts = file.split('/').peekable();
-    while let Some(part) = parts.next() {
-        if parts.peek().is_some() {
-            folder = folder.open_dir_nofollow(part)?;
-        } else if folder.symlink_metadata(part)?.is_dir() {
-            folder.remove_dir_all(part)?;
-        } else {
-            folder.remove_file(part)?;
-        }
-    }
-    Ok(())
+    let _ = handle::remove(root, file);
 }
 
 /// Opens a file at the top of the project for reading and writing, and creates it if necessary; a link is not followed.
@@ -186,10 +169,7 @@ fn remove_inside(root: &Path, file: &str) -> io::Result<()> {
 /// # Errors
 /// It is a link, or cannot be opened.
 pub fn open_own(root: &Path, name: &str) -> io::Result<File> {
-    let folder = Dir::open_ambient_dir(root, ambient_authority())?;
-    let mut options = OpenOptions::new();
-    options.create(true).truncate(false).read(true).write(true).follow(FollowSymlinks::No);
-    Ok(folder.open_with(name, &options)?.into_std())
+    handle::open(root, name)
 }
 
 /// Reads a text file.

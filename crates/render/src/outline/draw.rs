@@ -7,7 +7,7 @@ use super::stroke::stroke_lines;
 use super::underlay::underlay;
 use crate::ground::{air_layer, is_air};
 use crate::media::Faces;
-use crate::resolved::{Interpretation, ResolvedScene};
+use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
 use model::section::{LineKind, Section, SectionPlane};
@@ -42,7 +42,7 @@ impl OutlineLines {
     }
 
     /// Adds the lines of the section on one face.
-    fn add_face(&mut self, resolved: &ResolvedScene, interpretation: Interpretation, rect: &FaceRect) {
+    fn add_face(&mut self, resolved: &ResolvedScene, interpretation: ResolvedInterpretation, rect: &FaceRect) {
         if !rect.faces_camera && (resolved.relief.is_none() || rect.axis == 2) {
             return;
         }
@@ -121,7 +121,7 @@ fn seen_on_face(resolved: &ResolvedScene, rect: &FaceRect, p: DVec3) -> bool {
 
 /// Whether a point of the ground's edge is visible on a face that looks away from the camera: nothing is in
 /// front of it, and there is rock beside it (not so for a fault between air and air).
-fn seen_over_rim(resolved: &ResolvedScene, interpretation: Interpretation, rect: &FaceRect, p: DVec3) -> bool {
+fn seen_over_rim(resolved: &ResolvedScene, interpretation: ResolvedInterpretation, rect: &FaceRect, p: DVec3) -> bool {
     let along = DVec3::AXES[1 - rect.axis];
     let into_rock = DVec3::AXES[rect.axis] * rect.rock;
     let is_rock = |aside: DVec3| {

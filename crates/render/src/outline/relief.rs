@@ -7,7 +7,7 @@
 use super::NOMINAL_SIDE_PX;
 use super::hidden::{IN_FRONT, covered_by, seen_parts};
 use crate::ground::is_air;
-use crate::resolved::{Interpretation, ResolvedScene};
+use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -33,7 +33,7 @@ pub(super) struct ReliefLines {
 
 /// Heights of the ground of one block at the corners of cells.
 struct Map<'a> {
-    interpretation: Interpretation<'a>,
+    interpretation: ResolvedInterpretation<'a>,
     block: u16,
     low: DVec3,
     counts: [usize; 2],
@@ -144,7 +144,7 @@ fn first_of(group: &mut [usize], mut index: usize) -> usize {
 
 /// A point on the ground of the block right beside the interpreted part of a fault; `None` if the fault does
 /// not end that ground.
-fn beside_fault(interpretation: Interpretation, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
+fn beside_fault(interpretation: ResolvedInterpretation, fault: usize, block: u16, p: DVec3) -> Option<DVec3> {
     let faults = interpretation.model.faults();
     if !faults.is_real(fault, p.as_vec3()) {
         return None;
@@ -164,7 +164,7 @@ fn beside_fault(interpretation: Interpretation, fault: usize, block: u16, p: DVe
 /// on the ground of the block for a point of the line.
 fn seen(
     resolved: &ResolvedScene,
-    interpretation: Interpretation,
+    interpretation: ResolvedInterpretation,
     segments: &[[DVec3; 2]],
     ground: impl Fn(DVec3) -> Option<DVec3> + Sync,
 ) -> Vec<Vec<DVec2>> {

@@ -58,7 +58,7 @@ fn conventions_are_recognised() {
 fn the_swapped_reading_is_shown_and_can_be_chosen() {
     let info = grid().info();
     assert!(has(&info.evidence, "the swapped reading is bytes 193 and 189 for 6 (7..12) inlines"));
-    assert!(has(&info.evidence, "(if not: --inline-byte 193 --crossline-byte 189)"));
+    assert!(has(&info.evidence, "(if not, state: inline byte 193 and crossline byte 189)"));
     let swapped = grid().read(&lines(193, 189)).unwrap();
     assert_eq!(counts(&swapped.info), [6, 4]);
     assert_eq!(swapped.volume.at(5, 1, 0), 102_012.0);
@@ -72,7 +72,7 @@ fn two_readings_without_a_convention_that_wins_are_an_error_that_lists_them() {
     let found: Vec<[u16; 2]> = readings.iter().map(|r: &Candidate| [r.inline_byte, r.crossline_byte]).collect();
     assert_eq!(found, [[197, 205], [205, 197]]);
     assert!(sentence.contains("bytes 205 and 197 for 6 (7..12) inlines"), "{sentence}");
-    assert!(sentence.contains("or --inline-byte 205 --crossline-byte 197"), "{sentence}");
+    assert!(sentence.contains("or inline byte 205 and crossline byte 197"), "{sentence}");
     assert_eq!(counts(&moved(197, 205).scan(&lines(205, 197)).unwrap()), [6, 4]);
     // One stated byte leaves one reading.
     let half = SegyOptions { inline_byte: Some(205), ..SegyOptions::default() };
@@ -98,7 +98,7 @@ fn conventions_that_disagree_are_settled_by_coordinates_or_not_at_all() {
     });
     let (problem, sentence) = without.refusal();
     assert!(matches!(problem, SegyProblem::AmbiguousLines { .. }), "{sentence}");
-    assert!(sentence.contains("--inline-byte 17 --crossline-byte 25"), "{sentence}");
+    assert!(sentence.contains("inline byte 17 and crossline byte 25"), "{sentence}");
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn the_first_of_a_few_duplicates_is_kept() {
     // A file that is there twice is refused, until it is stated which half to keep.
     let mut twice = grid();
     twice.traces.extend(twice.traces.clone());
-    assert!(twice.refusal().1.contains("--duplicates first or last"), "{}", twice.refusal().1);
+    assert!(twice.refusal().1.contains("repeated traces first or last"), "{}", twice.refusal().1);
     assert_eq!(twice.scan(&last).unwrap().duplicate_traces, 24);
 }
 
@@ -347,7 +347,7 @@ fn all_zero_line_headers_list_what_was_tried() {
     let file = grid().each(|_, t| [181, 185, 189, 193].iter().for_each(|&byte| t.i32(byte, 0)));
     let (problem, sentence) = file.refusal();
     assert!(matches!(problem, SegyProblem::NoLineNumbers { .. }), "{sentence}");
-    for words in ["bytes 189 and 193: all zero", "bytes 9 and 21: all zero", "--inline-byte"] {
+    for words in ["bytes 189 and 193: all zero", "bytes 9 and 21: all zero", "inline byte"] {
         assert!(sentence.contains(words), "{sentence}");
     }
 }

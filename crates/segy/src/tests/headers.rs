@@ -244,7 +244,7 @@ fn the_domain_is_what_the_text_says() {
     assert_eq!(unit("PSDM STRETCHED TO TIME, SAMPLED AT 4 MS", 4000, 1).vertical_unit, FileUnit::Milliseconds);
     let torn = unit("PSDM IN TWT", 4000, 1);
     assert_eq!(torn.vertical_unit, FileUnit::Milliseconds);
-    assert!(has(&torn.warnings, "--vertical-unit"));
+    assert!(has(&torn.warnings, "vertical unit"));
     let whole_metres = unit("DEPTH", 5, 1);
     assert_eq!(whole_metres.interval, 5.0);
     assert!(has(&whole_metres.assumptions, "too little"));

@@ -170,7 +170,7 @@ fn what_is_no_lattice_is_refused_with_the_reason() {
     });
     let (problem, sentence) = scattered.refusal();
     assert!(matches!(problem, SegyProblem::NoLattice { .. }), "{sentence}");
-    assert!(sentence.contains("within a quarter of a bin") && sentence.contains("--inline-byte"), "{sentence}");
+    assert!(sentence.contains("within a quarter of a bin") && sentence.contains("inline byte"), "{sentence}");
 
     let straight = placed([1, 60], DVec2::X, DVec2::new(9.0, 12.0), 1.0);
     assert!(straight.refusal().1.contains("on one line"), "{}", straight.refusal().1);

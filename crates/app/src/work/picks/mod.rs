@@ -13,7 +13,7 @@ use super::running::Running;
 use super::{Event, Outbox, compute_apart, keep_working, spawn};
 use crate::state::picking::{Pick, voxel_of};
 use crate::state::{Notice, PickingStep, PickingTask, Place, Snapshot};
-use figure::interpretation::{FaultMesh, Interpretation, PickedSheets, SheetHole, TraceSheet};
+use figure::interpretation::{DrawnInterpretation, FaultMesh, PickedSheets, SheetHole, TraceSheet};
 use followed::Followed;
 use glam::DVec3;
 use interp::ExtractReport;
@@ -95,7 +95,7 @@ pub fn sheet(sheet: &VoxelSheet) -> TraceSheet<'_> {
 impl Interpreted {
     /// The interpretation in the form that figures take, with the proposals that are to be shown; sticks and the
     /// selection belong to the view.
-    pub fn seen(&self, shows: impl Fn(&Proposal) -> bool) -> Interpretation<'_> {
+    pub fn seen(&self, shows: impl Fn(&Proposal) -> bool) -> DrawnInterpretation<'_> {
         let horizons = self.horizons.iter().enumerate().map(|(index, horizon)| PickedSheets {
             name: &horizon.name,
             colour: figure::style::horizon_colour(horizon.colour, index),
@@ -103,16 +103,16 @@ impl Interpreted {
             holes: horizon.holes.iter().map(|hole| SheetHole { block: hole.block, traces: hole.nodes() }).collect(),
         });
         let proposals = self.proposals.iter().filter(|(proposal, _)| shows(proposal));
-        Interpretation {
+        DrawnInterpretation {
             horizons: horizons.collect(),
             faults: self.faults.iter().map(ShownFault::mesh).collect(),
             proposals: proposals.map(|(_, fault)| fault.mesh()).collect(),
-            ..Interpretation::default()
+            ..DrawnInterpretation::default()
         }
     }
 
     /// The horizons alone.
-    pub fn horizons_seen(&self) -> Interpretation<'_> {
+    pub fn horizons_seen(&self) -> DrawnInterpretation<'_> {
         self.seen(|_| false)
     }
 }
