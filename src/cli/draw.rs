@@ -19,7 +19,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let project = Project::open(&request.project)?;
     let document = project.document();
     let mut scene = choose(&project, request.scene.as_deref())?;
-    request.see_through.change(&mut scene, document)?;
+    request.volume_rendering.change(&mut scene, document)?;
     request.view.change(&mut scene, document.frame()?);
     scene::leaves_in_volume(&mut scene);
     if document.volumes.is_empty() && document.horizons.is_empty() {

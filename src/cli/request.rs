@@ -19,7 +19,7 @@ use project::command::{
     SetVelocity,
 };
 use project::picture::Device;
-use project::picture::scene::{SeeThrough, ShownHorizon, ShownIsosurface, Technique};
+use project::picture::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use render::{IsosurfaceSource, Scope};
 use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;
@@ -93,7 +93,7 @@ pub(super) struct RenderRequest {
     /// Largest memory for the samples of a volume, bytes.
     pub(super) volume_bytes: Option<u64>,
     /// The options of volume rendering, if any were given.
-    pub(super) see_through: SeeThrough,
+    pub(super) volume_rendering: VolumeRendering,
     /// The page, if more was asked for than a picture of the block.
     pub(super) figure: Option<PageRequest>,
 }
@@ -302,7 +302,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         dpi: typed.dpi,
         volume_bytes: interpretation::bytes("--volume-memory", typed.volume_memory.as_deref())?,
         device,
-        see_through: SeeThrough {
+        volume_rendering: VolumeRendering {
             technique,
             medium: typed.medium,
             clear_below: typed.clear_below,

@@ -246,7 +246,7 @@ impl Tour {
             return;
         };
         let colour = ttf::Colour::new(0xf2, 0xc1, 0x2e);
-        app::state::through::show_horizon(&mut scene, name, colour, true);
+        app::state::volume_rendering::show_horizon(&mut scene, name, colour, true);
         scene.media.horizons.iter_mut().for_each(|horizon| horizon.emission = 0.5);
         self.act(Action::Show(Box::new(scene)));
     }
@@ -369,7 +369,7 @@ impl Tour {
         self.harness.event(Event::MouseWheel { unit, delta, phase, modifiers, source });
         self.harness.run_steps(20);
         self.shoot("interpret-proposals")?;
-        self.picking(PickingStep::Look(Look::SeeThrough));
+        self.picking(PickingStep::Look(Look::VolumeRendering));
         self.act(Action::Panel(Panel::Layers));
         Ok(())
     }

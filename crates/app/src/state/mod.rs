@@ -17,8 +17,8 @@ mod picking_tests;
 pub mod remembered;
 mod session;
 pub mod showing;
-pub mod through;
 mod view;
+pub mod volume_rendering;
 
 #[cfg(test)]
 mod tests;

@@ -45,7 +45,8 @@ pub enum Look {
     Faces,
     /// Volume rendering with occlusion and a white RGBA function (P-horiz 6).
     #[default]
-    SeeThrough,
+    #[serde(alias = "see-through")]
+    VolumeRendering,
 }
 
 /// A node that is selected and not accepted yet.

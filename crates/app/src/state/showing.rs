@@ -3,7 +3,7 @@
 
 use super::picking::Look;
 use super::{Panel, Session};
-use project::picture::scene::{SeeThrough, Technique};
+use project::picture::scene::{Technique, VolumeRendering};
 use render::{FaceData, Media, PickedHorizon, Scene, Scope};
 use ttf::Colour;
 
@@ -25,9 +25,9 @@ pub fn scene(session: &Session, horizons: Option<&[(Colour, Vec<u32>)]>) -> Scen
     scene.ground = None;
     scene.media = Media::default();
     scene.face_data = if horizons.is_some() { view.picking.show } else { FaceData::Rock };
-    if view.picking.look == Look::SeeThrough {
+    if view.picking.look == Look::VolumeRendering {
         scene.face_data = FaceData::Rock;
-        let see = SeeThrough {
+        let options = VolumeRendering {
             technique: Some(Technique::Occlusion),
             medium: None,
             clear_below: CLEAR_BELOW,
@@ -36,7 +36,7 @@ pub fn scene(session: &Session, horizons: Option<&[(Colour, Vec<u32>)]>) -> Scen
             scope: Scope::Everywhere,
         };
         // A project without a volume shows its faces.
-        if see.change(&mut scene, &session.document).is_err() {
+        if options.change(&mut scene, &session.document).is_err() {
             scene.media = Media::default();
             return scene;
         }

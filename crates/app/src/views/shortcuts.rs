@@ -139,8 +139,8 @@ pub const INTERPRETING: &[Shortcut] = &[
         picking(PickingStep::Use(if is_drawing { Tool::Pick } else { Tool::Sticks }))
     }),
     plain(Key::O, "O", "Volume rendering, or the faces of the block", |session| {
-        let is_clear = session.view.picking.look == Look::SeeThrough;
-        picking(PickingStep::Look(if is_clear { Look::Faces } else { Look::SeeThrough }))
+        let is_clear = session.view.picking.look == Look::VolumeRendering;
+        picking(PickingStep::Look(if is_clear { Look::Faces } else { Look::VolumeRendering }))
     }),
     plain(Key::G, "G", "Amplitudes, leaves, distances in turn", |session| {
         picking(PickingStep::Show(match session.view.picking.show {

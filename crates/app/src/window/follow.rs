@@ -139,7 +139,7 @@ impl Window {
     /// What the loaded data depend on. It is computed in every frame, so it copies no document.
     fn needs_of(&self, session: &Session) -> Needs {
         let picking = &session.view.picking;
-        let shows = picking.look == Look::SeeThrough || picking.show != render::FaceData::Rock;
+        let shows = picking.look == Look::VolumeRendering || picking.show != render::FaceData::Rock;
         let extraction = || self.overlay.interpreted().and_then(|shown| shown.key.clone()).filter(|_| shows);
         Needs {
             revision: session.revision,

@@ -264,7 +264,7 @@ fn what_is_on_the_screen_is_exported_while_interpreting() {
     let sections = export(&mut harness, "sections.png");
     act(&mut harness, Action::Arrange(app::state::Layout::Map));
     let map = export(&mut harness, "map.png");
-    act(&mut harness, Action::Picking(PickingStep::Look(app::state::Look::SeeThrough)));
+    act(&mut harness, Action::Picking(PickingStep::Look(app::state::Look::VolumeRendering)));
     let through = export(&mut harness, "through.png");
     let all = [&illustrated, &faces, &sections, &map, &through];
     for (n, picture) in all.iter().enumerate() {

@@ -2,7 +2,7 @@
 
 use super::command::{choose, click_last};
 use super::driven::{Driven, click, open, state, wait};
-use app::state::through::{Extent, extent};
+use app::state::volume_rendering::{Extent, extent};
 use egui_kittest::kittest::Queryable;
 use render::{Media, Scene, Shading};
 

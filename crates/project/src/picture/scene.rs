@@ -68,7 +68,7 @@ pub enum Technique {
 
 /// The options of volume rendering, as far as they were given.
 #[derive(Debug, Clone, PartialEq)]
-pub struct SeeThrough {
+pub struct VolumeRendering {
     /// The technique.
     pub technique: Option<Technique>,
     /// The volume.
@@ -118,7 +118,7 @@ const BEHIND_VOLUMES: Colour = Colour::new(0x2c, 0x33, 0x3a);
 /// Colour of the edges in front of that background.
 const EDGES_OF_VOLUMES: Colour = Colour::new(0x9a, 0xa4, 0xad);
 
-impl SeeThrough {
+impl VolumeRendering {
     /// Applies the options to a scene.
     ///
     /// # Errors

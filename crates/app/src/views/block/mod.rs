@@ -246,7 +246,7 @@ fn is_but_for_horizons(one: &Scene, other: &Scene) -> bool {
 
 /// Whether the block shows volume rendering while interpreting.
 pub fn is_clear(session: &Session) -> bool {
-    session.view.panel == Panel::Interpret && session.view.picking.look == Look::SeeThrough
+    session.view.panel == Panel::Interpret && session.view.picking.look == Look::VolumeRendering
 }
 
 /// The size of a pane in points, as the size of a picture.

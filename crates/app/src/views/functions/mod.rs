@@ -6,7 +6,7 @@
 mod curve;
 mod histogram;
 mod scalars;
-mod through;
+mod volume_rendering;
 
 use crate::state::{Action, Session};
 use crate::theme;
@@ -70,12 +70,12 @@ impl Functions {
             self.scalars(ui, document, rocks, swatches, actions);
         }
         ui.add_space(10.0);
-        let volume = through::volume(session);
+        let volume = volume_rendering::volume(session);
         if let Some(volume) = &volume {
             self.count(volume, rocks);
         }
         let histogram = volume.as_ref().and_then(|volume| self.histograms.get(volume));
-        through::show(ui, session, histogram, &mut self.curve, actions);
+        volume_rendering::show(ui, session, histogram, &mut self.curve, actions);
     }
 
     /// The colours of raw data.

@@ -91,7 +91,7 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.label("Block");
         for (look, name, hint) in [
             (Look::Faces, "Faces", "The faces of the block, with the horizons in front of them"),
-            (Look::SeeThrough, "Volume rendering", "Strong reflections in white, shaded by occlusion (O)"),
+            (Look::VolumeRendering, "Volume rendering", "Strong reflections in white, shaded by occlusion (O)"),
         ] {
             if ui.selectable_label(picking.look == look, name).on_hover_text(hint).clicked() {
                 actions.push(Action::Picking(PickingStep::Look(look)));

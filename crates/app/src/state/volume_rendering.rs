@@ -3,7 +3,7 @@
 
 use project::document::Document;
 use project::error::ProjectError;
-use project::picture::scene::{SeeThrough, Technique};
+use project::picture::scene::{Technique, VolumeRendering};
 use render::media::Interleaved;
 use render::{Faces, Ground, Medium, Occlusion, Phong, PickedHorizon, Scene, Scope, Shading};
 use ttf::{Colour, RgbaFunction, RgbaStop};
@@ -78,7 +78,7 @@ pub fn medium(scene: &mut Scene) -> Option<&mut Medium> {
 ///
 /// # Errors
 /// The project has no such volume.
-pub fn see(scene: &mut Scene, document: &Document, extent: Extent, volume: &str) -> Result<(), ProjectError> {
+pub fn set_volume(scene: &mut Scene, document: &Document, extent: Extent, volume: &str) -> Result<(), ProjectError> {
     let mut next = scene.clone();
     if next.media.faces == Faces::None {
         let usual = Scene::default();
@@ -94,7 +94,7 @@ pub fn see(scene: &mut Scene, document: &Document, extent: Extent, volume: &str)
         Extent::Block => Some(Technique::Occlusion),
     };
     if technique.is_some() {
-        let see = SeeThrough {
+        let options = VolumeRendering {
             technique,
             medium: Some(volume.to_owned()),
             clear_below: CLEAR_BELOW,
@@ -102,7 +102,7 @@ pub fn see(scene: &mut Scene, document: &Document, extent: Extent, volume: &str)
             horizons: Vec::new(),
             scope: Scope::Everywhere,
         };
-        see.change(&mut next, document)?;
+        options.change(&mut next, document)?;
         if let Some(medium) = medium(&mut next) {
             medium.function = with_fewer_stops(&medium.function);
         }

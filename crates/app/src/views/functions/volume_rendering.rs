@@ -4,7 +4,7 @@
 use super::colour_well;
 use super::curve::Curve;
 use super::histogram::Histogram;
-use crate::state::through::{self, Extent, Light};
+use crate::state::volume_rendering::{self, Extent, Light};
 use crate::state::{Action, Notice, Place, Session};
 use crate::views::controls;
 use crate::views::sections::entry_colour;
@@ -32,7 +32,7 @@ pub(super) fn show(
     ui.heading("Volume rendering");
     if let Some(volume) = volume(session) {
         place(ui, session, &volume, &mut next, actions);
-        if let Some(medium) = through::medium(&mut next) {
+        if let Some(medium) = volume_rendering::medium(&mut next) {
             curve.show(ui, histogram, &mut medium.function);
             let mut follows = medium.layers == LayerOpacity::Followed;
             let hint = "A layer is left standing where its opacity is above 0 (Layers, In cut-outs); the others stay transparent";
@@ -56,7 +56,7 @@ pub(super) fn show(
 
 /// Where a volume is rendered, and which one.
 fn place(ui: &mut Ui, session: &Session, volume: &str, next: &mut Scene, actions: &mut Vec<Action>) {
-    let present = through::extent(next);
+    let present = volume_rendering::extent(next);
     let (mut extent, mut name) = (present, volume.to_owned());
     ui.horizontal_wrapped(|ui| {
         for (choice, label, hint) in [
@@ -80,7 +80,7 @@ fn place(ui: &mut Ui, session: &Session, volume: &str, next: &mut Scene, actions
     if (extent, name.as_str()) == (present, volume) {
         return;
     }
-    if let Err(error) = through::see(next, &session.document, extent, &name) {
+    if let Err(error) = volume_rendering::set_volume(next, &session.document, extent, &name) {
         actions.push(Action::Tell(Notice::failure(Place::Data, &error)));
     }
     if let (Extent::CutOuts, true, Some(geometry)) = (extent, next.cut_outs.is_empty(), &session.document.geometry) {
@@ -100,7 +100,7 @@ fn horizons(ui: &mut Ui, session: &Session, next: &mut Scene) {
         let mut is_shown = next.media.horizons.iter().any(is_this);
         if ui.checkbox(&mut is_shown, &entry.name).changed() {
             let [r, g, b, _] = entry_colour(entry, index).to_array();
-            through::show_horizon(next, &entry.name, Colour::new(r, g, b), is_shown);
+            volume_rendering::show_horizon(next, &entry.name, Colour::new(r, g, b), is_shown);
         }
         if let Some(horizon) = next.media.horizons.iter_mut().find(|horizon| is_this(horizon)) {
             ui.indent(&entry.name, |ui| numbers(ui, &entry.name, horizon));
