@@ -25,7 +25,7 @@ const WRITER_BYTES: u64 = 9 << 20;
 
 /// Number of float32 volumes of a piece's size that are held while the piece is computed: what it is computed
 /// from, two dips, and the result or the other order of the traces.
-const VOLUMES_HELD: u64 = 4;
+const VOLUMES_HELD: u64 = 5;
 
 /// The same for an angle: the two dips and the result.
 const ANGLE_VOLUMES_HELD: u64 = 3;

@@ -96,6 +96,11 @@ impl SegyFile {
         self.trace_at(x, y).is_some_and(|trace| !self.dead[trace])
     }
 
+    /// Whether the trace of that number in the file, from 0, is flagged dead.
+    pub(super) fn is_dead(&self, trace: usize) -> bool {
+        self.dead[trace]
+    }
+
     /// Number in the file, from 0, of the trace at inline index `x`, crossline index `y`.
     pub fn trace_at(&self, x: usize, y: usize) -> Option<usize> {
         let trace = self.lattice.trace_of[x * self.lattice.crosslines.count + y];

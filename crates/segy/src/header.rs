@@ -136,7 +136,7 @@ pub(super) struct Traces<'a> {
 
 /// Traces up to this length are read whole for their headers. A call for each header costs as much time as
 /// copying so many bytes.
-const READ_WHOLE: usize = 8192;
+const READ_WHOLE: usize = 4096;
 
 impl<'a> Traces<'a> {
     /// Traces that are read at once, at least one.

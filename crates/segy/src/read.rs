@@ -159,6 +159,7 @@ impl SegyFile {
     /// Decodes a few inlines; returns the sums of each.
     fn read_group(&self, first_inline: usize, out: &mut [f32], room: &mut Vec<u8>) -> Result<Vec<Sums>, SegyError> {
         let [_, crosslines, samples] = self.size();
+        let inlines = out.len().div_ceil(crosslines * samples).max(1);
         let mut traces = Vec::with_capacity(out.len() / samples.max(1));
         for (place, out) in out.chunks_mut(samples).enumerate() {
             match self.trace_at(first_inline + place / crosslines, place % crosslines) {
@@ -166,25 +167,28 @@ impl SegyFile {
                 None => out.fill(0.0),
             }
         }
+        let mut sums = vec![Sums::NONE; inlines];
+        // The sums of an inline are those of its traces in the order of crosslines. Where the file has that order,
+        // a trace is summed while it is in the processor's cache.
+        let is_in_order = inlines == 1 && traces.is_sorted_by_key(|(trace, _)| *trace);
         traces.sort_unstable_by_key(|(trace, _)| *trace);
         let mut non_finite = 0;
-        self.read_in_order(&mut traces, room, |trace, bytes, out| non_finite += self.decode(trace, bytes, out))?;
-        let mut sums: Vec<Sums> = out
-            .chunks(crosslines * samples)
-            .enumerate()
-            .map(|(inline, out)| {
-                let mut sums = Sums::NONE;
+        self.read_in_order(&mut traces, room, |trace, bytes, out| {
+            non_finite += self.decode(trace, bytes, out) as u64;
+            if is_in_order && !self.is_dead(trace) {
+                sums[0].add_trace(out);
+            }
+        })?;
+        if !is_in_order {
+            for (inline, (sums, out)) in sums.iter_mut().zip(out.chunks(crosslines * samples)).enumerate() {
                 for (crossline, trace) in out.chunks(samples).enumerate() {
                     if self.is_live(first_inline + inline, crossline) {
                         sums.add_trace(trace);
                     }
                 }
-                sums
-            })
-            .collect();
-        if let Some(first) = sums.first_mut() {
-            first.non_finite = non_finite as u64;
+            }
         }
+        sums[0].non_finite = non_finite;
         Ok(sums)
     }
 
