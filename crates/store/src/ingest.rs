@@ -23,6 +23,7 @@ use std::fs;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Mutex;
+use survey::huge_pages::zeroed;
 use survey::progress::Progress;
 use survey::sample::SampleType;
 use survey::source::{Block, BlockSource, LineOrder, SourceError};
@@ -162,7 +163,13 @@ fn ingest_as<T: StoredSample>(
     let mask = mask_of(size, source.live().as_deref(), info)?;
     let settings = WriteSettings { memory_bytes, order: source.order() };
     let supply = |block: &Block, mut room: Vec<T>| {
-        room.resize(block.inlines.len() * block.crosslines.len() * size[2], T::from_f32(0.0));
+        let count = block.inlines.len() * block.crosslines.len() * size[2];
+        if room.capacity() < count {
+            // Given back first, so that the two are not held at once.
+            drop(std::mem::take(&mut room));
+            room = zeroed(count);
+        }
+        room.resize(count, T::default());
         source.read_block(block, T::slots(&mut room), progress)?;
         Ok(Cow::Owned(room))
     };
