@@ -15,5 +15,7 @@ mod program;
 mod proposed_faults;
 mod safety;
 mod see_through;
+#[cfg(target_os = "linux")]
+mod sources;
 mod store;
 mod well;

@@ -30,6 +30,10 @@ const VOLUMES_HELD: u64 = 5;
 /// The same for an angle: the two dips and the result.
 const ANGLE_VOLUMES_HELD: u64 = 3;
 
+/// Lines of a piece along both axes that are not divided further, whatever the memory: smaller pieces read and
+/// compute more lines around them than lines of their own.
+const LEAST_LINES: usize = 32;
+
 /// Computes a box that begins at a voxel and is of a size. Returns it, perhaps with lines around it, and the
 /// first of its own lines in what is returned.
 type Compute<'a> = dyn Fn([usize; 3], [usize; 3], &Progress) -> Result<(Volume<f32>, [usize; 2]), SourceError> + 'a;
@@ -50,7 +54,7 @@ pub struct AttributeBlocks<'a> {
 
 impl AttributeBlocks<'_> {
     /// Sets how much memory writing and computing may use together, bytes, and returns the writer's share. A
-    /// block that the writer asks for, and one trace with its neighbours, are held in any case.
+    /// block that the writer asks for, and what a piece of 32 × 32 lines takes, are held in any case.
     pub fn share_memory(&mut self, memory_bytes: u64) -> u64 {
         self.memory_bytes = memory_bytes;
         memory_bytes / WRITER_SHARE[1] * WRITER_SHARE[0]
@@ -64,8 +68,11 @@ impl AttributeBlocks<'_> {
         let writer = (self.memory_bytes / of * share / 2).max(WRITER_BYTES);
         let left = self.memory_bytes.saturating_sub(bytes(whole)).saturating_sub(writer);
         let mut piece = whole;
-        while bytes(piece.map(|n| n + 2 * self.reach)).saturating_mul(self.volumes_held) > left && piece != [1, 1] {
+        while bytes(piece.map(|n| n + 2 * self.reach)).saturating_mul(self.volumes_held) > left {
             let longer = usize::from(piece[1] > piece[0]);
+            if piece[longer] <= LEAST_LINES {
+                break;
+            }
             piece[longer] = piece[longer].div_ceil(2);
         }
         let cut = |range: &Range<usize>, step: usize| {
