@@ -11,6 +11,8 @@ mod figure;
 mod help;
 mod hostile;
 mod kill;
+#[cfg(target_os = "linux")]
+mod memory;
 mod program;
 mod proposed_faults;
 mod safety;
