@@ -12,14 +12,14 @@
 //! sixty-four times the data it needs.
 //!
 //! `sums` are ours, in a place that the index does not mention and other readers pass over: for each chunk the
-//! crc32c (u32) of each of its planes of one inline, then of each of its planes of one crossline, 0 for a
+//! crc32c (u32) of each of its planes of one inline, then of each four of its planes of one crossline, 0 for a
 //! chunk that is left out. With them a section reads and verifies its own planes alone. Where a shard has none
 //! (another program or an earlier version wrote it), whole chunks are read and verified.
 //!
 //! | wanted of a chunk | read | verified by |
 //! |---|---|---|
 //! | some inlines | their planes, one call | the sums of these planes |
-//! | some crosslines | their rows, a call for each inline of the chunk | the sums of these planes |
+//! | some crosslines | their rows in fours, a call for each inline of the chunk | the sums of these planes |
 //! | a time slice, or most of it | all of it, one call | the chunk's checksum |
 //!
 //! A shard is written beside its place and renamed, so that a killed program leaves whole shards only.
@@ -71,8 +71,7 @@ impl ShardGrid {
 
     /// Bytes of a shard file of `T`s at most.
     pub fn file_bytes<T>(&self) -> usize {
-        let [cx, cy, _] = self.chunk;
-        let chunk = self.samples_in_chunk() * size_of::<T>() + CHECKSUM + (cx + cy) * CHECKSUM + ENTRY;
+        let chunk = self.samples_in_chunk() * size_of::<T>() + CHECKSUM + sums_of(self.chunk) * CHECKSUM + ENTRY;
         self.chunks().iter().product::<usize>() * chunk + 2 * CHECKSUM
     }
 
@@ -133,7 +132,8 @@ impl ShardGrid {
         let [nx, ny, nz] = self.chunks();
         let (start, _) = self.extent(index);
         let mut entries: Vec<u64> = Vec::with_capacity(2 * nx * ny * nz);
-        let mut sums: Vec<u32> = vec![0; nx * ny * nz * (self.chunk[0] + self.chunk[1])];
+        let mut sums: Vec<u32> = vec![0; nx * ny * nz * sums_of(self.chunk)];
+        let advance = Advance::by(self.chunk[1] * self.chunk[2] * size_of::<T>());
         let chunk_bytes = self.samples_in_chunk() * size_of::<T>();
         let most = self.file_bytes::<T>();
         if bytes.len() < most {
@@ -169,8 +169,8 @@ impl ShardGrid {
                 entries.extend([ABSENT; 2]);
                 continue;
             }
-            let planes = self.chunk[0] + self.chunk[1];
-            let sum = sums_of_planes(chunk, self.chunk, &mut sums[n * planes..(n + 1) * planes]);
+            let planes = sums_of(self.chunk);
+            let sum = sums_of_planes(chunk, self.chunk, &advance, &mut sums[n * planes..(n + 1) * planes]);
             checksum.copy_from_slice(&sum.to_le_bytes());
             entries.extend([end as u64, (chunk_bytes + CHECKSUM) as u64]);
             end += chunk_bytes + CHECKSUM;
@@ -185,20 +185,44 @@ impl ShardGrid {
     }
 }
 
-/// The checksum of a chunk of `edges`; those of its planes of one inline, then of one crossline, go to `sums`.
-fn sums_of_planes(chunk: &[u8], edges: [usize; 3], sums: &mut [u32]) -> u32 {
+/// Crosslines that have a sum together: a row of one is so short that its sum would cost twice as much.
+const CROSSLINES_TOGETHER: usize = 4;
+
+/// Sums of a chunk of `edges`.
+fn sums_of(edges: [usize; 3]) -> usize {
+    edges[0] + edges[1].div_ceil(CROSSLINES_TOGETHER)
+}
+
+/// The checksum of a chunk of `edges`; those of its planes of one inline, then of its crosslines, go to `sums`.
+/// `advance` is by a plane.
+fn sums_of_planes(chunk: &[u8], edges: [usize; 3], advance: &Advance, sums: &mut [u32]) -> u32 {
     let (of_x, of_y) = sums.split_at_mut(edges[0]);
     let plane_bytes = chunk.len() / edges[0];
+    let rows_bytes = plane_bytes / edges[1] * CROSSLINES_TOGETHER;
     let mut whole = 0;
-    // A plane stays in the processor's nearest cache while it is summed three times.
+    // A plane stays in the processor's nearest cache while it is summed twice.
     for (plane, sum) in chunk.chunks_exact(plane_bytes).zip(of_x) {
         *sum = crc32c::crc32c(plane);
-        whole = crc32c::crc32c_append(whole, plane);
-        for (row, sum) in plane.chunks_exact(plane_bytes / edges[1]).zip(of_y.iter_mut()) {
-            *sum = crc32c::crc32c_append(*sum, row);
+        whole = advance.apply(whole) ^ *sum;
+        for (rows, sum) in plane.chunks(rows_bytes).zip(of_y.iter_mut()) {
+            *sum = crc32c::crc32c_append(*sum, rows);
         }
     }
     whole
+}
+
+/// What a checksum becomes when a fixed count of bytes follows: crc(a, b) = M·crc(a) + crc(b) over the field of
+/// two elements, where M depends on the length of b alone.
+struct Advance([u32; 32]);
+
+impl Advance {
+    fn by(bytes: usize) -> Self {
+        Self(std::array::from_fn(|bit| crc32c::crc32c_combine(1 << bit, 0, bytes)))
+    }
+
+    fn apply(&self, sum: u32) -> u32 {
+        self.0.iter().enumerate().fold(0, |found, (bit, column)| found ^ (column & (sum >> bit & 1).wrapping_neg()))
+    }
 }
 
 /// A box of voxels.

@@ -126,11 +126,10 @@ impl Shards {
         size: [usize; 3],
         out: &mut [T],
     ) -> Result<(), StoreError> {
-        out.fill(T::from_f32(0.0));
         self.copy(&Span { start, size }, out)
     }
 
-    /// Copies a box to `out`, which is zero. Memory: a chunk at most.
+    /// Copies a box to `out`. Memory: a chunk at most.
     fn copy<T: StoredSample>(&self, span: &Span, out: &mut [T]) -> Result<(), StoreError> {
         let grid = &self.grid;
         let mut room = Vec::new();
@@ -148,15 +147,20 @@ impl Shards {
             for place in places(&inside, grid.chunk) {
                 let inner = [0, 1, 2].map(|axis| place[axis] % chunks[axis]);
                 let number = (inner[0] * chunks[1] + inner[1]) * chunks[2] + inner[2];
-                if shard.is_absent(number) {
-                    continue;
-                }
                 let extent = grid.chunk_extent(place);
                 let [x, y] = [0, 1].map(|axis| {
                     let common = extent.common(span, axis);
                     common.start - extent.start[axis]..common.end - extent.start[axis]
                 });
-                let lines = reader.read(number, &Lines { x, y }, &mut room).map_err(explain)?;
+                let wanted = Lines { x, y };
+                let lines = match shard.is_absent(number) {
+                    false => reader.read(number, &wanted, &mut room).map_err(explain)?,
+                    true => {
+                        room.clear();
+                        room.resize(wanted.x.len() * wanted.y.len() * grid.chunk[2], T::default());
+                        wanted
+                    }
+                };
                 copy_lines(&room, &lines, grid.chunk[2], &extent, span, out);
             }
         }

@@ -1,6 +1,7 @@
 //! One shard file: its index, and verified parts of its chunks.
 
 use super::super::sample::StoredSample;
+use super::{CROSSLINES_TOGETHER, sums_of};
 use bytemuck::cast_slice_mut;
 use std::io::{self, ErrorKind};
 use std::ops::Range;
@@ -46,7 +47,7 @@ pub(super) struct Shard {
     edges: [usize; 3],
     /// Bytes of each chunk without its checksum; empty = only the fill value.
     chunks: Vec<Range<u64>>,
-    /// Checksums of the planes of each chunk, if the file has them.
+    /// Checksums of the planes of each chunk, as [`sums_of`] counts them, if the file has them.
     sums: Option<Vec<u32>>,
 }
 
@@ -56,7 +57,7 @@ impl Shard {
         let file = PlacedFile::open(path).map_err(Trouble::Io)?;
         let length = file.metadata().map_err(Trouble::Io)?.len();
         let index_bytes = count * ENTRY + CHECKSUM;
-        let sums_bytes = count * (edges[0] + edges[1]) * CHECKSUM + CHECKSUM;
+        let sums_bytes = count * sums_of(edges) * CHECKSUM + CHECKSUM;
         let Some(index_at) = length.checked_sub(index_bytes as u64) else {
             return Err(Trouble::Damage(format!("only {length} bytes are left of it")));
         };
@@ -125,10 +126,12 @@ impl ShardReader<'_> {
     pub fn read<T: StoredSample>(&self, chunk: usize, wanted: &Lines, room: &mut Vec<T>) -> Result<Lines, Trouble> {
         let [nx, ny, nz] = self.shard.edges;
         let (row, plane) = (nz * size_of::<T>(), ny * nz * size_of::<T>());
-        let costs = [wanted.x.len() * plane, nx * (CALL_BYTES + wanted.y.len() * row), nx * plane];
+        let first = wanted.y.start / CROSSLINES_TOGETHER * CROSSLINES_TOGETHER;
+        let fours = first..wanted.y.end.next_multiple_of(CROSSLINES_TOGETHER).min(ny);
+        let costs = [wanted.x.len() * plane, nx * (CALL_BYTES + fours.len() * row), nx * plane];
         let lines = match &self.shard.sums {
             Some(_) if costs[0] < costs[1].min(costs[2]) => Lines { x: wanted.x.clone(), y: 0..ny },
-            Some(_) if costs[1] < costs[2] => Lines { x: 0..nx, y: wanted.y.clone() },
+            Some(_) if costs[1] < costs[2] => Lines { x: 0..nx, y: fours },
             _ => Lines { x: 0..nx, y: 0..ny },
         };
         let samples = lines.x.len() * lines.y.len() * nz;
@@ -154,18 +157,19 @@ impl ShardReader<'_> {
         let Some(sums) = self.shard.sums.as_ref().filter(|_| !whole) else {
             return Ok(crc32c::crc32c(bytes) == self.checksum(chunk)?);
         };
-        let sums = &sums[chunk * (nx + ny)..(chunk + 1) * (nx + ny)];
+        let sums = &sums[chunk * sums_of(self.shard.edges)..][..sums_of(self.shard.edges)];
         if lines.y == (0..ny) {
             let planes = bytes.chunks_exact(ny * row).zip(&sums[lines.x.clone()]);
             return Ok(planes.fold(true, |fits, (plane, sum)| fits & (crc32c::crc32c(plane) == *sum)));
         }
-        let mut found = vec![0; lines.y.len()];
+        let mut found = vec![0; lines.y.len().div_ceil(CROSSLINES_TOGETHER)];
         for rows in bytes.chunks_exact(lines.y.len() * row) {
-            for (row, sum) in rows.chunks_exact(row).zip(&mut found) {
-                *sum = crc32c::crc32c_append(*sum, row);
+            for (four, sum) in rows.chunks(CROSSLINES_TOGETHER * row).zip(&mut found) {
+                *sum = crc32c::crc32c_append(*sum, four);
             }
         }
-        Ok(found == sums[nx..][lines.y.clone()])
+        let first = nx + lines.y.start / CROSSLINES_TOGETHER;
+        Ok(found == sums[first..first + found.len()])
     }
 
     /// The stored checksum of a chunk; 0 for one that holds only the fill value.

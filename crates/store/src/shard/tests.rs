@@ -107,7 +107,7 @@ fn shards_without_sums_are_read_and_verified() {
     let shard = path.join("0/c/0/0/0");
     let whole = fs::read(&shard).unwrap();
     let index = whole.len() - CHUNKS * ENTRY - CHECKSUM;
-    let sums = index - CHUNKS * 2 * EDGE * CHECKSUM - CHECKSUM;
+    let sums = index - CHUNKS * super::sums_of([EDGE; 3]) * CHECKSUM - CHECKSUM;
     let mut plain = whole[..sums].to_vec();
     plain.extend(&whole[index..]);
     fs::write(&shard, &plain).unwrap();
@@ -122,6 +122,16 @@ fn shards_without_sums_are_read_and_verified() {
     altered[sums + 5] ^= 1;
     fs::write(&shard, &altered).unwrap();
     assert!(open().read_box::<f32>(0, [0, 0, 0], [1, 90, 120]).is_err(), "the sums have a checksum, too");
+}
+
+#[test]
+fn a_checksum_advances_as_if_it_were_taken_of_all_bytes() {
+    let bytes: Vec<u8> = (0..4000_u32).map(|n| (n * 31 % 251) as u8).collect();
+    for length in [1, 7, 256, 1000] {
+        let advance = super::Advance::by(length);
+        let whole = bytes.chunks_exact(length).fold(0, |sum, part| advance.apply(sum) ^ crc32c::crc32c(part));
+        assert_eq!(whole, crc32c::crc32c(&bytes[..bytes.len() / length * length]), "{length}");
+    }
 }
 
 #[test]
