@@ -139,7 +139,7 @@ impl TryFrom<Action> for Request {
                 segy: super::segy::segy_options(&segy)?,
                 reading: interpretation::import_options(reading)?,
             },
-            Action::ViewChanges { project, frame_times } => Self::Window { project, frame_times },
+            Action::View { project, frame_times } => Self::Window { project, frame_times },
             Action::Import(typed) => {
                 Self::Import { project: typed.project.clone(), command: interpretation::import(typed)? }
             }

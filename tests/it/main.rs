@@ -11,9 +11,13 @@ mod figure;
 mod help;
 mod hostile;
 mod kill;
+#[cfg(target_os = "linux")]
+mod memory;
 mod program;
 mod proposed_faults;
 mod safety;
+#[cfg(target_os = "linux")]
+mod sources;
 mod store;
 mod volume_rendering;
 mod well;

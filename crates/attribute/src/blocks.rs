@@ -10,33 +10,80 @@ use super::semblance::{SemblanceSettings, semblance};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::borrow::Cow;
+use std::ops::Range;
 use survey::geometry::SurveyGeometry;
 use survey::progress::Progress;
 use survey::sample::{SampleType, SamplesMut};
 use survey::source::{Block, BlockSource, BoxSource, SourceError};
 use survey::volume::Volume;
 
-/// Number of float32 volumes of a block's size that are held while the block is computed.
-const VOLUMES_HELD: u64 = 7;
+/// The part of the memory that the writer of an attribute has: two sevenths.
+const WRITER_SHARE: [u64; 2] = [2, 7];
 
-/// The same for an angle: the two dips and what is computed from them.
-const ANGLE_VOLUMES_HELD: u64 = 6;
+/// Bytes that the writer needs beside the block, whatever the block's size: a file of 128³ samples.
+const WRITER_BYTES: u64 = 9 << 20;
 
-type Fill<'a> = dyn Fn(&Block, &mut [f32], &Progress) -> Result<(), SourceError> + 'a;
+/// Number of float32 volumes of a piece's size that are held while the piece is computed: what it is computed
+/// from, two dips, and the result or the other order of the traces.
+const VOLUMES_HELD: u64 = 5;
+
+/// The same for an angle: the two dips and the result.
+const ANGLE_VOLUMES_HELD: u64 = 3;
+
+/// Lines of a piece along both axes that are not divided further, whatever the memory: smaller pieces read and
+/// compute more lines around them than lines of their own.
+const LEAST_LINES: usize = 32;
+
+/// Computes a box that begins at a voxel and is of a size. Returns it, perhaps with lines around it, and the
+/// first of its own lines in what is returned.
+type Compute<'a> = dyn Fn([usize; 3], [usize; 3], &Progress) -> Result<(Volume<f32>, [usize; 2]), SourceError> + 'a;
 
 /// A volume that is computed from another one, block by block.
+///
+/// A block is computed in as many pieces as the memory asks for; the result does not depend on them.
 pub struct AttributeBlocks<'a> {
     size: [usize; 3],
     live: Option<&'a [bool]>,
+    /// Lines around a piece that are read with it.
+    reach: usize,
     volumes_held: u64,
-    fill: Box<Fill<'a>>,
+    /// For the block and what it is computed from, bytes.
+    memory_bytes: u64,
+    compute: Box<Compute<'a>>,
 }
 
 impl AttributeBlocks<'_> {
-    /// What a writer may use of `memory_bytes`, so that computing has the rest. Half of what the writer is
-    /// given is its block.
-    pub fn writer_memory(&self, memory_bytes: u64) -> u64 {
-        memory_bytes * 2 / self.volumes_held
+    /// Sets how much memory writing and computing may use together, bytes, and returns the writer's share. A
+    /// block that the writer asks for, and what a piece of 32 × 32 lines takes, are held in any case.
+    pub fn share_memory(&mut self, memory_bytes: u64) -> u64 {
+        self.memory_bytes = memory_bytes;
+        memory_bytes / WRITER_SHARE[1] * WRITER_SHARE[0]
+    }
+
+    /// Cuts a block into pieces of which each can be computed in the memory that is left beside the block.
+    fn pieces(&self, block: &Block) -> Vec<Block> {
+        let bytes = |lines: [usize; 2]| (lines[0] * lines[1] * self.size[2] * size_of::<f32>()) as u64;
+        let whole = [block.inlines.len(), block.crosslines.len()];
+        let [share, of] = WRITER_SHARE;
+        let writer = (self.memory_bytes / of * share / 2).max(WRITER_BYTES);
+        let left = self.memory_bytes.saturating_sub(bytes(whole)).saturating_sub(writer);
+        let mut piece = whole;
+        while bytes(piece.map(|n| n + 2 * self.reach)).saturating_mul(self.volumes_held) > left {
+            let longer = usize::from(piece[1] > piece[0]);
+            if piece[longer] <= LEAST_LINES {
+                break;
+            }
+            piece[longer] = piece[longer].div_ceil(2);
+        }
+        let cut = |range: &Range<usize>, step: usize| {
+            let range = range.clone();
+            range.clone().step_by(step.max(1)).map(move |first| first..(first + step).min(range.end))
+        };
+        cut(&block.inlines, piece[0])
+            .flat_map(|inlines| {
+                cut(&block.crosslines, piece[1]).map(move |crosslines| Block { inlines: inlines.clone(), crosslines })
+            })
+            .collect()
     }
 }
 
@@ -55,7 +102,18 @@ impl BlockSource for AttributeBlocks<'_> {
 
     fn read_block(&mut self, block: &Block, out: SamplesMut<'_>, progress: &Progress) -> Result<(), SourceError> {
         let SamplesMut::Float32(out) = out else { return Err("attributes are floats".into()) };
-        (self.fill)(block, out, progress)
+        for piece in self.pieces(block) {
+            let (start, part) = span(&piece, self.size);
+            let (found, first) = (self.compute)(start, part, progress)?;
+            let [x, y] = [start[0] - block.inlines.start, start[1] - block.crosslines.start];
+            for (line, out) in out.chunks_exact_mut(block.crosslines.len() * part[2]).skip(x).take(part[0]).enumerate()
+            {
+                for (trace, out) in out.chunks_exact_mut(part[2]).skip(y).take(part[1]).enumerate() {
+                    out.copy_from_slice(found.trace(first[0] + line, first[1] + trace));
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -99,14 +157,19 @@ pub fn dip_angle_blocks<'a>(
     geometry: &'a SurveyGeometry,
 ) -> AttributeBlocks<'a> {
     let size = geometry.size();
-    let fill = move |block: &Block, out: &mut [f32], progress: &Progress| -> Result<(), SourceError> {
+    let compute = move |start: [usize; 3], part: [usize; 3], progress: &Progress| {
         progress.check()?;
-        let (start, part) = span(block, size);
         let dips = DipVolumes { inline: inline.read_box(start, part)?, crossline: crossline.read_box(start, part)? };
-        out.copy_from_slice(dip_angle(&dips, geometry).samples());
-        Ok(())
+        Ok((dip_angle(&dips, geometry), [0; 2]))
     };
-    AttributeBlocks { size, live: inline.live(), volumes_held: ANGLE_VOLUMES_HELD, fill: Box::new(fill) }
+    AttributeBlocks {
+        size,
+        live: inline.live(),
+        reach: 0,
+        volumes_held: ANGLE_VOLUMES_HELD,
+        memory_bytes: u64::MAX,
+        compute: Box::new(compute),
+    }
 }
 
 /// Angle of the reflections from the horizontal in degrees: atan |∇z|, where ∇z in metres per metre solves
@@ -144,28 +207,29 @@ fn span(block: &Block, size: [usize; 3]) -> ([usize; 3], [usize; 3]) {
     (start, [block.inlines.len(), block.crosslines.len(), size[2]])
 }
 
-/// What `compute` makes of a volume, with `reach` lines around each block.
+/// What `compute` makes of a volume, with `reach` lines around each piece.
 fn computed<'a>(
     source: &'a dyn BoxSource,
     reach: usize,
     compute: impl Fn(&Volume<f32>, &Progress) -> Result<Volume<f32>, AttributeError> + 'a,
 ) -> AttributeBlocks<'a> {
     let size = source.size();
-    let fill = move |block: &Block, out: &mut [f32], progress: &Progress| -> Result<(), SourceError> {
-        let (start, part) = span(block, size);
+    let compute = move |start: [usize; 3], part: [usize; 3], progress: &Progress| {
         let low = [start[0].saturating_sub(reach), start[1].saturating_sub(reach), 0];
         let high = [0, 1, 2].map(|axis| (start[axis] + part[axis] + reach).min(size[axis]));
         let around = source.read_box(low, [0, 1, 2].map(|axis| high[axis] - low[axis]))?;
         // The bar counts what is written; cancelling reaches the computation all the same.
         let found = compute(&around, &progress.muted())?;
-        let first = [start[0] - low[0], start[1] - low[1]];
-        let places = (0..part[0]).flat_map(|x| (0..part[1]).map(move |y| (first[0] + x, first[1] + y)));
-        for ((x, y), out) in places.zip(out.chunks_exact_mut(part[2])) {
-            out.copy_from_slice(found.trace(x, y));
-        }
-        Ok(())
+        Ok((found, [start[0] - low[0], start[1] - low[1]]))
     };
-    AttributeBlocks { size, live: source.live(), volumes_held: VOLUMES_HELD, fill: Box::new(fill) }
+    AttributeBlocks {
+        size,
+        live: source.live(),
+        reach,
+        volumes_held: VOLUMES_HELD,
+        memory_bytes: u64::MAX,
+        compute: Box::new(compute),
+    }
 }
 
 #[cfg(test)]
@@ -209,6 +273,11 @@ mod tests {
         let dips = dip::dip(&volume, &steering, &quiet).unwrap();
         let whole = semblance(&volume, &dips, &settings, &quiet).unwrap();
         assert!(gathered(semblance_blocks(&volume, &steering, &settings), &volume) == whole);
+        let mut little = semblance_blocks(&volume, &steering, &settings);
+        // Beside the writer's 9 MiB and a block of 288 KB, a piece of 25 by 30 traces has room.
+        little.share_memory((9 << 20) + 650_000);
+        assert_eq!(little.pieces(&Block { inlines: 0..50, crosslines: 0..60 }).len(), 4);
+        assert!(gathered(little, &volume) == whole);
         assert!(gathered(envelope_blocks(&volume), &volume) == envelope(&volume, &quiet).unwrap());
         let [inline, crossline] = dip_blocks(&volume, &steering).unwrap();
         assert!(gathered(inline, &volume) == dips.inline);

@@ -76,7 +76,7 @@ impl Extrema {
 pub enum ExtremaError<E> {
     /// The source could not be read.
     #[error("the volume could not be read")]
-    Source(E),
+    Source(#[source] E),
     /// The user cancelled.
     #[error(transparent)]
     Cancelled(#[from] survey::Cancelled),

@@ -6,7 +6,7 @@ use super::file::SegyFile;
 use super::sample::SampleFormat;
 use rayon::prelude::*;
 use std::borrow::Cow;
-use survey::progress::{Cancelled, Progress};
+use survey::progress::Progress;
 use survey::sample::{Sample, SampleType, SamplesMut};
 use survey::source::{Block, BlockSource, LineOrder, SourceError};
 
@@ -32,47 +32,47 @@ impl SegyFile {
         SegyBlocks { file: self, non_finite: 0 }
     }
 
-    /// Reads the samples of a block, `[inline][crossline][sample]`, 0 where there is no trace, by `read` of
-    /// one trace; returns how many of them were NaN or infinite and became 0. Memory: 40 bytes per trace.
+    /// Reads the samples of a block, `[inline][crossline][sample]`, 0 where there is no trace, by `decode` of
+    /// one trace; returns how many of them were NaN or infinite and became 0. Memory: 32 bytes per trace, and
+    /// 256 KiB or a trace per thread.
     fn read_traces<T: Sample>(
         &self,
         block: &Block,
         out: &mut [T],
         progress: &Progress,
-        read: impl Fn([usize; 2], &mut [T], &mut [f32]) -> usize + Sync,
+        decode: impl Fn(usize, &[u8], &mut [T], &mut [f32]) -> usize + Sync,
     ) -> Result<u64, SegyError> {
         let [_, _, samples] = self.size();
         let places = block.inlines.clone().flat_map(|x| block.crosslines.clone().map(move |y| [x, y]));
-        let mut traces: Vec<(usize, [usize; 2], &mut [T])> = out
-            .chunks_mut(samples)
-            .zip(places)
-            .filter_map(|(out, [x, y])| match self.trace_at(x, y) {
-                Some(trace) => Some((trace, [x, y], out)),
-                None => {
-                    out.fill(T::from_f32(0.0));
-                    None
-                }
-            })
-            .collect();
-        traces.sort_unstable_by_key(|(trace, ..)| *trace);
+        let mut traces: Vec<(usize, &mut [T])> = Vec::with_capacity(block.inlines.len() * block.crosslines.len());
+        for (out, [x, y]) in out.chunks_mut(samples).zip(places) {
+            match self.trace_at(x, y) {
+                Some(trace) => traces.push((trace, out)),
+                None => out.fill(T::from_f32(0.0)),
+            }
+        }
+        traces.sort_unstable_by_key(|(trace, _)| *trace);
         let read = traces
             .par_chunks_mut(TRACES_TOGETHER)
             .map_init(
-                || vec![0.0f32; samples],
-                |floats, traces| {
-                    progress.check()?;
-                    Ok(traces.iter_mut().map(|(_, place, out)| read(*place, out, floats) as u64).sum())
+                || (Vec::new(), vec![0.0f32; samples]),
+                |(room, floats), traces| {
+                    progress.check().map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
+                    let mut non_finite = 0;
+                    self.read_in_order(traces, room, |trace, bytes, out| {
+                        non_finite += decode(trace, bytes, out, floats) as u64;
+                    })?;
+                    Ok(non_finite)
                 },
             )
-            .collect::<Result<Vec<u64>, Cancelled>>();
-        let non_finite = read.map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
-        Ok(non_finite.into_iter().sum())
+            .collect::<Result<Vec<u64>, SegyError>>()?;
+        Ok(read.into_iter().sum())
     }
 
     /// Reads a block by way of floats.
     fn read_converted<T: Sample>(&self, block: &Block, out: &mut [T], progress: &Progress) -> Result<u64, SegyError> {
-        self.read_traces(block, out, progress, |[x, y], out, floats| {
-            let non_finite = self.read_trace(x, y, floats);
+        self.read_traces(block, out, progress, |trace, bytes, out, floats| {
+            let non_finite = self.decode(trace, bytes, floats);
             out.iter_mut().zip(&*floats).for_each(|(out, &value)| *out = T::from_f32(value));
             non_finite
         })
@@ -120,10 +120,9 @@ impl BlockSource for SegyBlocks<'_> {
             SamplesMut::Int32(out) => file.read_converted(block, out, progress),
             SamplesMut::Uint32(out) => file.read_converted(block, out, progress),
             SamplesMut::Float32(out) => {
-                file.read_traces(block, out, progress, |[x, y], out, _| file.read_trace(x, y, out))
+                file.read_traces(block, out, progress, |trace, bytes, out, _| file.decode(trace, bytes, out))
             }
         }?;
-        file.release();
         Ok(())
     }
 }

@@ -3,18 +3,18 @@
 //! Memory: 4 bytes per trace for a field that varies within a block of traces, none for a block in which it
 //! is constant.
 //!
-//! In the file, headers are a trace apart and not in the cache. They are first copied side by side: the
-//! copies are independent, so that the processor waits for many of them at once, and the fields are then read
-//! from the cache.
+//! In the file, headers are a trace apart. They are first copied side by side, and the fields are then read
+//! from the processor's cache.
 
 use std::borrow::Cow;
 
 use rayon::prelude::*;
 
+use super::error::SegyProblem;
 use super::header::{Field, Traces, reinterpret};
 use super::number_type::NumberType;
 use super::sample::ByteOrder;
-use survey::progress::{Cancelled, Progress};
+use survey::progress::Progress;
 
 /// Headers of a block (240 bytes each) stay in the cache while its fields are read one after the other.
 const BLOCK_BITS: usize = 10;
@@ -98,21 +98,20 @@ pub(super) struct Columns {
 
 impl Columns {
     /// Reads `fields` of all traces.
-    pub fn read(traces: &Traces<'_>, fields: &[Field], progress: &Progress) -> Result<Self, Cancelled> {
-        let count = traces.count();
+    pub fn read(traces: &Traces<'_>, fields: &[Field], progress: &Progress) -> Result<Self, SegyProblem> {
+        let count = traces.count;
         progress.begin("reading trace headers", count as u64);
         let blocks: Vec<Vec<Block>> = (0..count.div_ceil(BLOCK))
             .into_par_iter()
-            .map_init(Vec::new, |headers: &mut Vec<u8>, block| {
+            .map_init(Default::default, |(headers, room): &mut (Vec<u8>, Vec<u8>), block| {
                 let range = block * BLOCK..((block + 1) * BLOCK).min(count);
-                headers.clear();
-                range.clone().for_each(|trace| headers.extend_from_slice(traces.header(trace)));
+                traces.headers(range.clone(), headers, room)?;
                 let column = |field: &Field| Block::new(field.get_all(headers, traces.header_bytes, traces.order));
                 let row = fields.iter().map(column).collect();
                 progress.step(range.len() as u64)?;
                 Ok(row)
             })
-            .collect::<Result<_, Cancelled>>()?;
+            .collect::<Result<_, SegyProblem>>()?;
         let mut columns: Vec<HeaderColumn> =
             fields.iter().map(|_| HeaderColumn { blocks: Vec::new(), count, range: [i32::MAX, i32::MIN] }).collect();
         for row in blocks {

@@ -32,6 +32,42 @@ pub enum SegyProblem {
         /// The system's answer.
         source: io::Error,
     },
+    /// The file lost its end while it was read.
+    #[error(
+        "the file was cut off while it was read: {} is beyond its end ({before} bytes when it was opened, {now} now); import it again when it is whole",
+        place(*trace, *byte)
+    )]
+    Shortened {
+        /// Number of the trace that was read, from 1; none for the file headers.
+        trace: Option<u64>,
+        /// Byte that was read, from 1.
+        byte: u64,
+        /// Bytes of the file when it was opened.
+        before: u64,
+        /// Bytes of it that are left.
+        now: u64,
+    },
+    /// A part of the file that the system cannot read, although it is there.
+    #[error(
+        "{} cannot be read ({source}); check the disk or the network connection, then import the file again",
+        place(*trace, *byte)
+    )]
+    Unreadable {
+        /// Number of the trace that was read, from 1; none for the file headers.
+        trace: Option<u64>,
+        /// Byte that was read, from 1.
+        byte: u64,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// Another program wrote to the file, or replaced it, while it was read.
+    #[error(
+        "the file changed while it was read ({what}), so nothing of it is kept; import it again when no other program writes to it"
+    )]
+    Changed {
+        /// What is different.
+        what: String,
+    },
     /// The source of the samples failed.
     #[error("the samples to write could not be supplied: {source}")]
     Source {
@@ -273,6 +309,14 @@ impl SegyProblem {
     /// Names the file.
     pub(super) fn in_file(self, path: &Path) -> SegyError {
         SegyError { path: path.to_owned(), problem: self }
+    }
+}
+
+/// A place in a file: a trace and a byte, both counted from 1.
+fn place(trace: Option<u64>, byte: u64) -> String {
+    match trace {
+        Some(trace) => format!("trace {trace} (from byte {byte})"),
+        None => format!("the file header (from byte {byte})"),
     }
 }
 

@@ -4,11 +4,18 @@
 //! traces is taken.
 
 use super::SegyOptions;
+use super::bytes::Bytes;
 use super::error::SegyProblem;
 use super::header::{BinaryHeader, FILE_HEADER_BYTES, Field, ORDER_CONSTANT, TRACE_HEADER_BYTES, Traces, at};
 use super::info::Findings;
 use super::sample::{ByteOrder, SampleFormat};
-use super::text::{TEXT_BYTES, TextEncoding, decode_lines, find_end_of_text};
+use super::text::{TEXT_BYTES, TextEncoding, decode_lines, ends_text};
+
+/// Bytes of extended text that are read at most: 300 headers. The standard's stanzas take a few.
+const MOST_EXTENDED_TEXT: usize = 300 * TEXT_BYTES;
+
+/// Extended text headers that are read at once.
+const HEADERS_TOGETHER: usize = 80;
 
 /// What the file headers say, checked against the file's length.
 #[derive(Debug, Clone)]
@@ -23,25 +30,33 @@ pub(super) struct FileLayout {
     pub binary: BinaryHeader,
     /// Samples per trace.
     pub samples: usize,
-    /// Byte at which the traces begin, and the one after their end.
-    pub data: [usize; 2],
+    /// Byte at which the traces begin.
+    pub start: u64,
+    /// Count of traces.
+    pub traces: usize,
     pub header_bytes: usize,
     pub stride: usize,
 }
 
 impl FileLayout {
-    pub fn read(file: &[u8], options: &SegyOptions, findings: &mut Findings) -> Result<Self, SegyProblem> {
-        refuse_text(file)?;
-        if file.len() < FILE_HEADER_BYTES {
-            return Err(SegyProblem::TooShort { bytes: file.len() as u64 });
+    pub fn read(file: &Bytes, options: &SegyOptions, findings: &mut Findings) -> Result<Self, SegyProblem> {
+        let mut head = vec![0; file.len().min(FILE_HEADER_BYTES as u64) as usize];
+        file.copy(0, &mut head, None)?;
+        refuse_text(&head)?;
+        if head.len() < FILE_HEADER_BYTES {
+            return Err(SegyProblem::TooShort { bytes: file.len() });
         }
-        let encoding = TextEncoding::of(&file[..TEXT_BYTES]);
-        let text = decode_lines(&file[..TEXT_BYTES], encoding);
+        let encoding = TextEncoding::of(&head[..TEXT_BYTES]);
+        let text = decode_lines(&head[..TEXT_BYTES], encoding);
         findings.evidence(format!("text header: {}", encoding.name()));
-        let (order, format) = order_and_format(file, options, findings)?;
-        let binary = BinaryHeader::parse(file, order);
+        let (order, format) = order_and_format(file, &head, options, findings)?;
+        let binary = BinaryHeader::parse(&head, order);
         let shape = Shape::find(file, &binary, order, format, encoding, findings)?;
-        let extended_text = decode_lines(&file[FILE_HEADER_BYTES..shape.start.max(FILE_HEADER_BYTES)], encoding);
+        let extended = (shape.start.saturating_sub(FILE_HEADER_BYTES as u64) as usize).min(MOST_EXTENDED_TEXT);
+        let extended_text = match file.get(FILE_HEADER_BYTES as u64, extended, None)? {
+            Some(bytes) => decode_lines(&bytes, encoding),
+            None => Vec::new(),
+        };
         Ok(Self {
             order,
             format,
@@ -50,16 +65,19 @@ impl FileLayout {
             extended_text,
             binary,
             samples: shape.samples,
-            data: [shape.start, shape.start + shape.traces * shape.stride(format)],
+            start: shape.start,
+            traces: shape.traces,
             header_bytes: shape.header_bytes,
             stride: shape.stride(format),
         })
     }
 
     /// The traces of `file`, which must be the one this frame was read from.
-    pub fn traces<'a>(&self, file: &'a [u8]) -> Traces<'a> {
+    pub fn traces<'a>(&self, file: &'a Bytes) -> Traces<'a> {
         Traces {
-            bytes: &file[self.data[0]..self.data[1]],
+            bytes: file,
+            start: self.start,
+            count: self.traces,
             order: self.order,
             stride: self.stride,
             header_bytes: self.header_bytes,
@@ -67,8 +85,7 @@ impl FileLayout {
     }
 }
 
-fn refuse_text(file: &[u8]) -> Result<(), SegyProblem> {
-    let start = &file[..file.len().min(FILE_HEADER_BYTES)];
+fn refuse_text(start: &[u8]) -> Result<(), SegyProblem> {
     let whole = match std::str::from_utf8(start) {
         Ok(text) => text,
         // A character may be cut at the end of the excerpt.
@@ -83,12 +100,13 @@ fn refuse_text(file: &[u8]) -> Result<(), SegyProblem> {
 
 /// Byte order by, first, the option, the constant at 3297, the format code; then by which order fits better.
 fn order_and_format(
-    file: &[u8],
+    file: &Bytes,
+    head: &[u8],
     options: &SegyOptions,
     findings: &mut Findings,
 ) -> Result<(ByteOrder, SampleFormat), SegyProblem> {
     let orders = [ByteOrder::Big, ByteOrder::Little];
-    let headers = orders.map(|order| BinaryHeader::parse(file, order));
+    let headers = orders.map(|order| BinaryHeader::parse(head, order));
     let format_in = |header: &BinaryHeader| match options.format {
         Some(format) => Ok(Some(format)),
         None => SampleFormat::from_code(header.format),
@@ -102,7 +120,8 @@ fn order_and_format(
     } else if headers[0].order_constant == ORDER_CONSTANT.rotate_left(16).swap_bytes() {
         return Err(SegyProblem::PairwiseSwapped);
     } else {
-        let scores = [0, 1].map(|k| fitness(file, &headers[k], orders[k], format_in(&headers[k]).ok().flatten()));
+        let score = |k: usize| fitness(file, &headers[k], orders[k], format_in(&headers[k]).ok().flatten());
+        let scores = [score(0)?, score(1)?];
         let known = headers.each_ref().map(|h| !matches!(format_in(h), Ok(None)));
         let k = match known {
             [true, false] => 0,
@@ -134,32 +153,42 @@ fn order_and_format(
 }
 
 /// How well a byte order explains the file, 0 to 6.
-fn fitness(file: &[u8], header: &BinaryHeader, order: ByteOrder, format: Option<SampleFormat>) -> u32 {
-    let Some(format) = format else { return 0 };
-    let start = FILE_HEADER_BYTES + TEXT_BYTES * usize::from(header.extended_headers.max(0).unsigned_abs());
+fn fitness(
+    file: &Bytes,
+    header: &BinaryHeader,
+    order: ByteOrder,
+    format: Option<SampleFormat>,
+) -> Result<u32, SegyProblem> {
+    let Some(format) = format else { return Ok(0) };
+    let start = (FILE_HEADER_BYTES + TEXT_BYTES * usize::from(header.extended_headers.max(0).unsigned_abs())) as u64;
     let samples = usize::from(header.samples);
     let mut score = 0;
     if (100..=20_000).contains(&header.interval) {
         score += 1;
     }
     if samples > 0 {
-        let stride = TRACE_HEADER_BYTES + samples * format.bytes();
+        let stride = (TRACE_HEADER_BYTES + samples * format.bytes()) as u64;
         if file.len() > start && (file.len() - start).is_multiple_of(stride) {
             score += 3;
         }
-        let trace = file.get(start..start + TRACE_HEADER_BYTES);
-        let in_trace = trace.map_or(0, |header| Field::U16(at::SAMPLES).get(header, order));
-        if in_trace == i32::from(header.samples) {
+        let in_trace = samples_in_header(file, start, 0, order)?.unwrap_or(0);
+        if in_trace == samples {
             score += 2;
         }
     }
-    score
+    Ok(score)
+}
+
+/// The sample count that a trace header at `byte` states; none where the file ends before.
+fn samples_in_header(file: &Bytes, byte: u64, trace: usize, order: ByteOrder) -> Result<Option<usize>, SegyProblem> {
+    let header = file.get(byte, TRACE_HEADER_BYTES, Some(trace))?;
+    Ok(header.map(|header| Field::U16(at::SAMPLES).get(&header, order) as usize))
 }
 
 /// One reading of where the traces are.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Shape {
-    start: usize,
+    start: u64,
     header_bytes: usize,
     samples: usize,
     traces: usize,
@@ -171,16 +200,16 @@ impl Shape {
     }
 
     fn find(
-        file: &[u8],
+        file: &Bytes,
         binary: &BinaryHeader,
         order: ByteOrder,
         format: SampleFormat,
         encoding: TextEncoding,
         findings: &mut Findings,
     ) -> Result<Self, SegyProblem> {
-        let starts = starts(file, binary, encoding, findings);
+        let starts = starts(file, binary, encoding, findings)?;
         let trailer_bytes = match binary.trailers {
-            n @ 1.. if binary.has_revision_2() => TEXT_BYTES.saturating_mul(n as usize),
+            n @ 1.. if binary.has_revision_2() => (TEXT_BYTES as u64).saturating_mul(u64::from(n.unsigned_abs())),
             _ => 0,
         };
         let end = file.len().saturating_sub(trailer_bytes);
@@ -191,22 +220,22 @@ impl Shape {
         let header_sizes = [TRACE_HEADER_BYTES * (1 + extra), TRACE_HEADER_BYTES];
         let mut preferred = None;
         for start in starts {
-            let first_header = file.get(start..).and_then(|rest| rest.get(..TRACE_HEADER_BYTES));
-            let in_trace = first_header.map_or(0, |header| Field::U16(at::SAMPLES).get(header, order)) as usize;
+            let in_trace = samples_in_header(file, start, 0, order)?.unwrap_or(0);
             let counts = sample_counts(binary, in_trace);
             for header_bytes in header_sizes {
                 for &samples in &counts {
                     let mut shape = Self { start, header_bytes, samples, traces: 0 };
                     let preferred = *preferred.get_or_insert(shape);
                     let bytes = end.saturating_sub(start);
-                    if bytes == 0 || !bytes.is_multiple_of(shape.stride(format)) {
+                    let stride = shape.stride(format) as u64;
+                    if bytes == 0 || !bytes.is_multiple_of(stride) {
                         continue;
                     }
                     let is_preferred = shape == preferred;
-                    shape.traces = bytes / shape.stride(format);
+                    shape.traces = (bytes / stride) as usize;
                     if is_preferred {
                         shape.check_announced(binary, findings)?;
-                    } else if !shape.headers_agree(file, order, format) {
+                    } else if !shape.headers_agree(file, order, format)? {
                         continue;
                     } else {
                         findings.warning(format!(
@@ -229,24 +258,27 @@ impl Shape {
             }
         }
         let Some(preferred) = preferred else {
-            return Err(if end > FILE_HEADER_BYTES {
+            return Err(if end > FILE_HEADER_BYTES as u64 {
                 SegyProblem::NoSampleCount
             } else {
-                SegyProblem::NoTraces { bytes: file.len() as u64 }
+                SegyProblem::NoTraces { bytes: file.len() }
             });
         };
         if end <= preferred.start {
-            return Err(SegyProblem::NoTraces { bytes: file.len() as u64 });
+            return Err(SegyProblem::NoTraces { bytes: file.len() });
         }
-        Err(preferred.diagnose(&file[..end], order, format))
+        Err(preferred.diagnose(file, end, order, format)?)
     }
 
     /// Whether the traces of a reading that is not the preferred one say its sample count themselves.
-    fn headers_agree(&self, file: &[u8], order: ByteOrder, format: SampleFormat) -> bool {
-        [0, self.traces / 2, self.traces - 1].iter().all(|trace| {
-            let header = &file[self.start + trace * self.stride(format)..][..TRACE_HEADER_BYTES];
-            Field::U16(at::SAMPLES).get(header, order) as usize == self.samples
-        })
+    fn headers_agree(&self, file: &Bytes, order: ByteOrder, format: SampleFormat) -> Result<bool, SegyProblem> {
+        for trace in [0, self.traces / 2, self.traces - 1] {
+            let byte = self.start + (trace * self.stride(format)) as u64;
+            if samples_in_header(file, byte, trace, order)? != Some(self.samples) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     fn check_announced(&self, binary: &BinaryHeader, findings: &mut Findings) -> Result<(), SegyProblem> {
@@ -263,14 +295,20 @@ impl Shape {
         Ok(())
     }
 
-    /// Why no whole number of traces fits: lengths that vary, or an end cut off.
-    fn diagnose(&self, file: &[u8], order: ByteOrder, format: SampleFormat) -> SegyProblem {
+    /// Why no whole number of traces fits before the byte `end`: lengths that vary, or an end cut off.
+    fn diagnose(
+        &self,
+        file: &Bytes,
+        end: u64,
+        order: ByteOrder,
+        format: SampleFormat,
+    ) -> Result<SegyProblem, SegyProblem> {
         let mut position = self.start;
         let mut trace = 0_u64;
         let mut first = 0;
         let mut different = None;
-        while let Some(header) = file.get(position..).and_then(|rest| rest.get(..TRACE_HEADER_BYTES)) {
-            let samples = Field::U16(at::SAMPLES).get(header, order) as usize;
+        while position + TRACE_HEADER_BYTES as u64 <= end {
+            let Some(samples) = samples_in_header(file, position, trace as usize, order)? else { break };
             trace += 1;
             if trace == 1 {
                 first = samples;
@@ -280,36 +318,39 @@ impl Shape {
             if samples == 0 {
                 break;
             }
-            position += self.header_bytes + samples * format.bytes();
+            position += (self.header_bytes + samples * format.bytes()) as u64;
         }
         if let Some((trace, other)) = different
-            && position == file.len()
+            && position == end
         {
-            return SegyProblem::VariableLength { first, trace, other };
+            return Ok(SegyProblem::VariableLength { first, trace, other });
         }
-        let (stride, bytes) = (self.stride(format) as u64, (file.len() - self.start) as u64);
-        SegyProblem::Truncated {
+        let (stride, bytes) = (self.stride(format) as u64, end - self.start);
+        Ok(SegyProblem::Truncated {
             trace: bytes / stride + 1,
             present: bytes % stride,
             trace_bytes: stride,
             samples: self.samples,
-        }
+        })
     }
 }
 
 /// Bytes at which traces may begin, the likeliest first.
-fn starts(file: &[u8], binary: &BinaryHeader, encoding: TextEncoding, findings: &mut Findings) -> Vec<usize> {
+fn starts(
+    file: &Bytes,
+    binary: &BinaryHeader,
+    encoding: TextEncoding,
+    findings: &mut Findings,
+) -> Result<Vec<u64>, SegyProblem> {
+    let after = |headers: u64| FILE_HEADER_BYTES as u64 + TEXT_BYTES as u64 * headers;
     let mut starts = Vec::new();
-    if binary.has_revision_2()
-        && let Ok(first) = usize::try_from(binary.first_trace)
-        && first >= FILE_HEADER_BYTES
-    {
-        starts.push(first);
+    if binary.has_revision_2() && binary.first_trace >= FILE_HEADER_BYTES as u64 {
+        starts.push(binary.first_trace);
     }
     match binary.extended_headers {
-        n @ 1.. => starts.push(FILE_HEADER_BYTES + TEXT_BYTES * usize::from(n.unsigned_abs())),
-        -1 => match find_end_of_text(&file[FILE_HEADER_BYTES..], encoding) {
-            Some(n) => starts.push(FILE_HEADER_BYTES + TEXT_BYTES * n),
+        n @ 1.. => starts.push(after(u64::from(n.unsigned_abs()))),
+        -1 => match find_end_of_text(file, encoding)? {
+            Some(n) => starts.push(after(n)),
             None => findings.warning(
                 "byte 3505 announces extended text headers closed by ((SEG: EndText)), which is nowhere in the \
                  file; none are read"
@@ -318,9 +359,25 @@ fn starts(file: &[u8], binary: &BinaryHeader, encoding: TextEncoding, findings: 
         },
         _ => {}
     }
-    starts.push(FILE_HEADER_BYTES);
+    starts.push(after(0));
     starts.dedup();
-    starts
+    Ok(starts)
+}
+
+/// Number of the extended header (from 1) that holds the end-of-text stanza.
+fn find_end_of_text(file: &Bytes, encoding: TextEncoding) -> Result<Option<u64>, SegyProblem> {
+    let (mut room, mut number, mut from) = (Vec::new(), 0, FILE_HEADER_BYTES as u64);
+    while from + TEXT_BYTES as u64 <= file.len() {
+        let to = (from + (TEXT_BYTES * HEADERS_TOGETHER) as u64).min(file.len());
+        for block in file.read(from..to, &mut room, None)?.chunks_exact(TEXT_BYTES) {
+            number += 1;
+            if ends_text(block, encoding) {
+                return Ok(Some(number));
+            }
+        }
+        from = to;
+    }
+    Ok(None)
 }
 
 /// Sample counts that the headers give, the likeliest first. Read unsigned: counts above 32767 occur.

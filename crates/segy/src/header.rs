@@ -1,8 +1,11 @@
 //! Fields of the binary and trace headers. Positions are the standard's: 1-based bytes of the file or trace
 //! header.
 
+use super::bytes::{BYTES_TOGETHER, Bytes};
+use super::error::SegyProblem;
 use super::number_type::NumberType;
 use super::sample::{ByteOrder, f32_from_ibm};
+use std::ops::Range;
 
 /// Bytes of the textual and binary file headers together.
 pub(super) const FILE_HEADER_BYTES: usize = 3600;
@@ -117,11 +120,13 @@ fn revision(word: u16, stored: [u8; 2]) -> (u8, u8) {
     }
 }
 
-/// The traces of a mapped file.
+/// The traces of a file.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Traces<'a> {
-    /// Exactly `count · stride` bytes.
-    pub bytes: &'a [u8],
+    pub bytes: &'a Bytes,
+    /// Byte at which the first one begins.
+    pub start: u64,
+    pub count: usize,
     pub order: ByteOrder,
     /// Bytes of a trace, headers included.
     pub stride: usize,
@@ -129,19 +134,41 @@ pub(super) struct Traces<'a> {
     pub header_bytes: usize,
 }
 
+/// Traces up to this length are read whole for their headers. A call for each header costs as much time as
+/// copying so many bytes.
+const READ_WHOLE: usize = 4096;
+
 impl<'a> Traces<'a> {
-    pub fn count(&self) -> usize {
-        self.bytes.len() / self.stride
+    /// Traces that are read at once, at least one.
+    pub fn together(&self) -> usize {
+        (BYTES_TOGETHER / self.stride).max(1)
     }
 
-    /// The header of a trace, extensions included.
-    pub fn header(&self, trace: usize) -> &'a [u8] {
-        &self.bytes[trace * self.stride..][..self.header_bytes]
+    /// The bytes of consecutive traces.
+    pub fn run<'b>(&self, traces: Range<usize>, room: &'b mut Vec<u8>) -> Result<&'b [u8], SegyProblem>
+    where
+        'a: 'b,
+    {
+        let byte = |trace: usize| self.start + trace as u64 * self.stride as u64;
+        self.bytes.read(byte(traces.start)..byte(traces.end), room, Some(traces.start))
     }
 
-    /// The encoded samples of a trace.
-    pub fn samples(&self, trace: usize) -> &'a [u8] {
-        &self.bytes[trace * self.stride + self.header_bytes..(trace + 1) * self.stride]
+    /// The headers of consecutive traces side by side in `out`, extensions included.
+    pub fn headers(&self, traces: Range<usize>, out: &mut Vec<u8>, room: &mut Vec<u8>) -> Result<(), SegyProblem> {
+        out.clear();
+        if self.stride > READ_WHOLE {
+            out.resize(traces.len() * self.header_bytes, 0);
+            for (trace, header) in traces.zip(out.chunks_exact_mut(self.header_bytes)) {
+                self.bytes.copy(self.start + trace as u64 * self.stride as u64, header, Some(trace))?;
+            }
+            return Ok(());
+        }
+        for first in traces.clone().step_by(self.together()) {
+            let run = first..(first + self.together()).min(traces.end);
+            let bytes = self.run(run, room)?;
+            bytes.chunks_exact(self.stride).for_each(|trace| out.extend_from_slice(&trace[..self.header_bytes]));
+        }
+        Ok(())
     }
 }
 

@@ -36,6 +36,7 @@
 
 mod bins;
 mod block;
+mod bytes;
 mod candidate;
 mod columns;
 mod coordinates;
@@ -66,6 +67,7 @@ mod tests;
 use std::path::Path;
 
 pub use block::SegyBlocks;
+pub use bytes::Stamp;
 pub use candidate::{Candidate, LineSummary, Verdict};
 pub use error::{SegyError, SegyProblem};
 pub use file::SegyFile;

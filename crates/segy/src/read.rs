@@ -1,4 +1,4 @@
-//! Reads a whole volume from a SEG-Y file: traces are decoded in parallel from the mapped file.
+//! Reads a whole volume from a SEG-Y file: traces are decoded in parallel.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -8,8 +8,11 @@ use super::file::SegyFile;
 use super::info::SegyInfo;
 use survey::geometry::SurveyGeometry;
 use survey::huge_pages::zeroed;
-use survey::progress::{Cancelled, Progress};
+use survey::progress::Progress;
 use survey::volume::Volume;
+
+/// Inlines that are read together where the file is sorted by crosslines.
+const INLINES_TOGETHER: usize = 16;
 
 /// Amplitudes of the live traces.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -129,7 +132,7 @@ impl SegyFile {
     /// threads.
     ///
     /// # Errors
-    /// [`SegyProblem::Cancelled`].
+    /// [`SegyProblem::Cancelled`], and those of [`SegyFile::read_trace`].
     pub fn read_inlines(
         &self,
         first_inline: usize,
@@ -137,24 +140,56 @@ impl SegyFile {
         progress: &Progress,
     ) -> Result<Amplitudes, SegyError> {
         let [_, crosslines, samples] = self.size();
-        let sums: Vec<Sums> = out
-            .par_chunks_mut(crosslines * samples)
+        // In a file that is sorted by crosslines, traces of neighbouring inlines lie side by side.
+        let together = if self.info().sorted_by == "inline" { 1 } else { INLINES_TOGETHER };
+        let sums: Vec<Vec<Sums>> = out
+            .par_chunks_mut(together * crosslines * samples)
             .enumerate()
-            .map(|(index, inline)| {
-                let mut sums = Sums::NONE;
-                for (crossline, trace) in inline.chunks_mut(samples).enumerate() {
-                    sums.non_finite += self.read_trace(first_inline + index, crossline, trace) as u64;
-                    if self.is_live(first_inline + index, crossline) {
+            .map_init(Vec::new, |room, (index, inlines)| {
+                let sums = self.read_group(first_inline + index * together, inlines, room)?;
+                let places = (inlines.len() / samples.max(1)) as u64;
+                progress.step(places).map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
+                Ok(sums)
+            })
+            .collect::<Result<_, SegyError>>()?;
+        // In order, so that the last bit does not depend on the threads.
+        Ok(sums.into_iter().flatten().fold(Sums::NONE, Sums::add).amplitudes())
+    }
+
+    /// Decodes a few inlines; returns the sums of each.
+    fn read_group(&self, first_inline: usize, out: &mut [f32], room: &mut Vec<u8>) -> Result<Vec<Sums>, SegyError> {
+        let [_, crosslines, samples] = self.size();
+        let inlines = out.len().div_ceil(crosslines * samples).max(1);
+        let mut traces = Vec::with_capacity(out.len() / samples.max(1));
+        for (place, out) in out.chunks_mut(samples).enumerate() {
+            match self.trace_at(first_inline + place / crosslines, place % crosslines) {
+                Some(trace) => traces.push((trace, out)),
+                None => out.fill(0.0),
+            }
+        }
+        let mut sums = vec![Sums::NONE; inlines];
+        // The sums of an inline are those of its traces in the order of crosslines. Where the file has that order,
+        // a trace is summed while it is in the processor's cache.
+        let is_in_order = inlines == 1 && traces.is_sorted_by_key(|(trace, _)| *trace);
+        traces.sort_unstable_by_key(|(trace, _)| *trace);
+        let mut non_finite = 0;
+        self.read_in_order(&mut traces, room, |trace, bytes, out| {
+            non_finite += self.decode(trace, bytes, out) as u64;
+            if is_in_order && !self.is_dead(trace) {
+                sums[0].add_trace(out);
+            }
+        })?;
+        if !is_in_order {
+            for (inline, (sums, out)) in sums.iter_mut().zip(out.chunks(crosslines * samples)).enumerate() {
+                for (crossline, trace) in out.chunks(samples).enumerate() {
+                    if self.is_live(first_inline + inline, crossline) {
                         sums.add_trace(trace);
                     }
                 }
-                progress.step(crosslines as u64)?;
-                Ok(sums)
-            })
-            .collect::<Result<_, Cancelled>>()
-            .map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
-        // In order, so that the last bit does not depend on the threads.
-        Ok(sums.into_iter().fold(Sums::NONE, Sums::add).amplitudes())
+            }
+        }
+        sums[0].non_finite = non_finite;
+        Ok(sums)
     }
 
     /// Which places hold a live trace, `[inline][crossline]`; none if all do.
@@ -168,7 +203,9 @@ impl SegyFile {
     /// Reads the whole volume.
     ///
     /// # Errors
-    /// [`SegyProblem::SingleTrace`] for a file of one trace, and [`SegyProblem::Cancelled`].
+    /// [`SegyProblem::SingleTrace`] for a file of one trace, [`SegyProblem::Cancelled`],
+    /// [`SegyProblem::Changed`] for a file that another program writes to, and those of
+    /// [`SegyFile::read_trace`].
     pub fn read(&self, progress: &Progress) -> Result<SegyVolume, SegyError> {
         let geometry = self.geometry()?;
         let size = geometry.size();
@@ -177,6 +214,7 @@ impl SegyFile {
             SegyProblem::SizeMismatch { volume: size, geometry: mismatch.size }.in_file(&self.path)
         })?;
         let amplitudes = self.read_inlines(0, volume.samples_mut(), progress)?;
+        self.check_unchanged()?;
         let mut info = self.info().clone();
         if amplitudes.non_finite > 0 {
             let warning =

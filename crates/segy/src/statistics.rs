@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::error::{SegyError, SegyProblem};
 use super::file::SegyFile;
-use survey::progress::{Cancelled, Progress};
+use survey::progress::Progress;
 
 /// Count of samples examined: enough for percentiles to three digits, in a fraction of a second.
 const SAMPLES: usize = 1 << 22;
@@ -63,7 +63,7 @@ impl SegyFile {
     /// Looks at the amplitudes of up to four million samples.
     ///
     /// # Errors
-    /// [`SegyProblem::Cancelled`].
+    /// [`SegyProblem::Cancelled`], and those of [`SegyFile::read_trace`].
     pub fn statistics(&self, progress: &Progress) -> Result<Statistics, SegyError> {
         let [_, crosslines, samples] = self.size();
         let live: Vec<usize> =
@@ -77,12 +77,11 @@ impl SegyFile {
             .par_chunks_mut(samples.max(1))
             .zip(&chosen)
             .map(|(trace, &place)| {
-                let non_finite = self.read_trace(place / crosslines, place % crosslines, trace);
-                progress.step(1)?;
+                let non_finite = self.read_trace(place / crosslines, place % crosslines, trace)?;
+                progress.step(1).map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
                 Ok((non_finite, trace.iter().all(|&value| value == 0.0)))
             })
-            .collect::<Result<_, Cancelled>>()
-            .map_err(|cancelled| SegyProblem::from(cancelled).in_file(&self.path))?;
+            .collect::<Result<_, SegyError>>()?;
         let mut statistics = describe(values);
         statistics.traces = chosen.len();
         statistics.live_traces = live.len();

@@ -1,9 +1,11 @@
 //! Writing volumes: level 0 block by block, then level after level, in memory that is bounded whatever the
 //! volume's size.
+//!
 //! A block is a range of inlines and of crosslines with all their samples. It consists of whole shards, as many as fit
-//! into half the memory; its shards are written by all threads. Each further level is made shard by shard from the
-//! level before. [`resume_blocks`] keeps the intact shards of an earlier call that was ended by a kill or a power cut:
-//! shards get their names only when they are complete, and their checksums are verified before they are kept.
+//! into half the memory; as many threads write them as the other half has room for. Each further level is made shard by
+//! shard from the level before, of which a few inlines are read at a time. [`resume_blocks`] keeps the intact shards of
+//! an earlier call that was ended by a kill or a power cut: shards get their names only when they are complete, and
+//! their checksums are verified before they are kept.
 
 use super::array::{create_volume, write_array, write_group};
 use super::error::StoreError;
@@ -21,6 +23,7 @@ use std::fs;
 use std::ops::Range;
 use std::path::Path;
 use std::sync::Mutex;
+use survey::huge_pages::zeroed;
 use survey::progress::Progress;
 use survey::sample::SampleType;
 use survey::source::{Block, BlockSource, LineOrder, SourceError};
@@ -29,12 +32,12 @@ use survey::volume::Volume;
 /// The file that marks a folder as being written; it is removed when the volume is complete.
 const MARKER: &str = "unfinished";
 
-/// Largest memory for making one shard of a further level, bytes: the mapped files of 262³ samples, and the samples
-/// made from them.
-const LEVEL_BYTES: u64 = 160 << 20;
+/// Inlines of a finer level that are read at once.
+const INLINES_TOGETHER: usize = 8;
 
-/// Largest number of shards of a further level that a thread makes before files are unmapped.
-const SHARDS_TOGETHER: u64 = 4;
+/// Bytes that making one shard of a further level takes at most: 8 planes of 262² samples of the finer one, what
+/// is between two steps of halving, 128³ samples and the file that they become, and a brick while it is read.
+const LEVEL_BYTES: u64 = 22 << 20;
 
 /// Default memory for writing a volume, bytes.
 pub const MEMORY_BYTES: u64 = 2 << 30;
@@ -42,10 +45,19 @@ pub const MEMORY_BYTES: u64 = 2 << 30;
 /// How a volume is written.
 #[derive(Debug, Clone, Copy)]
 struct WriteSettings {
-    /// Memory to use, bytes; the need of one column of shards (128 × 128 traces, twice) is used in any case.
+    /// Memory to use, bytes; a column of shards (128 × 128 traces) and a shard are used in any case.
     memory_bytes: u64,
     /// The order in which the source delivers samples.
     order: LineOrder,
+}
+
+impl WriteSettings {
+    /// How many shards may be made at a time, where each takes so many bytes.
+    fn together(&self, bytes: u64) -> usize {
+        let fit = usize::try_from((self.memory_bytes / bytes.max(1)).max(1)).unwrap_or(usize::MAX);
+        // Where memory sets no limit, the threads do, and none has to wait for the others.
+        if fit < rayon::current_num_threads() { fit } else { usize::MAX }
+    }
 }
 
 /// The result of writing a volume.
@@ -150,7 +162,13 @@ fn ingest_as<T: StoredSample>(
     let mask = mask_of(size, source.live().as_deref(), info)?;
     let settings = WriteSettings { memory_bytes, order: source.order() };
     let supply = |block: &Block, mut room: Vec<T>| {
-        room.resize(block.inlines.len() * block.crosslines.len() * size[2], T::from_f32(0.0));
+        let count = block.inlines.len() * block.crosslines.len() * size[2];
+        if room.capacity() < count {
+            // Given back first, so that the two are not held at once.
+            drop(std::mem::take(&mut room));
+            room = zeroed(count);
+        }
+        room.resize(count, T::default());
         source.read_block(block, T::slots(&mut room), progress)?;
         Ok(Cow::Owned(room))
     };
@@ -241,10 +259,11 @@ impl Ingest<'_> {
     ) -> Result<(Ingested, ShardGrid), StoreError> {
         let grid = create_volume::<T>(self.group, "0", size)?;
         let counts = grid.counts();
-        let mut shards = Shards::new(grid.clone(), self.group, "0");
+        let shards = Shards::new(grid.clone(), self.group, "0");
         let mut done = Ingested { files: counts.iter().product(), kept: 0 };
         let mut ranges = BrickRanges::of(size);
         let rooms = Rooms::<Vec<u8>>::default();
+        let together = self.settings.together(2 * grid.file_bytes::<T>() as u64);
         let mut spare = Vec::new();
         self.progress.begin("storing the volume", done.files as u64);
         for [columns_x, columns_y] in column_blocks::<T>(&grid, &self.settings) {
@@ -262,10 +281,8 @@ impl Ingest<'_> {
                     self.progress.step(1)?;
                 }
                 done.kept += places.len();
-                shards.release();
                 continue;
             }
-            shards.release();
             let span = |columns: &Range<usize>, axis: usize| {
                 columns.start * grid.shard[axis]..(columns.end * grid.shard[axis]).min(size[axis])
             };
@@ -279,15 +296,17 @@ impl Ingest<'_> {
                 return Err(StoreError::SizeMismatch { what: "a block of samples", expected, found: values.len() });
             }
             let samples = Samples { values: &values, first, size: block_size };
-            let found: Vec<IndexedRanges> = places
-                .par_iter()
-                .map(|&place| {
-                    let found = rooms.with(|bytes| self.write_shard(&grid, place, &samples, &self.mask, bytes))?;
-                    self.progress.step(1)?;
-                    Ok(found)
-                })
-                .collect::<Result<_, StoreError>>()?;
-            found.into_iter().for_each(|found| ranges.take(found));
+            for places in places.chunks(together) {
+                let found: Vec<IndexedRanges> = places
+                    .par_iter()
+                    .map(|&place| {
+                        let found = rooms.with(|bytes| self.write_shard(&grid, place, &samples, &self.mask, bytes))?;
+                        self.progress.step(1)?;
+                        Ok(found)
+                    })
+                    .collect::<Result<_, StoreError>>()?;
+                found.into_iter().for_each(|found| ranges.take(found));
+            }
             if let Cow::Owned(values) = values {
                 spare = values;
             }
@@ -323,7 +342,7 @@ impl Ingest<'_> {
         let size = halved(fine.shape);
         let name = level.to_string();
         let fine_size = fine.shape;
-        let mut source = Shards::new(fine, self.group, &(level - 1).to_string());
+        let source = Shards::new(fine, self.group, &(level - 1).to_string());
         let grid = create_volume::<T>(self.group, &name, size)?;
         let shards = Shards::new(grid.clone(), self.group, &name);
         let counts = grid.counts();
@@ -333,9 +352,7 @@ impl Ingest<'_> {
         self.progress.begin(&format!("storing level {level}"), done.files as u64);
         let places: Vec<[usize; 3]> =
             (0..done.files).map(|n| [n / (counts[1] * counts[2]), n / counts[2] % counts[1], n % counts[2]]).collect();
-        let most = SHARDS_TOGETHER * rayon::current_num_threads() as u64;
-        let together = (self.settings.memory_bytes / LEVEL_BYTES).clamp(1, most) as usize;
-        for group in places.chunks(together) {
+        for group in places.chunks(self.settings.together(LEVEL_BYTES)) {
             let found: Vec<(bool, IndexedRanges)> = group
                 .par_iter()
                 .map(|&place| {
@@ -359,7 +376,6 @@ impl Ingest<'_> {
                 ranges.take(found);
                 self.progress.step(1)?;
             }
-            source.release();
         }
         ranges.write(self.group, level)?;
         Ok((done, grid))
@@ -389,13 +405,14 @@ impl<R: Default> Rooms<R> {
 /// The buffers for making a shard of a further level.
 struct LevelRoom<T> {
     halving: Halving,
+    fine: Vec<T>,
     coarse: Vec<T>,
     bytes: Vec<u8>,
 }
 
 impl<T> Default for LevelRoom<T> {
     fn default() -> Self {
-        Self { halving: Halving::default(), coarse: Vec::new(), bytes: Vec::new() }
+        Self { halving: Halving::default(), fine: Vec::new(), coarse: Vec::new(), bytes: Vec::new() }
     }
 }
 
@@ -411,7 +428,7 @@ impl<T: StoredSample> LevelRoom<T> {
     ) -> Result<(), StoreError> {
         let need = [0, 1, 2].map(|axis| needed(start[axis], part[axis], fine[axis]));
         let (first, box_size) = (need.map(|n| n.0), need.map(|n| n.1));
-        let view = source.view::<T>(first, box_size)?;
+        let mut inlines = Inlines { source, first, size: box_size, read: 0..0, samples: &mut self.fine, failed: None };
         let coarse = &mut self.coarse;
         coarse.resize(part.iter().product(), T::from_f32(0.0));
         let is_live = |x: usize, y: usize| fine_mask[(first[0] + x) * fine[1] + first[1] + y];
@@ -421,7 +438,7 @@ impl<T: StoredSample> LevelRoom<T> {
             |x, y, trace| {
                 let live = is_live(x, y);
                 if live {
-                    view.read_trace(x, y, trace);
+                    inlines.read_trace(x, y, trace);
                 }
                 live
             },
@@ -436,7 +453,38 @@ impl<T: StoredSample> LevelRoom<T> {
                 }
             },
         );
-        Ok(())
+        inlines.failed.map_or(Ok(()), Err)
+    }
+}
+
+/// A box of a level whose inlines are read one after the other, a few at a time.
+struct Inlines<'a, T> {
+    source: &'a Shards,
+    first: [usize; 3],
+    size: [usize; 3],
+    /// The inlines of the box that are in `samples`.
+    read: Range<usize>,
+    samples: &'a mut Vec<T>,
+    /// Why inlines could not be read; nothing is read then any more.
+    failed: Option<StoreError>,
+}
+
+impl<T: StoredSample> Inlines<'_, T> {
+    /// The trace at x, y of the box; undefined once reading has failed.
+    fn read_trace(&mut self, x: usize, y: usize, out: &mut [f32]) {
+        if self.failed.is_some() {
+            return;
+        }
+        let [nx, ny, nz] = self.size;
+        if !self.read.contains(&x) {
+            self.read = x..(x + INLINES_TOGETHER).min(nx);
+            self.samples.resize(INLINES_TOGETHER * ny * nz, T::from_f32(0.0));
+            let start = [self.first[0] + x, self.first[1], self.first[2]];
+            let samples = &mut self.samples[..self.read.len() * ny * nz];
+            self.failed = self.source.read_into(start, [self.read.len(), ny, nz], samples).err();
+        }
+        let from = ((x - self.read.start) * ny + y) * nz;
+        out.iter_mut().zip(&self.samples[from..from + nz]).for_each(|(out, sample)| *out = sample.to_f32());
     }
 }
 

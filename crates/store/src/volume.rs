@@ -11,8 +11,9 @@
 //! the first that fits one brick.
 //!
 //! The live mask of level L is every 2ᴸth entry of `live`. The module `ingest` writes volumes, and `shard`
-//! defines how samples are laid out in files. The cost of reading a box is proportional to its size. Files
-//! are mapped when they are first needed and remain mapped until [`StoredVolume::release`].
+//! defines how samples are laid out in files. An inline, a crossline or a box costs about what its own samples
+//! cost, a time slice all bricks that it touches. Whatever is read is verified by checksums, and damage is an
+//! error that names the file and the brick.
 
 use super::array::StoredArray;
 use super::error::StoreError;
@@ -188,11 +189,6 @@ impl StoredVolume {
     /// Live traces, `[inline][crossline]`, of level 0.
     pub fn live(&self) -> &[bool] {
         &self.live
-    }
-
-    /// Unmaps the files that were read; they are mapped again when they are needed.
-    pub fn release(&mut self) {
-        self.levels.iter_mut().for_each(StoredArray::release);
     }
 
     /// Least and greatest sample of each 64³ brick of a level, and the counts of bricks: `[x][y][z]`.

@@ -4,17 +4,19 @@
 //! of 4 KiB, or 256 pages of 2 MiB. With pages of 4 KiB, decoding a sample costs less than its share of the
 //! page faults.
 
+use crate::sample::Sample;
+
 /// `count` zeros. The threads that write to the memory touch it first, which decides where the system places
 /// it.
-pub fn zeroed(count: usize) -> Vec<f32> {
-    let samples = vec![0.0_f32; count];
+pub fn zeroed<T: Sample>(count: usize) -> Vec<T> {
+    let samples = vec![T::default(); count];
     advise(&samples);
     samples
 }
 
 /// Asks the system for huge pages. Where it refuses, the program works as before.
 #[cfg(target_os = "linux")]
-fn advise(samples: &[f32]) {
+fn advise<T>(samples: &[T]) {
     /// The advice must begin at a page boundary; no system has smaller pages than this.
     const PAGE: usize = 4096;
     let start = samples.as_ptr() as usize;
@@ -31,14 +33,14 @@ fn advise(samples: &[f32]) {
 }
 
 #[cfg(not(target_os = "linux"))]
-fn advise(_samples: &[f32]) {}
+fn advise<T>(_samples: &[T]) {}
 
 #[cfg(test)]
 mod tests {
     #[test]
     fn any_count_is_zeros() {
         for count in [0, 1, 1023, 1024, 5000, 3_000_000] {
-            let samples = super::zeroed(count);
+            let samples = super::zeroed::<f32>(count);
             assert!(samples.len() == count && samples.iter().all(|&v| v == 0.0));
         }
     }

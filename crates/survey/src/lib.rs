@@ -9,9 +9,10 @@
 //! - horizon candidates extracted from a volume: [`candidates`];
 //! - progress and cancellation of long computations: [`progress`];
 //! - what a user can state about a file: [`remedy`];
-//! - volumes that do not fit into memory: [`source`].
+//! - volumes that do not fit into memory: [`source`];
+//! - bytes of a file at a place: [`positional`].
 //!
-//! Deliberately absent: files and formats, the store, and any algorithm that combines several of these types.
+//! Deliberately absent: formats of files, the store, and any algorithm that combines several of these types.
 //!
 //! # Spaces
 //!
@@ -31,6 +32,7 @@ pub mod height_field;
 pub mod horizon;
 pub mod huge_pages;
 pub mod mesh;
+pub mod positional;
 pub mod progress;
 pub mod remedy;
 pub mod sample;

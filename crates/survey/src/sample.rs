@@ -62,7 +62,7 @@ pub enum SamplesMut<'a> {
 /// assert_eq!(i16::from_f32(f32::NAN), 0);
 /// assert_eq!(u8::to_f32(7), 7.0);
 /// ```
-pub trait Sample: Copy + Send + Sync + PartialEq + 'static {
+pub trait Sample: Copy + Default + Send + Sync + PartialEq + 'static {
     /// Its type.
     const TYPE: SampleType;
     /// The value as float.

@@ -157,7 +157,7 @@ pub(super) enum Action {
     Render(Box<RenderArgs>),
     /// Open the window, for the whole work from volume to picture
     #[command(after_help = "Examples:\n  petroglyph view\n  petroglyph view north.petro")]
-    ViewChanges {
+    View {
         /// Project folder; without one the start page opens
         project: Option<PathBuf>,
         /// Record how long each frame takes, as CSV; frames then follow one another without pause

@@ -110,7 +110,8 @@ pub fn survey(path: &Path, options: &SegyOptions, progress: &Progress) -> Result
     let failed = |error: segy::SegyError| Notice::failure(Place::Dialogue, &error);
     let file = SegyFile::open(path, options, progress).map_err(failed)?;
     let geometry = file.geometry().map_err(failed)?;
-    Ok(SurveyScan { info: file.info().clone(), geometry, traces: traces(&file), inline: middle_inline(&file) })
+    let inline = middle_inline(&file).map_err(failed)?;
+    Ok(SurveyScan { info: file.info().clone(), geometry, traces: traces(&file), inline })
 }
 
 fn traces(file: &SegyFile) -> RgbaImage {
@@ -123,21 +124,21 @@ fn traces(file: &SegyFile) -> RgbaImage {
     })
 }
 
-fn middle_inline(file: &SegyFile) -> RgbaImage {
+fn middle_inline(file: &SegyFile) -> Result<RgbaImage, segy::SegyError> {
     let [inlines, crosslines, samples] = file.size();
     let columns = crosslines.clamp(1, PREVIEW_PX);
     let rows = samples.clamp(1, PREVIEW_PX);
     let mut section = vec![0.0f32; columns * samples];
     for (column, trace) in section.chunks_mut(samples.max(1)).enumerate() {
-        file.read_trace(inlines / 2, column * crosslines / columns, trace);
+        file.read_trace(inlines / 2, column * crosslines / columns, trace)?;
     }
     let clip = ttf::symmetric_clip(&section, SHOWN_SHARE).unwrap_or(1.0);
     let colours = RgbaFunction::centred(ColourMap::Grey, clip);
-    RgbaImage::from_fn(columns as u32, rows as u32, |column, row| {
+    Ok(RgbaImage::from_fn(columns as u32, rows as u32, |column, row| {
         let value = section[column as usize * samples + row as usize * samples / rows];
         let [r, g, b, _] = colours.evaluate(value).map(|channel| (channel * 255.0 + 0.5) as u8);
         Rgba([r, g, b, 255])
-    })
+    }))
 }
 
 /// Scans a horizon or fault file.

@@ -157,7 +157,7 @@ fn write(
     memory_bytes: u64,
     progress: &Progress,
 ) -> Result<(), ProjectError> {
-    let memory_bytes = blocks.writer_memory(memory_bytes);
+    let memory_bytes = blocks.share_memory(memory_bytes);
     write_blocks(path, &mut blocks, info, memory_bytes, progress).map(|_| ()).map_err(explain)
 }
 

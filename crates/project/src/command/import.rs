@@ -75,7 +75,6 @@ impl ImportVolume {
             placement::covers(frame, &geometry)
                 .map_err(|source| ProjectError::Placement { name: name.clone(), source })?;
         }
-        file.release();
         file.info().warnings.iter().for_each(|warning| progress.warn(warning.clone()));
         let (stored_as, new) = draft.generation("volumes", &name, "zarr")?;
         let folder = draft.root().join(IMPORTING);
@@ -155,6 +154,8 @@ impl ImportVolume {
         let mut blocks = file.blocks();
         let done = resume_blocks(partial, &fingerprint, &mut blocks, &info, memory_bytes, progress)
             .map_err(cancelled_within)?;
+        // What was read before a change of the file and after it is no one volume.
+        file.check_unchanged()?;
         let non_finite = blocks.non_finite();
         if done.kept > 0 {
             progress.warn(format!(
@@ -168,16 +169,16 @@ impl ImportVolume {
         Ok(done)
     }
 
-    /// Identifies the file as it is now, and what was stated about it.
+    /// Stands for the file as it was when it was opened, and for what was said about it.
     fn fingerprint(&self, file: &SegyFile) -> Result<String, ProjectError> {
-        let fail = |source| ProjectError::io("read", &self.path, source);
-        let facts = fs::metadata(&self.path).map_err(fail)?;
-        let modified = facts.modified().ok().and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
-        let path = fs::canonicalize(&self.path).map_err(fail)?;
+        let path = fs::canonicalize(&self.path).map_err(|source| ProjectError::io("read", &self.path, source))?;
+        let stamp = file.stamp();
+        let modified = stamp.and_then(|stamp| stamp.modified?.duration_since(std::time::UNIX_EPOCH).ok());
         Ok(serde_json::json!({
             "path": path,
-            "bytes": facts.len(),
+            "bytes": stamp.map(|stamp| stamp.length),
             "modified_ns": modified.map(|time| time.as_nanos().to_string()),
+            "sample_of_bytes": stamp.map(|stamp| stamp.sample),
             "options": self.options,
             "polarity": self.polarity,
             "size": file.size(),

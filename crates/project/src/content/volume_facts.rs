@@ -3,6 +3,7 @@
 use crate::content;
 use crate::document::{Polarity, Source, VolumeEntry};
 use crate::error::ProjectError;
+use rayon::prelude::*;
 use std::path::Path;
 use store::StoredVolume;
 use survey::{Progress, SurveyGeometry};
@@ -49,11 +50,12 @@ fn clip_of(stored: &StoredVolume, progress: &Progress) -> Result<f32, ProjectErr
         stored.live().iter().enumerate().filter(|(_, live)| **live).map(|(place, _)| place).collect();
     let traces = (SAMPLES_ENOUGH / samples.max(1)).max(1);
     let step = live.len().div_ceil(traces).max(1);
-    let mut values = Vec::new();
-    for place in live.into_iter().step_by(step) {
+    let chosen: Vec<usize> = live.into_iter().step_by(step).collect();
+    let read = |place: &usize| -> Result<Vec<f32>, ProjectError> {
         progress.check()?;
         let trace = stored.read_box_f32(0, [place / crosslines, place % crosslines, 0], [1, 1, samples])?;
-        values.extend(trace.samples().iter().filter(|value| value.is_finite()));
-    }
+        Ok(trace.samples().iter().copied().filter(|value| value.is_finite()).collect())
+    };
+    let values = chosen.par_iter().map(read).collect::<Result<Vec<_>, _>>()?.concat();
     Ok(ttf::symmetric_clip(&values, SHOWN_SHARE).unwrap_or(1.0))
 }

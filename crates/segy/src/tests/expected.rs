@@ -97,7 +97,7 @@ fn check_samples(file: &SegyFile, row: &Row) {
     for x in 0..inlines {
         for y in 0..crosslines {
             if let Some(trace) = file.trace_at(x, y) {
-                non_finite += file.read_trace(x, y, &mut traces[trace]);
+                non_finite += file.read_trace(x, y, &mut traces[trace]).unwrap();
             }
         }
     }
