@@ -18,7 +18,7 @@ use project::{content, derived, segy_export, styles};
 use render::Scene;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use survey::Progress;
+use survey::{Progress, file};
 use ttf::{TextureLibrary, contact_sheet};
 
 /// Why there is no answer.
@@ -152,7 +152,7 @@ fn change(mut project: Project, command: &Command, progress: &Progress) -> anyho
 
 /// Reads a scene that a person wrote.
 pub(super) fn scene_file(path: &Path) -> anyhow::Result<Scene> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("{} could not be read", path.display()))?;
+    let text = file::read_text(path, file::MAX_DOCUMENT_BYTES).with_context(|| format!("{} could not be read", path.display()))?;
     toml::from_str(&text).with_context(|| format!("{} is not a scene", path.display()))
 }
 

@@ -317,12 +317,12 @@ fn check_options(options: &SegyOptions) -> Result<(), SegyProblem> {
 
 fn map(path: &Path) -> Result<Mmap, SegyProblem> {
     let io = |doing, hint| move |source| SegyProblem::Io { doing, hint, source };
+    // Asked before it is opened, since opening a pipe waits.
+    let metadata = survey::file::ordinary(path).map_err(|source| match source.kind() {
+        std::io::ErrorKind::InvalidInput => io("read it", "give a file, not a folder or a device")(source),
+        _ => io("open it", "check the name and that you may read it")(source),
+    })?;
     let file = File::open(path).map_err(io("open it", "check the name and that you may read it"))?;
-    let metadata = file.metadata().map_err(io("ask for its length", "check the disk"))?;
-    if !metadata.is_file() {
-        let source = std::io::Error::from(std::io::ErrorKind::InvalidInput);
-        return Err(io("read it", "give a file, not a folder or a device")(source));
-    }
     if metadata.len() == 0 {
         return Err(SegyProblem::TooShort { bytes: 0 });
     }

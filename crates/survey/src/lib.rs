@@ -9,9 +9,10 @@
 //! - horizon candidates extracted from a volume: [`candidates`];
 //! - progress and cancellation of long computations: [`progress`];
 //! - what a user can state about a file: [`remedy`];
-//! - volumes that do not fit into memory: [`source`].
+//! - volumes that do not fit into memory: [`source`];
+//! - what may be read and what fits into memory: [`file`], [`memory`].
 //!
-//! Deliberately absent: files and formats, the store, and any algorithm that combines several of these types.
+//! Deliberately absent: formats of files, the store, and any algorithm that combines several of these types.
 //!
 //! # Spaces
 //!
@@ -26,10 +27,12 @@
 
 pub mod candidates;
 pub mod fault;
+pub mod file;
 pub mod geometry;
 pub mod height_field;
 pub mod horizon;
 pub mod huge_pages;
+pub mod memory;
 pub mod mesh;
 pub mod progress;
 pub mod remedy;

@@ -7,6 +7,7 @@
 use super::view::View;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use survey::file;
 
 /// Recent projects kept.
 const RECENT: usize = 8;
@@ -92,7 +93,8 @@ impl Remembered {
 
     /// What is kept at `path`; nothing where there is no such file or it cannot be understood, for it holds nothing that matters.
     pub fn read(path: &Path) -> Self {
-        std::fs::read_to_string(path).ok().and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
+        let text = file::read_text(path, file::MAX_DOCUMENT_BYTES);
+        text.ok().and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
     }
 
     /// Keeps it at `path`, complete or not at all.

@@ -194,9 +194,9 @@ pub fn open_own(root: &Path, name: &str) -> io::Result<File> {
     Ok(folder.open_with(name, &options)?.into_std())
 }
 
-/// Reads a text file.
+/// Reads a text file of the project: an ordinary file of at most [`survey::file::MAX_DOCUMENT_BYTES`].
 pub(crate) fn read_text(path: &Path) -> Result<String, ProjectError> {
-    fs::read_to_string(path).map_err(|source| ProjectError::io("read", path, source))
+    survey::file::read_text(path, survey::file::MAX_DOCUMENT_BYTES).map_err(|source| ProjectError::io("read", path, source))
 }
 
 /// Names of a folder's entries, in order; none when it is missing.

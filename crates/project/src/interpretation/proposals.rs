@@ -18,7 +18,7 @@ use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use survey::Progress;
+use survey::{Progress, file};
 
 /// What was proposed, and for which state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -179,7 +179,7 @@ pub(crate) fn compute(
 
 /// The proposals kept under a key, if they are there and whole.
 fn read(root: &Path, key: &str) -> Option<Proposals> {
-    let text = std::fs::read_to_string(folder(root).join(file_of(key))).ok()?;
+    let text = file::read_text(&folder(root).join(file_of(key)), file::MAX_INTERPRETATION_BYTES).ok()?;
     serde_json::from_str(&text).ok()
 }
 
