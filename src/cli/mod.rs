@@ -1,7 +1,8 @@
 //! The command line: parse what was typed, work out what it means, do it, say what happened.
 //!
 //! Results for people go to stdout, progress and warnings to stderr; with `--json` stdout holds exactly one object. Exit codes: 0 done,
-//! 1 failed, 2 wrong usage.
+//! 1 failed, 2 wrong usage. An answer that cannot be written is a failure, but a reader that goes away is none. Control characters in
+//! names and files reach no terminal (`plain`).
 
 mod args;
 mod assembly;
@@ -14,6 +15,7 @@ mod info_interpretation;
 mod interpretation;
 mod list;
 mod page;
+mod plain;
 mod report;
 mod request;
 mod run;
@@ -23,15 +25,29 @@ mod view;
 mod well;
 
 use clap::Parser;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
-    let typed = args::Arguments::parse();
+    let typed = match args::Arguments::try_parse() {
+        Ok(typed) => typed,
+        Err(told) => return help(&told),
+    };
     let json = typed.json;
-    let outcome = request::Request::try_from(typed.action).map_err(run::Failure::Usage).and_then(run::run);
+    let outcome = request::seconds("--wait", typed.wait)
+        .and_then(|wait| Ok((request::Request::try_from(typed.action)?, wait)))
+        .map_err(run::Failure::Usage)
+        .and_then(|(request, wait)| run::run(request, wait));
     match outcome {
         Ok(report) => report.print(json),
         Err(failure) => failure::print(&failure, json),
     }
+}
+
+/// Prints the help, the version, or what is wrong with the usage.
+fn help(told: &clap::Error) -> ExitCode {
+    let printed = told.print().and_then(|()| std::io::stdout().flush());
+    let code = u8::try_from(told.exit_code()).unwrap_or(2);
+    if told.use_stderr() { ExitCode::from(code) } else { report::printed(printed, ExitCode::from(code)) }
 }

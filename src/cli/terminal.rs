@@ -1,6 +1,8 @@
 //! Progress on stderr, and Ctrl-C.
 
+use super::plain::plain;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 use survey::progress::ProgressSink;
 use survey::{Note, Progress};
@@ -28,7 +30,7 @@ impl Terminal {
             cancel.cancel();
         });
         if let Err(error) = handler {
-            eprintln!("warning: Ctrl-C will end the program at once ({error})");
+            let _ = writeln!(std::io::stderr(), "warning: Ctrl-C will end the program at once ({error})");
         }
         (terminal, progress)
     }
@@ -45,7 +47,7 @@ impl ProgressSink for Terminal {
         self.bar.set_length(total);
         self.bar.set_position(0);
         self.bar.reset_eta();
-        self.bar.set_message(stage.to_owned());
+        self.bar.set_message(plain(stage).into_owned());
     }
 
     fn advance(&self, done: u64) {
@@ -53,7 +55,9 @@ impl ProgressSink for Terminal {
     }
 
     fn warn(&self, note: &Note) {
-        self.bar.suspend(|| eprintln!("warning: {note}"));
+        self.bar.suspend(|| {
+            let _ = writeln!(std::io::stderr(), "warning: {}", plain(&note.to_string()));
+        });
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(note.to_string());
     }
 }

@@ -94,6 +94,7 @@ pub fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError> {
     if !group.is_dir() {
         return Err(StoreError::Missing { path: group.to_owned() });
     }
+    capacity::check_metadata(&group.join("zarr.json"))?;
     let opened = Group::open(file_store(group, "read")?, "/");
     match opened {
         Ok(opened) => Ok(opened.attributes().clone()),
@@ -249,6 +250,7 @@ impl StoredArray {
     /// Opens the array `name` of the folder `group`.
     pub fn open(group: &Path, name: &str) -> Result<Self, StoreError> {
         let missing = || StoreError::MissingArray { path: group.to_owned(), array: name.to_owned() };
+        capacity::check_metadata(&group.join(name).join("zarr.json"))?;
         let array = match Array::open(file_store(group, "read")?, &format!("/{name}")) {
             Ok(array) => array,
             Err(ArrayCreateError::MissingMetadata) => return Err(missing()),

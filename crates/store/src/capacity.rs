@@ -7,6 +7,7 @@
 use super::array::StoredArray;
 use super::error::StoreError;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// Bytes that zstd makes of one byte at most: a block of 128 KiB takes four.
@@ -33,6 +34,20 @@ pub(super) fn check_count(group: &Path, name: &str, shape: &[usize], counts: &[u
         return Err(damaged(format!("its shape {shape:?} needs {needed} files, and {found} are there")));
     }
     Ok(())
+}
+
+/// Checks that metadata, where they are there, are an ordinary file of a size that people would read.
+pub(super) fn check_metadata(path: &Path) -> Result<(), StoreError> {
+    let facts = match survey::file::ordinary(path) {
+        Ok(facts) => facts,
+        // That they are missing is said by those who need them.
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        Err(source) => return Err(StoreError::io("read", path, source)),
+    };
+    if facts.len() <= survey::file::MAX_DOCUMENT_BYTES {
+        return Ok(());
+    }
+    Err(StoreError::io("read", path, ErrorKind::FileTooLarge.into()))
 }
 
 /// Counts the files `depth` folders down, up to `most`.

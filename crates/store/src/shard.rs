@@ -182,6 +182,8 @@ struct Shard {
 
 impl Shard {
     fn open(path: &Path, chunk_count: usize, chunk_bytes: usize) -> Result<Self, Trouble> {
+        // Asked before it is opened, since opening a pipe waits.
+        survey::file::ordinary(path).map_err(Trouble::Io)?;
         let file = File::open(path).map_err(Trouble::Io)?;
         let length = file.metadata().map_err(Trouble::Io)?.len() as usize;
         let index_bytes = chunk_count * ENTRY;

@@ -21,7 +21,7 @@ use figure::{Figure, FigureInputs, Part};
 use interpreter::Picks;
 use model::StructuralModel;
 use render::{FaceData, Scene};
-use survey::Progress;
+use survey::{Progress, memory};
 use ttf::{LayerStyle, LayerTtf, TextureLibrary};
 
 /// A figure's page, and how it came about.
@@ -42,6 +42,9 @@ pub struct FigureSettings {
     pub volume_bytes: u64,
 }
 
+/// Memory that is needed for each pixel of a page: its colour, and once more in the file.
+const PIXEL_BYTES: usize = 8;
+
 /// Loads what a figure needs, and makes its page. `view` is what only an interpreter's own view knows.
 ///
 /// # Errors
@@ -54,6 +57,7 @@ pub fn make(
     progress: &Progress,
 ) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
+    memory::check("the page", &figure.size_px().map(|side| side as usize), PIXEL_BYTES)?;
     let (loaded, model, mut stages) = load(project, figure, settings, progress)?;
     let picks = if figure.interpretation { Some(Picks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(Picks::borrowed);

@@ -136,7 +136,9 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
 pub(crate) fn is_named(root: &Path, text: &str) -> bool {
     let states = numbers(root).into_iter().map(|number| root.join(file_of(number))).chain([root.join(storage::STATE)]);
     // A state that cannot be read may name anything.
-    states.map(|state| file::read(&state, file::MAX_DOCUMENT_BYTES)).any(|bytes| bytes.map_or(true, |bytes| String::from_utf8_lossy(&bytes).contains(text)))
+    states
+        .map(|state| file::read(&state, file::MAX_DOCUMENT_BYTES))
+        .any(|bytes| bytes.map_or(true, |bytes| String::from_utf8_lossy(&bytes).contains(text)))
 }
 
 /// Data files of a step's state.

@@ -154,7 +154,7 @@ pub(crate) fn compute(
         document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
     let likeness = match document.volumes.iter().find(|entry| entry.geometry.is_none()) {
         Some(entry) => {
-            let seismic = content::read_volume(root, entry, progress)?;
+            let seismic = content::read_volume(root, entry, geometry, progress)?;
             let dips = dip(&seismic, &DipSettings::default(), progress);
             dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
         }

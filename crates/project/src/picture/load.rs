@@ -14,8 +14,14 @@ use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use survey::{Progress, SurveyGeometry, Volume};
+use survey::{Progress, SurveyGeometry, Volume, memory};
 use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
+
+/// Memory that the model takes at least for each horizon at each trace.
+const MODEL_BYTES: usize = 32;
+
+/// Memory that the sampled parameterization takes for each voxel: i, j, k, layer and block.
+const VOXEL_BYTES: usize = 16;
 
 /// Printed length of the block's longer side that patterns are sized for, mm: a picture across a page.
 const PRINTED_MM: f64 = 150.0;
@@ -73,6 +79,8 @@ pub fn structural_model(
     let faults = document.faults.iter().map(|entry| content::read_fault(project.root(), entry));
     let faults = faults.collect::<Result<Vec<_>, _>>()?;
     let (geometry, settings) = (document.frame()?, ModelSettings::default());
+    let [inlines, crosslines, _] = geometry.size();
+    memory::check("the model of the survey", &[inlines, crosslines, horizons.len()], MODEL_BYTES)?;
     let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
     Ok(Some((model, Stage::new("model", start.elapsed()))))
 }
@@ -104,7 +112,7 @@ impl Rock {
     /// The parameterization sampled on a lattice: the one kept, or sampled now.
     ///
     /// # Errors
-    /// A size without samples, or cancelled.
+    /// A size without samples or beyond memory, or cancelled.
     pub fn voxels(
         &self,
         project: &Project,
@@ -113,7 +121,10 @@ impl Rock {
     ) -> Result<VoxelParameterization, ProjectError> {
         match derived::load_volumes(project.root(), &self.key, Some(size), progress) {
             Some(kept) => Ok(kept),
-            None => Ok(self.parameterization.voxel_volumes(&self.model, size, progress)?),
+            None => {
+                memory::check("i, j and k for each voxel", &size, VOXEL_BYTES)?;
+                Ok(self.parameterization.voxel_volumes(&self.model, size, progress)?)
+            }
         }
     }
 
@@ -346,7 +357,7 @@ fn read_volumes(
     for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
         let covers = placement::covers(geometry, entry.geometry.as_ref().unwrap_or(geometry))
             .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
-        let (volume, level) = content::read_volume_within(root, entry, volume_bytes, progress)?;
+        let (volume, level) = content::read_volume_within(root, entry, geometry, volume_bytes, progress)?;
         if level > 0 {
             let apart = 1 << level;
             progress.warn(format!(
