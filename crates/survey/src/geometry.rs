@@ -195,7 +195,7 @@ pub enum GeometryError {
         /// Name of the axis.
         axis: &'static str,
         /// What the last number would be.
-        last: i128,
+        last: i64,
     },
     /// Coordinates, vertical values or a velocity that are no numbers or beyond the Earth.
     #[error("{what} reaches {found:e}, beyond what a survey may have, {limit:e}; check the unit")]
@@ -284,6 +284,7 @@ impl SurveyGeometry {
         for (axis, lines) in [("inline", self.inlines), ("crossline", self.crosslines)] {
             let last = i128::from(lines.first) + i128::from(lines.step) * (lines.count as i128 - 1);
             if i32::try_from(last).is_err() {
+                let last = last.clamp(i64::MIN.into(), i64::MAX.into()) as i64;
                 return Err(GeometryError::LineNumber { axis, last });
             }
         }
@@ -296,8 +297,7 @@ impl SurveyGeometry {
         let reached = corners.map(|found| ("the map", found, MAX_COORDINATE)).into_iter();
         let reached = reached.chain(depths.map(|found| ("the vertical axis", found, MAX_COORDINATE)));
         for (what, found, limit) in reached.chain([("the velocity", self.velocity_m_s, MAX_VELOCITY_M_S)]) {
-            // What is not a number must fail too, hence the negated comparison.
-            if !(found <= limit) {
+            if found.is_nan() || found > limit {
                 return Err(GeometryError::Beyond { what, found, limit });
             }
         }

@@ -43,7 +43,7 @@ pub use frequency::Frequency;
 pub use function::{RawColour, TransferFunctions, TtfSettings};
 pub use layer::{DepthInterval, LayerStyle, LayerTtf};
 pub use library::{Pattern, TextureLibrary};
-pub use raster::{MAX_DECODING_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX};
+pub use raster::{MAX_DECODING_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX, read_svg};
 pub use rgba::{RgbaFunction, RgbaStop, symmetric_clip};
 pub use scalar::{ScalarInterval, ScalarTtf};
 pub use shade::{FlatFootprint, LayerPoint, ShadePoint, blend_raw, shade};

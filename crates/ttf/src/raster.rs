@@ -63,6 +63,15 @@ fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     if content.len() as u64 > limit { Err(too_many(content.len() as u64)) } else { Ok(content) }
 }
 
+/// Rasterises an SVG tile that is in memory; `name` is named in errors. What [`crate::TextureLibrary::add_user`] does
+/// with a file.
+///
+/// # Errors
+/// [`Error::BadSvg`], [`Error::RefusedSvg`] and [`Error::BadSize`].
+pub fn read_svg(name: &str, svg: &[u8]) -> Result<Texture, Error> {
+    rasterize(name, svg).map(|(texture, _)| texture)
+}
+
 /// Rasterises an SVG tile, its whole view box stretched to the square. Also returns its height divided by its
 /// width.
 ///

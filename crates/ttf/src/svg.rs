@@ -120,7 +120,7 @@ impl<'a, 'input> Costs<'a, 'input> {
 
     /// The element that a `use` stands for.
     fn target(&self, node: Node<'a, 'input>) -> Result<Option<Node<'a, 'input>>, String> {
-        let Some(reference) = node.attributes().filter(|attribute| attribute.name() == "href").last() else {
+        let Some(reference) = node.attributes().find(|attribute| attribute.name() == "href") else {
             return Ok(None);
         };
         // Both of `href` and `xlink:href` may be there; whichever is followed, the other is no file.

@@ -42,6 +42,9 @@ pub struct FigureSettings {
     pub volume_bytes: u64,
 }
 
+/// The page itself refuses longer sides.
+const LONGEST_SIDE: u32 = 1 << 15;
+
 /// Memory that is needed for each pixel of a page: its colour, and once more in the file.
 const PIXEL_BYTES: usize = 8;
 
@@ -57,7 +60,7 @@ pub fn make(
     progress: &Progress,
 ) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
-    memory::check("the page", &figure.size_px().map(|side| side as usize), PIXEL_BYTES)?;
+    memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
     let (loaded, model, mut stages) = load(project, figure, settings, progress)?;
     let picks = if figure.interpretation { Some(Picks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(Picks::borrowed);

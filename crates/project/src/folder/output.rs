@@ -18,7 +18,7 @@ pub fn refuse_inside_project(path: &Path) -> Result<(), ProjectError> {
         let rest = absolute.strip_prefix(part).ok()?;
         Some(part.canonicalize().ok()?.join(rest))
     });
-    for place in [Some(absolute.clone()), real].into_iter().flatten() {
+    for place in [Some(absolute), real].into_iter().flatten() {
         if let Some(project) = place.ancestors().skip(1).find(|folder| is_project(folder)) {
             return Err(ProjectError::InsideProject { path: path.to_owned(), project: PathBuf::from(project) });
         }

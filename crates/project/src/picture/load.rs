@@ -96,8 +96,8 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
     let param_settings = param_settings(document);
     let key = derived::parameterization_key(document, &ModelSettings::default(), &param_settings);
     let parameterization = match derived::load_grids(project.root(), &key) {
-        Some(kept) => kept,
-        None => {
+        Some(kept) if is_of(&kept, &model) => kept,
+        _ => {
             let start = Instant::now();
             let computed = Parameterization::compute(&model, &param_settings, progress)?;
             stages.push(Stage::new("parameterization", start.elapsed()));
@@ -106,6 +106,12 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
         }
     };
     Ok(Some(Rock { model, parameterization, key, stages }))
+}
+
+/// Whether a parameterization has the size, layers and blocks of a model.
+fn is_of(parameterization: &Parameterization, model: &StructuralModel) -> bool {
+    let counts = (parameterization.size, parameterization.layers, parameterization.blocks);
+    counts == (model.size(), model.layer_count(), model.block_count())
 }
 
 impl Rock {
