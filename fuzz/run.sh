@@ -1,7 +1,7 @@
 #!/bin/sh
-# Fuzzes the parsers: fuzz/run.sh SECONDS [TARGET...]. Seconds are for each target; 0 runs what is in the corpus once. Without targets all
-# but `documents` are run, for which the whole program is compiled once more. A finding stops the run, and its input is kept in
-# fuzz/findings. Needs a C++ compiler beside Rust (libFuzzer is C++).
+# Fuzzes the readers: fuzz/run.sh SECONDS [TARGET...]. Seconds are for each target; 0 runs what is in the corpus once. Without targets all
+# are run. Targets on projects (documents-*, derived-*, model) need most of the program compiled once more; where only others are named it
+# is not. A finding stops the run, and its input is kept in fuzz/findings. Needs a C++ compiler beside Rust (libFuzzer is C++).
 set -eu
 cd "$(dirname "$0")/.."
 seconds=${1:?seconds for each target}
@@ -25,13 +25,18 @@ seed() {
     FUZZ_SEEDS=$corpus "$build/fuzz-$1" -runs=0 >"$findings/seeds.log" 2>&1 || { cat "$findings/seeds.log" >&2; exit 1; }
 }
 mkdir -p "$findings"
+case " ${*:-documents tile} " in
+    *" documents"* | *" derived"* | *" model"*)
+        compile libfuzzer,documents documents derived model
+        seed documents && seed derived && seed model ;;
+esac
+case " ${*:-tile} " in
+    *" tile"* | *" store"*) compile libfuzzer,data tile store && seed tile && seed store ;;
+esac
 compile libfuzzer segy segy-headers surface well
 seed segy
-case " $* " in
-    *" documents "*) compile libfuzzer,documents documents && seed documents ;;
-esac
 
-[ $# -gt 0 ] || set -- $(ls "$corpus" | grep -v '^documents$')
+[ $# -gt 0 ] || set -- $(ls "$corpus")
 total=0
 for target in "$@"; do
     program=$target
@@ -39,6 +44,10 @@ for target in "$@"; do
     case $target in
         surface-*) program=surface FUZZ_FORMAT=${target#surface-} ;;
         well-*) program=well FUZZ_FORMAT=${target#well-} ;;
+        tile-*) program=tile FUZZ_FORMAT=${target#tile-} ;;
+        store-*) program=store FUZZ_FORMAT=${target#store-} ;;
+        derived-*) program=derived FUZZ_FORMAT=${target#derived-} ;;
+        documents-*) program=documents FUZZ_FORMAT=${target#documents-} ;;
     esac
     export FUZZ_FORMAT
     limit="-max_total_time=$seconds"

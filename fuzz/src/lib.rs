@@ -5,6 +5,8 @@
 //! cannot fill.
 
 pub mod inputs;
+#[cfg(feature = "documents")]
+pub mod scenes;
 pub mod seeds;
 
 pub use inputs::{HAND_WRITTEN, WELL_FILES, interpretation, well_path};
@@ -68,7 +70,12 @@ pub fn survey() -> SurveyGeometry {
 
 /// Calls `work` with a file that holds `bytes`, in memory where the system has a folder for that.
 pub fn with_file<T>(bytes: &[u8], work: impl FnOnce(&Path) -> T) -> T {
-    let path = folder().join(format!("petroglyph-fuzz-{}", std::process::id()));
+    with_file_of("in", bytes, work)
+}
+
+/// The same, with a file of that extension.
+pub fn with_file_of<T>(extension: &str, bytes: &[u8], work: impl FnOnce(&Path) -> T) -> T {
+    let path = folder().join(format!("petroglyph-fuzz-{}.{extension}", std::process::id()));
     if let Err(error) = std::fs::write(&path, bytes) {
         // Without the file nothing would be tested; libFuzzer takes this for a failure, which it is.
         panic!("{} could not be written: {error}", path.display());
@@ -78,7 +85,8 @@ pub fn with_file<T>(bytes: &[u8], work: impl FnOnce(&Path) -> T) -> T {
     result
 }
 
-fn folder() -> PathBuf {
+/// A folder for files of one input: in memory, where the system has such a folder.
+pub fn folder() -> PathBuf {
     let memory = PathBuf::from("/dev/shm");
     if memory.is_dir() { memory } else { std::env::temp_dir() }
 }

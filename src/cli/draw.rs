@@ -4,18 +4,24 @@ use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
 use project::Project;
+use project::folder::refuse_inside_project;
 use project::memory_budget;
 use project::picture::{self, Painter};
 use project::picture::{load, scene};
 use render::Scene;
 use std::path::Path;
-use survey::{Progress, VerticalUnit};
+use survey::{Progress, VerticalUnit, memory};
+
+/// Memory that is needed for each pixel: its colour as floats and as bytes, and once more in the file.
+const PIXEL_BYTES: usize = 24;
 
 /// Millimetres in an inch.
 const INCH_MM: f64 = 25.4;
 
 /// Draws the picture.
 pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Result<Report> {
+    // Said before the work, not after it.
+    refuse_inside_project(&request.out)?;
     let project = Project::open(&request.project)?;
     let document = project.document();
     let mut scene = choose(&project, request.scene.as_deref())?;
@@ -32,6 +38,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         scene.blend = 0.0;
     }
     scene.validate(document.frame()?)?;
+    memory::check("the picture", &scene.size_px.map(|side| side as usize), PIXEL_BYTES)?;
     if let Some(page) = &request.figure {
         return super::page::draw(request, page, &project, &scene, progress);
     }

@@ -1,8 +1,11 @@
 //! Failures on the terminal: an error in one sentence, and a hint.
 
+use super::plain::{plain, plain_json};
+use super::report::write_out;
 use super::run::Failure;
 use super::{hint, option};
 use project::error::remedy_of;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Prints a failure: the error with its causes in one sentence, and what to do next.
@@ -20,10 +23,10 @@ pub(super) fn print(failure: &Failure, json: bool) -> ExitCode {
         }
     };
     if json {
-        println!("{}", serde_json::json!({ "error": reason, "hint": hint }));
+        // The exit code says that it failed, whether or not this can be written.
+        let _ = write_out(&plain_json(&serde_json::json!({ "error": reason, "hint": hint }).to_string()));
     }
-    eprintln!("error: {reason}");
-    eprintln!("hint: {hint}");
+    let _ = write!(std::io::stderr(), "error: {}\nhint: {}\n", plain(&reason), plain(&hint));
     ExitCode::from(code)
 }
 

@@ -7,9 +7,10 @@ use formats::{FileDescription, FormatError, ImportOptions, SurfaceDescription};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use survey::file;
 
 /// Files longer than this are taken for volumes.
-const LARGEST: u64 = 2 << 30;
+const LARGEST: u64 = file::MAX_INTERPRETATION_BYTES;
 
 /// Describes a horizon, fault or well file; `None` if it is none of them (then it may be SEG-Y).
 pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<Option<Report>> {
@@ -18,7 +19,7 @@ pub(super) fn describe(path: &Path, options: &ImportOptions) -> anyhow::Result<O
     }
     if options.format.is_none() {
         let unreadable = |source| FormatError::Io { action: "read", file: path.to_owned(), source };
-        let text = String::from_utf8_lossy(&std::fs::read(path).map_err(unreadable)?).into_owned();
+        let text = String::from_utf8_lossy(&file::read(path, LARGEST).map_err(unreadable)?).into_owned();
         if let Some(found) = well::describe(path, &text)? {
             return Ok(Some(well_file(&found)));
         }
@@ -48,6 +49,7 @@ fn may_be_segy(path: &Path) -> bool {
 
 fn begin(path: &Path) -> Option<[u8; 4]> {
     let mut start = [0; 4];
+    file::ordinary(path).ok()?;
     File::open(path).and_then(|mut file| file.read_exact(&mut start)).ok()?;
     Some(start)
 }

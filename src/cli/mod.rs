@@ -1,7 +1,8 @@
 //! The command line: parses the arguments, turns them into a request, carries it out and reports the result.
 //!
 //! Results go to stdout, progress and warnings to stderr; with `--json` stdout holds exactly one object. Exit codes:
-//! 0 success, 1 failure, 2 wrong usage.
+//! 0 success, 1 failure, 2 wrong usage. An answer that cannot be written is a failure; a reader that goes away is none.
+//! Control characters in names and files reach no terminal (`plain`).
 
 mod args;
 mod assembly;
@@ -15,6 +16,7 @@ mod interpretation;
 mod list;
 mod option;
 mod page;
+mod plain;
 mod report;
 mod request;
 mod run;
@@ -24,15 +26,29 @@ mod view;
 mod well;
 
 use clap::Parser;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Runs the program with the arguments of this process.
 pub fn main() -> ExitCode {
-    let typed = args::Arguments::parse();
+    let typed = match args::Arguments::try_parse() {
+        Ok(typed) => typed,
+        Err(told) => return help(&told),
+    };
     let json = typed.json;
-    let outcome = request::Request::try_from(typed.action).map_err(run::Failure::Usage).and_then(run::run);
+    let outcome = request::seconds("--wait", typed.wait)
+        .and_then(|wait| Ok((request::Request::try_from(typed.action)?, wait)))
+        .map_err(run::Failure::Usage)
+        .and_then(|(request, wait)| run::run(request, wait));
     match outcome {
         Ok(report) => report.print(json),
         Err(failure) => failure::print(&failure, json),
     }
+}
+
+/// Prints the help, the version, or what is wrong with the usage.
+fn help(told: &clap::Error) -> ExitCode {
+    let printed = told.print().and_then(|()| std::io::stdout().flush());
+    let code = u8::try_from(told.exit_code()).unwrap_or(2);
+    if told.use_stderr() { ExitCode::from(code) } else { report::printed(printed, ExitCode::from(code)) }
 }

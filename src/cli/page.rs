@@ -13,7 +13,7 @@ use project::figures::{self, FigureSettings, InterpreterView};
 use project::{Project, memory_budget, picture};
 use render::{Faces, Media, Scene};
 use std::path::PathBuf;
-use survey::Progress;
+use survey::{Progress, file};
 
 /// A page that was asked for.
 #[derive(Debug, Default)]
@@ -80,8 +80,8 @@ impl PageRequest {
     /// The figure, with this scene for its block.
     fn figure(&self, scene: &Scene, dpi: f64, project: &Project) -> anyhow::Result<Figure> {
         if let Some(file) = &self.file {
-            let text =
-                std::fs::read_to_string(file).with_context(|| format!("{} could not be read", file.display()))?;
+            let text = file::read_text(file, file::MAX_DOCUMENT_BYTES)
+                .with_context(|| format!("{} could not be read", file.display()))?;
             return toml::from_str(&text).with_context(|| format!("{} is not a figure", file.display()));
         }
         let show = scene.face_data;

@@ -1,7 +1,8 @@
 //! The report of a command: text for people, a JSON object for programs.
 
+use super::plain::{plain, plain_json};
 use serde_json::{Map, Value};
-use std::io::Write;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// A report.
@@ -40,12 +41,39 @@ impl Report {
         self
     }
 
-    /// Prints the report; a closed output is not an error.
+    /// Prints the report.
     pub(super) fn print(self, json: bool) -> ExitCode {
-        let text = if json { Value::Object(self.object).to_string() } else { self.lines.join("\n") };
-        if !text.is_empty() {
-            let _ = writeln!(std::io::stdout(), "{text}");
+        let written = if json {
+            write_out(&plain_json(&Value::Object(self.object).to_string()))
+        } else {
+            write_out(&plain(&self.lines.join("\n")))
+        };
+        printed(written, ExitCode::SUCCESS)
+    }
+}
+
+/// Writes a text and a line end to stdout, all of it; nothing for an empty text.
+pub(super) fn write_out(text: &str) -> io::Result<()> {
+    if text.is_empty() {
+        return Ok(());
+    }
+    let mut out = io::stdout().lock();
+    writeln!(out, "{text}")?;
+    out.flush()
+}
+
+/// The exit code of an answer: that of a failure where it could not be written. A reader that has gone away, as `head` does, is no failure
+/// of ours.
+pub(super) fn printed(written: io::Result<()>, code: ExitCode) -> ExitCode {
+    match written {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            let _ = writeln!(io::stderr(), "error: the answer could not be written to the standard output: {error}");
+            let _ = writeln!(
+                io::stderr(),
+                "hint: what was asked for is done; free some space where the output goes, and ask again"
+            );
+            ExitCode::FAILURE
         }
-        ExitCode::SUCCESS
+        _ => code,
     }
 }

@@ -23,6 +23,7 @@ use project::picture::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRe
 use render::{IsosurfaceSource, Scope};
 use segy::{SegyOptions, WriteFormat};
 use std::path::PathBuf;
+use std::time::Duration;
 use survey::{SurveyGeometry, VerticalUnit};
 use synth::SynthSettings;
 use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf};
@@ -419,7 +420,13 @@ fn frame(typed: &CreateArgs) -> Result<Option<SurveyGeometry>, Usage> {
     geometry.origin = DVec2::new(x0, y0);
     geometry.inline_vector = DVec2::new(step(x0, x1, size[0]), 0.0);
     geometry.crossline_vector = DVec2::new(0.0, step(y0, y1, size[1]));
+    geometry.validate().map_err(|error| format!("--bounds {bounds}: {error}"))?;
     Ok(Some(geometry))
+}
+
+/// A time that is waited for.
+pub(super) fn seconds(option: &str, value: f64) -> Result<Duration, Usage> {
+    Duration::try_from_secs_f64(value).map_err(|_| format!("{option} {value}: expected a number of seconds from 0"))
 }
 
 /// Exactly N finite numbers.

@@ -11,14 +11,15 @@ use project::Project;
 use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetRaw};
 use project::demo::{self, survey_files};
 use project::error::Noun;
+use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
 use project::picture::load::Stage;
 use project::picture::{self, load, scene};
 use project::{content, derived, segy_export, styles};
 use render::Scene;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
-use survey::Progress;
+use std::time::{Duration, Instant};
+use survey::{Progress, file};
 use ttf::{TextureLibrary, contact_sheet};
 
 /// Why a request failed.
@@ -51,37 +52,44 @@ fn open_window(_: Option<PathBuf>, _: Option<&Path>) -> anyhow::Result<Report> {
     )
 }
 
-/// Carries out a request.
-pub(super) fn run(request: Request) -> Result<Report, Failure> {
+/// Carries out a request. Changes of a project wait for so long while another process is changing it.
+pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
+    let open = |path: &Path| Project::open(path).map(|project| project.waiting(wait));
     if let Request::Window { project, frame_times } = request {
         return Ok(open_window(project, frame_times.as_deref())?);
     }
     let (terminal, progress) = Terminal::start();
     let mut report = match request {
         Request::Window { .. } => Report::default(),
-        Request::Demo { out } => told(demo::run(&out, &progress)?),
-        Request::Synth { out, settings } => told(survey_files::write(&out, &settings, &progress)?),
+        Request::Demo { out } => told({
+            refuse_inside_project(&out)?;
+            demo::run(&out, &progress)?
+        }),
+        Request::Synth { out, settings } => told({
+            refuse_inside_project(&out)?;
+            survey_files::write(&out, &settings, &progress)?
+        }),
         Request::Info { path, segy, reading } => info::describe(&path, &segy, &reading, &progress)?,
-        Request::Import { project, command } => import(&project, command, &progress)?,
+        Request::Import { project, command } => import(&project, wait, command, &progress)?,
         Request::Export { project, out, horizon, format, options } => {
             export(&project, &out, &horizon, format, &options, &progress)?
         }
         Request::Extract { project, volume, settings } => {
             let extract = Command::Extract(Extract { volume, settings });
-            match Project::open(&project)?.apply(&extract, &progress)? {
+            match open(&project)?.apply(&extract, &progress)? {
                 Effect::Extracted(done) => told(done),
                 other => told(other),
             }
         }
         Request::ExportCandidates { project, out } => {
-            let project = Project::open(&project)?;
+            let project = open(&project)?;
             let count = extraction::export_points(project.root(), project.document(), &out, &progress)?;
             let mut report = Report::line(format!("{}: {count} points of horizon candidates", out.display()));
             report.field("file", &out).field("points", count);
             report
         }
         Request::ExportVolume { project, out, volume, format } => {
-            told(segy_export::write(&Project::open(&project)?, &out, &volume, format, &progress)?)
+            told(segy_export::write(&open(&project)?, &out, &volume, format, &progress)?)
         }
         Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,
@@ -94,17 +102,17 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             report.field("project", project);
             report
         }
-        Request::Change { project, command } => change(Project::open(&project)?, &command, &progress)?,
+        Request::Change { project, command } => change(open(&project)?, &command, &progress)?,
         Request::Evaluate { project, truth } => assembly::evaluate(&project, &truth, &progress)?,
         Request::ProposeFaults { project, settings } => {
             let propose = Command::ProposeFaults(ProposeFaults { settings });
-            match Project::open(&project)?.apply(&propose, &progress)? {
+            match open(&project)?.apply(&propose, &progress)? {
                 Effect::FaultsProposed(done) => told(done),
                 other => told(other),
             }
         }
         Request::AddScene { project, name, from, view } => {
-            let project = Project::open(&project)?;
+            let project = open(&project)?;
             let mut scene = match from {
                 Some(file) => scene_file(&file)?,
                 None => scene::choose(project.document(), None)?,
@@ -113,25 +121,25 @@ pub(super) fn run(request: Request) -> Result<Report, Failure> {
             change(project, &Command::AddScene(AddScene { name, scene }), &progress)?
         }
         Request::SetRaw { project, volume, map, range } => {
-            let project = Project::open(&project)?;
+            let project = open(&project)?;
             let raw = styles::raw_colour(project.document(), volume.as_deref(), map, range)?;
             change(project, &Command::SetRaw(SetRaw { raw }), &progress)?
         }
-        Request::List { project, what } => list::list(&Project::open(&project)?, what)?,
+        Request::List { project, what } => list::list(&open(&project)?, what)?,
         Request::Undo(project) => {
-            let undone = Project::open(&project)?.undo()?;
+            let undone = open(&project)?.undo()?;
             let mut report = Report::line(format!("undone: {undone}"));
             report.field("undone", undone);
             report
         }
         Request::Redo(project) => {
-            let redone = Project::open(&project)?.redo()?;
+            let redone = open(&project)?.redo()?;
             let mut report = Report::line(format!("redone: {redone}"));
             report.field("redone", redone);
             report
         }
         Request::Prune(project) => {
-            Project::open(&project)?.prune()?;
+            open(&project)?.prune()?;
             Report::line("the history was deleted; only the present state is kept")
         }
     };
@@ -153,7 +161,8 @@ fn change(mut project: Project, command: &Command, progress: &Progress) -> anyho
 
 /// Reads a scene file.
 pub(super) fn scene_file(path: &Path) -> anyhow::Result<Scene> {
-    let text = std::fs::read_to_string(path).with_context(|| format!("{} could not be read", path.display()))?;
+    let text = file::read_text(path, file::MAX_DOCUMENT_BYTES)
+        .with_context(|| format!("{} could not be read", path.display()))?;
     toml::from_str(&text).with_context(|| format!("{} is not a scene", path.display()))
 }
 
@@ -165,10 +174,10 @@ fn told(done: impl std::fmt::Display + serde::Serialize) -> Report {
 }
 
 /// Imports a volume. A project that does not exist is created, and appears only when the import has succeeded.
-fn import(path: &Path, command: ImportVolume, progress: &Progress) -> anyhow::Result<Report> {
+fn import(path: &Path, wait: Duration, command: ImportVolume, progress: &Progress) -> anyhow::Result<Report> {
     let command = Command::Import(command);
     if path.exists() {
-        return change(Project::open(path)?, &command, progress);
+        return change(Project::open(path)?.waiting(wait), &command, progress);
     }
     let mut project = Project::create(path, None)?;
     let mut effect = project.project().apply(&command, progress)?;
@@ -188,6 +197,7 @@ fn export(
     progress: &Progress,
 ) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
+    refuse_inside_project(out)?;
     let document = project.document();
     let entry = &document.horizons[document.position(Noun::Horizon, horizon)?];
     let horizon = content::read_horizon(project.root(), entry, progress)?;

@@ -1,7 +1,9 @@
 //! Progress on stderr, and Ctrl-C.
 
 use super::option;
+use super::plain::plain;
 use indicatif::{ProgressBar, ProgressStyle};
+use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 use survey::progress::ProgressSink;
 use survey::{Note, Progress};
@@ -29,7 +31,7 @@ impl Terminal {
             cancel.cancel();
         });
         if let Err(error) = handler {
-            eprintln!("warning: Ctrl-C will end the program at once ({error})");
+            let _ = writeln!(std::io::stderr(), "warning: Ctrl-C will end the program at once ({error})");
         }
         (terminal, progress)
     }
@@ -46,7 +48,7 @@ impl ProgressSink for Terminal {
         self.bar.set_length(total);
         self.bar.set_position(0);
         self.bar.reset_eta();
-        self.bar.set_message(stage.to_owned());
+        self.bar.set_message(plain(stage).into_owned());
     }
 
     fn advance(&self, done: u64) {
@@ -56,7 +58,9 @@ impl ProgressSink for Terminal {
     fn warn(&self, note: &Note) {
         let mut note = note.clone();
         option::name_in([&mut note]);
-        self.bar.suspend(|| eprintln!("warning: {note}"));
+        self.bar.suspend(|| {
+            let _ = writeln!(std::io::stderr(), "warning: {}", plain(&note.to_string()));
+        });
         self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(note.to_string());
     }
 }

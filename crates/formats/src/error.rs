@@ -207,6 +207,26 @@ pub enum FormatError {
         /// What is wrong.
         why: String,
     },
+    /// More depths at one place than a horizon has: triangles or points without order.
+    #[error(
+        "{file}: '{name}' has more than {limit} depths at one place; it is not the surface of a horizon, so add it as a fault or write one surface to a file"
+    )]
+    Crowded {
+        /// The file.
+        file: PathBuf,
+        /// The horizon.
+        name: String,
+        /// Most depths at one place.
+        limit: usize,
+    },
+    /// What would be made of the file does not fit into memory.
+    #[error("{file} cannot be put on the survey: {source}")]
+    Memory {
+        /// The file.
+        file: PathBuf,
+        /// How much it would take.
+        source: survey::memory::NotEnough,
+    },
     /// There is too little to make a fault.
     #[error("{file}: fault '{name}': {why}")]
     NoSurface {

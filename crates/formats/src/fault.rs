@@ -18,6 +18,9 @@ use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 use survey::mesh::TriangleMesh;
 
+/// Most nodes of a stick: each is compared with each of its neighbour.
+const MAX_STICK_NODES: usize = 5000;
+
 /// Makes the fault.
 pub(super) fn build(
     file: &Path,
@@ -59,6 +62,9 @@ pub(super) fn build(
                         "a surface needs two sticks of at least two nodes, found {}",
                         lines.len()
                     )));
+                }
+                if let Some(long) = lines.iter().map(Vec::len).find(|&nodes| nodes > MAX_STICK_NODES) {
+                    return Err(none(format!("a stick has {long} nodes, more than {MAX_STICK_NODES}")));
                 }
                 (sticks::join(&lines, metres), Gridding::Sticks { sticks: lines.len() })
             } else {

@@ -9,7 +9,7 @@ use super::raster;
 use super::raw::{RawPoint, RawShape, RawSurface};
 use super::report::{Gridding, ImportReport, Settled};
 use super::scatter;
-use super::sheets::{self, NodeValues};
+use super::sheets::{self, Crowded, MAX_DEPTHS, NodeValues};
 use super::vertical::VerticalRule;
 use super::{Format, FormatError, SurfaceKind};
 use glam::DVec2;
@@ -21,6 +21,20 @@ use survey::remedy::Note;
 
 /// Depths at one node that differ by less than this, in samples, are the same depth given twice.
 const SAME_DEPTH: f64 = 0.05;
+
+/// Memory that a horizon takes for each trace of the survey while it is put there.
+const BYTES_A_TRACE: usize = 24;
+
+/// Depths of a mesh at each trace on average, at most: a horizon has one, two where it is overthrust.
+const MAX_MEAN_DEPTHS: usize = 4;
+
+/// So many depths are no work, however few the traces.
+const FEW: usize = 100_000;
+
+/// The error of a horizon with too many depths at a place.
+fn crowded(file: &Path, name: &str) -> FormatError {
+    FormatError::Crowded { file: file.to_path_buf(), name: name.to_owned(), limit: MAX_DEPTHS }
+}
 
 /// Sheets, and how they were made.
 struct Nodes {
@@ -50,6 +64,9 @@ pub(super) fn build(
     if let RawShape::Points(points) = &mut raw.shape {
         points.retain(|p| p.z.is_finite());
     }
+    let [nu, nv, _] = geometry.size();
+    survey::memory::check("a map of the survey", &[nu, nv], BYTES_A_TRACE)
+        .map_err(|source| FormatError::Memory { file: file.to_path_buf(), source })?;
     let tolerance = (SAME_DEPTH * geometry.vertical.interval) as f32;
     let nodes = match &raw.shape {
         RawShape::Grid { grid, z } => from_grid(file, &name, *grid, z, geometry)?,
@@ -130,7 +147,7 @@ fn from_points(
                 notes.push("fewer than three points: nothing lies between them".into());
             }
             let pairs: Vec<_> = placed.voxels.iter().zip(points).map(|(v, p)| (*v, p.z as f32)).collect();
-            let gridded = scatter::grid(&pairs, geometry, options.gap_m, tolerance);
+            let gridded = scatter::grid(&pairs, geometry, options.gap_m, tolerance).map_err(|_| crowded(file, name))?;
             if gridded.repeated > 0 {
                 notes.push(format!(
                     "{} points share their place with another of the same depth and were averaged with it",
@@ -157,7 +174,11 @@ fn from_points(
         };
         (lattice, gridding)
     };
-    let (sheets, multivalued, twice) = on_lattice(&lattice, points, tolerance);
+    let told = points.iter().filter_map(|p| p.sheet).filter(|sheet| (0.0..1000.0).contains(sheet)).fold(0.0, f64::max);
+    let [nu, nv] = lattice.grid.count;
+    survey::memory::check("its sheets", &[nu, nv, told as usize + 1], BYTES_A_TRACE)
+        .map_err(|source| FormatError::Memory { file: file.to_path_buf(), source })?;
+    let (sheets, multivalued, twice) = on_lattice(&lattice, points, tolerance).map_err(|_| crowded(file, name))?;
     if twice > 0 {
         notes.push(format!("{twice} points repeat the depth of another at the same node and were averaged with it"));
     }
@@ -166,7 +187,11 @@ fn from_points(
 
 /// Puts points on their nodes; several depths at a node make several sheets. Also counts such nodes, and repeated
 /// depths.
-fn on_lattice(lattice: &FittedLattice, points: &[RawPoint], tolerance: f32) -> (Vec<Sheet>, usize, usize) {
+fn on_lattice(
+    lattice: &FittedLattice,
+    points: &[RawPoint],
+    tolerance: f32,
+) -> Result<(Vec<Sheet>, usize, usize), Crowded> {
     let [nu, nv] = lattice.grid.count;
     let own: Vec<(usize, &RawPoint)> = lattice
         .nodes
@@ -176,7 +201,7 @@ fn on_lattice(lattice: &FittedLattice, points: &[RawPoint], tolerance: f32) -> (
         .map(|([u, v], p)| (*u as usize * nv + *v as usize, p))
         .collect();
     let pairs: Vec<(usize, f32)> = own.iter().map(|(n, p)| (*n, p.z as f32)).collect();
-    let (values, element) = NodeValues::group(nu * nv, &pairs, tolerance);
+    let (values, element) = NodeValues::group(nu * nv, &pairs, tolerance)?;
     let told = own.iter().all(|(_, p)| p.sheet.is_some_and(|s| (0.0..1000.0).contains(&s)));
     let sheet_of = if told { Vec::new() } else { sheets::split(&values, &sheets::grid_neighbours([nu, nv])) };
     let mut sheets: Vec<Sheet> = Vec::new();
@@ -189,7 +214,7 @@ fn on_lattice(lattice: &FittedLattice, points: &[RawPoint], tolerance: f32) -> (
         sheets[sheet].quality[*node] = point.quality.unwrap_or(Quality::Picked);
     }
     let twice = if told { 0 } else { pairs.len() - values.z.len() };
-    (sheets, values.multivalued(), twice)
+    Ok((sheets, values.multivalued(), twice))
 }
 
 fn from_mesh(
@@ -200,17 +225,22 @@ fn from_mesh(
     tolerance: f32,
 ) -> Result<Nodes, FormatError> {
     let grid = NodeGrid::of_survey(geometry);
+    let most = (grid.count[0] * grid.count[1]).saturating_mul(MAX_MEAN_DEPTHS).saturating_add(FEW);
     let mut pairs = Vec::new();
     for n in 0..mesh.triangles.len() {
         let corners = mesh.corners(n).map(|p| voxel_xy(geometry, p.truncate()).extend(p.z));
         raster::triangle(corners, grid.count, &mut |u, v, z| pairs.push((u * grid.count[1] + v, z as f32)));
+        if pairs.len() > most {
+            return Err(crowded(file, name));
+        }
     }
     let worlds = || mesh.vertices.iter().map(|v| v.truncate());
     if pairs.is_empty() {
         return Err(placement::outside_by_world(file, name, worlds(), geometry));
     }
     let outside = worlds().filter(|w| !is_inside(voxel_xy(geometry, *w), geometry)).count();
-    let (values, _) = NodeValues::group(grid.count[0] * grid.count[1], &pairs, tolerance);
+    let (values, _) =
+        NodeValues::group(grid.count[0] * grid.count[1], &pairs, tolerance).map_err(|_| crowded(file, name))?;
     let sheet_of = sheets::split(&values, &sheets::grid_neighbours(grid.count));
     let count = sheet_of.iter().max().map_or(1, |&s| usize::from(s) + 1);
     let nodes = grid.count[0] * grid.count[1];

@@ -14,7 +14,7 @@
 
 use super::placement::world_xy;
 use super::raster;
-use super::sheets::{self, NodeValues};
+use super::sheets::{self, Crowded, NodeValues};
 use delaunator::{Point, triangulate};
 use glam::{DMat2, DVec2};
 use rayon::prelude::*;
@@ -137,7 +137,15 @@ pub(super) fn median_side(places: &[DVec2], triangles: &[[usize; 3]]) -> f64 {
 /// Grids points (voxel x, y; depth) onto the survey's traces.
 ///
 /// Depths at one place closer than `tolerance` are averaged; others are split into sheets by continuity.
-pub(super) fn grid(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: Option<f64>, tolerance: f32) -> Gridded {
+///
+/// # Errors
+/// [`Crowded`] when a place has too many depths.
+pub(super) fn grid(
+    points: &[(DVec2, f32)],
+    geometry: &SurveyGeometry,
+    gap_m: Option<f64>,
+    tolerance: f32,
+) -> Result<Gridded, Crowded> {
     let voxels: Vec<DVec2> = points.iter().map(|p| p.0).collect();
     let places = Places::of(&voxels);
     let world: Vec<DVec2> = places.voxels.iter().map(|v| world_xy(geometry, *v)).collect();
@@ -145,7 +153,7 @@ pub(super) fn grid(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: Op
     let gap_m = gap_m.unwrap_or_else(|| 2.0 * median_side(&world, &triangles));
 
     let pairs: Vec<(usize, f32)> = places.node.iter().zip(points).map(|(&n, p)| (n, p.1)).collect();
-    let (values, _) = NodeValues::group(places.voxels.len(), &pairs, tolerance);
+    let (values, _) = NodeValues::group(places.voxels.len(), &pairs, tolerance)?;
     let repeated = pairs.len() - values.z.len();
     let mut neighbours: Vec<Vec<usize>> = vec![Vec::new(); places.voxels.len()];
     for t in &triangles {
@@ -167,7 +175,7 @@ pub(super) fn grid(points: &[(DVec2, f32)], geometry: &SurveyGeometry, gap_m: Op
             interpolate(&own, geometry, gap_m)
         })
         .collect();
-    Gridded { sheets, gap_m, multivalued: values.multivalued(), repeated, outliers }
+    Ok(Gridded { sheets, gap_m, multivalued: values.multivalued(), repeated, outliers })
 }
 
 /// A gradient per point, m⁻¹, from its neighbours along triangle sides no longer than `gap_m`; 0 without
@@ -293,7 +301,7 @@ mod tests {
     fn errors(f: impl Fn(f64, f64) -> f64) -> (f64, f64) {
         let geometry = SurveyGeometry::regular([100, 100, 100], 10.0, 1.0, VerticalUnit::Metres);
         let points: Vec<_> = random_points(900).into_iter().map(|p| (p, f(p.x, p.y) as f32)).collect();
-        let gridded = grid(&points, &geometry, None, 1e-3);
+        let gridded = grid(&points, &geometry, None, 1e-3).unwrap();
         let sheet = &gridded.sheets[0];
         let (mut largest, mut sum, mut count) = (0.0f64, 0.0, 0.0);
         for x in 8..92 {
@@ -328,7 +336,7 @@ mod tests {
         let step = |x: f64, _: f64| if x < 50.0 { 400.0 } else { 430.0 };
         let geometry = SurveyGeometry::regular([100, 100, 100], 10.0, 1.0, VerticalUnit::Metres);
         let points: Vec<_> = random_points(900).into_iter().map(|p| (p, step(p.x, p.y) as f32)).collect();
-        let gridded = grid(&points, &geometry, None, 1e-3);
+        let gridded = grid(&points, &geometry, None, 1e-3).unwrap();
         for (n, z) in gridded.sheets[0].depth.iter().enumerate().filter(|(_, z)| z.is_finite()) {
             let x = (n / 100) as f64;
             assert!((392.0..438.0).contains(z), "{z}");

@@ -20,7 +20,10 @@ pub(super) struct NodeValues {
 impl NodeValues {
     /// Groups (node, value) pairs by node; values of a node closer than `tolerance` become their mean.
     /// Returns, for every pair, the index of its value in `z`.
-    pub fn group(nodes: usize, pairs: &[(usize, f32)], tolerance: f32) -> (Self, Vec<u32>) {
+    ///
+    /// # Errors
+    /// [`Crowded`], since what follows compares every depth of a node with every depth of its neighbours.
+    pub fn group(nodes: usize, pairs: &[(usize, f32)], tolerance: f32) -> Result<(Self, Vec<u32>), Crowded> {
         let mut order: Vec<u32> = (0..pairs.len() as u32).collect();
         order.sort_by(|&a, &b| {
             let (a, b) = (&pairs[a as usize], &pairs[b as usize]);
@@ -42,12 +45,15 @@ impl NodeValues {
             // A value that is alone at its node is kept bit for bit.
             values.z.push(if run == 1 { first } else { (sum / run as f64) as f32 });
             values.offsets[node + 1] += 1;
+            if values.offsets[node + 1] as usize > MAX_DEPTHS {
+                return Err(Crowded);
+            }
             at += run;
         }
         for n in 0..nodes {
             values.offsets[n + 1] += values.offsets[n];
         }
-        (values, element)
+        Ok((values, element))
     }
 
     fn of(&self, node: usize) -> std::ops::Range<usize> {
@@ -59,6 +65,13 @@ impl NodeValues {
         (1..self.offsets.len()).filter(|&n| self.offsets[n] - self.offsets[n - 1] > 1).count()
     }
 }
+
+/// Most depths at one node: a stack of thrusts has a few.
+pub(super) const MAX_DEPTHS: usize = 32;
+
+/// A node has more than [`MAX_DEPTHS`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Crowded;
 
 /// Groups that may be joined if they have no node in common.
 struct Groups {
@@ -275,7 +288,7 @@ mod tests {
                 }
             }
         }
-        let (values, element) = NodeValues::group(count[0] * count[1], &pairs, 0.05);
+        let (values, element) = NodeValues::group(count[0] * count[1], &pairs, 0.05).unwrap();
         (values, element, pairs)
     }
 
@@ -306,17 +319,24 @@ mod tests {
                 }
             }
         }
-        let (values, _) = NodeValues::group(90, &pairs, 0.001);
+        let (values, _) = NodeValues::group(90, &pairs, 0.001).unwrap();
         let sheet = split(&values, &grid_neighbours([30, 3]));
         assert_eq!(sheet.iter().max(), Some(&1));
     }
 
     #[test]
     fn equal_values_of_a_node_are_one() {
-        let (values, element) = NodeValues::group(2, &[(1, 5.0), (0, 1.0), (1, 5.02), (1, 9.0)], 0.05);
+        let (values, element) = NodeValues::group(2, &[(1, 5.0), (0, 1.0), (1, 5.02), (1, 9.0)], 0.05).unwrap();
         assert_eq!(values.offsets, [0, 1, 3]);
         assert_eq!(element, [1, 0, 1, 2]);
         assert!((values.z[1] - 5.01).abs() < 1e-6);
         assert_eq!(values.multivalued(), 1);
+    }
+
+    #[test]
+    fn a_node_with_too_many_depths_is_refused() {
+        let stack = |count: usize| (0..count).map(|n| (0, n as f32)).collect::<Vec<_>>();
+        NodeValues::group(1, &stack(MAX_DEPTHS), 0.1).unwrap();
+        assert_eq!(NodeValues::group(1, &stack(MAX_DEPTHS + 1), 0.1), Err(Crowded));
     }
 }

@@ -6,6 +6,7 @@
 use super::FormatError;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
+use survey::file;
 
 /// A file's bytes and where they come from.
 pub(crate) struct SourceFile {
@@ -25,9 +26,9 @@ pub(crate) struct Line<'a> {
 }
 
 impl SourceFile {
-    /// Reads a whole file.
+    /// Reads a whole file, an ordinary one of at most [`file::MAX_INTERPRETATION_BYTES`].
     pub fn open(path: &Path) -> Result<Self, FormatError> {
-        let bytes = std::fs::read(path).map_err(|source| FormatError::Io {
+        let bytes = file::read(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| FormatError::Io {
             action: "read",
             file: path.to_path_buf(),
             source,

@@ -86,10 +86,33 @@ pub enum ProjectError {
         detail: String,
     },
     /// Another process is changing the project.
-    #[error("{} is being changed by another Petroglyph process", path.display())]
+    #[error("{} is being changed by {}", path.display(), holder.as_deref().unwrap_or("another Petroglyph process"))]
     Locked {
         /// The project.
         path: PathBuf,
+        /// Which process, where that is known.
+        holder: Option<String>,
+    },
+    /// A file that was to be written into the folder of a project.
+    #[error("{} lies inside the project {}, whose files only commands write", path.display(), project.display())]
+    InsideProject {
+        /// What was to be written.
+        path: PathBuf,
+        /// The project.
+        project: PathBuf,
+    },
+    /// What is asked for does not fit into memory.
+    #[error(transparent)]
+    Memory(#[from] survey::memory::NotEnough),
+    /// Stored data of another size than the project says.
+    #[error("the data of \"{name}\" have {found:?} inlines, crosslines and samples, but the project says {expected:?}")]
+    OtherSize {
+        /// Name of the volume, or what else it is.
+        name: String,
+        /// What the project says.
+        expected: [usize; 3],
+        /// What the data say.
+        found: [usize; 3],
     },
     /// A link where a project keeps a file or folder of its own.
     #[error("{} is a link, and a project holds none: what it points to could be changed or deleted", path.display())]
@@ -442,6 +465,8 @@ impl ProjectError {
             Self::Newer { .. } => "update Petroglyph, or ask for the project to be saved by the older version",
             Self::Malformed { .. } => "undo the last edit by hand, or copy the last good state from history/",
             Self::Locked { .. } => "wait until the other command has finished, then try again; nothing was changed",
+            Self::InsideProject { .. } => "give a file outside of the project's folder",
+            Self::OtherSize { .. } => "undo the last edit by hand, or import the data again",
             Self::Link { .. } => {
                 "if you trust the origin of the project, replace the link by a copy of the file or folder; nothing was changed"
             }
@@ -467,6 +492,7 @@ impl ProjectError {
             | Self::Model(_)
             | Self::Param(_)
             | Self::Interp(_)
+            | Self::Memory(_)
             | Self::Render(_)
             | Self::AlreadyPicked { .. }
             | Self::AtLeaf { .. }

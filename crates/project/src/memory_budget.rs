@@ -1,16 +1,8 @@
 //! The memory that is available.
 
-use sysinfo::{MemoryRefreshKind, RefreshKind, System};
-
-/// Used where the system cannot be asked: enough for a section of any survey.
-const UNKNOWN: u64 = 1 << 30;
-
-/// Half of the memory that is available now, bytes; of a control group's limit if one is set.
+/// Half of the memory that is available now, bytes ([`survey::memory::available`]).
 pub fn half_of_available() -> u64 {
-    let memory = RefreshKind::nothing().with_memory(MemoryRefreshKind::nothing().with_ram());
-    let Ok(system) = System::new_with_specifics(memory) else { return UNKNOWN };
-    let limit = system.cgroup_limits().map_or(u64::MAX, |limits| limits.free_memory);
-    system.available_memory().min(limit) / 2
+    survey::memory::available() / 2
 }
 
 /// Parses a number of bytes such as `2G`, `512M`, `800K` or a plain number.

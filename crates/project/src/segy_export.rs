@@ -2,7 +2,9 @@
 //! a volume of any size can be written.
 
 use crate::Project;
+use crate::content;
 use crate::error::{Noun, ProjectError};
+use crate::folder;
 use segy::{WriteFormat, WriteOptions};
 use serde::Serialize;
 use std::borrow::Cow;
@@ -64,7 +66,8 @@ pub fn write(
 ) -> Result<VolumeWritten, ProjectError> {
     let document = project.document();
     let entry = &document.volumes[document.position(Noun::Volume, name)?];
-    let stored = StoredVolume::open(&project.root().join(&entry.file))?;
+    folder::refuse_inside_project(out)?;
+    let stored = content::open_volume(project.root(), entry, document.frame()?)?;
     let geometry = stored.info().geometry.clone();
     let format = format.unwrap_or(match stored.type_name().as_str() {
         "int8" => WriteFormat::Int8,

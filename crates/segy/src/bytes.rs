@@ -93,12 +93,11 @@ impl Bytes {
     /// Opens a file and stamps it.
     pub fn open(path: &Path) -> Result<Self, SegyProblem> {
         let io = |doing, hint| move |source| SegyProblem::Io { doing, hint, source };
-        let file = PlacedFile::open(path).map_err(io("open it", "check the name and that you may read it"))?;
+        let file = PlacedFile::open(path).map_err(|source| match source.kind() {
+            io::ErrorKind::InvalidInput => io("read it", "give a file, not a folder or a device")(source),
+            _ => io("open it", "check the name and that you may read it")(source),
+        })?;
         let metadata = file.metadata().map_err(io("ask for its length", "check the disk"))?;
-        if !metadata.is_file() {
-            let source = io::Error::from(io::ErrorKind::InvalidInput);
-            return Err(io("read it", "give a file, not a folder or a device")(source));
-        }
         if metadata.len() == 0 {
             return Err(SegyProblem::TooShort { bytes: 0 });
         }

@@ -5,6 +5,7 @@
 //! is neither millions of files nor a single one. The order is C: the last axis is fastest. Every shard is
 //! written, even if it holds only the fill value, so that a missing file is noticed and not read as empty.
 
+use super::capacity;
 use super::error::StoreError;
 use super::layout::{ArrayLayout, gather, grid_index};
 use super::sample::StoredSample;
@@ -93,6 +94,7 @@ pub fn read_group(group: &Path) -> Result<Map<String, Value>, StoreError> {
     if !group.is_dir() {
         return Err(StoreError::Missing { path: group.to_owned() });
     }
+    capacity::check_metadata(&group.join("zarr.json"))?;
     let opened = Group::open(file_store(group, "read")?, "/");
     match opened {
         Ok(opened) => Ok(opened.attributes().clone()),
@@ -248,6 +250,7 @@ impl StoredArray {
     /// Opens the array `name` of the folder `group`.
     pub fn open(group: &Path, name: &str) -> Result<Self, StoreError> {
         let missing = || StoreError::MissingArray { path: group.to_owned(), array: name.to_owned() };
+        capacity::check_metadata(&group.join(name).join("zarr.json"))?;
         let array = match Array::open(file_store(group, "read")?, &format!("/{name}")) {
             Ok(array) => array,
             Err(ArrayCreateError::MissingMetadata) => return Err(missing()),
@@ -261,8 +264,17 @@ impl StoredArray {
             }
         };
         let shape: Vec<usize> = array.shape().iter().map(|&n| n as usize).collect();
-        let shards = plain_shards(group, name, &shape).map(|grid| Shards::new(grid, group, name));
-        Ok(Self { group: group.to_owned(), name: name.to_owned(), shape, array, shards })
+        let opened = Self { group: group.to_owned(), name: name.to_owned(), shape, array, shards: None };
+        let edge = opened.file_shape()?;
+        let counts: Vec<usize> = opened.shape.iter().zip(&edge).map(|(&n, &edge)| n.div_ceil(edge)).collect();
+        capacity::check_count(group, name, &opened.shape, &counts)?;
+        let shards = plain_shards(group, name, &opened.shape).map(|grid| Shards::new(grid, group, name));
+        Ok(Self { shards, ..opened })
+    }
+
+    /// Where it is, for errors.
+    pub(super) fn path(&self) -> PathBuf {
+        self.group.join(&self.name)
     }
 
     /// Elements along each axis.
@@ -302,11 +314,8 @@ impl StoredArray {
         Ok(shape.iter().map(|n| n.get() as usize).collect())
     }
 
-    /// Fails if a file that the box needs is missing, in an array of which every file was written.
-    fn check_files(&self, start: &[usize], size: &[usize]) -> Result<(), StoreError> {
-        if self.array.attributes().get(COMPLETE) != Some(&Value::Bool(true)) {
-            return Ok(());
-        }
+    /// Fails if a file that the box needs is missing, or too short for its content.
+    fn check_files(&self, start: &[usize], size: &[usize], bytes_each: usize) -> Result<(), StoreError> {
         let edge = self.file_shape()?;
         let first: Vec<usize> = start.iter().zip(&edge).map(|(&s, &e)| s / e).collect();
         let counts: Vec<usize> =
@@ -314,13 +323,12 @@ impl StoredArray {
         for n in 0..counts.iter().product() {
             let index = grid_index(n, &counts);
             let key = index.iter().zip(&first).map(|(&i, &f)| (i + f).to_string()).collect::<Vec<_>>().join("/");
-            if !self.group.join(&self.name).join("c").join(&key).is_file() {
-                return Err(StoreError::Damaged {
-                    path: self.group.clone(),
-                    array: self.name.clone(),
-                    reason: format!("the file c/{key} is missing"),
-                });
-            }
+            let facts = std::fs::metadata(self.path().join("c").join(&key)).ok().filter(std::fs::Metadata::is_file);
+            let whole = facts.ok_or_else(|| "it is missing".to_owned());
+            whole.and_then(|facts| capacity::check_content(facts.len(), &edge, bytes_each)).map_err(|fact| {
+                let reason = format!("the file c/{key}: {fact}");
+                StoreError::Damaged { path: self.group.clone(), array: self.name.clone(), reason }
+            })?;
         }
         Ok(())
     }
@@ -352,10 +360,11 @@ impl StoredArray {
         if size.contains(&0) {
             return Ok(Vec::new());
         }
+        self.check_memory(size, size_of::<T>())?;
         if let (Some(shards), [x, y, z], [nx, ny, nz]) = (&self.shards, start, size) {
             return shards.read_box([*x, *y, *z], [*nx, *ny, *nz]);
         }
-        self.check_files(start, size)?;
+        self.check_files(start, size, size_of::<T>())?;
         let ranges: Vec<_> = start.iter().zip(size).map(|(&s, &n)| s as u64..(s + n) as u64).collect();
         self.array
             .retrieve_array_subset(&ArraySubset::new_with_ranges(&ranges))
@@ -366,6 +375,7 @@ impl StoredArray {
     pub fn read<T: StoredSample>(&self, progress: &Progress) -> Result<Vec<T>, StoreError> {
         let edge = self.file_shape()?[0];
         let rows = self.shape[0];
+        self.check_memory(&self.shape, size_of::<T>())?;
         let mut values = Vec::with_capacity(self.shape.iter().product());
         progress.begin(&format!("reading {}", self.name), rows.div_ceil(edge) as u64);
         for first in (0..rows).step_by(edge) {

@@ -2,6 +2,8 @@
 
 use std::io;
 use std::path::{Path, PathBuf};
+use survey::geometry::GeometryError;
+use survey::memory::NotEnough;
 use survey::progress::Cancelled;
 
 /// Why something could not be stored or read back.
@@ -82,6 +84,22 @@ pub enum StoreError {
         array: String,
         /// What does not fit.
         reason: String,
+    },
+    /// What is to be read does not fit into memory.
+    #[error("{} is larger than memory: {source}", path.display())]
+    Memory {
+        /// The array.
+        path: PathBuf,
+        /// How much it would take.
+        source: NotEnough,
+    },
+    /// Facts that no survey has.
+    #[error("{} has a geometry that cannot be used: {source}; import the data again", path.display())]
+    Geometry {
+        /// The group.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: GeometryError,
     },
     /// A box that is not inside the array.
     #[error("the box from {start:?} of size {size:?} is not inside the array {array:?} of {}, which has {shape:?}", path.display())]

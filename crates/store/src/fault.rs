@@ -9,6 +9,7 @@ use serde::Deserialize;
 use std::fmt::Write;
 use std::path::Path;
 use survey::fault::Fault;
+use survey::file;
 use survey::mesh::TriangleMesh;
 
 /// Kind of the file.
@@ -76,7 +77,8 @@ fn list(text: &mut String, name: &str, entries: impl Iterator<Item = String>) {
 /// [`StoreError`] when it is missing, of another kind, newer than this program or damaged.
 pub fn read_fault(path: &Path) -> Result<Fault, StoreError> {
     settle(path);
-    let text = std::fs::read_to_string(path).map_err(|source| StoreError::io("read", path, source))?;
+    let text =
+        file::read_text(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| StoreError::io("read", path, source))?;
     let wrong = |reason| StoreError::WrongKind { path: path.to_owned(), expected: "a fault", reason };
     let document: Document = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     if document.kind != KIND {

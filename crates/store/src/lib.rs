@@ -40,6 +40,7 @@
 
 mod array;
 mod candidates;
+mod capacity;
 mod error;
 mod fault;
 mod header;

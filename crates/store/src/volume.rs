@@ -49,6 +49,7 @@ impl StoredVolume {
             return Err(StoreError::Unfinished { path: path.to_owned() });
         }
         let info: VolumeInfo = read_header(path, KIND, "a volume")?;
+        info.geometry.validate().map_err(|source| StoreError::Geometry { path: path.to_owned(), source })?;
         let mut levels = vec![StoredArray::open(path, "0")?];
         let damaged = |array: &str, reason: String| StoreError::Damaged {
             path: path.to_owned(),

@@ -8,6 +8,7 @@ use serde::Deserialize;
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
+use survey::file;
 use survey::well::Well;
 
 /// Kind of the file.
@@ -77,7 +78,8 @@ fn lay_out(text: &mut String, value: &Value, depth: usize) {
 /// [`StoreError`] when it is missing, of another kind, newer than this program or damaged.
 pub fn read_well(path: &Path) -> Result<Well, StoreError> {
     settle(path);
-    let text = std::fs::read_to_string(path).map_err(|source| StoreError::io("read", path, source))?;
+    let text =
+        file::read_text(path, file::MAX_INTERPRETATION_BYTES).map_err(|source| StoreError::io("read", path, source))?;
     let wrong = |reason| StoreError::WrongKind { path: path.to_owned(), expected: "a well", reason };
     let document: Document = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
     if document.kind != KIND {

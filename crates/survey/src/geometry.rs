@@ -7,6 +7,15 @@
 use glam::{DMat2, DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
+/// Most voxels of a survey, 2⁴²: sixteen times the largest that were recorded.
+pub const MAX_VOXELS: u64 = 1 << 42;
+
+/// Largest coordinate, m, and vertical value in its unit: far beyond the Earth, and exact to a millimetre.
+const MAX_COORDINATE: f64 = 1e9;
+
+/// Highest velocity, m/s: above that of any rock and of any unit mistaken for m/s.
+const MAX_VELOCITY_M_S: f64 = 1e6;
+
 /// Velocity assumed for two-way time when the project states none, m/s.
 pub const DEFAULT_VELOCITY_M_S: f64 = 2000.0;
 
@@ -169,6 +178,36 @@ pub enum GeometryError {
         /// The crossline vector.
         crossline: [f64; 2],
     },
+    /// More voxels than any survey has.
+    #[error(
+        "{inlines} x {crosslines} x {samples} voxels are more than a survey may have, {MAX_VOXELS}; state smaller counts"
+    )]
+    TooLarge {
+        /// Inlines.
+        inlines: usize,
+        /// Crosslines.
+        crosslines: usize,
+        /// Samples.
+        samples: usize,
+    },
+    /// Line numbers that do not fit 32 bits.
+    #[error("the last {axis} number, {last}, is beyond 32 bits; count or step of the {axis} axis is wrong")]
+    LineNumber {
+        /// Name of the axis.
+        axis: &'static str,
+        /// What the last number would be.
+        last: i64,
+    },
+    /// Coordinates, vertical values or a velocity that are no numbers or beyond the Earth.
+    #[error("{what} reaches {found:e}, beyond what a survey may have, {limit:e}; check the unit")]
+    Beyond {
+        /// Which quantity.
+        what: &'static str,
+        /// Its value.
+        found: f64,
+        /// The limit.
+        limit: f64,
+    },
     /// The sample interval or velocity is not a positive number.
     #[error("{what} must be a positive number, found {found}")]
     NotPositive {
@@ -200,8 +239,9 @@ impl SurveyGeometry {
         }
     }
 
-    /// Checks that the axes are not empty, that steps, interval and velocity are valid, and that the bin has
-    /// an area. Every conversion relies on this.
+    /// Checks that the axes are not empty, that steps, interval and velocity are valid, that the bin has an
+    /// area, and that counts, line numbers and coordinates are within what a survey may have. Every
+    /// conversion relies on this, and so does everything that multiplies counts.
     ///
     /// # Errors
     /// The first [`GeometryError`] found.
@@ -231,6 +271,36 @@ impl SurveyGeometry {
                 inline: self.inline_vector.to_array(),
                 crossline: self.crossline_vector.to_array(),
             });
+        }
+        self.validate_extent()
+    }
+
+    /// Checks how far the survey reaches.
+    fn validate_extent(&self) -> Result<(), GeometryError> {
+        let [inlines, crosslines, samples] = self.size();
+        let voxels = [inlines, crosslines, samples].iter().try_fold(1u64, |n, &count| n.checked_mul(count as u64));
+        if voxels.is_none_or(|voxels| voxels > MAX_VOXELS) {
+            return Err(GeometryError::TooLarge { inlines, crosslines, samples });
+        }
+        for (axis, lines) in [("inline", self.inlines), ("crossline", self.crosslines)] {
+            let last = i128::from(lines.first) + i128::from(lines.step) * (lines.count as i128 - 1);
+            if i32::try_from(last).is_err() {
+                let last = last.clamp(i64::MIN.into(), i64::MAX.into()) as i64;
+                return Err(GeometryError::LineNumber { axis, last });
+            }
+        }
+        let corner = |x: usize, y: usize| {
+            let xy = self.inline_vector * x as f64 + self.crossline_vector * y as f64 + self.origin;
+            if xy.is_nan() { f64::NAN } else { xy.abs().max_element() }
+        };
+        let corners = [corner(0, 0), corner(inlines, 0), corner(0, crosslines), corner(inlines, crosslines)];
+        let depths = [self.vertical.first, self.vertical.last()].map(f64::abs);
+        let reached = corners.map(|found| ("the map", found, MAX_COORDINATE)).into_iter();
+        let reached = reached.chain(depths.map(|found| ("the vertical axis", found, MAX_COORDINATE)));
+        for (what, found, limit) in reached.chain([("the velocity", self.velocity_m_s, MAX_VELOCITY_M_S)]) {
+            if found.is_nan() || found > limit {
+                return Err(GeometryError::Beyond { what, found, limit });
+            }
         }
         Ok(())
     }
@@ -341,6 +411,25 @@ mod tests {
     #[test]
     fn twt_becomes_metres_through_half_the_velocity() {
         assert_eq!(rotated().sample_m(), 5.0);
+    }
+
+    #[test]
+    fn what_reaches_beyond_any_survey_is_refused() {
+        let refused = |change: fn(&mut SurveyGeometry)| {
+            let mut geometry = rotated();
+            change(&mut geometry);
+            geometry.validate().unwrap_err()
+        };
+        assert!(matches!(refused(|g| g.vertical.interval = 1e300), GeometryError::Beyond { .. }));
+        assert!(matches!(refused(|g| g.vertical.first = f64::NAN), GeometryError::Beyond { .. }));
+        assert!(matches!(refused(|g| g.origin.x = f64::INFINITY), GeometryError::Beyond { .. }));
+        assert!(matches!(refused(|g| g.origin.y = f64::NAN), GeometryError::Beyond { .. }));
+        assert!(matches!(refused(|g| g.velocity_m_s = 1e300), GeometryError::Beyond { .. }));
+        assert!(matches!(refused(|g| g.vertical.count = usize::MAX), GeometryError::TooLarge { .. }));
+        assert!(matches!(refused(|g| g.inlines.step = i32::MAX), GeometryError::LineNumber { .. }));
+        let size = [100_000; 3];
+        let large = SurveyGeometry::regular(size, 1.0, 1.0, VerticalUnit::Metres);
+        assert!(matches!(large.validate(), Err(GeometryError::TooLarge { .. })));
     }
 
     #[test]

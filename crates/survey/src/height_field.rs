@@ -8,6 +8,9 @@
 
 use glam::Vec2;
 
+/// Nodes and origins lie nearer than this to voxel 0, so that their differences fit 32 bits.
+pub const FAR: i32 = 1 << 29;
+
 /// Heights in voxel z at integer lattice positions, `[x][y]`. Memory: 4 bytes per node.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeightField {
@@ -101,7 +104,8 @@ impl HeightField {
     fn patch(&self, x: f32, y: f32) -> ([[f32; 4]; 4], f32, f32) {
         let (x0, y0) = (x.floor(), y.floor());
         let (fx, fy) = (x - x0, y - y0);
-        let (x0, y0) = (x0 as i32, y0 as i32);
+        // What is not a number, or far beyond any lattice, must not overflow below.
+        let (x0, y0) = ((x0 as i32).clamp(-FAR, FAR), (y0 as i32).clamp(-FAR, FAR));
         let (u, v) = (x0 - 1 - self.origin[0], y0 - 1 - self.origin[1]);
         let mut patch = [[0.0; 4]; 4];
         if u >= 0 && v >= 0 && u + 4 <= self.size[0] as i32 && v + 4 <= self.size[1] as i32 {

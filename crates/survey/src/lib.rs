@@ -11,6 +11,7 @@
 //! - what a user can state about a file: [`remedy`];
 //! - volumes that do not fit into memory: [`source`];
 //! - bytes of a file at a place: [`positional`].
+//! - what may be read and what fits into memory: [`file`], [`memory`].
 //!
 //! Deliberately absent: formats of files, the store, and any algorithm that combines several of these types.
 //!
@@ -27,10 +28,12 @@
 
 pub mod candidates;
 pub mod fault;
+pub mod file;
 pub mod geometry;
 pub mod height_field;
 pub mod horizon;
 pub mod huge_pages;
+pub mod memory;
 pub mod mesh;
 pub mod positional;
 pub mod progress;

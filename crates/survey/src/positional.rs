@@ -28,11 +28,12 @@ use std::path::Path;
 pub struct PlacedFile(File);
 
 impl PlacedFile {
-    /// Opens a file for reading.
+    /// Opens an ordinary file for reading.
     ///
     /// # Errors
-    /// Those of the system.
+    /// Those of [`crate::file::ordinary`] and of opening.
     pub fn open(path: &Path) -> io::Result<Self> {
+        crate::file::ordinary(path)?;
         File::open(path).map(Self)
     }
 

@@ -88,6 +88,9 @@ impl SynthSettings {
     }
 }
 
+/// Memory that is needed for each voxel: the volume, its noise and the attribute.
+const BYTES_A_VOXEL: usize = 16;
+
 /// Why a synthetic survey could not be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SynthError {
@@ -99,6 +102,9 @@ pub enum SynthError {
         /// The smallest possible size.
         least: [usize; 3],
     },
+    /// The volumes do not fit into memory.
+    #[error(transparent)]
+    Memory(#[from] survey::memory::NotEnough),
     /// A setting is not a positive number.
     #[error("{what} must be a positive number, found {found}")]
     NotPositive {
@@ -183,6 +189,7 @@ impl Synthetic {
         }
         let geometry = lattice(settings);
         geometry.validate()?;
+        survey::memory::check("the synthetic survey", &settings.size, BYTES_A_VOXEL)?;
         let truth = design::design(settings)?;
         let mut seismic = seismic::signal(&truth, progress)?;
         if let Some(snr) = settings.snr {

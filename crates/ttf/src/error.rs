@@ -159,14 +159,28 @@ pub enum TtfError {
         source: image::ImageError,
     },
     /// An SVG that cannot be parsed.
-    #[error(
-        "the texture {name} is not a usable SVG ({source}); convert text to paths and remove linked images, which are not supported"
-    )]
+    #[error("the texture {name} is not a usable SVG ({source}); open it in a drawing program and save it as plain SVG")]
     BadSvg {
         /// The file or pattern.
         name: String,
         /// The cause.
         source: resvg::usvg::Error,
+    },
+    /// An SVG with something that a tile may not hold, because it reads other files or its cost has no bound.
+    #[error(
+        "the texture {name} cannot be used: {fact}; a tile may hold shapes, gradients and simple clip paths, so save it as plain SVG with the rest turned into paths, or as PNG"
+    )]
+    RefusedSvg {
+        /// The file or pattern.
+        name: String,
+        /// What it holds.
+        fact: String,
+    },
+    /// A tile that is a device, a pipe or a folder.
+    #[error("the texture {path} is not an ordinary file; name a PNG, JPEG or SVG file")]
+    NotAFile {
+        /// What was named.
+        path: PathBuf,
     },
     /// An image without pixels, or one too large to be a tile.
     #[error("the texture {name} is {width} x {height} pixels; resize it to between 1 and {limit} pixels a side")]

@@ -3,11 +3,17 @@
 //! Every tile becomes a square [`Texture`] of [`TEXTURE_SIDE_PX`]; its aspect ratio is kept in the printed
 //! size. Rows are reversed, since image files start at the top and textures at v = 0. Images are resampled
 //! with wrap-around: by area average when they shrink, linearly when they grow.
+//!
+//! Tiles may come from anyone, with a project: only ordinary files are read, SVG opens nothing else and is bounded
+//! in cost (see [`crate::svg`]), and PNG and JPEG are decoded within [`MAX_DECODING_BYTES`].
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
-use resvg::{tiny_skia, usvg};
+use resvg::tiny_skia;
 
+use crate::svg::MAX_SVG_BYTES;
 use crate::texture::TEXTURE_SIDE_PX;
 use crate::{Texture, TtfError};
 
@@ -16,6 +22,9 @@ pub const MAX_IMAGE_SIDE_PX: u32 = 4096;
 
 /// Largest file accepted as a tile, in bytes.
 pub const MAX_FILE_BYTES: u64 = 64 << 20;
+
+/// Most memory that the decoder of an image may take, in bytes: the largest tile with 16 bits for each channel.
+pub const MAX_DECODING_BYTES: u64 = 160 << 20;
 
 /// Reads a tile. Returns its texture, its source if it is an SVG, and its height divided by its width.
 ///
@@ -26,13 +35,9 @@ pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), T
     if !["png", "jpg", "jpeg", "svg"].contains(&extension.as_str()) {
         return Err(TtfError::UnknownFormat { path: path.to_owned() });
     }
-    let unreadable = |source| TtfError::ReadTexture { path: path.to_owned(), source };
-    let bytes = std::fs::metadata(path).map_err(unreadable)?.len();
-    if bytes > MAX_FILE_BYTES {
-        return Err(TtfError::TooManyBytes { path: path.to_owned(), bytes, limit: MAX_FILE_BYTES });
-    }
-    let content = std::fs::read(path).map_err(unreadable)?;
-    if extension == "svg" {
+    let is_svg = extension == "svg";
+    let content = read_file(path, if is_svg { MAX_SVG_BYTES } else { MAX_FILE_BYTES })?;
+    if is_svg {
         let (texture, shape) = rasterize(&path.display().to_string(), &content)?;
         return Ok((texture, Some(String::from_utf8_lossy(&content).into_owned()), shape));
     }
@@ -40,14 +45,40 @@ pub(crate) fn read_tile(path: &Path) -> Result<(Texture, Option<String>, f32), T
     Ok((texture, None, shape))
 }
 
+/// The content of an ordinary file of at most `limit` bytes. A pipe or device is told by its kind, before it is
+/// opened, since opening a pipe waits.
+fn read_file(path: &Path, limit: u64) -> Result<Vec<u8>, TtfError> {
+    let unreadable = |source| TtfError::ReadTexture { path: path.to_owned(), source };
+    let facts = std::fs::metadata(path).map_err(unreadable)?;
+    if !facts.is_file() {
+        return Err(TtfError::NotAFile { path: path.to_owned() });
+    }
+    let too_many = |bytes| TtfError::TooManyBytes { path: path.to_owned(), bytes, limit };
+    if facts.len() > limit {
+        return Err(too_many(facts.len()));
+    }
+    let mut content = Vec::new();
+    // A file may grow after it was looked at.
+    File::open(path).and_then(|file| file.take(limit + 1).read_to_end(&mut content)).map_err(unreadable)?;
+    if content.len() as u64 > limit { Err(too_many(content.len() as u64)) } else { Ok(content) }
+}
+
+/// Rasterises an SVG tile that is in memory; `name` is named in errors. What [`crate::TextureLibrary::add_user`] does
+/// with a file.
+///
+/// # Errors
+/// [`TtfError::BadSvg`], [`TtfError::RefusedSvg`] and [`TtfError::BadSize`].
+pub fn read_svg(name: &str, svg: &[u8]) -> Result<Texture, TtfError> {
+    rasterize(name, svg).map(|(texture, _)| texture)
+}
+
 /// Rasterises an SVG tile, its whole view box stretched to the square. Also returns its height divided by its
 /// width.
 ///
 /// # Errors
-/// [`TtfError::BadSvg`] with the name given.
+/// [`TtfError::BadSvg`], [`TtfError::RefusedSvg`] and [`TtfError::BadSize`] with the name given.
 pub(crate) fn rasterize(name: &str, svg: &[u8]) -> Result<(Texture, f32), TtfError> {
-    let tree = usvg::Tree::from_data(svg, &usvg::Options::default())
-        .map_err(|source| TtfError::BadSvg { name: name.to_owned(), source })?;
+    let tree = crate::svg::parse(name, svg)?;
     let bad_size = || TtfError::BadSize {
         name: name.to_owned(),
         width: tree.size().width() as u32,
@@ -74,45 +105,50 @@ fn decode(path: &Path, content: &[u8]) -> Result<(Texture, f32), TtfError> {
     let bad_size =
         |width, height| TtfError::BadSize { name: path.display().to_string(), width, height, limit: MAX_IMAGE_SIDE_PX };
     let format = image::guess_format(content).map_err(bad_image)?;
-    let reader = || image::ImageReader::with_format(std::io::Cursor::new(content), format);
+    let reader = || {
+        let mut reader = image::ImageReader::with_format(std::io::Cursor::new(content), format);
+        let mut limits = image::Limits::default();
+        limits.max_alloc = Some(MAX_DECODING_BYTES);
+        reader.limits(limits);
+        reader
+    };
     let (width, height) = reader().into_dimensions().map_err(bad_image)?;
     let usable = 1..=MAX_IMAGE_SIDE_PX;
     if !usable.contains(&width) || !usable.contains(&height) {
         return Err(bad_size(width, height));
     }
     let pixels = reader().decode().map_err(bad_image)?.into_rgba8();
-    let premultiplied: Vec<[f32; 4]> = pixels
-        .rows()
-        .rev()
-        .flatten()
-        .map(|pixel| {
-            let [r, g, b, a] = pixel.0.map(|byte| f32::from(byte) / 255.0);
-            [r * a, g * a, b * a, a]
-        })
-        .collect();
+    let premultiplied = |pixel: &[u8]| {
+        let [r, g, b, a] = std::array::from_fn(|channel| f32::from(pixel[channel]) / 255.0);
+        [r * a, g * a, b * a, a]
+    };
     let side = TEXTURE_SIDE_PX as usize;
-    let wide = resample_rows(&premultiplied, width as usize, side);
+    let rows = pixels.as_raw().chunks_exact(width as usize * 4).rev();
+    let rows = rows.map(|row| row.chunks_exact(4).map(premultiplied).collect::<Vec<_>>());
+    let wide = resample_rows(rows, width as usize, side);
+    drop(pixels);
     let turned = transpose(&wide, side);
-    let square = transpose(&resample_rows(&turned, height as usize, side), side);
+    let square = resample_rows(turned.chunks_exact(height as usize), height as usize, side);
+    let square = transpose(&square, side);
     Ok((Texture::from_premultiplied(square), height as f32 / width as f32))
 }
 
-/// Resamples every row from `from` to `to` texels, wrapping around.
-fn resample_rows(texels: &[[f32; 4]], from: usize, to: usize) -> Vec<[f32; 4]> {
+/// Resamples every row from `from` to `to` texels, wrapping around. Rows are asked for one after the other.
+fn resample_rows<R: AsRef<[[f32; 4]]>>(rows: impl Iterator<Item = R>, from: usize, to: usize) -> Vec<[f32; 4]> {
     let step = from as f64 / to as f64;
     let weights: Vec<Vec<(usize, f32)>> = (0..to)
         .map(|index| if from > to { area_weights(index as f64 * step, step) } else { linear_weights(index, step) })
         .collect();
-    texels
-        .chunks_exact(from)
-        .flat_map(|row| {
-            weights.iter().map(move |taps| {
-                taps.iter().fold([0.0; 4], |sum: [f32; 4], &(index, weight)| {
-                    std::array::from_fn(|c| sum[c] + weight * row[index % from][c])
-                })
+    let mut resampled = Vec::new();
+    for row in rows {
+        let row = row.as_ref();
+        resampled.extend(weights.iter().map(|taps| {
+            taps.iter().fold([0.0; 4], |sum: [f32; 4], &(index, weight)| {
+                std::array::from_fn(|c| sum[c] + weight * row[index % from][c])
             })
-        })
-        .collect()
+        }));
+    }
+    resampled
 }
 
 /// The texels that [start, start + width) covers, with their shares.
@@ -174,15 +210,16 @@ mod tests {
         for (width, height) in [(3_u32, 5_u32), (700, 300), (1024, 1), (512, 512)] {
             let texels: Vec<[f32; 4]> = (0..width * height).map(|i| [((i * 7919) % 101) as f32 / 100.0; 4]).collect();
             let side = TEXTURE_SIDE_PX as usize;
-            let wide = resample_rows(&texels, width as usize, side);
-            let square = resample_rows(&transpose(&wide, side), height as usize, side);
+            let (width, height) = (width as usize, height as usize);
+            let wide = resample_rows(texels.chunks_exact(width), width, side);
+            let square = resample_rows(transpose(&wide, side).chunks_exact(height), height, side);
             assert_eq!(square.len(), side * side);
             let mean =
                 |texels: &[[f32; 4]]| texels.iter().map(|texel| f64::from(texel[0])).sum::<f64>() / texels.len() as f64;
             assert!((mean(&texels) - mean(&square)).abs() < 2e-3, "{width} x {height}");
         }
         // A black and a white texel side by side, enlarged: half grey at both edges of each.
-        let row = resample_rows(&[[0.0; 4], [1.0; 4]], 2, 512);
+        let row = resample_rows([[[0.0; 4], [1.0; 4]]].iter(), 2, 512);
         assert!((row[0][0] - 0.5).abs() < 0.01 && (row[511][0] - 0.5).abs() < 0.01 && (row[256][0] - 0.5).abs() < 0.01);
     }
 

@@ -34,6 +34,9 @@ pub(super) struct Arguments {
     /// Write one JSON object to stdout as the answer
     #[arg(long, global = true)]
     pub(super) json: bool,
+    /// How long a command that changes a project waits while another is changing it; then it is refused
+    #[arg(long, global = true, value_name = "SECONDS", default_value_t = project::folder::DEFAULT_WAIT.as_secs_f64(), hide_short_help = true)]
+    pub(super) wait: f64,
     #[command(subcommand)]
     pub(super) action: Action,
 }

@@ -8,6 +8,7 @@
 use super::view::View;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
+use survey::file;
 
 /// Number of recent projects that are kept.
 const RECENT: usize = 8;
@@ -105,7 +106,8 @@ impl Remembered {
     /// The settings in `path`; the defaults where the file does not exist or cannot be parsed, since it holds nothing
     /// that matters.
     pub fn read(path: &Path) -> Self {
-        std::fs::read_to_string(path).ok().and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
+        let text = file::read_text(path, file::MAX_DOCUMENT_BYTES);
+        text.ok().and_then(|text| toml::from_str(&text).ok()).unwrap_or_default()
     }
 
     /// Writes the settings to `path`, completely or not at all.

@@ -39,7 +39,8 @@ pub struct WellReport {
 }
 
 fn text_of(file: &Path) -> Result<String, WellFileError> {
-    let bytes = std::fs::read(file).map_err(|source| WellFileError::Io { file: file.to_owned(), source })?;
+    let bytes = survey::file::read(file, survey::file::MAX_INTERPRETATION_BYTES)
+        .map_err(|source| WellFileError::Io { file: file.to_owned(), source })?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }
 

@@ -22,7 +22,7 @@ use glam::{DVec3, Vec3};
 use outline::{Reach, Target};
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
-use survey::height_field::HeightField;
+use survey::height_field::{FAR, HeightField};
 use survey::progress::Progress;
 
 /// Largest number of faults: each takes one bit of a mask.
@@ -144,9 +144,14 @@ impl FaultNetwork {
         signatures: Vec<BlockSignature>,
     ) -> Option<Self> {
         let whole = |field: &HeightField| {
-            field.size.iter().all(|&n| n >= 2) && field.size[0].checked_mul(field.size[1]) == Some(field.z.len())
+            let is_near = field.origin.iter().all(|&at| at.unsigned_abs() <= FAR.unsigned_abs());
+            let is_sized = field.size.iter().all(|&n| (2..=FAR as usize).contains(&n));
+            is_near && is_sized && field.size[0].checked_mul(field.size[1]) == Some(field.z.len())
         };
-        let fields = surfaces.iter().all(|fault| whole(&fault.surface) && whole(&fault.extent));
+        let placed = |fault: &FaultSurface| {
+            fault.frame_from_voxel.is_finite() && fault.frame_offset.is_finite() && fault.spacing_m.is_finite()
+        };
+        let fields = surfaces.iter().all(|fault| whole(&fault.surface) && whole(&fault.extent) && placed(fault));
         let faults = surfaces.len();
         if !fields || faults > MOST_FAULTS || truncation.len() != faults || signatures.is_empty() {
             return None;

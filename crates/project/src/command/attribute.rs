@@ -1,6 +1,7 @@
 //! Attribute volumes that are computed from a volume.
 
 use super::{Effect, Noun, ProjectError};
+use crate::content;
 use crate::content::volume_facts::{self, Facts};
 use crate::document::{Polarity, Source};
 use crate::folder::Draft;
@@ -77,7 +78,7 @@ impl ComputeAttribute {
             None => 0,
         };
         let from = draft.document.volumes[position].clone();
-        let source = StoredVolume::open(&draft.root().join(&from.file))?;
+        let source = content::open_volume(draft.root(), &from, draft.document.frame()?)?;
         let geometry =
             SurveyGeometry { velocity_m_s: draft.document.frame()?.velocity_m_s, ..source.info().geometry.clone() };
         let mut places = Vec::new();

@@ -6,4 +6,4 @@ mod read;
 pub(crate) mod volume_facts;
 
 pub use hash::{hash_fault, hash_horizon, hash_stored, hash_well};
-pub use read::{fault_triangles, read_fault, read_horizon, read_volume, read_volume_within, read_well};
+pub use read::{fault_triangles, open_volume, read_fault, read_horizon, read_volume, read_volume_within, read_well};

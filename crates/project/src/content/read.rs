@@ -17,15 +17,35 @@ pub fn read_well(root: &Path, entry: &WellEntry) -> Result<Well, ProjectError> {
     Ok(Well { name: entry.name.clone(), ..well })
 }
 
-/// Reads a volume of the project in `root`.
+/// Opens a volume of the project in `root`, whose lattice is `frame` where the volume has none of its own.
 ///
 /// # Errors
-/// Data are missing or damaged, or the user cancelled.
-pub fn read_volume(root: &Path, entry: &VolumeEntry, progress: &Progress) -> Result<Volume<f32>, ProjectError> {
-    Ok(StoredVolume::open(&at_hand(root, &entry.file))?.read_f32(0, progress)?)
+/// Missing or damaged data, [`ProjectError::OtherSize`] where they are not of the size that the project says.
+pub fn open_volume(root: &Path, entry: &VolumeEntry, frame: &SurveyGeometry) -> Result<StoredVolume, ProjectError> {
+    let stored = StoredVolume::open(&at_hand(root, &entry.file))?;
+    let expected = entry.geometry.as_ref().unwrap_or(frame).size();
+    let found = stored.size(0);
+    if found == expected {
+        Ok(stored)
+    } else {
+        Err(ProjectError::OtherSize { name: entry.name.clone(), expected, found })
+    }
 }
 
-/// Reads a volume of the project in `root` at the finest level of its pyramid that fits into this many bytes, or at the
+/// Reads a volume of the project in `root`, whose lattice is `frame` where the volume has none of its own.
+///
+/// # Errors
+/// Those of [`open_volume`], or cancelled.
+pub fn read_volume(
+    root: &Path,
+    entry: &VolumeEntry,
+    frame: &SurveyGeometry,
+    progress: &Progress,
+) -> Result<Volume<f32>, ProjectError> {
+    Ok(open_volume(root, entry, frame)?.read_f32(0, progress)?)
+}
+
+/// Reads a volume like [`read_volume`] at the finest level of its pyramid that fits into this many bytes, or at the
 /// coarsest where none does; returns the level, too.
 ///
 /// # Errors
@@ -33,10 +53,11 @@ pub fn read_volume(root: &Path, entry: &VolumeEntry, progress: &Progress) -> Res
 pub fn read_volume_within(
     root: &Path,
     entry: &VolumeEntry,
+    frame: &SurveyGeometry,
     bytes: u64,
     progress: &Progress,
 ) -> Result<(Volume<f32>, usize), ProjectError> {
-    let stored = StoredVolume::open(&at_hand(root, &entry.file))?;
+    let stored = open_volume(root, entry, frame)?;
     let fits = |level: &usize| stored.size(*level).iter().map(|&n| n as u64).product::<u64>() * 4 <= bytes;
     let level = (0..stored.level_count()).find(fits).unwrap_or(stored.level_count() - 1);
     Ok((stored.read_f32(level, progress)?, level))

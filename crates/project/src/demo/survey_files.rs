@@ -18,7 +18,7 @@ use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::{fmt, fs};
 use store::{StoreError, replace_file};
-use survey::{Contact, Horizon, Progress};
+use survey::{Contact, Horizon, Progress, file};
 use synth::{SynthSettings, SynthTruth, Synthetic};
 
 /// Files of a synthetic survey.
@@ -174,7 +174,7 @@ pub fn read_truth(path: &Path) -> Result<SynthTruth, ProjectError> {
     }
     let path = if path.is_dir() { path.join("truth.json") } else { path.to_owned() };
     let unusable = |fact: String| ProjectError::NotATruth { path: path.clone(), fact };
-    let text = fs::read_to_string(&path).map_err(|error| unusable(error.to_string()))?;
+    let text = file::read_text(&path, file::MAX_INTERPRETATION_BYTES).map_err(|error| unusable(error.to_string()))?;
     let File { truth } = serde_json::from_str(&text).map_err(|error| unusable(error.to_string()))?;
     Ok(truth)
 }

@@ -1,6 +1,6 @@
 //! Storage of the parameterization: `grids-KEY.bin` and `parameterization.zarr`.
 
-use super::kept::{Kind, read_array, read_header, write_header};
+use super::kept::{Kind, damaged, read_array, read_header, write_header};
 use super::{Scratch, folder, key_of, revision};
 use crate::document::Document;
 use crate::error::ProjectError;
@@ -75,6 +75,20 @@ struct GridHeader {
     words: usize,
 }
 
+impl GridHeader {
+    /// Whether this is the grid at an index of so many layers for each block, with as many nodes as its counts say,
+    /// on horizons that there are: everything that looks nodes up relies on it.
+    fn is_sound(&self, index: usize, layers: usize) -> bool {
+        let is_place = [index % layers, index / layers] == [usize::from(self.layer), usize::from(self.block)];
+        let columns = self.size[0].checked_mul(self.size[1]);
+        let nodes = columns.and_then(|columns| columns.checked_mul(self.levels));
+        let is_counted = nodes == Some(self.nodes) && self.words == self.nodes.div_ceil(64);
+        let has_cells = self.nodes == 0 || (self.size.iter().all(|&count| count >= 2) && self.levels >= 3);
+        let horizons = [self.bottom.0, self.top.0];
+        is_place && is_counted && has_cells && horizons.iter().flatten().all(|&horizon| horizon + 1 < layers)
+    }
+}
+
 /// The header, then offsets and creases of each grid.
 fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::Result<()> {
     let grid = |grid: &RegionGrid| GridHeader {
@@ -105,8 +119,14 @@ fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::
 
 fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization> {
     let header: Header = read_header(input, length)?;
+    if header.layers.checked_mul(header.blocks) != Some(header.grids.len()) {
+        return Err(damaged());
+    }
     let mut grids = Vec::with_capacity(header.grids.len());
-    for head in header.grids {
+    for (index, head) in header.grids.into_iter().enumerate() {
+        if !head.is_sound(index, header.layers) {
+            return Err(damaged());
+        }
         grids.push(RegionGrid {
             region: Region { layer: head.layer, block: head.block },
             origin: head.origin,
@@ -178,8 +198,8 @@ mod tests {
     use std::fs;
 
     fn parameterization() -> Parameterization {
-        let grid = RegionGrid {
-            region: Region { layer: 1, block: 2 },
+        let grid = |layer: u16| RegionGrid {
+            region: Region { layer, block: 0 },
             origin: [-3, 4],
             size: [2, 2],
             levels: 3,
@@ -189,7 +209,34 @@ mod tests {
             offsets: (0..12).map(|n| [n as f32, -1.5, f32::MIN_POSITIVE]).collect(),
             creases: vec![5],
         };
-        Parameterization { size: [4, 5, 6], layers: 2, blocks: 3, grids: vec![grid], cost: ComputeCost::default() }
+        Parameterization {
+            size: [4, 5, 6],
+            layers: 2,
+            blocks: 1,
+            grids: vec![grid(0), grid(1)],
+            cost: ComputeCost::default(),
+        }
+    }
+
+    #[test]
+    fn grids_that_do_not_fit_their_counts_are_not_used() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path();
+        let damages: [fn(&mut Parameterization); 7] = [
+            |p| p.grids[1].size = [3, 2],
+            |p| p.grids[0].levels = usize::MAX,
+            |p| p.grids[0].region.block = 7,
+            |p| p.layers = 3,
+            |p| p.grids[1].creases.clear(),
+            |p| p.grids[1].bottom.horizon = Some(1),
+            |p| (p.grids[0].size, p.grids[0].levels) = ([1, 4], 3),
+        ];
+        for (n, damage) in damages.into_iter().enumerate() {
+            let mut made = parameterization();
+            damage(&mut made);
+            keep_grids(root, "aa", &made, &Progress::silent());
+            assert!(load_grids(root, "aa").is_none(), "{n}");
+        }
     }
 
     #[test]

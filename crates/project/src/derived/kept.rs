@@ -73,8 +73,8 @@ impl Kind {
     }
 
     fn read<T>(&self, path: &Path, body: impl FnOnce(&mut dyn Read, u64) -> io::Result<T>) -> io::Result<T> {
+        let length = survey::file::ordinary(path)?.len();
         let file = File::open(path)?;
-        let length = file.metadata()?.len();
         let mut input = Hashing { inner: BufReader::new(file), hash: blake3::Hasher::new() };
         let mut magic = [0u8; 8];
         input.read_exact(&mut magic)?;

@@ -25,6 +25,9 @@ use survey::{StratigraphicHorizon, Stratigraphy, SurveyGeometry};
 /// The version that this program writes, and the newest that it reads.
 pub const VERSION: u32 = 1;
 
+/// Most steps of a project: far beyond any work, and far from where numbers of 32 bits end.
+const MAX_STEP: u32 = 1_000_000_000;
+
 /// The state of a project.
 ///
 /// ```
@@ -152,6 +155,13 @@ impl Document {
             && self.wells.is_empty())
         {
             return Err("it has data but no geometry".to_owned());
+        }
+        if self.step > MAX_STEP {
+            return Err(format!("the step {} is beyond the last that a project can have, {MAX_STEP}", self.step));
+        }
+        for entry in &self.volumes {
+            let own = entry.geometry.as_ref().map_or(Ok(()), SurveyGeometry::validate);
+            own.map_err(|error| format!("volume \"{}\": {error}", entry.name))?;
         }
         if !self.layer_names.is_empty() && self.layer_names.len() != self.horizons.len() + 1 {
             return Err(format!(

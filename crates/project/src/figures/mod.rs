@@ -21,7 +21,7 @@ use figure::{Figure, FigureInputs, Part};
 use interpreter::InterpreterPicks;
 use model::StructuralModel;
 use render::{FaceData, Scene};
-use survey::Progress;
+use survey::{Progress, memory};
 use ttf::{LayerStyle, LayerTtf, TextureLibrary};
 
 /// The page of a figure, and how it was made.
@@ -42,6 +42,12 @@ pub struct FigureSettings {
     pub volume_bytes: u64,
 }
 
+/// The page itself refuses longer sides.
+const LONGEST_SIDE: u32 = 1 << 15;
+
+/// Memory that is needed for each pixel of a page: its colour, and once more in the file.
+const PIXEL_BYTES: usize = 8;
+
 /// Loads what a figure needs, and makes its page. `view` is what only an interpreter's view knows.
 ///
 /// # Errors
@@ -54,6 +60,7 @@ pub fn make(
     progress: &Progress,
 ) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
+    memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
     let (loaded, model, mut stages) = load(project, figure, settings, progress)?;
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(InterpreterPicks::borrowed);

@@ -18,6 +18,7 @@ use crate::error::ProjectError;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
+use survey::file;
 
 /// Number of steps in the history; the oldest are dropped first. Long enough for a day's work, short enough that
 /// removed volumes do not fill the disk for ever.
@@ -133,7 +134,9 @@ pub(crate) fn recover(root: &Path, project_text: &str) -> Result<(), ProjectErro
 pub(crate) fn is_named(root: &Path, text: &str) -> bool {
     let states = numbers(root).into_iter().map(|number| root.join(file_of(number))).chain([root.join(storage::STATE)]);
     // A state that cannot be read may name anything.
-    states.map(std::fs::read).any(|bytes| bytes.map_or(true, |bytes| String::from_utf8_lossy(&bytes).contains(text)))
+    states
+        .map(|state| file::read(&state, file::MAX_DOCUMENT_BYTES))
+        .any(|bytes| bytes.map_or(true, |bytes| String::from_utf8_lossy(&bytes).contains(text)))
 }
 
 /// Data files of a step's state.
@@ -165,7 +168,7 @@ pub(crate) fn release(root: &Path, mut files: BTreeSet<String>) -> Result<(), Pr
 /// Removes from `files` what a damaged step may still refer to: everything it names, or everything if it cannot be read
 /// at all.
 fn keep_what_is_named_in(step: &Path, files: &mut BTreeSet<String>) {
-    match std::fs::read(step) {
+    match file::read(step, file::MAX_DOCUMENT_BYTES) {
         Ok(bytes) => {
             let text = String::from_utf8_lossy(&bytes);
             files.retain(|file| !text.contains(file.as_str()));

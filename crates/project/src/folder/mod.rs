@@ -5,10 +5,15 @@
 mod draft;
 mod handle;
 pub(crate) mod history;
+mod lock;
+mod output;
 pub(crate) mod storage;
 
 pub use draft::Draft;
 pub use history::{HISTORY_LIMIT, Step};
+pub use lock::DEFAULT_WAIT;
+pub use output::refuse_inside_project;
 pub use storage::{at_hand, open_own};
 
-pub(crate) use storage::{IMPORTING, Lock};
+pub(crate) use lock::Lock;
+pub(crate) use storage::IMPORTING;

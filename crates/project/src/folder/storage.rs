@@ -16,7 +16,7 @@
 use crate::document::data_file::KINDS;
 use crate::error::ProjectError;
 use crate::folder::handle;
-use std::fs::{self, File, TryLockError};
+use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -172,9 +172,10 @@ pub fn open_own(root: &Path, name: &str) -> io::Result<File> {
     handle::open(root, name)
 }
 
-/// Reads a text file.
+/// Reads a text file of the project: an ordinary file of at most [`survey::file::MAX_DOCUMENT_BYTES`].
 pub(crate) fn read_text(path: &Path) -> Result<String, ProjectError> {
-    fs::read_to_string(path).map_err(|source| ProjectError::io("read", path, source))
+    survey::file::read_text(path, survey::file::MAX_DOCUMENT_BYTES)
+        .map_err(|source| ProjectError::io("read", path, source))
 }
 
 /// The names of a folder's entries, sorted; none if the folder does not exist.
@@ -185,43 +186,9 @@ pub(crate) fn names_in(folder: &Path) -> Vec<String> {
     found
 }
 
-/// Keeps other writers out for as long as it lives. The system releases the lock when the process ends, however it
-/// ends.
-#[derive(Debug)]
-pub(crate) struct Lock {
-    _file: File,
-}
-
-impl Lock {
-    /// Takes the lock of the project at `root`.
-    pub(crate) fn take(root: &Path) -> Result<Self, ProjectError> {
-        Self::take_named(root, "lock")
-    }
-
-    /// Takes the lock in the file `name` of the folder `root`.
-    pub(crate) fn take_named(root: &Path, name: &str) -> Result<Self, ProjectError> {
-        let path = root.join(name);
-        let file = open_own(root, name).map_err(|source| ProjectError::io("written", &path, source))?;
-        match file.try_lock() {
-            Ok(()) => Ok(Self { _file: file }),
-            Err(TryLockError::WouldBlock) => Err(ProjectError::Locked { path: root.to_owned() }),
-            Err(TryLockError::Error(source)) => Err(ProjectError::io("locked", &path, source)),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_second_writer_is_kept_out_until_the_first_is_done() {
-        let folder = tempfile::tempdir().unwrap();
-        let first = Lock::take(folder.path()).unwrap();
-        assert!(matches!(Lock::take(folder.path()), Err(ProjectError::Locked { .. })));
-        drop(first);
-        Lock::take(folder.path()).unwrap();
-    }
 
     #[test]
     fn replacing_leaves_no_second_file() {

@@ -6,17 +6,18 @@
 //! samples, the settings. The number of inlines that are read at a time is not part of it. Candidates lie on
 //! the project's own lattice, so that their voxels are the project's voxels.
 
+use crate::content;
 use crate::derived::{Scratch, folder, key_of, revision};
 use crate::document::{Document, VolumeEntry};
 use crate::error::ProjectError;
-use crate::folder::{at_hand, history, storage};
+use crate::folder::{history, refuse_inside_project, storage};
 use interp::{ExtractReport, ExtractSettings, Forest, extract_into};
 use serde::Serialize;
 use std::fmt;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use store::{CandidateWriter, Replacement, StoredCandidates, StoredVolume};
+use store::{CandidateWriter, Replacement, StoredCandidates};
 use survey::Progress;
 
 /// Number of inlines of a stored volume that are read at a time: the edge length of its bricks.
@@ -124,7 +125,12 @@ pub fn present_path(root: &Path) -> PathBuf {
 /// # Errors
 /// [`ProjectError::NotExtracted`] if there are none, or data are damaged.
 pub fn open(root: &Path, document: &Document) -> Result<StoredCandidates, ProjectError> {
-    Ok(StoredCandidates::open(&candidates_path(root, document)?)?)
+    let stored = StoredCandidates::open(&candidates_path(root, document)?)?;
+    let (found, expected) = (stored.info().size, document.frame()?.size());
+    if found != expected {
+        return Err(ProjectError::OtherSize { name: "horizon candidates".to_owned(), expected, found });
+    }
+    Ok(stored)
 }
 
 /// The report of the extraction that made these candidates; `None` if it cannot be read.
@@ -192,7 +198,7 @@ pub(crate) fn compute(
             return Ok(answer(file, report, false));
         }
     }
-    let source = StoredVolume::open(&at_hand(root, &entry.file))?;
+    let source = content::open_volume(root, entry, document.frame()?)?;
     let scratch = Scratch::begin(root)?;
     let file = parked(&key);
     let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(&file), size, leaves)?);
@@ -211,6 +217,7 @@ pub(crate) fn compute(
 /// # Errors
 /// There are no candidates, data are damaged, the file cannot be written, or the user cancelled.
 pub fn export_points(root: &Path, document: &Document, out: &Path, progress: &Progress) -> Result<usize, ProjectError> {
+    refuse_inside_project(out)?;
     let forest = forest(&open(root, document)?, progress)?;
     let frame = document.frame()?;
     let mut leaf_of = vec![0u32; forest.surfaces.vertices.len()];

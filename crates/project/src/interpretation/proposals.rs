@@ -17,7 +17,7 @@ use model::FaultNetwork;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::path::{Path, PathBuf};
-use survey::Progress;
+use survey::{Progress, file};
 
 /// The proposals, and the state that they were made for.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -157,7 +157,7 @@ pub(crate) fn compute(
         document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
     let likeness = match document.volumes.iter().find(|entry| entry.geometry.is_none()) {
         Some(entry) => {
-            let seismic = content::read_volume(root, entry, progress)?;
+            let seismic = content::read_volume(root, entry, geometry, progress)?;
             let dips = dip(&seismic, &DipSettings::default(), progress);
             dips.and_then(|dips| semblance(&seismic, &dips, &SemblanceSettings::default(), progress)).ok()
         }
@@ -182,7 +182,7 @@ pub(crate) fn compute(
 
 /// The proposals stored under a key, if there is an intact file.
 fn read(root: &Path, key: &str) -> Option<Proposals> {
-    let text = std::fs::read_to_string(folder(root).join(file_of(key))).ok()?;
+    let text = file::read_text(&folder(root).join(file_of(key)), file::MAX_INTERPRETATION_BYTES).ok()?;
     serde_json::from_str(&text).ok()
 }
 

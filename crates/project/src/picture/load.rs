@@ -14,8 +14,14 @@ use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use survey::{Progress, SurveyGeometry, Volume};
+use survey::{Progress, SurveyGeometry, Volume, memory};
 use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
+
+/// Memory that the model takes at least for each horizon at each trace.
+const MODEL_BYTES: usize = 32;
+
+/// Memory that the sampled parameterization takes for each voxel: i, j, k, layer and block.
+const VOXEL_BYTES: usize = 16;
 
 /// Printed length of the block's longer side for which patterns are sized, mm: a picture across a page.
 const PRINTED_MM: f64 = 150.0;
@@ -73,6 +79,8 @@ pub fn structural_model(
     let faults = document.faults.iter().map(|entry| content::read_fault(project.root(), entry));
     let faults = faults.collect::<Result<Vec<_>, _>>()?;
     let (geometry, settings) = (document.frame()?, ModelSettings::default());
+    let [inlines, crosslines, _] = geometry.size();
+    memory::check("the model of the survey", &[inlines, crosslines, horizons.len()], MODEL_BYTES)?;
     let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
     Ok(Some((model, Stage::new("model", start.elapsed()))))
 }
@@ -88,8 +96,8 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
     let param_settings = param_settings(document);
     let key = derived::parameterization_key(document, &ModelSettings::default(), &param_settings);
     let parameterization = match derived::load_grids(project.root(), &key) {
-        Some(kept) => kept,
-        None => {
+        Some(kept) if is_of(&kept, &model) => kept,
+        _ => {
             let start = Instant::now();
             let computed = Parameterization::compute(&model, &param_settings, progress)?;
             stages.push(Stage::new("parameterization", start.elapsed()));
@@ -100,11 +108,17 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
     Ok(Some(Rock { model, parameterization, key, stages }))
 }
 
+/// Whether a parameterization has the size, layers and blocks of a model.
+fn is_of(parameterization: &Parameterization, model: &StructuralModel) -> bool {
+    let counts = (parameterization.size, parameterization.layers, parameterization.blocks);
+    counts == (model.size(), model.layer_count(), model.block_count())
+}
+
 impl Rock {
     /// The parameterization sampled on a lattice: the stored one, otherwise sampled now.
     ///
     /// # Errors
-    /// The size has no samples, or the user cancelled.
+    /// The size has no samples or does not fit into memory, or the user cancelled.
     pub fn voxels(
         &self,
         project: &Project,
@@ -113,7 +127,10 @@ impl Rock {
     ) -> Result<VoxelParameterization, ProjectError> {
         match derived::load_volumes(project.root(), &self.key, Some(size), progress) {
             Some(kept) => Ok(kept),
-            None => Ok(self.parameterization.voxel_volumes(&self.model, size, progress)?),
+            None => {
+                memory::check("i, j and k for each voxel", &size, VOXEL_BYTES)?;
+                Ok(self.parameterization.voxel_volumes(&self.model, size, progress)?)
+            }
         }
     }
 
@@ -346,7 +363,7 @@ fn read_volumes(
     for entry in document.volumes.iter().filter(|entry| wanted.contains(&entry.name.as_str())) {
         let covers = placement::covers(geometry, entry.geometry.as_ref().unwrap_or(geometry))
             .map_err(|source| ProjectError::Placement { name: entry.name.clone(), source })?;
-        let (volume, level) = content::read_volume_within(root, entry, volume_bytes, progress)?;
+        let (volume, level) = content::read_volume_within(root, entry, geometry, volume_bytes, progress)?;
         if level > 0 {
             let apart = 1 << level;
             progress.warn(format!(

@@ -1,6 +1,7 @@
 //! Draws pictures of a project, and writes PNG files with their printed size.
 
 use crate::error::ProjectError;
+use crate::folder;
 use crate::picture::load::{Loaded, Stage};
 use image::RgbaImage;
 use render::reference::CpuRenderer;
@@ -102,8 +103,9 @@ const INCH_M: f64 = 0.0254;
 /// Writes a PNG whose printed size follows from `dpi`, completely or not at all.
 ///
 /// # Errors
-/// The file could not be written; an earlier file is then still there.
+/// The file lies inside a project or could not be written; an earlier file is then still there.
 pub fn write_png(path: &Path, image: &RgbaImage, dpi: f64) -> Result<(), ProjectError> {
+    folder::refuse_inside_project(path)?;
     let replacement = Replacement::of(path)?;
     encode(replacement.path(), image, dpi).map_err(|source| ProjectError::io("written", path, source))?;
     Ok(replacement.commit()?)

@@ -23,10 +23,11 @@ use crate::command::{Command, Effect};
 use crate::derived;
 use crate::document::{Document, data_file};
 use crate::error::ProjectError;
-use crate::folder::{Draft, IMPORTING, Lock, Step, history, storage};
+use crate::folder::{self, Draft, IMPORTING, Lock, Step, history, storage};
 use crate::interpretation::{extraction, proposals};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 use survey::{Progress, SurveyGeometry};
 
 /// An open project. It is changed by [`Command`]s, each of which can be undone.
@@ -54,6 +55,7 @@ pub struct Project {
     root: PathBuf,
     text: String,
     document: Document,
+    wait: Duration,
 }
 
 /// A line of the history.
@@ -86,7 +88,7 @@ impl Project {
         }
         let text = storage::read_text(&path)?;
         let document = Document::from_text(&text, &path)?;
-        Ok(Self { root: root.to_owned(), text, document })
+        Ok(Self { root: root.to_owned(), text, document, wait: Duration::ZERO })
     }
 
     /// Starts a new project that will be at `root`; nothing is there before [`NewProject::publish`].
@@ -95,6 +97,12 @@ impl Project {
     /// Something exists at `root`, or its parent folder cannot be written.
     pub fn create(root: &Path, geometry: Option<SurveyGeometry>) -> Result<NewProject, ProjectError> {
         NewProject::begin(root, geometry)
+    }
+
+    /// The same, but that changes wait for so long while another process is changing it, and are refused then. Without
+    /// this they are refused at once.
+    pub fn waiting(self, wait: Duration) -> Self {
+        Self { wait, ..self }
     }
 
     /// The folder.
@@ -114,7 +122,7 @@ impl Project {
     /// memory.
     pub fn apply(&mut self, command: &Command, progress: &Progress) -> Result<Effect, ProjectError> {
         let computed = command.prepare(&self.root, &self.document, progress)?;
-        let _lock = self.lock()?;
+        let _lock = self.lock(progress)?;
         let mut draft = Draft::new(&self.root, self.document.clone());
         let effect = command.execute(&mut draft, progress)?.after_computing(computed);
         progress.check()?;
@@ -130,7 +138,7 @@ impl Project {
     /// # Errors
     /// [`ProjectError::NothingToUndo`] at the beginning of the remembered history.
     pub fn undo(&mut self) -> Result<String, ProjectError> {
-        let _lock = self.lock()?;
+        let _lock = self.lock(&Progress::silent())?;
         let step = self.document.step;
         let undone = history::read(&self.root, step)?.ok_or(ProjectError::NothingToUndo)?;
         let before = step.checked_sub(1).map(|number| history::read(&self.root, number)).transpose()?.flatten();
@@ -143,8 +151,9 @@ impl Project {
     /// # Errors
     /// [`ProjectError::NothingToRedo`] when nothing was undone.
     pub fn redo(&mut self) -> Result<String, ProjectError> {
-        let _lock = self.lock()?;
-        let after = history::read(&self.root, self.document.step + 1)?.ok_or(ProjectError::NothingToRedo)?;
+        let _lock = self.lock(&Progress::silent())?;
+        let after =
+            history::read(&self.root, self.document.step.saturating_add(1))?.ok_or(ProjectError::NothingToRedo)?;
         let summary = after.summary.clone();
         self.restore(after)?;
         Ok(summary)
@@ -155,7 +164,7 @@ impl Project {
     /// # Errors
     /// The lock is taken or the folder cannot be read.
     pub fn prune(&mut self) -> Result<(), ProjectError> {
-        let _lock = self.lock()?;
+        let _lock = self.lock(&Progress::silent())?;
         history::forget_all_but(&self.root, self.document.step)?;
         self.settle_derived();
         Ok(())
@@ -175,9 +184,9 @@ impl Project {
         lines
     }
 
-    fn lock(&mut self) -> Result<Lock, ProjectError> {
+    fn lock(&mut self, progress: &Progress) -> Result<Lock, ProjectError> {
         storage::refuse_links(&self.root)?;
-        let lock = Lock::take(&self.root)?;
+        let lock = Lock::take(&self.root, self.wait, progress)?;
         let path = self.root.join(storage::STATE);
         let text = storage::read_text(&path)?;
         history::recover(&self.root, &text)?;
@@ -273,6 +282,7 @@ impl NewProject {
         if destination.exists() {
             return Err(ProjectError::Exists { path: destination.to_owned() });
         }
+        folder::refuse_inside_project(destination)?;
         let root = in_the_making(destination)?;
         let fail = |source| ProjectError::io("written", destination, source);
         let is_ours = root.join(CREATING).exists() || storage::names_in(&root).is_empty();
@@ -289,15 +299,15 @@ impl NewProject {
         let text = document.to_text(&path)?;
         // From here on, any failure removes the folder.
         let begun = Self {
-            project: Project { root, text: text.clone(), document: document.clone() },
+            project: Project { root, text: text.clone(), document: document.clone(), wait: Duration::ZERO },
             destination: destination.to_owned(),
             published: false,
             _lock: lock,
         };
         let root = &begun.project.root;
         // A creation that was killed left this behind; what it had imported is kept, so that the import can continue.
-        for folder in [storage::UNFINISHED, storage::DERIVED] {
-            storage::remove(root, folder);
+        for leftover in [storage::UNFINISHED, storage::DERIVED] {
+            storage::remove(root, leftover);
         }
         for folder in ["history"].iter().chain(&data_file::KINDS) {
             storage::remove(root, folder);
