@@ -13,7 +13,7 @@ use app::Window;
 use app::raster::Raster;
 use app::state::picking::voxel_of;
 use app::state::{
-    Action, Appearance, Choice, Compare, Dialogue, ExportForm, How, Interpreted, Layout, Look, Notice, Panel,
+    Action, Appearance, Choice, Compare, Dialogue, ExportForm, FileContent, How, Layout, Look, Notice, Panel,
     PickingStep, Place, Target,
 };
 use eframe::egui::{self, Event, Key, Modifiers, PointerButton, Pos2, TexturesDelta, vec2};
@@ -257,7 +257,7 @@ impl Tour {
             .filter(|path| path.extension().is_some_and(|ending| ending == "csv"))
             .min();
         if let Some(path) = horizon {
-            self.ask(Dialogue::Interpretation { path, kind: Interpreted::Horizon });
+            self.ask(Dialogue::Interpretation { path, kind: FileContent::Horizon });
             self.shoot("add-horizon")?;
         }
         let path = self.well()?;

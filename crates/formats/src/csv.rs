@@ -12,7 +12,7 @@ use super::columns::{self, ColumnLayout};
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
 use super::text::{self, Line, SourceFile};
-use super::write::{self, Placed};
+use super::write::{self, TableNode};
 use super::{Codec, Format, FormatError};
 use std::io::Write;
 use survey::geometry::{SurveyGeometry, VerticalUnit};
@@ -105,7 +105,7 @@ fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeomet
         VerticalUnit::Metres => "depth_m",
     };
     writeln!(out, "inline,crossline,x,y,{z},sheet,quality")?;
-    for Placed { lines, xy, z, sheet, quality } in write::nodes(horizon, geometry) {
+    for TableNode { lines, xy, z, sheet, quality } in write::nodes(horizon, geometry) {
         let quality = columns::quality_word(quality);
         let [il, xl] = [lines.x, lines.y].map(write::line_number);
         writeln!(out, "{il},{xl},{:.4},{:.4},{z},{sheet},{quality}", xy.x, xy.y)?;

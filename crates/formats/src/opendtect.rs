@@ -11,7 +11,7 @@ use super::mesh_sticks;
 use super::raw::{RawSurface, ReadContext};
 use super::table::{self, Cut};
 use super::text::{self, SourceFile};
-use super::write::{self, Placed, WriteFailure};
+use super::write::{self, TableNode, WriteFailure};
 use super::{Codec, Format, FormatError};
 use std::io::Write;
 use survey::fault::Fault;
@@ -84,7 +84,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
 fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), WriteFailure> {
     writeln!(out, "# \"X\"\t\"Y\"\t\"Inline\"\t\"Crossline\"\t\"Z\"")?;
     writeln!(out, "# - - - - - - - - - -")?;
-    for Placed { lines, xy, z, .. } in write::nodes(horizon, geometry) {
+    for TableNode { lines, xy, z, .. } in write::nodes(horizon, geometry) {
         let [il, xl] = [lines.x, lines.y].map(write::line_number);
         writeln!(out, "{:.2}\t{:.2}\t{il}\t{xl}\t{z}", xy.x, xy.y)?;
     }

@@ -54,7 +54,7 @@ pub(super) fn beside(
 }
 
 /// A node of a horizon, with everything that a table may state about it.
-pub(super) struct Placed {
+pub(super) struct TableNode {
     pub lines: DVec2,
     pub xy: DVec2,
     pub z: f32,
@@ -63,13 +63,13 @@ pub(super) struct Placed {
 }
 
 /// Every node with a depth, sheet by sheet.
-pub(super) fn nodes<'a>(horizon: &'a Horizon, geometry: &'a SurveyGeometry) -> impl Iterator<Item = Placed> + 'a {
+pub(super) fn nodes<'a>(horizon: &'a Horizon, geometry: &'a SurveyGeometry) -> impl Iterator<Item = TableNode> + 'a {
     horizon.sheets.iter().enumerate().flat_map(move |(sheet, s)| {
         let nv = s.grid.count[1];
         s.depth.iter().enumerate().filter(|(_, z)| z.is_finite()).map(move |(n, &z)| {
             let xy = s.grid.world_at(DVec2::new((n / nv) as f64, (n % nv) as f64));
             let voxel = super::placement::voxel_xy(geometry, xy);
-            Placed { lines: geometry.lines_from_voxel(voxel), xy, z, sheet, quality: s.quality[n] }
+            TableNode { lines: geometry.lines_from_voxel(voxel), xy, z, sheet, quality: s.quality[n] }
         })
     })
 }

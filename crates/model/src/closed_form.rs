@@ -22,14 +22,14 @@ pub(crate) struct FaultForm {
 pub(crate) type SheetForm = fn(h: usize, bits: u32, x: f64, y: f64) -> f64;
 
 /// A closed-form model in voxel space.
-pub(crate) struct ClosedForm {
+pub(crate) struct ModelForm {
     pub geometry: SurveyGeometry,
     pub faults: Vec<FaultForm>,
     pub contacts: Vec<Contact>,
     pub sheet: SheetForm,
 }
 
-impl ClosedForm {
+impl ModelForm {
     pub fn new(size: [usize; 3], faults: Vec<FaultForm>, contacts: Vec<Contact>, sheet: SheetForm) -> Self {
         Self { geometry: SurveyGeometry::regular(size, 25.0, 10.0, VerticalUnit::Metres), faults, contacts, sheet }
     }
@@ -177,52 +177,52 @@ const SIZE: [usize; 3] = [64, 48, 72];
 const CONFORMABLE: [Contact; 3] = [Contact::Conformable; 3];
 
 /// Flat horizons, no fault.
-pub(crate) fn flat() -> ClosedForm {
-    ClosedForm::new(SIZE, vec![], CONFORMABLE.into(), |h, _, _, _| 15.3 + 20.0 * h as f64)
+pub(crate) fn flat() -> ModelForm {
+    ModelForm::new(SIZE, vec![], CONFORMABLE.into(), |h, _, _, _| 15.3 + 20.0 * h as f64)
 }
 
 /// Dipping horizons and a normal fault of 60° (in voxels), throw 6.5.
-pub(crate) fn dipping_normal() -> ClosedForm {
+pub(crate) fn dipping_normal() -> ModelForm {
     let fault = through(|y, z| 24.0 + 0.55 * (z - 36.0) + 0.08 * y);
-    ClosedForm::new(SIZE, vec![fault], CONFORMABLE.into(), |h, bits, x, y| {
+    ModelForm::new(SIZE, vec![fault], CONFORMABLE.into(), |h, bits, x, y| {
         12.0 + 18.0 * h as f64 + 0.18 * x - 0.1 * y - if bits & 1 == 1 { 0.0 } else { 6.5 }
     })
 }
 
 /// Domes and a reverse fault: two depths at one trace.
-pub(crate) fn domed_reverse() -> ClosedForm {
+pub(crate) fn domed_reverse() -> ModelForm {
     let fault = through(|y, z| 34.0 + 0.6 * (z - 36.0) - 0.05 * y);
-    ClosedForm::new(SIZE, vec![fault], CONFORMABLE.into(), |h, bits, x, y| {
+    ModelForm::new(SIZE, vec![fault], CONFORMABLE.into(), |h, bits, x, y| {
         let r_sq = ((x - 30.0).powi(2) + (y - 24.0).powi(2)) / (2.0 * 22.0f64.powi(2));
         30.0 + 15.0 * h as f64 - (14.0 + h as f64) * (-r_sq).exp() + if bits & 1 == 1 { -5.5 } else { 0.0 }
     })
 }
 
 /// An antithetic fault that ends at a main fault (Y).
-pub(crate) fn truncated_y() -> ClosedForm {
+pub(crate) fn truncated_y() -> ModelForm {
     let main = through(|_, z| 14.0 + 0.5 * z);
     let antithetic =
         FaultForm { at: |_, z| 50.0 - 0.4 * z, y: [-2.0, 60.0], z: [-2.0, 39.5], truncated_by: Some((0, true)) };
-    ClosedForm::new(SIZE, vec![main, antithetic], CONFORMABLE.into(), |h, bits, x, y| {
+    ModelForm::new(SIZE, vec![main, antithetic], CONFORMABLE.into(), |h, bits, x, y| {
         let throw = if bits & 1 == 0 { 0.0 } else { 7.0 } - if bits & 2 == 2 { 4.0 } else { 0.0 };
         10.0 + 18.0 * h as f64 + 0.1 * x + 0.05 * y + throw
     })
 }
 
 /// Two crossing faults (X): four blocks.
-pub(crate) fn crossing_x() -> ClosedForm {
+pub(crate) fn crossing_x() -> ModelForm {
     let a = through(|y, z| 30.0 + 0.4 * (z - 36.0) + 0.1 * (y - 24.0));
     let b = through(|y, z| 32.0 - 0.45 * (z - 36.0) - 0.1 * (y - 24.0));
-    ClosedForm::new(SIZE, vec![a, b], CONFORMABLE.into(), |h, bits, x, y| {
+    ModelForm::new(SIZE, vec![a, b], CONFORMABLE.into(), |h, bits, x, y| {
         let throw = 5.0 * f64::from(bits & 1) - 4.0 * f64::from(bits >> 1);
         14.0 + 18.0 * h as f64 + 0.05 * x + 0.08 * y + throw
     })
 }
 
 /// A vertical fault that dies out at y = 26 with a throw that tapers to nothing.
-pub(crate) fn dying_out() -> ClosedForm {
+pub(crate) fn dying_out() -> ModelForm {
     let fault = FaultForm { at: |_, _| 31.4, y: [-2.0, 26.0], z: [-2.0, 80.0], truncated_by: None };
-    ClosedForm::new(SIZE, vec![fault], CONFORMABLE.into(), |h, bits, x, y| {
+    ModelForm::new(SIZE, vec![fault], CONFORMABLE.into(), |h, bits, x, y| {
         let throw = if y < 26.0 { 0.012 * (26.0 - y).powi(2) } else { 0.0 };
         // The displacement decays away from the fault, too.
         let away = (-(x - 31.4).abs() / 25.0).exp();
@@ -231,7 +231,7 @@ pub(crate) fn dying_out() -> ClosedForm {
 }
 
 /// All of them, by name.
-pub(crate) fn all() -> Vec<(&'static str, ClosedForm)> {
+pub(crate) fn all() -> Vec<(&'static str, ModelForm)> {
     vec![
         ("flat", flat()),
         ("dipping, normal", dipping_normal()),

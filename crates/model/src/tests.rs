@@ -1,6 +1,6 @@
 //! Regions of closed-form models, faults' tips, missing data, bad input.
 
-use super::closed_form::{self, ClosedForm, Random};
+use super::closed_form::{self, ModelForm, Random};
 use super::*;
 use glam::{DVec2, DVec3, Vec3};
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use synth::{SynthSettings, Synthetic};
 
 /// Checks regions at random places more than `clear` voxels from any boundary; blocks may be numbered in any
 /// way.
-fn check_regions(name: &str, form: &ClosedForm, model: &StructuralModel, at: impl Fn(DVec3) -> DVec3, clear: f64) {
+fn check_regions(name: &str, form: &ModelForm, model: &StructuralModel, at: impl Fn(DVec3) -> DVec3, clear: f64) {
     let mut random = Random(3);
     let mut block_of: BTreeMap<u32, u16> = BTreeMap::new();
     let mut tested = 0;

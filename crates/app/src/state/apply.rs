@@ -1,6 +1,6 @@
 //! What each action does to the state.
 
-use super::{Action, Compare, Dialogue, Notice, Panel, PickingTask, Place, Session, State, Task, View, camera};
+use super::{Action, Compare, Dialogue, Notice, Panel, PickingTask, Place, Session, State, Task, ViewState, camera};
 use project::picture::scene;
 
 impl State {
@@ -168,7 +168,7 @@ impl State {
     }
 
     /// The scenes that the block view draws, side by side or over one another: their blends, in order.
-    pub fn blends(view: &View) -> Vec<f32> {
+    pub fn blends(view: &ViewState) -> Vec<f32> {
         match view.compare {
             _ if view.panel == Panel::Interpret => vec![1.0],
             Compare::Blend => vec![view.scene.blend],

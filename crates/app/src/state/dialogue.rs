@@ -34,7 +34,7 @@ pub enum Target {
 
 /// What an interpretation file holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Interpreted {
+pub enum FileContent {
     /// A horizon.
     Horizon,
     /// A fault.
@@ -58,7 +58,7 @@ pub enum Dialogue {
         /// The file.
         path: PathBuf,
         /// What it holds.
-        kind: Interpreted,
+        kind: FileContent,
     },
     /// Ask what a file that was dropped on the window holds.
     Dropped {

@@ -5,7 +5,7 @@
 //! is still there at the next start means that the last run ended badly, and the start page offers to continue from
 //! that view.
 
-use super::view::View;
+use super::view::ViewState;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use survey::file;
@@ -52,7 +52,7 @@ pub struct Left {
     /// Its folder.
     pub root: PathBuf,
     /// Its view.
-    pub view: View,
+    pub view: ViewState,
 }
 
 /// What outlives the window.
@@ -146,7 +146,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("deep/window.toml");
         let geometry = survey::SurveyGeometry::regular([9, 8, 7], 25.0, 4.0, survey::VerticalUnit::Milliseconds);
-        let view = View::of(&Document::empty(Some(geometry)));
+        let view = ViewState::of(&Document::empty(Some(geometry)));
         let mut remembered = Remembered { appearance: Appearance::Dark, ..Remembered::default() };
         remembered.left = Some(Left { root: "a.petro".into(), view });
         remembered.write(&path).unwrap();

@@ -1,6 +1,6 @@
 //! The open project as the window knows it: a copy of its document, its history, and its view.
 
-use super::view::{Panel, View};
+use super::view::{Panel, ViewState};
 use project::HistoryLine;
 use project::document::Document;
 use std::path::PathBuf;
@@ -28,14 +28,14 @@ pub struct Session {
     /// Its history, oldest first.
     pub history: Vec<HistoryLine>,
     /// The view.
-    pub view: View,
+    pub view: ViewState,
 }
 
 impl Session {
     /// A project that was just opened, with the given view or else its own first scene.
-    pub fn new(snapshot: Snapshot, view: Option<View>) -> Self {
+    pub fn new(snapshot: Snapshot, view: Option<ViewState>) -> Self {
         let Snapshot { root, document, history } = snapshot;
-        let mut view = view.unwrap_or_else(|| View::of(&document));
+        let mut view = view.unwrap_or_else(|| ViewState::of(&document));
         view.fit(&document);
         Self { root, document, revision: 0, history, view }
     }
@@ -51,7 +51,7 @@ impl Session {
         self.history = snapshot.history;
         let illustrates_now = was_bare && !self.document.horizons.is_empty();
         if !had_frame || illustrates_now {
-            let usual = View::of(&self.document).scene;
+            let usual = ViewState::of(&self.document).scene;
             if self.view.panel == Panel::Interpret {
                 // Whoever is picking keeps camera, box and cut-outs; the scene of the illustration takes over when it
                 // is first shown.

@@ -88,7 +88,7 @@ impl StandardView {
 
 /// How the open project is displayed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct View {
+pub struct ViewState {
     /// The scene: camera, box, cut-outs, blend. Its size is that of the last export.
     pub scene: Scene,
     /// Which views fill the middle.
@@ -115,7 +115,7 @@ pub struct View {
     pub picking: Picking,
 }
 
-impl View {
+impl ViewState {
     /// The view of a project's first scene, or its default view.
     pub fn of(document: &Document) -> Self {
         let scene = scene::choose(document, None).unwrap_or_default();
@@ -139,7 +139,7 @@ impl View {
     pub fn fit(&mut self, document: &Document) {
         let Some(geometry) = &document.geometry else { return };
         if self.scene.validate(geometry).is_err() {
-            self.scene = View::of(document).scene;
+            self.scene = ViewState::of(document).scene;
         }
         if document.horizons.is_empty() {
             self.scene.ground = None;

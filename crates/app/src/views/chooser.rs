@@ -4,7 +4,7 @@
 //! driven by keys and tests.
 
 use super::notices;
-use crate::state::{Action, Choice, Dialogue, Interpreted, Place, State, Target};
+use crate::state::{Action, Choice, Dialogue, FileContent, Place, State, Target};
 use crate::theme;
 use crate::work::folder::Folder;
 use eframe::egui::{Context, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui};
@@ -135,8 +135,8 @@ impl Chooser {
             }
             Choice::NewSurvey => Dialogue::Survey { path, target: Target::NewProject },
             Choice::MoreSurvey => Dialogue::Survey { path, target: Target::OpenProject },
-            Choice::Horizon => Dialogue::Interpretation { path, kind: Interpreted::Horizon },
-            Choice::Fault => Dialogue::Interpretation { path, kind: Interpreted::Fault },
+            Choice::Horizon => Dialogue::Interpretation { path, kind: FileContent::Horizon },
+            Choice::Fault => Dialogue::Interpretation { path, kind: FileContent::Fault },
             Choice::Well => Dialogue::Well { path },
         };
         self.choice = None;

@@ -1,7 +1,7 @@
 //! Files dropped on the window: a project is opened, a volume is read, a tile is added; for any other file a dialogue
 //! asks what it holds.
 
-use crate::state::{Action, Choice, Dialogue, Interpreted, Notice, Place, State, Target};
+use crate::state::{Action, Choice, Dialogue, FileContent, Notice, Place, State, Target};
 use crate::theme;
 use crate::views::chooser;
 use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Modal, Order};
@@ -98,8 +98,8 @@ pub fn dialogue(ctx: &Context, path: &Path, actions: &mut Vec<Action>) {
         ui.horizontal(|ui| {
             let path = path.to_owned();
             for (name, dialogue) in [
-                ("A horizon", Dialogue::Interpretation { path: path.clone(), kind: Interpreted::Horizon }),
-                ("A fault", Dialogue::Interpretation { path: path.clone(), kind: Interpreted::Fault }),
+                ("A horizon", Dialogue::Interpretation { path: path.clone(), kind: FileContent::Horizon }),
+                ("A fault", Dialogue::Interpretation { path: path.clone(), kind: FileContent::Fault }),
                 ("A well's deviation", Dialogue::Well { path }),
             ] {
                 if ui.button(name).clicked() {

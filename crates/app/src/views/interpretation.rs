@@ -3,7 +3,7 @@
 
 use super::layers::contact_name;
 use super::{form, notices};
-use crate::state::{Action, Interpreted, Place, Session, State};
+use crate::state::{Action, FileContent, Place, Session, State};
 use crate::theme;
 use crate::work::Work;
 use crate::work::scan::{self, InterpretationScan, Reading};
@@ -40,7 +40,7 @@ impl Interpretation {
         session: &Session,
         work: &Work,
         path: &Path,
-        kind: Interpreted,
+        kind: FileContent,
         actions: &mut Vec<Action>,
     ) {
         if self.path != path {
@@ -50,13 +50,13 @@ impl Interpretation {
         if let Some(geometry) = session.document.geometry.clone() {
             let (file, options) = (self.path.clone(), self.options.clone());
             self.reading.follow(ctx, work, "Reading the file", &self.options, move |_| match kind {
-                Interpreted::Fault => scan::fault(&file, &geometry, &options),
-                Interpreted::Horizon => scan::horizon(&file, &geometry, &options),
+                FileContent::Fault => scan::fault(&file, &geometry, &options),
+                FileContent::Horizon => scan::horizon(&file, &geometry, &options),
             });
         }
         let modal = Modal::new(Id::unique("interpretation")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
             ui.set_width(620.0);
-            ui.heading(if kind == Interpreted::Fault { "Add a fault" } else { "Add a horizon" });
+            ui.heading(if kind == FileContent::Fault { "Add a fault" } else { "Add a horizon" });
             ui.weak(path.display().to_string());
             notices::show(ui, state, Place::Dialogue, actions);
             self.form(ui, session, kind);
@@ -86,7 +86,7 @@ impl Interpretation {
         }
     }
 
-    fn form(&mut self, ui: &mut Ui, session: &Session, kind: Interpreted) {
+    fn form(&mut self, ui: &mut Ui, session: &Session, kind: FileContent) {
         Grid::new("interpretation").num_columns(2).spacing([12.0, 8.0]).show(ui, |ui| {
             let label = ui.label("Name");
             ui.add(TextEdit::singleline(&mut self.name).desired_width(240.0)).labelled_by(label.id);
@@ -99,7 +99,7 @@ impl Interpretation {
             let label = ui.label(form::name_of(Setting::ZFactor));
             ui.add(DragValue::new(&mut self.options.z_factor).speed(0.01)).labelled_by(label.id);
             ui.end_row();
-            if kind == Interpreted::Fault {
+            if kind == FileContent::Fault {
                 let label = ui.label("Ends at");
                 ui.label_inputs_by(label.id, |ui| {
                     let shown = self.truncated_by.clone().unwrap_or_else(|| "nothing".to_owned());
@@ -176,10 +176,10 @@ impl Interpretation {
         });
     }
 
-    fn command(&self, kind: Interpreted) -> Command {
+    fn command(&self, kind: FileContent) -> Command {
         let (path, name) = (self.path.clone(), self.name.trim().to_owned());
         let options = ImportOptions { select: self.chosen.clone(), ..self.options.clone() };
-        if kind == Interpreted::Fault {
+        if kind == FileContent::Fault {
             Command::AddFault(AddFault { path, name, truncated_by: self.truncated_by.clone(), options })
         } else {
             Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: Age::ByDepth, options })

@@ -5,7 +5,7 @@ use eframe::egui::Rect;
 
 /// A view.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
+pub enum LayoutPane {
     /// The block.
     Block,
     /// A section.
@@ -24,22 +24,22 @@ const GAP: f32 = 3.0;
 const BROAD: f32 = 1.2;
 
 /// The views of a layout with their places in a rectangle.
-pub fn parts(layout: Layout, whole: Rect) -> Vec<(Part, Rect)> {
-    let two = |first: Part, second: Part| {
+pub fn parts(layout: Layout, whole: Rect) -> Vec<(LayoutPane, Rect)> {
+    let two = |first: LayoutPane, second: LayoutPane| {
         let is_broad = whole.width() > BROAD * whole.height();
         let (a, b) =
             if is_broad { whole.split_left_right_at_fraction(0.42) } else { whole.split_top_bottom_at_fraction(0.42) };
         vec![(first, a.shrink(GAP)), (second, b.shrink(GAP))]
     };
     match layout {
-        Layout::Block => vec![(Part::Block, whole)],
-        Layout::Map => two(Part::Block, Part::Map),
-        Layout::Fence => two(Part::Section(SectionKind::Slice), Part::Fence),
+        Layout::Block => vec![(LayoutPane::Block, whole)],
+        Layout::Map => two(LayoutPane::Block, LayoutPane::Map),
+        Layout::Fence => two(LayoutPane::Section(SectionKind::Slice), LayoutPane::Fence),
         Layout::Sections => {
             let (top, bottom) = whole.split_top_bottom_at_fraction(0.5);
             let rows = [
-                (top, [Part::Block, Part::Section(SectionKind::Inline)]),
-                (bottom, [Part::Section(SectionKind::Slice), Part::Section(SectionKind::Crossline)]),
+                (top, [LayoutPane::Block, LayoutPane::Section(SectionKind::Inline)]),
+                (bottom, [LayoutPane::Section(SectionKind::Slice), LayoutPane::Section(SectionKind::Crossline)]),
             ];
             let quarters = rows.into_iter().flat_map(|(row, [first, second])| {
                 let (left, right) = row.split_left_right_at_fraction(0.5);

@@ -5,7 +5,7 @@ use crate::fields;
 use crate::state::{Action, Notice, Place, State};
 use crate::theme;
 use crate::work::Work;
-use crate::work::folder::{Folder, Listing};
+use crate::work::folder::{Folder, FolderListing};
 use crate::work::scan::Reading;
 use eframe::egui::{Button, Context, Grid, Id, Modal, ScrollArea, Spinner, TextEdit, Ui};
 use formats::ZUnit;
@@ -164,7 +164,7 @@ fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
 }
 
 /// Offers the files beside the deviation; where several may be named, the chosen file is added to the list.
-fn nearby(ui: &mut Ui, listing: &Listing, endings: &[&str], text: &mut String) {
+fn nearby(ui: &mut Ui, listing: &FolderListing, endings: &[&str], text: &mut String) {
     ui.menu_button("…", |ui| {
         let is_one = |name: &&String| endings.iter().any(|ending| name.to_lowercase().ends_with(&format!(".{ending}")));
         let names: Vec<&String> = listing.files.iter().filter(is_one).collect();

@@ -2,7 +2,7 @@
 
 use super::Window;
 use crate::state::{Action, Panel as Side, Place, Session};
-use crate::views::parts::{Part, parts};
+use crate::views::parts::{LayoutPane, parts};
 use crate::views::{bar, notices, overlay::Overlay};
 use crate::work::map::MapData;
 use crate::work::{Rocks, RunningLine};
@@ -38,17 +38,21 @@ impl Window {
             self.pointed = None;
             for (part, rect) in parts(session.view.layout, whole) {
                 let found = ui.scope_builder(egui::UiBuilder::new().max_rect(rect), |ui| match part {
-                    Part::Block => self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions),
-                    Part::Section(kind) => {
+                    LayoutPane::Block => {
+                        self.block.show(ui, session, rocks, &self.work.drawing, &self.overlay, actions)
+                    }
+                    LayoutPane::Section(kind) => {
                         let (slices, overlay) = (&self.work.slices, &mut self.overlay);
                         self.sections.show(ui, session, kind, rocks, slices, overlay, actions)
                     }
-                    Part::Map => {
+                    LayoutPane::Map => {
                         let source = map_source(session, rocks, &self.overlay);
                         self.map.show(ui, session, source, &self.work.maps, actions);
                         None
                     }
-                    Part::Fence => self.fence.show(ui, session, rocks, &self.work.slices, &mut self.overlay, actions),
+                    LayoutPane::Fence => {
+                        self.fence.show(ui, session, rocks, &self.work.slices, &mut self.overlay, actions)
+                    }
                 });
                 self.pointed = self.pointed.take().or(found.inner);
             }

@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 /// The content of a folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Listing {
+pub struct FolderListing {
     /// The folder.
     pub folder: PathBuf,
     /// Folders in it, sorted by name, as files and projects are.
@@ -25,12 +25,12 @@ pub struct Listing {
 #[derive(Default)]
 pub struct Folder {
     asked: Option<PathBuf>,
-    found: Latest<Arc<Listing>>,
+    found: Latest<Arc<FolderListing>>,
 }
 
 impl Folder {
     /// Its content, as far as it is known; another folder is listed when it is asked for.
-    pub fn listing(&mut self, ctx: &Context, folder: &Path) -> Arc<Listing> {
+    pub fn listing(&mut self, ctx: &Context, folder: &Path) -> Arc<FolderListing> {
         if self.asked.as_deref() != Some(folder) {
             self.asked = Some(folder.to_owned());
             let (number, found, ctx, folder) = (self.found.begin(), self.found.clone(), ctx.clone(), folder.to_owned());
@@ -73,8 +73,8 @@ impl Presence {
 }
 
 /// Lists a folder; a failure is recorded in the listing.
-fn read(folder: &Path) -> Listing {
-    let mut listing = Listing { folder: folder.to_owned(), ..Listing::default() };
+fn read(folder: &Path) -> FolderListing {
+    let mut listing = FolderListing { folder: folder.to_owned(), ..FolderListing::default() };
     let entries = match std::fs::read_dir(if folder.as_os_str().is_empty() { Path::new(".") } else { folder }) {
         Ok(entries) => entries,
         Err(error) => {

@@ -24,7 +24,7 @@ mod threads;
 
 pub use data::{Purpose, Rocks, Seen, Wanted};
 pub use map::Maps;
-pub use picks::{Interpreted, Picks, ShownFault, ShownHorizon, ShownPick, sheet};
+pub use picks::{Interpreted, InterpretedHorizon, Picks, ShownFault, ShownPick, sheet};
 pub use picture::{Drawing, Drawn, PictureRequest, Touch};
 pub use running::{Running, RunningLine};
 pub use slice::{SliceRequest, Slices};

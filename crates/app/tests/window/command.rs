@@ -1,7 +1,7 @@
 //! The panels and commands that the other tests leave out: each is used by its label and checked in the project.
 
 use super::driven::{Driven, click, document, open, state, wait};
-use app::state::{Action, Dialogue, Interpreted, Panel, PickingStep};
+use app::state::{Action, Dialogue, FileContent, Panel, PickingStep};
 use eframe::egui::Key;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
@@ -150,7 +150,7 @@ fn a_fault_comes_in_through_its_dialogue() {
         }
     }
     std::fs::write(&path, text).unwrap();
-    act(&mut harness, Action::Ask(Box::new(Dialogue::Interpretation { path, kind: Interpreted::Fault })));
+    act(&mut harness, Action::Ask(Box::new(Dialogue::Interpretation { path, kind: FileContent::Fault })));
     for label in ["Name", "Vertical unit", "Sign", "Factor", "Ends at"] {
         assert!(harness.query_all_by_label(label).count() > 0, "{label}");
     }

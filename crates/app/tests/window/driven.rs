@@ -1,6 +1,6 @@
 //! A window in a test harness, the helpers of the other tests, and tests of the main workflow.
 
-use app::state::{Compare, Dialogue, Interpreted, Layout, State, Target};
+use app::state::{Compare, Dialogue, FileContent, Layout, State, Target};
 use app::window::Window;
 use eframe::egui::{Key, Modifiers};
 use egui_kittest::Harness;
@@ -182,7 +182,7 @@ fn a_horizon_comes_in_through_its_dialogue() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
     let path = horizon(folder.path(), "Middle", 55.0);
-    let ask = app::state::Action::Ask(Box::new(Dialogue::Interpretation { path, kind: Interpreted::Horizon }));
+    let ask = app::state::Action::Ask(Box::new(Dialogue::Interpretation { path, kind: FileContent::Horizon }));
     harness.state_mut().as_mut().unwrap().act(ask);
     wait(&mut harness, "the file is read", |harness| {
         harness.query_by_label("Add").is_some_and(|add| !add.accesskit_node().is_disabled())

@@ -1,7 +1,7 @@
 //! Files dropped on the window.
 
 use crate::driven::{Driven, click, document, driven, open, project, state, survey, wait};
-use app::state::{Dialogue, Interpreted};
+use app::state::{Dialogue, FileContent};
 use egui_kittest::kittest::Queryable;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -52,6 +52,6 @@ fn it_is_asked_what_a_file_holds() {
     drop_on(&mut harness, &path);
     harness.get_by_label("What is Middle.csv?");
     click(&mut harness, "A horizon");
-    assert!(matches!(state(&harness).dialogue, Some(Dialogue::Interpretation { kind: Interpreted::Horizon, .. })));
+    assert!(matches!(state(&harness).dialogue, Some(Dialogue::Interpretation { kind: FileContent::Horizon, .. })));
     assert_eq!(document(&harness).horizons.len(), 2, "nothing is added unasked");
 }

@@ -3,7 +3,7 @@
 use super::command::{act, applied, choose, click_last};
 use super::driven::{Driven, click, document, driven, open, project, state, survey, wait};
 use app::state::{
-    Action, Appearance, Choice, Dialogue, ExportForm, Interpreted, Layout, Panel, PickingStep, Target, Tool,
+    Action, Appearance, Choice, Dialogue, ExportForm, FileContent, Layout, Panel, PickingStep, Target, Tool,
 };
 use eframe::egui::Key;
 use eframe::egui::accesskit::Role;
@@ -102,8 +102,8 @@ fn every_field_of_a_dialogue_has_a_name_of_its_own() {
     for dialogue in [
         Dialogue::Choose(Choice::Project),
         Dialogue::Survey { path: survey, target: Target::NewProject },
-        Dialogue::Interpretation { path: path.clone(), kind: Interpreted::Horizon },
-        Dialogue::Interpretation { path: path.clone(), kind: Interpreted::Fault },
+        Dialogue::Interpretation { path: path.clone(), kind: FileContent::Horizon },
+        Dialogue::Interpretation { path: path.clone(), kind: FileContent::Fault },
         Dialogue::Well { path },
         Dialogue::Patterns { layer: "Top - Base".into(), interval: None },
         Dialogue::Export(form),
@@ -180,7 +180,7 @@ fn a_horizon_upside_down_is_told_which_field_turns_it() {
         text += &format!("{inline},{crossline},-{}\n", 50.0 + f64::from(inline) + 0.01 * f64::from(crossline));
     }
     std::fs::write(&path, text).unwrap();
-    ask(&mut harness, Dialogue::Interpretation { path, kind: Interpreted::Horizon });
+    ask(&mut harness, Dialogue::Interpretation { path, kind: FileContent::Horizon });
     wait(&mut harness, "the sign is asked for", |harness| {
         harness.query_all_by_label_contains("state up under “Sign”").count() > 0
     });

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::ModelSettings;
-use crate::closed_form::{self, ClosedForm, Random};
+use crate::closed_form::{self, ModelForm, Random};
 use glam::DVec3;
 use survey::fault::Fault;
 use survey::geometry::{SurveyGeometry, VerticalUnit};
@@ -340,7 +340,7 @@ fn quality_shows_in_the_lines() {
 
 #[test]
 fn an_improper_rectangle_is_an_empty_section() {
-    let form: ClosedForm = closed_form::flat();
+    let form: ModelForm = closed_form::flat();
     let model = form.model();
     for extent in [[0.0, 5.0], [f64::NAN, 5.0], [5.0, -1.0]] {
         let plane = SectionPlane { origin: DVec3::ZERO, s_axis: DVec3::X, t_axis: DVec3::Z, extent };

@@ -30,12 +30,12 @@ struct Stop {
 
 /// The stop being dragged, and the stop chosen last.
 #[derive(Debug, Default)]
-pub(super) struct Curve {
+pub(super) struct OpacityCurve {
     held: Option<usize>,
     chosen: usize,
 }
 
-impl Curve {
+impl OpacityCurve {
     /// Shows a function and applies the user's changes to it.
     pub(super) fn show(&mut self, ui: &mut Ui, histogram: Option<&Histogram>, function: &mut RgbaFunction) {
         let mut stops = stops_of(function);

@@ -11,7 +11,7 @@ mod volume_rendering;
 use crate::state::{Action, Session};
 use crate::theme;
 use crate::work::{Rocks, Swatches};
-use curve::Curve;
+use curve::OpacityCurve;
 use eframe::egui::{Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 use histogram::Histogram;
 use project::command::{Command, RemoveScalar, SetRaw, SetScalar};
@@ -32,7 +32,7 @@ pub struct Functions {
     sent: bool,
     held: Option<usize>,
     scalar: Option<ScalarTtf>,
-    curve: Curve,
+    curve: OpacityCurve,
 }
 
 impl Functions {

@@ -2,7 +2,7 @@
 //! it that may give off light (P-illus 5.1, P-horiz 5).
 
 use super::colour_well;
-use super::curve::Curve;
+use super::curve::OpacityCurve;
 use super::histogram::Histogram;
 use crate::state::volume_rendering::{self, Extent, Light};
 use crate::state::{Action, Notice, Place, Session};
@@ -25,7 +25,7 @@ pub(super) fn show(
     ui: &mut Ui,
     session: &Session,
     histogram: Option<&Histogram>,
-    curve: &mut Curve,
+    curve: &mut OpacityCurve,
     actions: &mut Vec<Action>,
 ) {
     let mut next = session.view.scene.clone();

@@ -4,7 +4,7 @@ use super::go;
 use super::palette::palette;
 use crate::state::{Action, PickingStep, Session};
 use crate::views::sections::horizon_colour;
-use crate::work::{Interpreted, ShownHorizon};
+use crate::work::{Interpreted, InterpretedHorizon};
 use eframe::egui::{Button, DragValue, RichText, Sense, TextEdit, Ui, vec2};
 use interp::assembly::Operation;
 use interp::holes::FillSettings;
@@ -94,7 +94,7 @@ impl HorizonList {
         ui: &mut Ui,
         session: &Session,
         entry: &HorizonEntry,
-        facts: Option<&ShownHorizon>,
+        facts: Option<&InterpretedHorizon>,
         geometry: &SurveyGeometry,
         actions: &mut Vec<Action>,
     ) {
@@ -167,7 +167,7 @@ impl HorizonList {
         ui: &mut Ui,
         session: &Session,
         entry: &HorizonEntry,
-        facts: &ShownHorizon,
+        facts: &InterpretedHorizon,
         actions: &mut Vec<Action>,
     ) {
         let holes = &facts.holes;

@@ -38,7 +38,7 @@ use survey::{Fault, Progress, SurveyGeometry};
 use ttf::Colour;
 
 /// A horizon of the project, with what is drawn and reported of it.
-pub struct ShownHorizon {
+pub struct InterpretedHorizon {
     /// Its name.
     pub name: String,
     /// The colour chosen for it, if it was assembled from picks.
@@ -74,7 +74,7 @@ pub struct Interpreted {
     /// A number that no other interpretation has.
     pub number: u64,
     /// The horizons, youngest first.
-    pub horizons: Vec<ShownHorizon>,
+    pub horizons: Vec<InterpretedHorizon>,
     /// The faults, in the project's order.
     pub faults: Vec<ShownFault>,
     /// The report of the present extraction, if there is one.
@@ -400,7 +400,7 @@ impl Keeper {
                 ReportedOverlap::new(found, geometry)
             });
             let mine = conflicts.iter().filter(|conflict| conflict.horizons().contains(&entry.name));
-            ShownHorizon {
+            InterpretedHorizon {
                 name: entry.name.clone(),
                 colour: log.map(|log| log.colour),
                 sheets: sheets.clone(),
