@@ -1,5 +1,6 @@
 #!/bin/sh
-# Fuzzes the readers: fuzz/run.sh SECONDS [TARGET...]. Seconds are for each target; 0 runs what is in the corpus once. Without targets all
+# Fuzzes the readers: fuzz/run.sh SECONDS [TARGET...]. Seconds are for each target; 0 runs what is in the corpus once. The same
+# FUZZ_SEED makes up the same inputs; without it they are others each time. Without targets all
 # are run. Targets on projects (documents-*, derived-*, model) need most of the program compiled once more; where only others are named it
 # is not. A finding stops the run, and its input is kept in fuzz/findings. Needs a C++ compiler beside Rust (libFuzzer is C++).
 set -eu
@@ -53,7 +54,7 @@ for target in "$@"; do
     limit="-max_total_time=$seconds"
     [ "$seconds" -gt 0 ] || limit="-runs=0"
     log="$findings/$target.log"
-    if ! "$build/fuzz-$program" "$limit" -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
+    if ! "$build/fuzz-$program" "$limit" -seed="${FUZZ_SEED:-0}" -timeout=10 -rss_limit_mb=2048 -max_len=16384 -print_final_stats=1 \
         -artifact_prefix="$findings/$target-" "$corpus/$target" >"$log" 2>&1; then
         tail -n 40 "$log" >&2
         echo "fuzzing $target failed; its input is in $findings" >&2

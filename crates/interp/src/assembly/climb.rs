@@ -39,12 +39,10 @@ pub struct Climbed {
 /// The node `up` levels above a leaf.
 ///
 /// # Errors
-/// [`AssemblyError::BeyondRoot`].
-///
-/// # Panics
-/// When the forest has no leaf of this id.
+/// [`AssemblyError::NoLeaf`] and [`AssemblyError::BeyondRoot`].
 pub fn node_above(forest: &Forest, leaf: u32, up: u32) -> Result<u32, AssemblyError> {
-    let mut node = forest.leaves[leaf as usize - 1];
+    let place = (leaf as usize).checked_sub(1).and_then(|place| forest.leaves.get(place));
+    let mut node = *place.ok_or(AssemblyError::NoLeaf { leaf, leaves: forest.leaves.len() })?;
     for levels in 0..up {
         node = forest.nodes[node as usize].parent.ok_or(AssemblyError::BeyondRoot { leaf, levels, up })?;
     }

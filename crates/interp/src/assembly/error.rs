@@ -33,6 +33,14 @@ pub enum AssemblyError {
         /// Its closest point, voxels.
         nearest: Vec3,
     },
+    /// The extraction has no such leaf.
+    #[error("the extraction has no leaf {leaf}, it has leaves 1 to {leaves}; pick again")]
+    NoLeaf {
+        /// The id asked for.
+        leaf: u32,
+        /// Count of leaves.
+        leaves: usize,
+    },
     /// The tree is not high enough.
     #[error("the tree of leaf {leaf} has {levels} levels above it, {up} were asked for; climb by at most {levels}")]
     BeyondRoot {

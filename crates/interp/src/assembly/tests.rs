@@ -106,6 +106,9 @@ fn climbing_widens_to_the_root_and_no_further() {
     let triangles = |up| forest.nodes[node_above(&forest, 3, up).unwrap() as usize].triangles.len();
     assert_eq!([0, 1, 2, 3].map(triangles), [128, 256, 512, 1024]);
     assert_eq!(node_above(&forest, 3, 4), Err(AssemblyError::BeyondRoot { leaf: 3, levels: 3, up: 4 }));
+    for leaf in [0, 17, u32::MAX] {
+        assert_eq!(node_above(&forest, leaf, 0), Err(AssemblyError::NoLeaf { leaf, leaves: forest.leaves.len() }));
+    }
 }
 
 #[test]

@@ -165,6 +165,8 @@ fn climbed(
     Ok(match climb {
         Climb::Levels(up) => (node_above(&candidates.forest, leaf, up)?, up, None),
         Climb::HighestValid => {
+            // A log may name a leaf that the extraction does not have.
+            node_above(&candidates.forest, leaf, 0)?;
             let found = highest_valid(&candidates.forest, leaf, chosen, blocks, &ClimbSettings::default());
             (found.node, found.up, found.stopped_by)
         }

@@ -269,11 +269,8 @@ pub(crate) fn rebuild(
     if chosen.is_empty() {
         return Err(ProjectError::NothingLeft { horizon: name.to_owned() });
     }
-    let seeds: Vec<u32> = log
-        .picks
-        .iter()
-        .filter_map(|pick| Some(forest.nodes[*forest.leaves.get(pick.leaf as usize - 1)? as usize].triangles.start))
-        .collect();
+    let leaves = log.picks.iter().map(|pick| node_above(forest, pick.leaf, 0)).collect::<Result<Vec<_>, _>>()?;
+    let seeds: Vec<u32> = leaves.iter().map(|&leaf| forest.nodes[leaf as usize].triangles.start).collect();
     let mut assembled = reassemble(forest, &chosen, &seeds, blocks);
     let filled = match &log.fill {
         Some(settings) => Some(fill_holes(&mut assembled.sheets, [nx, ny], blocks, settings, progress)?),
