@@ -190,6 +190,8 @@ pub(crate) fn compute(
         computed,
         report,
     };
+    // Before anything that was extracted from these samples is found again by their hash.
+    let source = content::open_recorded(root, entry, document.frame()?)?;
     for file in [parked(&key), PRESENT.to_owned()].map(|file| folder(root).join(file)) {
         if let Ok(stored) = StoredCandidates::open(&file)
             && stored.info().key == key
@@ -198,7 +200,6 @@ pub(crate) fn compute(
             return Ok(answer(file, report, false));
         }
     }
-    let source = content::open_volume(root, entry, document.frame()?)?;
     let scratch = Scratch::begin(root)?;
     let file = parked(&key);
     let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(&file), size, leaves)?);
