@@ -44,7 +44,7 @@ impl fmt::Display for Extracted {
         writeln!(f, "horizon candidates of volume {} in {}", self.volume, self.file.display())?;
         write!(f, "{}", self.report)?;
         if !self.computed {
-            writeln!(f, "nothing has changed since they were extracted; the times are those of then")?;
+            writeln!(f, "nothing has changed since they were extracted")?;
         }
         Ok(())
     }
@@ -133,9 +133,11 @@ pub fn open(root: &Path, document: &Document) -> Result<StoredCandidates, Projec
     Ok(stored)
 }
 
-/// The report of the extraction that made these candidates; `None` if it cannot be read.
+/// The report of the extraction that made these candidates, without times; `None` if it cannot be read.
 pub fn report(candidates: &StoredCandidates) -> Option<ExtractReport> {
-    serde_json::from_value(candidates.info().report.clone()).ok()
+    let report: ExtractReport = serde_json::from_value(candidates.info().report.clone()).ok()?;
+    // Earlier versions stored the times of then.
+    Some(ExtractReport { seconds: None, ..report })
 }
 
 /// Surfaces and trees of a project's candidates.
