@@ -6,6 +6,7 @@
 #   make bench   how long the stages take on this machine
 #   make speed   how long pictures take, on the graphics driver and on the processor (small in CI: SPEED_SIDE, SPEED_SIZE)
 #   make check-peers   opens the files that we write with libraries of other programs (Python: numpy, scipy, xtgeo, segyio, lasio)
+#   make attack  names, links, damage, kills, full disks, false claims: the real program in minutes (docs/reliability.md)
 #   make fuzz    a second of fuzzing for every parser; make fuzz-long ten minutes each
 #   make scenario   an interpreter's session by mouse and keys in the real window (Xvfb, xdotool, ImageMagick)
 #   make gallery the pictures of docs/gallery.md
@@ -28,7 +29,7 @@ SIZES ?= 1280x800 2560x1440
 APPEARANCES ?= light dark
 PYTHON ?= python3
 
-.PHONY: demo gallery screenshots test check bench accuracy extraction picks speed check-peers scenario fuzz fuzz-long setup build
+.PHONY: demo gallery screenshots test check bench accuracy extraction picks speed check-peers scenario attack fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
@@ -74,6 +75,12 @@ speed: setup
 
 scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario
+
+# What docs/reliability.md lists of the real program: modules and tests of tests/it.
+ATTACKS = hostile:: bombs:: sources:: kill:: safety:: store:: bad_input:: memory:: extraction::the_same_extraction_twice
+
+attack: setup
+	cargo test --locked --test it -- $(ATTACKS)
 
 # The same inputs each time, so that a change fails by its own fault alone.
 fuzz: setup

@@ -72,12 +72,13 @@ fn row(side: usize, dump: Option<&Path>, progress: &Progress) -> anyhow::Result<
     let before = Memory::begin();
     let found = extract(&volume, &ExtractSettings::default(), progress)?;
     let (report, count) = (found.report, (side * side * side) as f64);
+    let seconds = report.seconds.unwrap_or_default();
     Ok(ExtractionRow {
         side,
         triangles: report.triangles,
         leaves: report.leaves,
-        us_per_voxel: report.seconds.total * 1e6 / count,
-        seconds: report.seconds,
+        us_per_voxel: seconds.total * 1e6 / count,
+        seconds,
         peak_bytes_per_voxel: before.and_then(|before| before.peak()).map(|bytes| bytes / count),
     })
 }

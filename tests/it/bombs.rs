@@ -2,7 +2,7 @@
 //! sentence, in an address space that the harm they meant would not fit into.
 #![cfg(target_os = "linux")]
 
-use crate::program::{Run, bytes, command, project, run_in};
+use crate::program::{Run, bytes, command, forget_hash_of_tile, project, run_in};
 use std::fs;
 use std::io::Write as _;
 use std::path::Path;
@@ -94,6 +94,7 @@ fn a_tile_in_a_project_from_someone_else_is_refused_too() {
     let at = folder.path();
     fs::write(at.join("mine.svg"), format!("{HEAD}<rect width=\"9\" height=\"9\"/></svg>")).unwrap();
     run_in(at, "texture p.petro mine.svg").done();
+    forget_hash_of_tile(&at.join("p.petro"));
     let tile = fs::read_dir(at.join("p.petro/textures")).unwrap().next().unwrap().unwrap().path();
     for (_, svg, word) in bad_tiles() {
         fs::write(&tile, svg).unwrap();

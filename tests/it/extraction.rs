@@ -1,6 +1,6 @@
 //! Horizon candidates through the program.
 
-use crate::program::{bytes, project, run_in};
+use crate::program::{Run, bytes, command, project, run_in};
 use std::fs;
 use std::path::Path;
 
@@ -32,6 +32,31 @@ fn candidates_are_extracted_once_and_exported_as_points() {
     assert_eq!(rows.len() as u64, points["points"].as_u64().unwrap());
     let (leaves, surfaces) = (other["leaves"].as_f64().unwrap(), other["surfaces"].as_f64().unwrap());
     assert!(rows.iter().all(|row| (1.0..=leaves).contains(&row[3]) && (1.0..=surfaces).contains(&row[4])));
+}
+
+#[test]
+fn the_same_extraction_twice_gives_the_same_bytes() {
+    let extracted = |threads: &str| {
+        let folder = project();
+        let root = folder.path().join("p.petro/derived/candidates.zarr");
+        let run = command()
+            .current_dir(folder.path())
+            .env("RAYON_NUM_THREADS", threads)
+            .args(["extract", "p.petro", "--json"])
+            .output();
+        let told = Run::of(&run.unwrap()).done().json();
+        assert!(told["seconds"]["total"].as_f64().unwrap() > 0.0, "the command tells its times: {told}");
+        let again = run_in(folder.path(), "extract p.petro --json").done().json();
+        assert!(again["computed"] == false && again["seconds"].is_null(), "{again}");
+        let files = bytes(&root).into_iter();
+        files.map(|(path, content)| (path.strip_prefix(&root).unwrap().to_owned(), content)).collect::<Vec<_>>()
+    };
+    let (once, twice) = (extracted("1"), extracted("2"));
+    assert!(once.iter().any(|(path, _)| path == Path::new("zarr.json")));
+    for ((path, content), (other, again)) in once.iter().zip(&twice) {
+        assert!(path == other && content == again, "{} differs", path.display());
+    }
+    assert_eq!(once.len(), twice.len());
 }
 
 #[test]

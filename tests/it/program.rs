@@ -128,6 +128,16 @@ pub fn survey() -> TempDir {
     folder
 }
 
+/// Takes the hash of the first tile out of the state of a project, as it is in those from before it was recorded.
+pub fn forget_hash_of_tile(root: &Path) {
+    let state = root.join("project.toml");
+    let text = fs::read_to_string(&state).expect("a state");
+    let from = text.find("[[textures]]").expect("a tile");
+    let (head, tail) = text[from..].split_once("hash = ").expect("a hash");
+    let (_, rest) = tail.split_once('\n').expect("a line");
+    fs::write(&state, format!("{}{head}{rest}", &text[..from])).expect("a state that can be written");
+}
+
 /// Copies the content of a folder.
 pub fn copy(from: &Path, to: &Path) {
     for entry in fs::read_dir(from).expect("a folder") {

@@ -67,8 +67,9 @@ pub struct ExtractReport {
     pub within_reach: f64,
     /// Bytes of a leaf id: 2, or 4 with more than 65 535 leaves.
     pub leaf_id_bytes: usize,
-    /// Time by stage.
-    pub seconds: StageSeconds,
+    /// Time by stage; `None` in a report that was stored, since the same extraction stores the same bytes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub seconds: Option<StageSeconds>,
 }
 
 impl ExtractReport {
@@ -108,7 +109,7 @@ impl fmt::Display for ExtractReport {
         if self.leaf_id_bytes > 2 {
             writeln!(f, "there are more than 65535 leaves, so their ids take four bytes a voxel instead of two")?;
         }
-        let StageSeconds { growing, trees, distances, storing, total } = self.seconds;
+        let Some(StageSeconds { growing, trees, distances, storing, total }) = self.seconds else { return Ok(()) };
         writeln!(
             f,
             "growing {growing:.2} s, trees {trees:.2} s, distances {distances:.2} s, storing {storing:.2} s: {total:.2} s"
@@ -156,7 +157,7 @@ where
     GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
 {
     let start = Instant::now();
-    let (forest, mut report) = grow_forest(source, settings, progress)?;
+    let (forest, mut report, mut seconds) = grow_forest(source, settings, progress)?;
     let measuring = Instant::now();
     let [nx, ny, _] = source.size();
     let distances = LeafDistances::new(&forest, &settings.distance)?;
@@ -165,8 +166,9 @@ where
     drop(distances);
     let reached = all.leaf.iter().filter(|&&leaf| leaf != 0).count();
     report.within_reach = reached as f64 / all.leaf.len().max(1) as f64;
-    report.seconds.distances = measuring.elapsed().as_secs_f64();
-    report.seconds.total = start.elapsed().as_secs_f64();
+    seconds.distances = measuring.elapsed().as_secs_f64();
+    seconds.total = start.elapsed().as_secs_f64();
+    report.seconds = Some(seconds);
     let candidates = CandidateBox { size: source.size(), distance: all.distance, leaf: all.leaf };
     Ok(Extraction { forest, candidates, report })
 }
@@ -189,7 +191,7 @@ where
     K: CandidateSink,
 {
     let start = Instant::now();
-    let (forest, mut report) = grow_forest(source, settings, progress)?;
+    let (forest, mut report, mut seconds) = grow_forest(source, settings, progress)?;
     let size = source.size();
     let mut sink = begin(size, forest.leaf_count()).map_err(InterpError::Sink)?;
     let measuring = Instant::now();
@@ -203,14 +205,10 @@ where
         Ok::<(), InterpError>(())
     })?;
     drop(distances);
-    report.seconds.distances = measuring.elapsed().as_secs_f64() - storing;
+    seconds.distances = measuring.elapsed().as_secs_f64() - storing;
     report.within_reach = reached as f64 / size.iter().product::<usize>().max(1) as f64;
     let writing = Instant::now();
     let tables = forest.tables();
-    // The time for writing the pyramid and the trees is not known before they are written; only the caller
-    // learns it.
-    report.seconds.storing = storing;
-    report.seconds.total = start.elapsed().as_secs_f64();
     let info = CandidateInfo {
         key: key.to_owned(),
         size,
@@ -220,8 +218,9 @@ where
     };
     drop(forest);
     sink.finish(&info, &tables, progress).map_err(InterpError::Sink)?;
-    report.seconds.storing += writing.elapsed().as_secs_f64();
-    report.seconds.total = start.elapsed().as_secs_f64();
+    seconds.storing = storing + writing.elapsed().as_secs_f64();
+    seconds.total = start.elapsed().as_secs_f64();
+    report.seconds = Some(seconds);
     Ok(report)
 }
 
@@ -230,7 +229,7 @@ fn grow_forest<S>(
     source: &S,
     settings: &ExtractSettings,
     progress: &Progress,
-) -> Result<(Forest, ExtractReport), InterpError>
+) -> Result<(Forest, ExtractReport, StageSeconds), InterpError>
 where
     S: SlabSource,
     GrowError<S::Error>: std::error::Error + Send + Sync + 'static,
@@ -255,7 +254,8 @@ where
         largest,
         within_reach: 0.0,
         leaf_id_bytes: if forest.leaf_count() > usize::from(u16::MAX) { 4 } else { 2 },
-        seconds: StageSeconds { growing, trees: start.elapsed().as_secs_f64() - growing, ..StageSeconds::default() },
+        seconds: None,
     };
-    Ok((forest, report))
+    let trees = start.elapsed().as_secs_f64() - growing;
+    Ok((forest, report, StageSeconds { growing, trees, ..StageSeconds::default() }))
 }

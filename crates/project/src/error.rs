@@ -114,6 +114,23 @@ pub enum ProjectError {
         /// What the data say.
         found: [usize; 3],
     },
+    /// Data that are not those that the project recorded.
+    #[error(
+        "{} is not what the project recorded of {noun} \"{name}\": its content has the hash {}…, and {}… was recorded",
+        path.display(), short(found), short(expected)
+    )]
+    OtherContent {
+        /// The file or folder.
+        path: PathBuf,
+        /// What it holds.
+        noun: Noun,
+        /// The name of that.
+        name: String,
+        /// BLAKE3 that the project recorded.
+        expected: String,
+        /// BLAKE3 of what is there.
+        found: String,
+    },
     /// A link where a project keeps a file or folder of its own.
     #[error("{} is a link, and a project holds none: what it points to could be changed or deleted", path.display())]
     Link {
@@ -439,6 +456,11 @@ impl From<interp::InterpError> for ProjectError {
     }
 }
 
+/// The beginning of a hash: enough to tell two apart.
+fn short(hash: &str) -> &str {
+    hash.get(..12).unwrap_or(hash)
+}
+
 fn listed(names: &[String]) -> String {
     if names.is_empty() { "it has none".to_owned() } else { format!("it has: {}", names.join(", ")) }
 }
@@ -467,6 +489,9 @@ impl ProjectError {
             Self::Locked { .. } => "wait until the other command has finished, then try again; nothing was changed",
             Self::InsideProject { .. } => "give a file outside of the project's folder",
             Self::OtherSize { .. } => "undo the last edit by hand, or import the data again",
+            Self::OtherContent { .. } => {
+                "the file was changed or damaged outside of Petroglyph: copy it back from a backup, or remove it from the project and import it again"
+            }
             Self::Link { .. } => {
                 "if you trust the origin of the project, replace the link by a copy of the file or folder; nothing was changed"
             }

@@ -67,7 +67,7 @@ pub fn write(
     let document = project.document();
     let entry = &document.volumes[document.position(Noun::Volume, name)?];
     folder::refuse_inside_project(out)?;
-    let stored = content::open_volume(project.root(), entry, document.frame()?)?;
+    let stored = content::open_recorded(project.root(), entry, document.frame()?)?;
     let geometry = stored.info().geometry.clone();
     let format = format.unwrap_or(match stored.type_name().as_str() {
         "int8" => WriteFormat::Int8,

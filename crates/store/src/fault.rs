@@ -10,6 +10,7 @@ use std::fmt::Write;
 use std::path::Path;
 use survey::fault::Fault;
 use survey::file;
+use survey::geometry::MAX_COORDINATE;
 use survey::mesh::TriangleMesh;
 
 /// Kind of the file.
@@ -42,9 +43,11 @@ struct Document {
 /// ```
 ///
 /// # Errors
-/// [`StoreError`]; `path` then remains as it was. A coordinate that is not finite is refused.
+/// [`StoreError`]; `path` then remains as it was. A coordinate that is not finite, or lies beyond any
+/// survey, is refused.
 pub fn write_fault(path: &Path, fault: &Fault) -> Result<(), StoreError> {
-    if let Some(vertex) = fault.mesh.vertices.iter().find(|vertex| !vertex.is_finite()) {
+    let is_place = |vertex: &&DVec3| vertex.abs().max_element() <= MAX_COORDINATE && vertex.is_finite();
+    if let Some(vertex) = fault.mesh.vertices.iter().find(|vertex| !is_place(vertex)) {
         return Err(StoreError::WrongKind {
             path: path.to_owned(),
             expected: "a fault",
@@ -86,6 +89,10 @@ pub fn read_fault(path: &Path) -> Result<Fault, StoreError> {
     }
     if document.version > VERSION {
         return Err(StoreError::NewerVersion { path: path.to_owned(), found: document.version, known: VERSION });
+    }
+    let is_place = |vertex: &&[f64; 3]| vertex.iter().all(|at| at.abs() <= MAX_COORDINATE);
+    if let Some(vertex) = document.vertices.iter().find(|vertex| !is_place(vertex)) {
+        return Err(wrong(format!("the vertex {vertex:?} lies beyond any survey")));
     }
     let count = document.vertices.len();
     if let Some(triangle) = document.triangles.iter().find(|t| t.iter().any(|&v| v as usize >= count)) {

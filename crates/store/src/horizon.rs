@@ -12,6 +12,7 @@ use super::layout::ArrayLayout;
 use super::replacement::Replacement;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use survey::geometry::MAX_COORDINATE;
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::progress::Progress;
 
@@ -47,9 +48,12 @@ struct SheetHeader {
 /// ```
 ///
 /// # Errors
-/// [`StoreError`]; `path` then remains as it was.
+/// [`StoreError`]; `path` then remains as it was. A depth beyond any survey is refused.
 pub fn write_horizon(path: &Path, horizon: &Horizon, progress: &Progress) -> Result<(), StoreError> {
     let sheets = horizon.sheets.iter().map(|sheet| SheetHeader { block: sheet.block, grid: sheet.grid }).collect();
+    for (n, sheet) in horizon.sheets.iter().enumerate() {
+        check_depths(path, n, &sheet.depth)?;
+    }
     let replacement = Replacement::of(path)?;
     let group = replacement.path();
     write_header(group, KIND, &Header { name: horizon.name.clone(), sheets })?;
@@ -81,6 +85,7 @@ pub fn read_horizon(path: &Path, progress: &Progress) -> Result<Horizon, StoreEr
             Ok(array)
         };
         let depth = open("depth")?.read::<f32>(progress)?;
+        check_depths(path, n, &depth)?;
         let numbers = open("quality")?.read::<u8>(progress)?;
         let quality = numbers.iter().map(|&number| quality_of(number)).collect::<Option<Vec<Quality>>>();
         let quality = quality.ok_or_else(|| StoreError::Damaged {
@@ -91,6 +96,14 @@ pub fn read_horizon(path: &Path, progress: &Progress) -> Result<Horizon, StoreEr
         sheets.push(Sheet { block, grid, depth, quality });
     }
     Ok(Horizon { name: header.name, sheets })
+}
+
+/// Refuses a depth that lies farther off than any survey may reach; what is not finite is a hole.
+fn check_depths(path: &Path, sheet: usize, depths: &[f32]) -> Result<(), StoreError> {
+    let is_beyond = |depth: &&f32| depth.is_finite() && f64::from(depth.abs()) > MAX_COORDINATE;
+    let Some(beyond) = depths.iter().find(is_beyond) else { return Ok(()) };
+    let reason = format!("a depth of {beyond:e} lies beyond any survey, which reaches at most {MAX_COORDINATE:e}");
+    Err(StoreError::Damaged { path: path.to_owned(), array: format!("{sheet}/depth"), reason })
 }
 
 /// The quality that a number stands for.

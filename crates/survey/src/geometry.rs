@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 pub const MAX_VOXELS: u64 = 1 << 42;
 
 /// Largest coordinate, m, and vertical value in its unit: far beyond the Earth, and exact to a millimetre.
-const MAX_COORDINATE: f64 = 1e9;
+pub const MAX_COORDINATE: f64 = 1e9;
 
 /// Highest velocity, m/s: above that of any rock and of any unit mistaken for m/s.
 const MAX_VELOCITY_M_S: f64 = 1e6;

@@ -1,4 +1,5 @@
-//! Commands on projects, carried out one after the other, so that changes to a project keep their order.
+//! Commands on projects, carried out one after the other, so that changes to a project keep their order. They wait for
+//! another program that is changing the project as long as the command line does.
 
 use super::running::{Running, RunningGuard};
 use super::{Event, Outbox, keep_working};
@@ -7,6 +8,7 @@ use project::Project;
 use project::command::{Command, ImportVolume};
 use project::demo;
 use project::error::ProjectError;
+use project::folder::DEFAULT_WAIT;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Sender, channel};
 use survey::Progress;
@@ -88,17 +90,17 @@ impl Order {
                 Event::Opened(Box::new(snapshot(&new.publish()?)?))
             }
             Self::Apply { root, command, place } => {
-                let mut project = Project::open(&root)?;
+                let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
                 project.apply(&command, progress)?;
                 Event::Changed { snapshot: Box::new(snapshot(&project)?), place }
             }
             Self::Undo(root) => {
-                let mut project = Project::open(&root)?;
+                let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
                 project.undo()?;
                 Event::Changed { snapshot: Box::new(snapshot(&project)?), place: Place::Block }
             }
             Self::Redo(root) => {
-                let mut project = Project::open(&root)?;
+                let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
                 project.redo()?;
                 Event::Changed { snapshot: Box::new(snapshot(&project)?), place: Place::Block }
             }
@@ -118,4 +120,41 @@ fn file_name(path: &Path) -> String {
 /// An absolute path, since recent projects must be found from any working folder.
 fn absolute(path: &Path) -> PathBuf {
     std::path::absolute(path).unwrap_or_else(|_| path.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use project::command::SetVelocity;
+    use std::fs::File;
+    use std::thread;
+    use std::time::{Duration, Instant};
+    use survey::{SurveyGeometry, VerticalUnit};
+
+    #[test]
+    fn a_change_waits_for_another_program_that_holds_the_project() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("a.petro");
+        let geometry = SurveyGeometry::regular([4, 5, 6], 25.0, 4.0, VerticalUnit::Milliseconds);
+        Project::create(&root, Some(geometry)).unwrap().publish().unwrap();
+        let change = || Command::SetVelocity(SetVelocity { velocity_m_s: 2500.0 });
+        let orders = [
+            Order::Apply { root: root.clone(), command: Box::new(change()), place: Place::Block },
+            Order::Undo(root.clone()),
+            Order::Redo(root.clone()),
+        ];
+        for order in orders {
+            let lock = File::options().create(true).truncate(false).write(true).open(root.join("lock")).unwrap();
+            lock.try_lock().unwrap();
+            let held = Duration::from_millis(300);
+            let begun = Instant::now();
+            let holder = thread::spawn(move || {
+                thread::sleep(held);
+                drop(lock);
+            });
+            assert!(matches!(order.carry_out(&Progress::silent()), Ok(Event::Changed { .. })));
+            assert!(begun.elapsed() >= held, "the other program still held it");
+            holder.join().unwrap();
+        }
+    }
 }

@@ -78,7 +78,7 @@ impl ComputeAttribute {
             None => 0,
         };
         let from = draft.document.volumes[position].clone();
-        let source = content::open_volume(draft.root(), &from, draft.document.frame()?)?;
+        let source = content::open_recorded(draft.root(), &from, draft.document.frame()?)?;
         let geometry =
             SurveyGeometry { velocity_m_s: draft.document.frame()?.velocity_m_s, ..source.info().geometry.clone() };
         let mut places = Vec::new();

@@ -9,8 +9,8 @@ use crate::document::{Document, ExtractionEntry, ProposalsEntry};
 use crate::error::ProjectError;
 use crate::folder::Draft;
 use crate::interpretation::{extraction, proposals};
-use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
+use interp::{ExtractSettings, StageSeconds};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use survey::Progress;
@@ -27,10 +27,15 @@ pub struct Extract {
 }
 
 impl Extract {
-    /// Computes the candidates, unless they exist; returns whether it had to.
-    pub(super) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
+    /// Computes the candidates, unless they exist; returns how long that took if it had to.
+    pub(super) fn prepare(
+        &self,
+        root: &Path,
+        document: &Document,
+        progress: &Progress,
+    ) -> Result<Option<StageSeconds>, ProjectError> {
         let extracted = extraction::compute(root, document, self.volume.as_deref(), &self.settings, progress)?;
-        Ok(extracted.computed)
+        Ok(extracted.report.seconds.filter(|_| extracted.computed))
     }
 
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
@@ -54,8 +59,8 @@ pub struct ProposeFaults {
 
 impl ProposeFaults {
     /// Computes the proposals, unless they exist.
-    pub(super) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
-        proposals::compute(root, document, &self.settings, progress).map(|_| true)
+    pub(super) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<(), ProjectError> {
+        proposals::compute(root, document, &self.settings, progress).map(drop)
     }
 
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {

@@ -44,6 +44,7 @@ use crate::error::{Noun, ProjectError};
 use crate::folder::Draft;
 use crate::interpretation::extraction::Extracted;
 use crate::interpretation::proposals::Proposals;
+use interp::StageSeconds;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use survey::{Note, Progress, SurveyGeometry};
@@ -161,13 +162,18 @@ pub enum Effect {
 }
 
 impl Command {
-    /// Computes what takes long and needs no lock, and stores it where [`Command::execute`] finds it; returns whether
-    /// anything had to be computed.
-    pub(crate) fn prepare(&self, root: &Path, document: &Document, progress: &Progress) -> Result<bool, ProjectError> {
+    /// Computes what takes long and needs no lock, and stores it where [`Command::execute`] finds it; returns how
+    /// long an extraction took that had to be computed.
+    pub(crate) fn prepare(
+        &self,
+        root: &Path,
+        document: &Document,
+        progress: &Progress,
+    ) -> Result<Option<StageSeconds>, ProjectError> {
         match self {
             Self::Extract(change) => change.prepare(root, document, progress),
-            Self::ProposeFaults(change) => change.prepare(root, document, progress),
-            _ => Ok(false),
+            Self::ProposeFaults(change) => change.prepare(root, document, progress).map(|()| None),
+            _ => Ok(None),
         }
     }
 
@@ -237,10 +243,11 @@ impl Effect {
         }
     }
 
-    /// Records in the effect that something was computed before the command was carried out.
-    pub(crate) fn after_computing(mut self, computed: bool) -> Self {
-        if let Self::Extracted(extracted) = &mut self {
-            extracted.computed |= computed;
+    /// Records in the effect how long an extraction took that was computed before the command was carried out.
+    pub(crate) fn after_computing(mut self, took: Option<StageSeconds>) -> Self {
+        if let (Self::Extracted(extracted), Some(_)) = (&mut self, took) {
+            extracted.computed = true;
+            extracted.report.seconds = took;
         }
         self
     }

@@ -1,6 +1,7 @@
 //! The user's own tiles for patterns.
 
 use super::{Effect, Noun, ProjectError};
+use crate::content;
 use crate::document::TextureEntry;
 use crate::folder::Draft;
 use crate::styles;
@@ -40,6 +41,7 @@ impl AddTexture {
             name: name.clone(),
             file,
             tile_mm: [width_mm, height * width_mm / width],
+            hash: content::hash_file(&new)?,
             source: super::source_of(&self.path, extension)?,
         });
         Ok(Effect::Changed { summary: format!("texture {name}") })

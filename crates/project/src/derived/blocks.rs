@@ -62,17 +62,26 @@ struct FaultHeader {
     size: [usize; 2],
 }
 
-/// The header, then frame, surface and extent of each fault.
 fn write(out: &mut dyn Write, blocks: &FaultNetwork) -> io::Result<()> {
-    let faults = blocks.surfaces().iter().zip(blocks.truncation()).map(|(fault, truncation)| FaultHeader {
+    write_parts(out, blocks.surfaces(), blocks.truncation(), blocks.signatures())
+}
+
+/// The header, then frame, surface and extent of each fault.
+fn write_parts(
+    out: &mut dyn Write,
+    surfaces: &[FaultSurface],
+    truncation: &[Option<Truncation>],
+    signatures: &[BlockSignature],
+) -> io::Result<()> {
+    let faults = surfaces.iter().zip(truncation).map(|(fault, truncation)| FaultHeader {
         name: fault.name.clone(),
         truncation: truncation.map(|truncation| (truncation.by, truncation.positive)),
         origin: fault.surface.origin,
         size: fault.surface.size,
     });
-    let signatures = blocks.signatures().iter().map(|block| (block.bits, block.care)).collect();
+    let signatures = signatures.iter().map(|block| (block.bits, block.care)).collect();
     write_header(out, &Header { faults: faults.collect(), signatures })?;
-    for fault in blocks.surfaces() {
+    for fault in surfaces {
         let mut frame = [fault.spacing_m; FRAME];
         frame[..9].copy_from_slice(&fault.frame_from_voxel.to_cols_array());
         frame[9..12].copy_from_slice(&fault.frame_offset.to_array());
@@ -109,6 +118,8 @@ fn read(input: &mut dyn Read, length: u64) -> io::Result<FaultNetwork> {
 mod tests {
     use super::*;
     use formats::fault_of_sticks;
+    use glam::Vec3;
+    use survey::height_field::FAR;
     use survey::{Fault, SurveyGeometry, VerticalUnit};
 
     fn geometry() -> SurveyGeometry {
@@ -144,6 +155,48 @@ mod tests {
         damaged[middle] ^= 1;
         std::fs::write(&path, &damaged).unwrap();
         assert!(load_blocks(root, "aa").is_none());
+    }
+
+    /// Loads the blocks with their first surface changed, from a file whose hash is right.
+    fn loaded_with(change: impl Fn(&mut FaultSurface)) -> Option<FaultNetwork> {
+        let (folder, whole) = (tempfile::tempdir().unwrap(), blocks());
+        let mut surfaces = whole.surfaces().to_vec();
+        change(&mut surfaces[0]);
+        BLOCKS.keep(folder.path(), "aa", &Progress::silent(), |out| {
+            write_parts(out, &surfaces, whole.truncation(), whole.signatures())
+        });
+        load_blocks(folder.path(), "aa")
+    }
+
+    #[test]
+    fn blocks_with_a_valid_hash_and_a_place_far_outside_overflow_nothing() {
+        // Places that differences of 32 bits do not reach are refused.
+        for far in [i32::MIN, i32::MIN + 1, -FAR - 1, FAR + 1, i32::MAX] {
+            assert!(loaded_with(|fault| fault.surface.origin[0] = far).is_none(), "surface at {far}");
+            assert!(loaded_with(|fault| fault.extent.origin[1] = far).is_none(), "extent at {far}");
+        }
+        for wrong in [f64::NAN, f64::INFINITY] {
+            assert!(loaded_with(|fault| fault.frame_offset.x = wrong).is_none());
+            assert!(loaded_with(|fault| fault.frame_from_voxel.x_axis.y = wrong).is_none());
+        }
+        // What is taken can be asked anywhere.
+        let changes: [fn(&mut FaultSurface); 5] = [
+            |_| (),
+            |fault| (fault.surface.origin, fault.extent.origin) = ([FAR, -FAR], [-FAR, FAR]),
+            |fault| fault.frame_offset = DVec3::splat(1e300),
+            |fault| fault.frame_offset = DVec3::splat(-f64::MAX),
+            |fault| fault.frame_from_voxel = DMat3::from_diagonal(DVec3::splat(f64::MAX)),
+        ];
+        for (n, change) in changes.into_iter().enumerate() {
+            let blocks = loaded_with(change).unwrap_or_else(|| panic!("{n} was not taken"));
+            for at in [0.0, 20.0, -1e9, 1e9, f32::MIN, f32::MAX] {
+                for p in [Vec3::splat(at), Vec3::new(at, 0.0, 0.0), Vec3::new(0.0, -at, at)] {
+                    assert!(usize::from(blocks.block_at(p)) < blocks.block_count(), "{n} at {p}");
+                    let _ = (blocks.side(0, p), blocks.is_real(0, p));
+                    let _ = blocks.surfaces()[0].side_gradient(p.as_dvec3());
+                }
+            }
+        }
     }
 
     #[test]

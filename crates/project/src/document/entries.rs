@@ -143,6 +143,9 @@ pub struct TextureEntry {
     pub file: String,
     /// Printed width and height, mm.
     pub tile_mm: [f32; 2],
+    /// BLAKE3 of the file's bytes; empty in projects that recorded none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub hash: String,
     /// Where it came from.
     pub source: Source,
 }

@@ -211,11 +211,12 @@ pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<A
         }
         let settings = ModelSettings::default();
         let key = derived::blocks_key(document, &settings);
+        // The key relies on the hashes that were recorded, which reading compares with the faults themselves.
+        let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
+        let faults = faults.collect::<Result<Vec<_>, _>>()?;
         if let Some(kept) = derived::load_blocks(root, &key) {
             return Ok(kept);
         }
-        let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
-        let faults = faults.collect::<Result<Vec<_>, _>>()?;
         let made = FaultNetwork::build(geometry, &faults, &settings, progress)?;
         derived::keep_blocks(root, &key, &made, progress);
         Ok(made)

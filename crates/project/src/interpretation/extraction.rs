@@ -44,7 +44,7 @@ impl fmt::Display for Extracted {
         writeln!(f, "horizon candidates of volume {} in {}", self.volume, self.file.display())?;
         write!(f, "{}", self.report)?;
         if !self.computed {
-            writeln!(f, "nothing has changed since they were extracted; the times are those of then")?;
+            writeln!(f, "nothing has changed since they were extracted")?;
         }
         Ok(())
     }
@@ -133,9 +133,11 @@ pub fn open(root: &Path, document: &Document) -> Result<StoredCandidates, Projec
     Ok(stored)
 }
 
-/// The report of the extraction that made these candidates; `None` if it cannot be read.
+/// The report of the extraction that made these candidates, without times; `None` if it cannot be read.
 pub fn report(candidates: &StoredCandidates) -> Option<ExtractReport> {
-    serde_json::from_value(candidates.info().report.clone()).ok()
+    let report: ExtractReport = serde_json::from_value(candidates.info().report.clone()).ok()?;
+    // Earlier versions stored the times of then.
+    Some(ExtractReport { seconds: None, ..report })
 }
 
 /// Surfaces and trees of a project's candidates.
@@ -190,6 +192,8 @@ pub(crate) fn compute(
         computed,
         report,
     };
+    // Before anything that was extracted from these samples is found again by their hash.
+    let source = content::open_recorded(root, entry, document.frame()?)?;
     for file in [parked(&key), PRESENT.to_owned()].map(|file| folder(root).join(file)) {
         if let Ok(stored) = StoredCandidates::open(&file)
             && stored.info().key == key
@@ -198,7 +202,6 @@ pub(crate) fn compute(
             return Ok(answer(file, report, false));
         }
     }
-    let source = content::open_volume(root, entry, document.frame()?)?;
     let scratch = Scratch::begin(root)?;
     let file = parked(&key);
     let begin = |size, leaves| Ok(CandidateWriter::create(&scratch.path(&file), size, leaves)?);

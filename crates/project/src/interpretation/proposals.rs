@@ -144,18 +144,24 @@ pub(crate) fn compute(
         return Err(ProjectError::NoEvidence);
     }
     let key = key(document, settings);
-    if let Some(known) = read(root, &key) {
-        return Ok((key, known));
-    }
     let none = FaultNetwork::none();
     let mut sheets = Vec::new();
     for entry in &document.horizons {
         let horizon = content::read_horizon(root, entry, progress)?;
         sheets.push(from_horizon(&horizon, geometry, &none));
     }
+    let volume = document.volumes.iter().find(|entry| entry.geometry.is_none());
+    // The key relies on the hashes that were recorded; all that it is made of has now been compared with them.
+    let blocks = assembly::blocks(root, document, progress)?;
+    if let Some(entry) = volume {
+        content::open_recorded(root, entry, geometry)?;
+    }
+    if let Some(known) = read(root, &key) {
+        return Ok((key, known));
+    }
     let horizons: Vec<Evidence> =
         document.horizons.iter().zip(&sheets).map(|(entry, sheets)| Evidence { name: &entry.name, sheets }).collect();
-    let likeness = match document.volumes.iter().find(|entry| entry.geometry.is_none()) {
+    let likeness = match volume {
         Some(entry) => {
             let seismic = content::read_volume(root, entry, geometry, progress)?;
             let dips = dip(&seismic, &DipSettings::default(), progress);
@@ -163,8 +169,7 @@ pub(crate) fn compute(
         }
         None => None,
     };
-    let known = assembly::blocks(root, document, progress)?;
-    let found = propose_faults(&horizons, geometry, &known, likeness.as_ref(), settings, progress)?;
+    let found = propose_faults(&horizons, geometry, &blocks, likeness.as_ref(), settings, progress)?;
     let proposals = Proposals {
         horizons: hashes(document),
         proposals: found.proposals,

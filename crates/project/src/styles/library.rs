@@ -1,5 +1,6 @@
 //! The patterns that a project can use: the built-in ones and its own tiles.
 
+use crate::content;
 use crate::document::Document;
 use crate::error::ProjectError;
 use std::path::Path;
@@ -8,11 +9,11 @@ use ttf::TextureLibrary;
 /// The built-in patterns and the tiles of the project in `root`.
 ///
 /// # Errors
-/// A tile of the project can no longer be read.
+/// A tile of the project can no longer be read, or is not the one that was recorded.
 pub fn pattern_library(root: &Path, document: &Document) -> Result<TextureLibrary, ProjectError> {
     let mut library = TextureLibrary::builtin()?;
     for entry in &document.textures {
-        let index = library.add_user(&root.join(&entry.file))?;
+        let index = library.add_user(&content::texture_path(root, entry)?)?;
         library.set_tile_mm(index, entry.tile_mm);
     }
     Ok(library)

@@ -27,6 +27,7 @@ use project::content;
 use project::document::Document;
 use project::document::{Assembly, HorizonEntry};
 use project::error::ProjectError;
+use project::folder::DEFAULT_WAIT;
 use project::interpretation::assembly::{self, AssemblyReport, ReportedOverlap, conflicts_of, report_on, sentence};
 use project::interpretation::candidates::Candidates;
 use project::interpretation::{extraction, proposals};
@@ -185,7 +186,7 @@ impl Picks {
             PickingTask::Extract(volume, settings) => spawn("the extraction", &told, move || {
                 let (guard, progress) = running.begin("Extracting", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
-                    let mut project = Project::open(&root)?;
+                    let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
                     project.apply(&Command::Extract(Extract { volume, settings: *settings }), &progress)?;
                     snapshot(&project)
                 });
@@ -200,7 +201,7 @@ impl Picks {
             PickingTask::ProposeFaults => spawn("fault proposals", &told, move || {
                 let (guard, progress) = running.begin("Proposing faults", Place::Interpret, outbox.wake.clone());
                 let done = compute_apart(|| {
-                    let mut project = Project::open(&root)?;
+                    let mut project = Project::open(&root)?.waiting(DEFAULT_WAIT);
                     let effect = project.apply(&Command::ProposeFaults(ProposeFaults::default()), &progress)?;
                     Ok((snapshot(&project)?, effect))
                 });
