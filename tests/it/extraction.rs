@@ -35,6 +35,33 @@ fn candidates_are_extracted_once_and_exported_as_points() {
 }
 
 #[test]
+fn damaged_candidates_are_extracted_again() {
+    let folder = project();
+    let at = folder.path();
+    run_in(at, "extract p.petro").done();
+    let root = at.join("p.petro/derived/candidates.zarr");
+    let before = bytes(&root);
+    for array in ["forest", "distance"] {
+        let inside = |path: &Path| path.strip_prefix(&root).is_ok_and(|path| path.starts_with(array));
+        let (path, content) = before
+            .iter()
+            .filter(|(path, _)| inside(path) && !path.ends_with("zarr.json"))
+            .max_by_key(|(_, content)| content.len())
+            .unwrap();
+        let mut damaged = content.clone();
+        // In the middle of the first chunk, which no index covers.
+        damaged[8] ^= 1;
+        fs::write(path, damaged).unwrap();
+        let again = run_in(at, "extract p.petro").done();
+        assert!(again.stderr.contains("damaged and are extracted again"), "{array}: {}", again.stderr);
+        assert!(!again.stdout.contains("nothing has changed"), "{array}: {}", again.stdout);
+        assert!(bytes(&root) == before, "{array}");
+        let quiet = run_in(at, "extract p.petro").done();
+        assert!(quiet.stdout.contains("nothing has changed") && !quiet.stderr.contains("damaged"), "{array}");
+    }
+}
+
+#[test]
 fn the_same_extraction_twice_gives_the_same_bytes() {
     let extracted = |threads: &str| {
         let folder = project();

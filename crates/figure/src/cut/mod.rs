@@ -56,7 +56,7 @@ impl SectionCut {
     /// Cuts a section over the whole survey; `show` says what of the candidates lies over the amplitudes.
     ///
     /// ```
-    /// use figure::cut::{SectionCut, SectionKind, Source};
+    /// use figure::cut::{SectionCut, SectionKind, SectionSource};
     /// use render::{FaceData, Inputs, NamedVolume};
     /// use survey::{SurveyGeometry, VerticalUnit, Volume};
     /// use ttf::{ColourMap, RawColour, RgbaFunction};
@@ -66,7 +66,7 @@ impl SectionCut {
     /// let volume = Volume::filled([4, 5, 6], 1.0f32);
     /// let volumes = [NamedVolume::whole("seismic", &volume)];
     /// let raw = RawColour::new("seismic", RgbaFunction::over(ColourMap::Grey, [1.0, 2.0]));
-    /// let source = Source { data: Inputs::raw(&geometry, &volumes), raw: Some(&raw) };
+    /// let source = SectionSource { data: Inputs::raw(&geometry, &volumes), raw: Some(&raw) };
     /// let inline = SectionCut::new(&source, SectionKind::Inline, 2.0, FaceData::Rock);
     /// assert_eq!(inline.image.dimensions(), (5, 6));
     /// assert!(inline.image.pixels().all(|pixel| pixel.0 == [255; 4]));

@@ -45,6 +45,7 @@ impl Extract {
         extracted.file = extraction::present_path(&root);
         draft.document.extraction =
             Some(ExtractionEntry { key: extracted.key.clone(), volume: extracted.volume.clone() });
+        extraction::replace_damaged(&root, &draft.document);
         Ok(Effect::Extracted(Box::new(extracted)))
     }
 }

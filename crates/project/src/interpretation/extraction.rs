@@ -17,7 +17,7 @@ use std::fmt;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use store::{CandidateWriter, Replacement, StoredCandidates};
+use store::{CandidateWriter, Replacement, StoreError, StoredCandidates};
 use survey::Progress;
 
 /// Number of inlines of a stored volume that are read at a time: the edge length of its bricks.
@@ -168,8 +168,37 @@ fn key(entry: &VolumeEntry, settings: &ExtractSettings) -> String {
     key_of(&(revision::EXTRACTION, &entry.hash, settings))
 }
 
-/// Extracts the candidates of a volume, unless they exist, and stores them under their key; [`crate::command::Extract`]
-/// makes the state that names them. Needs no lock.
+/// The stored candidates of a key with their path and report; `None` if there are none, or they are damaged.
+fn stored(root: &Path, key: &str, progress: &Progress) -> Result<Option<(PathBuf, ExtractReport)>, ProjectError> {
+    for file in [parked(key), PRESENT.to_owned()] {
+        let path = folder(root).join(&file);
+        let Ok(stored) = StoredCandidates::open(&path) else { continue };
+        let Some(report) = report(&stored).filter(|_| stored.info().key == key) else { continue };
+        match stored.verify(progress) {
+            Ok(()) => return Ok(Some((path, report))),
+            Err(StoreError::Cancelled(cancelled)) => return Err(cancelled.into()),
+            Err(error) => progress.warn(format!("stored candidates are damaged and are extracted again: {error}")),
+        }
+        if file != PRESENT {
+            storage::remove(root, &format!("{}/{file}", storage::DERIVED));
+        }
+    }
+    Ok(None)
+}
+
+/// Takes the place of damaged present candidates with those that were extracted again under the same key. Called by
+/// whoever holds the project's lock.
+pub(crate) fn replace_damaged(root: &Path, document: &Document) {
+    let Some(entry) = &document.extraction else { return };
+    let again = folder(root).join(parked(&entry.key)).exists();
+    if again && key_at(&present_path(root)).as_ref() == Some(&entry.key) {
+        storage::remove(root, &format!("{}/{PRESENT}", storage::DERIVED));
+        make_present(root, document);
+    }
+}
+
+/// Extracts the candidates of a volume, unless they exist undamaged, and stores them under their key;
+/// [`crate::command::Extract`] makes the state that names them. Needs no lock.
 ///
 /// # Errors
 /// There is no such volume, the settings are invalid, data are damaged, the disk is full, or the user cancelled; former
@@ -194,13 +223,8 @@ pub(crate) fn compute(
     };
     // Before anything that was extracted from these samples is found again by their hash.
     let source = content::open_recorded(root, entry, document.frame()?)?;
-    for file in [parked(&key), PRESENT.to_owned()].map(|file| folder(root).join(file)) {
-        if let Ok(stored) = StoredCandidates::open(&file)
-            && stored.info().key == key
-            && let Some(report) = report(&stored)
-        {
-            return Ok(answer(file, report, false));
-        }
+    if let Some((file, report)) = stored(root, &key, progress)? {
+        return Ok(answer(file, report, false));
     }
     let scratch = Scratch::begin(root)?;
     let file = parked(&key);
