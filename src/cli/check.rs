@@ -82,6 +82,7 @@ fn needed_by(damage: &Damage) -> String {
 fn ranges(numbers: &[u32]) -> String {
     let parts = numbers.chunk_by(|a, b| a + 1 == *b).map(|part| match part {
         [only] => only.to_string(),
+        [first, second] => format!("{first}, {second}"),
         [first, .., last] => format!("{first} to {last}"),
         [] => String::new(),
     });
@@ -105,7 +106,12 @@ fn words(cure: &Cure, damage: &Damage, project: &Path) -> String {
         ),
         Cure::SetAside => format!("`petroglyph check {project} --repair` moves it to damaged/"),
         Cure::Recompute => {
-            format!("`petroglyph check {project} --repair` removes it, and it is computed again when it is needed")
+            let again = match damage.what.as_str() {
+                "horizon candidates" => format!("`petroglyph extract {project}` makes it again"),
+                "proposed faults" => format!("`petroglyph fault propose {project}` makes it again"),
+                _ => "it is computed again when it is needed".to_owned(),
+            };
+            format!("`petroglyph check {project} --repair` removes it, and {again}")
         }
         Cure::MakeAgain => format!("`petroglyph check {project} --repair` makes it again"),
         Cure::Undo { step, times: 1 } => format!("go back to step {step}: `petroglyph undo {project}`"),
@@ -130,7 +136,7 @@ mod tests {
 
     #[test]
     fn steps_in_a_row_are_told_as_a_range() {
-        assert_eq!(ranges(&[1, 3, 4, 5, 9]), "1, 3 to 5, 9");
+        assert_eq!(ranges(&[1, 3, 4, 5, 9, 10]), "1, 3 to 5, 9, 10");
         assert_eq!(ranges(&[]), "");
     }
 }

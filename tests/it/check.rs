@@ -84,12 +84,12 @@ fn a_healthy_project_is_well_and_nothing_is_left_over() {
 fn a_flipped_byte_in_a_volume_is_named_with_all_that_shows_it() {
     let folder = project();
     let at = folder.path();
-    run_in(at, "scene add p.petro raw --blend 1 --technique volume").code;
+    run_in(at, "scene add p.petro 'as recorded' --blend 1").done();
     flip(&at.join("p.petro/volumes/seismic.zarr/0/c/0/0/0"), 3000);
     let damage = only_damage(at);
     assert_eq!(damage["file"], "volumes/seismic.zarr");
     assert!(damage["reason"].as_str().unwrap().contains("the checksum of the brick [0, 0, 0]"), "{damage}");
-    assert!(texts(&damage["dependants"]).contains(&"every picture of raw data"), "{damage}");
+    assert_eq!(texts(&damage["dependants"]), ["every picture of raw data", "scene \"as recorded\""]);
     assert_eq!(damage["steps"][0], 1);
     assert_eq!(do_of(&damage), ["undo", "import"]);
     assert_eq!(damage["cures"][0]["step"], 0);
@@ -152,7 +152,7 @@ fn a_damaged_fault_and_a_tile_that_cannot_be_drawn_are_found() {
     let at = folder.path();
     image::RgbImage::from_pixel(2, 2, image::Rgb([1, 0, 0])).save(at.join("tile.png")).unwrap();
     run_in(at, "texture p.petro tile.png").done();
-    run_in(at, "layer set p.petro 'above Alpha' --pattern tile").code;
+    run_in(at, "layer set p.petro 'above Alpha' --pattern tile").done();
     is_well(at);
     let fault = at.join("p.petro/faults/Normal_fault.json");
     let text = fs::read_to_string(&fault).unwrap();
@@ -160,7 +160,9 @@ fn a_damaged_fault_and_a_tile_that_cannot_be_drawn_are_found() {
     assert_eq!(only_damage(at)["what"], "fault \"Normal fault\"");
     fs::write(&fault, text).unwrap();
     fs::write(at.join("p.petro/textures/tile.png"), "no picture").unwrap();
-    assert_eq!(only_damage(at)["what"], "texture \"tile\"");
+    let damage = only_damage(at);
+    assert_eq!(damage["what"], "texture \"tile\"");
+    assert_eq!(texts(&damage["dependants"]), ["layer \"above Alpha\""]);
 }
 
 #[test]

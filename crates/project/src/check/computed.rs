@@ -101,6 +101,13 @@ pub(super) fn check(
             });
         }
     }
+    let is_missing = |document: &Document| {
+        document.extraction.is_some()
+            && matches!(extraction::candidates_path(root, document), Err(ProjectError::NotExtracted))
+    };
+    if states.present().is_some_and(is_missing) {
+        report.notes.push("the horizon candidates of the present state are not there: extract them again".to_owned());
+    }
     Ok(())
 }
 

@@ -22,14 +22,16 @@ fn of_volume(document: &Document, name: &str, is_on_the_lattice: bool) -> Vec<St
     }
     let raw = document.style.raw.as_ref().map(|raw| raw.volume.as_str());
     let is_first = document.volumes.first().is_some_and(|first| first.name == name);
-    if raw == Some(name) || (raw.is_none() && is_first && is_on_the_lattice) {
+    let is_raw = raw == Some(name) || (raw.is_none() && is_first && is_on_the_lattice);
+    if is_raw {
         found.push("every picture of raw data".to_owned());
     }
     if document.style.scalars.iter().any(|scalar| scalar.volume == name) {
         found.push("textures by its values".to_owned());
     }
     let shows = |scene: &render::Scene| {
-        scene.raw.as_ref().is_some_and(|raw| raw.volume == name) || volumes_within(scene).any(|shown| shown == name)
+        let shows_raw = scene.raw.as_ref().map_or(is_raw && scene.blend > 0.0, |raw| raw.volume == name);
+        shows_raw || volumes_within(scene).any(|shown| shown == name)
     };
     let scenes = document.scenes.iter().filter(|entry| shows(&entry.scene));
     found.extend(scenes.map(|entry| format!("scene \"{}\"", entry.name)));

@@ -113,7 +113,8 @@ fn damage(object: &Object, reason: String, states: &States) -> Damage {
 fn cures(object: &Object, states: &States) -> Vec<Cure> {
     let restored = || states.restorable().and_then(|number| states.document(number));
     let Some(base) = states.present().or_else(restored) else { return vec![Cure::Backup] };
-    if !object.is_present && !(states.present().is_none() && object.steps.contains(&base.step)) {
+    let will_be_present = states.present().is_none() && object.steps.contains(&base.step);
+    if !object.is_present && !will_be_present {
         return vec![Cure::Prune];
     }
     let undo = states.undo_without(base, &object.steps);

@@ -234,7 +234,7 @@ pub(super) fn report(states: &States, report: &mut CheckReport) {
         && let Some(last) = states.way_back(present).last()
         && states.numbers().next().is_some_and(|first| first < last)
     {
-        report.notes.push(format!("undo ends at step {last}: the step before it is not in the history"));
+        report.notes.push(format!("undo ends at step {last}, because the step before it is missing or damaged"));
     }
     if !states.set_aside.is_empty() {
         let names: Vec<&str> = states.set_aside.iter().map(|aside| aside.file.as_str()).collect();
