@@ -210,6 +210,24 @@ fn a_missing_history_is_made_again_and_the_next_command_can_be_undone() {
 }
 
 #[test]
+fn a_command_that_was_killed_after_its_state_was_saved_gets_its_step() {
+    let folder = project();
+    let at = folder.path();
+    let root = at.join("p.petro");
+    run_in(at, "velocity p.petro 2500").done();
+    let good = bytes(&root);
+    fs::create_dir_all(root.join("unfinished/history")).unwrap();
+    fs::rename(root.join("history/0011.toml"), root.join("unfinished/history/0011.toml")).unwrap();
+    let found = is_well(at);
+    assert_eq!(found["leftovers"][0]["file"], "unfinished");
+    assert!(texts(&found["notes"])[0].contains("step 11, is not in the history"), "{found}");
+    run_in(at, "check p.petro --repair").done();
+    assert!(bytes(&root) == good);
+    run_in(at, "undo p.petro").done();
+    is_well(at);
+}
+
+#[test]
 fn orphans_and_leftovers_are_no_damage_and_go_with_a_repair() {
     let folder = project();
     let at = folder.path();

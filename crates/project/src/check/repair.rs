@@ -41,6 +41,8 @@ pub fn repair(root: &Path, wait: Duration, progress: &Progress) -> Result<CheckR
     mend_history(root, &states, &mut report, &mut repairs)?;
     remove_derived(root, &mut report, &mut repairs);
     remove_leftovers(root, &states, &mut report, &mut repairs)?;
+    // Succeeds only if nothing is in it.
+    let _ = fs::remove_dir(root.join(storage::UNFINISHED));
     report.repairs = repairs;
     Ok(report)
 }

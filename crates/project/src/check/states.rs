@@ -231,6 +231,17 @@ pub(super) fn report(states: &States, report: &mut CheckReport) {
         });
     }
     if let Some(present) = states.present()
+        && states.history_trouble.is_none()
+        && !states.steps.contains_key(&present.step)
+        && !states.unreadable.iter().any(|unreadable| unreadable.number == Some(present.step))
+    {
+        report.notes.push(format!(
+            "the present state, step {}, is not in the history: a repair writes it there, so that the next command can \
+             be undone",
+            present.step
+        ));
+    }
+    if let Some(present) = states.present()
         && let Some(last) = states.way_back(present).last()
         && states.numbers().next().is_some_and(|first| first < last)
     {
