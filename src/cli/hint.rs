@@ -15,6 +15,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::NotFound { .. } => {
             "check the path, or make a project with `petroglyph import SURVEY.sgy PROJECT` or `petroglyph create`"
         }
+        ProjectError::Malformed { .. } => {
+            "undo the last edit by hand, or ask `petroglyph check PROJECT`: it says what is damaged and what can be restored"
+        }
         ProjectError::DiskFull { .. } => {
             "free some space (derived/ may be deleted, `petroglyph prune` deletes the history), then try again; nothing was changed"
         }

@@ -6,6 +6,7 @@
 
 mod args;
 mod assembly;
+mod check;
 mod draw;
 mod extraction;
 mod failure;

@@ -10,6 +10,8 @@ use std::process::ExitCode;
 pub(super) struct Report {
     lines: Vec<String>,
     object: Map<String, Value>,
+    /// Whether the answer is that something is wrong: exit code 1.
+    is_bad: bool,
 }
 
 impl Report {
@@ -41,6 +43,11 @@ impl Report {
         self
     }
 
+    /// The same, with the exit code of a failure if `is_bad`.
+    pub(super) fn bad(self, is_bad: bool) -> Self {
+        Self { is_bad, ..self }
+    }
+
     /// Prints the report.
     pub(super) fn print(self, json: bool) -> ExitCode {
         let written = if json {
@@ -48,7 +55,7 @@ impl Report {
         } else {
             write_out(&plain(&self.lines.join("\n")))
         };
-        printed(written, ExitCode::SUCCESS)
+        printed(written, if self.is_bad { ExitCode::FAILURE } else { ExitCode::SUCCESS })
     }
 }
 

@@ -77,6 +77,10 @@ pub(super) enum Request {
     Undo(PathBuf),
     /// Redo the command that was undone last.
     Redo(PathBuf),
+    /// Check a project without changing it.
+    Check(PathBuf),
+    /// Check a project and repair what can be repaired.
+    Repair(PathBuf),
     /// Delete the history.
     Prune(PathBuf),
 }
@@ -208,6 +212,13 @@ impl TryFrom<Action> for Request {
             }
             Action::Undo { project } => Self::Undo(project),
             Action::Redo { project } => Self::Redo(project),
+            Action::Check { project, repair } => {
+                if repair {
+                    Self::Repair(project)
+                } else {
+                    Self::Check(project)
+                }
+            }
             Action::Prune { project } => Self::Prune(project),
         })
     }

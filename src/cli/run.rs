@@ -3,7 +3,7 @@
 use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
-use super::{assembly, draw, info, list, option};
+use super::{assembly, check, draw, info, list, option};
 use crate::bench;
 use anyhow::Context;
 use formats::{ExportOptions, Format};
@@ -138,6 +138,8 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             report.field("redone", redone);
             report
         }
+        Request::Check(project) => check::report(&project::check::check(&project, &progress)?),
+        Request::Repair(project) => check::report(&project::check::repair(&project, wait, &progress)?),
         Request::Prune(project) => {
             open(&project)?.prune()?;
             Report::line("the history was deleted; only the present state is kept")

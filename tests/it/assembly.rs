@@ -49,6 +49,38 @@ fn pick(at: &Path, rest: &str) -> Value {
 }
 
 #[test]
+fn damaged_candidates_are_told_with_the_picks_on_them_and_are_extracted_again() {
+    let folder = project();
+    let at = folder.path();
+    pick(at, &format!("--at {} --horizon Top", place_on(at, "Bravo")));
+    let check = || run_in(at, "check p.petro --json");
+    assert_eq!(check().done().json()["derived_files"].as_u64(), Some(1));
+    let file = at.join("p.petro/derived/candidates.zarr/leaf/c/0/0/0");
+    let good = std::fs::read(&file).unwrap();
+    std::fs::write(&file, &good[..good.len() / 2]).unwrap();
+    let found = check();
+    assert_eq!(found.code, 1, "{}", found.stdout);
+    let damage = &found.json()["damage"][0];
+    assert_eq!(damage["file"], "derived/candidates.zarr");
+    assert_eq!(damage["dependants"][0], "the picks of horizon \"Top\"");
+    let told = run_in(at, "check p.petro --repair").done().stdout;
+    assert!(told.contains("removed derived/candidates.zarr"), "{told}");
+    let notes = check().done().json()["notes"].to_string();
+    assert!(notes.contains("extract them again"), "{notes}");
+    run_in(at, "extract p.petro").done();
+    assert_eq!(std::fs::read(at.join("p.petro/derived").join(candidates(at)).join("leaf/c/0/0/0")).unwrap(), good);
+    run_in(at, "climb p.petro 1").done();
+    check().done();
+}
+
+/// The name of the only candidates in `derived/`.
+fn candidates(at: &Path) -> String {
+    let names = std::fs::read_dir(at.join("p.petro/derived")).unwrap();
+    let mut names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    names.find(|name| name.starts_with("candidates")).unwrap()
+}
+
+#[test]
 fn picks_make_a_horizon_that_parameterizes_and_exports() {
     let folder = project();
     let at = folder.path();

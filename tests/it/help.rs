@@ -31,6 +31,7 @@ fn the_help_of_these_commands_shows_an_example() {
     let more = [
         "view",
         "attribute",
+        "check",
         "undo",
         "redo",
         "prune",

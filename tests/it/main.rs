@@ -5,6 +5,7 @@ mod assembly;
 mod bad_input;
 mod bombs;
 mod chain;
+mod check;
 mod create;
 mod demo;
 mod extraction;

@@ -30,6 +30,23 @@ fn files(at: &Path) {
 }
 
 #[test]
+fn a_well_that_was_moved_by_hand_is_told_by_its_hash() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    cube(at, "m");
+    files(at);
+    run_in(at, "well add c.petro A.csv --name A-1 --head 300,400 --kb 25 --tops tops.csv --las A.las").done();
+    run_in(at, "check c.petro").done();
+    let file = at.join("c.petro/wells/A-1.json");
+    let text = fs::read_to_string(&file).unwrap();
+    assert!(text.contains("400.0"), "{text}");
+    fs::write(&file, text.replacen("400.0", "401.0", 1)).unwrap();
+    let run = run_in(at, "check c.petro");
+    assert_eq!(run.code, 1, "{}", run.stdout);
+    assert!(run.stdout.contains("well \"A-1\"") && run.stdout.contains("import A.csv again"), "{}", run.stdout);
+}
+
+#[test]
 fn a_well_is_placed_against_the_survey_and_its_horizons() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();

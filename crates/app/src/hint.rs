@@ -13,6 +13,9 @@ pub fn of(error: &(dyn Error + 'static)) -> Option<String> {
 fn words(error: &ProjectError) -> Option<&'static str> {
     Some(match error {
         ProjectError::NotFound { .. } => "check the path, or create a new project from SEG-Y",
+        ProjectError::Malformed { .. } => {
+            "undo the last edit by hand, or run `petroglyph check` on the project's folder: it says what is damaged and what can be restored"
+        }
         ProjectError::DiskFull { .. } => {
             "free some space (the project's folder derived may be deleted), then try again; nothing was changed"
         }

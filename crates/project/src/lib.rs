@@ -15,6 +15,7 @@
 //! | [`derived`] | what was computed, kept by key |
 //! | [`interpretation`] | from a volume to candidates, from picks to a horizon, from horizons to proposed faults |
 //! | [`picture`] | what a scene needs, loaded once for every renderer, and drawn |
+//! | [`check`] | a project verified and repaired |
 //! | [`command`] | every change, as data |
 //! | [`Project`] | applies commands; undo and redo |
 //! | [`figures`] | what a figure needs, loaded, and its page made |
@@ -24,6 +25,7 @@
 //! only where it is the same everywhere. The names of options and fields are known only to the program that shows the
 //! error.
 
+pub mod check;
 pub mod command;
 pub mod content;
 pub mod demo;

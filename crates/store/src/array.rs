@@ -308,7 +308,7 @@ impl StoredArray {
     }
 
     /// Elements of a file along each axis.
-    fn file_shape(&self) -> Result<Vec<usize>, StoreError> {
+    pub(super) fn file_shape(&self) -> Result<Vec<usize>, StoreError> {
         let first = vec![0; self.shape.len()];
         let shape = self.array.chunk_shape(&first).map_err(|error| explain(&error, "read", &self.group, &self.name))?;
         Ok(shape.iter().map(|n| n.get() as usize).collect())

@@ -402,6 +402,18 @@ impl StoredCandidates {
         self.table("forest/nodes", progress)
     }
 
+    /// Reads all of it, every level and every table, and verifies every checksum.
+    ///
+    /// # Errors
+    /// [`StoreError`] with the first file that is missing or damaged, or cancelled.
+    pub fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
+        self.levels.iter().flatten().try_for_each(|array| array.verify(progress))?;
+        for table in ["trace", "z", "triangles", "surfaces", "nodes"] {
+            StoredArray::open(&self.path, &format!("forest/{table}"))?.verify(progress)?;
+        }
+        Ok(())
+    }
+
     fn table<T: StoredSample, const N: usize>(
         &self,
         name: &str,

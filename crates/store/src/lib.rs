@@ -55,6 +55,7 @@ mod sample;
 mod shard;
 #[cfg(test)]
 mod tests;
+mod verify;
 mod volume;
 mod volume_info;
 mod well;

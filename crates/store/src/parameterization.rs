@@ -130,6 +130,14 @@ impl StoredParameterization {
         Ok(ParameterizationVolumes { i: field(0)?, j: field(1)?, k: field(2)?, layer: ids(0)?, block: ids(1)? })
     }
 
+    /// Reads all of it and verifies every checksum. Memory: one file for each thread.
+    ///
+    /// # Errors
+    /// [`StoreError`] with the first file that is missing or damaged, or cancelled.
+    pub fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
+        self.fields.iter().chain(&self.ids).try_for_each(|array| array.verify(progress))
+    }
+
     /// Reads a box of it.
     ///
     /// # Errors

@@ -211,6 +211,19 @@ impl StoredVolume {
         Ok((counts, ranges))
     }
 
+    /// Reads all of it, every level, the mask and the ranges of bricks, and verifies every checksum. Memory: one file
+    /// for each thread.
+    ///
+    /// # Errors
+    /// [`StoreError`] with the first file that is missing or damaged, or cancelled.
+    pub fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
+        for (level, array) in self.levels.iter().enumerate() {
+            array.verify(progress)?;
+            self.brick_ranges(level)?;
+        }
+        StoredArray::open(&self.path, "live")?.verify(progress)
+    }
+
     /// The array of a level.
     fn array(&self, level: usize) -> Result<&StoredArray, StoreError> {
         self.levels

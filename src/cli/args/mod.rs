@@ -191,6 +191,16 @@ pub(super) enum Action {
         /// Project folder
         project: PathBuf,
     },
+    /// Check that everything in a project is there and undamaged; the exit code is 1 if something is damaged
+    #[command(after_help = "Examples:\n  petroglyph check north.petro\n  petroglyph check north.petro --repair")]
+    Check {
+        /// Project folder
+        project: PathBuf,
+        /// Remove leftovers and damaged derived data, set damaged history aside, restore a damaged project.toml; data
+        /// that a state needs are never deleted
+        #[arg(long)]
+        repair: bool,
+    },
     /// Delete the history and the data that only the history refers to
     #[command(after_help = "Example:\n  petroglyph prune north.petro")]
     Prune {

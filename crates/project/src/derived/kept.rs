@@ -105,6 +105,25 @@ impl Kind {
     }
 }
 
+/// Reads a file of any kind and compares its hash.
+///
+/// # Errors
+/// It cannot be read, or is not what was written.
+pub(crate) fn verify_kept(path: &Path) -> io::Result<()> {
+    let length = survey::file::ordinary(path)?.len();
+    let Some(body) = length.checked_sub(blake3::OUT_LEN as u64) else {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, format!("only {length} bytes are left of it")));
+    };
+    let mut input = Hashing { inner: BufReader::new(File::open(path)?), hash: blake3::Hasher::new() };
+    io::copy(&mut (&mut input).take(body), &mut io::sink())?;
+    let mut found = [0u8; blake3::OUT_LEN];
+    input.inner.read_exact(&mut found)?;
+    if input.hash.finalize() == found {
+        return Ok(());
+    }
+    Err(io::Error::new(io::ErrorKind::InvalidData, "its hash does not fit its content"))
+}
+
 /// Writes a header as JSON, preceded by its length.
 pub(super) fn write_header(out: &mut dyn Write, header: &impl Serialize) -> io::Result<()> {
     let header = serde_json::to_vec(header)?;

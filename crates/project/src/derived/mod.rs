@@ -22,7 +22,8 @@ mod scratch;
 pub use blocks::{blocks_key, keep_blocks, load_blocks};
 pub use grids::{keep_grids, load_grids, load_volumes, parameterization_key, volumes_path, write_volumes};
 
-pub(crate) use scratch::{Scratch, remove_leftovers};
+pub(crate) use kept::verify_kept;
+pub(crate) use scratch::{Scratch, abandoned, remove_leftovers};
 
 use serde::Serialize;
 use std::path::{Path, PathBuf};

@@ -76,19 +76,19 @@ fn lock_of(name: &str) -> String {
 
 /// Removes the folders of writers that no longer run.
 pub(crate) fn remove_leftovers(root: &Path) {
+    abandoned(root).iter().for_each(|file| storage::remove(root, file));
+}
+
+/// Folders and lock files of writers that no longer run, relative to the project.
+pub(crate) fn abandoned(root: &Path) -> Vec<String> {
     let all = root.join(UNFINISHED);
-    for entry in storage::names_in(&all) {
-        let (writer, lock) = match entry.strip_suffix(".lock") {
-            Some(writer) => (writer.to_owned(), entry.clone()),
-            None => (entry.clone(), lock_of(&entry)),
-        };
-        // A folder without a lock file has no writer either: the lock is made first and removed last.
-        let is_free = File::open(all.join(&lock)).map_or(true, |file| file.try_lock().is_ok());
-        if is_free {
-            storage::remove(root, &format!("{UNFINISHED}/{writer}"));
-            storage::remove(root, &format!("{UNFINISHED}/{lock}"));
-        }
-    }
+    // A folder without a lock file has no writer either: the lock is made first and removed last.
+    let is_free = |entry: &String| {
+        let writer = entry.strip_suffix(".lock").unwrap_or(entry);
+        File::open(all.join(lock_of(writer))).map_or(true, |file| file.try_lock().is_ok())
+    };
+    // Names of folders sort before those of their locks, which keep them from other writers until then.
+    storage::names_in(&all).into_iter().filter(is_free).map(|entry| format!("{UNFINISHED}/{entry}")).collect()
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ pub struct Step {
 }
 
 /// The path of a step, relative to the project.
-fn file_of(number: u32) -> String {
+pub(crate) fn file_of(number: u32) -> String {
     format!("history/{number:04}.toml")
 }
 
@@ -75,6 +75,14 @@ pub(crate) fn prepare(root: &Path, number: u32, step: &Step) -> Result<(), Proje
     let text = toml::to_string_pretty(step)
         .map_err(|error| ProjectError::Malformed { path: root.join(file_of(number)), detail: error.to_string() })?;
     storage::write_unfinished(root, &file_of(number), text.as_bytes())
+}
+
+/// Writes a step that is missing in the history; no other step changes.
+pub(crate) fn record(root: &Path, number: u32, step: &Step) -> Result<(), ProjectError> {
+    prepare(root, number, step)?;
+    storage::rename(&storage::unfinished(root, &file_of(number)), &root.join(file_of(number)))?;
+    storage::remove(root, storage::UNFINISHED);
+    Ok(())
 }
 
 /// Makes a prepared step the last one: steps that were undone before it are dropped, and so are steps beyond the limit,

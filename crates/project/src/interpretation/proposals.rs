@@ -191,6 +191,19 @@ fn read(root: &Path, key: &str) -> Option<Proposals> {
     serde_json::from_str(&text).ok()
 }
 
+/// Checks that proposals can be read.
+///
+/// # Errors
+/// They cannot.
+pub(crate) fn verify(path: &Path) -> Result<(), ProjectError> {
+    let text = file::read_text(path, file::MAX_INTERPRETATION_BYTES)
+        .map_err(|source| ProjectError::io("read", path, source))?;
+    match serde_json::from_str::<Proposals>(&text) {
+        Ok(_) => Ok(()),
+        Err(error) => Err(ProjectError::Malformed { path: path.to_owned(), detail: error.to_string() }),
+    }
+}
+
 /// Removes proposals that no state of the history names any more.
 pub(crate) fn forget_unnamed(root: &Path) {
     for file in storage::names_in(&folder(root)) {

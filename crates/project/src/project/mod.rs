@@ -7,6 +7,7 @@
 //! derived/            what was computed; may be deleted
 //! unfinished/         what a command under way is writing; removed by the next writer after a crash
 //! importing/          an import that was killed, to go on with
+//! damaged/            steps that a repair has set aside (see [`crate::check`])
 //! lock                held while a command runs
 //! ```
 //!

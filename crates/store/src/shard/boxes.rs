@@ -65,11 +65,20 @@ impl Shards {
 
     /// Whether the shard is there and all its checksums fit.
     pub fn is_whole<T: StoredSample>(&self, index: [usize; 3]) -> bool {
+        self.verify::<T>(index).is_ok()
+    }
+
+    /// Reads all of the shard and verifies every checksum in it.
+    pub fn verify<T: StoredSample>(&self, index: [usize; 3]) -> Result<(), StoreError> {
         let all = Lines { x: 0..self.grid.chunk[0], y: 0..self.grid.chunk[1] };
         let mut room = Vec::new();
-        let Ok(shard) = self.shard::<T>(index) else { return false };
-        let Ok(reader) = shard.reader() else { return false };
-        (0..shard.count()).all(|chunk| shard.is_absent(chunk) || reader.read::<T>(chunk, &all, &mut room).is_ok())
+        let explain = |trouble| self.explain(index, trouble);
+        let shard = self.shard::<T>(index)?;
+        let reader = shard.reader().map_err(explain)?;
+        for chunk in (0..shard.count()).filter(|&chunk| !shard.is_absent(chunk)) {
+            reader.read::<T>(chunk, &all, &mut room).map_err(explain)?;
+        }
+        Ok(())
     }
 
     /// The stored checksum of every chunk, shard by shard; 0 for those that hold only the fill value. They

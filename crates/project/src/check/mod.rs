@@ -1,0 +1,147 @@
+//! Checks a project on disk, whatever has become of it, and repairs what can be repaired without losing anything.
+//!
+//! [`check`] reads the state and every step of the history, every data file that one of them names, and what is
+//! derived. It compares recorded hashes and verifies checksums, and says what is damaged and what depends on it. It
+//! writes nothing, so it also works on a project that is read-only, that belongs to someone else, or whose
+//! `project.toml` cannot be read.
+//!
+//! [`repair`] holds the project's lock meanwhile. It removes leftovers, data files that no state names and damaged
+//! derived data, moves damaged steps to `damaged/`, and restores a damaged `project.toml` from the history. Data that a
+//! readable state names are never deleted, damaged or not.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `report` | what was found, and what can be done about it |
+//! | `states` | the state and the steps, as far as they can be read |
+//! | `objects` | the data files that they name |
+//! | `verify` | whether one data file is what was written |
+//! | `dependants` | what is made of a data file |
+//! | `computed` | derived data |
+//! | `leftovers` | what no state names |
+//! | `repair` | everything that writes |
+//!
+//! Deliberately absent: [`crate::Project`], which opens only what is whole.
+
+mod computed;
+mod dependants;
+mod leftovers;
+mod objects;
+mod repair;
+mod report;
+mod states;
+mod verify;
+
+pub use repair::repair;
+pub use report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Part, Repair};
+
+use crate::document::Document;
+use crate::error::ProjectError;
+use crate::folder::{Lock, storage};
+use objects::Object;
+use states::States;
+use std::path::Path;
+use survey::Progress;
+
+/// Checks the project in the folder `root`; nothing is written.
+///
+/// ```
+/// use project::check::check;
+/// use project::Project;
+/// use survey::{Progress, SurveyGeometry, VerticalUnit};
+///
+/// let folder = tempfile::tempdir()?;
+/// let root = folder.path().join("north.petro");
+/// let geometry = SurveyGeometry::regular([11, 11, 51], 25.0, 4.0, VerticalUnit::Milliseconds);
+/// Project::create(&root, Some(geometry))?.publish()?;
+/// assert!(check(&root, &Progress::silent())?.is_well());
+///
+/// std::fs::write(root.join("project.toml"), "damaged")?;
+/// let report = check(&root, &Progress::silent())?;
+/// assert_eq!(report.damage[0].file, "project.toml");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// There is no project, it was written by a newer version, or the user cancelled. Damage is no error.
+pub fn check(root: &Path, progress: &Progress) -> Result<CheckReport, ProjectError> {
+    examine(root, None, progress).map(|(report, _)| report)
+}
+
+/// The report, and the states it is based on; `lock` is that of the project, if it is held.
+fn examine(root: &Path, lock: Option<&Lock>, progress: &Progress) -> Result<(CheckReport, States), ProjectError> {
+    let states = States::read(root)?;
+    let mut report = CheckReport {
+        project: root.to_owned(),
+        step: states.present().map(|document| document.step),
+        steps: states.numbers().collect(),
+        ..CheckReport::default()
+    };
+    states::report(&states, &mut report);
+    let objects = objects::of(&states);
+    for object in &objects {
+        progress.begin(&format!("checking {}", object.entry.file()), 1);
+        if let Err(reason) = verify::verify(root, object, progress)? {
+            report.damage.push(damage(object, reason, &states));
+        }
+    }
+    report.data_files = objects.len();
+    computed::check(root, &states, &mut report, progress)?;
+    leftovers::find(root, &states, lock, &mut report);
+    find_links(root, &mut report);
+    if states.has_changed(root) {
+        report.notes.push("the project was changed while it was checked: check it again".to_owned());
+    }
+    Ok((report, states))
+}
+
+/// What is said of a damaged data file.
+fn damage(object: &Object, reason: String, states: &States) -> Damage {
+    Damage {
+        part: Part::Data,
+        file: object.entry.file().to_owned(),
+        what: format!("{} \"{}\"", object.entry.noun(), object.entry.name()),
+        reason,
+        dependants: dependants::of(object.document, &object.entry),
+        is_present: object.is_present,
+        steps: object.steps.clone(),
+        cures: cures(object, states),
+        repaired: false,
+    }
+}
+
+/// What can be done about a damaged data file.
+fn cures(object: &Object, states: &States) -> Vec<Cure> {
+    let restored = || states.restorable().and_then(|number| states.document(number));
+    let Some(base) = states.present().or_else(restored) else { return vec![Cure::Backup] };
+    let will_be_present = states.present().is_none() && object.steps.contains(&base.step);
+    if !object.is_present && !will_be_present {
+        return vec![Cure::Prune];
+    }
+    let undo = states.undo_without(base, &object.steps);
+    let undo = undo.map(|step| Cure::Undo { step, times: base.step - step });
+    undo.into_iter().chain([object.entry.way_back(base)]).collect()
+}
+
+/// Reports a link anywhere in the project that was not reported yet: no command writes while there is one.
+fn find_links(root: &Path, report: &mut CheckReport) {
+    let reason = match storage::refuse_links(root) {
+        Ok(()) => return,
+        Err(ProjectError::Link { path }) => (path, "it is a link".to_owned()),
+        Err(error) => (root.to_owned(), error.to_string()),
+    };
+    let (path, reason) = reason;
+    let file = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().into_owned();
+    if !report.damage.iter().any(|damage| !damage.file.is_empty() && file.starts_with(&damage.file)) {
+        report.damage.push(Damage {
+            part: Part::Folder,
+            what: "a file or folder of the project".to_owned(),
+            cures: vec![Cure::ReplaceLink],
+            ..Damage::of(file, reason)
+        });
+    }
+}
+
+/// The present document, else that of the newest step: what is derived belongs to it.
+fn newest(states: &States) -> Option<&Document> {
+    states.present().or_else(|| states.documents().last().map(|(_, document)| document))
+}

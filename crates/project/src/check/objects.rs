@@ -1,0 +1,129 @@
+//! The data files that states name, each with the states that need it.
+
+use super::report::Cure;
+use super::states::States;
+use crate::document::{Document, FaultEntry, HorizonEntry, Source, TextureEntry, VolumeEntry, WellEntry};
+use crate::error::Noun;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// An entry of a state that names a data file.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Entry<'a> {
+    Volume(&'a VolumeEntry),
+    Horizon(&'a HorizonEntry),
+    Fault(&'a FaultEntry),
+    Well(&'a WellEntry),
+    Texture(&'a TextureEntry),
+}
+
+impl<'a> Entry<'a> {
+    pub fn file(&self) -> &'a str {
+        match self {
+            Self::Volume(entry) => &entry.file,
+            Self::Horizon(entry) => &entry.file,
+            Self::Fault(entry) => &entry.file,
+            Self::Well(entry) => &entry.file,
+            Self::Texture(entry) => &entry.file,
+        }
+    }
+
+    pub fn name(&self) -> &'a str {
+        match self {
+            Self::Volume(entry) => &entry.name,
+            Self::Horizon(entry) => &entry.name,
+            Self::Fault(entry) => &entry.name,
+            Self::Well(entry) => &entry.name,
+            Self::Texture(entry) => &entry.name,
+        }
+    }
+
+    pub fn noun(&self) -> Noun {
+        match self {
+            Self::Volume(_) => Noun::Volume,
+            Self::Horizon(_) => Noun::Horizon,
+            Self::Fault(_) => Noun::Fault,
+            Self::Well(_) => Noun::Well,
+            Self::Texture(_) => Noun::Texture,
+        }
+    }
+
+    /// The recorded hash. Tiles have none; their recorded length stands in for it.
+    fn hash(&self) -> &'a str {
+        match self {
+            Self::Volume(entry) => &entry.hash,
+            Self::Horizon(entry) => &entry.hash,
+            Self::Fault(entry) => &entry.hash,
+            Self::Well(entry) => &entry.hash,
+            Self::Texture(_) => "",
+        }
+    }
+
+    fn source(&self) -> &'a Source {
+        match self {
+            Self::Volume(entry) => &entry.source,
+            Self::Horizon(entry) => &entry.source,
+            Self::Fault(entry) => &entry.source,
+            Self::Well(entry) => &entry.source,
+            Self::Texture(entry) => &entry.source,
+        }
+    }
+
+    /// How the data can be had again: from the file they came from, or the way they were made in the project.
+    pub fn way_back(&self, document: &Document) -> Cure {
+        let source = self.source();
+        let is_assembled = matches!(self, Self::Horizon(entry) if entry.assembly.is_some());
+        let is_made_here = is_assembled
+            || ["picks", "proposal"].iter().any(|made| source.path == Path::new(made))
+            || document.volumes.iter().any(|volume| source.path == Path::new(&volume.file));
+        match is_made_here {
+            true => Cure::Remake { from: source.reading.clone() },
+            false => Cure::Import { path: source.path.clone() },
+        }
+    }
+}
+
+/// A data file.
+#[derive(Debug)]
+pub(super) struct Object<'a> {
+    /// The entry of the newest state that names it.
+    pub entry: Entry<'a>,
+    /// That state.
+    pub document: &'a Document,
+    /// Whether the present state names it.
+    pub is_present: bool,
+    /// The steps of the history that name it, ascending.
+    pub steps: Vec<u32>,
+}
+
+/// The entries of a state.
+fn entries(document: &Document) -> impl Iterator<Item = Entry<'_>> {
+    let volumes = document.volumes.iter().map(Entry::Volume);
+    let horizons = document.horizons.iter().map(Entry::Horizon);
+    let faults = document.faults.iter().map(Entry::Fault);
+    let wells = document.wells.iter().map(Entry::Well);
+    let textures = document.textures.iter().map(Entry::Texture);
+    volumes.chain(horizons).chain(faults).chain(wells).chain(textures)
+}
+
+/// All data files of all states, each once for every hash that is recorded for it.
+pub(super) fn of(states: &States) -> Vec<Object<'_>> {
+    let mut found: BTreeMap<(&str, &str), Object<'_>> = BTreeMap::new();
+    let present = states.present().map(|document| (None, document));
+    let steps = states.documents().rev().map(|(number, document)| (Some(number), document));
+    for (number, document) in present.into_iter().chain(steps) {
+        for entry in entries(document) {
+            let object = found.entry((entry.file(), entry.hash())).or_insert(Object {
+                entry,
+                document,
+                is_present: false,
+                steps: Vec::new(),
+            });
+            match number {
+                None => object.is_present = true,
+                Some(number) => object.steps.insert(0, number),
+            }
+        }
+    }
+    found.into_values().collect()
+}

@@ -1,0 +1,160 @@
+//! Whether a data file is what was written: present, no link, readable, with the recorded hash, and in the survey.
+
+use super::objects::{Entry, Object};
+use crate::content;
+use crate::error::ProjectError;
+use glam::DVec2;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+use store::StoreError;
+use survey::{Fault, Horizon, Progress, SurveyGeometry};
+use ttf::TextureLibrary;
+
+/// What is wrong with an object; `Ok(Ok(()))` if nothing is.
+///
+/// # Errors
+/// The user cancelled.
+pub(super) fn verify(root: &Path, object: &Object, progress: &Progress) -> Result<Result<(), String>, ProjectError> {
+    let file = object.entry.file();
+    let is_folder = matches!(object.entry, Entry::Volume(_) | Entry::Horizon(_));
+    if let Err(reason) = is_there(root, file, is_folder) {
+        return Ok(Err(reason));
+    }
+    outcome(content_of(root, object, progress).and_then(|()| Ok(progress.step(1)?)))
+}
+
+/// Tells damage from a check that was cancelled.
+pub(super) fn outcome<T>(result: Result<T, ProjectError>) -> Result<Result<T, String>, ProjectError> {
+    match result {
+        Ok(value) => Ok(Ok(value)),
+        Err(ProjectError::Cancelled(cancelled) | ProjectError::Store(StoreError::Cancelled(cancelled))) => {
+            Err(cancelled.into())
+        }
+        Err(ProjectError::Store(StoreError::Damaged { array, reason, .. })) => {
+            Ok(Err(format!("array \"{array}\": {reason}")))
+        }
+        Err(ProjectError::Malformed { detail, .. }) => Ok(Err(detail)),
+        Err(error) => {
+            let cause = std::error::Error::source(&error).map(|cause| format!(": {cause}")).unwrap_or_default();
+            Ok(Err(format!("{error}{cause}")))
+        }
+    }
+}
+
+/// Checks that `file` is there with nothing but real files and folders in it, and is of the right kind.
+pub(super) fn is_there(root: &Path, file: &str, is_folder: bool) -> Result<(), String> {
+    let mut path = root.to_owned();
+    for part in file.split('/') {
+        path.push(part);
+        match fs::symlink_metadata(&path) {
+            Ok(facts) if facts.is_symlink() => return Err(link(root, &path)),
+            Ok(_) => {}
+            Err(error) if error.kind() == ErrorKind::NotFound => return Err("it is missing".to_owned()),
+            Err(error) => return Err(format!("it cannot be read: {error}")),
+        }
+    }
+    if path.is_dir() != is_folder {
+        return Err(if is_folder { "it is no folder" } else { "it is no file" }.to_owned());
+    }
+    all_real(root, &path)
+}
+
+fn link(root: &Path, path: &Path) -> String {
+    format!("{} is a link", path.strip_prefix(root).unwrap_or(path).display())
+}
+
+/// Checks that nothing in a folder is a link, a pipe or a device.
+fn all_real(root: &Path, path: &Path) -> Result<(), String> {
+    let facts = fs::symlink_metadata(path).map_err(|error| format!("it cannot be read: {error}"))?;
+    if facts.is_symlink() {
+        return Err(link(root, path));
+    }
+    if facts.is_dir() {
+        for entry in fs::read_dir(path).map_err(|error| format!("it cannot be read: {error}"))? {
+            all_real(root, &entry.map_err(|error| format!("it cannot be read: {error}"))?.path())?;
+        }
+    } else if !facts.is_file() {
+        return Err(format!("{} is a pipe or a device", path.strip_prefix(root).unwrap_or(path).display()));
+    }
+    Ok(())
+}
+
+fn content_of(root: &Path, object: &Object, progress: &Progress) -> Result<(), ProjectError> {
+    let damaged = |detail: String| ProjectError::Malformed { path: root.join(object.entry.file()), detail };
+    let same = |found: &str, recorded: &str| match found == recorded {
+        true => Ok(()),
+        false => Err(damaged(other_hash(object))),
+    };
+    match object.entry {
+        Entry::Volume(entry) => {
+            let volume = content::open_volume(root, entry, object.document.frame()?)?;
+            volume.verify(progress)?;
+            same(&content::hash_stored(&volume)?, &entry.hash)
+        }
+        Entry::Horizon(entry) => {
+            let horizon = content::read_horizon(root, entry, &progress.muted())?;
+            same(&content::hash_horizon(&horizon), &entry.hash)?;
+            if lies_in(object.document.frame()?, nodes(&horizon)) { Ok(()) } else { Err(damaged(elsewhere())) }
+        }
+        Entry::Fault(entry) => {
+            let fault = content::read_fault(root, entry)?;
+            same(&content::hash_fault(&fault), &entry.hash)?;
+            if lies_in(object.document.frame()?, vertices(&fault)) { Ok(()) } else { Err(damaged(elsewhere())) }
+        }
+        Entry::Well(entry) => {
+            let well = content::read_well(root, entry)?;
+            same(&content::hash_well(&well).map_err(|error| damaged(error.to_string()))?, &entry.hash)
+        }
+        Entry::Texture(entry) => {
+            let path = root.join(&entry.file);
+            TextureLibrary::builtin()?.add_user(&path)?;
+            let bytes = fs::metadata(&path).map_err(|source| ProjectError::io("read", &path, source))?.len();
+            if bytes == entry.source.bytes {
+                return Ok(());
+            }
+            Err(damaged(format!("it has {bytes} bytes, and {} were recorded", entry.source.bytes)))
+        }
+    }
+}
+
+fn other_hash(object: &Object) -> String {
+    let by = match (object.is_present, object.steps.last()) {
+        (false, Some(step)) => format!("step {step}"),
+        _ => "project.toml".to_owned(),
+    };
+    format!("its content is not what was recorded: the hash in {by} is another")
+}
+
+fn elsewhere() -> String {
+    "no part of it lies in the survey".to_owned()
+}
+
+/// World positions of a horizon's nodes that have a depth.
+fn nodes(horizon: &Horizon) -> impl Iterator<Item = DVec2> {
+    horizon.sheets.iter().flat_map(|sheet| {
+        let [_, columns] = sheet.grid.count;
+        let known = sheet.depth.iter().enumerate().filter(|(_, depth)| depth.is_finite());
+        known.map(move |(n, _)| {
+            let (u, v) = (n / columns.max(1), n % columns.max(1));
+            sheet.grid.origin + sheet.grid.u_step * u as f64 + sheet.grid.v_step * v as f64
+        })
+    })
+}
+
+fn vertices(fault: &Fault) -> impl Iterator<Item = DVec2> {
+    fault.mesh.vertices.iter().map(|vertex| vertex.truncate())
+}
+
+/// Whether one of the places lies over the survey or a trace beside it; also where there are no places at all.
+fn lies_in(frame: &SurveyGeometry, mut places: impl Iterator<Item = DVec2>) -> bool {
+    let [inlines, crosslines, _] = frame.size().map(|count| count as f64);
+    let is_inside = |place: DVec2| {
+        let voxel = frame.voxel_from_world(place.extend(0.0));
+        (-1.0..=inlines).contains(&voxel.x) && (-1.0..=crosslines).contains(&voxel.y)
+    };
+    match places.next() {
+        None => true,
+        Some(first) => is_inside(first) || places.any(is_inside),
+    }
+}
