@@ -77,7 +77,7 @@ scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario
 
 # What docs/reliability.md lists of the real program: modules and tests of tests/it.
-ATTACKS = hostile:: bombs:: sources:: kill:: safety:: store:: bad_input:: memory:: extraction::the_same_extraction_twice extraction::damaged_candidates
+ATTACKS = hostile:: check:: bombs:: sources:: kill:: safety:: store:: bad_input:: memory:: extraction::the_same_extraction_twice extraction::damaged_candidates
 
 attack: setup
 	cargo test --locked --test it -- $(ATTACKS)

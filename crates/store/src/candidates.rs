@@ -362,24 +362,6 @@ impl StoredCandidates {
         Ok(CandidateBox { size, distance: distance.read_box(&start, &size)?, leaf })
     }
 
-    /// Reads everything once, and so verifies every checksum; takes the memory of the forest or of a row of bricks.
-    ///
-    /// # Errors
-    /// [`StoreError`] for the first damage found.
-    pub fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
-        self.read_forest(progress)?;
-        for level in 0..self.level_count() {
-            let [nx, ny, nz] = self.size(level);
-            progress.begin("verifying candidates", nx as u64);
-            for from in (0..nx).step_by(BRICK) {
-                let inlines = BRICK.min(nx - from);
-                self.read_box(level, [from, 0, 0], [inlines, ny, nz])?;
-                progress.step(inlines as u64)?;
-            }
-        }
-        Ok(())
-    }
-
     /// Surfaces and trees.
     ///
     /// # Errors
