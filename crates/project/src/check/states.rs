@@ -30,7 +30,7 @@ pub(super) struct States {
     /// Text and content of `project.toml`.
     present: Option<(String, Document)>,
     steps: BTreeMap<u32, (Step, Document)>,
-    /// What cannot be read: of the state, of the history, and of what an earlier repair has set aside.
+    /// What cannot be read of the state and the history.
     pub unreadable: Vec<Unreadable>,
     /// What an earlier repair has set aside.
     pub set_aside: Vec<Unreadable>,
