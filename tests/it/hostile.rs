@@ -193,10 +193,10 @@ fn every_kind_of_data_is_compared_with_its_hash() {
         let (path, aside) = (root.join(file), at.join("aside"));
         fs::create_dir_all(&aside).unwrap();
         if path.is_dir() {
-            copy(&path, &aside)
+            copy(&path, &aside);
         } else {
-            fs::copy(&path, aside.join("file")).map(drop).unwrap()
-        };
+            fs::copy(&path, aside.join("file")).unwrap();
+        }
         change(&path);
         check();
         if path.is_dir() {

@@ -1,7 +1,7 @@
 //! Paints egui's output into an image on the processor, so that panels can be looked at without a display.
 //!
-//! It follows egui's own shaders: colours are sRGB with premultiplied alpha and are blended as encoded, result =
-//! source + (1 − α) · below, where the source is the vertex colour times the texture. A pixel belongs to a triangle when its
+//! It follows egui's own shaders: colours are sRGB with premultiplied alpha and are blended as encoded,
+//! result = source + (1 − α) · below, where the source is the vertex colour times the texture. A pixel belongs to a triangle when its
 //! centre lies inside the triangle or on its upper or left side, so that neighbouring triangles share no pixel. Space:
 //! pixels, y down.
 
