@@ -11,7 +11,7 @@
 //! - what a user can state about a file: [`remedy`];
 //! - volumes that do not fit into memory: [`source`];
 //! - bytes of a file at a place: [`positional`].
-//! - what may be read and what fits into memory: [`file`], [`memory`].
+//! - what may be read and what fits into memory: [`mod@file`], [`memory`].
 //!
 //! Deliberately absent: formats of files, the store, and any algorithm that combines several of these types.
 //!

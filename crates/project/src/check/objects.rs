@@ -48,14 +48,14 @@ impl<'a> Entry<'a> {
         }
     }
 
-    /// The recorded hash. Tiles have none; their recorded length stands in for it.
+    /// The recorded hash; empty for tiles of older projects, whose recorded length stands in for it.
     fn hash(&self) -> &'a str {
         match self {
             Self::Volume(entry) => &entry.hash,
             Self::Horizon(entry) => &entry.hash,
             Self::Fault(entry) => &entry.hash,
             Self::Well(entry) => &entry.hash,
-            Self::Texture(_) => "",
+            Self::Texture(entry) => &entry.hash,
         }
     }
 

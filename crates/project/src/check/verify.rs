@@ -109,6 +109,7 @@ fn content_of(root: &Path, object: &Object, progress: &Progress) -> Result<(), P
         Entry::Texture(entry) => {
             let path = root.join(&entry.file);
             TextureLibrary::builtin()?.add_user(&path)?;
+            content::texture_path(root, entry)?;
             let bytes = fs::metadata(&path).map_err(|source| ProjectError::io("read", &path, source))?.len();
             if bytes == entry.source.bytes {
                 return Ok(());
