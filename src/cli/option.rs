@@ -4,7 +4,7 @@
 use survey::remedy::Statement;
 use survey::{Note, Remedy, Setting};
 
-/// The option that states a setting, with a placeholder for its value where the name does not explain it.
+/// The option that states a setting, with a name for its value where the option's own does not explain it.
 fn option(setting: Setting) -> (&'static str, &'static str) {
     match setting {
         Setting::SampleFormat => ("--sample-format", ""),
@@ -41,8 +41,8 @@ fn option(setting: Setting) -> (&'static str, &'static str) {
 }
 
 fn typed(statement: &Statement) -> String {
-    let (option, placeholder) = option(statement.setting);
-    statement.value.as_ref().map_or_else(|| format!("{option}{placeholder}"), |value| format!("{option} {value}"))
+    let (option, value_name) = option(statement.setting);
+    statement.value.as_ref().map_or_else(|| format!("{option}{value_name}"), |value| format!("{option} {value}"))
 }
 
 /// What to type, for example `--x-byte 73 --y-byte 77 or --bin`.
