@@ -8,7 +8,8 @@ use super::Effect;
 use crate::document::{Document, ExtractionEntry, ProposalsEntry};
 use crate::error::ProjectError;
 use crate::folder::Draft;
-use crate::interpretation::{extraction, proposals};
+use crate::interpretation::extraction::{self, Stored};
+use crate::interpretation::proposals;
 use interp::faults::ProposeSettings;
 use interp::{ExtractSettings, StageSeconds};
 use serde::{Deserialize, Serialize};
@@ -34,13 +35,15 @@ impl Extract {
         document: &Document,
         progress: &Progress,
     ) -> Result<Option<StageSeconds>, ProjectError> {
-        let extracted = extraction::compute(root, document, self.volume.as_deref(), &self.settings, progress)?;
+        let volume = self.volume.as_deref();
+        let extracted = extraction::compute(root, document, volume, &self.settings, Stored::Verified, progress)?;
         Ok(extracted.report.seconds.filter(|_| extracted.computed))
     }
 
     pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
         let (root, volume) = (draft.root().to_owned(), self.volume.as_deref());
-        let mut extracted = extraction::compute(&root, &draft.document, volume, &self.settings, progress)?;
+        let mut extracted =
+            extraction::compute(&root, &draft.document, volume, &self.settings, Stored::Trusted, progress)?;
         // They are renamed when the state that names them is saved.
         extracted.file = extraction::present_path(&root);
         draft.document.extraction =

@@ -168,13 +168,28 @@ fn key(entry: &VolumeEntry, settings: &ExtractSettings) -> String {
     key_of(&(revision::EXTRACTION, &entry.hash, settings))
 }
 
+/// Whether stored candidates are read whole before they are used again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Stored {
+    /// They are, and damaged ones are extracted again.
+    Verified,
+    /// They were a moment ago.
+    Trusted,
+}
+
 /// The stored candidates of a key with their path and report; `None` if there are none, or they are damaged.
-fn stored(root: &Path, key: &str, progress: &Progress) -> Result<Option<(PathBuf, ExtractReport)>, ProjectError> {
+fn find_stored(
+    root: &Path,
+    key: &str,
+    how: Stored,
+    progress: &Progress,
+) -> Result<Option<(PathBuf, ExtractReport)>, ProjectError> {
     for file in [parked(key), PRESENT.to_owned()] {
         let path = folder(root).join(&file);
         let Ok(stored) = StoredCandidates::open(&path) else { continue };
         let Some(report) = report(&stored).filter(|_| stored.info().key == key) else { continue };
-        match stored.verify(progress) {
+        let verified = if how == Stored::Verified { stored.verify(progress) } else { Ok(()) };
+        match verified {
             Ok(()) => return Ok(Some((path, report))),
             Err(StoreError::Cancelled(cancelled)) => return Err(cancelled.into()),
             Err(error) => progress.warn(format!("stored candidates are damaged and are extracted again: {error}")),
@@ -208,6 +223,7 @@ pub(crate) fn compute(
     document: &Document,
     volume: Option<&str>,
     settings: &ExtractSettings,
+    how: Stored,
     progress: &Progress,
 ) -> Result<Extracted, ProjectError> {
     let entry = choose(document, volume)?;
@@ -223,7 +239,7 @@ pub(crate) fn compute(
     };
     // Before anything that was extracted from these samples is found again by their hash.
     let source = content::open_recorded(root, entry, document.frame()?)?;
-    if let Some((file, report)) = stored(root, &key, progress)? {
+    if let Some((file, report)) = find_stored(root, &key, how, progress)? {
         return Ok(answer(file, report, false));
     }
     let scratch = Scratch::begin(root)?;
