@@ -10,7 +10,7 @@ use figure::draw::block::Comparison;
 use figure::draw::section::Zoom;
 use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart};
 use project::figures::{self, FigureSettings, InterpreterView};
-use project::{Project, memory_budget, picture};
+use project::{Project, memory_budget};
 use render::{Faces, Media, Scene};
 use std::path::PathBuf;
 use survey::{Progress, file};
@@ -150,10 +150,9 @@ pub(super) fn draw(
 ) -> anyhow::Result<Report> {
     let figure = page.figure(scene, request.dpi, project)?;
     let volume_bytes = request.volume_bytes.unwrap_or_else(memory_budget::half_of_available);
-    let settings = FigureSettings { device: request.device, volume_bytes };
+    let settings = FigureSettings { device: request.device, volume_bytes, has_vectors: request.format.has_vectors() };
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
-    let image = figure::raster(&made.page, figure.dpi).map_err(project::ProjectError::from)?;
-    picture::write_png(&request.out, &image, figure.dpi)?;
+    figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
     let [width, height] = figure.size_px();
     let mut report = Report::default();
     report.say(format!(

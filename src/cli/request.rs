@@ -18,6 +18,7 @@ use project::command::{
     AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer, SetScalar,
     SetVelocity,
 };
+use project::figures::FigureFormat;
 use project::picture::Device;
 use project::picture::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use render::{IsosurfaceSource, Scope};
@@ -101,6 +102,8 @@ pub(super) struct RenderRequest {
     pub(super) volume_rendering: VolumeRendering,
     /// The page, if more was asked for than a picture of the block.
     pub(super) figure: Option<PageRequest>,
+    /// The format of the file.
+    pub(super) format: FigureFormat,
 }
 
 /// What to list of a project.
@@ -300,13 +303,14 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
     if !(typed.dpi >= 1.0 && typed.dpi <= 10_000.0) {
         return Err(format!("--dpi {}: expected 1 to 10000", typed.dpi));
     }
-    match typed.out.extension().and_then(|extension| extension.to_str()) {
-        Some(extension) if extension.eq_ignore_ascii_case("png") => {}
-        _ => return Err(format!("{}: pictures are written as .png", typed.out.display())),
-    }
+    let Some(format) = FigureFormat::of(&typed.out) else {
+        return Err(format!("{}: pictures are written as .png, pictures of paths as .svg", typed.out.display()));
+    };
     let is_map = typed.technique.as_deref() == Some("map");
     Ok(RenderRequest {
-        figure: PageRequest::meant(typed.figure, is_map)?,
+        // Paths lie on a page, also those of a block alone.
+        figure: PageRequest::meant(typed.figure, is_map)?.or_else(|| format.has_vectors().then(PageRequest::default)),
+        format,
         project: typed.project,
         out: typed.out,
         scene: typed.scene,

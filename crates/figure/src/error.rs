@@ -63,6 +63,9 @@ pub enum FigureError {
     /// The block could not be drawn.
     #[error(transparent)]
     Render(#[from] RenderError),
+    /// A picture on the page could not be encoded.
+    #[error("a picture on the page could not be encoded")]
+    Encode(#[source] image::ImageError),
     /// A pattern could not be drawn.
     #[error(transparent)]
     Pattern(#[from] ttf::TtfError),

@@ -2,12 +2,13 @@
 //!
 //! [`make()`] turns what a figure shows ([`Figure`]) and borrowed data ([`FigureInputs`]) into a page, a
 //! [`DisplayList`] of paths, text and images in points. [`raster()`] draws a page in
-//! pixels; vector formats and the window's preview draw the same list.
+//! pixels, [`svg()`] writes it as vectors; the window's preview draws the same list.
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`list`] | the page as data |
 //! | [`mod@raster`] | a page as pixels |
+//! | [`svg()`] | a page as an SVG document |
 //! | [`cut`] | sections and fences as data: rasters and lines |
 //! | [`map`] | horizons and thicknesses as data: values, contours, hatching |
 //! | [`interpretation`] | what an interpreter sees, as borrowed data |
@@ -30,6 +31,7 @@ pub mod raster;
 mod rect;
 pub mod spec;
 pub mod style;
+mod svg;
 
 pub use cut::SectionKind;
 pub use error::FigureError;
@@ -38,3 +40,4 @@ pub use make::{FigureInputs, make};
 pub use raster::raster;
 pub use rect::Rect;
 pub use spec::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
+pub use svg::svg;

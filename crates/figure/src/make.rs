@@ -8,6 +8,7 @@ use crate::draw::legend::Legend;
 use crate::draw::map::{MapPanel, title};
 use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
+use crate::draw::vector_block::BlockNames;
 use crate::draw::{NamedColour, scale};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
@@ -190,6 +191,11 @@ impl<'a> Maker<'a> {
             interpretation: self.interpretation()?,
             has_surfaces: is_opaque(&part.scene),
             dpi: self.figure.dpi,
+            names: BlockNames {
+                layers: self.inputs.layers,
+                horizons: self.inputs.horizons,
+                faults: self.inputs.faults,
+            },
         };
         let (mut group, points_per_m) = panel.drawn(body, painter)?;
         if self.figure.scale_bar {

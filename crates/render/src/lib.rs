@@ -36,6 +36,7 @@ pub mod reference;
 mod resolved;
 pub mod scene;
 mod shade;
+pub mod vector;
 pub mod visible;
 pub mod voxel_box;
 pub mod wells;

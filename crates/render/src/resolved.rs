@@ -209,6 +209,7 @@ fn no_tables() -> TtfTables {
         stops: Vec::new(),
         volumes: Vec::new(),
         textures: Vec::new(),
+        patterns: Vec::new(),
     }
 }
 

@@ -216,6 +216,7 @@ mod tests {
             (0..20).map(|k| DVec2::new(f64::from(k % 5), f64::from(k / 5))).map(|at| (at, map(at))).collect();
         let affine = Affine::fit(&points).unwrap();
         assert!((affine.origin - map(DVec2::ZERO)).length() < 1e-6);
+        assert!((affine.linear.x_axis - DVec2::new(12.0, 5.0)).length() < 1e-9);
         assert!((affine.linear.y_axis - DVec2::new(-4.0, 24.0)).length() < 1e-9);
         assert!((affine.residual_bins(DVec2::ONE, map(DVec2::new(1.0, 1.75))) - 0.75).abs() < 1e-6);
     }

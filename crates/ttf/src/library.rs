@@ -11,6 +11,7 @@ use std::sync::{Arc, OnceLock};
 use serde::{Deserialize, Serialize};
 
 use crate::builtin::{CATALOGUE, DRAWINGS};
+use crate::drawing::{TileDrawing, drawing_of};
 use crate::raster;
 use crate::{Colour, Texture, TtfError};
 
@@ -151,6 +152,15 @@ impl TextureLibrary {
     /// The drawing behind a texture, for vector figures; a user's raster image has none.
     pub fn svg(&self, index: usize) -> Option<&str> {
         self.entries[index].svg.as_deref()
+    }
+
+    /// The drawing behind a texture as paths; `None` of a raster image, and of what [`crate::drawing`] leaves out.
+    ///
+    /// # Errors
+    /// A drawing that cannot be read.
+    pub fn drawing(&self, index: usize) -> Result<Option<TileDrawing>, TtfError> {
+        let entry = &self.entries[index];
+        entry.svg.as_ref().map_or(Ok(None), |svg| drawing_of(&entry.pattern.name, svg))
     }
 
     /// Index of a name.

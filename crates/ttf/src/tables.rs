@@ -151,6 +151,8 @@ pub struct TtfTables {
     pub volumes: Vec<String>,
     /// The textures in use, by slot: the layers of the GPU's texture array.
     pub textures: Vec<Arc<Texture>>,
+    /// Their indices in the library.
+    pub patterns: Vec<usize>,
 }
 
 impl TtfTables {
@@ -216,8 +218,8 @@ impl TtfTables {
             scalar_count: scalars.len() as u32,
             stop_count: stops.len() as u32,
         };
-        let Slots { volumes, textures, .. } = slots;
-        Ok(Self { globals, layers, intervals, scalars, stops, volumes, textures })
+        let Slots { volumes, textures, library_indices: patterns, .. } = slots;
+        Ok(Self { globals, layers, intervals, scalars, stops, volumes, textures, patterns })
     }
 
     /// The opaque average colour of a layer at local k, its texture included. The ground has the average

@@ -13,8 +13,8 @@ use figure::draw::block::Comparison;
 use figure::map::Mapped;
 use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
 use glam::DVec3;
-use project::figures::{self, FigureSettings, InterpreterView};
-use project::picture::{self, Device};
+use project::figures::{self, FigureFormat, FigureSettings, InterpreterView};
+use project::picture::Device;
 use project::{Project, ProjectError, memory_budget};
 use render::{Background, FaceData, Scene};
 use std::path::{Path, PathBuf};
@@ -66,12 +66,17 @@ impl Page {
     /// Data cannot be read or drawn, the file cannot be written, or the user cancelled.
     pub fn write(&self, progress: &Progress) -> Result<(), ProjectError> {
         let project = Project::open(&self.root)?;
-        let settings = FigureSettings { device: Device::Auto, volume_bytes: memory_budget::half_of_available() };
-        let image = compute(|| {
+        let path = Path::new(&self.path);
+        let format = FigureFormat::of(path).unwrap_or(FigureFormat::Png);
+        let settings = FigureSettings {
+            device: Device::Auto,
+            volume_bytes: memory_budget::half_of_available(),
+            has_vectors: format.has_vectors(),
+        };
+        compute(|| {
             let made = figures::make(&project, &self.figure, &self.view, &settings, progress)?;
-            Ok::<_, ProjectError>(figure::raster(&made.page, self.figure.dpi)?)
-        })?;
-        picture::write_png(Path::new(&self.path), &image, self.figure.dpi)
+            figures::write(&made.page, format, path, self.figure.dpi, &figures::title(&project))
+        })
     }
 }
 

@@ -284,6 +284,11 @@ fn data_is_listed_and_removed() {
     harness.run_steps(2);
     wait(&mut harness, "a horizon is gone", |harness| document(harness).horizons.len() == 1);
     assert_eq!(document(&harness).horizons[0].name, "Top");
+    wait(&mut harness, "it is no longer listed", |harness| harness.query_all_by_label("Remove").count() == 2);
+    harness.query_all_by_label("Remove").next().unwrap().click();
+    harness.run_steps(2);
+    wait(&mut harness, "the volume is gone", |harness| document(harness).volumes.is_empty());
+    assert!(harness.query_by_label("seismic").is_none());
 }
 
 #[test]

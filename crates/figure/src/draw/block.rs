@@ -2,6 +2,7 @@
 
 use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};
+use super::vector_block::{self, BlockNames};
 use crate::Rect;
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
@@ -9,12 +10,16 @@ use crate::list::{Across, Group, GroupKind, POINTS_PER_INCH, Path, PathItem, Pic
 use crate::style::{ACCENT, FRAME_PT, INK, RULE_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
-use render::{RenderError, Scene, View};
+use render::vector::VectorBlock;
+use render::{Outlines, RenderError, Scene, View};
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use survey::SurveyGeometry;
 
 /// Two pictures stand one over the other in a room narrower than so many heights: blocks are broader than high.
 const NARROW: f64 = 1.4;
+/// How far a curve may lie from the straight pieces that stand for it, points.
+const STRAIGHT_PT: f64 = 0.05;
 
 /// Draws pictures of blocks: a renderer with its data, and what watches over it.
 pub trait BlockPainter {
@@ -23,6 +28,14 @@ pub trait BlockPainter {
     /// # Errors
     /// A scene that shows nothing, or a device that fails.
     fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError>;
+
+    /// The paths of a scene, straight to `tolerance_px`; `None` where only pictures are wanted.
+    ///
+    /// # Errors
+    /// As [`Self::paint`].
+    fn trace(&mut self, _scene: &Scene, _tolerance_px: f64) -> Result<Option<VectorBlock>, RenderError> {
+        Ok(None)
+    }
 }
 
 impl<F: FnMut(&Scene) -> Result<RgbaImage, RenderError>> BlockPainter for F {
@@ -109,6 +122,8 @@ pub struct BlockPanel<'a> {
     pub has_surfaces: bool,
     /// Dots an inch that pictures are drawn at.
     pub dpi: f64,
+    /// What its paths are called.
+    pub names: BlockNames<'a>,
 }
 
 impl BlockPanel<'_> {
@@ -126,10 +141,20 @@ impl BlockPanel<'_> {
             let size_px = [size_px.x as u32, size_px.y as u32];
             let blend = blends.map_or(self.scene.blend, |blends| blends[index]);
             let scene = Scene { size_px, blend, ..self.scene.clone() };
-            let picture = painter.paint(&scene)?;
             let seen = self.on_pixels(self.comparison.seen(index, pane));
             let mut shown = Group::new(GroupKind::Data, blend_name(blend)).clipped(Path::rect(seen));
-            shown.push(Picture::in_rect(picture, pane));
+            let tolerance_px = STRAIGHT_PT * self.dpi / POINTS_PER_INCH;
+            match painter.trace(&scene, tolerance_px)? {
+                Some(traced) => {
+                    let page = |px: DVec2| pane.min + px * POINTS_PER_INCH / self.dpi;
+                    let picture = match vector_block::needs_picture(&traced) {
+                        true => Some(Arc::new(painter.paint(&Scene { outlines: Outlines::none(), ..scene.clone() })?)),
+                        false => None,
+                    };
+                    shown.items.extend(vector_block::items(&traced, picture, pane, &self.names, &page));
+                }
+                None => shown.push(Picture::in_rect(painter.paint(&scene)?, pane)),
+            }
             let view = scene.view(self.geometry);
             if let Some(interpretation) = self.interpretation {
                 self.lay_over(&mut shown, &scene, &view, interpretation, pane);
@@ -240,6 +265,7 @@ mod tests {
             interpretation: None,
             has_surfaces: true,
             dpi: 144.0,
+            names: BlockNames::default(),
         };
         let mut asked = Vec::new();
         let mut paint = |scene: &Scene| {

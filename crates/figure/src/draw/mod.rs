@@ -12,6 +12,7 @@ pub mod scale;
 pub mod section;
 pub mod surfaces;
 pub mod swatch;
+pub mod vector_block;
 
 use ttf::Colour;
 

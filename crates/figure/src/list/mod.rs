@@ -181,6 +181,8 @@ pub enum GroupKind {
     Well,
     /// What explains the rest: axes, legend, scale bar, title.
     Annotation,
+    /// A part of what the group around it stands for; nobody asks for it by name.
+    Part,
 }
 
 #[cfg(test)]

@@ -195,7 +195,8 @@ pub fn load_volumes(
 mod tests {
     use super::super::kept::KEPT;
     use super::*;
-    use std::fs;
+    use std::fs::{self, File};
+    use std::time::{Duration, SystemTime};
 
     fn parameterization() -> Parameterization {
         let grid = |layer: u16| RegionGrid {
@@ -261,12 +262,19 @@ mod tests {
     }
 
     #[test]
-    fn only_a_few_are_kept() {
+    fn only_the_latest_few_are_kept() {
         let folder = tempfile::tempdir().unwrap();
         for n in 0..KEPT + 3 {
-            keep_grids(folder.path(), &format!("{n}"), &parameterization(), &Progress::silent());
+            let key = format!("{n}");
+            keep_grids(folder.path(), &key, &parameterization(), &Progress::silent());
+            // Times of files may be as coarse as two seconds; a test does not wait for them.
+            let made = SystemTime::UNIX_EPOCH + Duration::from_secs(1_000_000 + 10 * n as u64);
+            File::options().write(true).open(GRIDS.path(folder.path(), &key)).unwrap().set_modified(made).unwrap();
         }
         assert_eq!(fs::read_dir(super::super::folder(folder.path())).unwrap().count(), KEPT);
+        for n in 0..KEPT + 3 {
+            assert_eq!(load_grids(folder.path(), &format!("{n}")).is_some(), n >= 3, "{n}");
+        }
     }
 
     #[test]

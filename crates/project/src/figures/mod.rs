@@ -5,8 +5,10 @@
 //! layer coordinates, and what an interpreter sees needs no model at all.
 
 mod interpreter;
+mod output;
 
 pub use interpreter::{InterpreterView, borrowed};
+pub use output::{FigureFormat, title, write};
 
 use crate::document::Document;
 use crate::error::ProjectError;
@@ -16,11 +18,15 @@ use crate::project::Project;
 use crate::styles;
 use figure::cut::SectionSource;
 use figure::draw::NamedColour;
+use figure::draw::block::BlockPainter;
 use figure::list::DisplayList;
 use figure::{Figure, FigureInputs, Part};
+use image::RgbaImage;
 use interpreter::InterpreterPicks;
 use model::StructuralModel;
-use render::{FaceData, Scene};
+use render::vector::{VectorBlock, vectors};
+use render::{FaceData, RenderError, Scene};
+use std::time::Instant;
 use survey::{Progress, memory};
 use ttf::{LayerStyle, LayerTtf, TextureLibrary};
 
@@ -40,6 +46,8 @@ pub struct FigureSettings {
     pub device: Device,
     /// Largest memory for the samples of a volume, bytes.
     pub volume_bytes: u64,
+    /// Whether blocks are drawn as paths where they can be; otherwise they are pictures.
+    pub has_vectors: bool,
 }
 
 /// The page itself refuses longer sides.
@@ -61,10 +69,11 @@ pub fn make(
 ) -> Result<MadeFigure, ProjectError> {
     let document = project.document();
     memory::check("the page", &figure.size_px().map(|side| side.min(LONGEST_SIDE) as usize), PIXEL_BYTES)?;
-    let (loaded, model, mut stages) = load(project, figure, settings, progress)?;
+    let (loaded, model, stages) = load(project, figure, settings, progress)?;
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(InterpreterPicks::borrowed);
-    let library = if figure.legend { Some(styles::pattern_library(project.root(), document)?) } else { None };
+    let needs_library = figure.legend || settings.has_vectors;
+    let library = if needs_library { Some(styles::pattern_library(project.root(), document)?) } else { None };
     let layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     let mut data = loaded.inputs(&volumes, &wells);
@@ -79,20 +88,55 @@ pub fn make(
         library: library.as_ref(),
         interpretation: shown.as_ref(),
     };
-    let mut painter = None;
-    let mut paint = |scene: &Scene| {
-        let painter = match &mut painter {
+    let library = library.as_ref().filter(|_| settings.has_vectors);
+    let mut painter =
+        FigurePainter { painter: None, device: settings.device, loaded: &loaded, library, stages, progress };
+    let page = figure::make(figure, &inputs, &mut painter)?;
+    let device = painter.painter.map(|painter| painter.device().to_owned());
+    Ok(MadeFigure { page, device, stages: painter.stages })
+}
+
+/// Draws and traces the blocks of a figure; a device is looked for when the first picture is asked for.
+struct FigurePainter<'a> {
+    painter: Option<Painter>,
+    device: Device,
+    loaded: &'a Loaded,
+    /// The patterns, where blocks are drawn as paths.
+    library: Option<&'a TextureLibrary>,
+    stages: Vec<Stage>,
+    progress: &'a Progress,
+}
+
+impl FigurePainter<'_> {
+    /// The scene with what can be shown of it: while a project is being interpreted it has no model to take the
+    /// relief from.
+    fn shown(&self, scene: &Scene) -> Scene {
+        Scene { ground: scene.ground.filter(|_| self.loaded.rock.is_some()), ..scene.clone() }
+    }
+}
+
+impl BlockPainter for FigurePainter<'_> {
+    fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError> {
+        let scene = self.shown(scene);
+        let painter = match &mut self.painter {
             Some(painter) => painter,
-            empty => empty.insert(Painter::new(settings.device, progress)?),
+            empty => empty.insert(Painter::new(self.device, self.progress)?),
         };
-        // While a project is being interpreted it has no model to take the relief from.
-        let ground = scene.ground.filter(|_| loaded.rock.is_some());
-        let (image, stage) = painter.draw(&Scene { ground, ..scene.clone() }, &loaded, progress)?;
-        stages.push(stage);
+        let (image, stage) = painter.draw(&scene, self.loaded, self.progress)?;
+        self.stages.push(stage);
         Ok(image)
-    };
-    let page = figure::make(figure, &inputs, &mut paint)?;
-    Ok(MadeFigure { page, device: painter.map(|painter| painter.device().to_owned()), stages })
+    }
+
+    fn trace(&mut self, scene: &Scene, tolerance_px: f64) -> Result<Option<VectorBlock>, RenderError> {
+        let Some(library) = self.library else { return Ok(None) };
+        let start = Instant::now();
+        let scene = self.loaded.complete(&self.shown(scene));
+        let (volumes, wells) = (self.loaded.named_volumes(), self.loaded.well_paths());
+        let inputs = self.loaded.inputs(&volumes, &wells);
+        let traced = vectors(&scene, &inputs, library, tolerance_px, self.progress)?;
+        self.stages.push(Stage::new("paths", start.elapsed()));
+        Ok(traced)
+    }
 }
 
 /// The data of a figure: a model of its own where no block brings one.

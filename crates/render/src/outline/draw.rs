@@ -17,8 +17,16 @@ use rayon::prelude::*;
 #[derive(Debug, Default)]
 pub(crate) struct OutlineLines {
     pub edges: Vec<Vec<DVec2>>,
-    pub horizons: Vec<Vec<DVec2>>,
-    pub faults: Vec<Vec<DVec2>>,
+    pub horizons: Vec<OutlineLine>,
+    pub faults: Vec<OutlineLine>,
+}
+
+/// A line of a horizon or fault.
+#[derive(Debug)]
+pub(crate) struct OutlineLine {
+    /// The horizon or fault; `None` of a line that belongs to none.
+    pub of: Option<usize>,
+    pub points: Vec<DVec2>,
 }
 
 impl OutlineLines {
@@ -35,8 +43,10 @@ impl OutlineLines {
                 lines.add_face(resolved, interpretation, &rect);
             }
             let relief = relief_lines(resolved);
-            lines.faults.extend(relief.faults);
-            lines.horizons.extend(relief.crests);
+            lines
+                .faults
+                .extend(relief.faults.into_iter().map(|(fault, points)| OutlineLine { of: Some(fault), points }));
+            lines.horizons.extend(relief.crests.into_iter().map(|points| OutlineLine { of: None, points }));
         }
         lines
     }
@@ -57,9 +67,12 @@ impl OutlineLines {
         };
         for line in section.lines.iter().filter(|_| rect.faces_camera) {
             match line.kind {
-                LineKind::Fault { real: true, .. } => self.faults.extend(seen(&line.points)),
+                LineKind::Fault { real: true, fault } => self.faults.extend(parts_of(Some(fault), seen(&line.points))),
                 // Beyond its tip a fault is not interpreted, but different layers meet there.
-                LineKind::Horizon { .. } | LineKind::Fault { .. } => self.horizons.extend(seen(&line.points)),
+                LineKind::Fault { .. } => self.horizons.extend(parts_of(None, seen(&line.points))),
+                LineKind::Horizon { horizon } => {
+                    self.horizons.extend(parts_of(Some(horizon), seen(&line.points)));
+                }
                 LineKind::Frame => {}
             }
         }
@@ -74,8 +87,12 @@ impl OutlineLines {
     }
 }
 
+fn parts_of(of: Option<usize>, parts: Vec<Vec<DVec2>>) -> impl Iterator<Item = OutlineLine> {
+    parts.into_iter().map(move |points| OutlineLine { of, points })
+}
+
 impl FaceRect {
-    fn plane(&self) -> SectionPlane {
+    pub(crate) fn plane(&self) -> SectionPlane {
         match self.axis {
             0 => SectionPlane::inline(self.low.x, self.low, self.high),
             1 => SectionPlane::crossline(self.low.y, self.low, self.high),
@@ -151,9 +168,8 @@ pub(crate) fn draw(resolved: &ResolvedScene, image: &mut RgbaImage) {
         underlay(resolved, image);
     }
     let lines = OutlineLines::of(resolved);
-    for (stroke, lines) in
-        [(outlines.horizons, &lines.horizons), (outlines.faults, &lines.faults), (outlines.edges, &lines.edges)]
-    {
-        stroke_lines(image, &stroke, lines);
-    }
+    let points = |lines: Vec<OutlineLine>| lines.into_iter().map(|line| line.points).collect::<Vec<_>>();
+    stroke_lines(image, &outlines.horizons, &points(lines.horizons));
+    stroke_lines(image, &outlines.faults, &points(lines.faults));
+    stroke_lines(image, &outlines.edges, &lines.edges);
 }

@@ -27,7 +27,8 @@ const MEETING_PX: f64 = 0.5;
 /// Visible parts of the lines on the ground, pixels.
 #[derive(Debug, Default)]
 pub(super) struct ReliefLines {
-    pub faults: Vec<Vec<DVec2>>,
+    /// Index of the fault, and a part of its trace.
+    pub faults: Vec<(usize, Vec<DVec2>)>,
     pub crests: Vec<Vec<DVec2>>,
 }
 
@@ -91,9 +92,8 @@ pub(super) fn relief_lines(resolved: &ResolvedScene) -> ReliefLines {
         for fault in 0..interpretation.model.faults().surfaces().len() {
             let side = |node: DVec2| f64::from(interpretation.model.faults().side(fault, map.ground(node).as_vec3()));
             let segments = map.zero_lines(side);
-            lines
-                .faults
-                .extend(seen(resolved, interpretation, &segments, |p| beside_fault(interpretation, fault, block, p)));
+            let traces = seen(resolved, interpretation, &segments, |p| beside_fault(interpretation, fault, block, p));
+            lines.faults.extend(traces.into_iter().map(|trace| (fault, trace)));
         }
         let facing = |node: DVec2| {
             let p = map.ground(node);

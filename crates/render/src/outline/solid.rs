@@ -114,7 +114,7 @@ fn edge(solid: &Solid, view: &View, ends: [DVec3; 2], u: DVec3, v: DVec3) -> Opt
 }
 
 /// Whether a point, which must not lie on a plane, is rock.
-fn is_rock(solid: &Solid, p: Vec3) -> bool {
+pub(crate) fn is_rock(solid: &Solid, p: Vec3) -> bool {
     let inside = |[low, high]: &[Vec3; 2]| p.cmpgt(*low).all() && p.cmplt(*high).all();
     inside(&solid.roaming_box) && !solid.cut_outs.iter().any(inside)
 }

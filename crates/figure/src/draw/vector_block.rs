@@ -1,0 +1,175 @@
+//! The paths of a block on a page: a group for each layer, horizon and fault.
+
+use super::NamedColour;
+use crate::Rect;
+use crate::list::{Cap, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Segment, Stroke};
+use glam::DVec2;
+use image::RgbaImage;
+use render::vector::{AreaFill, PatternPaint, PatternPart, Polyline, VectorArea, VectorBlock, VectorLineKind};
+use std::sync::Arc;
+use ttf::LayerStyle;
+
+/// A line of its own colour around an area, so that no ground shows between neighbours, points.
+const BLEED_PT: f64 = 0.12;
+
+/// What the parts of a block are called, youngest first.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BlockNames<'a> {
+    /// Layers.
+    pub layers: &'a [LayerStyle],
+    /// Horizons.
+    pub horizons: &'a [NamedColour],
+    /// Faults, by their number in the model.
+    pub faults: &'a [String],
+}
+
+impl BlockNames<'_> {
+    /// The name of a layer counted from the deepest.
+    fn layer(&self, layer: u16) -> String {
+        let from_top = self.layers.len().checked_sub(1 + usize::from(layer));
+        let style = from_top.and_then(|index| self.layers.get(index));
+        style.map_or_else(|| format!("layer {}", layer + 1), |style| style.layer.clone())
+    }
+}
+
+/// Whether the painted picture is needed as well.
+pub(super) fn needs_picture(block: &VectorBlock) -> bool {
+    let is_painted = |area: &VectorArea| matches!(area.fill, AreaFill::Picture);
+    !block.has_areas || block.covered.is_some() || block.areas.iter().any(is_painted)
+}
+
+/// The items of a block whose picture fills `pane`; `page` takes its pixels to the page.
+pub(super) fn items(
+    block: &VectorBlock,
+    picture: Option<Arc<RgbaImage>>,
+    pane: Rect,
+    names: &BlockNames,
+    page: &dyn Fn(DVec2) -> DVec2,
+) -> Vec<Item> {
+    let points_per_px = page(DVec2::X).x - page(DVec2::ZERO).x;
+    let mut items: Vec<Item> = Vec::new();
+    if let Some(picture) = picture.as_ref().filter(|_| !block.has_areas) {
+        let mut group = Group::new(GroupKind::Data, "picture");
+        group.push(Picture::in_rect(Arc::clone(picture), pane));
+        items.push(group.into());
+    }
+    let mut layers: Vec<(u16, Group)> = Vec::new();
+    for area in &block.areas {
+        let place = match block.is_ordered {
+            true => layers.len().checked_sub(1).filter(|last| layers[*last].0 == area.layer),
+            false => layers.iter().position(|(layer, _)| *layer == area.layer),
+        };
+        let place = place.unwrap_or_else(|| {
+            layers.push((area.layer, Group::new(GroupKind::Layer, names.layer(area.layer))));
+            layers.len() - 1
+        });
+        layers[place].1.push(filled(area, picture.as_ref(), pane, page, points_per_px));
+    }
+    items.extend(layers.into_iter().map(|(_, group)| Item::from(group)));
+    if let (Some(covered), Some(picture)) = (&block.covered, &picture) {
+        let mut ground = RgbaImage::clone(picture);
+        for (pixel, share) in ground.pixels_mut().zip(covered.pixels()) {
+            pixel.0[3] = (u16::from(pixel.0[3]) * u16::from(share.0[0]) / 255) as u8;
+        }
+        let mut group = Group::new(GroupKind::Data, "ground and wells");
+        group.push(Picture::in_rect(ground, pane));
+        items.push(group.into());
+    }
+    for line in &block.lines {
+        let (kind, name) = match line.kind {
+            VectorLineKind::Horizon(Some(index)) => {
+                let name = names.horizons.get(index).map(|horizon| horizon.name.clone());
+                (GroupKind::Horizon, name.unwrap_or_else(|| format!("horizon {}", index + 1)))
+            }
+            VectorLineKind::Horizon(None) => (GroupKind::Horizon, "contacts and crests".to_owned()),
+            VectorLineKind::Fault(index) => {
+                let name = names.faults.get(index).cloned();
+                (GroupKind::Fault, name.unwrap_or_else(|| format!("fault {}", index + 1)))
+            }
+            VectorLineKind::Edge => (GroupKind::Annotation, "edges".to_owned()),
+        };
+        let mut path = Path::default();
+        for part in &line.parts {
+            let is_ring = part.len() > 2 && part.first() == part.last();
+            let points = if is_ring { &part[..part.len() - 1] } else { &part[..] };
+            append(&mut path, points, is_ring, page);
+        }
+        let stroke = Stroke::new(line.width_px * points_per_px, line.colour).round();
+        let mut group = Group::new(kind, name);
+        group.push(PathItem::stroked(path, stroke));
+        items.push(group.into());
+    }
+    items
+}
+
+/// An area, within the part of its face that is seen.
+fn filled(
+    area: &VectorArea,
+    picture: Option<&Arc<RgbaImage>>,
+    pane: Rect,
+    page: &dyn Fn(DVec2) -> DVec2,
+    points_per_px: f64,
+) -> Item {
+    let mut outline = Path::default();
+    area.rings.iter().for_each(|ring| append(&mut outline, ring, true, page));
+    let item: Item = match &area.fill {
+        AreaFill::Colour(colour) => {
+            let filled = PathItem { rule: Rule::EvenOdd, ..PathItem::filled(outline, *colour) };
+            filled.outlined(Stroke::new(BLEED_PT, *colour)).into()
+        }
+        AreaFill::Pattern(parts) => {
+            let drawn = parts.iter().map(|part| part_item(part, page, points_per_px).into());
+            Group::new(GroupKind::Part, "pattern").clipped(outline).with(drawn).into()
+        }
+        AreaFill::Picture => {
+            let painted = picture.map(|picture| Picture::in_rect(Arc::clone(picture), pane).into());
+            Group::new(GroupKind::Part, "painted").clipped(outline).with(painted).into()
+        }
+    };
+    match &area.seen {
+        None => item,
+        Some(pieces) => {
+            let mut seen = Path::default();
+            pieces.iter().for_each(|piece| append(&mut seen, &same_turn(piece), true, page));
+            Group::new(GroupKind::Part, "seen").clipped(seen).with([item]).into()
+        }
+    }
+}
+
+/// A polygon that turns clockwise on the page: pieces side by side fill as one.
+fn same_turn(piece: &[DVec2]) -> Vec<DVec2> {
+    let area: f64 = (0..piece.len()).map(|n| piece[n].perp_dot(piece[(n + 1) % piece.len()])).sum();
+    if area < 0.0 { piece.iter().rev().copied().collect() } else { piece.to_vec() }
+}
+
+fn part_item(part: &PatternPart, page: &dyn Fn(DVec2) -> DVec2, points_per_px: f64) -> PathItem {
+    let mut path = Path::default();
+    for Polyline { points, closed } in &part.lines {
+        append(&mut path, points, *closed, page);
+    }
+    let ink = Ink::glass(part.colour, part.opacity);
+    match &part.paint {
+        PatternPaint::Area { even_odd } => {
+            let rule = if *even_odd { Rule::EvenOdd } else { Rule::NonZero };
+            PathItem { rule, ..PathItem::filled(path, ink) }
+        }
+        PatternPaint::Line { width_px, dashes_px, round } => {
+            let stroke = Stroke {
+                dashes: dashes_px.iter().map(|dash| dash * points_per_px).collect(),
+                cap: if *round { Cap::Round } else { Cap::Butt },
+                ..Stroke::new(width_px * points_per_px, ink)
+            };
+            PathItem::stroked(path, stroke)
+        }
+    }
+}
+
+fn append(path: &mut Path, points: &[DVec2], closed: bool, page: &dyn Fn(DVec2) -> DVec2) {
+    for (n, point) in points.iter().enumerate() {
+        let at = page(*point);
+        path.segments.push(if n == 0 { Segment::Move(at) } else { Segment::Line(at) });
+    }
+    if closed && !points.is_empty() {
+        path.segments.push(Segment::Close);
+    }
+}

@@ -1,0 +1,58 @@
+//! Lines of text, which stay text.
+
+use super::attribute;
+use super::numbers::number;
+use crate::list::Text;
+use std::fmt::Write;
+
+/// The face by name, and what stands in for it where it is not installed.
+const FAMILY: &str = "'Ubuntu Light', Ubuntu, 'DejaVu Sans', sans-serif";
+
+/// Adds a line of text: its left end on its baseline, at the length that the page gives it.
+pub(super) fn text(into: &mut String, line: &Text) {
+    if line.text.trim().is_empty() {
+        return;
+    }
+    let start = line.baseline_start();
+    let _ = write!(
+        into,
+        "<text x=\"{}\" y=\"{}\" font-family=\"{FAMILY}\" font-weight=\"300\" font-size=\"{}\" xml:space=\"preserve\"",
+        number(start.x),
+        number(start.y),
+        number(line.size)
+    );
+    let _ = write!(into, " textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"", number(line.width()));
+    attribute(into, "fill", line.ink);
+    if line.turn_deg != 0.0 {
+        let _ = write!(
+            into,
+            " transform=\"rotate({} {} {})\"",
+            number(line.turn_deg),
+            number(line.at.x),
+            number(line.at.y)
+        );
+    }
+    if let Some(halo) = line.halo {
+        attribute(into, "stroke", halo.ink);
+        let width = number(2.0 * halo.width);
+        let _ = write!(into, " stroke-width=\"{width}\" stroke-linejoin=\"round\" paint-order=\"stroke\"");
+    }
+    let _ = writeln!(into, ">{}</text>", escaped(&line.text));
+}
+
+/// Text that an XML document may hold: markup escaped, and characters left out that XML does not know.
+pub(super) fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\t' | '\n' | '\r' => escaped.push(' '),
+            '\u{0}'..='\u{1f}' | '\u{fffe}' | '\u{ffff}' => {}
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}

@@ -1,0 +1,72 @@
+//! Files that pages are written to.
+
+use crate::error::ProjectError;
+use crate::folder;
+use crate::picture::write_png;
+use crate::project::Project;
+use figure::list::DisplayList;
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+use store::Replacement;
+
+/// The format of a figure's file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FigureFormat {
+    /// Pixels.
+    Png,
+    /// Paths and text.
+    Svg,
+}
+
+impl FigureFormat {
+    /// The format that the ending of a file's name says; `None` of an ending that figures have no format for.
+    ///
+    /// ```
+    /// use project::figures::FigureFormat;
+    /// assert_eq!(FigureFormat::of("north.SVG".as_ref()), Some(FigureFormat::Svg));
+    /// assert_eq!(FigureFormat::of("north.gif".as_ref()), None);
+    /// ```
+    pub fn of(path: &Path) -> Option<Self> {
+        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+        match ending.as_str() {
+            "png" => Some(Self::Png),
+            "svg" => Some(Self::Svg),
+            _ => None,
+        }
+    }
+
+    /// Whether a figure in this format is made of paths.
+    pub fn has_vectors(self) -> bool {
+        self != Self::Png
+    }
+}
+
+/// What readers of a vector figure announce: the project's name.
+pub fn title(project: &Project) -> String {
+    let stem = project.root().file_stem().map(|stem| stem.to_string_lossy().into_owned());
+    stem.unwrap_or_else(|| "Petroglyph".to_owned())
+}
+
+/// Writes a page, completely or not at all. `dpi` is the resolution of pixels; `title` is what readers of vector
+/// formats announce.
+///
+/// # Errors
+/// The page is too large, the file lies inside a project, or it could not be written; an earlier file is then still
+/// there.
+pub fn write(page: &DisplayList, format: FigureFormat, path: &Path, dpi: f64, title: &str) -> Result<(), ProjectError> {
+    match format {
+        FigureFormat::Png => write_png(path, &figure::raster(page, dpi)?, dpi),
+        FigureFormat::Svg => {
+            folder::refuse_inside_project(path)?;
+            let text = figure::svg(page, title)?;
+            let replacement = Replacement::of(path)?;
+            let written = File::create(replacement.path()).and_then(|mut file| {
+                file.write_all(text.as_bytes())?;
+                file.sync_all()
+            });
+            written.map_err(|source| ProjectError::io("written", path, source))?;
+            Ok(replacement.commit()?)
+        }
+    }
+}

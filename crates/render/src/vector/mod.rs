@@ -1,0 +1,241 @@
+//! A picture as paths: what a vector figure is made of.
+//!
+//! Faces of the block and its cut-outs become areas, one for each connected piece of a layer, from the exact section of
+//! the model on that face. A pattern is the tile's own drawing ([`ttf::TileDrawing`]), carried point by point through
+//! the inverse of the map from rock to pattern, so that it bends with the layers and has no resolution ([`pattern`]).
+//! Lines are those that the picture's outlines are stroked from, hidden ones gone.
+//!
+//! What is no path stays pixels: the relief of the ground and wells ([`VectorBlock::covered`]), and areas whose pattern
+//! has no drawing or several depth intervals ([`AreaFill::Picture`]). Scenes of raw data, volume rendering and textures
+//! by value are pictures altogether: [`vectors`] then gives lines alone.
+//!
+//! Where a face is seen from both sides of the limit between two mappings ([`ttf::coordinates`]), pictures blend the
+//! two; here a piece of the pattern is drawn in the mapping with the larger weight.
+//!
+//! Space: pixels of the scene, x right and y down.
+
+mod face;
+mod join;
+mod pattern;
+mod visible;
+
+use crate::error::RenderError;
+use crate::inputs::Inputs;
+use crate::leaves::FaceData;
+use crate::media::Faces;
+use crate::media::prepared::Preparations;
+use crate::outline::draw::OutlineLines;
+use crate::resolved::ResolvedScene;
+use crate::scene::Scene;
+use crate::shade::{RayHit, stopping_hit};
+use crate::visible::Ray;
+use face::face_areas;
+use glam::DVec2;
+use image::GrayImage;
+use join::joined;
+use rayon::prelude::*;
+use survey::Progress;
+use ttf::{Colour, TextureLibrary};
+
+/// The paths of a picture, pixels.
+#[derive(Debug, Clone, Default)]
+pub struct VectorBlock {
+    /// Whether `areas` are all faces of rock; otherwise the picture has to be painted below the lines.
+    pub has_areas: bool,
+    /// Areas of rock, back to front.
+    pub areas: Vec<VectorArea>,
+    /// Whether areas of different faces may lie over one another, so that their order counts.
+    pub is_ordered: bool,
+    /// Lines over them, in the order of drawing.
+    pub lines: Vec<VectorLine>,
+    /// Share of each pixel on which the ground or a well lies over the areas, 255 = all; `None`: nowhere.
+    pub covered: Option<GrayImage>,
+}
+
+/// A connected piece of a layer on a face: its colour, or the pattern of the part of it in one fault block.
+#[derive(Debug, Clone)]
+pub struct VectorArea {
+    /// Layer, 0 = deepest.
+    pub layer: u16,
+    /// Its outer ring and holes, by the even-odd rule.
+    pub rings: Vec<Vec<DVec2>>,
+    /// The part of its face that is seen, in convex pieces that only share edges; `None`: all of it.
+    pub seen: Option<Vec<Vec<DVec2>>>,
+    /// What it is filled with.
+    pub fill: AreaFill,
+}
+
+/// What an area is filled with.
+#[derive(Debug, Clone)]
+pub enum AreaFill {
+    /// A colour.
+    Colour(Colour),
+    /// Parts of a pattern, back to front, to be clipped at the area's rings; the colour lies below.
+    Pattern(Vec<PatternPart>),
+    /// The painted picture, to be clipped at the area's rings.
+    Picture,
+}
+
+/// A part of a pattern: pieces that look alike.
+#[derive(Debug, Clone)]
+pub struct PatternPart {
+    /// How it is drawn.
+    pub paint: PatternPaint,
+    /// Colour.
+    pub colour: Colour,
+    /// 0 = clear … 1 = opaque.
+    pub opacity: f32,
+    /// Where.
+    pub lines: Vec<Polyline>,
+}
+
+/// How a part of a pattern is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum PatternPaint {
+    /// Filled.
+    Area {
+        /// Whether by the even-odd rule; else by the non-zero one.
+        even_odd: bool,
+    },
+    /// Stroked.
+    Line {
+        /// Width, pixels.
+        width_px: f64,
+        /// Dashes and gaps in turn, pixels.
+        dashes_px: Vec<f64>,
+        /// Whether ends are round.
+        round: bool,
+    },
+}
+
+/// Straight lines from point to point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polyline {
+    /// Points; the first one is not repeated.
+    pub points: Vec<DVec2>,
+    /// Whether the last point is joined with the first.
+    pub closed: bool,
+}
+
+/// A line over the areas.
+#[derive(Debug, Clone)]
+pub struct VectorLine {
+    /// What it is.
+    pub kind: VectorLineKind,
+    /// Width, pixels.
+    pub width_px: f64,
+    /// Colour.
+    pub colour: Colour,
+    /// Its visible parts.
+    pub parts: Vec<Vec<DVec2>>,
+}
+
+/// What a line is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum VectorLineKind {
+    /// A horizon, 0 = youngest; `None`: where layers meet at the unseen part of a fault, and crests of the ground.
+    Horizon(Option<usize>),
+    /// A fault.
+    Fault(usize),
+    /// Edges of the block and of the ground.
+    Edge,
+}
+
+/// Rays on each side of a pixel that tell how much of it the ground covers.
+const RAYS: u32 = 2;
+
+/// The paths of a scene, or `None` where lines lie behind what is seen through. Curves are straight to `tolerance_px`.
+///
+/// # Errors
+/// A scene that cannot be drawn, missing inputs, or cancellation.
+pub fn vectors(
+    scene: &Scene,
+    inputs: &Inputs,
+    library: &TextureLibrary,
+    tolerance_px: f64,
+    progress: &Progress,
+) -> Result<Option<VectorBlock>, RenderError> {
+    if scene.has_back_edges() {
+        return Ok(None);
+    }
+    let mut kept = Preparations::default();
+    let resolved = ResolvedScene::new(scene, inputs, &mut kept)?;
+    let mut block = VectorBlock { lines: lines(&resolved), ..VectorBlock::default() };
+    if !is_drawn(&resolved) {
+        return Ok(Some(block));
+    }
+    block.has_areas = true;
+    block.is_ordered = resolved.relief.is_some() && !resolved.solid.cut_outs.is_empty();
+    block.areas = face_areas(&resolved, library, tolerance_px, progress)?;
+    block.covered = covered(&resolved, progress)?;
+    Ok(Some(block))
+}
+
+/// Whether all of the rock that is seen is colour and pattern.
+fn is_drawn(resolved: &ResolvedScene) -> bool {
+    resolved.illustrated
+        && resolved.interpretation.is_some()
+        && resolved.field.is_none()
+        && resolved.scene.media.faces == Faces::All
+        && resolved.scene.face_data == FaceData::Rock
+        && resolved.tables.globals.blend == 0.0
+        && resolved.tables.scalars.is_empty()
+        && resolved.relief.as_ref().is_none_or(|relief| relief.opacity >= 1.0)
+}
+
+/// The lines of a picture, in the order in which they are stroked.
+fn lines(resolved: &ResolvedScene) -> Vec<VectorLine> {
+    let [width, height] = resolved.scene.size_px;
+    let scale = f64::from(width.min(height)) / f64::from(crate::outline::NOMINAL_SIDE_PX);
+    let outlines = resolved.scene.outlines;
+    let drawn = OutlineLines::of(resolved);
+    let mut lines: Vec<VectorLine> = Vec::new();
+    let mut add = |kind: VectorLineKind, stroke: crate::Stroke, points: Vec<DVec2>| {
+        if stroke.width_px <= 0.0 || points.len() < 2 {
+            return;
+        }
+        match lines.iter_mut().find(|line| line.kind == kind) {
+            Some(line) => line.parts.push(points),
+            None => {
+                let width_px = f64::from(stroke.width_px) * scale;
+                lines.push(VectorLine { kind, width_px, colour: stroke.colour, parts: vec![points] });
+            }
+        }
+    };
+    for line in drawn.horizons {
+        add(VectorLineKind::Horizon(line.of), outlines.horizons, line.points);
+    }
+    for line in drawn.faults {
+        add(line.of.map_or(VectorLineKind::Horizon(None), VectorLineKind::Fault), outlines.faults, line.points);
+    }
+    for points in drawn.edges {
+        add(VectorLineKind::Edge, outlines.edges, points);
+    }
+    lines.sort_by_key(|line| line.kind);
+    for line in &mut lines {
+        line.parts = joined(std::mem::take(&mut line.parts));
+    }
+    lines
+}
+
+/// Where the ground and wells lie over the areas.
+fn covered(resolved: &ResolvedScene, progress: &Progress) -> Result<Option<GrayImage>, RenderError> {
+    if resolved.relief.is_none() && resolved.tubes.is_none() {
+        return Ok(None);
+    }
+    let [width, height] = resolved.scene.size_px;
+    progress.begin("ground", u64::from(height));
+    let row = |y: u32| {
+        let share = |x: u32| {
+            let hits = (0..RAYS * RAYS).filter(|n| {
+                let inside = DVec2::new(f64::from(n % RAYS) + 0.5, f64::from(n / RAYS) + 0.5) / f64::from(RAYS);
+                let ray = Ray::from(resolved.view.ray(DVec2::new(f64::from(x), f64::from(y)) + inside));
+                matches!(stopping_hit(resolved, &ray, f32::MIN), RayHit::Ground(_) | RayHit::Well(_))
+            });
+            (hits.count() as u32 * 255 / (RAYS * RAYS)) as u8
+        };
+        progress.step(1).map(|()| (0..width).map(share).collect::<Vec<u8>>())
+    };
+    let rows: Vec<Vec<u8>> = (0..height).into_par_iter().map(row).collect::<Result<_, _>>()?;
+    Ok(GrayImage::from_raw(width, height, rows.concat()).filter(|image| image.pixels().any(|pixel| pixel.0[0] > 0)))
+}
