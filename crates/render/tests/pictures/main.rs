@@ -5,3 +5,4 @@ mod closed_form;
 mod gpu;
 mod gpu_media;
 mod media;
+mod vector;

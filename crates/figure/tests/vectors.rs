@@ -1,0 +1,210 @@
+//! A page of paths beside the same page of pictures.
+
+use figure::cut::SectionSource;
+use figure::draw::NamedColour;
+use figure::draw::block::BlockPainter;
+use figure::list::{DisplayList, GroupKind, Item};
+use figure::{BlockPart, Figure, FigureInputs, PageSize, make, raster};
+use glam::DVec3;
+use image::{GrayImage, RgbaImage};
+use model::{ModelSettings, StructuralModel};
+use param::{ParamSettings, Parameterization};
+use render::vector::{VectorBlock, vectors};
+use render::{Camera, Ground, Inputs, RenderError, Scene, VoxelBox};
+use survey::{Progress, SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
+use ttf::{BlockExtent, Colour, LayerExtent, LayerStyle, TextureLibrary, TransferFunctions, TtfTables};
+
+/// A fold with a fault, each layer in a pattern.
+struct Fold {
+    geometry: SurveyGeometry,
+    model: StructuralModel,
+    param: Parameterization,
+    tables: TtfTables,
+    library: TextureLibrary,
+    layers: Vec<LayerStyle>,
+}
+
+impl Fold {
+    fn new() -> Self {
+        let geometry = SurveyGeometry::regular([61, 41, 51], 12.5, 12.5, VerticalUnit::Metres);
+        let closed = ClosedForm::dome(&geometry, &[10.0, 22.0, 34.0], 30.0).with_fault(65.0, 6.0);
+        let quiet = Progress::silent();
+        let (stratigraphy, horizons) = (&closed.stratigraphy, &closed.horizons);
+        let settings = ModelSettings::default();
+        let model =
+            StructuralModel::build(&geometry, stratigraphy, horizons, &closed.faults, &settings, &quiet).unwrap();
+        let param = Parameterization::compute(&model, &ParamSettings::default(), &quiet).unwrap();
+        let library = TextureLibrary::builtin().unwrap();
+        let names = closed.stratigraphy.layer_names_bottom_up();
+        let patterns = ["limestone", "shale", "dolostone", "limestone"];
+        let styles = names.iter().zip(patterns).map(|(name, pattern)| {
+            LayerStyle::textured(name, library.pattern(library.find(pattern).unwrap()).colour, pattern)
+        });
+        let mut layers: Vec<LayerStyle> = styles.collect();
+        let mut functions = TransferFunctions::default();
+        layers.iter().for_each(|style| functions.layers.set(style.clone()));
+        let extent = geometry.metric_from_voxel() * DVec3::from_array(VoxelBox::of_size(geometry.size()).max);
+        let thickness_m = 12.0 * 12.5;
+        let block = BlockExtent {
+            extent_i_m: extent.x.abs() as f32,
+            extent_j_m: extent.y.abs() as f32,
+            layers: names.into_iter().map(|name| LayerExtent { name, thickness_m }).collect(),
+            metres_per_mm: extent.x.abs() as f32 / 120.0,
+        };
+        let tables = TtfTables::compile(&functions, &block, &library).unwrap();
+        // Youngest first, as legends list them.
+        layers.reverse();
+        Self { geometry, model, param, tables, library, layers }
+    }
+
+    fn inputs(&self) -> Inputs<'_> {
+        Inputs {
+            geometry: &self.geometry,
+            model: Some(&self.model),
+            param: Some(&self.param),
+            packed: None,
+            tables: Some(&self.tables),
+            volumes: &[],
+            candidates: None,
+            wells: &[],
+            version: 1,
+        }
+    }
+
+    fn page(&self, scene: &Scene, has_vectors: bool) -> DisplayList {
+        let horizons = ["H1", "H2", "H3"].map(|name| NamedColour { name: name.into(), colour: Colour::BLACK });
+        let inputs = FigureInputs {
+            source: SectionSource { data: self.inputs(), raw: None },
+            horizons: &horizons,
+            faults: &["F1".to_owned()],
+            layers: &self.layers,
+            library: Some(&self.library),
+            interpretation: None,
+        };
+        let part = BlockPart { scene: scene.clone(), ..BlockPart::default() };
+        let figure = Figure { size: PageSize::Px(scene.size_px), dpi: 200.0, ..Figure::of(part.into()) };
+        make(&figure, &inputs, &mut Painter { fold: self, has_vectors }).unwrap()
+    }
+}
+
+struct Painter<'a> {
+    fold: &'a Fold,
+    has_vectors: bool,
+}
+
+impl BlockPainter for Painter<'_> {
+    fn paint(&mut self, scene: &Scene) -> Result<RgbaImage, RenderError> {
+        render::reference::render(scene, &self.fold.inputs(), &Progress::silent())
+    }
+
+    fn trace(&mut self, scene: &Scene, tolerance_px: f64) -> Result<Option<VectorBlock>, RenderError> {
+        if !self.has_vectors {
+            return Ok(None);
+        }
+        vectors(scene, &self.fold.inputs(), &self.fold.library, tolerance_px, &Progress::silent())
+    }
+}
+
+fn scene(ground: Option<Ground>) -> Scene {
+    let whole = VoxelBox::of_size([61, 41, 51]);
+    Scene {
+        size_px: [900, 640],
+        samples: 3,
+        exaggeration: 1.0,
+        camera: Camera { azimuth_deg: Some(35.0), ..Camera::default() },
+        cut_outs: vec![whole.corner_cut(render::Corner::MinMin, [0.4, 0.4])],
+        ground,
+        ..Scene::default()
+    }
+}
+
+/// Grey values, each the mean of five by five pixels on white.
+fn blurred(image: &RgbaImage) -> GrayImage {
+    let grey = |x: i64, y: i64| {
+        let [x, y] = [x.clamp(0, i64::from(image.width()) - 1), y.clamp(0, i64::from(image.height()) - 1)];
+        let [r, g, b, a] = image.get_pixel(x as u32, y as u32).0.map(f64::from);
+        let on_white = 255.0 - a;
+        (0.299 * r + 0.587 * g + 0.114 * b) * a / 255.0 + on_white
+    };
+    GrayImage::from_fn(image.width(), image.height(), |x, y| {
+        let around = (-2..=2).flat_map(|dx| (-2..=2).map(move |dy| (dx, dy)));
+        let sum: f64 = around.map(|(dx, dy)| grey(i64::from(x) + dx, i64::from(y) + dy)).sum();
+        image::Luma([(sum / 25.0).round() as u8])
+    })
+}
+
+/// Mean structural similarity of windows of eight by eight pixels that are not paper in both.
+fn similarity(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    let (a, b) = (blurred(a), blurred(b));
+    let mut found = Vec::new();
+    for x in (0..a.width() - 8).step_by(4) {
+        for y in (0..a.height() - 8).step_by(4) {
+            let of = |image: &GrayImage| -> Vec<f64> {
+                (0..64).map(|n| f64::from(image.get_pixel(x + n % 8, y + n / 8).0[0])).collect()
+            };
+            let (p, q) = (of(&a), of(&b));
+            if p.iter().chain(&q).all(|value| *value >= 254.0) {
+                continue;
+            }
+            let mean = |values: &[f64]| values.iter().sum::<f64>() / 64.0;
+            let (mp, mq) = (mean(&p), mean(&q));
+            let with = |u: &[f64], mu: f64, v: &[f64], mv: f64| {
+                u.iter().zip(v).map(|(u, v)| (u - mu) * (v - mv)).sum::<f64>() / 63.0
+            };
+            let (c1, c2) = ((0.01f64 * 255.0).powi(2), (0.03f64 * 255.0).powi(2));
+            let cross = with(&p, mp, &q, mq);
+            let (vp, vq) = (with(&p, mp, &p, mp), with(&q, mq, &q, mq));
+            found.push((2.0 * mp * mq + c1) * (2.0 * cross + c2) / ((mp * mp + mq * mq + c1) * (vp + vq + c2)));
+        }
+    }
+    assert!(found.len() > 5000);
+    found.iter().sum::<f64>() / found.len() as f64
+}
+
+#[test]
+fn paths_look_like_the_picture() {
+    let fold = Fold::new();
+    for ground in [None, Some(Ground::default())] {
+        let scene = scene(ground);
+        let [paths, pictures] = [true, false].map(|has_vectors| fold.page(&scene, has_vectors));
+        let [paths, pictures] = [paths, pictures].map(|page| raster(&page, 200.0).unwrap());
+        let alike = similarity(&paths, &pictures);
+        assert!(alike > 0.93, "{alike} with {ground:?}");
+        // The measure tells a shift of the patterns.
+        let other = Scene { global_frequency: 1.1, ..scene };
+        let other = raster(&fold.page(&other, true), 200.0).unwrap();
+        assert!(similarity(&other, &pictures) < alike - 0.05);
+    }
+}
+
+#[test]
+fn groups_have_the_names_of_layers_horizons_and_faults() {
+    let fold = Fold::new();
+    let page = fold.page(&scene(None), true);
+    let mut names: Vec<(GroupKind, String)> = Vec::new();
+    fn gather(items: &[Item], names: &mut Vec<(GroupKind, String)>) {
+        for item in items {
+            if let Item::Group(group) = item {
+                if group.kind != GroupKind::Part {
+                    names.push((group.kind, group.name.clone()));
+                }
+                gather(&group.items, names);
+            }
+        }
+    }
+    gather(&page.items, &mut names);
+    let of = |kind: GroupKind| {
+        let names = names.iter().filter(|(found, _)| *found == kind);
+        names.map(|(_, name)| name.as_str()).collect::<Vec<_>>()
+    };
+    let mut layers = of(GroupKind::Layer);
+    layers.sort_unstable();
+    let mut expected: Vec<&str> = fold.layers.iter().map(|style| style.layer.as_str()).collect();
+    expected.sort_unstable();
+    assert_eq!(layers, expected);
+    assert_eq!(of(GroupKind::Horizon)[..3], ["H1", "H2", "H3"]);
+    assert_eq!(of(GroupKind::Fault), ["F1"]);
+    // No pixels at all.
+    assert!(page.leaves().iter().all(|item| !matches!(item, Item::Picture(_))));
+}

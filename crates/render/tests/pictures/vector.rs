@@ -1,0 +1,186 @@
+//! Paths of closed forms: bricks that stay bricks, and areas that lie where rays meet them.
+
+use crate::block::Block;
+use glam::{DVec2, DVec3};
+use render::vector::{AreaFill, Polyline, VectorBlock, VectorLineKind, vectors};
+use render::{Background, Camera, Outlines, Scene, VoxelBox};
+use survey::{Progress, SurveyGeometry, VerticalUnit};
+use synth::closed_form::ClosedForm;
+use ttf::{Colour, LayerStyle, TextureLibrary, TransferFunctions};
+
+fn library() -> TextureLibrary {
+    TextureLibrary::builtin().unwrap()
+}
+
+/// Every layer in limestone.
+fn bricks(closed: &ClosedForm) -> Block {
+    let mut functions = TransferFunctions::default();
+    for name in closed.stratigraphy.layer_names_bottom_up() {
+        functions.layers.set(LayerStyle::textured(&name, Colour::new(170, 200, 220), "limestone"));
+    }
+    Block::of(closed, &functions, &library())
+}
+
+fn traced(scene: &Scene, block: &Block) -> VectorBlock {
+    vectors(scene, &block.inputs(&[]), &library(), 0.05, &Progress::silent()).unwrap().unwrap()
+}
+
+fn head_on(size_px: [u32; 2]) -> Scene {
+    let camera = Camera { azimuth_deg: Some(0.0), elevation_deg: 0.0, margin: 0.0, ..Camera::default() };
+    Scene { size_px, camera, exaggeration: 1.0, ground: None, outlines: Outlines::none(), ..Scene::default() }
+}
+
+/// Lines of the pattern of a layer.
+fn lines(traced: &VectorBlock, layer: u16) -> Vec<&Polyline> {
+    let areas = traced.areas.iter().filter(|area| area.layer == layer);
+    let parts = areas.filter_map(|area| match &area.fill {
+        AreaFill::Pattern(parts) => Some(parts),
+        _ => None,
+    });
+    parts.flatten().flat_map(|part| &part.lines).collect()
+}
+
+#[test]
+fn bricks_on_a_cylindrical_fold_lie_along_it_and_their_joints_across() {
+    let geometry = SurveyGeometry::regular([81, 9, 61], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::dome(&geometry, &[12.0, 36.0], 35.0);
+    let block = bricks(&closed);
+    let scene = head_on([1600, 1200]);
+    let traced = traced(&scene, &block);
+    let view = scene.view(&geometry);
+    let [samples, half_width] = [36.0, 0.5 * 80.0];
+    let axis = view.project(DVec3::new(half_width, 0.0, samples + half_width / 35f64.to_radians().sin()));
+    let (mut joints, mut courses) = (0, 0);
+    for line in lines(&traced, 1) {
+        let [a, b] = [line.points[0], line.points[line.points.len() - 1]];
+        let radius = 0.5 * (a + b) - axis;
+        // Angle between a line and bedding.
+        let from_bedding = |step: DVec2, radius: DVec2| {
+            90.0 - (step.dot(radius).abs() / (step.length() * radius.length())).acos().to_degrees()
+        };
+        if from_bedding(b - a, radius) > 45.0 {
+            joints += 1;
+            assert!(from_bedding(b - a, radius) > 87.0, "a joint at {} degrees", from_bedding(b - a, radius));
+        } else {
+            courses += 1;
+            for ends in line.points.windows(2).filter(|ends| ends[0].distance(ends[1]) > 2.0) {
+                let angle = from_bedding(ends[1] - ends[0], 0.5 * (ends[0] + ends[1]) - axis);
+                assert!(angle < 3.0, "a course at {angle} degrees");
+            }
+        }
+    }
+    assert!(joints > 50 && courses > 10, "{joints} joints, {courses} courses");
+}
+
+#[test]
+fn curves_are_as_straight_as_asked() {
+    let geometry = SurveyGeometry::regular([81, 9, 61], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::dome(&geometry, &[12.0, 36.0], 35.0);
+    let block = bricks(&closed);
+    let points = |tolerance: f64| {
+        let traced = vectors(&head_on([800, 600]), &block.inputs(&[]), &library(), tolerance, &Progress::silent());
+        lines(&traced.unwrap().unwrap(), 1).iter().map(|line| line.points.len()).sum::<usize>()
+    };
+    assert!(points(0.02) > points(0.2) && points(0.2) > points(2.0));
+}
+
+#[test]
+fn areas_are_the_layers_that_rays_meet() {
+    let geometry = SurveyGeometry::regular([41, 31, 41], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::dome(&geometry, &[10.0, 24.0], 30.0).with_fault(60.0, 5.0);
+    let mut functions = TransferFunctions::default();
+    let names = closed.stratigraphy.layer_names_bottom_up();
+    let colours = [Colour::new(250, 0, 0), Colour::new(0, 250, 0), Colour::new(0, 0, 250)];
+    for (name, colour) in names.iter().zip(colours) {
+        functions.layers.set(LayerStyle::plain(name, colour));
+    }
+    let block = Block::of(&closed, &functions, &library());
+    let camera = Camera { azimuth_deg: Some(35.0), ..Camera::default() };
+    let whole = VoxelBox::of_size(geometry.size());
+    let scene = Scene {
+        camera,
+        cut_outs: whole.stair(render::Corner::MinMin, [0.6, 0.5], 0.7, 2),
+        face_tone: 0.0,
+        background: Background::Colour(Colour::WHITE),
+        samples: 1,
+        ..head_on([320, 260])
+    };
+    let traced = traced(&scene, &block);
+    let picture = render::reference::render(&scene, &block.inputs(&[]), &Progress::silent()).unwrap();
+    let winding = |rings: &[Vec<DVec2>], p: DVec2| {
+        let crossings = rings.iter().flat_map(|ring| (0..ring.len()).map(|n| (ring[n], ring[(n + 1) % ring.len()])));
+        crossings
+            .filter(|(a, b)| (a.y <= p.y) != (b.y <= p.y) && a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y) > p.x)
+            .count()
+            % 2
+            == 1
+    };
+    let (mut wrong, mut rock) = (0, 0);
+    for (x, y, pixel) in picture.enumerate_pixels() {
+        let p = DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5);
+        let holds = |area: &&render::vector::VectorArea| {
+            let is_seen = |pieces: &Vec<Vec<DVec2>>| pieces.iter().any(|piece| winding(std::slice::from_ref(piece), p));
+            winding(&area.rings, p) && area.seen.as_ref().is_none_or(is_seen)
+        };
+        let found: Vec<Colour> = traced
+            .areas
+            .iter()
+            .filter(holds)
+            .filter_map(|area| match area.fill {
+                AreaFill::Colour(colour) => Some(colour),
+                _ => None,
+            })
+            .collect();
+        let is_rock = pixel.0 != [255; 4];
+        rock += usize::from(is_rock);
+        let right = match (found.as_slice(), is_rock) {
+            ([], false) => true,
+            ([colour], true) => colour.rgb == pixel.0[..3],
+            _ => false,
+        };
+        wrong += usize::from(!right);
+    }
+    // Rays that graze a line may fall on either side of it.
+    assert!(rock > 20_000 && wrong * 400 < rock, "{wrong} of {rock}");
+}
+
+#[test]
+fn lines_have_the_names_of_horizons_and_faults() {
+    let geometry = SurveyGeometry::regular([41, 31, 41], 10.0, 10.0, VerticalUnit::Metres);
+    let block = bricks(&ClosedForm::flat(&geometry, &[10.0, 24.0]).with_fault(60.0, 5.0));
+    let traced = traced(&Scene { outlines: Outlines::default(), ..head_on([400, 300]) }, &block);
+    let kinds: Vec<VectorLineKind> = traced.lines.iter().map(|line| line.kind).collect();
+    use VectorLineKind::{Edge, Fault, Horizon};
+    assert_eq!(kinds, [Horizon(Some(0)), Horizon(Some(1)), Fault(0), Edge]);
+    // Each horizon is one line on each side of the fault.
+    assert_eq!(traced.lines[0].parts.len(), 2);
+    assert_eq!(traced.lines[2].parts.len(), 1);
+}
+
+#[test]
+fn what_paths_cannot_show_is_left_to_the_picture() {
+    let geometry = SurveyGeometry::regular([21, 21, 21], 10.0, 10.0, VerticalUnit::Metres);
+    let closed = ClosedForm::flat(&geometry, &[10.0]);
+    let block = bricks(&closed);
+    let names = closed.stratigraphy.layer_names_bottom_up();
+    let mut functions = TransferFunctions::default();
+    let mut halves = LayerStyle::textured(&names[0], Colour::WHITE, "limestone");
+    halves.intervals[0].k = [0.0, 0.5];
+    functions.layers.set(halves);
+    functions.layers.set(LayerStyle::textured(&names[1], Colour::WHITE, "chalk"));
+    let two = Block::of(&closed, &functions, &library());
+    let fills = |layer: u16| {
+        let traced = traced(&head_on([200, 160]), &two);
+        let areas = traced.areas.into_iter().filter(|area| area.layer == layer);
+        areas.map(|area| matches!(area.fill, AreaFill::Picture)).collect::<Vec<_>>()
+    };
+    assert_eq!(fills(0), [true]);
+    assert_eq!(fills(1), [false, false]);
+    // A scene that is half raw is a picture with lines.
+    let volume = survey::Volume::filled([21; 3], 0.5f32);
+    let volumes = [render::NamedVolume::whole("seismic", &volume)];
+    let raw = ttf::RawColour::new("seismic", ttf::RgbaFunction::centred(ttf::ColourMap::Grey, 1.0));
+    let scene = Scene { raw: Some(raw), blend: 0.5, outlines: Outlines::default(), ..head_on([200, 160]) };
+    let half = vectors(&scene, &block.inputs(&volumes), &library(), 0.1, &Progress::silent()).unwrap().unwrap();
+    assert!(!half.has_areas && half.areas.is_empty() && !half.lines.is_empty());
+}
