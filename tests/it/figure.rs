@@ -2,6 +2,7 @@
 
 use crate::program::{project, run_in};
 use image::RgbImage;
+use std::fs;
 use std::path::Path;
 
 const SMALL: &str = "--size-cm 12x9 --dpi 60 --samples 1 --device cpu";
@@ -148,4 +149,33 @@ mod window {
         });
         assert!(interpreted == typed(at, "--interpretation"), "interpretation");
     }
+}
+
+#[test]
+fn a_figure_is_written_as_paths_and_text() {
+    let folder = project();
+    let at = folder.path();
+    let options = "--size-cm 12x9 --legend --scale-bar --ground off --device cpu";
+    for out in ["a.svg", "b.svg"] {
+        run_in(at, &format!("render p.petro {out} {options}")).done();
+    }
+    let svg = fs::read_to_string(at.join("a.svg")).unwrap();
+    assert_eq!(svg, fs::read_to_string(at.join("b.svg")).unwrap(), "the same project gives the same bytes");
+    assert!(svg.starts_with("<?xml") && svg.trim_end().ends_with("</svg>"));
+    for name in ["inkscape:label=\"Alpha\"", "inkscape:label=\"above Alpha\"", "id=\"horizon-alpha\"", "</text>"] {
+        assert!(svg.contains(name), "no {name}");
+    }
+    // Rock is paths, not pixels: the legend's swatches are all the pictures there are.
+    let block = svg.split("inkscape:label=\"legend\"").next().unwrap();
+    assert!(!block.contains("<use") && block.matches("<path").count() > 20);
+    // With relief the ground is a picture, and the sides are still paths.
+    run_in(at, "render p.petro ground.svg --size-cm 6x5 --device cpu").done();
+    let ground = fs::read_to_string(at.join("ground.svg")).unwrap();
+    assert_eq!(ground.matches("<use").count(), 1);
+    // Sections, too.
+    run_in(at, "render p.petro section.svg --inline 120 --size-cm 12x8 --scale-bar").done();
+    assert!(fs::read_to_string(at.join("section.svg")).unwrap().contains(">Inline 120</text>"));
+    assert_eq!(run_in(at, "render p.petro a.gif").code, 2);
+    run_in(at, "render p.petro p.petro/inside.svg").failed(&["project"]);
+    assert!(!at.join("p.petro/inside.svg").exists());
 }

@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn paths_are_in_tile_units_with_v_upwards() {
-        let drawing = drawn(r##"<path d="M0 30L30 15" stroke="#ff0000" stroke-width="6"/>"##).unwrap();
+        let drawing = drawn(r##"<path fill="none" d="M0 30L30 15" stroke="#ff0000" stroke-width="6"/>"##).unwrap();
         let line = &drawing.shapes[0];
         assert_eq!(line.path, [TileSegment::Move([0.0, 0.0]), TileSegment::Line([0.5, 0.5])]);
         assert_eq!(line.colour, [1.0, 0.0, 0.0]);
