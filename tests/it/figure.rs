@@ -54,7 +54,7 @@ fn a_figure_from_a_file_is_the_one_that_is_typed() {
     let at = folder.path();
     let typed = picture(at, "--inline 120 --scale-bar");
     let text = "size = { cm = [12.0, 9.0] }\ndpi = 60.0\nscale_bar = true\n[[parts]]\nsection = { kind = 'inline', at = 120.0 }\n";
-    std::fs::write(at.join("figure.toml"), text).unwrap();
+    fs::write(at.join("figure.toml"), text).unwrap();
     run_in(at, "render p.petro b.png --figure figure.toml --device cpu").done();
     assert!(image::open(at.join("b.png")).unwrap().to_rgb8() == typed);
 }

@@ -4,6 +4,8 @@ use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
 use crate::theme;
 use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
+use project::figures::FigureFormat;
+use std::path::Path;
 
 /// Largest side of a picture, pixels.
 const LARGEST: u32 = 16_000;
@@ -24,7 +26,8 @@ pub fn show(
         let mut next = form.clone();
         Grid::new("export").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
             let label = ui.label("File");
-            ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
+            let field = ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
+            field.on_hover_text("A name that ends in .png gives pixels, in .svg paths and text");
             ui.end_row();
             ui.label("Size");
             ui.horizontal(|ui| {
@@ -65,8 +68,12 @@ pub fn show(
         } else {
             ui.weak(text);
         }
+        let has_format = FigureFormat::of(Path::new(next.path.trim())).is_some();
+        if !has_format {
+            ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png or .svg");
+        }
         ui.horizontal(|ui| {
-            let can = !is_drawing && !is_too_large && !next.path.trim().is_empty();
+            let can = !is_drawing && !is_too_large && has_format;
             let is_entered = can && ui.input(|input| input.key_pressed(Key::Enter));
             if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || is_entered {
                 actions.push(Action::Export(Box::new(next.clone())));

@@ -261,6 +261,30 @@ fn a_picture_is_exported_at_its_printed_size() {
 }
 
 #[test]
+fn a_picture_is_exported_as_paths_by_its_files_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let name = |harness: &mut Driven, file: &str| {
+        click(harness, "Export…");
+        let path = folder.path().join(file);
+        let Some(Dialogue::Export(form)) = &state(harness).dialogue else { panic!("no dialogue") };
+        let form = app::state::ExportForm { path: path.display().to_string(), size_cm: [6.0, 4.0], ..form.clone() };
+        harness.state_mut().as_mut().unwrap().act(app::state::Action::Ask(Box::new(Dialogue::Export(form))));
+        harness.run_steps(2);
+        path
+    };
+    name(&mut harness, "out.gif");
+    assert!(harness.get_by_label("Export").accesskit_node().is_disabled());
+    harness.get_by_label("The file's name must end in .png or .svg");
+    click(&mut harness, "Cancel");
+    let path = name(&mut harness, "out.svg");
+    click(&mut harness, "Export");
+    wait(&mut harness, "it is written", |_| path.exists());
+    let svg = std::fs::read_to_string(&path).unwrap();
+    assert!(svg.contains("inkscape:label=\"Top\"") && svg.trim_end().ends_with("</svg>"));
+}
+
+#[test]
 fn the_shortcuts_are_shown_on_a_question_mark() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());

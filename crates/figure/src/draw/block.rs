@@ -151,7 +151,7 @@ impl BlockPanel<'_> {
                         true => Some(Arc::new(painter.paint(&Scene { outlines: Outlines::none(), ..scene.clone() })?)),
                         false => None,
                     };
-                    shown.items.extend(vector_block::items(&traced, picture, pane, &self.names, &page));
+                    shown.items.extend(vector_block::items(&traced, picture.as_ref(), pane, &self.names, &page));
                 }
                 None => shown.push(Picture::in_rect(painter.paint(&scene)?, pane)),
             }

@@ -41,14 +41,14 @@ pub(super) fn needs_picture(block: &VectorBlock) -> bool {
 /// The items of a block whose picture fills `pane`; `page` takes its pixels to the page.
 pub(super) fn items(
     block: &VectorBlock,
-    picture: Option<Arc<RgbaImage>>,
+    picture: Option<&Arc<RgbaImage>>,
     pane: Rect,
     names: &BlockNames,
     page: &dyn Fn(DVec2) -> DVec2,
 ) -> Vec<Item> {
     let points_per_px = page(DVec2::X).x - page(DVec2::ZERO).x;
     let mut items: Vec<Item> = Vec::new();
-    if let Some(picture) = picture.as_ref().filter(|_| !block.has_areas) {
+    if let Some(picture) = picture.filter(|_| !block.has_areas) {
         let mut group = Group::new(GroupKind::Data, "picture");
         group.push(Picture::in_rect(Arc::clone(picture), pane));
         items.push(group.into());
@@ -63,10 +63,10 @@ pub(super) fn items(
             layers.push((area.layer, Group::new(GroupKind::Layer, names.layer(area.layer))));
             layers.len() - 1
         });
-        layers[place].1.push(filled(area, picture.as_ref(), pane, page, points_per_px));
+        layers[place].1.push(filled(area, picture, pane, page, points_per_px));
     }
     items.extend(layers.into_iter().map(|(_, group)| Item::from(group)));
-    if let (Some(covered), Some(picture)) = (&block.covered, &picture) {
+    if let (Some(covered), Some(picture)) = (&block.covered, picture) {
         let mut ground = RgbaImage::clone(picture);
         for (pixel, share) in ground.pixels_mut().zip(covered.pixels()) {
             pixel.0[3] = (u16::from(pixel.0[3]) * u16::from(share.0[0]) / 255) as u8;

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 const MEETING_PX: f64 = 0.02;
 
 /// Joins lines end to end where exactly two meet; a line that comes back to its beginning repeats it.
-pub(super) fn joined(lines: Vec<Vec<DVec2>>) -> Vec<Vec<DVec2>> {
+pub(super) fn joined(lines: &[Vec<DVec2>]) -> Vec<Vec<DVec2>> {
     let key = |p: DVec2| (p / MEETING_PX).round().as_i64vec2().to_array();
     let mut meeting: HashMap<[i64; 2], Vec<usize>> = HashMap::new();
     for (n, line) in lines.iter().enumerate() {
@@ -61,16 +61,16 @@ mod tests {
     #[test]
     fn pieces_become_one_line_in_either_direction() {
         let pieces = vec![at(&[[1.0, 0.0], [2.0, 0.0]]), at(&[[1.0, 0.0], [0.0, 0.0]]), at(&[[3.0, 1.0], [2.0, 0.0]])];
-        assert_eq!(joined(pieces), [at(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 1.0]])]);
+        assert_eq!(joined(&pieces), [at(&[[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [3.0, 1.0]])]);
     }
 
     #[test]
     fn a_ring_closes_and_a_fork_stays_open() {
         let ring = vec![at(&[[0.0, 0.0], [1.0, 0.0]]), at(&[[1.0, 0.0], [1.0, 1.0]]), at(&[[1.0, 1.0], [0.0, 0.0]])];
-        let ring = joined(ring);
+        let ring = joined(&ring);
         assert_eq!((ring.len(), ring[0].len()), (1, 4));
         assert_eq!(ring[0].first(), ring[0].last());
         let fork = vec![at(&[[0.0, 0.0], [1.0, 0.0]]), at(&[[1.0, 0.0], [2.0, 1.0]]), at(&[[1.0, 0.0], [2.0, -1.0]])];
-        assert_eq!(joined(fork.clone()), fork);
+        assert_eq!(joined(&fork), fork);
     }
 }

@@ -213,7 +213,7 @@ fn lines(resolved: &ResolvedScene) -> Vec<VectorLine> {
     }
     lines.sort_by_key(|line| line.kind);
     for line in &mut lines {
-        line.parts = joined(std::mem::take(&mut line.parts));
+        line.parts = joined(&line.parts);
     }
     lines
 }

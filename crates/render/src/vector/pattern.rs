@@ -301,7 +301,8 @@ impl MappedCells<'_> {
             let high = corners.into_iter().fold(DVec2::NEG_INFINITY, DVec2::max);
             // A cell over which the map bends holds a little more than its corners say.
             let (low, high) = (low - 0.1 * (high - low), high + 0.1 * (high - low));
-            if !((high - low).max_element() < MOST_TILES) {
+            let tiles = (high - low).max_element();
+            if tiles.is_nan() || tiles >= MOST_TILES {
                 continue;
             }
             for (shape, [least, most]) in bounds.iter().enumerate() {
