@@ -6,6 +6,7 @@
 //! happened.
 
 mod commands;
+mod flush;
 mod power_cut;
 mod supervised;
 
