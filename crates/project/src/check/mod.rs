@@ -20,7 +20,7 @@
 //! | `leftovers` | what no state names |
 //! | `repair` | everything that writes |
 //!
-//! Before a project that is not known here is changed, [`refuse_unless_sound`] does the quick part of a check.
+//! Before a project that is not known here is changed, `refuse_unless_sound` does the quick part of a check.
 //!
 //! Deliberately absent: [`crate::Project`], which opens only what is whole.
 
