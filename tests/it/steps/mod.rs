@@ -80,12 +80,13 @@ fn run_once(at: &Path, line: &str) -> Run {
     Run::of(&program(at, line).output().expect("the program runs"))
 }
 
-/// Every file below a folder, but for locks and what a killed writer left beside its target: `.NAME.partial-PROCESS-COUNT`
-/// and `NAME.PROCESS.part`.
+/// Every file below a folder, but for locks and what a killed writer left: beside its target as
+/// `.NAME.partial-PROCESS-COUNT` or `NAME.PROCESS.part`, and in `derived/unfinished`, which the next writer there removes.
 fn files(at: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let is_beside = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        name.ends_with(".part") || name.starts_with('.') && name.contains(".partial-")
+        let is_derived = path.ancestors().any(|folder| folder.ends_with("derived/unfinished"));
+        is_derived || name.ends_with(".part") || name.starts_with('.') && name.contains(".partial-")
     };
     everything(at).into_iter().filter(|(path, _)| !is_beside(path)).collect()
 }
