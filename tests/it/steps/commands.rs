@@ -142,7 +142,7 @@ pub const PICKING: [Scenario; 8] = [
 ];
 
 /// What changes how it looks.
-pub const LOOKING: [Scenario; 8] = [
+pub const LOOKING: [Scenario; 7] = [
     of(Imported, "layer set p.petro 'Top - Base' --name Chalk --pattern chalk"),
     of(Imported, "layer reset p.petro 'Top - Base'"),
     of(Imported, "scalar set p.petro seismic --interval 0,50,chalk"),
@@ -150,7 +150,6 @@ pub const LOOKING: [Scenario; 8] = [
     of(Imported, "texture p.petro tile.png"),
     of(Imported, "scene add p.petro front --blend 0.5"),
     after(Imported, |at| all(at, &["scene add p.petro front"]), "scene remove p.petro front"),
-    of(Imported, "patterns p.png"),
 ];
 
 /// What is computed, drawn and exported.
