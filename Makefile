@@ -77,10 +77,11 @@ scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario
 
 # What docs/reliability.md lists of the real program: modules and tests of tests/it.
-ATTACKS = hostile:: check:: bombs:: sources:: kill:: safety:: store:: bad_input:: memory:: extraction::the_same_extraction_twice extraction::damaged_candidates
+ATTACKS = hostile:: foreign:: check:: steps:: bombs:: sources:: kill:: safety:: store:: bad_input:: memory:: extraction::the_same_extraction_twice extraction::damaged_candidates
 
 attack: setup
 	cargo test --locked --test it -- $(ATTACKS)
+	cargo test --locked --test it -- --ignored --nocapture memory::
 
 # The same inputs each time, so that a change fails by its own fault alone.
 fuzz: setup

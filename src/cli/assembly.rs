@@ -111,8 +111,8 @@ pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> any
     let found = evaluate_with(&candidates.forest.surfaces, &truth, &index, &settings);
     let none = FaultNetwork::none();
     let counts = count_picks(&candidates.forest, &truth, &index, &none, &settings, &picks, progress)?;
-    let mut report = Report::line(found.to_string().trim_end());
-    report.say(format!("\n{:<16} {:>6} {:>8} {:>8}", "picks", "parts", "oracle", "replay"));
+    let mut report = Report::text(found.to_string().trim_end());
+    report.say("").say(format!("{:<16} {:>6} {:>8} {:>8}", "picks", "parts", "oracle", "replay"));
     for count in &counts {
         let shown = |count: interp::evaluate::PickCount| {
             if count.reached { count.picks.to_string() } else { format!("({})", count.picks) }

@@ -18,6 +18,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::Malformed { .. } => {
             "undo the last edit by hand, or ask `petroglyph check PROJECT`: it says what is damaged and what can be restored"
         }
+        ProjectError::Unsound { .. } => {
+            "`petroglyph check PROJECT` says all that is wrong with it; after that it can be changed as it is"
+        }
         ProjectError::DiskFull { .. } => {
             "free some space (derived/ may be deleted, `petroglyph prune` deletes the history), then try again; nothing was changed"
         }

@@ -27,7 +27,7 @@ pub(super) fn describe(
     let mut file = SegyFile::open(path, options, progress)?;
     option::name_in(file.notes_mut());
     let statistics = file.statistics(progress)?;
-    let mut report = Report::line(file.page(&statistics).trim_end());
+    let mut report = Report::text(file.page(&statistics).trim_end());
     report.fields(file.info());
     report.field("amplitudes", &statistics);
     Ok(report)

@@ -190,7 +190,7 @@ fn scenes(project: &Project) -> Report {
 
 fn show_scene(project: &Project, name: Option<&str>) -> anyhow::Result<Report> {
     let scene = scene::choose(project.document(), name)?;
-    let mut report = Report::line(toml::to_string_pretty(&scene)?.trim_end());
+    let mut report = Report::text(toml::to_string_pretty(&scene)?.trim_end());
     report.field("scene", scene);
     Ok(report)
 }

@@ -22,9 +22,23 @@ impl Report {
         report
     }
 
-    /// Adds a line for people.
+    /// A report of a text with several lines.
+    pub(super) fn text(text: impl Into<String>) -> Self {
+        let mut report = Self::default();
+        report.say_text(text);
+        report
+    }
+
+    /// Adds a line for people. A line end in it comes from a name, which must not look like a line of ours: it is shown
+    /// as `\n`.
     pub(super) fn say(&mut self, line: impl Into<String>) -> &mut Self {
-        self.lines.push(line.into());
+        self.lines.push(line.into().replace('\n', "\\n"));
+        self
+    }
+
+    /// Adds a text with several lines.
+    pub(super) fn say_text(&mut self, text: impl Into<String>) -> &mut Self {
+        self.lines.push(text.into());
         self
     }
 
@@ -82,5 +96,17 @@ pub(super) fn printed(written: io::Result<()>, code: ExitCode) -> ExitCode {
             ExitCode::FAILURE
         }
         _ => code,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_name_with_a_line_end_makes_no_line_of_its_own() {
+        let mut report = Report::line("Top\nnothing is damaged: conformable");
+        report.say_text("one\ntwo");
+        assert_eq!(report.lines, ["Top\\nnothing is damaged: conformable", "one\ntwo"]);
     }
 }

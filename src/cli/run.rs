@@ -156,7 +156,7 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
 fn change(mut project: Project, command: &Command, progress: &Progress) -> anyhow::Result<Report> {
     let mut effect = project.apply(command, progress)?;
     option::name_in(effect.notes_mut());
-    let mut report = Report::line(effect.to_string().trim_end());
+    let mut report = Report::text(effect.to_string().trim_end());
     report.fields(&effect);
     Ok(report)
 }
@@ -170,7 +170,7 @@ pub(super) fn scene_file(path: &Path) -> anyhow::Result<Scene> {
 
 /// The report of an effect: its text for people, its fields for programs.
 fn told(done: impl std::fmt::Display + serde::Serialize) -> Report {
-    let mut report = Report::line(done.to_string().trim_end());
+    let mut report = Report::text(done.to_string().trim_end());
     report.fields(done);
     report
 }
@@ -186,7 +186,7 @@ fn import(path: &Path, wait: Duration, command: ImportVolume, progress: &Progres
     option::name_in(effect.notes_mut());
     project.publish()?;
     let mut report = Report::line(format!("created {}", path.display()));
-    report.say(effect.to_string().trim_end()).fields(&effect).field("project", path);
+    report.say_text(effect.to_string().trim_end()).fields(&effect).field("project", path);
     Ok(report)
 }
 

@@ -64,7 +64,7 @@ pub(super) fn show(project: &Project, name: &str) -> anyhow::Result<Report> {
     let entry = &document.wells[document.position(Noun::Well, name)?];
     let well = content::read_well(project.root(), entry)?;
     let found = WellAdded::of(&well, project.root(), document, WellReport::default(), &Progress::silent())?;
-    let mut report = Report::line(found.to_string().trim_end());
+    let mut report = Report::text(found.to_string().trim_end());
     report.fields(&found).field("stations", well.path.stations());
     if let Some(checkshot) = &well.checkshot {
         report.field("checkshot", checkshot.points());

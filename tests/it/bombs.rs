@@ -2,7 +2,7 @@
 //! sentence, in an address space that the harm they meant would not fit into.
 #![cfg(target_os = "linux")]
 
-use crate::program::{Run, bytes, command, forget_hash_of_tile, project, run_in};
+use crate::program::{Run, STATE_HOME, bytes, command, forget_hash_of_tile, project, run_in};
 use std::fs;
 use std::io::Write as _;
 use std::path::Path;
@@ -15,7 +15,9 @@ const LIMIT_KB: u64 = 2_500_000;
 fn limited(folder: &Path, line: &str) -> Run {
     let program = env!("CARGO_BIN_EXE_petroglyph");
     let script = format!("ulimit -v {LIMIT_KB}; exec timeout 120 {program} {line}");
-    let output = Command::new("sh").current_dir(folder).args(["-c", &script]).stdin(Stdio::null()).output();
+    let mut shell = Command::new("sh");
+    let output =
+        shell.current_dir(folder).args(["-c", &script]).env("XDG_STATE_HOME", STATE_HOME).stdin(Stdio::null()).output();
     Run::of(&output.expect("a shell runs"))
 }
 

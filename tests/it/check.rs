@@ -384,6 +384,78 @@ fn what_is_no_project_or_newer_is_an_error() {
 }
 
 #[test]
+fn a_step_of_a_newer_version_is_no_damage_and_stays_where_it_is() {
+    let folder = project();
+    let at = folder.path();
+    let root = at.join("p.petro");
+    let newer = root.join("history/0004.toml");
+    let text = fs::read_to_string(&newer).unwrap();
+    fs::write(&newer, text.replacen("version = 1", "version = 99", 1)).unwrap();
+    let found = is_well(at);
+    let notes = texts(&found["notes"]);
+    assert!(notes.iter().any(|note| note.contains("newer Petroglyph") && note.contains("99")), "{notes:?}");
+    // What else is damaged is found, and a repair keeps the step with all that it may name.
+    flip(&root.join("volumes/seismic.zarr/0/c/0/0/0"), 3000);
+    assert_eq!(only_damage(at)["file"], "volumes/seismic.zarr");
+    let before = bytes(&root);
+    run_in(at, "check p.petro --repair");
+    assert!(bytes(&root) == before);
+}
+
+/// Waits until a program has said that it handles an interruption.
+#[cfg(target_os = "linux")]
+fn handles_interruptions(process: u32) -> bool {
+    const INTERRUPTION: u64 = 1 << 1;
+    loop {
+        let Ok(status) = fs::read_to_string(format!("/proc/{process}/status")) else { return false };
+        let caught = status.lines().find_map(|line| u64::from_str_radix(line.strip_prefix("SigCgt:")?.trim(), 16).ok());
+        match caught {
+            Some(caught) if caught & INTERRUPTION != 0 => return true,
+            // It has ended.
+            _ if status.contains("State:\tZ") => return false,
+            _ => std::thread::yield_now(),
+        }
+    }
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn an_interruption_stops_a_check_and_changes_nothing() {
+    use crate::program::command;
+    use std::process::{Command, Stdio};
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run_in(at, "synth s --size 128x128x160 --seed 3").done();
+    run_in(at, "import s/survey.sgy p.petro").done();
+    for line in ["check p.petro", "check p.petro --repair"] {
+        let before = bytes(&at.join("p.petro"));
+        // It may have ended before the signal reaches it; that it always has cannot be.
+        let was_stopped = (0..40).any(|_| {
+            let child = command()
+                .current_dir(at)
+                .args(line.split(' '))
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped())
+                .spawn()
+                .unwrap();
+            if handles_interruptions(child.id()) {
+                assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+            }
+            let run = Run::of(&child.wait_with_output().unwrap());
+            assert!(bytes(&at.join("p.petro")) == before, "{line}");
+            match run.code {
+                0 => false,
+                code => {
+                    assert!(code == 1 && run.stderr.contains("cancelled"), "{line}: {}{}", run.stdout, run.stderr);
+                    true
+                }
+            }
+        });
+        assert!(was_stopped, "{line} was never stopped");
+    }
+}
+
+#[test]
 #[cfg(unix)]
 fn links_are_damage_that_nobody_follows() {
     use std::os::unix::fs::symlink;

@@ -10,6 +10,7 @@ mod create;
 mod demo;
 mod extraction;
 mod figure;
+mod foreign;
 mod help;
 mod hostile;
 mod kill;
@@ -20,6 +21,8 @@ mod proposed_faults;
 mod safety;
 #[cfg(target_os = "linux")]
 mod sources;
+#[cfg(target_os = "linux")]
+mod steps;
 mod store;
 mod volume_rendering;
 mod well;

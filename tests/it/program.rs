@@ -53,8 +53,13 @@ impl Run {
     }
 }
 
+/// Where the program remembers projects: not where that of the user does.
+pub const STATE_HOME: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/state");
+
 pub fn command() -> Command {
-    Command::new(env!("CARGO_BIN_EXE_petroglyph"))
+    let mut command = Command::new(env!("CARGO_BIN_EXE_petroglyph"));
+    command.env("XDG_STATE_HOME", STATE_HOME);
+    command
 }
 
 /// Runs the program.
@@ -68,7 +73,7 @@ pub fn run_in(folder: &Path, line: &str) -> Run {
 }
 
 /// Splits at blanks, but not inside single quotes.
-fn words(line: &str) -> Vec<String> {
+pub fn words(line: &str) -> Vec<String> {
     let mut words = Vec::new();
     for (index, part) in line.split('\'').enumerate() {
         if index % 2 == 1 {

@@ -84,6 +84,8 @@ fn a_read_only_project_can_be_looked_at_but_not_changed() {
         run_in(at, change).failed(&["read-only"]);
     }
     run_in(at, "info disk/p.petro").done();
+    run_in(at, "check disk/p.petro").done();
+    run_in(at, "check disk/p.petro --repair").failed(&["read-only"]);
     run_in(at, "render disk/p.petro a.png --size 80x60 --samples 1 --device cpu").done();
     assert!(bytes(&disk) == before);
 }

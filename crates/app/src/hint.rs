@@ -16,6 +16,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::Malformed { .. } => {
             "undo the last edit by hand, or run `petroglyph check` on the project's folder: it says what is damaged and what can be restored"
         }
+        ProjectError::Unsound { .. } => {
+            "check the project: that says all that is wrong; after that it can be changed as it is"
+        }
         ProjectError::DiskFull { .. } => {
             "free some space (the project's folder derived may be deleted), then try again; nothing was changed"
         }

@@ -39,7 +39,7 @@ pub(super) fn beside(
         let file = out.into_inner().map_err(std::io::IntoInnerError::into_error)?;
         file.sync_all()?;
         fs::rename(&part, path)?;
-        Ok(())
+        Ok(survey::file::sync_folder(path.parent().unwrap_or(path))?)
     });
     written.map_err(|failure| {
         // No partial file may remain. A failure to remove it is not reported: the user sees the first error.

@@ -277,6 +277,16 @@ impl StoredArray {
         self.group.join(&self.name)
     }
 
+    /// The group that it is in.
+    pub(super) fn group(&self) -> &Path {
+        &self.group
+    }
+
+    /// Its name in the group.
+    pub(super) fn name(&self) -> &str {
+        &self.name
+    }
+
     /// Elements along each axis.
     pub fn shape(&self) -> &[usize] {
         &self.shape

@@ -10,6 +10,7 @@ use super::error::StoreError;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
+use survey::file::{create_folders, sync_folder};
 
 /// A target that is being replaced. If it is dropped without [`Replacement::commit`], the target remains as
 /// it was.
@@ -37,7 +38,7 @@ impl Replacement {
     /// When the parent cannot be created.
     pub fn of(target: &Path) -> Result<Self, StoreError> {
         if let Some(parent) = target.parent() {
-            fs::create_dir_all(parent).map_err(|source| StoreError::io("written", parent, source))?;
+            create_folders(parent).map_err(|source| StoreError::io("written", parent, source))?;
         }
         Ok(Self { target: target.to_owned(), partial: partial_of(target) })
     }
@@ -50,7 +51,8 @@ impl Replacement {
     /// Gives what was written the target's name. Its files must be synced already.
     ///
     /// # Errors
-    /// When a rename fails; the target is then what it was.
+    /// When a rename fails: the target is then what it was. When its folder cannot be flushed: the target is new then,
+    /// but may be the old one again after a power cut.
     pub fn commit(self) -> Result<(), StoreError> {
         let fail = |source| StoreError::io("written", &self.target, source);
         sync_folders(&self.partial).map_err(fail)?;
@@ -70,7 +72,7 @@ impl Replacement {
             fs::rename(&self.partial, &self.target).map_err(fail)?;
         }
         if let Some(parent) = self.target.parent() {
-            sync_folder(parent);
+            sync_folder(parent).map_err(|source| StoreError::io("flushed to the disk", parent, source))?;
         }
         Ok(())
     }
@@ -108,20 +110,13 @@ fn remove(path: &Path) {
     let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
 }
 
-/// Flushes a folder's entries. Some file systems cannot; a rename is still atomic there.
-fn sync_folder(folder: &Path) {
-    if let Ok(handle) = File::open(folder) {
-        let _ = handle.sync_all();
-    }
-}
-
 /// Flushes the entries of a folder and of all folders in it.
 fn sync_folders(path: &Path) -> std::io::Result<()> {
     if path.is_dir() {
         for entry in fs::read_dir(path)? {
             sync_folders(&entry?.path())?;
         }
-        sync_folder(path);
+        sync_folder(path)?;
     }
     Ok(())
 }

@@ -1,46 +1,102 @@
-//! Verifies an array as a whole: every file is there, can be decoded, and fits its checksums.
+//! Verifies an array as a whole: every file is there, can be decoded, and fits its checksums. All that is damaged is
+//! found, not just the first of it.
 
 use super::array::StoredArray;
 use super::error::StoreError;
 use super::layout::grid_index;
 use super::sample::StoredSample;
 use rayon::prelude::*;
+use std::path::Path;
 use survey::progress::Progress;
+
+/// How many places of damage are told one by one.
+const TOLD: usize = 4;
+
+/// What is damaged in the arrays of a group, in their order.
+#[derive(Debug, Default)]
+pub(super) struct Findings(Vec<(String, String)>);
+
+impl Findings {
+    /// Notes damage, and files that cannot be read.
+    ///
+    /// # Errors
+    /// Any other error, such as that the user cancelled.
+    fn note(&mut self, array: &StoredArray, error: StoreError) -> Result<(), StoreError> {
+        let reason = match error {
+            StoreError::Damaged { reason, .. } => reason,
+            error @ StoreError::Io { .. } => match std::error::Error::source(&error) {
+                Some(cause) => format!("{error}: {cause}"),
+                None => error.to_string(),
+            },
+            other => return Err(other),
+        };
+        self.0.push((array.name().to_owned(), reason));
+        Ok(())
+    }
+
+    /// # Errors
+    /// [`StoreError::Damaged`] with how many places are damaged, and the first of them, if there are any.
+    pub(super) fn into_result(self, group: &Path) -> Result<(), StoreError> {
+        let Some((first, reason)) = self.0.first() else { return Ok(()) };
+        let reason = if self.0.len() == 1 {
+            reason.clone()
+        } else {
+            let told = self.0.iter().take(TOLD).map(|(array, reason)| match array == first {
+                true => reason.clone(),
+                false => format!("array \"{array}\": {reason}"),
+            });
+            let more = self.0.len().saturating_sub(TOLD);
+            let rest = if more == 0 { String::new() } else { format!("; and {more} more") };
+            format!("{} bricks or files are damaged: {}{rest}", self.0.len(), told.collect::<Vec<_>>().join("; "))
+        };
+        Err(StoreError::Damaged { path: group.to_owned(), array: first.clone(), reason })
+    }
+}
 
 impl StoredArray {
     /// Reads every file of the array, whatever its type, and verifies every checksum. Memory: one file for each
     /// thread.
     pub(super) fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
+        let mut findings = Findings::default();
+        self.find_damage(&mut findings, progress)?;
+        findings.into_result(self.group())
+    }
+
+    /// The same, with the damage of several arrays in one account.
+    pub(super) fn find_damage(&self, findings: &mut Findings, progress: &Progress) -> Result<(), StoreError> {
         match self.type_name().as_str() {
-            "int8" => self.verify_as::<i8>(progress),
-            "uint8" => self.verify_as::<u8>(progress),
-            "int16" => self.verify_as::<i16>(progress),
-            "uint16" => self.verify_as::<u16>(progress),
-            "int32" => self.verify_as::<i32>(progress),
-            "uint32" => self.verify_as::<u32>(progress),
+            "int8" => self.find_damage_as::<i8>(findings, progress),
+            "uint8" => self.find_damage_as::<u8>(findings, progress),
+            "int16" => self.find_damage_as::<i16>(findings, progress),
+            "uint16" => self.find_damage_as::<u16>(findings, progress),
+            "int32" => self.find_damage_as::<i32>(findings, progress),
+            "uint32" => self.find_damage_as::<u32>(findings, progress),
             // What is no number of ours is refused with its type.
-            _ => self.verify_as::<f32>(progress),
+            _ => self.find_damage_as::<f32>(findings, progress),
         }
     }
 
-    fn verify_as<T: StoredSample>(&self, progress: &Progress) -> Result<(), StoreError> {
+    fn find_damage_as<T: StoredSample>(&self, findings: &mut Findings, progress: &Progress) -> Result<(), StoreError> {
         let edge = self.file_shape()?;
         let counts: Vec<usize> = self.shape().iter().zip(&edge).map(|(&n, &edge)| n.div_ceil(edge)).collect();
         let count: usize = counts.iter().product();
         progress.begin(&format!("checking {}", self.label()), count as u64);
-        (0..count).into_par_iter().try_for_each(|n| {
+        let files = (0..count).into_par_iter().map(|n| {
             let index = grid_index(n, &counts);
-            match (self.shards(), index.as_slice()) {
-                (Some(shards), &[x, y, z]) => shards.verify::<T>([x, y, z])?,
+            let found = match (self.shards(), index.as_slice()) {
+                (Some(shards), &[x, y, z]) => shards.damage::<T>([x, y, z]),
                 _ => {
                     let start: Vec<usize> = index.iter().zip(&edge).map(|(&i, &edge)| i * edge).collect();
                     let room = start.iter().zip(self.shape()).zip(&edge);
                     let size: Vec<usize> = room.map(|((&start, &n), &edge)| edge.min(n - start)).collect();
-                    self.read_box::<T>(&start, &size)?;
+                    self.read_box::<T>(&start, &size).err().into_iter().collect()
                 }
-            }
-            Ok(progress.step(1)?)
-        })
+            };
+            progress.step(1)?;
+            Ok(found)
+        });
+        let errors: Vec<Vec<StoreError>> = files.collect::<Result<_, StoreError>>()?;
+        errors.into_iter().flatten().try_for_each(|error| findings.note(self, error))
     }
 
     /// The array as `GROUP/NAME`, for people.
@@ -93,5 +149,34 @@ mod tests {
             fs::write(&file, &good).unwrap();
         }
         assert!(is_whole());
+    }
+
+    #[test]
+    fn every_damaged_brick_is_counted_and_the_first_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.zarr");
+        let size = [130, 130, 66];
+        let samples = (0..size.iter().product::<usize>()).map(|n| (n % 1009) as f32 + 1.0).collect();
+        let volume = Volume::from_samples(size, samples).unwrap();
+        let geometry = SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Milliseconds);
+        write_volume(&path, &volume, &VolumeInfo::of(geometry), &Progress::silent()).unwrap();
+        let data: Vec<_> = files(&path.join("0")).into_iter().filter(|file| !file.ends_with("zarr.json")).collect();
+        let (first, length) = (&data[0], fs::metadata(&data[0]).unwrap().len() as usize);
+        let mut content = fs::read(first).unwrap();
+        // Nowhere near a brick's own edge, so that each belongs to another one.
+        let brick = 64 * 64 * 64 * 4;
+        let places: Vec<usize> = (0..length / brick).map(|n| n * brick + brick / 3).collect();
+        assert!(places.len() >= 6, "{length} bytes in {}", first.display());
+        for &place in &places {
+            content[place] ^= 8;
+        }
+        fs::write(first, content).unwrap();
+        // Another array of the same volume is damaged as well.
+        let coarse = files(&path.join("1")).into_iter().find(|file| !file.ends_with("zarr.json")).unwrap();
+        fs::write(&coarse, "").unwrap();
+        let error = StoredVolume::open(&path).unwrap().verify(&Progress::silent()).unwrap_err().to_string();
+        let count = places.len() + 1;
+        assert!(error.contains(&format!("{count} bricks or files are damaged")), "{error}");
+        assert!(error.contains("brick [0, 0, 0]") && error.contains(&format!("and {} more", count - 4)), "{error}");
     }
 }

@@ -22,6 +22,7 @@ use super::ingest::is_unfinished;
 use super::layout::BRICK;
 use super::pyramid::halved;
 use super::sample::StoredSample;
+use super::verify::Findings;
 use super::volume_info::{KIND, VolumeInfo};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -215,13 +216,13 @@ impl StoredVolume {
     /// for each thread.
     ///
     /// # Errors
-    /// [`StoreError`] with the first file that is missing or damaged, or cancelled.
+    /// [`StoreError::Damaged`] with all that is missing or damaged, of which the first is named; or cancelled.
     pub fn verify(&self, progress: &Progress) -> Result<(), StoreError> {
-        for (level, array) in self.levels.iter().enumerate() {
-            array.verify(progress)?;
-            self.brick_ranges(level)?;
-        }
-        StoredArray::open(&self.path, "live")?.verify(progress)
+        let mut findings = Findings::default();
+        self.levels.iter().try_for_each(|array| array.find_damage(&mut findings, progress))?;
+        StoredArray::open(&self.path, "live")?.find_damage(&mut findings, progress)?;
+        findings.into_result(&self.path)?;
+        (0..self.levels.len()).try_for_each(|level| self.brick_ranges(level).map(drop))
     }
 
     /// The array of a level.

@@ -1,8 +1,12 @@
-//! Reading a file whole, whatever it is: ordinary files of a stated size only.
+//! Reading a file whole, whatever it is: ordinary files of a stated size only. And making sure that what was written
+//! is there after a power cut.
 //!
 //! Projects and the files around them may come from anyone. A pipe would wait for ever, a device such as
 //! `/dev/zero` never ends, and a file may be larger than memory. [`read`] refuses all three before it takes
 //! any memory.
+//!
+//! A file that was made or renamed is there after a power cut when the folder that names it was flushed
+//! ([`sync_folder`]), and that folder is there when the folder above it was ([`create_folders`]).
 
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -64,9 +68,86 @@ pub fn read_text(path: &Path, limit: u64) -> io::Result<String> {
         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, error.utf8_error()))
 }
 
+/// Flushes the entries of a folder to the disk: what was made, renamed or deleted in it is so after a power cut.
+///
+/// Nothing is done where this is impossible, which is known of some systems and file systems: they call it invalid or
+/// unsupported for a folder, or the folder may be written but not opened. Every other failure means that the disk may
+/// not have what was written.
+///
+/// # Errors
+/// The disk fails, or there is no such folder.
+pub fn sync_folder(folder: &Path) -> io::Result<()> {
+    if !cfg!(unix) {
+        return Ok(());
+    }
+    let flushed = match File::open(or_here(folder)) {
+        Ok(handle) => handle.sync_all(),
+        Err(error) if error.kind() == io::ErrorKind::PermissionDenied => return Ok(()),
+        Err(error) => return Err(error),
+    };
+    match flushed {
+        Err(error) if is_impossible(&error) => Ok(()),
+        flushed => flushed,
+    }
+}
+
+/// Whether an error says that a folder cannot be flushed at all. Some network file systems know the handle of a folder
+/// for no handle to flush.
+fn is_impossible(error: &io::Error) -> bool {
+    const BAD_HANDLE: i32 = 9;
+    matches!(error.kind(), io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported)
+        || error.raw_os_error() == Some(BAD_HANDLE)
+}
+
+/// Makes a folder and those above it that are missing. Those that were made are there after a power cut.
+///
+/// # Errors
+/// One of them cannot be made, or the disk fails.
+pub fn create_folders(folder: &Path) -> io::Result<()> {
+    let folder = or_here(folder);
+    if folder.is_dir() {
+        return Ok(());
+    }
+    let above = folder.parent().unwrap_or(folder);
+    if above != folder {
+        create_folders(above)?;
+    }
+    match fs::create_dir(folder) {
+        // Another process was quicker.
+        Err(_) if folder.is_dir() => {}
+        made => made?,
+    }
+    sync_folder(above)
+}
+
+/// The folder, or the present one where a name alone has none.
+fn or_here(folder: &Path) -> &Path {
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn folders_are_made_and_flushed_and_only_what_is_impossible_is_no_failure() {
+        let top = std::env::temp_dir().join(format!("petroglyph-folders-{}", std::process::id()));
+        create_folders(&top.join("a/b")).unwrap();
+        create_folders(&top.join("a/b")).unwrap();
+        assert!(top.join("a/b").is_dir());
+        for folder in [top.as_path(), Path::new(""), Path::new(".")] {
+            sync_folder(folder).unwrap();
+        }
+        #[cfg(unix)]
+        assert_eq!(sync_folder(&top.join("none")).unwrap_err().kind(), io::ErrorKind::NotFound);
+        fs::write(top.join("file"), "").unwrap();
+        assert!(create_folders(&top.join("file/c")).is_err());
+        fs::remove_dir_all(&top).unwrap();
+        #[cfg(target_os = "linux")]
+        for (number, expected) in [(22, true), (95, true), (9, true), (5, false), (28, false), (116, false)] {
+            assert_eq!(is_impossible(&io::Error::from_raw_os_error(number)), expected, "{number}");
+        }
+    }
 
     #[test]
     #[cfg(unix)]

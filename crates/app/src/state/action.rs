@@ -2,7 +2,7 @@
 
 use super::Appearance;
 use super::dialogue::{Dialogue, ExportForm};
-use super::notice::Notice;
+use super::notice::{Notice, Place};
 use super::picking::{PickingStep, PickingTask};
 use super::session::Snapshot;
 use super::view::{Compare, Layout, Panel, StandardView};
@@ -15,6 +15,8 @@ use std::path::PathBuf;
 pub enum Action {
     /// Open a project.
     Open(PathBuf),
+    /// Check a project that may be damaged, and say what was found there.
+    Check(PathBuf, Place),
     /// Continue from the recorded view of the project that was open when the last run ended.
     Recover,
     /// Discard that record.
@@ -95,6 +97,8 @@ pub enum Action {
 pub enum Task {
     /// Open a project.
     Open(PathBuf),
+    /// Check a project.
+    Check(PathBuf, Place),
     /// Make the demonstration in this folder, then open it.
     Demo(PathBuf),
     /// Change the open project.

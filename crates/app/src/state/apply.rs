@@ -11,6 +11,10 @@ impl State {
                 self.quieten(Place::Start);
                 return vec![Task::Open(path)];
             }
+            Action::Check(path, place) => {
+                self.quieten(place);
+                return vec![Task::Check(path, place)];
+            }
             Action::Recover => {
                 self.quieten(Place::Start);
                 return self.remembered.left.iter().map(|left| Task::Open(left.root.clone())).collect();

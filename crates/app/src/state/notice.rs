@@ -1,7 +1,10 @@
 //! Messages: errors and notes, kept where they arose until the user has seen them.
 
 use crate::{fields, hint};
+use project::ProjectError;
+use project::check::CheckReport;
 use project::error::remedy_of;
+use std::path::{Path, PathBuf};
 
 /// The part of the window where a message is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -35,6 +38,8 @@ pub struct Notice {
     pub text: String,
     /// What to do next.
     pub hint: Option<String>,
+    /// A project that may be damaged: a check of it is offered.
+    pub suspect: Option<PathBuf>,
 }
 
 impl Notice {
@@ -50,11 +55,56 @@ impl Notice {
             }
             cause = inner.source();
         }
-        Self { place, failed: true, text, hint }
+        Self { place, failed: true, text, hint, suspect: None }
+    }
+
+    /// A failure with a project, of which a check is offered where that may tell more.
+    pub fn failure_with(place: Place, error: &ProjectError, root: &Path) -> Self {
+        let suspect = may_be_damage(error).then(|| root.to_owned());
+        Self { suspect, ..Self::failure(place, error) }
+    }
+
+    /// What a check found, in short.
+    pub fn checked(place: Place, found: &CheckReport) -> Self {
+        const TOLD: usize = 3;
+        let damage: Vec<_> = found.damage.iter().filter(|damage| !damage.repaired).collect();
+        if damage.is_empty() {
+            let count = found.data_files + found.derived_files;
+            return Self::note(
+                place,
+                format!("nothing is damaged in {}: {count} files were checked", found.project.display()),
+            );
+        }
+        let told: Vec<String> =
+            damage.iter().take(TOLD).map(|damage| format!("{}: {}", damage.what, damage.reason)).collect();
+        let more = damage.len().saturating_sub(TOLD);
+        let rest = if more == 0 { String::new() } else { format!("; and {more} more") };
+        let project = found.project.display();
+        Self {
+            failed: true,
+            hint: Some(format!(
+                "`petroglyph check {project}` says what depends on it and what to do, and repairs with --repair"
+            )),
+            ..Self::note(place, format!("{} damaged in {project}: {}{rest}", damage.len(), told.join("; ")))
+        }
     }
 
     /// A note.
     pub fn note(place: Place, text: impl Into<String>) -> Self {
-        Self { place, failed: false, text: text.into(), hint: None }
+        Self { place, failed: false, text: text.into(), hint: None, suspect: None }
+    }
+}
+
+/// Whether a check may tell more about an error.
+fn may_be_damage(error: &ProjectError) -> bool {
+    match error {
+        ProjectError::Malformed { .. }
+        | ProjectError::OtherContent { .. }
+        | ProjectError::OtherSize { .. }
+        | ProjectError::Unsound { .. }
+        | ProjectError::Link { .. } => true,
+        ProjectError::NotAProject { path, .. } => path.join("history").is_dir(),
+        ProjectError::Store(_) => true,
+        _ => false,
     }
 }

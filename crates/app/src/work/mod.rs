@@ -167,6 +167,7 @@ impl Work {
         let root = || self.root.clone();
         let order = match task {
             Task::Open(root) => orders::Order::Open(root),
+            Task::Check(root, place) => orders::Order::Check(root, place),
             Task::Demo(folder) => orders::Order::Demo(folder),
             Task::Create { command, root } => orders::Order::Create { command, root },
             Task::Apply(command) => match root() {

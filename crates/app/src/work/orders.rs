@@ -5,6 +5,7 @@ use super::running::{Running, RunningGuard};
 use super::{Event, Outbox, keep_working};
 use crate::state::{Notice, Place, Snapshot};
 use project::Project;
+use project::check::check;
 use project::command::{Command, ImportVolume};
 use project::demo;
 use project::error::ProjectError;
@@ -16,6 +17,7 @@ use survey::Progress;
 /// A command, or another order on a project.
 pub(super) enum Order {
     Open(PathBuf),
+    Check(PathBuf, Place),
     Demo(PathBuf),
     Create { command: Box<ImportVolume>, root: PathBuf },
     Apply { root: PathBuf, command: Box<Command>, place: Place },
@@ -29,14 +31,17 @@ pub(super) fn start(outbox: Outbox, running: Running) -> Sender<Order> {
     let told = outbox.clone();
     keep_working("the project", &told, move || {
         while let Ok(order) = orders.recv() {
-            let place = order.place();
+            let (place, root) = (order.place(), order.root());
             let (guard, progress) = running.begin(&order.title(), place, outbox.wake.clone());
             match super::compute(|| order.carry_out(&progress)) {
                 Ok(event) => {
                     tell_warnings(&guard, place, &outbox);
                     outbox.send(event);
                 }
-                Err(error) => outbox.send(Event::Told(Notice::failure(place, &error))),
+                Err(error) => outbox.send(Event::Told(match root {
+                    Some(root) => Notice::failure_with(place, &error, &root),
+                    None => Notice::failure(place, &error),
+                })),
             }
             drop(guard);
             outbox.wake();
@@ -55,6 +60,7 @@ impl Order {
     fn title(&self) -> String {
         match self {
             Self::Open(_) => "Opening the project".to_owned(),
+            Self::Check(..) => "Checking the project".to_owned(),
             Self::Demo(_) => "Making the demonstration".to_owned(),
             Self::Create { command, .. } => format!("Reading {}", file_name(&command.path)),
             Self::Apply { command, .. } => match command.as_ref() {
@@ -71,15 +77,25 @@ impl Order {
     fn place(&self) -> Place {
         match self {
             Self::Open(_) | Self::Demo(_) => Place::Start,
+            Self::Check(_, place) => *place,
             Self::Create { .. } => Place::Dialogue,
             Self::Apply { place, .. } => *place,
             Self::Undo(_) | Self::Redo(_) => Place::Block,
         }
     }
 
+    /// The project that is there already.
+    fn root(&self) -> Option<PathBuf> {
+        match self {
+            Self::Open(root) | Self::Apply { root, .. } | Self::Undo(root) | Self::Redo(root) => Some(root.clone()),
+            Self::Check(..) | Self::Demo(_) | Self::Create { .. } => None,
+        }
+    }
+
     fn carry_out(self, progress: &Progress) -> Result<Event, ProjectError> {
         Ok(match self {
             Self::Open(root) => Event::Opened(Box::new(snapshot(&Project::open(&absolute(&root))?)?)),
+            Self::Check(root, place) => Event::Told(Notice::checked(place, &check(&absolute(&root), progress)?)),
             Self::Demo(folder) => {
                 let done = demo::run(&folder, progress)?;
                 Event::Opened(Box::new(snapshot(&Project::open(&absolute(&done.project))?)?))
@@ -130,6 +146,31 @@ mod tests {
     use std::thread;
     use std::time::{Duration, Instant};
     use survey::{SurveyGeometry, VerticalUnit};
+
+    #[test]
+    fn what_does_not_open_is_offered_a_check_that_says_what_is_damaged() {
+        let folder = tempfile::tempdir().unwrap();
+        let root = folder.path().join("a.petro");
+        Project::create(&root, None).unwrap().publish().unwrap();
+        let open = || {
+            let order = Order::Open(root.clone());
+            let (place, root) = (order.place(), order.root().unwrap());
+            order.carry_out(&Progress::silent()).map_err(|error| Notice::failure_with(place, &error, &root))
+        };
+        let checked = || match Order::Check(root.clone(), Place::Start).carry_out(&Progress::silent()) {
+            Ok(Event::Told(notice)) => notice,
+            _ => panic!("a check only tells"),
+        };
+        assert!(open().is_ok() && !checked().failed);
+        std::fs::write(root.join("project.toml"), "= damaged").unwrap();
+        let Err(notice) = open() else { panic!("it is damaged") };
+        assert_eq!(notice.suspect.as_ref(), Some(&root));
+        let found = checked();
+        assert!(found.failed && found.text.contains("the present state"), "{}", found.text);
+        // Where nothing is, there is nothing to check.
+        std::fs::remove_dir_all(&root).unwrap();
+        assert_eq!(open().err().and_then(|notice| notice.suspect), None);
+    }
 
     #[test]
     fn a_change_waits_for_another_program_that_holds_the_project() {

@@ -23,6 +23,7 @@ pub(super) fn spawn(name: &'static str, outbox: &Outbox, job: impl FnOnce() + Se
             place: Place::Block,
             failed: true,
             text: format!("no thread could be started for {name}: {error}"),
+            suspect: None,
             hint: Some("close other programs, then open the project again".to_owned()),
         }));
     }
@@ -56,6 +57,7 @@ fn stopped(name: &str, panic: &(dyn Any + Send)) -> Notice {
         place: Place::Block,
         failed: true,
         text: format!("an error in the program interrupted {name}: {text}"),
+        suspect: None,
         hint: Some("try again; the project was not changed. Please report what you did".to_owned()),
     }
 }

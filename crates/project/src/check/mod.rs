@@ -20,6 +20,8 @@
 //! | `leftovers` | what no state names |
 //! | `repair` | everything that writes |
 //!
+//! Before a project that is not known here is changed, `refuse_unless_sound` does the quick part of a check.
+//!
 //! Deliberately absent: [`crate::Project`], which opens only what is whole.
 
 mod computed;
@@ -36,7 +38,7 @@ pub use report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Part, Repair
 
 use crate::document::Document;
 use crate::error::ProjectError;
-use crate::folder::{Lock, storage};
+use crate::folder::{Lock, acquaintance, storage};
 use objects::Object;
 use states::States;
 use std::path::Path;
@@ -64,7 +66,42 @@ use survey::Progress;
 /// # Errors
 /// There is no project, it was written by a newer version, or the user cancelled. Damage is no error.
 pub fn check(root: &Path, progress: &Progress) -> Result<CheckReport, ProjectError> {
-    examine(root, None, progress).map(|(report, _)| report)
+    let (report, _) = examine(root, None, progress)?;
+    // Whoever has read the report knows what the project is like.
+    acquaintance::note(root);
+    Ok(report)
+}
+
+/// Looks through a project that this user has neither created nor checked nor changed before: whether what the present
+/// state names is there, and of the right kind. The data themselves are compared when they are read.
+///
+/// # Errors
+/// [`ProjectError::Unsound`] with the first thing that is missing or not what it should be. A check of the whole project
+/// tells all of it; after one, the project is known.
+pub(crate) fn refuse_unless_sound(root: &Path) -> Result<(), ProjectError> {
+    if acquaintance::is_known(root) {
+        return Ok(());
+    }
+    let states = States::read(root)?;
+    let mut found: Vec<(String, String)> = Vec::new();
+    for object in objects::of(&states).iter().filter(|object| object.is_present) {
+        let file = object.entry.file();
+        if let Err(reason) = verify::is_there(root, file, object.is_folder()) {
+            found.push((file.to_owned(), reason));
+        }
+    }
+    match found.first() {
+        None => {
+            acquaintance::note(root);
+            Ok(())
+        }
+        Some((file, reason)) => Err(ProjectError::Unsound {
+            path: root.to_owned(),
+            count: found.len(),
+            file: file.clone(),
+            reason: reason.clone(),
+        }),
+    }
 }
 
 /// The report, and the states it is based on; `lock` is that of the project, if it is held.

@@ -96,6 +96,13 @@ pub(super) struct Object<'a> {
     pub steps: Vec<u32>,
 }
 
+impl Object<'_> {
+    /// Whether it is a folder, else a file.
+    pub fn is_folder(&self) -> bool {
+        matches!(self.entry, Entry::Volume(_) | Entry::Horizon(_))
+    }
+}
+
 /// The entries of a state.
 fn entries(document: &Document) -> impl Iterator<Item = Entry<'_>> {
     let volumes = document.volumes.iter().map(Entry::Volume);

@@ -7,7 +7,7 @@ use super::report::{CheckReport, Cure, Damage, Leftover, LeftoverKind, Part, Rep
 use super::states::{DAMAGED, DAMAGED_STATE, States};
 use crate::document::data_file;
 use crate::error::ProjectError;
-use crate::folder::{Lock, Step, history, storage};
+use crate::folder::{Lock, Step, acquaintance, forget_creation, history, storage};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -25,6 +25,7 @@ pub fn repair(root: &Path, wait: Duration, progress: &Progress) -> Result<CheckR
     let before = States::read(root)?;
     storage::refuse_links(root)?;
     let lock = Lock::take(root, wait, progress)?;
+    forget_creation(root);
     let mut repairs = Vec::new();
     if before.present().is_some() {
         // A command that was killed after its state was saved still gets its step.
@@ -44,6 +45,7 @@ pub fn repair(root: &Path, wait: Duration, progress: &Progress) -> Result<CheckR
     // Succeeds only if nothing is in it.
     let _ = fs::remove_dir(root.join(storage::UNFINISHED));
     report.repairs = repairs;
+    acquaintance::note(root);
     Ok(report)
 }
 
@@ -86,7 +88,7 @@ fn mend_history(
         repairs.push(Repair::Made { folder: "history".to_owned() });
         repaired(report, |damage| damage.file == "history");
     }
-    for unreadable in &states.unreadable {
+    for unreadable in states.unreadable.iter().filter(|unreadable| !unreadable.is_newer) {
         let Some(number) = unreadable.number else { continue };
         let to = free_name(root, &format!("{DAMAGED}/{number:04}.toml"));
         storage::rename(&root.join(&unreadable.file), &root.join(&to))?;
@@ -95,7 +97,8 @@ fn mend_history(
     }
     let (Some(text), Some(document)) = (states.present_text(), states.present()) else { return Ok(()) };
     let number = document.step;
-    if folder.is_dir() && states.step(number).is_none() {
+    let is_there = fs::symlink_metadata(root.join(history::file_of(number))).is_ok();
+    if folder.is_dir() && states.step(number).is_none() && !is_there {
         let summary = "recorded again by a repair".to_owned();
         let step = Step { summary, project: text.to_owned(), command: None };
         history::record(root, number, &step)?;

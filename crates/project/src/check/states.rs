@@ -20,6 +20,8 @@ pub(super) struct Unreadable {
     pub number: Option<u32>,
     /// What is wrong with it.
     pub reason: String,
+    /// Whether it is a step that a newer version of the program wrote: it is no damage.
+    pub is_newer: bool,
     /// Its bytes, as far as they can be read: they show what it may name.
     pub text: Option<String>,
 }
@@ -58,7 +60,7 @@ impl States {
             set_aside: Vec::new(),
             history_trouble: None,
         };
-        states.read_history(root)?;
+        states.read_history(root);
         let has_state = fs::symlink_metadata(root.join(storage::STATE)).is_ok();
         if !has_state && states.steps.is_empty() && states.unreadable.is_empty() {
             return not_a_project("it has neither a project.toml nor a history");
@@ -68,12 +70,12 @@ impl States {
         let moved = storage::names_in(&root.join(DAMAGED)).into_iter().map(|name| format!("{DAMAGED}/{name}"));
         for file in kept.chain(moved) {
             let text = raw(&root.join(&file));
-            states.set_aside.push(Unreadable { file, number: None, reason: String::new(), text });
+            states.set_aside.push(Unreadable { file, number: None, reason: String::new(), is_newer: false, text });
         }
         Ok(states)
     }
 
-    fn read_history(&mut self, root: &Path) -> Result<(), ProjectError> {
+    fn read_history(&mut self, root: &Path) {
         match fs::symlink_metadata(root.join("history")) {
             Ok(facts) if facts.is_dir() => {}
             Ok(facts) if facts.is_symlink() => self.history_trouble = Some("it is a link".to_owned()),
@@ -84,28 +86,28 @@ impl States {
             Err(error) => self.history_trouble = Some(error.to_string()),
         }
         if self.history_trouble.is_some() {
-            return Ok(());
+            return;
         }
         for number in history::numbers(root).into_iter().collect::<BTreeSet<_>>() {
             let file = history::file_of(number);
             let path = root.join(&file);
             let step = plain_text(&path)
-                .and_then(|text| toml::from_str::<Step>(&text).map_err(|error| first_line(&error.to_string())));
+                .and_then(|text| toml::from_str::<Step>(&text).map_err(|error| first_line(&error.to_string())))
+                .map_err(|reason| (reason, false));
             let known = step.and_then(|step| match Document::from_text(&step.project, &path) {
-                Ok(document) if document.step == number => Ok(Ok((step, document))),
-                Ok(document) => Err(format!("it holds the state of step {}", document.step)),
-                Err(error @ ProjectError::Newer { .. }) => Ok(Err(error)),
-                Err(error) => Err(detail(&error)),
+                Ok(document) if document.step == number => Ok((step, document)),
+                Ok(document) => Err((format!("it holds the state of step {}", document.step), false)),
+                Err(error @ ProjectError::Newer { .. }) => Err((error.to_string(), true)),
+                Err(error) => Err((detail(&error), false)),
             });
             match known {
-                Ok(known) => drop(self.steps.insert(number, known?)),
-                Err(reason) => {
+                Ok(known) => drop(self.steps.insert(number, known)),
+                Err((reason, is_newer)) => {
                     let text = raw(&path);
-                    self.unreadable.push(Unreadable { file, number: Some(number), reason, text });
+                    self.unreadable.push(Unreadable { file, number: Some(number), reason, is_newer, text });
                 }
             }
         }
-        Ok(())
     }
 
     fn read_present(&mut self, root: &Path) -> Result<(), ProjectError> {
@@ -121,6 +123,7 @@ impl States {
                 file: storage::STATE.to_owned(),
                 number: None,
                 reason,
+                is_newer: false,
                 text: raw(&path),
             }),
         }
@@ -209,7 +212,10 @@ pub(super) fn report(states: &States, report: &mut CheckReport) {
             ..Damage::of("history", reason)
         });
     }
-    for unreadable in &states.unreadable {
+    for newer in states.unreadable.iter().filter(|unreadable| unreadable.is_newer) {
+        report.notes.push(format!("{}: undo and redo stop there, and whatever it may name is kept", newer.reason));
+    }
+    for unreadable in states.unreadable.iter().filter(|unreadable| !unreadable.is_newer) {
         let damage = Damage::of(&unreadable.file, &unreadable.reason);
         report.damage.push(match unreadable.number {
             Some(number) => Damage {

@@ -17,8 +17,7 @@ use ttf::TextureLibrary;
 /// The user cancelled.
 pub(super) fn verify(root: &Path, object: &Object, progress: &Progress) -> Result<Result<(), String>, ProjectError> {
     let file = object.entry.file();
-    let is_folder = matches!(object.entry, Entry::Volume(_) | Entry::Horizon(_));
-    if let Err(reason) = is_there(root, file, is_folder) {
+    if let Err(reason) = is_there(root, file, object.is_folder()) {
         return Ok(Err(reason));
     }
     outcome(content_of(root, object, progress).and_then(|()| Ok(progress.step(1)?)))

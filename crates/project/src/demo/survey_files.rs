@@ -15,8 +15,8 @@ use formats::Format;
 use segy::WriteOptions;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::fmt;
 use std::path::{Path, PathBuf};
-use std::{fmt, fs};
 use store::{StoreError, replace_file};
 use survey::{Contact, Horizon, Progress, file};
 use synth::{SynthSettings, SynthTruth, Synthetic};
@@ -122,7 +122,7 @@ pub struct SynthFiles {
 pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<SynthFiles, ProjectError> {
     let folder = |name: &str| {
         let path = out.join(name);
-        fs::create_dir_all(&path).map_err(|source| StoreError::io("written", &path, source)).map(|()| path)
+        file::create_folders(&path).map_err(|source| StoreError::io("written", &path, source)).map(|()| path)
     };
     let (horizons, faults) = (folder("horizons")?, folder("faults")?);
     let options = WriteOptions::default();

@@ -69,6 +69,9 @@ impl Drop for Draft {
         if !self.kept {
             // Removes what was published before saving failed; if the state was saved after all, its data stays.
             let _ = history::release(&self.root, self.written.iter().cloned().collect());
+        } else if history::is_incomplete(&self.root) {
+            // The state was saved and its step could not be: the next writer needs what is there for that.
+            return;
         }
         storage::remove(&self.root, storage::UNFINISHED);
     }

@@ -70,11 +70,12 @@ fn read_step(path: &Path) -> Result<Step, ProjectError> {
         .map_err(|error| ProjectError::Malformed { path: path.to_owned(), detail: error.to_string() })
 }
 
-/// Writes step `number` so that [`complete`] or [`recover`] can finish it.
+/// Writes step `number` so that [`complete`] or [`recover`] can finish it, also after a power cut: it is on the disk
+/// before any data that it names.
 pub(crate) fn prepare(root: &Path, number: u32, step: &Step) -> Result<(), ProjectError> {
     let text = toml::to_string_pretty(step)
         .map_err(|error| ProjectError::Malformed { path: root.join(file_of(number)), detail: error.to_string() })?;
-    storage::write_unfinished(root, &file_of(number), text.as_bytes())
+    storage::leave_unfinished(root, &file_of(number), text.as_bytes())
 }
 
 /// Writes a step that is missing in the history; no other step changes.
@@ -91,6 +92,11 @@ pub(crate) fn complete(root: &Path, number: u32) -> Result<(), ProjectError> {
     forget(root, |old| old >= number || old.saturating_add(HISTORY_LIMIT) <= number)?;
     storage::rename(&storage::unfinished(root, &file_of(number)), &root.join(file_of(number)))?;
     release_forgotten(root)
+}
+
+/// Whether a step still waits to take its place, or to be deleted.
+pub(crate) fn is_incomplete(root: &Path) -> bool {
+    ["history", "forgotten"].iter().any(|folder| !numbers_in(&storage::unfinished(root, folder)).is_empty())
 }
 
 /// Drops everything but step `number`, and the data that only the dropped steps refer to.

@@ -15,6 +15,9 @@ use survey::{Progress, file};
 /// How long a command waits by default for another that is changing the project.
 pub const DEFAULT_WAIT: Duration = Duration::from_secs(10);
 
+/// Marks the folder of a project that is being created; locked by its creator.
+pub(crate) const CREATING: &str = "creating";
+
 /// Between two looks at a lock that is held.
 const PAUSE: Duration = Duration::from_millis(50);
 
@@ -69,6 +72,14 @@ impl Lock {
 impl Drop for Lock {
     fn drop(&mut self) {
         self.say("");
+    }
+}
+
+/// Removes the mark of a creation that was killed when its project already had its name; not that of one under way.
+pub(crate) fn forget_creation(root: &Path) {
+    let is_free = File::open(root.join(CREATING)).is_ok_and(|mark| mark.try_lock().is_ok());
+    if is_free {
+        storage::remove(root, CREATING);
     }
 }
 

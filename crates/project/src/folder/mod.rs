@@ -2,6 +2,7 @@
 //!
 //! Every read and write of a project's own files goes through here, and so does every deletion.
 
+pub(crate) mod acquaintance;
 mod draft;
 mod handle;
 pub(crate) mod history;
@@ -15,5 +16,5 @@ pub use lock::DEFAULT_WAIT;
 pub use output::refuse_inside_project;
 pub use storage::{at_hand, open_own};
 
-pub(crate) use lock::Lock;
+pub(crate) use lock::{CREATING, Lock, forget_creation};
 pub(crate) use storage::IMPORTING;

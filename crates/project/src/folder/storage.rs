@@ -19,6 +19,7 @@ use crate::folder::handle;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use survey::file::{create_folders, sync_folder};
 
 /// The file of the state.
 pub(crate) const STATE: &str = "project.toml";
@@ -36,8 +37,9 @@ pub(crate) const IMPORTING: &str = "importing";
 const FOLDERS: [&str; 4] = ["history", DERIVED, UNFINISHED, IMPORTING];
 const FILES: [&str; 4] = [STATE, "lock", "creating", "window.lock"];
 
-/// Refuses a project in which a link could lead a writer outside: every folder and file that commands write to, and
-/// everything in it, must be a real folder or file. Nothing is written before this check has passed.
+/// Refuses a project in which a link could lead outside: every folder and file that commands read or write, and
+/// everything in it, must be a real folder or file. Nothing but `project.toml` is read before this check has passed, and
+/// nothing is written.
 ///
 /// # Errors
 /// [`ProjectError::Link`] with the first link found, or a folder cannot be read.
@@ -101,12 +103,22 @@ pub(crate) fn publish(root: &Path, file: &str) -> Result<(), ProjectError> {
 }
 
 /// Writes `bytes` to the path where `file` waits to be published.
-pub(crate) fn write_unfinished(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
+fn write_unfinished(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
     let path = begin(root, file)?;
     write_durably(&path, bytes)
 }
 
+/// The same, and what was written is there under its name after a power cut.
+pub(crate) fn leave_unfinished(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
+    write_unfinished(root, file, bytes)?;
+    let path = unfinished(root, file);
+    path.ancestors().skip(1).take_while(|folder| folder.starts_with(root)).try_for_each(flush_names)
+}
+
 /// Replaces `file` by `bytes`: at any moment either the old or the new content is there.
+///
+/// # Errors
+/// It still has the old content; or, as [`ProjectError::NotFlushed`], the new one that the disk may not have yet.
 pub(crate) fn replace(root: &Path, file: &str, bytes: &[u8]) -> Result<(), ProjectError> {
     write_unfinished(root, file, bytes)?;
     rename(&unfinished(root, file), &root.join(file))
@@ -120,23 +132,22 @@ fn write_durably(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
 }
 
 /// Renames and flushes the entries of both folders.
+///
+/// # Errors
+/// It could not be renamed; or, as [`ProjectError::NotFlushed`], it was, but may not be so after a power cut.
 pub(crate) fn rename(from: &Path, to: &Path) -> Result<(), ProjectError> {
     let fail = |source| ProjectError::io("written", to, source);
     if let Some(parent) = to.parent() {
-        fs::create_dir_all(parent).map_err(fail)?;
+        create_folders(parent).map_err(fail)?;
     }
     fs::rename(from, to).map_err(fail)?;
-    for folder in [to.parent(), from.parent()].into_iter().flatten() {
-        sync_folder(folder);
-    }
-    Ok(())
+    let folders = [to.parent(), from.parent().filter(|folder| Some(*folder) != to.parent())];
+    folders.into_iter().flatten().try_for_each(flush_names)
 }
 
-/// Flushes a folder's entries. Some file systems cannot; the rename itself is still atomic there.
-fn sync_folder(folder: &Path) {
-    if let Ok(handle) = File::open(folder) {
-        let _ = handle.sync_all();
-    }
+/// Flushes the entries of a folder.
+fn flush_names(folder: &Path) -> Result<(), ProjectError> {
+    sync_folder(folder).map_err(|source| ProjectError::NotFlushed { path: folder.to_owned(), source })
 }
 
 /// Flushes a file or everything in a folder to the disk.
@@ -146,8 +157,7 @@ fn sync_tree(path: &Path) -> Result<(), ProjectError> {
         for entry in fs::read_dir(path).map_err(fail)? {
             sync_tree(&entry.map_err(fail)?.path())?;
         }
-        sync_folder(path);
-        Ok(())
+        flush_names(path)
     } else {
         File::open(path).and_then(|file| file.sync_all()).map_err(fail)
     }

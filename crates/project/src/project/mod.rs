@@ -14,21 +14,23 @@
 //! [`Project::apply`] is the only way to change a project. It takes the lock, reads the state again if another process
 //! has changed it, lets the [`Command`] write new data and a new state, and then replaces `project.toml` by a rename.
 //! Before that moment the old state is valid, after it the new one. If anything fails, what was written is removed. A
-//! project may come from a stranger: before anything is written or deleted, no part of it may be a link, and every data
-//! file that a state names must be `KIND/NAME`.
+//! project may come from a stranger: before anything is read, no part of it may be a link, and every data file that a
+//! state names must be `KIND/NAME`; one that was never used here is looked through before it is changed.
 //!
 //! Deliberately absent: no state is kept in memory that is not on disk, and nothing that is saved is edited
 //! in place.
 
+use crate::check::refuse_unless_sound;
 use crate::command::{Command, Effect};
 use crate::derived;
 use crate::document::{Document, data_file};
 use crate::error::ProjectError;
-use crate::folder::{self, Draft, IMPORTING, Lock, Step, history, storage};
+use crate::folder::{self, CREATING, Draft, IMPORTING, Lock, Step, acquaintance, forget_creation, history, storage};
 use crate::interpretation::{extraction, proposals};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
+use survey::file::{create_folders, sync_folder};
 use survey::{Progress, SurveyGeometry};
 
 /// An open project. It is changed by [`Command`]s, each of which can be undone.
@@ -74,7 +76,7 @@ impl Project {
     /// Opens the project in the folder `root`.
     ///
     /// # Errors
-    /// The project is missing, is not a project, was written by a newer version, or cannot be read.
+    /// The project is missing, is not a project, contains a link, was written by a newer version, or cannot be read.
     pub fn open(root: &Path) -> Result<Self, ProjectError> {
         let not_a_project = |fact| Err(ProjectError::NotAProject { path: root.to_owned(), fact });
         if !root.exists() {
@@ -87,6 +89,7 @@ impl Project {
         if !path.exists() {
             return not_a_project("it has no project.toml");
         }
+        storage::refuse_links(root)?;
         let text = storage::read_text(&path)?;
         let document = Document::from_text(&text, &path)?;
         Ok(Self { root: root.to_owned(), text, document, wait: Duration::ZERO })
@@ -188,6 +191,8 @@ impl Project {
     fn lock(&mut self, progress: &Progress) -> Result<Lock, ProjectError> {
         storage::refuse_links(&self.root)?;
         let lock = Lock::take(&self.root, self.wait, progress)?;
+        refuse_unless_sound(&self.root)?;
+        forget_creation(&self.root);
         let path = self.root.join(storage::STATE);
         let text = storage::read_text(&path)?;
         history::recover(&self.root, &text)?;
@@ -221,14 +226,14 @@ impl Project {
         let step = Step { summary, command: command.map(recorded).transpose()?, project: text.clone() };
         history::prepare(&self.root, number, &step)?;
         draft.publish()?;
-        storage::replace(&self.root, storage::STATE, text.as_bytes())?;
+        let saved = is_in_place(storage::replace(&self.root, storage::STATE, text.as_bytes()))?;
         self.text = text;
         self.document = document;
         // The new state is saved; if cleaning up fails, the next writer does it.
-        let _ = history::complete(&self.root, number);
+        let completed = is_in_place(history::complete(&self.root, number)).unwrap_or(Ok(()));
         draft.keep();
         self.settle_derived();
-        Ok(())
+        saved.and(completed)
     }
 
     /// Moves the extraction that the state names to its place, and removes what no state of the history names.
@@ -241,12 +246,21 @@ impl Project {
     fn restore(&mut self, step: Step) -> Result<(), ProjectError> {
         let path = self.root.join(storage::STATE);
         let document = Document::from_text(&step.project, &path)?;
-        storage::replace(&self.root, storage::STATE, step.project.as_bytes())?;
+        let saved = is_in_place(storage::replace(&self.root, storage::STATE, step.project.as_bytes()))?;
         storage::remove(&self.root, storage::UNFINISHED);
         self.document = document;
         self.text = step.project;
         self.settle_derived();
-        Ok(())
+        saved
+    }
+}
+
+/// Takes apart whether a file has its new content, and whether the disk has confirmed that: the work that follows is
+/// finished in either case, so that state and history agree.
+fn is_in_place(replaced: Result<(), ProjectError>) -> Result<Result<(), ProjectError>, ProjectError> {
+    match replaced {
+        Err(error @ ProjectError::NotFlushed { .. }) => Ok(Err(error)),
+        replaced => replaced.map(Ok),
     }
 }
 
@@ -255,9 +269,6 @@ fn recorded(command: &Command) -> Result<toml::Value, ProjectError> {
     toml::Value::try_from(command)
         .map_err(|error| ProjectError::Malformed { path: PathBuf::from("history"), detail: error.to_string() })
 }
-
-/// Marks the folder of a project that is being created; locked by its creator.
-const CREATING: &str = "creating";
 
 /// The folder in which the project for `destination` is created: `.NAME.new` beside it.
 fn in_the_making(destination: &Path) -> Result<PathBuf, ProjectError> {
@@ -290,11 +301,12 @@ impl NewProject {
         if root.exists() && !is_ours {
             return Err(ProjectError::Exists { path: root });
         }
-        fs::create_dir_all(&root).map_err(fail)?;
+        create_folders(&root).map_err(fail)?;
         storage::refuse_links(&root)?;
         // Two processes may want to create the same project. The folder is locked under another name than the one that
-        // the project's own commands use.
+        // the project's own commands use. Nothing is on the disk before the file that shows whose folder it is.
         let lock = Lock::take_named(&root, CREATING)?;
+        sync_folder(&root).map_err(fail)?;
         let path = root.join(storage::STATE);
         let document = Document::empty(geometry);
         let text = document.to_text(&path)?;
@@ -339,12 +351,14 @@ impl NewProject {
         if self.destination.exists() {
             return Err(ProjectError::Exists { path: self.destination.clone() });
         }
-        storage::remove(&self.project.root, CREATING);
         // What a killed import had written for a project of this name.
         storage::remove(&self.project.root, IMPORTING);
-        storage::rename(&self.project.root, &self.destination)?;
+        // The mark goes after the name was given: without it nobody would know whose folder it is after a kill.
+        let named = is_in_place(storage::rename(&self.project.root, &self.destination))?;
         self.published = true;
-        Project::open(&self.destination)
+        storage::remove(&self.destination, CREATING);
+        acquaintance::note(&self.destination);
+        named.and_then(|()| Project::open(&self.destination))
     }
 }
 

@@ -65,20 +65,25 @@ impl Shards {
 
     /// Whether the shard is there and all its checksums fit.
     pub fn is_whole<T: StoredSample>(&self, index: [usize; 3]) -> bool {
-        self.verify::<T>(index).is_ok()
+        self.damage::<T>(index).is_empty()
     }
 
-    /// Reads all of the shard and verifies every checksum in it.
-    pub fn verify<T: StoredSample>(&self, index: [usize; 3]) -> Result<(), StoreError> {
+    /// Reads all of the shard and verifies every checksum in it; returns an error for each brick that does not fit, or
+    /// one for the shard.
+    pub fn damage<T: StoredSample>(&self, index: [usize; 3]) -> Vec<StoreError> {
         let all = Lines { x: 0..self.grid.chunk[0], y: 0..self.grid.chunk[1] };
         let mut room = Vec::new();
-        let explain = |trouble| self.explain(index, trouble);
-        let shard = self.shard::<T>(index)?;
-        let reader = shard.reader().map_err(explain)?;
-        for chunk in (0..shard.count()).filter(|&chunk| !shard.is_absent(chunk)) {
-            reader.read::<T>(chunk, &all, &mut room).map_err(explain)?;
-        }
-        Ok(())
+        let shard = match self.shard::<T>(index) {
+            Ok(shard) => shard,
+            Err(error) => return vec![error],
+        };
+        let reader = match shard.reader() {
+            Ok(reader) => reader,
+            Err(trouble) => return vec![self.explain(index, trouble)],
+        };
+        let stored = (0..shard.count()).filter(|&chunk| !shard.is_absent(chunk));
+        let troubles = stored.filter_map(|chunk| reader.read::<T>(chunk, &all, &mut room).err());
+        troubles.map(|trouble| self.explain(index, trouble)).collect()
     }
 
     /// The stored checksum of every chunk, shard by shard; 0 for those that hold only the fill value. They

@@ -1,0 +1,113 @@
+//! What to do next about an error, where that does not depend on who shows it.
+
+use super::ProjectError;
+use formats::FormatError;
+use formats::well::WellFileError;
+use segy::SegyError;
+use survey::Remedy;
+
+impl ProjectError {
+    /// What to do next, if the advice is the same wherever the error is shown. The other errors get advice from the
+    /// program that shows them, or contain it themselves.
+    pub fn advice(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::NotAProject { .. } => "give the folder that holds project.toml, usually NAME.petro",
+            Self::Exists { .. } => "choose another name, or move the old project away first",
+            Self::Newer { .. } => "update Petroglyph, or ask for the project to be saved by the older version",
+            Self::Malformed { .. } => "undo the last edit by hand, or copy the last good state from history/",
+            Self::Locked { .. } => "wait until the other command has finished, then try again; nothing was changed",
+            Self::InsideProject { .. } => "give a file outside of the project's folder",
+            Self::OtherSize { .. } => "undo the last edit by hand, or import the data again",
+            Self::OtherContent { .. } => {
+                "the file was changed or damaged outside of Petroglyph: copy it back from a backup, or remove it from the project and import it again"
+            }
+            Self::Link { .. } => {
+                "if you trust the origin of the project, replace the link by a copy of the file or folder; nothing was changed"
+            }
+            Self::NotFlushed { .. } => {
+                "the disk or its connection may be failing: copy the project elsewhere, then look here again"
+            }
+            Self::ReadOnly { .. } => "copy the project to a folder you may write to; nothing was changed",
+            Self::SeveralHorizons { .. } => "make the picks of each horizon in a separate step",
+            Self::FlatSticks { .. } => "draw sticks next to one another, each along the dip of the fault",
+            Self::NoEvidence => "assemble or import horizons first",
+            Self::BadName { .. } => "use letters, digits, blanks, - and _",
+            Self::Cancelled(_) => "nothing was changed",
+            Self::OtherLattice { .. } => {
+                "extract from a volume on the project's lattice, or import this one into a new project"
+            }
+            Self::Geometry(_) => "check the header bytes or bounds from which the geometry is made",
+            Self::CircularTruncation { .. } => "remove one of these truncations",
+            Self::Io { .. }
+            | Self::Segy(_)
+            | Self::Format(_)
+            | Self::Well(_)
+            | Self::Store(_)
+            | Self::Synth(_)
+            | Self::Assembly(_)
+            | Self::Attribute(_)
+            | Self::Model(_)
+            | Self::Param(_)
+            | Self::Interp(_)
+            | Self::Memory(_)
+            | Self::Render(_)
+            | Self::AlreadyPicked { .. }
+            | Self::AtLeaf { .. }
+            | Self::Crossing { .. }
+            | Self::DiskFull { .. }
+            | Self::Duplicate { .. }
+            | Self::Figure(_)
+            | Self::NoCandidate { .. }
+            | Self::NoGeometry
+            | Self::NoProposals
+            | Self::NoVolume
+            | Self::NotATruth { .. }
+            | Self::NotAssembled { .. }
+            | Self::NotDrawn { .. }
+            | Self::NotExtracted
+            | Self::NotFound { .. }
+            | Self::NotPicked { .. }
+            | Self::NothingLeft { .. }
+            | Self::NothingToRedo
+            | Self::NothingToUndo
+            | Self::OutdatedPicks { .. }
+            | Self::OutdatedProposals
+            | Self::PickOutside { .. }
+            | Self::Placement { .. }
+            | Self::Scene(_)
+            | Self::SeveralInFile { .. }
+            | Self::ShortStick { .. }
+            | Self::Style(_)
+            | Self::UnfitPicks { .. }
+            | Self::Unknown { .. }
+            | Self::UnknownPick { .. }
+            | Self::UnknownProposal { .. }
+            | Self::Unsound { .. } => return None,
+        })
+    }
+
+    /// What can be stated about a file so that the error does not occur again, if that is known.
+    pub fn remedy(&self) -> Option<Remedy> {
+        match self {
+            Self::Segy(error) => error.remedy(),
+            Self::Format(error) => error.remedy(),
+            Self::Well(error) => error.remedy(),
+            _ => None,
+        }
+    }
+}
+
+/// What can be stated about a file to resolve an error, wherever in its chain of causes that is known.
+pub fn remedy_of(error: &(dyn std::error::Error + 'static)) -> Option<Remedy> {
+    std::iter::successors(Some(error), |error| error.source()).find_map(|error| {
+        if let Some(error) = error.downcast_ref::<ProjectError>() {
+            error.remedy()
+        } else if let Some(error) = error.downcast_ref::<SegyError>() {
+            error.remedy()
+        } else if let Some(error) = error.downcast_ref::<FormatError>() {
+            error.remedy()
+        } else {
+            error.downcast_ref::<WellFileError>()?.remedy()
+        }
+    })
+}

@@ -1,0 +1,197 @@
+//! The commands that change files, each with the small folder that it begins in.
+
+use super::run_once;
+use segy::WriteOptions;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+use std::sync::OnceLock;
+use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+use tempfile::TempDir;
+
+/// A command and where it begins.
+#[derive(Clone, Copy)]
+pub struct Scenario {
+    /// The folder that it begins in.
+    pub start: Start,
+    /// What is done in it first.
+    pub prepare: fn(&Path),
+    /// The command.
+    pub line: &'static str,
+    /// The project that it changes or makes.
+    pub project: &'static str,
+}
+
+/// A folder to begin in.
+#[derive(Debug, Clone, Copy)]
+pub enum Start {
+    /// Files to import alone.
+    Files,
+    /// The project `p.petro` with a volume, two horizons and a fault.
+    Imported,
+    /// The same with candidates and a horizon picked from them.
+    Extracted,
+}
+
+impl Start {
+    /// The folder; it is made once.
+    pub fn folder(self) -> &'static Path {
+        static FOLDERS: [OnceLock<TempDir>; 3] = [const { OnceLock::new() }; 3];
+        let folder = FOLDERS[self as usize].get_or_init(|| {
+            let folder = tempfile::tempdir().expect("a temporary folder");
+            let at = folder.path();
+            match self {
+                Self::Files => write_files(at),
+                Self::Imported => {
+                    crate::program::copy(Self::Files.folder(), at);
+                    all(at, &["import a.sgy p.petro", ADD_TOP, "horizon add p.petro base.csv --name Base", ADD_FAULT]);
+                }
+                Self::Extracted => {
+                    crate::program::copy(Self::Imported.folder(), at);
+                    all(at, &["extract p.petro --min-leaf-triangles 20", PICK, PICK_MORE]);
+                }
+            }
+            folder
+        });
+        folder.path()
+    }
+}
+
+const ADD_TOP: &str = "horizon add p.petro top.csv --name Top";
+const ADD_FAULT: &str = "fault pick p.petro --name F --stick 3,2,4 3,2,60 --stick 3,9,4 3,9,60";
+const PICK: &str = "pick p.petro --at 4,4,32 --horizon Picked --highest-valid";
+const PICK_MORE: &str = "pick p.petro --at 10,4,44 --horizon Picked";
+
+/// Carries out commands one after another.
+fn all(at: &Path, lines: &[&str]) {
+    for line in lines {
+        run_once(at, line).done();
+    }
+}
+
+/// Inlines, crosslines and samples of the survey.
+const SIZE: [usize; 3] = [12, 12, 24];
+
+/// A survey with a fault between inlines 6 and 7, and files of all kinds to go with it.
+fn write_files(at: &Path) {
+    let geometry = SurveyGeometry::regular(SIZE, 25.0, 4.0, VerticalUnit::Milliseconds);
+    let [inlines, crosslines, samples] = SIZE;
+    let mut values = Vec::new();
+    for n in 0..inlines * crosslines * samples {
+        let (inline, sample) = (n / (crosslines * samples), n % samples);
+        let phase = sample as f32 - if inline < 6 { 0.0 } else { 3.0 };
+        values.push((phase * std::f32::consts::TAU / 8.0).cos() * 100.0);
+    }
+    let volume = Volume::from_samples(SIZE, values).unwrap();
+    segy::write(&at.join("a.sgy"), &geometry, &volume, &WriteOptions::default(), &Progress::silent()).unwrap();
+    for (name, z) in [("top.csv", 28.0), ("base.csv", 60.0)] {
+        let mut text = "x,y,z\n".to_owned();
+        for (x, y) in (0..inlines * crosslines).map(|n| (n / crosslines, n % crosslines)).filter(|at| *at != (5, 5)) {
+            writeln!(text, "{},{},{z}", x * 25, y * 25).unwrap();
+        }
+        fs::write(at.join(name), text).unwrap();
+    }
+    fs::write(at.join("A.csv"), "md_m,inc,azi\n0,0,0\n90,0,0\n").unwrap();
+    fs::write(at.join("tops.csv"), "surface,md_m,well\nTop,35,A-1\n").unwrap();
+    image::RgbImage::from_pixel(4, 4, image::Rgb([1, 0, 0])).save(at.join("tile.png")).unwrap();
+}
+
+const fn of(start: Start, line: &'static str) -> Scenario {
+    Scenario { start, prepare: |_| {}, line, project: "p.petro" }
+}
+
+const fn after(start: Start, prepare: fn(&Path), line: &'static str) -> Scenario {
+    Scenario { prepare, ..of(start, line) }
+}
+
+use Start::{Extracted, Files, Imported};
+
+/// What makes files and projects.
+pub const MAKING: [Scenario; 5] = [
+    of(Files, "synth s --size 24x24x48 --seed 3"),
+    of(Files, "create p.petro --bounds 0,1000,0,1000,0,1000 --size 9x9x9"),
+    of(Files, "import a.sgy p.petro"),
+    of(Imported, "import a.sgy p.petro --name second"),
+    of(Imported, "volume remove p.petro seismic"),
+];
+
+/// What changes horizons, faults and wells.
+pub const INTERPRETING: [Scenario; 10] = [
+    of(Imported, "horizon add p.petro top.csv --name Another"),
+    of(Imported, "horizon rename p.petro Top Roof"),
+    of(Imported, "horizon contact p.petro Base erosional"),
+    of(Imported, "horizon remove p.petro Top"),
+    of(Imported, "fault pick p.petro --name G --stick 8,2,4 8,2,60 --stick 8,9,4 8,9,60"),
+    of(Imported, "fault remove p.petro F"),
+    of(Imported, "well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"),
+    after(Imported, with_well, "well rename p.petro A-1 B-2"),
+    after(Imported, with_well, "well remove p.petro A-1"),
+    of(Imported, "velocity p.petro 2500"),
+];
+
+/// What is done with candidates and proposals.
+pub const PICKING: [Scenario; 8] = [
+    of(Imported, "extract p.petro --min-leaf-triangles 20"),
+    of(Extracted, "pick p.petro --at 4,4,64 --horizon Second --highest-valid"),
+    of(Extracted, "climb p.petro 2 --levels 2"),
+    of(Extracted, "horizon unpick p.petro 1"),
+    of(Extracted, "horizon colour p.petro Picked '#ff0000'"),
+    of(Extracted, "horizon replay p.petro"),
+    of(Extracted, "fault propose p.petro"),
+    of(Extracted, "horizon remove p.petro Picked"),
+];
+
+/// What changes how it looks.
+pub const LOOKING: [Scenario; 7] = [
+    of(Imported, "layer set p.petro 'Top - Base' --name Chalk --pattern chalk"),
+    of(Imported, "layer reset p.petro 'Top - Base'"),
+    of(Imported, "scalar set p.petro seismic --interval 0,50,chalk"),
+    of(Imported, "raw p.petro --map grey"),
+    of(Imported, "texture p.petro tile.png"),
+    of(Imported, "scene add p.petro front --blend 0.5"),
+    after(Imported, |at| all(at, &["scene add p.petro front"]), "scene remove p.petro front"),
+];
+
+/// What is computed, drawn and exported.
+pub const COMPUTING: [Scenario; 7] = [
+    of(Imported, "attribute p.petro --kind envelope --name strength"),
+    of(Imported, "parameterize p.petro --size 6x6x6"),
+    of(Imported, "render p.petro a.png --size 16x12 --samples 1 --device cpu"),
+    of(Imported, "render p.petro a.png --inline 4 --size-cm 3x2"),
+    of(Imported, "export p.petro top.irap --horizon Top --format irap"),
+    of(Imported, "export p.petro out.sgy --volume seismic"),
+    of(Extracted, "export p.petro c.csv --candidates"),
+];
+
+/// What leads back, and what repairs.
+pub const MENDING: [Scenario; 7] = [
+    of(Imported, "undo p.petro"),
+    of(Extracted, "undo p.petro"),
+    after(Imported, |at| all(at, &["undo p.petro"]), "redo p.petro"),
+    after(Imported, |at| all(at, &["undo p.petro"]), "velocity p.petro 2500"),
+    after(Imported, |at| all(at, &["undo p.petro"]), "prune p.petro"),
+    after(Imported, killed_when_saved, "velocity p.petro 2500"),
+    after(Imported, damaged, "check p.petro --repair"),
+];
+
+fn with_well(at: &Path) {
+    all(at, &["well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"]);
+}
+
+/// As a kill leaves it after the state was saved, and before its step was.
+fn killed_when_saved(at: &Path) {
+    let root = at.join("p.petro");
+    all(at, &["velocity p.petro 2200"]);
+    fs::create_dir_all(root.join("unfinished/history")).unwrap();
+    fs::rename(root.join("history/0005.toml"), root.join("unfinished/history/0005.toml")).unwrap();
+}
+
+/// A damaged step, an orphan, and what a command left behind.
+fn damaged(at: &Path) {
+    let root = at.join("p.petro");
+    fs::write(root.join("history/0002.toml"), "= damaged").unwrap();
+    fs::create_dir_all(root.join("unfinished/volumes/x.zarr")).unwrap();
+    fs::write(root.join("unfinished/volumes/x.zarr/zarr.json"), "{}").unwrap();
+    fs::create_dir_all(root.join("horizons/Orphan.zarr/0")).unwrap();
+    fs::write(root.join("horizons/Orphan.zarr/0/zarr.json"), "{}").unwrap();
+}
