@@ -252,10 +252,12 @@ fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
 
 fn k_definition(text: &str) -> Result<KDefinition, Usage> {
     match text {
-        "distance-ratio" => Ok(KDefinition::DistanceRatio),
+        "harmonic" => Ok(KDefinition::Harmonic),
+        "distance" | "distance-ratio" => Ok(KDefinition::DistanceRatio),
+        "proportional" => Ok(KDefinition::Proportional),
         "parallel-to-bottom" => Ok(KDefinition::ParallelToBottom),
         "parallel-to-top" => Ok(KDefinition::ParallelToTop),
-        other => Err(format!("--k {other}: expected distance-ratio, parallel-to-bottom or parallel-to-top")),
+        other => Err(format!("--k {other}: expected harmonic, distance, proportional, parallel-to-bottom or parallel-to-top")),
     }
 }
 

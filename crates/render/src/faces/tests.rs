@@ -74,7 +74,7 @@ fn structs_have_the_same_layout() {
     check!(m, SheetInfo: origin, size, offset);
     check!(m, FaultInfo: u, v, w, surface);
     check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);
-    check!(m, GridInfo: origin, size, levels, first_column, bottom_horizon, top_horizon, bottom_shift, top_shift);
+    check!(m, GridInfo: origin, size, levels, first_column, bottom_sheet, top_sheet, bottom_shift, top_shift, is_calm);
     check!(m, PackedInfo: scale, size, i_range, j_range, layers, blocks);
     check!(m, TextureInfo: mean, offset, side, levels);
     check!(m, VolumePlacement: scale, offset, size);
@@ -93,7 +93,7 @@ fn structs_have_the_same_layout() {
 #[test]
 #[should_panic(expected = "GridInfo")]
 fn a_field_out_of_place_is_noticed() {
-    check!(&module(), GridInfo: size, origin, levels, first_column, bottom_horizon, top_horizon, bottom_shift, top_shift);
+    check!(&module(), GridInfo: size, origin, levels, first_column, bottom_sheet, top_sheet, bottom_shift, top_shift, is_calm);
 }
 
 /// The value of a constant of the shader.
