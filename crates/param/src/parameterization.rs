@@ -86,9 +86,9 @@ impl Parameterization {
                         }
                         Method::Flow(flow) => {
                             let (bottom, top) = (grid.bottom.clone(), grid.top.clone());
-                            let bottom = |x, y| bottom.node(model, region.block, x, y);
-                            let top = |x, y| top.node(model, region.block, x, y);
-                            flow::fill(&mut grid, flow, &metric, bottom, top, progress)?
+                            let bottom = |x: f32, y: f32| bottom.z(model, region.block, x, y);
+                            let top = |x: f32, y: f32| top.z(model, region.block, x, y);
+                            flow::fill(&mut grid, flow, &metric, [&bottom, &top], progress)?
                         }
                     };
                     cost.closest_points += spent.closest_points;

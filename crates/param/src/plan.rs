@@ -1,8 +1,8 @@
 //! What is computed for each region: its sheets, levels and reference thickness, and the method.
 
+use crate::flow;
 use crate::flow::calm::calm;
-use crate::flow::harmonic::Ends;
-use crate::flow::Flow;
+use crate::flow::harmonic::{Ends, FarBeds, Spacing};
 use crate::grid::{RegionGrid, SheetRef, SheetSource};
 use crate::layer::{Layer, LayerKind};
 use crate::metric::Metric;
@@ -25,7 +25,7 @@ pub enum Method {
     /// By closest points ([`crate::compute`]).
     Closest(LayerKind),
     /// As a flow ([`crate::flow`]).
-    Flow(Flow),
+    Flow(flow::Flow),
 }
 
 /// Horizons at the bottom and the top of a layer.
@@ -85,9 +85,8 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
         let last = self.model.size()[2].saturating_sub(1) as f32;
         let node = |sheet: &SheetRef, [x, y]: [i32; 2]| sheet.node(self.model, region.block, x, y);
         // An open layer reaches to the edge of the volume, a closed one as far as the region was found.
-        let met = |column: [i32; 2], z: f32| {
-            self.model.region_at(Vec3::new(column[0] as f32, column[1] as f32, z)) == region
-        };
+        let met =
+            |column: [i32; 2], z: f32| self.model.region_at(Vec3::new(column[0] as f32, column[1] as f32, z)) == region;
         let step = 2.0;
         let depths_met = |column: [i32; 2], depths: [f32; 2]| {
             let (low, high) = (depths[0].max(0.0), depths[1].min(last));
@@ -110,10 +109,12 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     /// The empty grid of a region and the method that fills it. `reach` is the largest of [`Planner::farthest`] over
     /// the layer.
     pub fn plan(&self, region: Region, touched: &RegionColumns, reach: f32) -> (RegionGrid, Method) {
-        use KDefinition::{DistanceRatio, Harmonic, ParallelToBottom, ParallelToTop, Proportional};
+        use KDefinition::{DistanceRatio, Flow, Harmonic, ParallelToBottom, ParallelToTop, Proportional};
+        use flow::Flow::{Smooth, Vertical};
         let last = self.model.size()[2].saturating_sub(1) as f32;
         let thickness = reach * self.metric.vertical_step();
         let definition = self.definition(region).unwrap_or_default();
+        let spacing = if definition == Harmonic { Spacing::Harmonic } else { Spacing::Even };
         let shifted = |sheet: &SheetRef, shift: f32| SheetRef { shift, ..sheet.clone() };
         let (method, bottom, top) = match (self.sheets(region), definition) {
             ((None, None), _) => {
@@ -121,18 +122,20 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
                 (Method::Closest(LayerKind::Vertical), plane(last.max(1.0)), plane(0.0))
             }
             ((Some(bottom), Some(top)), DistanceRatio) => (Method::Closest(LayerKind::Ratio), bottom, top),
-            ((Some(bottom), Some(top)), Harmonic) => (Method::Flow(Flow::Harmonic(Ends::Both)), bottom, top),
-            ((Some(bottom), Some(top)), Proportional) => (Method::Flow(Flow::Vertical), bottom, top),
-            ((Some(bottom), None), Harmonic) => {
-                let (far, rate) = self.far_plane(region, &bottom, touched, reach, -1.0);
-                (Method::Flow(Flow::Harmonic(Ends::Bottom(rate))), bottom, far)
+            ((Some(bottom), Some(top)), Flow | Harmonic) => {
+                (Method::Flow(Smooth(Ends::Both, Spacing::Harmonic)), bottom, top)
             }
-            ((None, Some(top)), Harmonic) => {
-                let (far, rate) = self.far_plane(region, &top, touched, reach, 1.0);
-                (Method::Flow(Flow::Harmonic(Ends::Top(rate))), far, top)
+            ((Some(bottom), None), Flow | Harmonic) => {
+                let (plane, far) = self.far_plane(region, &bottom, touched, reach, -1.0);
+                (Method::Flow(Smooth(Ends::Bottom(far), spacing)), bottom, plane)
             }
-            ((Some(bottom), None), Proportional) => (Method::Flow(Flow::Vertical), bottom.clone(), shifted(&bottom, -reach)),
-            ((None, Some(top)), Proportional) => (Method::Flow(Flow::Vertical), shifted(&top, reach), top),
+            ((None, Some(top)), Flow | Harmonic) => {
+                let (plane, far) = self.far_plane(region, &top, touched, reach, 1.0);
+                (Method::Flow(Smooth(Ends::Top(far), spacing)), plane, top)
+            }
+            ((Some(bottom), Some(top)), Proportional) => (Method::Flow(Vertical), bottom, top),
+            ((Some(bottom), None), Proportional) => (Method::Flow(Vertical), bottom.clone(), shifted(&bottom, -reach)),
+            ((None, Some(top)), Proportional) => (Method::Flow(Vertical), shifted(&top, reach), top),
             ((_, Some(top)), ParallelToTop) | ((None, Some(top)), ParallelToBottom | DistanceRatio) => {
                 (Method::Closest(LayerKind::BelowTop(thickness)), shifted(&top, reach), top)
             }
@@ -140,10 +143,9 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
                 (Method::Closest(LayerKind::AboveBottom(thickness)), bottom.clone(), shifted(&bottom, -reach))
             }
         };
-        let is_referred = match method {
-            Method::Closest(kind) => matches!(kind, LayerKind::AboveBottom(_) | LayerKind::BelowTop(_)),
-            Method::Flow(flow) => flow != Flow::Harmonic(Ends::Both) && bottom.of == top.of || matches!(flow, Flow::Harmonic(Ends::Bottom(_) | Ends::Top(_))),
-        };
+        let is_open =
+            matches!(horizons(usize::from(region.layer), self.model.layer_count()), (Some(_), None) | (None, Some(_)));
+        let is_parallel = matches!(method, Method::Closest(LayerKind::AboveBottom(_) | LayerKind::BelowTop(_)));
         let grid = RegionGrid {
             region,
             origin: touched.origin,
@@ -151,7 +153,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             levels: self.levels(region, touched, method, &bottom, &top),
             bottom,
             top,
-            thickness_m: is_referred.then(|| f64::from(thickness) * self.metric.unit_m),
+            thickness_m: (is_open || is_parallel).then(|| f64::from(thickness) * self.metric.unit_m),
             offsets: Vec::new(),
             creases: Vec::new(),
         };
@@ -183,8 +185,15 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     }
 
     /// A plane along the trend of an open layer's horizon, beyond the region (`side` −1: above, 1: below), and the
-    /// growth of k for a voxel along z between beds parallel to it.
-    fn far_plane(&self, region: Region, sheet: &SheetRef, touched: &RegionColumns, reach: f32, side: f32) -> (SheetRef, f32) {
+    /// beds parallel to it.
+    fn far_plane(
+        &self,
+        region: Region,
+        sheet: &SheetRef,
+        touched: &RegionColumns,
+        reach: f32,
+        side: f32,
+    ) -> (SheetRef, FarBeds) {
         let last = self.model.size()[2].saturating_sub(1) as f32;
         let node = |x, y| sheet.node(self.model, region.block, x, y);
         let [cx, cy] = [0, 1].map(|n| touched.origin[n] + touched.size[n] as i32 / 2);
@@ -196,11 +205,13 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             let beyond_sheet = side * (node(x, y) - plane(x, y)) + 2.0 * BEYOND * reach;
             shift.max(beyond_volume).max(beyond_sheet)
         });
-        let far = HeightField::from_fn(touched.origin, touched.size.map(|n| n.max(2)), |x, y| plane(x, y) + side * shift);
+        let far =
+            HeightField::from_fn(touched.origin, touched.size.map(|n| n.max(2)), |x, y| plane(x, y) + side * shift);
         let normal = Vec3::new(px, py, -1.0);
         let length = normal.dot(self.metric.raise(normal)).sqrt();
-        let rate = 1.0 / (length * reach * self.metric.vertical_step());
-        (SheetRef { of: SheetSource::Calm(Arc::new(far)), shift: 0.0 }, rate)
+        let density = 1.0 / (reach * self.metric.vertical_step());
+        let beds = FarBeds { rate: density / length, density };
+        (SheetRef { of: SheetSource::Calm(Arc::new(far)), shift: 0.0 }, beds)
     }
 
     /// The sheets of a planned region as surfaces on which closest points are found.

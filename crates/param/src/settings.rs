@@ -13,10 +13,13 @@ pub enum KDefinition {
     /// sheets; i, j are where the curve along ∇k crosses k = 0.5 (P-illus 3.1). An open layer has only one
     /// sheet and uses the parallel definition of that sheet. The sheets are the horizons as they are drawn.
     DistanceRatio,
-    /// ∇²k = 0 between the two sheets ([`crate::flow`]); i, j are where the curve along ∇k crosses the middle
-    /// level. In an open layer k is the distance to its horizon at depth, and the roughness of the horizon
-    /// dies out with the distance from it.
+    /// ∇²k = 0 between the two sheets; i, j are where the curve along ∇k crosses the middle level. In an open
+    /// layer k is the distance to its horizon, in which the roughness of the horizon dies out: the directions
+    /// are harmonic, the spacing of beds is even.
     #[default]
+    Flow,
+    /// The same, with ∇²k = 0 in open layers, too: beds crowd over crests of the horizon and spread in its troughs,
+    /// and its roughness dies out as in the upward continuation of a potential field.
     Harmonic,
     /// k is the vertical fraction between the sheets; i, j as above. In an open layer beds are copies of its
     /// horizon, one above the other.
@@ -106,7 +109,7 @@ impl ParamSettings {
     ///
     /// let settings = ParamSettings { definitions: vec![KDefinition::DistanceRatio], ..ParamSettings::default() };
     /// assert_eq!(settings.definition(0, 3), Some(KDefinition::DistanceRatio));
-    /// assert_eq!(settings.definition(1, 3), Some(KDefinition::Harmonic));
+    /// assert_eq!(settings.definition(1, 3), Some(KDefinition::Flow));
     /// assert_eq!(settings.definition(0, 1), None);
     /// ```
     pub fn definition(&self, layer: usize, layers: usize) -> Option<KDefinition> {
@@ -128,7 +131,7 @@ mod tests {
             horizon("b", Contact::Erosional),
         ];
         let definitions = KDefinition::for_contacts(&Stratigraphy { horizons, layer_names: Vec::new() });
-        use KDefinition::{Harmonic, ParallelToTop};
-        assert_eq!(definitions, [Harmonic, ParallelToTop, Harmonic, Harmonic]);
+        use KDefinition::{Flow, ParallelToTop};
+        assert_eq!(definitions, [Flow, ParallelToTop, Flow, Flow]);
     }
 }

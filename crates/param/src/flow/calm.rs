@@ -75,7 +75,8 @@ fn blur_line(out: &mut [f32], line: &[f32], kernel: &[f32]) {
     // Differences from the centre keep the precision of small waves on deep sheets.
     for (n, out) in out.iter_mut().enumerate() {
         let centre = padded[n + reach];
-        let pairs = (1..=reach).map(|m| kernel[m] * ((padded[n + reach - m] - centre) + (padded[n + reach + m] - centre)));
+        let pairs =
+            (1..=reach).map(|m| kernel[m] * ((padded[n + reach - m] - centre) + (padded[n + reach + m] - centre)));
         *out = centre + pairs.sum::<f32>();
     }
 }
@@ -97,7 +98,8 @@ mod tests {
     fn waves_keep_the_share_of_the_formula() {
         let (wave, amplitude) = (12.0, 6.0);
         for length in [4.0, 8.0, 12.0, 24.0, 48.0] {
-            let field = HeightField::from_fn([0, 0], [240, 8], |x, _| (amplitude * (TAU * f64::from(x) / length).sin()) as f32);
+            let field =
+                HeightField::from_fn([0, 0], [240, 8], |x, _| (amplitude * (TAU * f64::from(x) / length).sin()) as f32);
             let found = calm(&field, [wave, wave]);
             let g = (-0.5 * (TAU * wave / HALVED / length).powi(2)).exp();
             let share = 1.0 - (1.0 - g).powi(4);

@@ -21,7 +21,7 @@ use survey::{Cancelled, Progress};
 /// [`Cancelled`].
 pub fn to_middle(layer: &SigmaLayer, k: &[f32], progress: &Progress) -> Result<Vec<[f32; 2]>, Cancelled> {
     let (levels, middle) = (layer.levels, layer.levels / 2);
-    let nodes = layer.size[0] * layer.size[1];
+    let nodes = layer.lattice.size[0] * layer.lattice.size[1];
     let speeds: Vec<[f32; 2]> =
         (0..nodes * levels).into_par_iter().map(|n| speed(layer, k, n / levels, n % levels)).collect();
     let slice = |values: &[[f32; 2]], level: usize| -> Vec<[f32; 2]> {
@@ -57,31 +57,9 @@ pub fn to_middle(layer: &SigmaLayer, k: &[f32], progress: &Progress) -> Result<V
 
 /// w at a node: voxels along x and y for a unit of v.
 fn speed(layer: &SigmaLayer, k: &[f32], node: usize, level: usize) -> [f32; 2] {
-    let levels = layer.levels;
-    let at = |node: usize, level: usize| k[node * levels + level];
-    let along = |axis: usize| {
-        let (low, high, nodes) = match layer.beside(node, axis) {
-            [Some(low), Some(high)] => (low, high, 2.0),
-            [None, Some(high)] => (node, high, 1.0),
-            [Some(low), None] => (low, node, 1.0),
-            [None, None] => return 0.0,
-        };
-        (at(high, level) - at(low, level)) / (nodes * layer.stride as f32)
-    };
-    let per_level = 1.0 / layer.v(1);
-    let rise = match level {
-        0 => per_level * (-1.5 * at(node, 0) + 2.0 * at(node, 1) - 0.5 * at(node, 2)),
-        _ if level + 1 == levels => {
-            per_level * (1.5 * at(node, level) - 2.0 * at(node, level - 1) + 0.5 * at(node, level - 2))
-        }
-        _ => 0.5 * per_level * (at(node, level + 1) - at(node, level - 1)),
-    };
-    let terms = layer.terms(node, level);
-    let mut gradient = terms.slope * rise;
-    gradient.x += along(0);
-    gradient.y += along(1);
+    let gradient = layer.gradient(k, node, level);
     let raised = layer.inverse * gradient;
-    let climb = terms.slope.dot(raised);
+    let climb = layer.terms(node, level).slope.dot(raised);
     // k rises through the layer; where it does not by rounding alone, the layer has no extent.
     if climb > 1e-12 { [raised.x / climb, raised.y / climb] } else { [0.0; 2] }
 }
@@ -89,10 +67,10 @@ fn speed(layer: &SigmaLayer, k: &[f32], node: usize, level: usize) -> [f32; 2] {
 /// The cell and fraction of a node moved by voxels, along one axis.
 #[inline]
 fn moved(layer: &SigmaLayer, node: usize, by: f32, axis: usize) -> (isize, f32) {
-    let ny = layer.size[1];
+    let ny = layer.lattice.size[1];
     let n = if axis == 0 { node / ny } else { node % ny };
-    let at = (n as f32 + by / layer.stride as f32).clamp(0.0, (layer.size[axis] - 1) as f32);
-    let cell = (at as usize).min(layer.size[axis] - 2);
+    let at = (n as f32 + by / layer.lattice.spacing[axis]).clamp(0.0, (layer.lattice.size[axis] - 1) as f32);
+    let cell = (at as usize).min(layer.lattice.size[axis] - 2);
     (cell as isize, at - cell as f32)
 }
 
@@ -116,7 +94,7 @@ pub fn catmull_rom(t: f32) -> [f32; 4] {
 /// The sum of node values from `first` on with weights along x and y; nodes outside repeat the border.
 #[inline]
 fn weighted(layer: &SigmaLayer, values: &[[f32; 2]], first: [isize; 2], wx: &[f32], wy: &[f32]) -> [f32; 2] {
-    let [nx, ny] = layer.size.map(|n| n as isize);
+    let [nx, ny] = layer.lattice.size.map(|n| n as isize);
     let mut sum = [0.0; 2];
     for (a, wx) in (0..).zip(wx) {
         let row = (first[0] + a).clamp(0, nx - 1) * ny;

@@ -15,9 +15,9 @@ pub mod sigma;
 use crate::compute::ComputeCost;
 use crate::grid::RegionGrid;
 use crate::metric::Metric;
-use harmonic::Ends;
+use harmonic::{Ends, Spacing};
 use rayon::prelude::*;
-use sigma::SigmaLayer;
+use sigma::{FlowLattice, SigmaLayer};
 use std::time::Instant;
 use survey::{Cancelled, Progress};
 
@@ -28,13 +28,13 @@ const STRIDE: usize = 2;
 /// How k runs between the sheets of a region.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Flow {
-    /// ∇²k = 0.
-    Harmonic(Ends),
+    /// Along the directions of ∇²k = 0.
+    Smooth(Ends, Spacing),
     /// k = v, the vertical fraction.
     Vertical,
 }
 
-/// Fills `grid.offsets` from a flow between two sheets, given by voxel z at a voxel column.
+/// Fills `grid.offsets` from a flow between two sheets (bottom, top), given by voxel z at voxel (x, y).
 ///
 /// # Errors
 /// [`Cancelled`].
@@ -42,27 +42,26 @@ pub fn fill(
     grid: &mut RegionGrid,
     flow: Flow,
     metric: &Metric,
-    bottom: impl Fn(i32, i32) -> f32,
-    top: impl Fn(i32, i32) -> f32,
+    sheets: [&(dyn Fn(f32, f32) -> f32 + Sync); 2],
     progress: &Progress,
 ) -> Result<ComputeCost, Cancelled> {
     let levels = grid.levels;
-    let end: [i32; 2] = std::array::from_fn(|n| grid.origin[n] + grid.size[n] as i32);
-    let layer = |stride: usize| SigmaLayer::new([grid.origin, end], stride, levels, &bottom, &top, metric);
+    let finest = FlowLattice::new(grid.origin, grid.size, STRIDE);
+    let layer = |lattice: FlowLattice| SigmaLayer::new(lattice, levels, sheets, metric);
     let start = Instant::now();
-    let (lattice, k) = match flow {
-        Flow::Harmonic(ends) => harmonic::solve(STRIDE, ends, layer, progress)?,
+    let (layer, k) = match flow {
+        Flow::Smooth(ends, spacing) => harmonic::solve(finest, ends, spacing, layer, progress)?,
         Flow::Vertical => {
-            let lattice = layer(STRIDE);
-            let k = harmonic::first_guess(&lattice, Ends::Both);
-            (lattice, k)
+            let layer = layer(finest);
+            let k = harmonic::first_guess(&layer, Ends::Both);
+            (layer, k)
         }
     };
     let solved = Instant::now();
-    let lines = lines::to_middle(&lattice, &k, progress)?;
+    let lines = lines::to_middle(&layer, &k, progress)?;
     let nodes: Vec<[f32; 3]> =
-        lines.iter().zip(&k).enumerate().map(|(n, (d, k))| [d[0], d[1], k - lattice.v(n % levels)]).collect();
-    grid.offsets = sampled(grid, &lattice, &nodes, progress)?;
+        lines.iter().zip(&k).enumerate().map(|(n, (d, k))| [d[0], d[1], k - layer.v(n % levels)]).collect();
+    grid.offsets = sampled(grid, &layer.lattice, &nodes, progress)?;
     grid.creases = vec![0; grid.offsets.len().div_ceil(64)];
     let threads = rayon::current_num_threads() as u32;
     Ok(ComputeCost { closest_points: (solved - start) * threads, traces: solved.elapsed() * threads })
@@ -71,7 +70,7 @@ pub fn fill(
 /// The nodes of the lattice interpolated at all columns of the grid, by cubics.
 fn sampled(
     grid: &RegionGrid,
-    lattice: &SigmaLayer,
+    lattice: &FlowLattice,
     nodes: &[[f32; 3]],
     progress: &Progress,
 ) -> Result<Vec<[f32; 3]>, Cancelled> {
@@ -80,8 +79,8 @@ fn sampled(
     let place = |axis: usize, n: usize| {
         let at = (grid.origin[axis] - lattice.origin[axis]) as usize + n;
         // The lattice reaches one node past the grid.
-        let cell = (at / lattice.stride).min(lattice.size[axis] - 2);
-        (cell, lines::catmull_rom((at - cell * lattice.stride) as f32 / lattice.stride as f32))
+        let cell = (at / STRIDE).min(lattice.size[axis] - 2);
+        (cell, lines::catmull_rom((at - cell * STRIDE) as f32 / STRIDE as f32))
     };
     offsets.par_chunks_mut(ny * levels).enumerate().try_for_each(|(x, row)| {
         let (cell_x, wx) = place(0, x);

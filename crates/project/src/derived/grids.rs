@@ -5,7 +5,9 @@ use super::{Scratch, folder, key_of, revision};
 use crate::document::Document;
 use crate::error::ProjectError;
 use model::ModelSettings;
-use param::{ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, SheetSource, VoxelParameterization};
+use param::{
+    ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, SheetSource, VoxelParameterization,
+};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -15,7 +17,7 @@ use survey::height_field::FAR;
 use survey::{HeightField, Progress};
 
 /// Grid files.
-const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x01", what: "the parameterization" };
+const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x02", what: "the parameterization" };
 
 /// The key of a parameterization: a hash of everything that it depends on.
 pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
