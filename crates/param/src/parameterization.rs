@@ -88,7 +88,7 @@ impl Parameterization {
                             let (bottom, top) = (grid.bottom.clone(), grid.top.clone());
                             let bottom = |x: f32, y: f32| bottom.z(model, region.block, x, y);
                             let top = |x: f32, y: f32| top.z(model, region.block, x, y);
-                            flow::fill(&mut grid, flow, &metric, [&bottom, &top], progress)?
+                            flow::fill(&mut grid, flow, planner.stride, &metric, [&bottom, &top], progress)?
                         }
                     };
                     cost.closest_points += spent.closest_points;

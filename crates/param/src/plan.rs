@@ -40,6 +40,8 @@ pub struct Planner<'a, M: ?Sized> {
     metric: &'a Metric,
     /// Calm sheets by `horizon · blocks + block`; empty where the flow follows the horizons exactly.
     calm: Vec<Arc<HeightField>>,
+    /// Voxels between the nodes on which flows are solved.
+    pub stride: usize,
 }
 
 impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
@@ -47,15 +49,15 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     pub fn new(model: &'a M, settings: &'a ParamSettings, metric: &'a Metric) -> Self {
         let (layers, blocks) = (model.layer_count(), model.block_count());
         let is_calm = |layer| !matches!(settings.definition(layer, layers), None | Some(KDefinition::DistanceRatio));
+        let steps = model.metric();
+        let wave = [0, 1].map(|axis| settings.flow_wave_m / steps.col(axis).length());
         let calm = if settings.flow_wave_m > 0.0 && (0..layers).any(is_calm) {
-            let steps = model.metric();
-            let wave = [0, 1].map(|axis| settings.flow_wave_m / steps.col(axis).length());
             let sheet = |n: usize| Arc::new(calm(model.sheet(n / blocks, (n % blocks) as u16), wave));
             ((0..(layers - 1) * blocks).into_par_iter()).map(sheet).collect()
         } else {
             Vec::new()
         };
-        Self { model, settings, metric, calm }
+        Self { model, settings, metric, calm, stride: flow::stride(wave[0].min(wave[1])) }
     }
 
     fn definition(&self, region: Region) -> Option<KDefinition> {

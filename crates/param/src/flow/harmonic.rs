@@ -35,7 +35,7 @@ const STAGES: [(usize, usize); 5] = [(16, 300), (8, 200), (4, 100), (2, 80), (1,
 /// reaches, gain from values above 1; from 2 on nothing converges.
 const OVER: f32 = 1.7;
 /// Relaxations end when no k changes by more than this. A tenth of it changes no measured figure.
-const TOLERANCE: f32 = 1e-5;
+const TOLERANCE: f32 = 2e-5;
 
 /// Where k is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
