@@ -301,7 +301,7 @@ fn main() -> Result<()> {
          synthetic survey {SYNTHETIC_SIDE}³. Tests require k, angles and boundaries to meet the aims on folds and\n\
          on the synthetic survey (boundaries of the synthetic survey at 99 %, not at their worst); the remaining\n\
          models are only measured here. Extraction and picks have pages of their own,\n\
-         [extraction.md](extraction.md) and [picks.md](picks.md).\n"
+         [extraction.md](extraction.md), [picks.md](picks.md), and so has how calm patterns are, [distortion.md](distortion.md).\n"
     );
     let cases = cases()?;
     k_and_angles(&cases)?;
