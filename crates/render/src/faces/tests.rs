@@ -10,7 +10,7 @@ use crate::media::{march, samples, table};
 use crate::{Inputs, RenderError, Scene, ground, inputs, leaves, visible, wells};
 use model::{ModelSettings, StructuralModel};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use param::{ParamSettings, Parameterization};
+use param::{KDefinition, ParamSettings, Parameterization};
 use std::mem::offset_of;
 use survey::{Progress, SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
@@ -168,7 +168,10 @@ fn a_split_pool_draws_the_same() {
         &quiet,
     )
     .unwrap();
-    let param = Parameterization::compute(&model, &ParamSettings::default(), &quiet).unwrap();
+    // By a definition without sheets of its own, so that the pool holds those of the horizons alone.
+    let definitions = vec![KDefinition::DistanceRatio; model.layer_count()];
+    let settings = ParamSettings { definitions, ..ParamSettings::default() };
+    let param = Parameterization::compute(&model, &settings, &quiet).unwrap();
     let names = closed.stratigraphy.layer_names_bottom_up();
     let block = BlockExtent {
         extent_i_m: 500.0,
