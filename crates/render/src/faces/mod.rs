@@ -21,11 +21,9 @@ mod volumes;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use crate::inputs::Inputs;
-use crate::leaves::FaceData;
 use crate::media::interleaved::{halves, interleave};
 use crate::media::prepared::Preparations;
 use crate::outline::draw::draw as draw_outlines;
-use crate::reference;
 use crate::resolved::{Flat, MAX_VOLUMES, ResolvedScene};
 use crate::scene::Scene;
 use grids::{GridBuffers, VisibleParts};
@@ -189,9 +187,9 @@ impl Renderer {
     /// # Errors
     /// A scene that cannot be drawn, missing inputs, cancellation, or an error of the device.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
-        if scene.face_data == FaceData::Distortion {
+        if scene.face_data == crate::FaceData::Distortion {
             // A measurement: it has one implementation, on the processor.
-            return reference::render(scene, inputs, progress);
+            return crate::reference::render(scene, inputs, progress);
         }
         match self.render_once(scene, inputs, progress) {
             Err(RenderError::DeviceLost { .. }) => {
