@@ -71,6 +71,7 @@ picks: setup
 
 speed: setup
 	cargo run --locked -q -p petroglyph-render --example illustration_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE) --repeats 3
+	cargo run --locked -q -p petroglyph-param --example time_param -- --definitions $(SPEED_SIDE)
 	cargo run --locked -q -p petroglyph-render --example volume_speed -- --side $(SPEED_SIDE) --size $(SPEED_SIZE)
 
 scenario: build

@@ -8,7 +8,7 @@ use project::folder::refuse_inside_project;
 use project::memory_budget;
 use project::picture::{self, Painter};
 use project::picture::{load, scene};
-use render::Scene;
+use render::{FaceData, Scene};
 use std::path::Path;
 use survey::{Progress, VerticalUnit, memory};
 
@@ -48,6 +48,10 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let (image, stage) = painter.draw(&scene, &loaded, progress)?;
     picture::write_png(&request.out, &image, request.dpi)?;
 
+    let distortion = match scene.face_data {
+        FaceData::Distortion => loaded.distortion(&scene, progress)?,
+        _ => Vec::new(),
+    };
     let mut stages = loaded.rock.map(|rock| rock.stages).unwrap_or_default();
     stages.push(stage);
     let [width, height] = scene.size_px;
@@ -59,6 +63,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         millimetres(height, request.dpi),
         request.dpi
     ));
+    super::distortion::say(document, &distortion, &mut report);
     let assumed = assumptions(&project, &scene);
     assumed.iter().for_each(|line| {
         report.say(format!("  {line}"));

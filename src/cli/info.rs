@@ -5,6 +5,8 @@ use super::{info_interpretation, option};
 use formats::ImportOptions;
 use project::Project;
 use project::error::Noun;
+use project::picture::{load, scene};
+use render::{FaceData, Scene};
 use segy::{SegyFile, SegyOptions};
 use serde_json::json;
 use std::path::Path;
@@ -13,13 +15,22 @@ use survey::{Progress, SurveyGeometry};
 /// Describes what is at `path`: a project if it is a folder, else a horizon, fault or well file, else a SEG-Y file.
 pub(super) fn describe(
     path: &Path,
+    with_distortion: bool,
     options: &SegyOptions,
     reading: &ImportOptions,
     progress: &Progress,
 ) -> anyhow::Result<Report> {
     let named_project = path.extension().is_some_and(|extension| extension == "petro");
     if path.is_dir() || (named_project && !path.exists()) {
-        return project(&Project::open(path)?);
+        let opened = Project::open(path)?;
+        let mut report = project(&opened)?;
+        if with_distortion {
+            distortion(&opened, &mut report, progress)?;
+        }
+        return Ok(report);
+    }
+    if with_distortion {
+        anyhow::bail!("--distortion measures the pictures of a project; {} is none", path.display());
     }
     if let Some(report) = info_interpretation::describe(path, reading)? {
         return Ok(report);
@@ -57,6 +68,19 @@ fn project(project: &Project) -> anyhow::Result<Report> {
     }
     report.field("history", history);
     Ok(report)
+}
+
+/// The distortion of patterns on the faces of the project's scene, as printed without exaggeration.
+fn distortion(project: &Project, report: &mut Report, progress: &Progress) -> anyhow::Result<()> {
+    let document = project.document();
+    if document.horizons.is_empty() {
+        anyhow::bail!("the project has no horizons, and so no layers with patterns; add a horizon");
+    }
+    let scene = scene::choose(document, None)?;
+    let scene = Scene { exaggeration: 1.0, blend: 0.0, face_data: FaceData::Distortion, ..scene };
+    let loaded = load::load(project, &scene, progress)?;
+    super::distortion::say(document, &loaded.distortion(&scene, progress)?, report);
+    Ok(())
 }
 
 /// The lattice and its place in the world.

@@ -37,7 +37,7 @@ pub(super) enum Request {
     /// Make a synthetic survey.
     Synth { out: PathBuf, settings: SynthSettings },
     /// Describe a file or project.
-    Info { path: PathBuf, segy: SegyOptions, reading: ImportOptions },
+    Info { path: PathBuf, distortion: bool, segy: SegyOptions, reading: ImportOptions },
     /// Import a volume; the project is created if it does not exist.
     Import { project: PathBuf, command: ImportVolume },
     /// Create a project.
@@ -142,7 +142,8 @@ impl TryFrom<Action> for Request {
         Ok(match action {
             Action::Demo(typed) => Self::Demo { out: typed.out },
             Action::Synth(typed) => synth(&typed)?,
-            Action::Info { path, segy, reading } => Self::Info {
+            Action::Info { path, distortion, segy, reading } => Self::Info {
+                distortion,
                 path,
                 segy: super::segy::segy_options(&segy)?,
                 reading: interpretation::import_options(reading)?,
@@ -255,10 +256,15 @@ fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
 
 fn k_definition(text: &str) -> Result<KDefinition, Usage> {
     match text {
-        "distance-ratio" => Ok(KDefinition::DistanceRatio),
+        "flow" => Ok(KDefinition::Flow),
+        "harmonic" => Ok(KDefinition::Harmonic),
+        "distance" | "distance-ratio" => Ok(KDefinition::DistanceRatio),
+        "proportional" => Ok(KDefinition::Proportional),
         "parallel-to-bottom" => Ok(KDefinition::ParallelToBottom),
         "parallel-to-top" => Ok(KDefinition::ParallelToTop),
-        other => Err(format!("--k {other}: expected distance-ratio, parallel-to-bottom or parallel-to-top")),
+        other => Err(format!(
+            "--k {other}: expected flow, harmonic, distance, proportional, parallel-to-bottom or parallel-to-top"
+        )),
     }
 }
 

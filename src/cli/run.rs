@@ -69,7 +69,9 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             refuse_inside_project(&out)?;
             survey_files::write(&out, &settings, &progress)?
         }),
-        Request::Info { path, segy, reading } => info::describe(&path, &segy, &reading, &progress)?,
+        Request::Info { path, distortion, segy, reading } => {
+            info::describe(&path, distortion, &segy, &reading, &progress)?
+        }
         Request::Import { project, command } => import(&project, wait, command, &progress)?,
         Request::Export { project, out, horizon, format, options } => {
             export(&project, &out, &horizon, format, &options, &progress)?

@@ -1,5 +1,5 @@
 //! Times the stages of the parameterization on a folded, faulted model of N³ voxels: `time_param [N …]`;
-//! default 64 and 128.
+//! default 64 and 128. `time_param --definitions [N …]` times the definitions of k beside the published one.
 //!
 //! Four layers between horizons with dips up to 35° and thickness ± 30 %, three fault blocks.
 
@@ -8,7 +8,7 @@ mod closed_form;
 
 use closed_form::ClosedForm;
 use glam::Vec3;
-use param::{PackedVolume, ParamSettings, Parameterization};
+use param::{KDefinition, PackedVolume, ParamSettings, Parameterization};
 use std::f64::consts::TAU;
 use std::time::Instant;
 use survey::Progress;
@@ -37,7 +37,38 @@ fn processor_s() -> f64 {
     ticks.filter_map(|ticks| ticks.parse::<f64>().ok()).sum::<f64>() / 100.0
 }
 
+/// Times every definition on the same model, horizons smoothed at an eighth of its side as a project does, in turns, and
+/// takes the fastest of three.
+fn definitions(n: usize) {
+    use KDefinition::{DistanceRatio, Flow, Harmonic, ParallelToBottom, ParallelToTop, Proportional};
+    let model = model(n);
+    let all = [DistanceRatio, Flow, Harmonic, Proportional, ParallelToBottom, ParallelToTop];
+    let mut fastest = [f64::INFINITY; 6];
+    let mut bytes = [0.0; 6];
+    for _ in 0..3 {
+        for ((definition, fastest), bytes) in all.into_iter().zip(&mut fastest).zip(&mut bytes) {
+            let settings =
+                ParamSettings { definitions: vec![definition; 4], flow_wave_m: n as f64 / 8.0, ..Default::default() };
+            let start = processor_s();
+            let param = Parameterization::compute(&model, &settings, &Progress::silent()).unwrap();
+            *fastest = fastest.min(processor_s() - start);
+            *bytes = param.bytes() as f64 / (n * n * n) as f64;
+        }
+    }
+    for ((definition, seconds), bytes) in all.into_iter().zip(fastest).zip(bytes) {
+        let share = seconds / fastest[0];
+        println!(
+            "{n:4}³ {definition:?}: {seconds:.2} s of processor time, {share:.2} of the published, {bytes:.1} bytes a voxel"
+        );
+    }
+}
+
 fn main() {
+    if std::env::args().nth(1).is_some_and(|option| option == "--definitions") {
+        let sizes = std::env::args().skip(2).filter_map(|size| size.parse().ok());
+        sizes.for_each(definitions);
+        return;
+    }
     let sizes: Vec<usize> = std::env::args().skip(1).filter_map(|size| size.parse().ok()).collect();
     for n in if sizes.is_empty() { vec![64, 128] } else { sizes } {
         let model = model(n);

@@ -17,35 +17,63 @@
 
 use crate::{LayerModel, Region};
 use glam::Vec3;
+use std::sync::Arc;
+use survey::HeightField;
 
 /// A layer thinner than this (voxels) counts as pinched out: its offsets are 0 and v is ½.
 pub const PINCHED: f32 = 1e-3;
 
-/// A reference to a sheet: the sheet of a horizon in the region's block, or a horizontal plane, shifted
-/// vertically.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A sheet that v is measured from: that of a horizon in the region's block, a calm one, or a horizontal plane,
+/// shifted vertically.
+#[derive(Debug, Clone, PartialEq)]
 pub struct SheetRef {
-    /// The horizon; `None` for the plane z = 0.
-    pub horizon: Option<usize>,
+    /// What is shifted.
+    pub of: SheetSource,
     /// Voxels added to z (positive is down).
     pub shift: f32,
+}
+
+/// What a [`SheetRef`] shifts.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SheetSource {
+    /// The plane z = 0.
+    Plane,
+    /// The sheet of a horizon of the model, as it is drawn.
+    Horizon(usize),
+    /// A sheet of the parameterization's own, calmer than the horizon that is drawn.
+    Calm(Arc<HeightField>),
 }
 
 impl SheetRef {
     /// Voxel z at voxel (x, y), and its slopes (∂z/∂x, ∂z/∂y).
     pub fn sample<M: LayerModel + ?Sized>(&self, model: &M, block: u16, x: f32, y: f32) -> (f32, [f32; 2]) {
-        match self.horizon {
-            None => (self.shift, [0.0; 2]),
-            Some(horizon) => {
-                let sample = model.sheet(horizon, block).sample(x, y);
-                (sample.z + self.shift, sample.gradient.to_array())
-            }
+        let Some(sheet) = self.sheet(model, block) else { return (self.shift, [0.0; 2]) };
+        let sample = sheet.sample(x, y);
+        (sample.z + self.shift, sample.gradient.to_array())
+    }
+
+    /// The sheet before it is shifted; `None` for the plane z = 0.
+    pub fn sheet<'a, M: LayerModel + ?Sized>(&'a self, model: &'a M, block: u16) -> Option<&'a HeightField> {
+        match &self.of {
+            SheetSource::Plane => None,
+            SheetSource::Horizon(horizon) => Some(model.sheet(*horizon, block)),
+            SheetSource::Calm(sheet) => Some(sheet),
         }
+    }
+
+    /// Voxel z at a voxel column.
+    pub fn node<M: LayerModel + ?Sized>(&self, model: &M, block: u16, x: i32, y: i32) -> f32 {
+        self.sheet(model, block).map_or(0.0, |sheet| sheet.node(x, y)) + self.shift
+    }
+
+    /// Whether this is a sheet that the drawn horizon may lie beyond.
+    pub fn is_calm(&self) -> bool {
+        matches!(self.of, SheetSource::Calm(_))
     }
 
     /// Voxel z at voxel (x, y).
     pub fn z<M: LayerModel + ?Sized>(&self, model: &M, block: u16, x: f32, y: f32) -> f32 {
-        self.horizon.map_or(0.0, |horizon| model.sheet(horizon, block).z_at(x, y)) + self.shift
+        self.sheet(model, block).map_or(0.0, |sheet| sheet.z_at(x, y)) + self.shift
     }
 }
 
@@ -120,7 +148,7 @@ impl RegionGrid {
         self.offsets.len() * size_of::<[f32; 3]>() + self.creases.len() * size_of::<u64>()
     }
 
-    /// v at `p`, clamped to the layer, and its voxel derivative.
+    /// v at `p`, clamped to the layer unless its sheets are calm, and its voxel derivative.
     fn level_fraction<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> (f32, Vec3) {
         let block = self.region.block;
         let (bottom, bottom_slope) = self.bottom.sample(model, block, p.x, p.y);
@@ -132,7 +160,14 @@ impl RegionGrid {
         let inverse = 1.0 / thickness;
         let v = (bottom - p.z) * inverse;
         let along = |axis: usize| (bottom_slope[axis] * (1.0 - v) + top_slope[axis] * v) * inverse;
-        (v.clamp(0.0, 1.0), Vec3::new(along(0), along(1), -inverse))
+        let slope = Vec3::new(along(0), along(1), -inverse);
+        (if self.is_calm() { v } else { v.clamp(0.0, 1.0) }, slope)
+    }
+
+    /// Whether the layer is drawn with boundaries of its own: v then goes on beyond the sheets, and the offsets stay as
+    /// they are on them.
+    pub fn is_calm(&self) -> bool {
+        self.bottom.is_calm() || self.top.is_calm()
     }
 
     /// Offsets and their derivatives along (x, y, v) at a column position and vertical fraction: cubic along
@@ -145,6 +180,7 @@ impl RegionGrid {
         let (cy, fy) = split(y - self.origin[1] as f32, self.size[1]);
         let scale = (self.levels - 1) as f32;
         let (cell, fraction) = split(v * scale, self.levels);
+        let scale = if (0.0..=1.0).contains(&v) { scale } else { 0.0 };
         let column = |a: usize, b: usize| {
             let start = self.node(cx + a, cy + b, 0);
             cubic(&self.offsets[start..start + self.levels], cell, fraction)

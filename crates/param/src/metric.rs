@@ -62,6 +62,11 @@ impl Metric {
         (x.x + hx * (z.x + zx), x.y + hx * z.y + hy * zx, y.y + hy * (z.y + zy))
     }
 
+    /// The inverse of the metric tensor.
+    pub fn inverse(&self) -> Mat3 {
+        self.inverse
+    }
+
     /// Squared scaled length of a voxel vector.
     #[inline]
     pub fn length_squared(&self, u: Vec3) -> f32 {

@@ -1,18 +1,16 @@
 //! The parameterization of a whole model: one [`RegionGrid`] per layer and fault block.
 
 use crate::compute::{self, ComputeCost};
-use crate::grid::{FlatPoint, RegionGrid, SheetRef};
-use crate::layer::{Layer, LayerKind};
+use crate::flow;
+use crate::grid::{FlatPoint, RegionGrid, SheetSource};
 use crate::metric::Metric;
-use crate::surface::BicubicSheet;
+use crate::plan::{self, Method, Planner};
 use crate::touched::{ColumnScan, RegionColumns};
-use crate::{KDefinition, LayerModel, ParamError, ParamSettings, Region};
+use crate::{LayerModel, ParamError, ParamSettings, Region};
 use glam::Vec3;
 use rayon::prelude::*;
+use std::sync::Arc;
 use survey::{HeightField, Progress};
-
-/// Fewest levels of a grid; the cubic along a column uses four.
-const FEWEST_LEVELS: usize = 5;
 
 /// The flat coordinates of every point of a model.
 ///
@@ -51,12 +49,13 @@ impl Parameterization {
             return Err(ParamError::Empty { size });
         }
         let metric = Metric::new(model.metric(), settings.exaggeration)?;
+        let planner = Planner::new(model, settings, &metric);
         let scan = ColumnScan::of(model, progress)?;
         let touched: Vec<RegionColumns> = (0..layers * blocks)
             .into_par_iter()
             .map(|n| {
                 let region = Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
-                let (bottom, top) = horizons(n % layers, layers);
+                let (bottom, top) = plan::horizons(n % layers, layers);
                 let node = |horizon: Option<usize>, x, y, open| {
                     horizon.map_or(open, |horizon| model.sheet(horizon, region.block).node(x, y))
                 };
@@ -70,7 +69,7 @@ impl Parameterization {
         for (n, touched) in touched.iter().enumerate() {
             let region = Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
             let reach = &mut reaches[n % layers];
-            *reach = reach.max(farthest(model, settings, region, touched));
+            *reach = reach.max(planner.farthest(region, touched));
         }
         let mut cost = ComputeCost::default();
         let mut grids = Vec::with_capacity(layers * blocks);
@@ -78,9 +77,20 @@ impl Parameterization {
             for layer in 0..layers {
                 let touched = &touched[block * layers + layer];
                 let region = Region { layer: layer as u16, block: block as u16 };
-                let (mut grid, sheets) = plan(model, settings, &metric, region, touched, reaches[layer]);
+                let (mut grid, method) = planner.plan(region, touched, reaches[layer]);
                 if !touched.depths.is_empty() {
-                    let spent = compute::fill(&mut grid, &sheets(), touched, settings.trace_tolerance, progress)?;
+                    let spent = match method {
+                        Method::Closest(kind) => {
+                            let layer = planner.layer(&grid, touched, kind);
+                            compute::fill(&mut grid, &layer, touched, settings.trace_tolerance, progress)?
+                        }
+                        Method::Flow(flow) => {
+                            let (bottom, top) = (grid.bottom.clone(), grid.top.clone());
+                            let bottom = |x: f32, y: f32| bottom.z(model, region.block, x, y);
+                            let top = |x: f32, y: f32| top.z(model, region.block, x, y);
+                            flow::fill(&mut grid, flow, planner.stride, &metric, [&bottom, &top], progress)?
+                        }
+                    };
                     cost.closest_points += spent.closest_points;
                     cost.traces += spent.traces;
                 }
@@ -125,103 +135,22 @@ impl Parameterization {
         self.grid(region).is_near_crease(model, p)
     }
 
-    /// Memory of all grids, bytes.
-    pub fn bytes(&self) -> usize {
-        self.grids.iter().map(RegionGrid::bytes).sum()
+    /// The sheets that are the parameterization's own ([`SheetSource::Calm`]), each once, in the order of the grids.
+    pub fn calm_sheets(&self) -> Vec<Arc<HeightField>> {
+        let mut found: Vec<Arc<HeightField>> = Vec::new();
+        for sheet in self.grids.iter().flat_map(|grid| [&grid.bottom, &grid.top]) {
+            if let SheetSource::Calm(sheet) = &sheet.of
+                && !found.iter().any(|known| Arc::ptr_eq(known, sheet))
+            {
+                found.push(Arc::clone(sheet));
+            }
+        }
+        found
     }
-}
 
-/// Horizons at the bottom and the top of a layer.
-fn horizons(layer: usize, layers: usize) -> (Option<usize>, Option<usize>) {
-    ((layer > 0).then(|| layers - 1 - layer), (layer + 1 < layers).then(|| layers - 2 - layer))
-}
-
-/// Vertical distance (voxels) from the reference sheet of an open or parallel layer to the farthest point of
-/// the region; the reference thickness has to cover it. The shortest distance to the sheet is never longer.
-fn farthest<M: LayerModel + ?Sized>(
-    model: &M,
-    settings: &ParamSettings,
-    region: Region,
-    touched: &RegionColumns,
-) -> f32 {
-    let layers = model.layer_count();
-    let layer = usize::from(region.layer);
-    let (bottom, top) = horizons(layer, layers);
-    let last = model.size()[2].saturating_sub(1) as f32;
-    let node = |horizon: usize, [x, y]: [i32; 2]| model.sheet(horizon, region.block).node(x, y);
-    // An open layer reaches to the edge of the volume, a closed one as far as the region was found.
-    let met = |column: [i32; 2], z: f32| model.region_at(Vec3::new(column[0] as f32, column[1] as f32, z)) == region;
-    let step = 2.0;
-    let depths_met = |column: [i32; 2], depths: [f32; 2]| {
-        let (low, high) = (depths[0].max(0.0), depths[1].min(last));
-        (0..=((high - low) / step) as usize).map(move |n| low + n as f32 * step).filter(move |&z| met(column, z))
-    };
-    let height = |column: [i32; 2], depths: [f32; 2]| match (settings.definition(layer, layers), bottom, top) {
-        (_, Some(bottom), None) => node(bottom, column).min(last),
-        (_, None, Some(top)) => last - node(top, column).max(0.0),
-        (Some(KDefinition::ParallelToBottom), Some(bottom), _) => {
-            depths_met(column, depths).next().map_or(0.0, |z| node(bottom, column) - z + step)
-        }
-        (Some(KDefinition::ParallelToTop), _, Some(top)) => {
-            depths_met(column, depths).last().map_or(0.0, |z| z - node(top, column) + step)
-        }
-        _ => 0.0,
-    };
-    touched.columns().map(|(_, column, depths)| height(column, depths)).fold(0.0, f32::max)
-}
-
-/// The empty grid of a region, and a function that makes its sheets.
-fn plan<'a, M: LayerModel + ?Sized>(
-    model: &'a M,
-    settings: &ParamSettings,
-    metric: &'a Metric,
-    region: Region,
-    touched: &'a RegionColumns,
-    reach: f32,
-) -> (RegionGrid, impl FnOnce() -> Layer + 'a) {
-    let layers = model.layer_count();
-    let (bottom, top) = horizons(usize::from(region.layer), layers);
-    let last = model.size()[2].saturating_sub(1) as f32;
-    let at = |horizon, shift| SheetRef { horizon, shift };
-    let thickness = reach * metric.vertical_step();
-    let definition = settings.definition(usize::from(region.layer), layers);
-    let (kind, bottom, top) = match (definition, bottom, top) {
-        (Some(KDefinition::DistanceRatio), Some(_), Some(_)) => (LayerKind::Ratio, at(bottom, 0.0), at(top, 0.0)),
-        (Some(KDefinition::ParallelToTop), _, Some(_)) | (_, None, Some(_)) => {
-            (LayerKind::BelowTop(thickness), at(top, reach), at(top, 0.0))
-        }
-        (_, Some(_), _) => (LayerKind::AboveBottom(thickness), at(bottom, 0.0), at(bottom, -reach)),
-        (_, None, None) => (LayerKind::Vertical, at(None, last.max(1.0)), at(None, 0.0)),
-    };
-    let node = move |sheet: SheetRef, x, y| {
-        sheet.horizon.map_or(0.0, |horizon| model.sheet(horizon, region.block).node(x, y)) + sheet.shift
-    };
-    let thickest = touched
-        .columns()
-        .map(|(_, [x, y], _)| node(bottom, x, y) - node(top, x, y))
-        .fold(0.0, f32::max)
-        .min(4.0 * (last + 1.0));
-    let levels = ((thickest / settings.level_spacing).ceil() as usize + 1).max(FEWEST_LEVELS);
-    let thickness_m = match kind {
-        LayerKind::AboveBottom(thickness) | LayerKind::BelowTop(thickness) => {
-            Some(f64::from(thickness) * metric.unit_m)
-        }
-        LayerKind::Ratio | LayerKind::Vertical => None,
-    };
-    let grid = RegionGrid {
-        region,
-        origin: touched.origin,
-        size: touched.size,
-        levels: if kind == LayerKind::Vertical { 3 } else { levels },
-        bottom,
-        top,
-        thickness_m,
-        offsets: Vec::new(),
-        creases: Vec::new(),
-    };
-    let surface = move |sheet: SheetRef| match sheet.horizon {
-        Some(horizon) => BicubicSheet::new(model.sheet(horizon, region.block), sheet.shift),
-        None => BicubicSheet::new(&HeightField::from_fn(touched.origin, touched.size, |_, _| 0.0), sheet.shift),
-    };
-    (grid, move || Layer { bottom: surface(bottom), top: surface(top), kind, metric: *metric })
+    /// Memory of all grids and their sheets, bytes.
+    pub fn bytes(&self) -> usize {
+        let sheets = self.calm_sheets().iter().map(|sheet| size_of_val(sheet.z.as_slice())).sum::<usize>();
+        self.grids.iter().map(RegionGrid::bytes).sum::<usize>() + sheets
+    }
 }

@@ -11,25 +11,37 @@ use survey::{Contact, Stratigraphy};
 pub enum KDefinition {
     /// k = d_bottom / (d_bottom + d_top), with the distances in metres to the closest points of the two
     /// sheets; i, j are where the curve along ∇k crosses k = 0.5 (P-illus 3.1). An open layer has only one
-    /// sheet and uses the parallel definition of that sheet.
-    #[default]
+    /// sheet and uses the parallel definition of that sheet. The sheets are the horizons as they are drawn.
     DistanceRatio,
+    /// ∇²k = 0 between the two sheets; i, j are where the curve along ∇k crosses the middle level. In an open
+    /// layer k is the distance to its horizon, in which the roughness of the horizon dies out: the directions
+    /// are harmonic, the spacing of beds is even.
+    #[default]
+    Flow,
+    /// The same, with ∇²k = 0 in open layers, too: beds crowd over crests of the horizon and spread in its troughs,
+    /// and its roughness dies out as in the upward continuation of a potential field.
+    Harmonic,
+    /// k is the vertical fraction between the sheets; i, j as above. In an open layer beds are copies of its
+    /// horizon, one above the other.
+    Proportional,
     /// k = d_bottom / T with the layer's reference thickness T: beds are parallel to the bottom and are cut
-    /// off by the top, as below an unconformity. i, j are those of the closest point on the bottom sheet.
+    /// off by the top, as below an unconformity. i, j are those of the closest point on the bottom sheet. In a
+    /// layer without a bottom, beds are parallel to its top.
     ParallelToBottom,
     /// k = 1 − d_top / T: beds are parallel to the top and end on the bottom, as above an onlap surface. i, j
-    /// are those of the closest point on the top sheet.
+    /// are those of the closest point on the top sheet. In a layer without a top, beds are parallel to its
+    /// bottom.
     ParallelToTop,
 }
 
 impl KDefinition {
     /// The definitions that follow from the contact rules, index 0 = deepest layer. An intrusion cuts through
     /// the horizon below it, so its layer has no bottom and is measured from its outline
-    /// ([`KDefinition::ParallelToTop`]). Every other layer keeps the distance ratio.
+    /// ([`KDefinition::ParallelToTop`]). Every other layer has the default.
     pub fn for_contacts(stratigraphy: &Stratigraphy) -> Vec<Self> {
         let layer = |layer: usize| match stratigraphy.top_of(layer) {
             Some(top) if stratigraphy.horizons[top].contact == Contact::Intrusive => Self::ParallelToTop,
-            _ => Self::DistanceRatio,
+            _ => Self::default(),
         };
         (0..stratigraphy.layer_count()).map(layer).collect()
     }
@@ -45,8 +57,12 @@ pub struct ParamSettings {
     /// and 0.17° at 2.
     pub level_spacing: f32,
     /// Definition of k per layer, index 0 = deepest. Layers beyond the end of the list use
-    /// [`KDefinition::DistanceRatio`]. Default empty.
+    /// the default. Default empty.
     pub definitions: Vec<KDefinition>,
+    /// Length in metres of the waves of horizons that the flow of a layer does not follow; the boundary that is
+    /// drawn does. Usually the size of a pattern's tile. 0 (default): the flow follows the horizons exactly. The
+    /// distance ratio always does.
+    pub flow_wave_m: f64,
     /// Vertical exaggeration at which distances and angles are measured. 1 (default) is true space. With
     /// another value the parameterization is computed in display space, so that textures look undistorted at
     /// that exaggeration.
@@ -59,7 +75,7 @@ pub struct ParamSettings {
 
 impl Default for ParamSettings {
     fn default() -> Self {
-        Self { level_spacing: 3.0, definitions: Vec::new(), exaggeration: 1.0, trace_tolerance: 4e-3 }
+        Self { level_spacing: 3.0, definitions: Vec::new(), flow_wave_m: 0.0, exaggeration: 1.0, trace_tolerance: 4e-3 }
     }
 }
 
@@ -76,6 +92,7 @@ impl ParamSettings {
         in_range("level_spacing", f64::from(spacing), "from 0.25 to 64 voxels", (0.25..=64.0).contains(&spacing))?;
         let tolerance = self.trace_tolerance;
         in_range("trace_tolerance", f64::from(tolerance), "from 1e-5 to 1 voxel", (1e-5..=1.0).contains(&tolerance))?;
+        in_range("flow_wave_m", self.flow_wave_m, "from 0 to 1e9 m", (0.0..=1e9).contains(&self.flow_wave_m))?;
         let exaggeration = self.exaggeration;
         in_range("exaggeration", exaggeration, "from 0.001 to 1000", (1e-3..=1e3).contains(&exaggeration))?;
         match self.definitions.len() {
@@ -84,28 +101,19 @@ impl ParamSettings {
         }
     }
 
-    /// The definition used in `layer`: the one in [`ParamSettings::definitions`], or the parallel one where
-    /// the layer is open on one side. `None` when the only layer is open on both sides; k is then the
-    /// vertical fraction of the volume.
+    /// The definition of a layer. `None` when the only layer is open on both sides; k is then the vertical fraction
+    /// of the volume.
     ///
     /// ```
     /// use param::{KDefinition, ParamSettings};
     ///
-    /// // Three layers: the deepest and the youngest have one horizon each.
-    /// let settings = ParamSettings::default();
-    /// assert_eq!(settings.definition(0, 3), Some(KDefinition::ParallelToTop));
-    /// assert_eq!(settings.definition(1, 3), Some(KDefinition::DistanceRatio));
-    /// assert_eq!(settings.definition(2, 3), Some(KDefinition::ParallelToBottom));
+    /// let settings = ParamSettings { definitions: vec![KDefinition::DistanceRatio], ..ParamSettings::default() };
+    /// assert_eq!(settings.definition(0, 3), Some(KDefinition::DistanceRatio));
+    /// assert_eq!(settings.definition(1, 3), Some(KDefinition::Flow));
     /// assert_eq!(settings.definition(0, 1), None);
     /// ```
     pub fn definition(&self, layer: usize, layers: usize) -> Option<KDefinition> {
-        let stated = self.definitions.get(layer).copied().unwrap_or_default();
-        match (layer == 0, layer + 1 == layers) {
-            (true, true) => None,
-            (true, false) => Some(KDefinition::ParallelToTop),
-            (false, true) => Some(KDefinition::ParallelToBottom),
-            (false, false) => Some(stated),
-        }
+        (layers > 1).then(|| self.definitions.get(layer).copied().unwrap_or_default())
     }
 }
 
@@ -123,16 +131,7 @@ mod tests {
             horizon("b", Contact::Erosional),
         ];
         let definitions = KDefinition::for_contacts(&Stratigraphy { horizons, layer_names: Vec::new() });
-        use KDefinition::{DistanceRatio, ParallelToTop};
-        assert_eq!(definitions, [DistanceRatio, ParallelToTop, DistanceRatio, DistanceRatio]);
-    }
-
-    #[test]
-    fn open_layers_are_parallel_to_their_horizon_by_default() {
-        let settings = ParamSettings::default();
-        assert_eq!(settings.definition(0, 3), Some(KDefinition::ParallelToTop));
-        assert_eq!(settings.definition(1, 3), Some(KDefinition::DistanceRatio));
-        assert_eq!(settings.definition(2, 3), Some(KDefinition::ParallelToBottom));
-        assert_eq!(settings.definition(0, 1), None);
+        use KDefinition::{Flow, ParallelToTop};
+        assert_eq!(definitions, [Flow, ParallelToTop, Flow, Flow]);
     }
 }

@@ -108,10 +108,13 @@ impl TraceSheets {
             self.thickness = self.bottom - grid.top.z(model, region.block, p.x, p.y);
             self.region = Some(region);
         }
-        let v = if self.thickness < PINCHED { 0.5 } else { ((self.bottom - p.z) / self.thickness).clamp(0.0, 1.0) };
+        let v = if self.thickness < PINCHED { 0.5 } else { (self.bottom - p.z) / self.thickness };
+        let v = if grid.is_calm() { v } else { v.clamp(0.0, 1.0) };
         let [dx, dy, dk] = grid.offset(p.x, p.y, v);
         let scale = [0, 1].map(|axis: usize| 1.0 / param.size[axis].saturating_sub(1).max(1) as f32);
-        [(p.x + dx) * scale[0], (p.y + dy) * scale[1], v + dk]
+        // Beyond a calm sheet, up to the horizon that is drawn, k stays that of the horizon.
+        let k = if grid.is_calm() { (v + dk).clamp(0.0, 1.0) } else { v + dk };
+        [(p.x + dx) * scale[0], (p.y + dy) * scale[1], k]
     }
 }
 

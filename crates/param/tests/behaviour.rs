@@ -44,15 +44,26 @@ fn one_thread_and_five_give_the_same_bytes() {
 
 #[test]
 fn nothing_is_undefined_on_rough_crossing_sheets() {
+    for definition in [KDefinition::Flow, KDefinition::DistanceRatio] {
+        finite_on_rough_crossing_sheets(definition);
+    }
+}
+
+fn finite_on_rough_crossing_sheets(definition: KDefinition) {
     let model = rough();
-    let param = Parameterization::compute(&model, &ParamSettings::default(), &Progress::silent()).unwrap();
+    let settings = ParamSettings { definitions: vec![definition; 4], ..Default::default() };
+    let param = Parameterization::compute(&model, &settings, &Progress::silent()).unwrap();
     let volumes = param.voxel_volumes(&model, [40, 36, 48], &Progress::silent()).unwrap();
     for volume in [&volumes.i, &volumes.j, &volumes.k] {
         assert!(volume.samples().iter().all(|value| value.is_finite()));
     }
     assert!(volumes.k.samples().iter().all(|k| (-0.2..=1.2).contains(k)));
     let nodes = param.grids.iter().flat_map(|grid| (0..grid.offsets.len()).map(|node| grid.is_crease(node)));
-    assert!(nodes.filter(|&crease| crease).count() > 1000, "creases are reported");
+    let creases = nodes.filter(|&crease| crease).count();
+    match definition {
+        KDefinition::DistanceRatio => assert!(creases > 1000, "creases are reported"),
+        _ => assert_eq!(creases, 0, "a flow has none"),
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@
 mod closed_form;
 
 use closed_form::ClosedForm;
-use param::{ParamSettings, Parameterization, Region};
+use param::{KDefinition, ParamSettings, Parameterization, Region};
 use survey::Progress;
 
 const AXIS_X: f64 = 30.0;
@@ -24,7 +24,8 @@ fn arch(radius: f64, x: f64) -> f64 {
 fn a_dome_is_radial() {
     let size = [61, 9, 60];
     let model = ClosedForm::new(size, 2, |h, x, _| arch(RADII[h], x));
-    let param = Parameterization::compute(&model, &ParamSettings::default(), &Progress::silent()).unwrap();
+    let settings = ParamSettings { definitions: vec![KDefinition::DistanceRatio; 3], ..Default::default() };
+    let param = Parameterization::compute(&model, &settings, &Progress::silent()).unwrap();
     let volumes = param.voxel_volumes(&model, size, &Progress::silent()).unwrap();
     let mut counts = [0; 3];
     let mut worst = [0.0f64; 3];

@@ -8,8 +8,11 @@ use glam::{DMat3, DVec3, Vec3};
 use param::{KDefinition, ParamSettings, Parameterization, Region};
 use survey::Progress;
 
+/// By the published definition of k, in all layers.
 fn compute(model: &ClosedForm) -> Parameterization {
-    Parameterization::compute(model, &ParamSettings::default(), &Progress::silent()).unwrap()
+    let definitions = vec![KDefinition::DistanceRatio; param::LayerModel::layer_count(model)];
+    let settings = ParamSettings { definitions, ..Default::default() };
+    Parameterization::compute(model, &settings, &Progress::silent()).unwrap()
 }
 
 /// A plane z = z0 + a·x + b·y.

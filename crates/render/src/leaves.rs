@@ -18,6 +18,15 @@ pub enum FaceData {
     /// Distance to the nearest candidate: white on it, darker with distance, black beyond [`BLACK_AT`]
     /// (P-horiz, figure 4).
     Distance,
+    /// How much patterns are distorted ([`crate::distortion`]).
+    Distortion,
+}
+
+impl FaceData {
+    /// Whether the faces show horizon candidates.
+    pub fn shows_candidates(self) -> bool {
+        matches!(self, Self::Leaves | Self::Distance)
+    }
 }
 
 /// Half of the thickness of a leaf on a face, voxels.

@@ -12,7 +12,7 @@ use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
 use crate::wells::Tubes;
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec3};
 use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
@@ -40,6 +40,8 @@ pub(crate) struct ResolvedScene<'a> {
     pub illustrated: bool,
     /// The ground, if the scene has one.
     pub relief: Option<Relief>,
+    /// The linear part of the map from voxels to metres.
+    pub metric: DMat3,
     /// Metres between voxels along x, y, z.
     pub voxel_m: Vec3,
     /// Factors on the colour of faces of constant x, y, z.
@@ -107,6 +109,7 @@ impl<'a> ResolvedScene<'a> {
             interpretation,
             illustrated: interpretation.is_some() && (!hidden || shows_depths(scene)),
             relief,
+            metric,
             voxel_m: DVec3::new(metric.x_axis.length(), metric.y_axis.length(), metric.z_axis.length()).as_vec3(),
         })
     }
@@ -155,7 +158,7 @@ fn resolve_relief(
 
 /// The horizon candidates, if faces show them.
 fn resolve_candidates<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<CandidateVolume<'a>>, RenderError> {
-    if scene.face_data == FaceData::Rock {
+    if !scene.face_data.shows_candidates() {
         return Ok(None);
     }
     let candidates = inputs.candidates.ok_or(RenderError::NO_CANDIDATES)?;
@@ -203,6 +206,8 @@ fn no_tables() -> TtfTables {
             scalar_count: 0,
             stop_count: 0,
         },
+        extent_i_m: 1.0,
+        thicknesses_m: Vec::new(),
         layers: Vec::new(),
         intervals: Vec::new(),
         scalars: Vec::new(),

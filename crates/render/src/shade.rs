@@ -6,6 +6,7 @@
 //! maps it to flat space.
 
 use crate::camera::ViewRay;
+use crate::distortion;
 use crate::ground::GroundHit;
 use crate::inputs::NamedVolume;
 use crate::leaves::{FaceData, cover, distance_tone, leaf_colour};
@@ -181,6 +182,11 @@ pub(crate) fn first_hit(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayH
 
 /// The colour of a point of a face of constant x, y or z.
 fn face_colour(resolved: &ResolvedScene, view_ray: &ViewRay, hit: &FaceHit) -> Vec3 {
+    if resolved.scene.face_data == FaceData::Distortion
+        && let Some(interpretation) = resolved.interpretation
+    {
+        return distortion::colour_at(resolved, &interpretation, hit);
+    }
     let scalars = scalar_values(resolved, hit.point);
     let mut normal = [0.0; 3];
     normal[hit.axis] = 1.0;
@@ -243,7 +249,7 @@ fn ground_colour(resolved: &ResolvedScene, hit: &GroundHit) -> Vec3 {
 }
 
 /// The change of the hit on its plane for a step of one pixel to the right (n = 0) or down (n = 1), voxels.
-fn pixel_shift(ray: &ViewRay, hit: &FaceHit, n: usize) -> Vec3 {
+pub(crate) fn pixel_shift(ray: &ViewRay, hit: &FaceHit, n: usize) -> Vec3 {
     let drift = ray.origin_step[n] + ray.direction_step[n] * f64::from(hit.t);
     let slide = -drift[hit.axis] / ray.direction[hit.axis];
     (drift + ray.direction * slide).as_vec3()

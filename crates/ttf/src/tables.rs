@@ -139,6 +139,10 @@ pub struct StopEntry {
 pub struct TtfTables {
     /// Numbers that hold for the whole scene.
     pub globals: TtfGlobals,
+    /// Metres that i in [0, 1] stands for ([`BlockExtent::extent_i_m`]).
+    pub extent_i_m: f32,
+    /// Metres that k in [0, 1] stands for in each layer, bottom to top ([`LayerExtent::thickness_m`]).
+    pub thicknesses_m: Vec<f32>,
     /// One entry per layer, bottom to top.
     pub layers: Vec<LayerEntry>,
     /// Depth intervals. Those of one layer follow one another, rising in k.
@@ -219,7 +223,9 @@ impl TtfTables {
             stop_count: stops.len() as u32,
         };
         let Slots { volumes, textures, library_indices: patterns, .. } = slots;
-        Ok(Self { globals, layers, intervals, scalars, stops, volumes, textures, patterns })
+        let thicknesses_m = block.layers.iter().map(|layer| layer.thickness_m).collect();
+        let extent_i_m = block.extent_i_m;
+        Ok(Self { globals, extent_i_m, thicknesses_m, layers, intervals, scalars, stops, volumes, textures, patterns })
     }
 
     /// The opaque average colour of a layer at local k, its texture included. The ground has the average

@@ -50,7 +50,10 @@ pub(in crate::cli) struct LayerSetArgs {
     /// Opacity inside a cut-out, 0 to 1
     #[arg(long, value_name = "0..1")]
     pub(in crate::cli) opacity: Option<f32>,
-    /// What k means in the layer: distance-ratio, parallel-to-bottom or parallel-to-top
+    /// How the pattern runs through the layer: flow (the smoothest way between its horizons, the default),
+    /// harmonic (the same by the letter of ∇²k = 0 in the top and bottom layer, too), distance (the ratio of
+    /// distances to both, as published; follows every wiggle), proportional (the vertical fraction),
+    /// parallel-to-bottom or parallel-to-top
     #[arg(long, value_name = "DEFINITION")]
     pub(in crate::cli) k: Option<String>,
     /// Pattern of a part of the layer's depth, 0 at the base to 1 at the top; repeat it for each part

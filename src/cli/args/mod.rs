@@ -52,10 +52,15 @@ pub(super) enum Action {
     /// Show what a file or project holds
     #[command(after_help = "Example:\n  petroglyph info survey.sgy\
                       \n  petroglyph info survey.sgy --inline-byte 193 --crossline-byte 189\
-                      \n  petroglyph info top-chalk.irap\n  petroglyph info north.petro --json")]
+                      \n  petroglyph info top-chalk.irap\n  petroglyph info north.petro --json\
+                      \n  petroglyph info north.petro --distortion")]
     Info {
         /// SEG-Y, horizon, fault or well file, or project folder
         path: PathBuf,
+        /// Of a project: compute how much patterns are distorted, layer by layer, on the faces of its first scene (or
+        /// the default view) at vertical exaggeration 1
+        #[arg(long)]
+        distortion: bool,
         #[command(flatten)]
         segy: SegyArgs,
         #[command(flatten)]

@@ -91,9 +91,11 @@ pub(in crate::cli) struct ViewArgs {
     /// Opacity of that relief
     #[arg(long, value_name = "0..1")]
     pub(in crate::cli) ground_opacity: Option<f32>,
-    /// What faces show: the rock, the leaves of horizon candidates in colours, or the distance to the nearest
-    /// candidate. In volume rendering, leaves colour the horizons shown, or all candidates
-    #[arg(long, value_name = "rock|leaves|distance")]
+    /// What faces show: the rock, the leaves of horizon candidates in colours, the distance to the nearest
+    /// candidate, or how much patterns are distorted (white: not; blue: too dense or narrow; orange: too
+    /// sparse or wide), with the shares of area printed. In volume rendering, leaves colour the horizons
+    /// shown, or all candidates
+    #[arg(long, value_name = "rock|leaves|distance|distortion")]
     pub(in crate::cli) show: Option<String>,
     /// Colour leaves by the node this many levels up their surface tree; 0 = the leaf itself. Shows leaves
     /// unless --show says otherwise

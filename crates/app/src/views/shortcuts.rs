@@ -146,7 +146,7 @@ pub const INTERPRETING: &[Shortcut] = &[
         picking(PickingStep::Show(match session.view.picking.show {
             FaceData::Rock => FaceData::Leaves,
             FaceData::Leaves => FaceData::Distance,
-            FaceData::Distance => FaceData::Rock,
+            FaceData::Distance | FaceData::Distortion => FaceData::Rock,
         }))
     }),
     plain(Key::E, "E", "Extract candidates", |session| {

@@ -20,7 +20,7 @@ pub(super) fn raster(
     let [r, g, b] = NO_DATA.rgb;
     let mut image = RgbaImage::from_pixel(size[0], size[1], Rgba([r, g, b, 255]));
     let colour = raw_colour(source);
-    let candidates = source.data.candidates.filter(|_| show != FaceData::Rock);
+    let candidates = source.data.candidates.filter(|_| show.shows_candidates());
     image.par_chunks_mut(4 * size[0].max(1) as usize).enumerate().for_each(|(t, row)| {
         for (s, pixel) in row.chunks_exact_mut(4).enumerate() {
             let point = place(s as f32, t as f32);

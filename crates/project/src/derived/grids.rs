@@ -5,15 +5,19 @@ use super::{Scratch, folder, key_of, revision};
 use crate::document::Document;
 use crate::error::ProjectError;
 use model::ModelSettings;
-use param::{ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, VoxelParameterization};
+use param::{
+    ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, SheetSource, VoxelParameterization,
+};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use store::{ParameterizationVolumes, StoredParameterization};
-use survey::Progress;
+use survey::height_field::FAR;
+use survey::{HeightField, Progress};
 
 /// Grid files.
-const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x01", what: "the parameterization" };
+const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x02", what: "the parameterization" };
 
 /// The key of a parameterization: a hash of everything that it depends on.
 pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
@@ -58,6 +62,7 @@ struct Header {
     size: [usize; 3],
     layers: usize,
     blocks: usize,
+    sheets: Vec<SheetHeader>,
     grids: Vec<GridHeader>,
 }
 
@@ -68,37 +73,84 @@ struct GridHeader {
     origin: [i32; 2],
     size: [usize; 2],
     levels: usize,
-    bottom: (Option<usize>, f32),
-    top: (Option<usize>, f32),
+    bottom: (Source, f32),
+    top: (Source, f32),
     thickness_m: Option<f64>,
     nodes: usize,
     words: usize,
 }
 
+/// What a sheet shifts: as [`SheetSource`], a calm sheet by its index.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+enum Source {
+    Plane,
+    Horizon(usize),
+    Calm(usize),
+}
+
+impl Source {
+    fn of(source: &SheetSource, calm: &[Arc<HeightField>]) -> Self {
+        match source {
+            SheetSource::Plane => Self::Plane,
+            SheetSource::Horizon(horizon) => Self::Horizon(*horizon),
+            SheetSource::Calm(sheet) => {
+                let position = calm.iter().position(|known| Arc::ptr_eq(known, sheet));
+                Self::Calm(position.unwrap_or(usize::MAX))
+            }
+        }
+    }
+
+    /// The sheet, if it is one of a model of so many layers or one of the file.
+    fn source(self, layers: usize, calm: &[Arc<HeightField>]) -> Option<SheetSource> {
+        match self {
+            Self::Plane => Some(SheetSource::Plane),
+            Self::Horizon(horizon) => (horizon.checked_add(1)? < layers).then_some(SheetSource::Horizon(horizon)),
+            Self::Calm(index) => Some(SheetSource::Calm(Arc::clone(calm.get(index)?))),
+        }
+    }
+}
+
+/// The lattice of a calm sheet.
+#[derive(Serialize, Deserialize)]
+struct SheetHeader {
+    origin: [i32; 2],
+    size: [usize; 2],
+}
+
+impl SheetHeader {
+    /// The count of nodes, if surfaces can be evaluated on them.
+    fn nodes(&self) -> Option<usize> {
+        let is_sound = self.size.iter().all(|&count| count >= 2)
+            && self.origin.iter().all(|&first| first.checked_abs().is_some_and(|first| first < FAR));
+        let nodes = self.size[0].checked_mul(self.size[1])?;
+        (is_sound && nodes < FAR as usize).then_some(nodes)
+    }
+}
+
 impl GridHeader {
-    /// Whether this is the grid at an index of so many layers for each block, with as many nodes as its counts say,
-    /// on horizons that there are: everything that looks nodes up relies on it.
+    /// Whether this is the grid at an index of so many layers for each block, with as many nodes as its counts say:
+    /// everything that looks nodes up relies on it.
     fn is_sound(&self, index: usize, layers: usize) -> bool {
         let is_place = [index % layers, index / layers] == [usize::from(self.layer), usize::from(self.block)];
         let columns = self.size[0].checked_mul(self.size[1]);
         let nodes = columns.and_then(|columns| columns.checked_mul(self.levels));
         let is_counted = nodes == Some(self.nodes) && self.words == self.nodes.div_ceil(64);
         let has_cells = self.nodes == 0 || (self.size.iter().all(|&count| count >= 2) && self.levels >= 3);
-        let horizons = [self.bottom.0, self.top.0];
-        is_place && is_counted && has_cells && horizons.iter().flatten().all(|&horizon| horizon + 1 < layers)
+        is_place && is_counted && has_cells
     }
 }
 
-/// The header, then offsets and creases of each grid.
+/// The header, then the calm sheets, then offsets and creases of each grid.
 fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::Result<()> {
+    let calm = parameterization.calm_sheets();
     let grid = |grid: &RegionGrid| GridHeader {
         layer: grid.region.layer,
         block: grid.region.block,
         origin: grid.origin,
         size: grid.size,
         levels: grid.levels,
-        bottom: (grid.bottom.horizon, grid.bottom.shift),
-        top: (grid.top.horizon, grid.top.shift),
+        bottom: (Source::of(&grid.bottom.of, &calm), grid.bottom.shift),
+        top: (Source::of(&grid.top.of, &calm), grid.top.shift),
         thickness_m: grid.thickness_m,
         nodes: grid.offsets.len(),
         words: grid.creases.len(),
@@ -107,9 +159,13 @@ fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::
         size: parameterization.size,
         layers: parameterization.layers,
         blocks: parameterization.blocks,
+        sheets: calm.iter().map(|sheet| SheetHeader { origin: sheet.origin, size: sheet.size }).collect(),
         grids: parameterization.grids.iter().map(grid).collect(),
     };
     write_header(out, &header)?;
+    for sheet in &calm {
+        out.write_all(bytemuck::cast_slice(&sheet.z))?;
+    }
     for grid in &parameterization.grids {
         out.write_all(bytemuck::cast_slice(&grid.offsets))?;
         out.write_all(bytemuck::cast_slice(&grid.creases))?;
@@ -122,6 +178,19 @@ fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization>
     if header.layers.checked_mul(header.blocks) != Some(header.grids.len()) {
         return Err(damaged());
     }
+    let mut calm = Vec::new();
+    for sheet in header.sheets {
+        let nodes = sheet.nodes().ok_or_else(damaged)?;
+        let z: Vec<f32> = read_array(input, nodes, length)?;
+        if !z.iter().all(|z| z.is_finite()) {
+            return Err(damaged());
+        }
+        calm.push(Arc::new(HeightField { origin: sheet.origin, size: sheet.size, z }));
+    }
+    let sheet = |(source, shift): (Source, f32)| {
+        let of = source.source(header.layers, &calm).ok_or_else(damaged)?;
+        Ok::<_, io::Error>(SheetRef { of, shift })
+    };
     let mut grids = Vec::with_capacity(header.grids.len());
     for (index, head) in header.grids.into_iter().enumerate() {
         if !head.is_sound(index, header.layers) {
@@ -132,8 +201,8 @@ fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization>
             origin: head.origin,
             size: head.size,
             levels: head.levels,
-            bottom: SheetRef { horizon: head.bottom.0, shift: head.bottom.1 },
-            top: SheetRef { horizon: head.top.0, shift: head.top.1 },
+            bottom: sheet(head.bottom)?,
+            top: sheet(head.top)?,
             thickness_m: head.thickness_m,
             offsets: read_array(input, head.nodes, length)?,
             creases: read_array(input, head.words, length)?,
@@ -199,13 +268,14 @@ mod tests {
     use std::time::{Duration, SystemTime};
 
     fn parameterization() -> Parameterization {
-        let grid = |layer: u16| RegionGrid {
+        let calm = Arc::new(HeightField { origin: [-4, 0], size: [2, 3], z: vec![1.5; 6] });
+        let grid = |layer: u16, top: SheetSource| RegionGrid {
             region: Region { layer, block: 0 },
             origin: [-3, 4],
             size: [2, 2],
             levels: 3,
-            bottom: SheetRef { horizon: Some(0), shift: 0.0 },
-            top: SheetRef { horizon: None, shift: -12.5 },
+            bottom: SheetRef { of: SheetSource::Horizon(0), shift: 0.0 },
+            top: SheetRef { of: top, shift: -12.5 },
             thickness_m: Some(1.0 / 3.0),
             offsets: (0..12).map(|n| [n as f32, -1.5, f32::MIN_POSITIVE]).collect(),
             creases: vec![5],
@@ -214,7 +284,7 @@ mod tests {
             size: [4, 5, 6],
             layers: 2,
             blocks: 1,
-            grids: vec![grid(0), grid(1)],
+            grids: vec![grid(0, SheetSource::Calm(calm)), grid(1, SheetSource::Plane)],
             cost: ComputeCost::default(),
         }
     }
@@ -229,7 +299,7 @@ mod tests {
             |p| p.grids[0].region.block = 7,
             |p| p.layers = 3,
             |p| p.grids[1].creases.clear(),
-            |p| p.grids[1].bottom.horizon = Some(1),
+            |p| p.grids[1].bottom.of = SheetSource::Horizon(1),
             |p| (p.grids[0].size, p.grids[0].levels) = ([1, 4], 3),
         ];
         for (n, damage) in damages.into_iter().enumerate() {

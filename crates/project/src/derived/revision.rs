@@ -8,7 +8,7 @@
 pub const MODEL: u32 = 1;
 
 /// The parameterization.
-pub const PARAMETERIZATION: u32 = 1;
+pub const PARAMETERIZATION: u32 = 2;
 
 /// Horizon candidates: extrema, growing, surface trees, distances.
 pub const EXTRACTION: u32 = 1;

@@ -10,7 +10,8 @@ use crate::{content, derived, memory_budget, styles};
 use glam::{DVec3, Vec3};
 use model::{ModelSettings, StructuralModel};
 use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
-use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, Scene, VoxelBox};
+use render::distortion::{self, LayerDistortion};
+use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, RenderError, Scene, VoxelBox};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -25,6 +26,8 @@ const VOXEL_BYTES: usize = 16;
 
 /// Printed length of the block's longer side for which patterns are sized, mm: a picture across a page.
 const PRINTED_MM: f64 = 150.0;
+/// Printed size of a pattern's tile, mm.
+const TILE_MM: f64 = 20.0;
 /// Number of samples along each axis at which mean thicknesses are measured.
 const THICKNESS_SAMPLES: usize = 48;
 
@@ -56,9 +59,23 @@ pub struct Rock {
     pub stages: Vec<Stage>,
 }
 
-/// The settings with which a project is parameterized.
+/// The settings with which a project is parameterized: the flow of layers does not follow what is smaller than a
+/// pattern's tile.
 pub fn param_settings(document: &Document) -> ParamSettings {
-    ParamSettings { definitions: document.k_definitions(), ..ParamSettings::default() }
+    let flow_wave_m = document.geometry.as_ref().map_or(0.0, |geometry| TILE_MM * metres_per_mm(geometry));
+    ParamSettings { definitions: document.k_definitions(), flow_wave_m, ..ParamSettings::default() }
+}
+
+/// Metres of rock for a printed millimetre, when the block's longer side has its usual width on paper.
+fn metres_per_mm(geometry: &SurveyGeometry) -> f64 {
+    let [x_m, y_m] = extent_m(geometry);
+    x_m.max(y_m) / PRINTED_MM
+}
+
+/// Lengths of the block along x and y, m.
+fn extent_m(geometry: &SurveyGeometry) -> [f64; 2] {
+    let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
+    [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny]
 }
 
 /// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons.
@@ -401,15 +418,14 @@ fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) 
 /// What styles are compiled for: sizes in metres, and the names of the layers, bottom to top. Thicknesses are those of
 /// the exaggerated display, so that tiles are printed undistorted.
 pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
-    let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
-    let extent = [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny];
+    let extent = extent_m(geometry);
     let layer =
         |(name, thickness_m): (String, f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
     BlockExtent {
         extent_i_m: extent[0] as f32,
         extent_j_m: extent[1] as f32,
         layers: names.into_iter().zip(rock.thicknesses_m(geometry)).map(layer).collect(),
-        metres_per_mm: (extent[0].max(extent[1]) / PRINTED_MM) as f32,
+        metres_per_mm: metres_per_mm(geometry) as f32,
     }
 }
 
@@ -445,6 +461,15 @@ impl Loaded {
     /// The wells in the form that renderers take.
     pub fn well_paths(&self) -> Vec<DrawnWell<'_>> {
         self.wells.iter().map(|well| DrawnWell { name: &well.name, path: &well.path, tops: &well.tops }).collect()
+    }
+
+    /// The distortion of patterns on the faces that a scene shows, for each layer from the bottom.
+    ///
+    /// # Errors
+    /// The scene cannot be drawn, or the user cancelled.
+    pub fn distortion(&self, scene: &Scene, progress: &Progress) -> Result<Vec<LayerDistortion>, RenderError> {
+        let (volumes, wells) = (self.named_volumes(), self.well_paths());
+        distortion::measure(&self.complete(scene), &self.inputs(&volumes, &wells), progress)
     }
 
     /// Everything in the form that renderers take.

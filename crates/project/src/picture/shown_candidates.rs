@@ -45,7 +45,7 @@ pub struct ShownCandidates {
 
 /// Whether a scene shows any of this.
 pub fn is_shown(scene: &Scene) -> bool {
-    !scene.media.horizons.is_empty() || scene.face_data != FaceData::Rock
+    !scene.media.horizons.is_empty() || scene.face_data.shows_candidates()
 }
 
 impl ShownCandidates {
@@ -70,7 +70,7 @@ impl ShownCandidates {
         for name in horizons.iter().filter_map(|horizon| horizon.name.as_deref()) {
             named.push(document.position(Noun::Horizon, name)?);
         }
-        let asks_leaves = scene.face_data != FaceData::Rock || horizons.iter().any(|horizon| horizon.name.is_none());
+        let asks_leaves = scene.face_data.shows_candidates() || horizons.iter().any(|horizon| horizon.name.is_none());
         let by_level = scene.tree_level > 0
             && (scene.face_data == FaceData::Leaves || horizons.iter().any(|h| h.colouring == Colouring::ByLeaf));
         let stored = stored(project, size, progress)?;

@@ -7,13 +7,14 @@ struct GridInfo {
     levels: u32,
     // Entry of column (0, 0) in `columns`.
     first_column: u32,
-    // Horizons at v = 0 and v = 1, NONE for the plane z = 0; both are shifted downwards.
-    bottom_horizon: u32,
-    top_horizon: u32,
+    // Entries in `sheets` at v = 0 and v = 1, NONE for the plane z = 0; both are shifted downwards.
+    bottom_sheet: u32,
+    top_sheet: u32,
     bottom_shift: f32,
     top_shift: f32,
+    // 1: the boundary that is drawn may lie beyond the sheets, and v goes on there.
+    is_calm: u32,
     padding_0: u32,
-    padding_1: u32,
 }
 
 // Index block · layers + layer.
@@ -35,11 +36,11 @@ struct FlatSample {
     dk: vec3<f32>,
 }
 
-fn shifted_sheet(horizon: u32, shift: f32, block: u32, at: vec2<f32>) -> vec3<f32> {
-    if horizon == NONE {
+fn shifted_sheet(sheet: u32, shift: f32, at: vec2<f32>) -> vec3<f32> {
+    if sheet == NONE {
         return vec3(shift, 0.0, 0.0);
     }
-    return sheet_sample(sheets[horizon * model.blocks + block], at) + vec3(shift, 0.0, 0.0);
+    return sheet_sample(sheets[sheet], at) + vec3(shift, 0.0, 0.0);
 }
 
 fn grid_node(start: u32) -> vec3<f32> {
@@ -88,8 +89,8 @@ fn grid_column(index: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
 
 fn flat_exact(p: vec3<f32>, layer: u32, block: u32) -> FlatSample {
     let grid = grids[block * model.layers + layer];
-    let bottom = shifted_sheet(grid.bottom_horizon, grid.bottom_shift, block, p.xy);
-    let top = shifted_sheet(grid.top_horizon, grid.top_shift, block, p.xy);
+    let bottom = shifted_sheet(grid.bottom_sheet, grid.bottom_shift, p.xy);
+    let top = shifted_sheet(grid.top_sheet, grid.top_shift, p.xy);
     let thickness = bottom.x - top.x;
     var v = 0.5;
     var v_slope = vec3(0.0);
@@ -97,7 +98,9 @@ fn flat_exact(p: vec3<f32>, layer: u32, block: u32) -> FlatSample {
         let inverse = 1.0 / thickness;
         v = (bottom.x - p.z) * inverse;
         v_slope = vec3((bottom.yz * (1.0 - v) + top.yz * v) * inverse, -inverse);
-        v = clamp(v, 0.0, 1.0);
+        if grid.is_calm == 0u {
+            v = clamp(v, 0.0, 1.0);
+        }
     }
     var value = vec3(0.0);
     var along_x = vec3(0.0);
@@ -123,7 +126,9 @@ fn flat_exact(p: vec3<f32>, layer: u32, block: u32) -> FlatSample {
         along_y = step_0 + (step_1 - step_0) * f.x;
         let rise_0 = c00.rise + (c01.rise - c00.rise) * f.y;
         let rise_1 = c10.rise + (c11.rise - c10.rise) * f.y;
-        along_v = (rise_0 + (rise_1 - rise_0) * f.x) * scale;
+        if v >= 0.0 && v <= 1.0 {
+            along_v = (rise_0 + (rise_1 - rise_0) * f.x) * scale;
+        }
     }
     let unit = model.unit_from_voxel;
     var flat: FlatSample;

@@ -16,8 +16,9 @@ use crate::outline::solid::{FaceRect, face_rects};
 use crate::resolved::{ResolvedScene, shows_depths};
 use glam::DVec3;
 use model::StructuralModel;
-use param::{Parameterization, RegionGrid, SheetRef};
+use param::{Parameterization, RegionGrid, SheetRef, SheetSource};
 use rayon::prelude::*;
+use std::sync::Arc;
 use ttf::tables::NONE;
 
 /// Thickness below which a layer has no inside, voxels, as in `param` and the shader.
@@ -66,17 +67,29 @@ impl GridBuffers {
         let mut infos = Vec::new();
         let mut columns: Vec<[u32; 2]> = Vec::new();
         let mut offsets: Vec<[f32; 3]> = Vec::new();
+        let calm = param.calm_sheets();
+        let (horizons, blocks) = (param.layers - 1, param.blocks);
+        // As `ModelBuffers` lays sheets out: those of the horizons, then the calm ones.
+        let index = |grid: &RegionGrid, sheet: &SheetRef| match &sheet.of {
+            SheetSource::Plane => NONE,
+            SheetSource::Horizon(horizon) => (horizon * blocks + usize::from(grid.region.block)) as u32,
+            SheetSource::Calm(sheet) => {
+                let position = calm.iter().position(|known| Arc::ptr_eq(known, sheet));
+                position.map_or(NONE, |position| (horizons * blocks + position) as u32)
+            }
+        };
         for (grid, windows) in param.grids.iter().zip(&windows) {
             infos.push(GridInfo {
                 origin: grid.origin,
                 size: grid.size.map(|n| n as u32),
                 levels: grid.levels as u32,
                 first_column: columns.len() as u32,
-                bottom_horizon: grid.bottom.horizon.map_or(NONE, |h| h as u32),
-                top_horizon: grid.top.horizon.map_or(NONE, |h| h as u32),
+                bottom_sheet: index(grid, &grid.bottom),
+                top_sheet: index(grid, &grid.top),
                 bottom_shift: grid.bottom.shift,
                 top_shift: grid.top.shift,
-                padding: [0; 2],
+                is_calm: u32::from(grid.is_calm()),
+                padding: 0,
             });
             for (column, window) in windows.iter().enumerate() {
                 let count = window.end.saturating_sub(window.first);
@@ -161,12 +174,12 @@ fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &VisibleParts) -> V
 /// The level, not clamped, at which a surface crosses each column; NaN if the layer has no inside there.
 fn plane_levels(model: &StructuralModel, grid: &RegionGrid, z: impl Fn(f32, f32) -> f32) -> Vec<f32> {
     let [_, ny] = grid.size;
-    let sheet = |sheet: SheetRef, x: f32, y: f32| sheet.z(model, grid.region.block, x, y);
+    let sheet = |sheet: &SheetRef, x: f32, y: f32| sheet.z(model, grid.region.block, x, y);
     (0..grid.size[0] * ny)
         .map(|n| {
             let x = (grid.origin[0] + (n / ny) as i32) as f32;
             let y = (grid.origin[1] + (n % ny) as i32) as f32;
-            let (bottom, top) = (sheet(grid.bottom, x, y), sheet(grid.top, x, y));
+            let (bottom, top) = (sheet(&grid.bottom, x, y), sheet(&grid.top, x, y));
             let thickness = bottom - top;
             if thickness < PINCHED { f32::NAN } else { (bottom - z(x, y)) / thickness * (grid.levels - 1) as f32 }
         })

@@ -83,11 +83,12 @@ pub struct GridInfo {
     pub size: [u32; 2],
     pub levels: u32,
     pub first_column: u32,
-    pub bottom_horizon: u32,
-    pub top_horizon: u32,
+    pub bottom_sheet: u32,
+    pub top_sheet: u32,
     pub bottom_shift: f32,
     pub top_shift: f32,
-    pub padding: [u32; 2],
+    pub is_calm: u32,
+    pub padding: u32,
 }
 
 /// Size, scale and value ranges of the packed volume.

@@ -187,6 +187,10 @@ impl Renderer {
     /// # Errors
     /// A scene that cannot be drawn, missing inputs, cancellation, or an error of the device.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
+        if scene.face_data == crate::FaceData::Distortion {
+            // A measurement: it has one implementation, on the processor.
+            return crate::reference::render(scene, inputs, progress);
+        }
         match self.render_once(scene, inputs, progress) {
             Err(RenderError::DeviceLost { .. }) => {
                 *self = Self::headless()?;
@@ -239,10 +243,11 @@ impl Renderer {
     fn upload_interpretation(&mut self, resolved: &ResolvedScene) -> Result<(), RenderError> {
         let gpu = &self.gpu;
         let flat = resolved.interpretation.filter(|_| resolved.illustrated).map(|interpretation| interpretation.flat);
-        if let Some(interpretation) = resolved.interpretation
-            && self.model.is_none()
-        {
-            self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, interpretation.model))?);
+        if let Some(interpretation) = resolved.interpretation {
+            let calm = if let Some(Flat::Exact(param)) = flat { param.calm_sheets() } else { Vec::new() };
+            if self.model.as_ref().is_none_or(|held| held.calm_sheets < calm.len()) {
+                self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, interpretation.model, &calm))?);
+            }
         }
         if let (Some(interpretation), Some(Flat::Exact(param))) = (resolved.interpretation, flat) {
             let seen = VisibleParts::of(resolved);

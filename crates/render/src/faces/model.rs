@@ -9,6 +9,7 @@ use crate::gpu::Gpu;
 use glam::{DVec3, Vec3};
 use model::{FaultSurface, StructuralModel};
 use param::PackedVolume;
+use std::sync::Arc;
 use survey::HeightField;
 use survey::stratigraphy::Contact;
 
@@ -24,6 +25,8 @@ pub struct ModelBuffers {
     pub pool: Vec<wgpu::Buffer>,
     /// Number of floats in each buffer of the pool.
     pub pool_chunk: u32,
+    /// Number of calm sheets among the sheets.
+    pub calm_sheets: usize,
 }
 
 /// Collects floats; addresses have 32 bits.
@@ -56,8 +59,8 @@ impl Pool {
 }
 
 impl ModelBuffers {
-    /// Uploads a model.
-    pub fn new(gpu: &Gpu, model: &StructuralModel) -> Result<Self, RenderError> {
+    /// Uploads a model, and the sheets of its parameterization.
+    pub fn new(gpu: &Gpu, model: &StructuralModel, calm: &[Arc<HeightField>]) -> Result<Self, RenderError> {
         let mut pool = Pool::default();
         let horizons = model.stratigraphy().horizons.len();
         let blocks = model.block_count();
@@ -69,6 +72,7 @@ impl ModelBuffers {
                 sheets.push(pool.sheet(model.sheet(horizon, block as u16), [0.0; 2], [last[0], last[1]]));
             }
         }
+        sheets.extend(calm.iter().map(|sheet| pool.sheet(sheet, [0.0; 2], [last[0], last[1]])));
         let centre = Vec3::from_array(size.map(|n| 0.5 * n as f32)).as_dvec3();
         let surfaces = model.faults().surfaces();
         let faults: Vec<FaultInfo> = surfaces
@@ -95,6 +99,7 @@ impl ModelBuffers {
             rules: gpu.storage("rules", bytemuck::cast_slice(&rules(model))),
             pool: buffers,
             pool_chunk,
+            calm_sheets: calm.len(),
         })
     }
 

@@ -10,7 +10,7 @@ use crate::media::{march, samples, table};
 use crate::{Inputs, RenderError, Scene, ground, inputs, leaves, visible, wells};
 use model::{ModelSettings, StructuralModel};
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use param::{ParamSettings, Parameterization};
+use param::{KDefinition, ParamSettings, Parameterization};
 use std::mem::offset_of;
 use survey::{Progress, SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
@@ -74,7 +74,7 @@ fn structs_have_the_same_layout() {
     check!(m, SheetInfo: origin, size, offset);
     check!(m, FaultInfo: u, v, w, surface);
     check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);
-    check!(m, GridInfo: origin, size, levels, first_column, bottom_horizon, top_horizon, bottom_shift, top_shift);
+    check!(m, GridInfo: origin, size, levels, first_column, bottom_sheet, top_sheet, bottom_shift, top_shift, is_calm);
     check!(m, PackedInfo: scale, size, i_range, j_range, layers, blocks);
     check!(m, TextureInfo: mean, offset, side, levels);
     check!(m, VolumePlacement: scale, offset, size);
@@ -93,7 +93,7 @@ fn structs_have_the_same_layout() {
 #[test]
 #[should_panic(expected = "GridInfo")]
 fn a_field_out_of_place_is_noticed() {
-    check!(&module(), GridInfo: size, origin, levels, first_column, bottom_horizon, top_horizon, bottom_shift, top_shift);
+    check!(&module(), GridInfo: size, origin, levels, first_column, bottom_sheet, top_sheet, bottom_shift, top_shift, is_calm);
 }
 
 /// The value of a constant of the shader.
@@ -168,7 +168,10 @@ fn a_split_pool_draws_the_same() {
         &quiet,
     )
     .unwrap();
-    let param = Parameterization::compute(&model, &ParamSettings::default(), &quiet).unwrap();
+    // By a definition without sheets of its own, so that the pool holds those of the horizons alone.
+    let definitions = vec![KDefinition::DistanceRatio; model.layer_count()];
+    let settings = ParamSettings { definitions, ..ParamSettings::default() };
+    let param = Parameterization::compute(&model, &settings, &quiet).unwrap();
     let names = closed.stratigraphy.layer_names_bottom_up();
     let block = BlockExtent {
         extent_i_m: 500.0,

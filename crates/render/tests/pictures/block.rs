@@ -29,7 +29,9 @@ impl Block {
         let quiet = Progress::silent();
         let settings = ModelSettings::default();
         let model = StructuralModel::build(geometry, stratigraphy, horizons, faults, &settings, &quiet).unwrap();
-        let param = Parameterization::compute(&model, &ParamSettings::default(), &quiet).unwrap();
+        // Calm sheets, which the device has to hold beside those of the horizons.
+        let calm = ParamSettings { flow_wave_m: 8.0 * geometry.inline_vector.length(), ..ParamSettings::default() };
+        let param = Parameterization::compute(&model, &calm, &quiet).unwrap();
         let voxels = param.voxel_volumes(&model, model.size(), &quiet).unwrap();
         let packed = PackedVolume::from_voxels(&voxels, model.size(), model.layer_count(), model.block_count());
         let extent = geometry.metric_from_voxel() * DVec3::from_array(VoxelBox::of_size(geometry.size()).max);

@@ -50,7 +50,10 @@ pub(super) fn frequencies(ui: &mut Ui, style: &mut LayerStyle) {
 /// How beds run between the horizons.
 pub(super) fn definition(ui: &mut Ui, document: &Document, layer: &str, actions: &mut Vec<Action>) {
     let definitions = [
-        (KDefinition::DistanceRatio, "between both horizons"),
+        (KDefinition::Flow, "flow between both horizons"),
+        (KDefinition::Harmonic, "harmonic flow"),
+        (KDefinition::DistanceRatio, "by distance from both"),
+        (KDefinition::Proportional, "in proportion of height"),
         (KDefinition::ParallelToBottom, "parallel to the base"),
         (KDefinition::ParallelToTop, "parallel to the top"),
     ];

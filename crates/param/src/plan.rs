@@ -1,0 +1,243 @@
+//! What is computed for each region: its sheets, levels and reference thickness, and the method.
+
+use crate::flow;
+use crate::flow::calm::calm;
+use crate::flow::harmonic::{Ends, FarBeds, Spacing};
+use crate::grid::{RegionGrid, SheetRef, SheetSource};
+use crate::layer::{Layer, LayerKind};
+use crate::metric::Metric;
+use crate::surface::BicubicSheet;
+use crate::touched::RegionColumns;
+use crate::{KDefinition, LayerModel, ParamSettings, Region};
+use glam::{DMat3, DVec3, Vec3};
+use rayon::prelude::*;
+use std::sync::Arc;
+use survey::HeightField;
+
+/// Fewest levels of a grid; the cubic along a column uses four.
+const FEWEST_LEVELS: usize = 5;
+/// How far beyond an open layer the plane lies through which its flow is even, in reference thicknesses.
+const BEYOND: f32 = 0.25;
+
+/// How a region is computed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Method {
+    /// By closest points ([`crate::compute`]).
+    Closest(LayerKind),
+    /// As a flow ([`crate::flow`]).
+    Flow(flow::Flow),
+}
+
+/// Horizons at the bottom and the top of a layer.
+pub fn horizons(layer: usize, layers: usize) -> (Option<usize>, Option<usize>) {
+    ((layer > 0).then(|| layers - 1 - layer), (layer + 1 < layers).then(|| layers - 2 - layer))
+}
+
+/// Plans the regions of a model.
+pub struct Planner<'a, M: ?Sized> {
+    model: &'a M,
+    settings: &'a ParamSettings,
+    metric: &'a Metric,
+    /// Calm sheets by `horizon · blocks + block`; empty where the flow follows the horizons exactly.
+    calm: Vec<Arc<HeightField>>,
+    /// Voxels between the nodes on which flows are solved.
+    pub stride: usize,
+}
+
+impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
+    /// Prepares the sheets of a model.
+    pub fn new(model: &'a M, settings: &'a ParamSettings, metric: &'a Metric) -> Self {
+        let (layers, blocks) = (model.layer_count(), model.block_count());
+        let is_calm = |layer| !matches!(settings.definition(layer, layers), None | Some(KDefinition::DistanceRatio));
+        let steps = model.metric();
+        let wave = [0, 1].map(|axis| settings.flow_wave_m / steps.col(axis).length());
+        let calm = if settings.flow_wave_m > 0.0 && (0..layers).any(is_calm) {
+            let sheet = |n: usize| Arc::new(calm(model.sheet(n / blocks, (n % blocks) as u16), wave));
+            ((0..(layers - 1) * blocks).into_par_iter()).map(sheet).collect()
+        } else {
+            Vec::new()
+        };
+        Self { model, settings, metric, calm, stride: flow::stride(wave[0].min(wave[1])) }
+    }
+
+    fn definition(&self, region: Region) -> Option<KDefinition> {
+        self.settings.definition(usize::from(region.layer), self.model.layer_count())
+    }
+
+    /// The sheet of a horizon that a definition of k is measured from.
+    fn source(&self, horizon: usize, region: Region) -> SheetSource {
+        let calm = self.calm.get(horizon * self.model.block_count() + usize::from(region.block));
+        match (self.definition(region), calm) {
+            (Some(KDefinition::DistanceRatio), _) | (_, None) => SheetSource::Horizon(horizon),
+            (_, Some(calm)) => SheetSource::Calm(Arc::clone(calm)),
+        }
+    }
+
+    /// The unshifted sheets at the bottom and the top of a region.
+    fn sheets(&self, region: Region) -> (Option<SheetRef>, Option<SheetRef>) {
+        let (bottom, top) = horizons(usize::from(region.layer), self.model.layer_count());
+        let sheet = |horizon| SheetRef { of: self.source(horizon, region), shift: 0.0 };
+        (bottom.map(sheet), top.map(sheet))
+    }
+
+    /// Vertical distance (voxels) from the reference sheet of an open or parallel layer to the farthest point of
+    /// the region; the reference thickness has to cover it. The shortest distance to the sheet is never longer.
+    pub fn farthest(&self, region: Region, touched: &RegionColumns) -> f32 {
+        let (bottom, top) = self.sheets(region);
+        let last = self.model.size()[2].saturating_sub(1) as f32;
+        let node = |sheet: &SheetRef, [x, y]: [i32; 2]| sheet.node(self.model, region.block, x, y);
+        // An open layer reaches to the edge of the volume, a closed one as far as the region was found.
+        let met =
+            |column: [i32; 2], z: f32| self.model.region_at(Vec3::new(column[0] as f32, column[1] as f32, z)) == region;
+        let step = 2.0;
+        let depths_met = |column: [i32; 2], depths: [f32; 2]| {
+            let (low, high) = (depths[0].max(0.0), depths[1].min(last));
+            (0..=((high - low) / step) as usize).map(move |n| low + n as f32 * step).filter(move |&z| met(column, z))
+        };
+        let height = |column: [i32; 2], depths: [f32; 2]| match (self.definition(region), &bottom, &top) {
+            (_, Some(bottom), None) => node(bottom, column).min(last),
+            (_, None, Some(top)) => last - node(top, column).max(0.0),
+            (Some(KDefinition::ParallelToBottom), Some(bottom), _) => {
+                depths_met(column, depths).next().map_or(0.0, |z| node(bottom, column) - z + step)
+            }
+            (Some(KDefinition::ParallelToTop), _, Some(top)) => {
+                depths_met(column, depths).last().map_or(0.0, |z| z - node(top, column) + step)
+            }
+            _ => 0.0,
+        };
+        touched.columns().map(|(_, column, depths)| height(column, depths)).fold(0.0, f32::max)
+    }
+
+    /// The empty grid of a region and the method that fills it. `reach` is the largest of [`Planner::farthest`] over
+    /// the layer.
+    pub fn plan(&self, region: Region, touched: &RegionColumns, reach: f32) -> (RegionGrid, Method) {
+        use KDefinition::{DistanceRatio, Flow, Harmonic, ParallelToBottom, ParallelToTop, Proportional};
+        use flow::Flow::{Smooth, Vertical};
+        let last = self.model.size()[2].saturating_sub(1) as f32;
+        let thickness = reach * self.metric.vertical_step();
+        let definition = self.definition(region).unwrap_or_default();
+        let spacing = if definition == Harmonic { Spacing::Harmonic } else { Spacing::Even };
+        let shifted = |sheet: &SheetRef, shift: f32| SheetRef { shift, ..sheet.clone() };
+        let (method, bottom, top) = match (self.sheets(region), definition) {
+            ((None, None), _) => {
+                let plane = |shift| SheetRef { of: SheetSource::Plane, shift };
+                (Method::Closest(LayerKind::Vertical), plane(last.max(1.0)), plane(0.0))
+            }
+            ((Some(bottom), Some(top)), DistanceRatio) => (Method::Closest(LayerKind::Ratio), bottom, top),
+            ((Some(bottom), Some(top)), Flow | Harmonic) => {
+                (Method::Flow(Smooth(Ends::Both, Spacing::Harmonic)), bottom, top)
+            }
+            ((Some(bottom), None), Flow | Harmonic) => {
+                let (plane, far) = self.far_plane(region, &bottom, touched, reach, -1.0);
+                (Method::Flow(Smooth(Ends::Bottom(far), spacing)), bottom, plane)
+            }
+            ((None, Some(top)), Flow | Harmonic) => {
+                let (plane, far) = self.far_plane(region, &top, touched, reach, 1.0);
+                (Method::Flow(Smooth(Ends::Top(far), spacing)), plane, top)
+            }
+            ((Some(bottom), Some(top)), Proportional) => (Method::Flow(Vertical), bottom, top),
+            ((Some(bottom), None), Proportional) => (Method::Flow(Vertical), bottom.clone(), shifted(&bottom, -reach)),
+            ((None, Some(top)), Proportional) => (Method::Flow(Vertical), shifted(&top, reach), top),
+            ((_, Some(top)), ParallelToTop) | ((None, Some(top)), ParallelToBottom | DistanceRatio) => {
+                (Method::Closest(LayerKind::BelowTop(thickness)), shifted(&top, reach), top)
+            }
+            ((Some(bottom), _), ParallelToBottom | ParallelToTop | DistanceRatio) => {
+                (Method::Closest(LayerKind::AboveBottom(thickness)), bottom.clone(), shifted(&bottom, -reach))
+            }
+        };
+        let is_open =
+            matches!(horizons(usize::from(region.layer), self.model.layer_count()), (Some(_), None) | (None, Some(_)));
+        let is_parallel = matches!(method, Method::Closest(LayerKind::AboveBottom(_) | LayerKind::BelowTop(_)));
+        let grid = RegionGrid {
+            region,
+            origin: touched.origin,
+            size: touched.size,
+            levels: self.levels(region, touched, method, &bottom, &top),
+            bottom,
+            top,
+            thickness_m: (is_open || is_parallel).then(|| f64::from(thickness) * self.metric.unit_m),
+            offsets: Vec::new(),
+            creases: Vec::new(),
+        };
+        (grid, method)
+    }
+
+    /// Count of levels of a region: odd for a flow, which has a middle one.
+    fn levels(
+        &self,
+        region: Region,
+        touched: &RegionColumns,
+        method: Method,
+        bottom: &SheetRef,
+        top: &SheetRef,
+    ) -> usize {
+        let last = self.model.size()[2].saturating_sub(1) as f32;
+        let node = |sheet: &SheetRef, x, y| sheet.node(self.model, region.block, x, y);
+        let thickest = touched
+            .columns()
+            .map(|(_, [x, y], _)| node(bottom, x, y) - node(top, x, y))
+            .fold(0.0, f32::max)
+            .min(4.0 * (last + 1.0));
+        let levels = ((thickest / self.settings.level_spacing).ceil() as usize + 1).max(FEWEST_LEVELS);
+        match method {
+            Method::Closest(LayerKind::Vertical) => 3,
+            Method::Closest(_) => levels,
+            Method::Flow(_) => levels | 1,
+        }
+    }
+
+    /// A plane along the trend of an open layer's horizon, beyond the region (`side` −1: above, 1: below), and the
+    /// beds parallel to it.
+    fn far_plane(
+        &self,
+        region: Region,
+        sheet: &SheetRef,
+        touched: &RegionColumns,
+        reach: f32,
+        side: f32,
+    ) -> (SheetRef, FarBeds) {
+        let last = self.model.size()[2].saturating_sub(1) as f32;
+        let node = |x, y| sheet.node(self.model, region.block, x, y);
+        let [cx, cy] = [0, 1].map(|n| touched.origin[n] + touched.size[n] as i32 / 2);
+        let [px, py, p0] = trend(touched, [cx, cy], node);
+        let plane = |x: i32, y: i32| p0 + px * (x - cx) as f32 + py * (y - cy) as f32;
+        let edge = if side < 0.0 { 0.0 } else { last };
+        let shift = touched.columns().fold(0.0f32, |shift, (_, [x, y], _)| {
+            let beyond_volume = side * (edge - plane(x, y)) + BEYOND * reach;
+            let beyond_sheet = side * (node(x, y) - plane(x, y)) + 2.0 * BEYOND * reach;
+            shift.max(beyond_volume).max(beyond_sheet)
+        });
+        let far =
+            HeightField::from_fn(touched.origin, touched.size.map(|n| n.max(2)), |x, y| plane(x, y) + side * shift);
+        let normal = Vec3::new(px, py, -1.0);
+        let length = normal.dot(self.metric.raise(normal)).sqrt();
+        let density = 1.0 / (reach * self.metric.vertical_step());
+        let beds = FarBeds { rate: density / length, density };
+        (SheetRef { of: SheetSource::Calm(Arc::new(far)), shift: 0.0 }, beds)
+    }
+
+    /// The sheets of a planned region as surfaces on which closest points are found.
+    pub fn layer(&self, grid: &RegionGrid, touched: &RegionColumns, kind: LayerKind) -> Layer {
+        let surface = |sheet: &SheetRef| match sheet.sheet(self.model, grid.region.block) {
+            Some(field) => BicubicSheet::new(field, sheet.shift),
+            None => BicubicSheet::new(&HeightField::from_fn(touched.origin, touched.size, |_, _| 0.0), sheet.shift),
+        };
+        Layer { bottom: surface(&grid.bottom), top: surface(&grid.top), kind, metric: *self.metric }
+    }
+}
+
+/// The plane that fits a sheet best over the columns of a region: its slopes along x and y, and its height at the centre.
+fn trend(touched: &RegionColumns, [cx, cy]: [i32; 2], node: impl Fn(i32, i32) -> f32) -> [f32; 3] {
+    let (mut normal, mut right) = (DMat3::ZERO, DVec3::ZERO);
+    for (_, [x, y], _) in touched.columns() {
+        let row = DVec3::new(f64::from(x - cx), f64::from(y - cy), 1.0);
+        normal += DMat3::from_cols(row * row.x, row * row.y, row);
+        right += row * f64::from(node(x, y));
+    }
+    let count = normal.z_axis.z.max(1.0);
+    // One column, or one row of them, has no slope across.
+    if normal.determinant() < 1e-6 * count.powi(3) {
+        return [0.0, 0.0, (right.z / count) as f32];
+    }
+    (normal.inverse() * right).as_vec3().to_array()
+}
