@@ -49,8 +49,9 @@ screenshots: demo
 		target/debug/examples/screenshots out/screenshots/demo out/screenshots $$size $$appearance || exit 1; \
 	done; done
 
+# Tests note which projects they made; not in the user's own notes.
 test: setup
-	cargo test --workspace --locked
+	XDG_STATE_HOME=$(CURDIR)/target/state cargo test --workspace --locked
 
 check: setup
 	cargo fmt --all --check

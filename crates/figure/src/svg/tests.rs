@@ -1,3 +1,5 @@
+//! Pages as SVG, read back and drawn by another program.
+
 use super::*;
 use crate::Rect;
 use crate::list::{Text, Upright};
