@@ -20,9 +20,6 @@
 //! the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep: `map = 1 − S(sin² 10°,
 //! sin² 25°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map
 //! − along`; t′ = t turned by 90°.
-//! |s| is the sine of the angle between face and layer. With S(a, b, x) the cubic smoothstep:
-//! `map = 1 − S(sin² 10°, sin² 25°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65,
-//! r)`, `across = 1 − map − along`; t′ = t turned by 90°.
 //!
 //! Spaces: normals and gradients are in metric space with the axes of voxel space (x, y in metres, z in
 //! metres downwards); their signs do not matter. All arithmetic is f32, so that the WGSL twin computes the

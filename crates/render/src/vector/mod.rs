@@ -2,7 +2,7 @@
 //!
 //! Faces of the block and its cut-outs become areas, one for each connected piece of a layer, from the exact section of
 //! the model on that face. A pattern is the tile's own drawing ([`ttf::TileDrawing`]), carried point by point through
-//! the inverse of the map from rock to pattern, so that it bends with the layers and has no resolution ([`pattern`]).
+//! the inverse of the map from rock to pattern, so that it bends with the layers and has no resolution (`pattern`).
 //! Lines are those that the picture's outlines are stroked from, hidden ones gone.
 //!
 //! What is no path stays pixels: the relief of the ground and wells ([`VectorBlock::covered`]), and areas whose pattern
