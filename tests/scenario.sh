@@ -79,17 +79,17 @@ look 4-recovered
 grep -q "leaf = " settings/petroglyph/window.toml || { echo "the selection was not written down"; exit 1; }
 key h; sleep 2; look 5-highest
 key Return
-until_so "the first horizon is saved" '[ "$(step)" = 2 ]'
+until_so "the first horizon is saved" '[ "$(step)" = 3 ]'
 sleep 3
 key n
 click "$section_x" "$((middle_y + height / 10))"
 sleep 2
 key h; sleep 2; look 6-second
 key Return
-until_so "the second horizon is saved" '[ "$(step)" = 3 ]'
+until_so "the second horizon is saved" '[ "$(step)" = 4 ]'
 sleep 3; look 7-both
 key y
-until_so "the holes are filled" '[ "$(step)" = 4 ]'
+until_so "the holes are filled" '[ "$(step)" = 5 ]'
 sleep 3
 key g; sleep 5; look 8-leaves
 key g; sleep 5; look 9-distances
