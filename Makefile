@@ -83,7 +83,7 @@ ATTACKS = hostile:: foreign:: check:: steps:: bombs:: sources:: kill:: safety:: 
 
 attack: setup
 	cargo test --locked --test it -- $(ATTACKS)
-	cargo test --locked --test it -- --ignored --nocapture memory::
+	PETROGLYPH_MEMORY_SIDE=256 cargo test --locked --test it -- --nocapture memory::
 
 # The same inputs each time, so that a change fails by its own fault alone.
 fuzz: setup
