@@ -127,18 +127,9 @@ fn roughness_dies_out_with_the_distance_from_the_one_horizon() {
     }
 }
 
-/// Three horizons with folds 80 voxels long; the distance of the middle one to the others varies by 30 %.
-fn folded() -> ClosedForm {
-    ClosedForm::new([80, 72, 80], 3, |h, x, y| {
-        let fold = 8.0 * (TAU * (x + 0.35 * y) / 76.0).sin();
-        let swell = 5.0 * (TAU * (y - 0.4 * x) / 88.0).cos();
-        18.0 + 21.0 * h as f64 + fold + swell * [0.0, 1.0, 0.2][h]
-    })
-}
-
 #[test]
 fn every_definition_is_accurate_on_folds() {
-    let model = folded();
+    let model = ClosedForm::folded();
     use KDefinition::{DistanceRatio, Flow, Harmonic, ParallelToBottom, ParallelToTop, Proportional};
     for definition in [Flow, Harmonic, DistanceRatio, Proportional, ParallelToBottom, ParallelToTop] {
         let param = parameterize(&model, definition);
@@ -199,7 +190,7 @@ fn a_calm_flow_keeps_folds_and_leaves_out_roughness() {
 
 #[test]
 fn a_flow_has_the_same_bytes_on_any_number_of_threads() {
-    let model = folded();
+    let model = ClosedForm::folded();
     let computed = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| smoothed(&model, KDefinition::Flow, 12.0).grids)

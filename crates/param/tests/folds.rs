@@ -5,21 +5,11 @@ mod closed_form;
 use closed_form::ClosedForm;
 use param::accuracy::{self, Spread};
 use param::{PackedVolume, ParamSettings, Parameterization};
-use std::f64::consts::TAU;
 use survey::Progress;
-
-/// Three horizons with folds 80 voxels long; the distance of the middle one to the others varies by 30 %.
-fn folded() -> ClosedForm {
-    ClosedForm::new([80, 72, 80], 3, |h, x, y| {
-        let fold = 8.0 * (TAU * (x + 0.35 * y) / 76.0).sin();
-        let swell = 5.0 * (TAU * (y - 0.4 * x) / 88.0).cos();
-        18.0 + 21.0 * h as f64 + fold + swell * [0.0, 1.0, 0.2][h]
-    })
-}
 
 #[test]
 fn angles_and_k_on_horizons_are_accurate_on_folds() {
-    let model = folded();
+    let model = ClosedForm::folded();
     let param = Parameterization::compute(&model, &ParamSettings::default(), &Progress::silent()).unwrap();
     let volumes = param.voxel_volumes(&model, param.size, &Progress::silent()).unwrap();
     let packed = PackedVolume::from_voxels(&volumes, param.size, param.layers, param.blocks);
@@ -37,7 +27,7 @@ fn angles_and_k_on_horizons_are_accurate_on_folds() {
 
 #[test]
 fn a_wrong_k_is_seen() {
-    let model = folded();
+    let model = ClosedForm::folded();
     let param = Parameterization::compute(&model, &ParamSettings::default(), &Progress::silent()).unwrap();
     let points = accuracy::horizon_points(&model, |h, b, x, y| param::LayerModel::sheet(&model, h, b).z_at(x, y), 300);
     let shifted = |p: glam::Vec3| param.lookup(&model, p + glam::Vec3::new(0.0, 0.0, 0.25));

@@ -4,6 +4,7 @@
 
 use glam::{DMat3, Vec3};
 use param::{LayerModel, Region};
+use std::f64::consts::TAU;
 use survey::HeightField;
 
 /// Voxels by which the sheets continue past the outer boundary.
@@ -39,6 +40,15 @@ impl ClosedForm {
         };
         let sheets = (0..horizons).map(|h| (0..blocks).map(|block| sheet(h, block)).collect()).collect();
         Self { size, metric: DMat3::IDENTITY, sheets, block_at: Box::new(block_at) }
+    }
+
+    /// Three horizons with folds 80 voxels long; the distance of the middle one to the others varies by 30 %.
+    pub fn folded() -> Self {
+        Self::new([80, 72, 80], 3, |h, x, y| {
+            let fold = 8.0 * (TAU * (x + 0.35 * y) / 76.0).sin();
+            let swell = 5.0 * (TAU * (y - 0.4 * x) / 88.0).cos();
+            18.0 + 21.0 * h as f64 + fold + swell * [0.0, 1.0, 0.2][h]
+        })
     }
 
     /// The same model with another voxel-to-metre matrix.
