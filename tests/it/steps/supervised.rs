@@ -225,6 +225,17 @@ fn install(filter: &[libc::sock_filter]) -> io::Result<RawFd> {
 #[repr(C, align(8))]
 struct Control([u8; 64]);
 
+/// A message of `data` that has room for one handle; it points to both.
+fn message(data: &mut libc::iovec, control: &mut Control) -> libc::msghdr {
+    // SAFETY: a message of zeros is an empty one.
+    let mut message: libc::msghdr = unsafe { std::mem::zeroed() };
+    message.msg_iov = data;
+    message.msg_iovlen = 1;
+    message.msg_control = control.0.as_mut_ptr().cast();
+    message.msg_controllen = control.0.len() as _;
+    message
+}
+
 /// Sends a handle to the process at the other end of the socket.
 fn send(socket: RawFd, handle: RawFd) -> io::Result<()> {
     let mut byte = [0u8; 1];
@@ -232,10 +243,7 @@ fn send(socket: RawFd, handle: RawFd) -> io::Result<()> {
     let mut control = Control([0; 64]);
     // SAFETY: all pointers in the message are to locals that outlive the call, and the header lies within `control`.
     unsafe {
-        let mut message: libc::msghdr = std::mem::zeroed();
-        message.msg_iov = &raw mut data;
-        message.msg_iovlen = 1;
-        message.msg_control = control.0.as_mut_ptr().cast();
+        let mut message = message(&mut data, &mut control);
         message.msg_controllen = libc::CMSG_SPACE(size_of::<RawFd>() as u32) as _;
         let header = libc::CMSG_FIRSTHDR(&raw const message);
         (*header).cmsg_level = libc::SOL_SOCKET;
@@ -253,11 +261,7 @@ fn receive(socket: RawFd) -> io::Result<OwnedFd> {
     let mut control = Control([0; 64]);
     // SAFETY: as in `send`; the handle that arrives belongs to nobody else.
     unsafe {
-        let mut message: libc::msghdr = std::mem::zeroed();
-        message.msg_iov = &raw mut data;
-        message.msg_iovlen = 1;
-        message.msg_control = control.0.as_mut_ptr().cast();
-        message.msg_controllen = control.0.len() as _;
+        let mut message = message(&mut data, &mut control);
         if libc::recvmsg(socket, &raw mut message, libc::MSG_CMSG_CLOEXEC) != 1 {
             return Err(io::Error::last_os_error());
         }
