@@ -125,15 +125,20 @@ mod tests {
         found
     }
 
-    #[test]
-    fn a_flipped_byte_anywhere_in_the_samples_is_found() {
+    /// A stored volume of this size, in a folder of its own.
+    fn written(size: [usize; 3]) -> (tempfile::TempDir, PathBuf) {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.zarr");
-        let size = [70, 9, 66];
         let samples = (0..size.iter().product::<usize>()).map(|n| (n % 1009) as f32 + 1.0).collect();
         let volume = Volume::from_samples(size, samples).unwrap();
         let geometry = SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Milliseconds);
         write_volume(&path, &volume, &VolumeInfo::of(geometry), &Progress::silent()).unwrap();
+        (folder, path)
+    }
+
+    #[test]
+    fn a_flipped_byte_anywhere_in_the_samples_is_found() {
+        let (_folder, path) = written([70, 9, 66]);
         let is_whole = || StoredVolume::open(&path).and_then(|stored| stored.verify(&Progress::silent())).is_ok();
         assert!(is_whole());
         let data = files(&path).into_iter().filter(|file| !file.ends_with("zarr.json"));
@@ -153,13 +158,7 @@ mod tests {
 
     #[test]
     fn every_damaged_brick_is_counted_and_the_first_are_named() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("a.zarr");
-        let size = [130, 130, 66];
-        let samples = (0..size.iter().product::<usize>()).map(|n| (n % 1009) as f32 + 1.0).collect();
-        let volume = Volume::from_samples(size, samples).unwrap();
-        let geometry = SurveyGeometry::regular(size, 25.0, 4.0, VerticalUnit::Milliseconds);
-        write_volume(&path, &volume, &VolumeInfo::of(geometry), &Progress::silent()).unwrap();
+        let (_folder, path) = written([130, 130, 66]);
         let data: Vec<_> = files(&path.join("0")).into_iter().filter(|file| !file.ends_with("zarr.json")).collect();
         let (first, length) = (&data[0], fs::metadata(&data[0]).unwrap().len() as usize);
         let mut content = fs::read(first).unwrap();
