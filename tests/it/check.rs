@@ -1,7 +1,7 @@
 //! `petroglyph check`: what is damaged is found and named, nothing is written without `--repair`, and a repair costs
 //! nothing that a state needs.
 
-use crate::program::{Run, bytes, project, run_in};
+use crate::program::{Run, begin_in, bytes, project, run_in};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -421,8 +421,7 @@ fn handles_interruptions(process: u32) -> bool {
 #[test]
 #[cfg(target_os = "linux")]
 fn an_interruption_stops_a_check_and_changes_nothing() {
-    use crate::program::command;
-    use std::process::{Command, Stdio};
+    use std::process::Command;
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     run_in(at, "synth s --size 128x128x160 --seed 3").done();
@@ -431,13 +430,7 @@ fn an_interruption_stops_a_check_and_changes_nothing() {
         let before = bytes(&at.join("p.petro"));
         // It may have ended before the signal reaches it; that it always has cannot be.
         let was_stopped = (0..40).any(|_| {
-            let child = command()
-                .current_dir(at)
-                .args(line.split(' '))
-                .stdout(Stdio::piped())
-                .stderr(Stdio::piped())
-                .spawn()
-                .unwrap();
+            let child = begin_in(at, line);
             if handles_interruptions(child.id()) {
                 assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
             }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 use std::sync::OnceLock;
 use tempfile::TempDir;
 
@@ -70,6 +70,13 @@ pub fn run<I: AsRef<OsStr>>(arguments: impl IntoIterator<Item = I>) -> Run {
 /// Runs the program with words separated by blanks, where `@` stands for the folder.
 pub fn run_in(folder: &Path, line: &str) -> Run {
     Run::of(&command().current_dir(folder).args(words(line)).output().expect("the program runs"))
+}
+
+/// Starts the program with words separated by blanks, and does not wait for it.
+pub fn begin_in(folder: &Path, line: &str) -> Child {
+    let mut command = command();
+    command.current_dir(folder).args(words(line)).stdout(Stdio::piped()).stderr(Stdio::piped());
+    command.spawn().expect("the program runs")
 }
 
 /// Splits at blanks, but not inside single quotes.

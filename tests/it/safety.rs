@@ -1,6 +1,6 @@
 //! What may go wrong around the program: read-only folders, a full disk, two writers, an interruption.
 
-use crate::program::{Run, bytes, command, project, run_in, survey};
+use crate::program::{Run, begin_in, bytes, project, run_in, survey};
 use std::fs::{self, File};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -112,13 +112,7 @@ fn an_interruption_is_obeyed_and_leaves_no_survey() {
     let at = folder.path();
     let before = bytes(at);
     // Large enough to be in the middle of something a moment later.
-    let mut child = command()
-        .current_dir(at)
-        .args(["synth", "big", "--size", "320x320x320"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = begin_in(at, "synth big --size 320x320x320");
     std::thread::sleep(Duration::from_millis(700));
     let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(sent.success());

@@ -1,7 +1,7 @@
 //! Files that are cut off, changed or damaged while the program reads them: an error that names the file and the place, and nothing
 //! wrong is stored or shown.
 
-use crate::program::{Run, bytes, command, project, run_in};
+use crate::program::{Run, begin_in, bytes, project, run_in};
 use segy::WriteOptions;
 use std::fs::{self, File};
 use std::os::unix::fs::FileExt;
@@ -28,13 +28,7 @@ fn write_survey(at: &Path) -> PathBuf {
 
 /// Runs the program, stops it as soon as `has_begun`, and lets it go on after `meddle`; none when it was over before.
 fn meddled(at: &Path, line: &str, has_begun: impl Fn() -> bool, meddle: impl FnOnce()) -> Option<Run> {
-    let child = command()
-        .current_dir(at)
-        .args(line.split(' '))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .expect("the program runs");
+    let child = begin_in(at, line);
     let signal = |name: &str| {
         let sent = Command::new("kill").args([name, &child.id().to_string()]).stderr(Stdio::null()).status();
         assert!(sent.is_ok(), "`kill` is there");
