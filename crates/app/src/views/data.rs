@@ -3,7 +3,7 @@
 use super::notices;
 use super::sections::entry_colour;
 use crate::state::{Action, Choice, Dialogue, Place, Session, State};
-use eframe::egui::{Align, Button, DragValue, Key, Layout, ScrollArea, Sense, TextEdit, Ui, vec2};
+use eframe::egui::{Align, Button, DragValue, Key, Layout, ScrollArea, Sense, TextEdit, Ui, UiBuilder, vec2};
 use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity,
 };
@@ -87,22 +87,26 @@ impl Data {
             geometry.vertical.unit.symbol()
         ));
         if geometry.vertical.unit == VerticalUnit::Milliseconds {
-            ui.horizontal(|ui| {
-                let label = ui.label("Velocity").on_hover_text("Turns two-way time into metres");
-                let mut velocity = self.velocity.unwrap_or(geometry.velocity_m_s);
-                let drag =
-                    DragValue::new(&mut velocity).speed(10.0).range(300.0..=9000.0).suffix(" m/s").max_decimals(0);
-                let response = ui.add(drag).labelled_by(label.id);
-                if response.changed() {
-                    self.velocity = Some(velocity);
-                }
-                let is_done = !response.dragged() && !response.has_focus();
-                if let Some(velocity_m_s) = self.velocity.filter(|_| is_done) {
-                    self.velocity = None;
-                    if velocity_m_s != geometry.velocity_m_s {
-                        actions.push(Action::Apply(Box::new(Command::SetVelocity(SetVelocity { velocity_m_s }))));
+            // The identity is fixed, so that a row that comes or goes above takes no focus from a value half typed.
+            let row = UiBuilder::new().id("velocity of the survey");
+            ui.scope_builder(row, |ui| {
+                ui.horizontal(|ui| {
+                    let label = ui.label("Velocity").on_hover_text("Turns two-way time into metres");
+                    let mut velocity = self.velocity.unwrap_or(geometry.velocity_m_s);
+                    let drag =
+                        DragValue::new(&mut velocity).speed(10.0).range(300.0..=9000.0).suffix(" m/s").max_decimals(0);
+                    let response = ui.add(drag).labelled_by(label.id);
+                    if response.changed() {
+                        self.velocity = Some(velocity);
                     }
-                }
+                    let is_done = !response.dragged() && !response.has_focus();
+                    if let Some(velocity_m_s) = self.velocity.filter(|_| is_done) {
+                        self.velocity = None;
+                        if velocity_m_s != geometry.velocity_m_s {
+                            actions.push(Action::Apply(Box::new(Command::SetVelocity(SetVelocity { velocity_m_s }))));
+                        }
+                    }
+                })
             });
         }
     }

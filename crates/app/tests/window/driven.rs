@@ -32,12 +32,21 @@ pub fn state(harness: &Driven) -> &State {
     harness.state().as_ref().unwrap().state()
 }
 
-/// Draws frames until something is so.
+/// Whether the window shows the latest step of its project: what a command wrote is seen on disk before the window has
+/// read it, and rows that come or go meanwhile take the focus from what a test touches.
+fn has_caught_up(harness: &Driven) -> bool {
+    let session = state(harness).session.as_ref();
+    session.is_none_or(|session| {
+        Project::open(&session.root).is_ok_and(|on_disk| on_disk.document().step == session.document.step)
+    })
+}
+
+/// Draws frames until something is so and the window shows it.
 pub fn wait(harness: &mut Driven, what: &str, is_so: impl Fn(&Driven) -> bool) {
     let start = Instant::now();
     loop {
         harness.step();
-        if is_so(harness) {
+        if is_so(harness) && has_caught_up(harness) {
             // A dialogue finds its place in the frames after its content is complete.
             harness.run_steps(3);
             return;
