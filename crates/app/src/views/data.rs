@@ -3,7 +3,7 @@
 use super::notices;
 use super::sections::entry_colour;
 use crate::state::{Action, Choice, Dialogue, Place, Session, State};
-use eframe::egui::{Align, Button, DragValue, Key, Layout, ScrollArea, Sense, TextEdit, Ui, UiBuilder, vec2};
+use eframe::egui::{Align, Button, DragValue, Id, Key, Layout, ScrollArea, Sense, TextEdit, Ui, UiBuilder, vec2};
 use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity,
 };
@@ -88,7 +88,7 @@ impl Data {
         ));
         if geometry.vertical.unit == VerticalUnit::Milliseconds {
             // The identity is fixed, so that a row that comes or goes above takes no focus from a value half typed.
-            let row = UiBuilder::new().id("velocity of the survey");
+            let row = UiBuilder::new().scope_id(Id::unique("velocity of the survey"));
             ui.scope_builder(row, |ui| {
                 ui.horizontal(|ui| {
                     let label = ui.label("Velocity").on_hover_text("Turns two-way time into metres");
