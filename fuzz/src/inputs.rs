@@ -16,7 +16,7 @@ pub fn interpretation(geometry: &SurveyGeometry) -> (Horizon, Fault) {
         vertices: vertices.into_iter().map(DVec3::from_array).collect(),
         triangles: vec![[0, 1, 2], [2, 1, 3], [2, 3, 4]],
     };
-    (horizon, Fault { name: "F1".to_owned(), mesh, truncated_by: None })
+    (horizon, Fault::new("F1", mesh))
 }
 
 /// A well that builds up from the vertical to 60 degrees.

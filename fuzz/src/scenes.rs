@@ -24,6 +24,7 @@ pub fn document() -> Document {
     document.faults = vec![FaultEntry {
         name: "F1".into(),
         truncated_by: None,
+        grown_m: 0.0,
         file: "faults/F1.json".into(),
         hash: "00".into(),
         source: source(),
@@ -53,7 +54,12 @@ pub fn model_of(document: &Document) -> Option<Result<StructuralModel, model::Mo
     let faults: Vec<Fault> = document
         .faults
         .iter()
-        .map(|entry| Fault { name: entry.name.clone(), truncated_by: entry.truncated_by.clone(), ..fault.clone() })
+        .map(|entry| Fault {
+            name: entry.name.clone(),
+            truncated_by: entry.truncated_by.clone(),
+            grown_m: entry.grown_m,
+            ..fault.clone()
+        })
         .collect();
     let settings = ModelSettings::default();
     Some(StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, &Progress::silent()))

@@ -99,7 +99,7 @@ fn fault(index: usize) -> Fault {
             mesh.triangles.extend([[a, b, d], [a, d, c]]);
         }
     }
-    Fault { name: format!("F{index}"), mesh, truncated_by: None }
+    Fault::new(format!("F{index}"), mesh)
 }
 
 /// Builds the structural model.

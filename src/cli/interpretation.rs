@@ -10,7 +10,7 @@ use attribute::{DipSettings, SemblanceSettings};
 use formats::{Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit};
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
-    RemovePick, RenameHorizon, SetContact, SetHorizonColour, SetTruncation,
+    RemovePick, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
 };
 use project::document::Polarity;
 use project::memory_budget;
@@ -162,9 +162,20 @@ fn add_fault(typed: FaultAddArgs) -> Result<Request, Usage> {
         path: typed.file,
         name: typed.name,
         truncated_by: typed.truncated_by,
+        grown_m: if typed.extent.is_empty() { 0.0 } else { grown_m("--extent", &typed.extent)? },
         options: import_options(typed.reading)?,
     };
     Ok(Request::Change { project: typed.project, command: Command::AddFault(command) })
+}
+
+/// The metres by which a fault grows, of `drawn` or `grow M`.
+fn grown_m(option: &str, words: &[String]) -> Result<f64, Usage> {
+    let metres = match words.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["drawn"] => Some(0.0),
+        ["grow", metres] => metres.parse().ok().filter(|metres: &f64| metres.is_finite() && *metres >= 0.0),
+        _ => None,
+    };
+    metres.ok_or_else(|| format!("{option} {}: expected drawn, or grow and metres", words.join(" ")).into())
 }
 
 pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
@@ -176,6 +187,10 @@ pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {
         FaultAction::List { project } => Request::List { project, what: Listing::Faults },
         FaultAction::Truncate { project, name, by } => {
             Request::Change { project, command: Command::SetTruncation(SetTruncation { fault: name, by }) }
+        }
+        FaultAction::Extent { project, name, extent } => {
+            let grown_m = grown_m("extent", &extent)?;
+            Request::Change { project, command: Command::SetFaultExtent(SetFaultExtent { fault: name, grown_m }) }
         }
         FaultAction::Remove { project, name } => {
             Request::Change { project, command: Command::RemoveFault(RemoveFault { name }) }

@@ -94,7 +94,11 @@ fn faults(project: &Project) -> Report {
     let mut report = Report::default();
     for entry in &document.faults {
         let ends = entry.truncated_by.as_ref().map_or_else(String::new, |by| format!(", ends at {by}"));
-        report.say(format!("{}: from {}{ends}", entry.name, entry.source.path.display()));
+        let grown = match entry.grown_m {
+            0.0 => String::new(),
+            metres => format!(", reaches {metres} m beyond what was drawn"),
+        };
+        report.say(format!("{}: from {}{ends}{grown}", entry.name, entry.source.path.display()));
     }
     if document.faults.is_empty() {
         report.say("no faults");

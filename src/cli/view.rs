@@ -3,7 +3,7 @@
 use super::args::ViewArgs;
 use super::request::{Usage, counts, numbers};
 use glam::DVec3;
-use render::{Background, Corner, FaceData, Ground, Lookup, Outlines, Projection, Scene, VoxelBox};
+use render::{Background, Corner, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, VoxelBox};
 use survey::SurveyGeometry;
 
 /// Changes to a scene; what is `None` stays.
@@ -25,6 +25,7 @@ pub(super) struct ViewChanges {
     tree_level: Option<u32>,
     outlines: Option<Outlines>,
     global_frequency: Option<f32>,
+    pattern_size: Option<PatternSize>,
     samples: Option<u32>,
     background: Option<Background>,
 }
@@ -95,6 +96,12 @@ impl TryFrom<ViewArgs> for ViewChanges {
             tree_level: typed.level,
             outlines: switch("--outlines", typed.outlines.as_deref(), Outlines::default(), Outlines::none())?,
             global_frequency: typed.global_frequency,
+            pattern_size: match typed.pattern_size.as_deref() {
+                None => None,
+                Some("rock") => Some(PatternSize::Rock),
+                Some("paper") => Some(PatternSize::Paper),
+                Some(other) => return Err(format!("--pattern-size {other}: expected rock or paper")),
+            },
             samples: typed.samples,
             background,
         })
@@ -154,6 +161,7 @@ impl ViewChanges {
         scene.tree_level = self.tree_level.unwrap_or(scene.tree_level);
         scene.outlines = self.outlines.unwrap_or(scene.outlines);
         scene.global_frequency = self.global_frequency.unwrap_or(scene.global_frequency);
+        scene.pattern_size = self.pattern_size.unwrap_or(scene.pattern_size);
         scene.samples = self.samples.unwrap_or(scene.samples);
         scene.background = self.background.unwrap_or(scene.background);
         if !self.cuts.is_empty() {

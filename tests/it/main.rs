@@ -9,6 +9,7 @@ mod check;
 mod create;
 mod demo;
 mod extraction;
+mod fault_extent;
 mod figure;
 mod foreign;
 mod help;

@@ -113,7 +113,7 @@ pub(super) fn build(
         notes,
         warnings,
     };
-    Ok((Fault { name, mesh, truncated_by: None }, report))
+    Ok((Fault::new(name, mesh), report))
 }
 
 /// The mesh without triangles that are degenerate or have a corner without a vertical value, and without

@@ -491,7 +491,7 @@ pub fn fault_of_sticks(name: &str, sticks: &[Vec<DVec3>], geometry: &SurveyGeome
         (b - a).cross(c - a).length() > 0.0
     };
     let any = (0..mesh.triangles.len()).any(has_area);
-    any.then(|| Fault { name: name.to_owned(), mesh, truncated_by: None })
+    any.then(|| Fault::new(name, mesh))
 }
 
 /// Writes a fault under a temporary name, then renames the file.

@@ -116,7 +116,7 @@ pub struct Proposal {
 impl Proposal {
     /// The proposal as a fault of the given name.
     pub fn fault(&self, name: &str) -> Fault {
-        Fault { name: name.to_owned(), mesh: self.mesh.clone(), truncated_by: None }
+        Fault::new(name, self.mesh.clone())
     }
 }
 

@@ -73,9 +73,8 @@ impl ModelForm {
             .iter()
             .enumerate()
             .map(|(i, f)| Fault {
-                name: format!("F{i}"),
-                mesh: self.mesh(f, 24),
                 truncated_by: f.truncated_by.map(|(by, _)| format!("F{by}")),
+                ..Fault::new(format!("F{i}"), self.mesh(f, 24))
             })
             .collect()
     }

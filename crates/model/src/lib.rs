@@ -16,9 +16,11 @@
 //! - **The interpreted part of a fault.** The sheet of each side is continued beyond the fault independently
 //!   of the other, so that a horizon may have two depths at one trace.
 //! - **A fault's tip.** Beyond the tip the fault's surface is continued, because blocks need a boundary, but
-//!   it is virtual: the nodes of one side are data for the other, the two sheets coincide there, and nothing
-//!   is drawn. The tip is the rim of the fault's mesh. A rim that ends within a tolerance of the volume's
-//!   outer boundary, or of the fault it is truncated by, is taken to reach it.
+//!   it is virtual: both sides are one surface there, also where there is no data, so the throw dies out
+//!   towards the tip and nothing changes beyond it. The tip is the rim of the fault's mesh, or as far outside
+//!   of it as the fault is said to grow ([`survey::Fault::grown_m`]). A rim that ends within half the spacing of
+//!   the picks towards it, and within four voxels, of the volume's outer boundary reaches it; so does one within
+//!   that spacing of the fault it is truncated by.
 //! - **A truncated fault** exists only on one side of the fault it ends at. On the other side it divides
 //!   nothing.
 //! - **A pinch-out.** Conformable horizons may meet, and may cross by up to a tolerance (half a sample): the

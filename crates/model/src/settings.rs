@@ -20,10 +20,6 @@ pub struct ModelSettings {
     /// Radius of the neighbourhood whose slope continues a sheet beyond its data, nodes. A larger radius is
     /// steadier under picking noise, a smaller one follows curvature better. Default 10.
     pub slope_radius: f32,
-    /// A fault whose rim ends closer than this to the volume's outer boundary, or to the fault it is
-    /// truncated by, is taken to reach it, m. `None` (default): the fault's median triangle edge, about one
-    /// stick spacing.
-    pub rim_tolerance_m: Option<f64>,
     /// Nodes picked on two conformable horizons may cross by this much before it is an error, samples.
     /// Default 0.5.
     pub crossing_tolerance: f32,
@@ -38,7 +34,6 @@ impl Default for ModelSettings {
             fault_setback: 0.5,
             fewest_nodes: 24,
             slope_radius: 10.0,
-            rim_tolerance_m: None,
             crossing_tolerance: 0.5,
             crossing_nodes: 8,
         }

@@ -3,12 +3,13 @@
 //! The data of a block are its own nodes and, where the fault between them is virtual (beyond its tip), the
 //! nodes of its neighbours: both sheets are the same surface there, so that no step is visible. Beside the
 //! interpreted part of a fault the nodes of the other side are ignored. The rest of the sheet is continued
-//! ([`super::extension`]). A horizon without data in a block is placed by the thickness or proportion it has
-//! elsewhere.
+//! ([`super::extension`]). Blocks that meet beyond a tip are also continued as one surface where neither has data
+//! ([`join`]): the throw between them dies out towards the tip, and nothing is seen beyond it. A horizon without data in
+//! a block is placed by the thickness or proportion it has elsewhere.
 
 use super::extension::{Extension, Plane};
 use super::lattice::{MarginLattice, Node};
-use super::network::FaultNetwork;
+use super::network::{FaultNetwork, FaultSurface};
 use super::nodes::Nodes;
 use super::report::{InferredPlacement, ModelNote};
 use super::settings::ModelSettings;
@@ -89,6 +90,11 @@ pub(super) fn extend_all(
         .collect::<Result<_, _>>()?;
     let mut sheets: Vec<Vec<Option<ExtendedSheet>>> =
         made.chunks(blocks.max(1)).map(<[Option<ExtendedSheet>]>::to_vec).collect();
+    sheets.par_iter_mut().zip(&wholes).try_for_each(|(of_horizon, whole)| {
+        progress.check()?;
+        join(lattice, of_horizon, faults, &whole.1);
+        Ok(())
+    })?;
     let mut notes = Vec::new();
     for b in 0..blocks {
         let present: Vec<bool> = sheets.iter().map(|of_block| of_block[b].is_some()).collect();
@@ -146,6 +152,84 @@ fn extend_one(
     extension.extend(lattice.size, &mut z)?;
     grade(lattice.size, &mut quality);
     Some(ExtendedSheet { field: HeightField { origin: lattice.origin, size: lattice.size, z }, quality, known, own })
+}
+
+/// Continues the sheets of one horizon as one surface wherever their blocks meet beyond the tips of all faults between
+/// them. Independently continued, they would part there and jump where nothing breaks.
+///
+/// Block by block, the one with the most data first: what the blocks before it hold beyond the tips counts as data, so
+/// that it continues them with their slope; in the end each block takes over what those after it hold.
+fn join(lattice: MarginLattice, sheets: &mut [Option<ExtendedSheet>], faults: &FaultNetwork, extension: &Extension) {
+    let mut order: Vec<usize> = (0..sheets.len()).filter(|&b| sheets[b].is_some()).collect();
+    order.sort_by_key(|&b| (std::cmp::Reverse(sheets[b].as_ref().map_or(0, |sheet| sheet.own)), b));
+    let mut shared: Vec<Shared> = Vec::with_capacity(order.len());
+    for (done, &b) in order.iter().enumerate() {
+        let lent = borrow(sheets, faults, b, &order[..done], &shared);
+        if let Some(sheet) = sheets[b].as_mut().filter(|_| !lent.is_empty()) {
+            let field = &mut sheet.field.z;
+            (0..field.len()).filter(|&n| !sheet.known[n]).for_each(|n| field[n] = f32::NAN);
+            lent.iter().for_each(|&(n, z)| field[n] = z);
+            // There is data, so it can be continued.
+            let _ = extension.extend(lattice.size, field);
+        }
+        shared.push(Shared::of(lattice, sheets[b].as_ref(), faults, b));
+    }
+    for (done, &b) in order.iter().enumerate() {
+        let lent = borrow(sheets, faults, b, &order[done + 1..], &shared[done + 1..]);
+        if let Some(sheet) = &mut sheets[b] {
+            lent.iter().for_each(|&(n, z)| sheet.field.z[n] = z);
+        }
+    }
+}
+
+/// What a sheet lends to other blocks: its nodes inside its own block that lie beyond the tip of some fault.
+struct Shared {
+    nodes: Vec<u32>,
+    /// The faults that are virtual beside each.
+    beyond: Vec<u64>,
+}
+
+impl Shared {
+    fn of(lattice: MarginLattice, sheet: Option<&ExtendedSheet>, faults: &FaultNetwork, block: usize) -> Self {
+        let mut shared = Self { nodes: Vec::new(), beyond: Vec::new() };
+        for (n, &z) in sheet.iter().flat_map(|sheet| sheet.field.z.iter().enumerate()) {
+            let p = lattice.place(n, z);
+            let is_beyond = |fault: &FaultSurface| fault.extent_at(p.as_dvec3()) < 0.0;
+            let beyond = faults.surfaces().iter().enumerate().map(|(f, s)| u64::from(is_beyond(s)) << f).sum();
+            if beyond != 0 && usize::from(faults.block_at(p)) == block {
+                shared.nodes.push(n as u32);
+                shared.beyond.push(beyond);
+            }
+        }
+        shared
+    }
+}
+
+/// The nodes at which block `b` has no data and one of `lenders` holds the same surface, with its heights there; the
+/// first of them decides.
+fn borrow(
+    sheets: &[Option<ExtendedSheet>],
+    faults: &FaultNetwork,
+    b: usize,
+    lenders: &[usize],
+    shared: &[Shared],
+) -> Vec<(usize, f32)> {
+    let (Some(sheet), signature) = (&sheets[b], faults.signatures()[b]) else { return Vec::new() };
+    let mut is_free: Vec<bool> = sheet.known.iter().map(|known| !known).collect();
+    let mut lent = Vec::new();
+    for (&c, shared) in lenders.iter().zip(shared) {
+        let Some(lender) = &sheets[c] else { continue };
+        let other = faults.signatures()[c];
+        let between = (signature.bits ^ other.bits) & signature.care & other.care;
+        for (&n, beyond) in shared.nodes.iter().zip(&shared.beyond) {
+            let n = n as usize;
+            if between != 0 && between & !beyond == 0 && is_free[n] {
+                is_free[n] = false;
+                lent.push((n, lender.field.z[n]));
+            }
+        }
+    }
+    lent
 }
 
 /// Gives the nodes without data a quality: as their neighbours close to data, filled in enclosed holes,

@@ -90,7 +90,7 @@ impl StructuralModel {
         for horizon in horizons.iter().filter(|h| !ordered.iter().any(|o| o.name == h.name)) {
             report.notes.push(ModelNote::Ignored { horizon: horizon.name.clone() });
         }
-        let faults = FaultNetwork::build(geometry, faults, settings, progress)?;
+        let faults = FaultNetwork::build(geometry, faults, progress)?;
         let size = geometry.size();
         let lattice = MarginLattice::with_margin(size, settings.margin_for(size));
         progress.begin("nodes", ordered.len() as u64);

@@ -258,6 +258,14 @@ pub enum ProjectError {
         /// The faults along the circle.
         path: Vec<String>,
     },
+    /// A fault that would reach less than nothing, or beyond any survey, past what was drawn.
+    #[error("fault \"{fault}\" cannot reach {grown_m} m beyond what was drawn")]
+    BadGrowth {
+        /// The fault.
+        fault: String,
+        /// What was stated, m.
+        grown_m: f64,
+    },
     /// A SEG-Y file that could not be read.
     #[error(transparent)]
     Segy(#[from] SegyError),

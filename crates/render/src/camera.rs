@@ -281,6 +281,12 @@ impl View {
         }
     }
 
+    /// Pixels of the picture to a horizontal metre of rock across the line of sight; in perspective, in the middle of
+    /// the box.
+    pub fn pixels_per_metre(&self) -> f64 {
+        if self.perspective { self.scale / self.distance } else { self.scale }
+    }
+
     /// Whether the projection is a perspective.
     pub fn is_perspective(&self) -> bool {
         self.perspective

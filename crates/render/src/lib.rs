@@ -32,6 +32,7 @@ pub mod inputs;
 pub mod leaves;
 pub mod media;
 pub mod outline;
+mod pattern_size;
 pub mod pick;
 pub mod reference;
 mod resolved;
@@ -52,6 +53,6 @@ pub use media::{
 };
 pub use outline::{Outlines, Stroke};
 pub use pick::{PickedObject, PickedPoint, pick};
-pub use scene::{Background, Ground, Lookup, Scene};
+pub use scene::{Background, Ground, Lookup, PatternSize, Scene};
 pub use voxel_box::{Corner, VoxelBox};
 pub use wells::{DrawnWell, WellStyle};

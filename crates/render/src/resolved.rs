@@ -8,6 +8,7 @@ use crate::leaves::FaceData;
 use crate::media::field::MediaField;
 use crate::media::prepared::Preparations;
 use crate::media::{Faces, IsosurfaceSource};
+use crate::pattern_size::Frequencies;
 use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
@@ -76,7 +77,8 @@ impl<'a> ResolvedScene<'a> {
     pub fn new(scene: &'a Scene, inputs: &Inputs<'a>, kept: &mut Preparations) -> Result<Self, RenderError> {
         scene.validate(inputs.geometry)?;
         let interpretation = resolve_interpretation(scene, inputs)?;
-        let mut tables = resolve_tables(scene, inputs, interpretation.is_some())?;
+        let view = scene.view(inputs.geometry);
+        let mut tables = resolve_tables(scene, inputs, &view, interpretation.is_some())?;
         let media = media_volumes(scene);
         for name in &media {
             if !tables.volumes.contains(name) {
@@ -89,7 +91,6 @@ impl<'a> ResolvedScene<'a> {
         let hidden =
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
-        let view = scene.view(inputs.geometry);
         let field = MediaField::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
         let solid = Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry));
         let longest_m = (0..3).map(|axis| metric.col(axis).length() * roaming_box.extent()[axis]).fold(0.0, f64::max);
@@ -167,10 +168,12 @@ fn resolve_candidates<'a>(scene: &Scene, inputs: &Inputs<'a>) -> Result<Option<C
 }
 
 /// The transfer functions with the settings of the scene.
-fn resolve_tables(scene: &Scene, inputs: &Inputs, illustrated: bool) -> Result<TtfTables, RenderError> {
+fn resolve_tables(scene: &Scene, inputs: &Inputs, view: &View, illustrated: bool) -> Result<TtfTables, RenderError> {
     let mut tables = inputs.tables.cloned().unwrap_or_else(no_tables);
     tables.globals.blend = scene.blend;
-    tables.globals.global_frequency = scene.global_frequency;
+    let frequencies = Frequencies::of(scene, inputs.geometry, view);
+    tables.globals.global_frequency = frequencies.factor;
+    tables.globals.finer_share = frequencies.finer_share;
     if let Some(raw) = &scene.raw {
         raw.function.validate(&format!("the colours of `{}`", raw.volume))?;
         set_raw(&mut tables, raw);
@@ -205,6 +208,8 @@ fn no_tables() -> TtfTables {
             raw_volume: NONE,
             scalar_count: 0,
             stop_count: 0,
+            finer_share: 0.0,
+            padding: [0; 3],
         },
         extent_i_m: 1.0,
         thicknesses_m: Vec::new(),

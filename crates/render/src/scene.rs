@@ -42,6 +42,8 @@ pub struct Scene {
     pub blend: f32,
     /// Factor on every texture frequency (P-illus 4.2). Default 1.
     pub global_frequency: f32,
+    /// What patterns are fixed to while one zooms. Default the rock.
+    pub pattern_size: PatternSize,
     /// How flat coordinates are looked up. Default exact.
     pub lookup: Lookup,
     /// Colour behind the block. Default white; [`Background::Transparent`] leaves the pixels empty.
@@ -83,6 +85,7 @@ impl Default for Scene {
             exaggeration: 1.0,
             blend: 0.0,
             global_frequency: 1.0,
+            pattern_size: PatternSize::default(),
             lookup: Lookup::Exact,
             background: Background::Colour(Colour::WHITE),
             face_tone: 0.0,
@@ -239,6 +242,17 @@ impl Scene {
         }
         Ok(())
     }
+}
+
+/// What a pattern is fixed to while one zooms.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PatternSize {
+    /// To the rock: a pattern grows with the block.
+    #[default]
+    Rock,
+    /// To the paper: a pattern keeps the size that it has where the whole survey fits the picture.
+    Paper,
 }
 
 #[cfg(test)]

@@ -24,6 +24,8 @@ struct Document {
     name: String,
     #[serde(default)]
     truncated_by: Option<String>,
+    #[serde(default)]
+    grown_m: f64,
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
 }
@@ -36,7 +38,7 @@ struct Document {
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("F1.json");
 /// let mesh = TriangleMesh { vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Z], triangles: vec![[0, 1, 2]] };
-/// let fault = Fault { name: "F1".into(), mesh, truncated_by: None };
+/// let fault = Fault::new("F1", mesh);
 /// store::write_fault(&path, &fault)?;
 /// assert_eq!(store::read_fault(&path)?, fault);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -58,6 +60,9 @@ pub fn write_fault(path: &Path, fault: &Fault) -> Result<(), StoreError> {
     let mut text = format!("{{\n\"kind\": \"{KIND}\",\n\"version\": {VERSION},\n\"name\": {},\n", quoted(&fault.name));
     if let Some(other) = &fault.truncated_by {
         text += &format!("\"truncated_by\": {},\n", quoted(other));
+    }
+    if fault.grown_m != 0.0 {
+        text += &format!("\"grown_m\": {:?},\n", fault.grown_m);
     }
     let vertices = fault.mesh.vertices.iter().map(|v| format!("[{:?}, {:?}, {:?}]", v.x, v.y, v.z));
     list(&mut text, "vertices", vertices);
@@ -105,5 +110,6 @@ pub fn read_fault(path: &Path) -> Result<Fault, StoreError> {
             triangles: document.triangles,
         },
         truncated_by: document.truncated_by,
+        grown_m: document.grown_m,
     })
 }

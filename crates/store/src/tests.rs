@@ -412,7 +412,7 @@ fn a_fault_comes_back_and_reads_well() {
     let path = dir.path().join("faults").join("main.json");
     let vertices = vec![DVec3::new(605_835.1, 6_073_556.2, 1.0 / 3.0), DVec3::new(0.1, -1e-7, 1e9), DVec3::ONE];
     let mesh = TriangleMesh { vertices, triangles: vec![[0, 1, 2]] };
-    let fault = Fault { name: "F \"1\"".to_owned(), mesh, truncated_by: Some("Main".to_owned()) };
+    let fault = Fault { truncated_by: Some("Main".to_owned()), grown_m: 12.5, ..Fault::new("F \"1\"", mesh) };
     write_fault(&path, &fault).unwrap();
     assert_eq!(read_fault(&path).unwrap(), fault);
     let text = fs::read_to_string(&path).unwrap();
@@ -559,6 +559,6 @@ fn a_read_only_folder_is_named() {
     let error = write_volume(&path, &volume(size), &info(size), &quiet()).unwrap_err();
     assert!(matches!(error, StoreError::ReadOnly { .. }), "{error:?}");
     assert!(matches!(write_horizon(&path, &horizon(), &quiet()), Err(StoreError::ReadOnly { .. })));
-    let fault = Fault { name: "F".to_owned(), mesh: TriangleMesh::default(), truncated_by: None };
+    let fault = Fault::new("F", TriangleMesh::default());
     assert!(matches!(write_fault(&path, &fault), Err(StoreError::ReadOnly { .. })));
 }

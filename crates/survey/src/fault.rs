@@ -13,4 +13,13 @@ pub struct Fault {
     /// Name of the fault that truncates this one. This fault then exists only on the side on which most of
     /// its own vertices lie.
     pub truncated_by: Option<String>,
+    /// By how much it reaches beyond what was drawn, on every side along its surface, m; 0: it ends where it was drawn.
+    pub grown_m: f64,
+}
+
+impl Fault {
+    /// A fault that ends where it was drawn and at no other fault.
+    pub fn new(name: impl Into<String>, mesh: TriangleMesh) -> Self {
+        Self { name: name.into(), mesh, truncated_by: None, grown_m: 0.0 }
+    }
 }

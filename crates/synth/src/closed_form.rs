@@ -338,7 +338,7 @@ fn interpreted(geometry: &SurveyGeometry, fault: &PlanarFault) -> Fault {
             mesh.triangles.extend([[corner, next, corner + 1], [corner + 1, next, next + 1]]);
         }
     }
-    Fault { name: "F".to_owned(), mesh, truncated_by: None }
+    Fault::new("F", mesh)
 }
 
 #[cfg(test)]

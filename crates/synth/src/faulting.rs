@@ -136,7 +136,7 @@ impl TruthFault {
                 mesh.triangles.push([corner + 1, corner + row, corner + row + 1]);
             }
         }
-        Fault { name: self.name.clone(), mesh, truncated_by: None }
+        Fault::new(self.name.clone(), mesh)
     }
 }
 

@@ -51,5 +51,5 @@ pub use scalar::{ScalarInterval, ScalarTtf};
 pub use shade::{FlatFootprint, LayerPoint, ShadePoint, blend_raw, shade};
 pub use sheet::contact_sheet;
 pub use svg::MAX_SVG_BYTES;
-pub use tables::{BlockExtent, LayerExtent, TtfTables};
+pub use tables::{BlockExtent, FINER, LayerExtent, TtfGlobals, TtfTables};
 pub use texture::Texture;

@@ -16,7 +16,7 @@
 //! there is none.
 
 use crate::coordinates::FaceFrame;
-use crate::tables::{NONE, TtfTables};
+use crate::tables::{FINER, NONE, TtfGlobals, TtfTables};
 
 /// A point of a face in flat space.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,9 +172,20 @@ impl<'a> Sampler<'a> {
         Self { tables, weights: point.face.weights(point.grad_k).to_array(), coordinates }
     }
 
+    /// A texture at a frequency, dissolved into the finer one as the tables say.
     fn sample(&self, texture: u32, frequency: [f32; 2]) -> [f32; 4] {
+        let TtfGlobals { global_frequency, finer_share, .. } = self.tables.globals;
+        let scaled = frequency.map(|part| part * global_frequency);
+        let coarse = self.sample_at(texture, scaled);
+        if finer_share <= 0.0 {
+            return coarse;
+        }
+        let fine = self.sample_at(texture, scaled.map(|part| part * FINER));
+        std::array::from_fn(|c| coarse[c] + finer_share * (fine[c] - coarse[c]))
+    }
+
+    fn sample_at(&self, texture: u32, [horizontal, vertical]: [f32; 2]) -> [f32; 4] {
         let texture = &self.tables.textures[texture as usize];
-        let [horizontal, vertical] = frequency.map(|part| part * self.tables.globals.global_frequency);
         let scales = [[horizontal, vertical], [horizontal, vertical], [horizontal, horizontal]];
         let mut sum = [0.0; 4];
         for ((weight, coordinates), scale) in self.weights.iter().zip(&self.coordinates).zip(scales) {

@@ -55,7 +55,14 @@ pub struct TtfGlobals {
     pub scalar_count: u32,
     /// Entries in the stop table.
     pub stop_count: u32,
+    /// Share of every pattern that is [`FINER`] times as dense, 0 to 1.
+    pub finer_share: f32,
+    /// The shader's struct is a multiple of 16 bytes.
+    pub padding: [u32; 3],
 }
+
+/// How much denser the finer of two patterns is that are dissolved into one another: half an octave.
+pub const FINER: f32 = std::f32::consts::SQRT_2;
 
 /// A layer.
 #[repr(C)]
@@ -221,6 +228,8 @@ impl TtfTables {
             raw_volume,
             scalar_count: scalars.len() as u32,
             stop_count: stops.len() as u32,
+            finer_share: 0.0,
+            padding: [0; 3],
         };
         let Slots { volumes, textures, library_indices: patterns, .. } = slots;
         let thicknesses_m = block.layers.iter().map(|layer| layer.thickness_m).collect();

@@ -216,6 +216,21 @@ pub(in crate::cli) enum FaultAction {
         #[arg(long, value_name = "FAULT")]
         by: Option<String>,
     },
+    /// State how far a fault reaches beyond what was drawn of it
+    ///
+    /// A fault ends where it was drawn; only where it was picked to within half the spacing of its picks, and at most
+    /// four lines or samples, of the volume's border does it reach the border. What lies beyond its tip is not broken.
+    #[command(after_help = "Examples:\n  petroglyph fault extent north.petro F1 grow 150\
+                      \n  petroglyph fault extent north.petro F1 drawn")]
+    Extent {
+        /// Project folder
+        project: PathBuf,
+        /// Fault
+        name: String,
+        /// `drawn`, or `grow` and how many metres it reaches farther on every side
+        #[arg(value_name = "drawn|grow M", num_args = 1..=2, required = true, allow_hyphen_values = true)]
+        extent: Vec<String>,
+    },
     /// Remove a fault
     #[command(after_help = "Example:\n  petroglyph fault remove north.petro F1")]
     Remove {
@@ -238,6 +253,9 @@ pub(in crate::cli) struct FaultAddArgs {
     /// The fault it ends at
     #[arg(long, value_name = "FAULT")]
     pub(in crate::cli) truncated_by: Option<String>,
+    /// How far it reaches beyond what was drawn: not at all, or so many metres on every side [default: drawn]
+    #[arg(long, value_name = "drawn|grow M", num_args = 1..=2, allow_hyphen_values = true)]
+    pub(in crate::cli) extent: Vec<String>,
     #[command(flatten)]
     pub(in crate::cli) reading: ReadingArgs,
 }

@@ -107,6 +107,10 @@ pub(in crate::cli) struct ViewArgs {
     /// Factor on the frequency of every pattern
     #[arg(long, value_name = "FACTOR")]
     pub(in crate::cli) global_frequency: Option<f32>,
+    /// What patterns are fixed to in a close-up: to the rock, so that they grow with it, or to the paper, so that they
+    /// keep the size that they have where the whole survey fits the picture
+    #[arg(long, value_name = "rock|paper")]
+    pub(in crate::cli) pattern_size: Option<String>,
     /// Samples per pixel along each axis
     #[arg(long, value_name = "N")]
     pub(in crate::cli) samples: Option<u32>,

@@ -5,7 +5,7 @@ use crate::state::{Action, Panel, Place, Session, StandardView, State};
 use eframe::egui::{Button, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
 use project::command::{AddScene, Command, RemoveScene};
-use render::{Corner, Ground, Projection, Scene, VoxelBox};
+use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 
 /// Opening angle that a perspective starts with.
@@ -112,6 +112,16 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
                 ui.add(
                     Slider::new(&mut scene.global_frequency, 0.1..=10.0).logarithmic(true).max_decimals(2).suffix("×"),
                 )
+            });
+        }
+        if has_layers {
+            row(ui, "Pattern size", |ui| {
+                let mut on_paper = scene.pattern_size == PatternSize::Paper;
+                let constant = ui.checkbox(&mut on_paper, "constant while zooming");
+                if constant.changed() {
+                    scene.pattern_size = if on_paper { PatternSize::Paper } else { PatternSize::Rock };
+                }
+                constant
             });
         }
         row(ui, "Face tone", |ui| ui.add(Slider::new(&mut scene.face_tone, 0.0..=0.5).max_decimals(2)));

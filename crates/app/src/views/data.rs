@@ -169,6 +169,9 @@ fn faults(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
             if let Some(other) = &entry.truncated_by {
                 ui.weak(format!("ends at {other}"));
             }
+            if entry.grown_m != 0.0 {
+                ui.weak(format!("reaches {} m farther", entry.grown_m));
+            }
             if remove(ui, &format!("Remove fault {}", entry.name)) {
                 let command = RemoveFault { name: entry.name.clone() };
                 actions.push(Action::Apply(Box::new(Command::RemoveFault(command))));

@@ -27,6 +27,8 @@ pub struct Interpretation {
     chosen: Option<String>,
     contact: Contact,
     truncated_by: Option<String>,
+    /// Metres by which the fault reaches beyond what was drawn.
+    grown_m: f64,
     reading: Reading<ImportOptions, InterpretationScan>,
 }
 
@@ -110,6 +112,12 @@ impl Interpretation {
                         }
                     });
                 });
+                ui.end_row();
+                let label = ui.label("Reaches farther by").on_hover_text(
+                    "A fault ends where it was drawn. So many metres more on every side where it was drawn too short",
+                );
+                let metres = DragValue::new(&mut self.grown_m).range(0.0..=100_000.0).speed(5.0).suffix(" m");
+                ui.add(metres).labelled_by(label.id);
             } else {
                 let label = ui.label("Contact");
                 ui.label_inputs_by(label.id, |ui| {
@@ -180,7 +188,8 @@ impl Interpretation {
         let (path, name) = (self.path.clone(), self.name.trim().to_owned());
         let options = ImportOptions { select: self.chosen.clone(), ..self.options.clone() };
         if kind == FileContent::Fault {
-            Command::AddFault(AddFault { path, name, truncated_by: self.truncated_by.clone(), options })
+            let (truncated_by, grown_m) = (self.truncated_by.clone(), self.grown_m);
+            Command::AddFault(AddFault { path, name, truncated_by, grown_m, options })
         } else {
             Command::AddHorizon(AddHorizon { path, name, contact: self.contact, age: Age::ByDepth, options })
         }

@@ -6,7 +6,7 @@ use crate::holes::find_holes;
 use crate::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
 use crate::surfaces::{Extremum, Surface, Surfaces, Vertex};
 use glam::Vec3;
-use model::{FaultNetwork, ModelSettings};
+use model::FaultNetwork;
 use survey::{Progress, Quality, SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
 
@@ -180,8 +180,7 @@ fn a_climb_tolerates_a_strip_over_what_is_chosen_and_not_more() {
 fn network() -> (SurveyGeometry, FaultNetwork) {
     let geometry = SurveyGeometry::regular(SIZE, 10.0, 10.0, VerticalUnit::Metres);
     let model = ClosedForm::flat(&geometry, &[20.0]).with_fault(45.0, 6.0);
-    let network =
-        FaultNetwork::build(&geometry, &model.faults, &ModelSettings::default(), &Progress::silent()).unwrap();
+    let network = FaultNetwork::build(&geometry, &model.faults, &Progress::silent()).unwrap();
     (geometry, network)
 }
 
@@ -237,7 +236,7 @@ fn beside_a_fault(left: usize, right: usize) -> (Forest, Selection, FaultNetwork
     all.insert(0..forest.surfaces.triangles.len() as u32);
     let geometry = SurveyGeometry::regular(SIZE, 25.0, 10.0, VerticalUnit::Metres);
     let closed = ClosedForm::flat(&geometry, &[16.0]).with_fault(89.9, 2.0);
-    let faulted = FaultNetwork::build(&geometry, &closed.faults, &ModelSettings::default(), &Progress::silent());
+    let faulted = FaultNetwork::build(&geometry, &closed.faults, &Progress::silent());
     (forest, all, faulted.unwrap())
 }
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::reassembly::from_horizon;
-use model::{FaultNetwork, ModelSettings};
+use model::FaultNetwork;
 use survey::{NodeGrid, Quality, Sheet, VerticalUnit};
 use synth::{SynthSettings, Synthetic};
 
@@ -164,8 +164,8 @@ fn drawn(geometry: &SurveyGeometry, off: f64, [from, to]: [f64; 2], turn: f64, z
     let corner = |y: f64, z: f64| geometry.world_from_voxel(place(y).extend(z));
     let vertices = vec![corner(from, z[0]), corner(to, z[0]), corner(to, z[1]), corner(from, z[1])];
     let mesh = TriangleMesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] };
-    let fault = Fault { name: "Drawn".into(), mesh, truncated_by: None };
-    FaultNetwork::build(geometry, &[fault], &ModelSettings::default(), &Progress::silent()).unwrap()
+    let fault = Fault::new("Drawn", mesh);
+    FaultNetwork::build(geometry, &[fault], &Progress::silent()).unwrap()
 }
 
 #[test]

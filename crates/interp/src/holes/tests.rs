@@ -1,7 +1,6 @@
 //! Holes filled beside closed forms, and never across a fault.
 
 use super::*;
-use model::ModelSettings;
 use survey::{SurveyGeometry, VerticalUnit};
 use synth::closed_form::ClosedForm;
 
@@ -111,7 +110,7 @@ fn large_holes_stay_when_only_small_ones_are_asked_for() {
 fn no_filling_crosses_a_fault() {
     let geometry = SurveyGeometry::regular([SIZE[0], SIZE[1], 64], 10.0, 10.0, VerticalUnit::Metres);
     let model = ClosedForm::flat(&geometry, &[31.5]).with_fault(60.0, 0.0);
-    let faults = FaultNetwork::build(&geometry, &model.faults, &ModelSettings::default(), &Progress::silent()).unwrap();
+    let faults = FaultNetwork::build(&geometry, &model.faults, &Progress::silent()).unwrap();
     let side = |n: usize| faults.block_at(Vec3::new((n / SIZE[1]) as f32, (n % SIZE[1]) as f32, 31.5));
     // A sheet all around, wrongly beyond the fault too; the hole lies across it.
     let mut sheets = [sheet(|_, _| 31.5, |x, y| disc(x, y, [30, 25], 6))];

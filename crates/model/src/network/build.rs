@@ -23,8 +23,6 @@ pub(super) struct Built {
     pub patch: Patch,
     /// Vertices in use, voxel space.
     pub vertices: Vec<DVec3>,
-    /// Median triangle edge, m.
-    pub edge_m: f64,
 }
 
 /// Builds the surface of `fault`; its extent is still empty.
@@ -100,7 +98,7 @@ pub(super) fn build(geometry: &SurveyGeometry, fault: &Fault) -> Result<Built, M
         extent: HeightField { origin: grid_origin, size, z: vec![0.0; w.len()] },
         surface: HeightField { origin: grid_origin, size, z: w },
     };
-    Ok(Built { surface, patch, vertices: used, edge_m })
+    Ok(Built { surface, patch, vertices: used })
 }
 
 fn area(points: &[DVec3], t: &[usize; 3]) -> f64 {

@@ -16,7 +16,6 @@ mod surface;
 pub use surface::FaultSurface;
 
 use crate::report::ModelError;
-use crate::settings::ModelSettings;
 use build::Built;
 use glam::{DVec3, Vec3};
 use outline::{Reach, Target};
@@ -90,12 +89,7 @@ impl FaultNetwork {
     /// # Errors
     /// [`ModelError`] for a fault without area, one that folds over itself, bad truncations, too many faults
     /// or blocks.
-    pub fn build(
-        geometry: &SurveyGeometry,
-        faults: &[Fault],
-        settings: &ModelSettings,
-        progress: &Progress,
-    ) -> Result<Self, ModelError> {
+    pub fn build(geometry: &SurveyGeometry, faults: &[Fault], progress: &Progress) -> Result<Self, ModelError> {
         if faults.is_empty() {
             return Ok(Self::none());
         }
@@ -124,7 +118,7 @@ impl FaultNetwork {
             })
             .collect();
         for f in 0..built.len() {
-            let z = extent(geometry, &built, f, truncation[f], settings);
+            let z = extent(geometry, &built, f, truncation[f], faults[f].grown_m);
             built[f].surface.extent.z = z;
         }
         let surfaces: Vec<FaultSurface> = built.into_iter().map(|b| b.surface).collect();
@@ -288,18 +282,25 @@ fn ordered(by: &[Option<usize>]) -> Result<Vec<usize>, Vec<usize>> {
     Ok(order)
 }
 
+/// A fault that ends within this many voxels of the volume's outer boundary reaches it, if it was picked so coarsely
+/// that half the spacing of its picks bridges the gap.
+const REACHED_VOXELS: f64 = 4.0;
+/// The share of the spacing of picks by which a fault is continued to the outer boundary at most.
+const REACHED_SHARE: f64 = 0.5;
+/// A fault that ends within this many voxels of the outer boundary reaches it in any case: the border of the data.
+const BORDER_VOXELS: f64 = 1.5;
+
 /// Signed distance of fault `f` to the rim of its extent at its grid nodes, m, after its rim was extended to
-/// what it nearly reaches.
+/// what it nearly reaches, and grown as stated.
 fn extent(
     geometry: &SurveyGeometry,
     built: &[Built],
     f: usize,
     truncation: Option<Truncation>,
-    settings: &ModelSettings,
+    grown_m: f64,
 ) -> Vec<f32> {
-    let Built { surface, patch, edge_m, .. } = &built[f];
-    let spacing = surface.spacing_m;
-    let tolerance = settings.rim_tolerance_m.unwrap_or(*edge_m) / spacing;
+    let Built { surface, patch, .. } = &built[f];
+    let spacing_m = surface.spacing_m;
     let voxel_from_frame = surface.frame_from_voxel.inverse();
     let voxel = move |q: DVec3| voxel_from_frame * (q - surface.frame_offset);
     // In-plane direction (cells) along which `value`, 0 on the target and positive before it, falls, and the
@@ -307,32 +308,39 @@ fn extent(
     let towards = move |value: f64, gradient_voxel: DVec3| {
         let gradient = (voxel_from_frame.transpose() * gradient_voxel).truncate();
         let steep = gradient.length();
-        (steep > 1e-9).then(|| (-gradient / steep, value / steep)).filter(|&(_, cells)| cells <= tolerance)
+        (steep > 1e-9).then(|| (-gradient / steep, value / steep))
     };
-    let mut boundary: Vec<Box<dyn Fn(DVec3) -> Target>> = Vec::new();
+    let to_border = move |voxels: f64, inwards: DVec3, spacing: f64| {
+        let bridges = move |&(_, cells): &(_, f64)| {
+            voxels <= BORDER_VOXELS || voxels <= REACHED_VOXELS && cells <= REACHED_SHARE * spacing
+        };
+        towards(voxels, inwards).filter(bridges)
+    };
+    let mut boundary: Vec<Box<dyn Fn(DVec3, f64) -> Target>> = Vec::new();
     for axis in 0..3 {
         let last = geometry.size()[axis] as f64 - 1.0;
-        boundary.push(Box::new(move |q| towards(voxel(q)[axis], DVec3::AXES[axis])));
-        boundary.push(Box::new(move |q| towards(last - voxel(q)[axis], -DVec3::AXES[axis])));
+        boundary.push(Box::new(move |q, spacing| to_border(voxel(q)[axis], DVec3::AXES[axis], spacing)));
+        boundary.push(Box::new(move |q, spacing| to_border(last - voxel(q)[axis], -DVec3::AXES[axis], spacing)));
     }
-    // Past the outer boundary of the volume the strip continues to the end of the grid, past a fault by half
-    // the tolerance.
+    // Past the outer boundary of the volume the strip continues to the end of the grid, past a fault by a few cells.
     let [nu, nv] = surface.surface.size;
     let mut reaches: Vec<(Reach, f64)> = boundary.iter().map(|face| (&**face as Reach, (nu + nv) as f64)).collect();
     let by = truncation.map(|t| (&built[t.by].surface, if t.positive { 1.0 } else { -1.0 }));
     let to_fault = by.map(|(other, sign)| {
-        move |q: DVec3| {
+        move |q: DVec3, spacing: f64| {
             let p = voxel(q);
+            // That it ends there is stated, so the whole spacing of its picks is bridged.
             towards(sign * other.side(p), sign * other.side_gradient(p))
+                .filter(|&(_, cells)| cells <= spacing.max(REACHED_VOXELS))
         }
     });
     if let Some(to_fault) = &to_fault {
-        reaches.push((to_fault, 0.5 * tolerance));
+        reaches.push((to_fault, REACHED_VOXELS));
     }
     let mut reached = patch.clone();
     reached.reach(&reaches);
     let cells = reached.signed_distance(surface.surface.origin, surface.surface.size);
-    cells.into_iter().map(|d| (f64::from(d) * spacing) as f32).collect()
+    cells.into_iter().map(|d| (f64::from(d) * spacing_m + grown_m) as f32).collect()
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
 //! How far a fault was interpreted: the rim of its mesh on its best-fit plane, and the signed distance to it.
 //!
-//! Rim edges that end within a tolerance of the volume's outer boundary, or of the fault this one is
-//! truncated by, are extended straight to it (and beyond it, in the case of the outer boundary), because an
-//! interpreter's sticks seldom end exactly there. Holes inside the mesh count as interpreted.
+//! Rim edges that end just before the volume's outer boundary, or before the fault this one is truncated by, are
+//! extended straight to it (and beyond it, in the case of the outer boundary), because an interpreter's sticks seldom
+//! end exactly there. How near is near depends on how densely the fault was picked towards that rim, and never on the
+//! spacing along it. Holes inside the mesh count as interpreted.
 
 use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
@@ -20,9 +21,9 @@ pub(super) struct Patch {
     triangles: Vec<[u32; 3]>,
 }
 
-/// Something a rim may end at: the cells to go from a rim point and the direction, `None` when it is too far
-/// or lies aside.
-pub(super) type Reach<'a> = &'a dyn Fn(DVec3) -> Target;
+/// Something a rim may end at: from a rim point and the spacing of the picks towards the rim there (cells), the
+/// direction and the cells to go; `None` when it is too far or lies aside.
+pub(super) type Reach<'a> = &'a dyn Fn(DVec3, f64) -> Target;
 
 /// Direction and cells to go, if the target is near.
 pub(super) type Target = Option<(DVec2, f64)>;
@@ -68,40 +69,44 @@ impl Patch {
         }
     }
 
-    /// Edges with one triangle.
-    fn rim(&self) -> Vec<[u32; 2]> {
-        let mut count: BTreeMap<[u32; 2], u32> = BTreeMap::new();
+    /// Edges with one triangle, and the vertex of that triangle opposite to each.
+    fn rim(&self) -> Vec<([u32; 2], u32)> {
+        let mut met: BTreeMap<[u32; 2], (u32, u32)> = BTreeMap::new();
         for t in &self.triangles {
             for i in 0..3 {
                 let (a, b) = (t[i], t[(i + 1) % 3]);
-                *count.entry([a.min(b), a.max(b)]).or_default() += 1;
+                met.entry([a.min(b), a.max(b)]).or_insert((0, t[(i + 2) % 3])).0 += 1;
             }
         }
-        count.into_iter().filter(|&(_, n)| n == 1).map(|(e, _)| e).collect()
+        met.into_iter().filter(|(_, (count, _))| *count == 1).map(|(edge, (_, opposite))| (edge, opposite)).collect()
     }
 
     /// Adds strips from the rim to what it reaches; `beyond` cells further than that.
     pub fn reach(&mut self, reaches: &[(Reach, f64)]) {
-        let rim = self.rim();
-        let pushed = |p: DVec3, reach: &(Reach, f64)| {
-            reach.0(p).map(|(direction, cells)| p + (direction * (cells + reach.1)).extend(0.0))
+        let pushed = |p: DVec3, spacing: f64, reach: &(Reach, f64)| {
+            reach.0(p, spacing).map(|(direction, cells)| p + (direction * (cells + reach.1)).extend(0.0))
         };
         let mut quads: Vec<[DVec3; 4]> = Vec::new();
-        for &[a, b] in &rim {
-            let (a, b) = (self.points[a as usize], self.points[b as usize]);
+        // The spacing of the picks towards the rim at each of its points: the larger of its two edges.
+        let mut ends: BTreeMap<u32, f64> = BTreeMap::new();
+        for ([i, j], opposite) in self.rim() {
+            let [a, b, c] = [i, j, opposite].map(|v| self.points[v as usize]);
+            let along = b - a;
+            let spacing = along.cross(c - a).length() / along.length().max(1e-9);
+            for end in [i, j] {
+                let widest = ends.entry(end).or_default();
+                *widest = widest.max(spacing);
+            }
             for reach in reaches {
-                if let (Some(c), Some(d)) = (pushed(b, reach), pushed(a, reach)) {
+                if let (Some(c), Some(d)) = (pushed(b, spacing, reach), pushed(a, spacing, reach)) {
                     quads.push([a, b, c, d]);
                 }
             }
         }
         // A rim point near two outer boundaries fills the corner between its two strips.
-        let mut ends: Vec<u32> = rim.into_iter().flatten().collect();
-        ends.sort_unstable();
-        ends.dedup();
-        for v in ends {
+        for (v, spacing) in ends {
             let p = self.points[v as usize];
-            let to: Vec<DVec3> = reaches.iter().filter_map(|r| pushed(p, r)).collect();
+            let to: Vec<DVec3> = reaches.iter().filter_map(|r| pushed(p, spacing, r)).collect();
             for i in 0..to.len() {
                 for j in i + 1..to.len() {
                     quads.push([p, to[i], to[i] + to[j] - p, to[j]]);
@@ -125,7 +130,7 @@ impl Patch {
         let outside = flood(size, &covered);
         let bins = Bins::new(self, origin, size);
         let mut rim: Vec<DVec2> = Vec::new();
-        for [a, b] in self.rim() {
+        for ([a, b], _) in self.rim() {
             let (a, b) = (self.points[a as usize].truncate(), self.points[b as usize].truncate());
             let length = a.distance(b);
             if length < 1e-9 {

@@ -31,11 +31,11 @@ pub(crate) fn mesh(n: usize, at: impl Fn(f64, f64) -> DVec3) -> TriangleMesh {
 }
 
 fn fault(name: &str, mesh: TriangleMesh, truncated_by: Option<&str>) -> Fault {
-    Fault { name: name.into(), mesh, truncated_by: truncated_by.map(Into::into) }
+    Fault { truncated_by: truncated_by.map(Into::into), ..Fault::new(name, mesh) }
 }
 
 fn network(faults: &[Fault]) -> FaultNetwork {
-    FaultNetwork::build(&geometry(), faults, &ModelSettings::default(), &Progress::silent()).unwrap()
+    FaultNetwork::build(&geometry(), faults, &Progress::silent()).unwrap()
 }
 
 fn places(count: usize) -> Vec<Vec3> {
@@ -158,9 +158,7 @@ fn blocks_do_not_depend_on_the_fault_order_given_or_the_corner_they_touch() {
 
 #[test]
 fn bad_faults_are_named() {
-    let build = |faults: &[Fault]| {
-        FaultNetwork::build(&geometry(), faults, &ModelSettings::default(), &Progress::silent()).unwrap_err()
-    };
+    let build = |faults: &[Fault]| FaultNetwork::build(&geometry(), faults, &Progress::silent()).unwrap_err();
     let flat = || mesh(2, |s, t| DVec3::new(20.0, 39.0 * s, 59.0 * t));
     let mut nan = flat();
     nan.vertices.iter_mut().for_each(|v| v.x = f64::NAN);

@@ -168,7 +168,7 @@ fn tangle(seed: u32, faults: usize) -> StructuralModel {
             triangles: vec![[0, 1, 2], [0, 2, 3]],
         };
         let truncated_by = (f > 0 && random.next() < 0.4).then(|| format!("F{}", f - 1));
-        given.push(Fault { name: format!("F{f}"), mesh, truncated_by });
+        given.push(Fault { truncated_by, ..Fault::new(format!("F{f}"), mesh) });
     }
     let contacts = [Contact::Conformable, Contact::Erosional, Contact::Conformable, Contact::Intrusive];
     let horizons: Vec<Horizon> = (0..4)

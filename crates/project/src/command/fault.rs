@@ -2,7 +2,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::FaultEntry;
+use crate::document::{FaultEntry, is_zero};
 use crate::folder::Draft;
 use crate::interpretation::assembly::rebuild_all;
 use formats::{ImportOptions, ImportReport};
@@ -20,6 +20,9 @@ pub struct AddFault {
     /// The fault it ends at.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truncated_by: Option<String>,
+    /// By how much it reaches beyond what was drawn, m; 0: it ends where it was drawn.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub grown_m: f64,
     /// What the user states about the file.
     #[serde(default)]
     pub options: ImportOptions,
@@ -33,6 +36,16 @@ pub struct SetTruncation {
     /// The fault it ends at; `None`: it ends at no other fault.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
+}
+
+/// States how far a fault reaches beyond what was drawn of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SetFaultExtent {
+    /// Name of the fault.
+    pub fault: String,
+    /// On every side along its surface, m; 0: it ends where it was drawn.
+    #[serde(default)]
+    pub grown_m: f64,
 }
 
 /// Removes a fault.
@@ -62,16 +75,19 @@ impl AddFault {
         progress.check()?;
         fault.name.clone_from(&self.name);
         fault.truncated_by.clone_from(&self.truncated_by);
+        fault.grown_m = self.grown_m;
         let hash = content::hash_fault(&fault);
         let (file, new) = draft.generation("faults", &self.name, "json")?;
         store::write_fault(&new, &fault)?;
         draft.document.faults.push(FaultEntry {
             name: self.name.clone(),
             truncated_by: self.truncated_by.clone(),
+            grown_m: self.grown_m,
             file,
             hash,
             source: super::source_of(&self.path, super::horizon::reading(&report))?,
         });
+        draft.document.check_growth()?;
         rebuild_all(draft, progress)?;
         Ok(Effect::FaultAdded(Box::new(FaultAdded { triangles: fault.mesh.triangles.len(), report })))
     }
@@ -99,6 +115,20 @@ impl SetTruncation {
         let summary = match &self.by {
             Some(by) => format!("fault {} ends at {by}", self.fault),
             None => format!("fault {} ends at no other fault", self.fault),
+        };
+        Ok(Effect::Changed { summary })
+    }
+}
+
+impl SetFaultExtent {
+    pub(super) fn execute(&self, draft: &mut Draft, progress: &Progress) -> Result<Effect, ProjectError> {
+        let index = draft.document.position(Noun::Fault, &self.fault)?;
+        draft.document.faults[index].grown_m = self.grown_m;
+        draft.document.check_growth()?;
+        rebuild_all(draft, progress)?;
+        let summary = match self.grown_m {
+            0.0 => format!("fault {} ends where it was drawn", self.fault),
+            grown_m => format!("fault {} reaches {grown_m} m beyond what was drawn", self.fault),
         };
         Ok(Effect::Changed { summary })
     }

@@ -106,10 +106,12 @@ impl AcceptFault {
 /// Writes a fault and its entry; an existing fault of that name is replaced.
 fn put(draft: &mut Draft, fault: &Fault, source: Source) -> Result<(), ProjectError> {
     let old = draft.document.faults.iter().position(|entry| entry.name == fault.name);
-    let truncated_by = old.and_then(|old| draft.document.faults[old].truncated_by.clone());
+    let before = old.map(|old| &draft.document.faults[old]);
+    let (truncated_by, grown_m) = before.map_or((None, 0.0), |entry| (entry.truncated_by.clone(), entry.grown_m));
     let (file, new) = draft.generation("faults", &fault.name, "json")?;
     store::write_fault(&new, fault)?;
-    let entry = FaultEntry { name: fault.name.clone(), truncated_by, file, hash: content::hash_fault(fault), source };
+    let (name, hash) = (fault.name.clone(), content::hash_fault(fault));
+    let entry = FaultEntry { name, truncated_by, grown_m, file, hash, source };
     match old {
         Some(old) => draft.document.faults[old] = entry,
         None => draft.document.faults.push(entry),

@@ -23,7 +23,7 @@ mod well;
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
 pub use contact::SetContact;
 pub use extract::{Extract, ProposeFaults};
-pub use fault::{AddFault, FaultAdded, RemoveFault, SetTruncation};
+pub use fault::{AddFault, FaultAdded, RemoveFault, SetFaultExtent, SetTruncation};
 pub use fault_pick::{AcceptFault, PickFault};
 pub use fill::{FillHorizon, HorizonFilled};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
@@ -98,6 +98,8 @@ pub enum Command {
     AddFault(AddFault),
     /// State at which other fault a fault ends.
     SetTruncation(SetTruncation),
+    /// State how far a fault reaches beyond what was drawn.
+    SetFaultExtent(SetFaultExtent),
     /// Remove a fault.
     RemoveFault(RemoveFault),
     /// Add a well from its files.
@@ -203,6 +205,7 @@ impl Command {
             Self::RenameWell(change) => change.execute(draft),
             Self::RemoveWell(change) => change.execute(draft),
             Self::SetTruncation(change) => change.execute(draft, progress),
+            Self::SetFaultExtent(change) => change.execute(draft, progress),
             Self::RemoveFault(change) => change.execute(draft, progress),
             Self::SetVelocity(change) => change.execute(draft),
             Self::SetContact(change) => change.execute(draft),

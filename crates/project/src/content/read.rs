@@ -120,7 +120,7 @@ pub fn read_fault(root: &Path, entry: &FaultEntry) -> Result<Fault, ProjectError
     let path = at_hand(root, &entry.file);
     let fault = store::read_fault(&path)?;
     compare(&path, Noun::Fault, &entry.name, &entry.hash, hash_fault(&fault))?;
-    Ok(Fault { name: entry.name.clone(), truncated_by: entry.truncated_by.clone(), ..fault })
+    Ok(Fault { name: entry.name.clone(), truncated_by: entry.truncated_by.clone(), grown_m: entry.grown_m, ..fault })
 }
 
 /// The path of a tile of the project in `root`, whose bytes are those that were recorded.

@@ -155,6 +155,7 @@ fn build_project(path: &Path, files: &SynthSurvey, progress: &Progress) -> Resul
             path: fault.file.clone(),
             name: fault.name.clone(),
             truncated_by: fault.truncated_by.clone(),
+            grown_m: 0.0,
             options: ImportOptions::default(),
         };
         project.apply(&Command::AddFault(command), progress)?;

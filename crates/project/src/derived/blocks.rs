@@ -4,7 +4,7 @@ use super::kept::{Kind, damaged, read_array, read_header, write_header};
 use super::{key_of, revision};
 use crate::document::Document;
 use glam::{DMat3, DVec3};
-use model::{BlockSignature, FaultNetwork, FaultSurface, ModelSettings, Truncation};
+use model::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -16,23 +16,17 @@ const BLOCKS: Kind = Kind { prefix: "blocks", magic: b"PGBLOCK\x01", what: "the 
 const FRAME: usize = 13;
 
 /// The key of a project's fault blocks: a hash of everything that they depend on.
-pub fn blocks_key(document: &Document, model: &ModelSettings) -> String {
+pub fn blocks_key(document: &Document) -> String {
     #[derive(Serialize)]
     struct Inputs<'a> {
         revision: u32,
         geometry: &'a Option<survey::SurveyGeometry>,
-        faults: Vec<(&'a str, &'a str, Option<&'a str>)>,
-        model: &'a ModelSettings,
+        faults: Vec<(&'a str, String)>,
     }
     key_of(&Inputs {
         revision: revision::MODEL,
         geometry: &document.geometry,
-        faults: document
-            .faults
-            .iter()
-            .map(|entry| (entry.name.as_str(), entry.hash.as_str(), entry.truncated_by.as_deref()))
-            .collect(),
-        model,
+        faults: document.faults.iter().map(|entry| (entry.name.as_str(), entry.shape())).collect(),
     })
 }
 
@@ -137,8 +131,7 @@ mod tests {
         let second =
             fault("second", [[[22.0, 14.0, 5.0], [30.0, 14.0, 45.0]], [[38.0, 16.0, 5.0], [38.0, 16.0, 45.0]]]);
         let second = Fault { truncated_by: Some("first".into()), ..second };
-        let settings = ModelSettings::default();
-        FaultNetwork::build(&geometry, &[first, second], &settings, &Progress::silent()).unwrap()
+        FaultNetwork::build(&geometry, &[first, second], &Progress::silent()).unwrap()
     }
 
     #[test]
@@ -221,7 +214,7 @@ mod tests {
     fn the_key_sees_the_geometry_and_no_layer_names() {
         let geometry = geometry();
         let document = Document::empty(Some(geometry));
-        let key = |document: &Document| blocks_key(document, &ModelSettings::default());
+        let key = |document: &Document| blocks_key(document);
         let mut faster = document.clone();
         faster.geometry.as_mut().unwrap().velocity_m_s = 3000.0;
         assert_ne!(key(&document), key(&faster));

@@ -26,7 +26,7 @@ pub fn parameterization_key(document: &Document, model: &ModelSettings, settings
         revision: [u32; 2],
         geometry: &'a Option<survey::SurveyGeometry>,
         horizons: Vec<(&'a str, survey::Contact)>,
-        faults: Vec<(&'a str, Option<usize>)>,
+        faults: Vec<(&'a str, Option<usize>, f64)>,
         model: &'a ModelSettings,
         settings: &'a ParamSettings,
     }
@@ -38,7 +38,7 @@ pub fn parameterization_key(document: &Document, model: &ModelSettings, settings
         faults: document
             .faults
             .iter()
-            .map(|entry| (entry.hash.as_str(), entry.truncated_by.as_deref().and_then(ends_at)))
+            .map(|entry| (entry.hash.as_str(), entry.truncated_by.as_deref().and_then(ends_at), entry.grown_m))
             .collect(),
         model,
         settings,

@@ -111,12 +111,28 @@ pub struct FaultEntry {
     /// The fault it ends at.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truncated_by: Option<String>,
+    /// By how much it reaches beyond what was drawn, m; 0: it ends where it was drawn.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub grown_m: f64,
     /// Data, relative to the project's folder.
     pub file: String,
     /// BLAKE3 of its triangles.
     pub hash: String,
     /// Where it came from.
     pub source: Source,
+}
+
+impl FaultEntry {
+    /// What its part in the model depends on: its triangles, where it ends, how far it grows.
+    pub fn shape(&self) -> String {
+        format!("{} {:?} {}", self.hash, self.truncated_by, self.grown_m)
+    }
+}
+
+/// Whether a fault ends where it was drawn.
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+pub(crate) fn is_zero(metres: &f64) -> bool {
+    *metres == 0.0
 }
 
 /// A well of the project.

@@ -11,6 +11,7 @@ mod layers;
 mod picks;
 
 use crate::error::{Noun, ProjectError};
+pub(crate) use entries::is_zero;
 pub use entries::{
     ExtractionEntry, FaultEntry, HorizonEntry, Polarity, ProposalsEntry, SceneEntry, Source, Style, TextureEntry,
     VolumeEntry, WellEntry,
@@ -20,6 +21,7 @@ pub use picks::{Assembly, FaultSticks, PickEntry};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
+use survey::geometry::MAX_COORDINATE;
 use survey::{StratigraphicHorizon, Stratigraphy, SurveyGeometry};
 
 /// The version that this program writes, and the newest that it reads.
@@ -178,6 +180,7 @@ impl Document {
             }
         }
         self.check_truncation().map_err(|error| error.to_string())?;
+        self.check_growth().map_err(|error| error.to_string())?;
         // With any other name a project could read data that is not its own, and a later command could delete it.
         for (kind, file) in self.files_by_kind() {
             if !data_file::is_data_file(kind, file) {
@@ -247,6 +250,17 @@ impl Document {
             }
         }
         Ok(())
+    }
+
+    /// Refuses a fault that would reach less than nothing, or beyond any survey, past what was drawn.
+    ///
+    /// # Errors
+    /// [`ProjectError::BadGrowth`].
+    pub fn check_growth(&self) -> Result<(), ProjectError> {
+        match self.faults.iter().find(|fault| !(0.0..=MAX_COORDINATE).contains(&fault.grown_m)) {
+            Some(fault) => Err(ProjectError::BadGrowth { fault: fault.name.clone(), grown_m: fault.grown_m }),
+            None => Ok(()),
+        }
     }
 
     /// The position of a named entry.

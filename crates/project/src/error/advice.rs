@@ -38,6 +38,7 @@ impl ProjectError {
             }
             Self::Geometry(_) => "check the header bytes or bounds from which the geometry is made",
             Self::CircularTruncation { .. } => "remove one of these truncations",
+            Self::BadGrowth { .. } => "state metres, 0 or more",
             Self::Io { .. }
             | Self::Segy(_)
             | Self::Format(_)

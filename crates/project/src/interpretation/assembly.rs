@@ -16,7 +16,7 @@ use interp::assembly::{
 };
 use interp::holes::{Filled, Hole, fill_holes, find_holes};
 use interp::reassembly::{VoxelSheet, from_horizon, reassemble, to_horizon};
-use model::{ContactRules, FaultNetwork, ModelSettings};
+use model::{ContactRules, FaultNetwork};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -204,20 +204,19 @@ pub fn sentence(conflict: &ReportedConflict) -> String {
 pub fn blocks(root: &Path, document: &Document, progress: &Progress) -> Result<Arc<FaultNetwork>, ProjectError> {
     static HELD: WeakCache<(SurveyGeometry, Vec<String>), FaultNetwork> = WeakCache::nothing();
     let geometry = document.frame()?;
-    let key = document.faults.iter().map(|entry| format!("{} {} {:?}", entry.name, entry.hash, entry.truncated_by));
+    let key = document.faults.iter().map(|entry| format!("{} {}", entry.name, entry.shape()));
     HELD.get_or_make((geometry.clone(), key.collect()), || {
         if document.faults.is_empty() {
             return Ok(FaultNetwork::none());
         }
-        let settings = ModelSettings::default();
-        let key = derived::blocks_key(document, &settings);
+        let key = derived::blocks_key(document);
         // The key relies on the hashes that were recorded, which reading compares with the faults themselves.
         let faults = document.faults.iter().map(|entry| content::read_fault(root, entry));
         let faults = faults.collect::<Result<Vec<_>, _>>()?;
         if let Some(kept) = derived::load_blocks(root, &key) {
             return Ok(kept);
         }
-        let made = FaultNetwork::build(geometry, &faults, &settings, progress)?;
+        let made = FaultNetwork::build(geometry, &faults, progress)?;
         derived::keep_blocks(root, &key, &made, progress);
         Ok(made)
     })

@@ -118,7 +118,7 @@ pub fn path(root: &Path, document: &Document, settings: &ProposeSettings) -> Pat
 
 /// The key of proposals: a hash of everything that they are made from.
 fn key(document: &Document, settings: &ProposeSettings) -> String {
-    let faults: Vec<_> = document.faults.iter().map(|entry| (&entry.name, &entry.hash, &entry.truncated_by)).collect();
+    let faults: Vec<_> = document.faults.iter().map(|entry| (&entry.name, entry.shape())).collect();
     let volume = document.volumes.iter().find(|entry| entry.geometry.is_none()).map(|entry| &entry.hash);
     let revisions = [revision::PROPOSALS, revision::MODEL];
     key_of(&(revisions, &document.geometry, hashes(document), faults, volume, settings))

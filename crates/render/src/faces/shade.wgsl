@@ -10,7 +10,14 @@ struct TtfGlobals {
     raw_volume: u32,
     scalar_count: u32,
     stop_count: u32,
+    finer_share: f32,
+    padding_0: u32,
+    padding_1: u32,
+    padding_2: u32,
 }
+
+// How much denser the finer of two patterns is that are dissolved into one another: `ttf::FINER`.
+const FINER: f32 = 1.4142135;
 
 struct LayerEntry {
     colour: vec4<f32>,
@@ -132,8 +139,18 @@ fn map_flat(mappings: Mappings, mapping: u32, flat: vec3<f32>) -> vec2<f32> {
     return vec2(i, j);
 }
 
+// A texture at a frequency, dissolved into the finer one.
 fn sample_mapped(texture: u32, frequency: vec2<f32>, point: ShadePoint, mappings: Mappings) -> vec4<f32> {
     let scale = frequency * ttf.global_frequency;
+    let coarse = sample_scaled(texture, scale, point, mappings);
+    if ttf.finer_share <= 0.0 {
+        return coarse;
+    }
+    let fine = sample_scaled(texture, scale * FINER, point, mappings);
+    return coarse + ttf.finer_share * (fine - coarse);
+}
+
+fn sample_scaled(texture: u32, scale: vec2<f32>, point: ShadePoint, mappings: Mappings) -> vec4<f32> {
     var sum = vec4(0.0);
     // One round per mapping with a weight: usually one.
     var left = mappings.weights;

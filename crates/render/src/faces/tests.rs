@@ -78,7 +78,8 @@ fn structs_have_the_same_layout() {
     check!(m, PackedInfo: scale, size, i_range, j_range, layers, blocks);
     check!(m, TextureInfo: mean, offset, side, levels);
     check!(m, VolumePlacement: scale, offset, size);
-    check!(m, TtfGlobals: no_data, raw_domain, blend, global_frequency, aspect_j, raw_volume, scalar_count, stop_count);
+    check!(m, TtfGlobals: no_data, raw_domain, blend, global_frequency, aspect_j, raw_volume, scalar_count, stop_count,
+        finer_share);
     check!(m, LayerEntry: colour, frequency, first_interval, interval_count);
     check!(m, IntervalEntry: colour, ink, k, frequency, texture);
     check!(m, ScalarEntry: colour, ink, range, factor, texture, volume, opacity);

@@ -6,6 +6,7 @@ use super::{AreaFill, PatternPart, VectorArea};
 use crate::error::RenderError;
 use crate::ground::air_layer;
 use crate::outline::solid::FaceRect;
+use crate::pattern_size::Frequencies;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::DVec2;
 use model::Region;
@@ -119,7 +120,7 @@ impl FacePainter<'_> {
             axis: self.rect.axis,
             plane: self.plane,
             region,
-            frequency: interval.frequency.map(|part| part * self.resolved.tables.globals.global_frequency),
+            frequency: interval.frequency.map(|part| part * Frequencies::nearest(&self.resolved.tables.globals)),
             tolerance_px: self.tolerance_px,
         };
         let ink = |[r, g, b]: [f32; 3]| self.toned(if interval.ink[3] > 0.5 { interval.ink } else { [r, g, b, 1.0] });

@@ -7,7 +7,7 @@ use model::section::SectionPlane;
 use model::{ModelSettings, StructuralModel};
 use render::accuracy::boundaries;
 use render::reference::render;
-use render::{Camera, Corner, Inputs, Lookup, NamedVolume, Outlines, Scene, VoxelBox};
+use render::{Camera, Corner, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Scene, VoxelBox};
 use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
 use synth::closed_form::ClosedForm;
 use synth::{SynthSettings, Synthetic};
@@ -96,7 +96,22 @@ fn a_striped_tile_repeats_as_often_as_its_frequency_says() {
     // White, ten dark stripes, white.
     assert_eq!(changes(&scene), 20);
     assert_eq!(changes(&Scene { global_frequency: 1.5, ..scene.clone() }), 30);
-    assert_eq!(changes(&Scene { lookup: Lookup::Packed, ..scene }), 20);
+    assert_eq!(changes(&Scene { lookup: Lookup::Packed, ..scene.clone() }), 20);
+    // Zooming in by a factor of 64 on the middle of the layer: fixed to the rock, one stripe fills the picture in the
+    // end; fixed to the paper, there are as many as before, as exactly as the half octaves allow.
+    let zoomed = |pattern_size: PatternSize, zoom: f64| {
+        let camera = Camera { zoom, target: Some([20.0, 0.0, 20.0]), ..scene.camera };
+        changes(&Scene { pattern_size, camera, ..scene.clone() })
+    };
+    assert!(zoomed(PatternSize::Rock, 64.0) <= 2);
+    let whole = zoomed(PatternSize::Paper, 1.0);
+    assert_eq!(whole, zoomed(PatternSize::Rock, 1.0));
+    for step in 1..=12 {
+        // The whole block takes a part of the width, a close-up all of it.
+        let seen = zoomed(PatternSize::Paper, 2f64.powf(0.5 * f64::from(step))) as f64;
+        let fits = whole as f64 / (1.0 - 2.0 * scene.camera.margin * 200.0 / 420.0);
+        assert!((seen - fits).abs() <= 2.0, "{seen} changes of {fits} at step {step}");
+    }
 }
 
 fn ramp_along_x(geometry: &SurveyGeometry) -> Volume<f32> {

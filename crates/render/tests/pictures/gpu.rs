@@ -7,8 +7,8 @@ use crate::block::Block;
 use glam::DVec3;
 use render::compare::compare;
 use render::{
-    Background, Camera, Ground, Inputs, Lookup, NamedVolume, Outlines, Projection, RenderError, Renderer, Scene,
-    VoxelBox,
+    Background, Camera, Ground, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Projection, RenderError, Renderer,
+    Scene, VoxelBox,
 };
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
@@ -55,10 +55,13 @@ fn scenes(base: &Scene, whole: &VoxelBox, corner: render::Corner) -> Vec<(&'stat
         elevation_deg: 50.0,
         ..Camera::default()
     };
+    // Half-way between two frequencies.
+    let between = Camera { zoom: 2f64.powf(0.75), ..base.camera };
     let clear = Scene { background: Background::Transparent, outlines: Outlines::none(), ..base.clone() };
     vec![
         ("exact", Scene { cut_outs: vec![cut], ..base.clone() }),
         ("packed", Scene { cut_outs: vec![cut], lookup: Lookup::Packed, ..base.clone() }),
+        ("pattern size", Scene { pattern_size: PatternSize::Paper, camera: between, ..base.clone() }),
         ("half raw", Scene { blend: 0.5, camera: perspective, face_tone: 0.2, ..clear.clone() }),
         ("raw", Scene { blend: 1.0, cut_outs: whole.stair(corner, [0.6, 0.7], 0.8, 3), ..clear }),
         ("ground", Scene { cut_outs: vec![cut], ground: Some(Ground::default()), ..base.clone() }),

@@ -436,7 +436,7 @@ fn seeds(log: Option<&Assembly>, candidates: &Candidates) -> Vec<u32> {
 
 /// What the fault blocks depend on.
 fn hashes(document: &Document) -> Vec<String> {
-    document.faults.iter().map(|entry| format!("{} {:?}", entry.hash, entry.truncated_by)).collect()
+    document.faults.iter().map(|entry| entry.shape()).collect()
 }
 
 fn shown(fault: &Fault, geometry: &SurveyGeometry) -> ShownFault {
