@@ -49,6 +49,10 @@ project=$out/f3.petro
 "$petroglyph" fault pick "$project" --name "Graben, north-west wall" --stick 385,831,1530 385,838,1650 \
     --stick 395,815,1530 395,822,1670 --stick 405,801,1540 405,808,1670
 "$petroglyph" fault truncate "$project" "Graben, north-west wall" --by "Graben, south-east wall"
+# Its walls are seen down to the chalk only; they are taken to go on until they meet.
+for wall in south-east north-west; do
+    "$petroglyph" fault extent "$project" "Graben, $wall wall" grow 150
+done
 "$petroglyph" fault pick "$project" --name "Crest, east wall" --stick 336,884,1470 336,877,1610 \
     --stick 345,881,1480 345,875,1620 --stick 352,879,1480 352,873,1620 --stick 358,879,1490 358,873,1620
 "$petroglyph" fault pick "$project" --name "Crest, west wall" --stick 326,847,1470 326,852,1600 \
@@ -95,3 +99,29 @@ done
 "$petroglyph" layer set "$project" "above B" --pattern shale
 "$petroglyph" layer set "$project" "below B" --pattern sandstone-bedded
 "$petroglyph" render "$project" "$pictures/penobscot-picks.png" --blend 0.4 --exaggeration 5 --azimuth 225 --ground off --size 1400x900
+
+# F3 around well F02-1: five horizons tied to the tops of the well, layers named and patterned by what it drilled.
+project=$out/f02-1.petro
+rm -rf "$project"
+"$petroglyph" import "$data/volumes/f3_depth_il300-427_xl300-439_int16.sgy" "$project"
+"$petroglyph" raw "$project" --volume seismic --map grey
+"$petroglyph" extract "$project" --fault-evidence 200
+"$petroglyph" well add "$project" "$data/wells/F02-1_deviation.csv" --tops "$data/wells/F02-1_tops.csv" --name F02-1 --kb 36
+tie() { for place in "${@:2}"; do "$petroglyph" pick "$project" --at $place --horizon "$1" --highest-valid; done; }
+tie "Middle North Sea Group" 362,336,1250 359,424,1270.9
+tie "Dongen Clay" 362,336,1423 405,318,1457.8 317,324,1385.5 385,354,1442.1
+tie "Dongen Tuffite" 362,336,1619
+tie "Ekofisk" 362,336,1659
+tie "Ommelanden" 362,336,1691 347,383,1663.5 321,417,1658.7
+for name in "Middle North Sea Group" "Dongen Clay" "Ommelanden"; do
+    "$petroglyph" horizon fill "$project" "$name"
+done
+named() { "$petroglyph" layer set "$project" "$1" --name "$2" "${@:3}"; }
+named "above Middle North Sea Group" "Upper North Sea Gp (clay, silt)" --pattern siltstone --colour "#e9e2c0"
+named "Middle North Sea Group - Dongen Clay" "Middle North Sea Gp (clay)" --pattern shale --colour "#b9c4a3"
+named "Dongen Clay - Dongen Tuffite" "Dongen Clay" --pattern shale --colour "#93a58c"
+named "Dongen Tuffite - Ekofisk" "Dongen Tuffite, Landen Clay" --interval 0,0.7,shale --interval 0.7,1,tuff
+named "Ekofisk - Ommelanden" "Ekofisk Fm (chalk)" --pattern chalk --colour "#dfe9ee"
+named "below Ommelanden" "Ommelanden Fm (chalk, chert)" --pattern limestone-cherty --colour "#b5d0dc"
+"$petroglyph" render "$project" "$pictures/f02-1.png" --exaggeration 3 --azimuth 145 --elevation 25 --ground off --legend \
+    --cut nearest,0.5175,0.5 --size 1600x1000

@@ -85,20 +85,34 @@ impl HeaderColumn {
     }
 }
 
+/// What is known of all trace headers before they are read.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct HeaderLayout {
+    /// Bytes of a trace header, extensions included.
+    pub bytes: usize,
+    /// Bytes of X and Y that the textual header names.
+    pub named: Option<[u16; 2]>,
+}
+
 /// Fields of every trace.
 #[derive(Debug, Clone)]
 pub(super) struct Columns {
     fields: Vec<Field>,
     columns: Vec<HeaderColumn>,
     order: ByteOrder,
-    header_bytes: usize,
+    layout: HeaderLayout,
     /// What stands for a field that was not asked for: 0 throughout.
     absent: HeaderColumn,
 }
 
 impl Columns {
     /// Reads `fields` of all traces.
-    pub fn read(traces: &Traces<'_>, fields: &[Field], progress: &Progress) -> Result<Self, SegyProblem> {
+    pub fn read(
+        traces: &Traces<'_>,
+        fields: &[Field],
+        named: Option<[u16; 2]>,
+        progress: &Progress,
+    ) -> Result<Self, SegyProblem> {
         let count = traces.count;
         progress.begin("reading trace headers", count as u64);
         let blocks: Vec<Vec<Block>> = (0..count.div_ceil(BLOCK))
@@ -121,8 +135,9 @@ impl Columns {
                 column.blocks.push(block);
             }
         }
+        let layout = HeaderLayout { bytes: traces.header_bytes, named };
         let absent = HeaderColumn { blocks: vec![Block::Constant(0); count.div_ceil(BLOCK)], count, range: [0, 0] };
-        Ok(Self { fields: fields.to_vec(), columns, order: traces.order, header_bytes: traces.header_bytes, absent })
+        Ok(Self { fields: fields.to_vec(), columns, order: traces.order, layout, absent })
     }
 
     /// Traces in the file.
@@ -160,9 +175,9 @@ impl Columns {
         reinterpret(field, number_type, self.order)
     }
 
-    /// Bytes of a trace header, extensions included.
-    pub fn header_bytes(&self) -> usize {
-        self.header_bytes
+    /// What was known of the headers before they were read.
+    pub fn layout(&self) -> HeaderLayout {
+        self.layout
     }
 
     /// The column of a field that was read; zeros for one that was not.

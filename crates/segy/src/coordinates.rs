@@ -4,7 +4,7 @@
 use glam::DVec2;
 
 use super::SegyOptions;
-use super::columns::{Columns, HeaderColumn};
+use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::error::SegyProblem;
 use super::header::{Field, at};
 use super::info::{Findings, GeometrySummary, LengthUnit};
@@ -13,6 +13,7 @@ use super::number_type::NumberType;
 use super::place::{FittedPlace, MAX_RESIDUAL_BINS};
 use super::sample::f32_from_ibm;
 use super::vertical::scaled;
+use survey::geometry::LineAxis;
 use survey::remedy::{Note, Remedy, Setting};
 
 /// Known positions of X and Y in the trace header: CDP (the standard's), source, receiver.
@@ -20,6 +21,9 @@ const HOMES: [[u16; 2]; 3] = [[at::CDP_X, at::CDP_Y], [73, 77], [81, 85]];
 
 /// Bin size where a file has no coordinates, m.
 const ASSUMED_BIN_M: f64 = 25.0;
+
+/// Sides of bins that surveys have, m.
+const BIN_M: std::ops::RangeInclusive<f64> = 1.0..=1000.0;
 
 /// Projected coordinates stay below this, in m or ft.
 const MAX_COORDINATE: f64 = 1e8;
@@ -117,6 +121,28 @@ impl<'a> Coordinates<'a> {
         })
     }
 
+    /// Whether they are the line numbers once more, in either order.
+    fn repeat(&self, lattice: &LineLattice) -> bool {
+        if self.number_type != NumberType::I32 {
+            return false;
+        }
+        let numbers = |(inline, crossline, trace): (usize, usize, usize)| {
+            let number = |axis: &LineAxis, n: usize| axis.first + axis.step * n as i32;
+            ([number(&lattice.inlines, inline), number(&lattice.crosslines, crossline)], trace)
+        };
+        let held = |trace: usize| [self.x.at(trace), self.y.at(trace)];
+        let swapped = |[x, y]: [i32; 2]| [y, x];
+        lattice.traces().map(numbers).all(|(numbers, trace)| held(trace) == numbers)
+            || lattice.traces().map(numbers).all(|(numbers, trace)| held(trace) == swapped(numbers))
+    }
+
+    /// Largest X or Y, in their unit.
+    fn largest(&self) -> f64 {
+        (0..self.columns.count())
+            .filter_map(|trace| self.of(trace))
+            .fold(0.0, |most, at| at.abs().max_element().max(most))
+    }
+
     /// Whether X or Y varies.
     fn vary(&self) -> bool {
         self.x.constant().is_none() || self.y.constant().is_none() || self.number_type == NumberType::F64
@@ -141,9 +167,9 @@ fn scalar_byte(options: &SegyOptions) -> u16 {
 }
 
 /// Fields that X and Y may need.
-pub(super) fn coordinate_fields(options: &SegyOptions, header_bytes: usize) -> Vec<Field> {
+pub(super) fn coordinate_fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> {
     let mut fields = vec![Field::I16(scalar_byte(options))];
-    for (bytes, number_type) in homes(options, header_bytes) {
+    for (bytes, number_type) in homes(options, layout) {
         for byte in bytes {
             fields.push(Field::I32(byte));
             if number_type == Some(NumberType::F64) {
@@ -156,36 +182,52 @@ pub(super) fn coordinate_fields(options: &SegyOptions, header_bytes: usize) -> V
 
 /// The first X and Y that vary, whatever lattice they give.
 pub(super) fn varying<'a>(columns: &'a Columns, options: &SegyOptions) -> Option<Coordinates<'a>> {
-    homes(options, columns.header_bytes())
+    homes(options, columns.layout())
         .into_iter()
         .map(|home| Coordinates::new(columns, home, options))
         .find(|coordinates| coordinates.vary() && (0..columns.count()).any(|trace| coordinates.of(trace).is_some()))
 }
 
-/// The first home and storage whose X and Y are affine in the lattice; failing that, the first that spans an
-/// area. `lines` are the bytes of the line numbers, which are no coordinates.
+/// The first home and storage whose X and Y are affine in the lattice, with bins of a plausible size if there are any;
+/// failing that, the first that spans an area. `lines` are the bytes of the line numbers, which are no coordinates, and
+/// neither is what repeats them elsewhere.
 pub(super) fn locate<'a>(
     lattice: &LineLattice,
     lines: [u16; 2],
     columns: &'a Columns,
     options: &SegyOptions,
 ) -> Option<(Coordinates<'a>, FittedPlace)> {
-    let homes = homes(options, columns.header_bytes());
+    let homes = homes(options, columns.layout());
     let mut fits = homes
         .into_iter()
         .filter(|(bytes, _)| !bytes.iter().any(|byte| lines.contains(byte)))
         .map(|home| Coordinates::new(columns, home, options))
-        .filter(Coordinates::vary)
+        .filter(|coordinates| coordinates.vary() && (is_stated(options) || !coordinates.repeat(lattice)))
         .filter_map(|coordinates| Some((coordinates, FittedPlace::fit(lattice, |trace| coordinates.of(trace))?)));
-    let first = fits.next()?;
-    if first.1.agrees() {
-        return Some(first);
+    // What agrees well comes first, then what agrees, then what there is.
+    let mut best = fits.next()?;
+    let rank = |fit: &FittedPlace| u8::from(fit.agrees()) * (1 + u8::from(has_plausible_bins(fit, 1.0)));
+    while rank(&best.1) < 2 {
+        let Some(next) = fits.next() else { break };
+        if rank(&next.1) > rank(&best.1) {
+            best = next;
+        }
     }
-    Some(fits.find(|(_, placement)| placement.agrees()).unwrap_or(first))
+    Some(best)
+}
+
+/// Whether the user says where X and Y are.
+fn is_stated(options: &SegyOptions) -> bool {
+    options.x_byte.is_some() || options.y_byte.is_some()
+}
+
+/// Whether both sides of a bin are of a size that surveys have; `metres` is that of the unit.
+fn has_plausible_bins(fit: &FittedPlace, metres: f64) -> bool {
+    [fit.inline_vector, fit.crossline_vector].iter().all(|side| BIN_M.contains(&(side.length() * metres)))
 }
 
 /// Bytes at which X and Y are looked for.
-fn homes(options: &SegyOptions, header_bytes: usize) -> Vec<Home> {
+fn homes(options: &SegyOptions, HeaderLayout { bytes: header_bytes, named }: HeaderLayout) -> Vec<Home> {
     let stated = options.coordinate_type;
     match (options.bin_m, options.x_byte, options.y_byte) {
         (Some(_), ..) => Vec::new(),
@@ -198,6 +240,10 @@ fn homes(options: &SegyOptions, header_bytes: usize) -> Vec<Home> {
             let (mut homes, rest): (Vec<Home>, Vec<Home>) = usual.partition(|(bytes, _)| bytes[0] == at::CDP_X);
             homes.extend(extended);
             homes.extend(rest);
+            if let Some(named) = named {
+                homes.retain(|(bytes, _)| *bytes != named);
+                homes.insert(0, (named, stated));
+            }
             homes
         }
         (None, x, y) => vec![([x.unwrap_or(at::CDP_X), y.unwrap_or(at::CDP_Y)], stated)],
@@ -226,11 +272,25 @@ impl CoordinatePlace {
             return Ok(Self::assumed(lattice, columns, unit, options, findings));
         };
         let units = columns.get(Field::I16(at::COORDINATE_UNIT));
-        match units.constant() {
-            Some(unit) => refuse_angles(unit)?,
-            None => units.iter().try_for_each(refuse_angles)?,
+        if options.coordinate_unit.is_none() {
+            let largest = coordinates.largest();
+            let angles = match units.constant() {
+                Some(unit) => Angles::of(unit),
+                None => units.iter().find_map(Angles::of),
+            };
+            match angles {
+                Some(angles) if largest <= angles.largest => return Err(angles.refused()),
+                Some(angles) => findings.warning(Note::unless(
+                    format!(
+                        "byte 89 is {}, {}, but X and Y reach {largest:.0}, which no angle does; they are taken as lengths",
+                        angles.code, angles.unit
+                    ),
+                    Setting::Bin.stated(),
+                )),
+                None => note_unknown_units(units, findings),
+            }
         }
-        note_unknown_units(units, findings);
+        note_doubts(&coordinates, &fit, unit, columns, options, findings);
         note_fit(&coordinates, &fit, unit, options, findings);
         Ok(Self {
             bytes: Some(coordinates.bytes),
@@ -252,7 +312,7 @@ impl CoordinatePlace {
         findings: &mut Findings,
     ) -> Self {
         let bin = options.bin_m.unwrap_or(ASSUMED_BIN_M) / unit.metres();
-        let homes = homes(options, columns.header_bytes());
+        let homes = homes(options, columns.layout());
         let mut place = Self {
             bytes: None,
             summary: GeometrySummary {
@@ -277,7 +337,7 @@ impl CoordinatePlace {
             findings.assumption(Note::unless(
                 format!(
                     "the survey lies at 0, 0 with square bins of {ASSUMED_BIN_M} m: no X and Y that span an \
-                     area were found at bytes {places}"
+                     area, and do not repeat the line numbers, were found at bytes {places}"
                 ),
                 Remedy::any([bytes, Setting::Bin.stated()]),
             ));
@@ -286,14 +346,66 @@ impl CoordinatePlace {
     }
 }
 
-fn refuse_angles(code: i32) -> Result<(), SegyProblem> {
-    let unit = match code {
-        2 => "seconds of arc",
-        3 => "decimal degrees",
-        4 => "degrees, minutes and seconds",
-        _ => return Ok(()),
-    };
-    Err(SegyProblem::AngularCoordinates { code: code as i16, unit })
+/// X and Y that the file calls angles.
+struct Angles {
+    /// Byte 89.
+    code: i32,
+    unit: &'static str,
+    /// The largest number that is an angle.
+    largest: f64,
+}
+
+impl Angles {
+    /// What a code at byte 89 means; none if it is no unit of angles.
+    fn of(code: i32) -> Option<Self> {
+        let (unit, largest) = match code {
+            2 => ("seconds of arc", 1_296_000.0),
+            3 => ("decimal degrees", 360.0),
+            // Written as DDDMMSS.
+            4 => ("degrees, minutes and seconds", 3_600_000.0),
+            _ => return None,
+        };
+        Some(Self { code, unit, largest })
+    }
+
+    fn refused(&self) -> SegyProblem {
+        SegyProblem::AngularCoordinates { code: self.code as i16, unit: self.unit }
+    }
+}
+
+/// Reasons to doubt that these are the coordinates; what the user states is not doubted.
+fn note_doubts(
+    coordinates: &Coordinates<'_>,
+    fit: &FittedPlace,
+    unit: LengthUnit,
+    columns: &Columns,
+    options: &SegyOptions,
+    findings: &mut Findings,
+) {
+    if is_stated(options) {
+        return;
+    }
+    let others = || Remedy::all([Setting::XByte.stated(), Setting::YByte.stated()]);
+    let [x, y] = coordinates.bytes;
+    if !has_plausible_bins(fit, unit.metres()) {
+        let [inline, crossline] = [fit.inline_vector, fit.crossline_vector].map(|side| side.length() * unit.metres());
+        findings.warning(Note::unless(
+            format!(
+                "X and Y at bytes {x} and {y} make bins of {inline:.2} by {crossline:.2} m, which no survey has: other \
+                 bytes may hold them, or another scalar or unit may be meant"
+            ),
+            Remedy::any([others(), Setting::CoordinateUnit.stated(), Setting::Bin.stated()]),
+        ));
+    }
+    if let Some([named_x, named_y]) = columns.layout().named.filter(|named| *named != coordinates.bytes) {
+        findings.warning(Note::unless(
+            format!(
+                "the text header names bytes {named_x} and {named_y} for X and Y, which make no lattice there; bytes {x} \
+                 and {y} do and are taken"
+            ),
+            others(),
+        ));
+    }
 }
 
 /// Codes that the standard does not have.

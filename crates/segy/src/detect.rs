@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::SegyOptions;
 use super::bins::{self, Bins};
 use super::candidate::{Candidate, Verdict};
-use super::columns::{Columns, HeaderColumn};
+use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::coordinates::{coordinate_fields, locate};
 use super::error::SegyProblem;
 use super::header::{Field, NO_INTEGER, at};
@@ -65,12 +65,12 @@ pub(super) struct Detected {
 }
 
 /// Fields that detection looks at.
-pub(super) fn fields(options: &SegyOptions, header_bytes: usize) -> Vec<Field> {
+pub(super) fn fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> {
     let conventions = CONVENTIONS.iter().flat_map(|&(inline, crossline, _)| [inline, crossline]);
     let narrow = NARROW_PAIRS.into_iter().flat_map(|(inline, crossline)| [inline, crossline]);
     let mut bytes: Vec<u16> = conventions.chain(narrow).chain(OTHER_LINE_FIELDS).collect();
     let stated = [options.inline_byte, options.crossline_byte].into_iter().flatten();
-    let mut fields = coordinate_fields(options, header_bytes);
+    let mut fields = coordinate_fields(options, layout);
     match options.line_type {
         Some(NumberType::F64) => fields.extend(stated.map(Field::F64)),
         Some(NumberType::I16) => fields.extend(stated.map(Field::I16)),

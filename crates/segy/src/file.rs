@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec2;
 
 use super::bytes::{Bytes, Stamp};
-use super::columns::{Columns, HeaderColumn};
+use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::coordinates::CoordinatePlace;
 use super::detect::{Detected, detect, fields};
 use super::error::{SegyError, SegyProblem};
@@ -14,6 +14,7 @@ use super::header::{Field, at};
 use super::info::{BytePositions, Findings, SegyInfo, corners};
 use super::lines::{Flaw, LineLattice, NO_TRACE};
 use super::options::{KeptDuplicate, SegyOptions, TraceWeight};
+use super::text_bytes::coordinate_bytes;
 use super::vertical::{Vertical, coordinate_unit, note_coordinate_unit};
 use survey::geometry::{DEFAULT_VELOCITY_M_S, SurveyGeometry};
 use survey::progress::Progress;
@@ -209,14 +210,15 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
     let frame = FileLayout::read(&bytes, options, &mut findings)?;
     check_bytes(options, frame.header_bytes)?;
     let traces = frame.traces(&bytes);
-    let mut wanted = fields(options, frame.header_bytes);
+    let named = coordinate_bytes(frame.text.iter().chain(&frame.extended_text));
+    let mut wanted = fields(options, HeaderLayout { bytes: frame.header_bytes, named });
     wanted.push(Field::I32(at::TRACE_IN_RECORD));
     wanted.push(Field::I32(at::OFFSET));
     wanted.push(Field::U16(at::INTERVAL));
     let short =
         [at::TRACE_ID, at::COORDINATE_SCALAR, at::COORDINATE_UNIT, at::LAG_A, at::DELAY, at::WEIGHT, at::TIME_SCALAR];
     wanted.extend(short.map(Field::I16));
-    let columns = Columns::read(&traces, &wanted, progress)?;
+    let columns = Columns::read(&traces, &wanted, named, progress)?;
     let count = traces.count;
 
     let dead = dead_traces(&columns, count, &mut findings);

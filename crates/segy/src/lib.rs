@@ -58,6 +58,7 @@ mod refuse;
 mod sample;
 mod statistics;
 mod text;
+mod text_bytes;
 mod vertical;
 mod write;
 

@@ -10,7 +10,7 @@ pub(super) const TEXT_BYTES: usize = 3200;
 const LINE_CHARACTERS: usize = 80;
 
 /// What closes a variable number of extended textual headers (revision 1).
-const END_OF_TEXT: &str = "((SEG: ENDTEXT))";
+const END_OF_TEXT: &str = "((SEG:ENDTEXT))";
 
 /// Latin-1 character of each code page 037 byte.
 const LATIN_1_FROM_EBCDIC: [u8; 256] = [
@@ -78,8 +78,9 @@ pub(super) fn decode_lines(bytes: &[u8], encoding: TextEncoding) -> Vec<String> 
 
 /// Whether an extended text header holds the end-of-text stanza.
 pub(super) fn ends_text(block: &[u8], encoding: TextEncoding) -> bool {
-    let text: String = block.iter().map(|&b| encoding.decode(b).to_ascii_uppercase()).collect();
-    text.contains(END_OF_TEXT)
+    // Blanks and capitals are as every program likes them.
+    let letters = block.iter().map(|&b| encoding.decode(b).to_ascii_uppercase()).filter(|c| !c.is_whitespace());
+    letters.collect::<String>().contains(END_OF_TEXT)
 }
 
 /// A textual header of 40 lines, `C 1` to `C40`, in code page 037; longer lines are cut, missing ones blank.
@@ -137,6 +138,8 @@ mod tests {
         let first = encode_ebcdic(&["((SEG: Location Data ver 1.0))".to_owned()]);
         let second = encode_ebcdic(&["((SEG: EndText))".to_owned()]);
         assert!(ends_text(&second, TextEncoding::Ebcdic));
+        let spelled = encode_ebcdic(&["((  seg: endTEXt  ))".to_owned()]);
+        assert!(ends_text(&spelled, TextEncoding::Ebcdic));
         assert!(!ends_text(&first, TextEncoding::Ebcdic));
     }
 }

@@ -199,11 +199,16 @@ impl TextWords {
         let mut contradicted = false;
         for line in frame.text.iter().chain(&frame.extended_text) {
             let upper = line.to_ascii_uppercase();
-            let words: Vec<&str> = upper
+            let said: Vec<&str> = upper.split_whitespace().filter(|piece| !is_file_name(piece)).collect();
+            let said = said.join(" ");
+            let words: Vec<&str> = said
                 .split(|c: char| !c.is_ascii_alphanumeric() && c != '.')
                 .map(|word| word.trim_matches('.'))
                 .filter(|word| !word.is_empty())
                 .collect();
+            // A template offers both (`Trace start time/depth`) and says neither; a name of a file says how somebody
+            // called it.
+            let offers_both = words.iter().any(|word| word.starts_with("TIME")) && words.contains(&"DEPTH");
             for (index, word) in words.iter().enumerate() {
                 let next = words.get(index + 1).copied().unwrap_or("");
                 let previous = if index > 0 { words[index - 1] } else { "" };
@@ -216,11 +221,11 @@ impl TextWords {
                 let is_time = matches!(*word, "TWT" | "TWTT" | "PSTM")
                     // A template that was not filled in has units without numbers.
                     || (unit_word(word) == Some(FileUnit::Milliseconds) && previous.parse::<f64>().is_ok())
-                    || (*word == "TIME" && (next.starts_with("MIGRAT") || next == "DOMAIN" || previous == "WAY"));
+                    || (*word == "TIME" && !offers_both && (next.starts_with("MIGRAT") || AXIS_OF_TIME.contains(&next) || previous == "WAY"));
                 // Depths of the acquisition say nothing about the axis.
                 let of_gear = ["WATER", "SOURCE", "GUN", "CABLE", "STREAMER", "RECEIVER", "TOW", "TOWING", "SHOT"];
-                let is_depth =
-                    matches!(*word, "TVD" | "TVDSS" | "PSDM") || (*word == "DEPTH" && !of_gear.contains(&previous));
+                let is_depth = matches!(*word, "TVD" | "TVDSS" | "PSDM")
+                    || (*word == "DEPTH" && !of_gear.contains(&previous) && !offers_both);
                 if is_time {
                     found.time.get_or_insert_with(|| line.clone());
                 }
@@ -234,6 +239,17 @@ impl TextWords {
         }
         found
     }
+}
+
+/// Words behind TIME that make it the vertical axis.
+const AXIS_OF_TIME: [&str; 8] = ["DOMAIN", "AXIS", "RANGE", "MIN", "MAX", "MINIMUM", "MAXIMUM", "SECTION"];
+
+/// Whether a piece of a line is the name of a file: it has an ending, or is of many parts.
+fn is_file_name(piece: &str) -> bool {
+    let piece = piece.trim_matches(|c: char| !c.is_ascii_alphanumeric());
+    [".SGY", ".SEGY", ".SEG", ".VT", ".ZGY"].iter().any(|ending| piece.ends_with(ending))
+        || piece.matches('_').count() >= 2
+        || piece.contains(['/', '\\']) && piece.contains('.')
 }
 
 fn unit_word(word: &str) -> Option<FileUnit> {

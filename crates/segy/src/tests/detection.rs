@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::super::{Candidate, KeptDuplicate, SegyInfo, SegyOptions, SegyProblem, Verdict};
+use super::super::{Candidate, KeptDuplicate, LengthUnit, SegyInfo, SegyOptions, SegyProblem, Verdict};
 use super::built::{Built, Trace};
 use survey::remedy::{Note, Setting};
 
@@ -295,10 +295,94 @@ fn coordinates_that_do_not_fit_are_reported() {
 
 #[test]
 fn angles_are_refused_unless_a_bin_is_stated() {
-    let file = grid().each(|_, t| t.i16(89, 3));
+    let file = in_degrees();
     assert!(file.refusal().1.contains("decimal degrees"), "{}", file.refusal().1);
     let bin = SegyOptions { bin_m: Some(25.0), ..SegyOptions::default() };
     assert!(file.scan(&bin).is_ok());
+}
+
+/// X and Y in degrees at the standard's bytes, a thousandth of a degree a bin.
+fn in_degrees() -> Built {
+    grid().each(|_, t| {
+        t.i16(71, -1000);
+        t.i32(181, 5000 + t.inline);
+        t.i32(185, 52_000 + t.crossline);
+        t.i16(89, 3);
+    })
+}
+
+#[test]
+fn lengths_that_are_called_angles_are_lengths() {
+    assert!(in_degrees().refusal().1.contains("decimal degrees"));
+    let called = grid().each(|_, t| t.i16(89, 3)).info();
+    assert_eq!((called.byte_positions.x, counts(&called)), (Some(181), [4, 6]));
+    assert!(has(&called.warnings, "which no angle does"), "{:?}", called.warnings);
+    // What is stated wins.
+    let metres = SegyOptions { coordinate_unit: Some(LengthUnit::Metres), ..SegyOptions::default() };
+    assert!(in_degrees().scan(&metres).is_ok());
+    assert!(grid().each(|_, t| t.i16(89, 3)).scan(&metres).unwrap().warnings.is_empty());
+}
+
+/// Line numbers at 5 and 21, and once more where X and Y belong.
+fn repeated_lines() -> Built {
+    moved(5, 21).each(|_, t| {
+        t.i32(181, t.inline);
+        t.i32(185, t.crossline);
+    })
+}
+
+#[test]
+fn line_numbers_are_no_coordinates() {
+    let info = repeated_lines().each(|_, t| t.place(73, 77)).info();
+    assert_eq!([info.byte_positions.x, info.byte_positions.y], [Some(73), Some(77)]);
+    // Nothing else is there: no bins of 1 m, but assumed ones, and it is said.
+    let alone = repeated_lines().info();
+    assert_eq!(alone.byte_positions.x, None);
+    assert!(has(&alone.assumptions, "do not repeat the line numbers"), "{:?}", alone.assumptions);
+    let swapped = repeated_lines().each(|_, t| {
+        t.i32(181, t.crossline);
+        t.i32(185, t.inline);
+    });
+    assert_eq!(swapped.info().byte_positions.x, None);
+    // What is stated wins.
+    let stated = SegyOptions { x_byte: Some(181), y_byte: Some(185), ..SegyOptions::default() };
+    assert_eq!(repeated_lines().scan(&stated).unwrap().byte_positions.x, Some(181));
+}
+
+#[test]
+fn bins_that_no_survey_has_are_not_taken_silently() {
+    // Counters at the standard's bytes, coordinates at those of the source.
+    let counters = |t: &mut Trace| {
+        t.i32(181, 3 * t.inline);
+        t.i32(185, 2 * t.crossline);
+    };
+    let both = grid().each(|_, t| {
+        t.place(73, 77);
+        counters(t);
+    });
+    assert_eq!(both.info().byte_positions.x, Some(73));
+    let alone = grid().each(|_, t| {
+        t.i16(71, -100);
+        counters(t);
+    });
+    let info = alone.info();
+    assert_eq!(info.byte_positions.x, Some(181));
+    assert!(has(&info.warnings, "make bins of 0.03 by 0.02 m, which no survey has"), "{:?}", info.warnings);
+}
+
+#[test]
+fn a_text_header_that_names_bytes_is_followed_or_contradicted() {
+    // Both places hold a lattice; the text names the second.
+    let mut both = grid().each(|_, t| t.place(73, 77));
+    assert_eq!(both.info().byte_positions.x, Some(181));
+    both.say(5, "C 5 X COORDINATE: BYTES 73-76, Y COORDINATE: BYTES 77-80");
+    assert_eq!(both.info().byte_positions.x, Some(73));
+    assert!(!has(&both.info().warnings, "names bytes"));
+    // It names bytes that hold nothing.
+    let mut wrong = grid();
+    wrong.say(5, "C 5 X COORDINATE: BYTES 73-76, Y COORDINATE: BYTES 77-80");
+    assert_eq!(wrong.info().byte_positions.x, Some(181));
+    assert!(has(&wrong.info().warnings, "the text header names bytes 73 and 77"), "{:?}", wrong.info().warnings);
 }
 
 #[test]

@@ -242,6 +242,11 @@ fn the_domain_is_what_the_text_says() {
     // A stated interval outweighs words.
     assert_eq!(unit("TWT 876-1032 MS, NOW 10 FT SAMPLES", 10_000, 2).vertical_unit, FileUnit::Feet);
     assert_eq!(unit("PSDM STRETCHED TO TIME, SAMPLED AT 4 MS", 4000, 1).vertical_unit, FileUnit::Milliseconds);
+    // A template says neither, a name of a file says how somebody called it.
+    let named = unit("FILE R2900_PSDM_KIRCH_FULL-T.SGY, TIME MIN 0, TIME MAX 6000", 4000, 1);
+    assert_eq!((named.vertical_unit, named.warnings.len()), (FileUnit::Milliseconds, 0), "{:?}", named.warnings);
+    let template = unit("C27 TRACE START TIME/DEPTH", 4000, 1);
+    assert!(template.assumptions.iter().any(|note| note.to_string().contains("the file does not say")));
     let torn = unit("PSDM IN TWT", 4000, 1);
     assert_eq!(torn.vertical_unit, FileUnit::Milliseconds);
     assert!(has(&torn.warnings, "vertical unit"));
