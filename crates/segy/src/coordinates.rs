@@ -166,6 +166,11 @@ fn scalar_byte(options: &SegyOptions) -> u16 {
     options.scalar_byte.unwrap_or(at::COORDINATE_SCALAR)
 }
 
+/// Whether X or Y is known to be stored at a byte.
+pub(super) fn is_coordinate(byte: u16) -> bool {
+    HOMES.iter().flatten().any(|home| *home == byte)
+}
+
 /// Fields that X and Y may need.
 pub(super) fn coordinate_fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> {
     let mut fields = vec![Field::I16(scalar_byte(options))];

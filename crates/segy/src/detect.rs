@@ -15,7 +15,7 @@ use super::SegyOptions;
 use super::bins::{self, Bins};
 use super::candidate::{Candidate, Verdict};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
-use super::coordinates::{coordinate_fields, locate};
+use super::coordinates::{coordinate_fields, is_coordinate, locate};
 use super::error::SegyProblem;
 use super::header::{Field, NO_INTEGER, at};
 use super::info::Findings;
@@ -40,6 +40,14 @@ const STATED: &str = "stated";
 /// Fields that may hold line numbers outside the conventions. Not among them: trace counters (1, 5, 13),
 /// which make a lattice of any regular file, and coordinates.
 const OTHER_LINE_FIELDS: [u16; 15] = [9, 17, 21, 25, 189, 193, 197, 205, 209, 213, 217, 221, 225, 229, 233];
+
+/// Where line numbers are looked for in the end, when X and Y confirm them: every 4-byte field.
+fn any_fields() -> impl Iterator<Item = u16> {
+    (1..=237).step_by(4)
+}
+
+/// Fields that usually count traces along a line: they make a lattice of any regular file.
+const COUNTERS: [u16; 2] = [1, 13];
 
 /// Other types of number that writers use, and pairs of 2-byte fields.
 const OTHER_TYPES: [NumberType; 4] = [NumberType::I16, NumberType::U16, NumberType::F32, NumberType::Ibm32];
@@ -68,7 +76,7 @@ pub(super) struct Detected {
 pub(super) fn fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> {
     let conventions = CONVENTIONS.iter().flat_map(|&(inline, crossline, _)| [inline, crossline]);
     let narrow = NARROW_PAIRS.into_iter().flat_map(|(inline, crossline)| [inline, crossline]);
-    let mut bytes: Vec<u16> = conventions.chain(narrow).chain(OTHER_LINE_FIELDS).collect();
+    let mut bytes: Vec<u16> = conventions.chain(narrow).chain(OTHER_LINE_FIELDS).chain(any_fields()).collect();
     let stated = [options.inline_byte, options.crossline_byte].into_iter().flatten();
     let mut fields = coordinate_fields(options, layout);
     match options.line_type {
@@ -354,6 +362,7 @@ impl Search<'_> {
             .filter(Candidate::fits)
             .collect();
         let fitting = if fitting.is_empty() { self.in_other_types() } else { fitting };
+        let fitting = if fitting.is_empty() { self.anywhere() } else { fitting };
         let mut readings = self.distinct(fitting.iter());
         if inline.is_none() && crossline.is_none() {
             let both = |reading: &Candidate| match reading.convention {
@@ -385,6 +394,39 @@ impl Search<'_> {
             }
             _ => Err(SegyProblem::AmbiguousLines { readings }),
         }
+    }
+
+    /// Any two fields whose lattice X and Y confirm; those that count traces only where nothing else is found.
+    fn anywhere(&self) -> Vec<Candidate> {
+        let (inline, crossline) = (self.options.inline_byte, self.options.crossline_byte);
+        if self.options.line_type.is_some() {
+            return Vec::new();
+        }
+        let is_line = |byte: &u16| {
+            let column = self.column(*byte);
+            let is_small = column.range.iter().all(|number| number.unsigned_abs() <= MAX_LINE_NUMBER);
+            column.constant().is_none() && is_small && !is_coordinate(*byte)
+        };
+        let varying: Vec<u16> = any_fields().filter(is_line).collect();
+        let pairs: Vec<[u16; 2]> = match (inline, crossline) {
+            (Some(inline), _) => {
+                varying.iter().filter(|&&other| other != inline).map(|&other| [inline, other]).collect()
+            }
+            (None, Some(crossline)) => {
+                varying.iter().filter(|&&other| other != crossline).map(|&other| [other, crossline]).collect()
+            }
+            (None, None) => {
+                varying.iter().enumerate().flat_map(|(n, &a)| varying[n + 1..].iter().map(move |&b| [a, b])).collect()
+            }
+        };
+        let evaluated = pairs.into_par_iter().map(|pair| self.evaluate(pair, NumberType::I32, "", MIN_FILL_UNKNOWN));
+        let confirmed = |candidate: &Candidate| candidate.fits() && candidate.residual_bins.is_some();
+        let fitting: Vec<Candidate> = evaluated.filter(confirmed).collect();
+        let counters = |candidate: &Candidate| {
+            [candidate.inline_byte, candidate.crossline_byte].iter().filter(|byte| COUNTERS.contains(byte)).count()
+        };
+        let fewest = fitting.iter().map(counters).min().unwrap_or(0);
+        fitting.into_iter().filter(|candidate| counters(candidate) == fewest).collect()
     }
 
     /// The conventions' fields read as 2-byte integers and floats.

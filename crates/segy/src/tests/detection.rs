@@ -55,6 +55,33 @@ fn conventions_are_recognised() {
 }
 
 #[test]
+fn line_numbers_at_any_two_fields_are_found_where_coordinates_confirm_them() {
+    let odd = moved(5, 25).each(|index, t| {
+        t.i32(181, 0);
+        t.i32(185, 0);
+        t.place(73, 77);
+        // Counters of traces, as any writer leaves them.
+        t.i32(1, index as i32 + 1);
+        t.i32(13, index as i32 % 6 + 1);
+    });
+    // Which of the two is the inline cannot be seen.
+    let (problem, sentence) = odd.refusal();
+    let SegyProblem::AmbiguousLines { readings } = problem else { panic!("{sentence}") };
+    let found: Vec<[u16; 2]> = readings.iter().map(|r| [r.inline_byte, r.crossline_byte]).collect();
+    assert_eq!(found, [[5, 25], [25, 5]], "{sentence}");
+    assert!(readings.iter().all(|reading| reading.residual_bins.unwrap() < 1e-3));
+    let half = SegyOptions { inline_byte: Some(5), ..SegyOptions::default() };
+    let info = odd.scan(&half).unwrap();
+    assert_eq!((bytes(&info), info.byte_positions.x), ([5, 25], Some(73)));
+    // Without coordinates nothing tells a lattice of counters from lines.
+    let bare = odd.each(|_, t| {
+        t.i32(73, 0);
+        t.i32(77, 0);
+    });
+    assert!(bare.scan(&SegyOptions::default()).is_err());
+}
+
+#[test]
 fn the_swapped_reading_is_shown_and_can_be_chosen() {
     let info = grid().info();
     assert!(has(&info.evidence, "the swapped reading is bytes 193 and 189 for 6 (7..12) inlines"));
