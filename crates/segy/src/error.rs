@@ -90,6 +90,17 @@ pub enum SegyProblem {
         /// Its first characters.
         beginning: String,
     },
+    /// Traces without a file header.
+    #[error(
+        "this is a Seismic Unix file ({traces} traces of {samples} samples, without a SEG-Y file header); write it as \
+         SEG-Y first (in Seismic Unix: `segyhdrs < in.su | segywrite tape=out.sgy`)"
+    )]
+    SeismicUnix {
+        /// Traces.
+        traces: u64,
+        /// Samples of each.
+        samples: u16,
+    },
     /// No valid format code in either byte order.
     #[error(
         "bytes 3225-3226 hold {big} (or {little} in little-endian order), which is no SEG-Y sample format; \

@@ -42,6 +42,7 @@ impl FileLayout {
     pub fn read(file: &Bytes, options: &SegyOptions, findings: &mut Findings) -> Result<Self, SegyProblem> {
         let mut head = vec![0; file.len().min(FILE_HEADER_BYTES as u64) as usize];
         file.copy(0, &mut head, None)?;
+        refuse_seismic_unix(file)?;
         refuse_text(&head)?;
         if head.len() < FILE_HEADER_BYTES {
             return Err(SegyProblem::TooShort { bytes: file.len() });
@@ -83,6 +84,34 @@ impl FileLayout {
             header_bytes: self.header_bytes,
         }
     }
+}
+
+/// Seismic Unix files are traces alone: no file header, IEEE samples in the byte order of the machine.
+fn refuse_seismic_unix(file: &Bytes) -> Result<(), SegyProblem> {
+    /// Traces that must look alike.
+    const PROBES: u64 = 8;
+    for order in [ByteOrder::Big, ByteOrder::Little] {
+        let shape_at = |start: u64| -> Result<Option<[u16; 2]>, SegyProblem> {
+            let header = file.get(start, TRACE_HEADER_BYTES, None)?;
+            Ok(header.map(|header| {
+                [at::SAMPLES, at::INTERVAL].map(|byte| u16::from_be_bytes(order.get(&header, usize::from(byte) - 1)))
+            }))
+        };
+        let Some(first @ [samples, interval]) = shape_at(0)? else { continue };
+        let stride = TRACE_HEADER_BYTES as u64 + 4 * u64::from(samples);
+        let traces = file.len() / stride;
+        if samples < 2 || interval == 0 || traces < 2 || file.len() % stride != 0 {
+            continue;
+        }
+        let mut is_alike = true;
+        for probe in 1..=PROBES.min(traces - 1) {
+            is_alike &= shape_at(probe * (traces - 1) / PROBES.min(traces - 1) * stride)? == Some(first);
+        }
+        if is_alike {
+            return Err(SegyProblem::SeismicUnix { traces, samples });
+        }
+    }
+    Ok(())
 }
 
 fn refuse_text(start: &[u8]) -> Result<(), SegyProblem> {

@@ -2,9 +2,10 @@
 
 use super::super::{
     ByteOrder, FileUnit, LengthUnit, LineSource, NumberType, SampleFormat, SegyOptions, SegyProblem, TextEncoding,
-    TraceWeight,
+    TraceWeight, scan,
 };
-use super::built::{Built, SAMPLES};
+use super::built::{Built, SAMPLES, with_file};
+use survey::progress::Progress;
 use survey::remedy::{Note, Setting};
 
 const LINES: [i32; 3] = [1, 2, 3];
@@ -24,6 +25,18 @@ fn the_plain_file_needs_no_assumption() {
     assert_eq!(info.warnings, Vec::<Note>::new());
     assert_eq!(info.text_encoding, TextEncoding::Ascii);
     assert_eq!((info.start, info.interval, info.samples), (0.0, 4.0, SAMPLES));
+}
+
+#[test]
+fn a_seismic_unix_file_is_named() {
+    for order in [ByteOrder::Big, ByteOrder::Little] {
+        let file = Built::grid_in(order, &LINES, &[10, 11, 12, 13]);
+        let bytes = file.bytes();
+        let traces = &bytes[bytes.len() - 12 * (240 + 4 * SAMPLES)..];
+        let found = with_file(traces, |path| scan(path, &SegyOptions::default(), &Progress::silent())).unwrap_err();
+        assert!(matches!(found.problem, SegyProblem::SeismicUnix { traces: 12, samples: 4 }), "{found}");
+        assert!(file.scan(&SegyOptions::default()).is_ok());
+    }
 }
 
 #[test]
