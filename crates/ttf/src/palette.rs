@@ -1,7 +1,8 @@
 //! Default styles, so that a project can be rendered before any layer has a style.
 //!
-//! A layer whose name contains the name of a rock ("Zechstein salt", "Chalk Gp") gets the pattern of that
-//! rock. The others take the patterns of a sequence in which neighbours differ in tone and in texture.
+//! A layer with the name of a rock in its own name ("Zechstein salt", "Chalk Gp") gets the pattern of that rock. The
+//! others take the patterns of a sequence in which neighbours differ in tone and in texture; so do layers that are
+//! called after the horizons around them, since "above Top Chalk" and "Top Chalk - Base Chalk" are not the same rock.
 
 use crate::{Colour, LayerStyle, LayerTtf, TextureLibrary};
 
@@ -9,10 +10,10 @@ use crate::{Colour, LayerStyle, LayerTtf, TextureLibrary};
 const SEQUENCE: [&str; 8] =
     ["granite", "shale", "sandstone-bedded", "limestone", "siltstone", "dolostone", "marl", "sand"];
 
-/// Words in the name of a layer, and the pattern of each. The first word that is found decides.
+/// How words in the name of a layer begin, and the pattern of each. The first that is found decides.
 const WORDS: [(&str, &str); 31] = [
     ("water", "water"),
-    ("sea", "water"),
+    ("seawater", "water"),
     ("conglomerate", "conglomerate"),
     ("gravel", "conglomerate"),
     ("breccia", "breccia"),
@@ -54,13 +55,20 @@ impl LayerTtf {
     /// ```
     pub fn default_style(layer: &str, index: usize, library: &TextureLibrary) -> LayerStyle {
         let lower = layer.to_lowercase();
-        let by_name = WORDS.iter().find(|(word, _)| lower.contains(word)).map(|(_, pattern)| *pattern);
+        let by_name = WORDS.iter().find(|(word, _)| has_own_word(&lower, word)).map(|(_, pattern)| *pattern);
         let pattern = by_name.unwrap_or(SEQUENCE[index % SEQUENCE.len()]);
         match library.find(pattern) {
             Some(found) => LayerStyle::textured(layer, library.pattern(found).colour, pattern),
             None => LayerStyle::plain(layer, Colour::new(0xe6, 0xe0, 0xd2)),
         }
     }
+}
+
+/// Whether a word of a layer's own name, in small letters, begins so.
+fn has_own_word(name: &str, beginning: &str) -> bool {
+    let after_horizons = name.starts_with("above ") || name.starts_with("below ") || name.contains(" - ");
+    let begins_word = |at: usize| !name[..at].ends_with(char::is_alphanumeric);
+    !after_horizons && name.match_indices(beginning).any(|(at, _)| begins_word(at))
 }
 
 #[cfg(test)]
@@ -81,6 +89,14 @@ mod tests {
         let texture = |name: &str, index| LayerTtf::default_style(name, index, &library).intervals[0].texture.clone();
         assert_eq!(texture("Zechstein SALT", 3), "salt");
         assert_eq!(texture("Oil shale member", 3), "oil-shale");
+        assert_eq!(texture("Dolomitic marl", 3), "marl");
+        assert_eq!(texture("Seawater", 3), "water");
+        // Not the rock of a name's middle, and not that of the horizons around a layer.
+        assert_eq!(texture("Upper North Sea Group", 1), SEQUENCE[1]);
+        assert_eq!(texture("Distilled", 1), SEQUENCE[1]);
+        let generated = ["below Base Chalk", "Top Chalk - Base Chalk", "above Top Chalk"];
+        let textures: Vec<String> = generated.iter().enumerate().map(|(index, name)| texture(name, index)).collect();
+        assert_eq!(textures, SEQUENCE[..3]);
         assert_eq!(texture("Unit 3", 2), SEQUENCE[2]);
         assert_eq!(texture("Unit 11", 10), SEQUENCE[2]);
     }

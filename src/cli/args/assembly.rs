@@ -16,8 +16,8 @@ pub(in crate::cli) struct PickArgs {
     /// Climb this many levels above the leaf [default: 0]
     #[arg(long, value_name = "N", conflicts_with = "highest_valid")]
     pub(in crate::cli) up: Option<u32>,
-    /// Climb to the highest node that has no two depths at one trace, neither by itself nor together with the
-    /// horizon
+    /// Climb to the highest node that has no two depths at one trace but for a few: at most 2 % of its points over
+    /// itself, as noise leaves them, and 10 % over the horizon, as beside a fault that is not drawn
     #[arg(long)]
     pub(in crate::cli) highest_valid: bool,
     /// Remove the node from the horizon
@@ -37,7 +37,8 @@ pub(in crate::cli) struct ClimbArgs {
     /// Levels
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(in crate::cli) levels: u32,
-    /// Climb to the highest node that has no two depths at one trace
+    /// Climb to the highest node that has no two depths at one trace but for a few: at most 2 % of its points over
+    /// itself, and 10 % over the rest of the horizon
     #[arg(long, conflicts_with = "levels")]
     pub(in crate::cli) highest_valid: bool,
 }
