@@ -68,6 +68,10 @@ impl LayerTtf {
 fn has_own_word(name: &str, beginning: &str) -> bool {
     let after_horizons = name.starts_with("above ") || name.starts_with("below ") || name.contains(" - ");
     let begins_word = |at: usize| !name[..at].ends_with(char::is_alphanumeric);
+    // What lies on the sea floor is the sea.
+    if ["above sea", "above water bottom"].iter().any(|sea| name.starts_with(sea)) {
+        return beginning == "water";
+    }
     !after_horizons && name.match_indices(beginning).any(|(at, _)| begins_word(at))
 }
 
@@ -91,6 +95,7 @@ mod tests {
         assert_eq!(texture("Oil shale member", 3), "oil-shale");
         assert_eq!(texture("Dolomitic marl", 3), "marl");
         assert_eq!(texture("Seawater", 3), "water");
+        assert_eq!(texture("above Sea floor", 3), "water");
         // Not the rock of a name's middle, and not that of the horizons around a layer.
         assert_eq!(texture("Upper North Sea Group", 1), SEQUENCE[1]);
         assert_eq!(texture("Distilled", 1), SEQUENCE[1]);
