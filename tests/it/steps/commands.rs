@@ -186,13 +186,12 @@ pub const COMPUTING: [Scenario; 7] = [
 ];
 
 /// What leads back, and what repairs.
-pub const MENDING: [Scenario; 8] = [
+pub const MENDING: [Scenario; 7] = [
     of(Imported, "undo p.petro"),
     of(Extracted, "undo p.petro"),
     after(Imported, |at| all(at, &["undo p.petro"]), "redo p.petro"),
     after(Imported, |at| all(at, &["undo p.petro"]), "velocity p.petro 2500"),
     after(Imported, |at| all(at, &["undo p.petro"]), "prune p.petro"),
-    after(Extracted, |at| all(at, &["undo p.petro", "undo p.petro"]), "prune p.petro"),
     after(Imported, killed_when_saved, "velocity p.petro 2500"),
     after(Imported, damaged, "check p.petro --repair"),
 ];
@@ -202,6 +201,9 @@ fn proposed(at: &Path) {
     let create = "create p.petro --bounds 0,475,0,475,0,92 --size 20x20x24 --z-unit ms";
     all(at, &[create, "horizon add p.petro step.csv --name Step", "fault propose p.petro"]);
 }
+
+/// A long history, of which the present step is in the middle.
+pub const LONG_PRUNE: Scenario = after(Extracted, |at| all(at, &["undo p.petro", "undo p.petro"]), "prune p.petro");
 
 fn with_well(at: &Path) {
     all(at, &["well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"]);
