@@ -313,7 +313,7 @@ fn disturb_all(scenarios: &[Scenario]) {
         // A repair that is cut off may set the same damaged step aside twice: both are what it was.
         if !scenario.line.contains("--repair") {
             let cut = |(step, moment): (usize, &Moment)| {
-                moment.cut.iter().for_each(|(kept, left)| undisturbed.cut(step, *kept, left))
+                moment.cut.iter().for_each(|(kept, left)| undisturbed.cut(step, *kept, left));
             };
             undisturbed.moments.par_iter().enumerate().for_each(cut);
         }
