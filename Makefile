@@ -78,11 +78,16 @@ speed: setup
 scenario: build
 	tests/scenario.sh $(PETROGLYPH) out/scenario
 
-# What docs/reliability.md lists of the real program: modules and tests of tests/it.
+# What docs/reliability.md lists: modules and tests of tests/it, which run the real program, and tests of the crates.
+ATTACKS_ON_CRATES = what_is_kept_comes_back grids_that_do_not_fit blocks_with_a_valid_hash a_damaged_step_is_told \
+	a_kill_between_forgetting every_damaged_brick_is_counted what_does_not_open_is_offered a_change_waits_for_another \
+	a_panic_is_told folders_are_made_and_flushed
 ATTACKS = hostile:: foreign:: check:: steps:: bombs:: sources:: kill:: safety:: store:: bad_input:: memory:: extraction::the_same_extraction_twice extraction::damaged_candidates
 
+attack: export XDG_STATE_HOME = $(CURDIR)/target/state
 attack: setup
 	cargo test --locked --test it -- $(ATTACKS)
+	cargo test --locked --lib -p petroglyph-project -p petroglyph-store -p petroglyph-survey -p petroglyph-app -- $(ATTACKS_ON_CRATES)
 	PETROGLYPH_MEMORY_SIDE=256 cargo test --locked --test it -- --nocapture memory::
 
 # The same inputs each time, so that a change fails by its own fault alone.

@@ -2,7 +2,9 @@
 """Opens stores that Petroglyph wrote with Python's zarr and checks what can be checked from outside.
 
     python bench/check_zarr.py PROJECT.petro/volumes/*.zarr PROJECT.petro/horizons/*.zarr PROJECT.petro/derived/*.zarr
+    python bench/check_zarr.py --segy EXPORTED.sgy PROJECT.petro/volumes/NAME.zarr
 
+The second form compares every sample of a volume of floats with the file that `petroglyph export --volume` wrote of it.
 Needs zarr 3 and numpy. Exit code 1 when something does not fit.
 """
 
@@ -147,5 +149,21 @@ def check(path):
     return CHECKS[header["kind"]](path, group, header["facts"])
 
 
+def check_segy(segy, path):
+    """Compares every sample with a SEG-Y file of IEEE floats, trace by trace in the order of the lines."""
+    array = zarr.open_group(path, mode="r")["0"]
+    trace = np.dtype([("header", "V240"), ("samples", ">f4", array.shape[2])])
+    samples = np.fromfile(segy, trace, offset=3600)["samples"]
+    if len(samples) != array.shape[0] * array.shape[1]:
+        return fail(path, f"{segy} has {len(samples)} traces")
+    wrong = (samples.reshape(array.shape) != array[:]).sum()
+    if wrong:
+        return fail(path, f"{wrong} samples differ from {segy}")
+    print(f"{path}: all {array.size} samples are those of {segy}")
+    return True
+
+
 if __name__ == "__main__":
+    if sys.argv[1:2] == ["--segy"]:
+        sys.exit(0 if check_segy(sys.argv[2], sys.argv[3]) else 1)
     sys.exit(0 if all([check(path) for path in sys.argv[1:]]) else 1)

@@ -11,24 +11,28 @@ fn subcommands(help: &str) -> Vec<String> {
     names.filter(|name| *name != "help").map(str::to_owned).collect()
 }
 
-#[test]
-fn the_help_of_every_command_shows_an_example() {
-    let mut asked: Vec<Vec<String>> = vec![Vec::new()];
-    let (mut found, mut without) = (Vec::new(), Vec::new());
+/// Every command of the program by its words, with its help.
+pub fn commands() -> Vec<(String, String)> {
+    let (mut asked, mut found) = (vec![Vec::new()], Vec::new());
     while let Some(words) = asked.pop() {
         let help = run(words.iter().map(String::as_str).chain(["--help"])).done().stdout;
         let below = subcommands(&help);
         if below.is_empty() {
-            if !(help.contains("Example") && help.contains("petroglyph ")) {
-                without.push(words.join(" "));
-            }
-            found.push(words.join(" "));
+            found.push((words.join(" "), help));
         }
         asked.extend(below.into_iter().map(|name| words.iter().cloned().chain([name]).collect()));
     }
+    found
+}
+
+#[test]
+fn the_help_of_every_command_shows_an_example() {
+    let found = commands();
     for one in ["render", "horizon add", "scene remove"] {
-        assert!(found.iter().any(|command| command == one), "no {one} in {found:?}");
+        assert!(found.iter().any(|(command, _)| command == one), "no {one} in {found:?}");
     }
+    let has_example = |help: &str| help.contains("Example") && help.contains("petroglyph ");
+    let without: Vec<_> = found.iter().filter(|(_, help)| !has_example(help)).map(|(command, _)| command).collect();
     assert!(without.is_empty(), "no example in the help of {without:?}");
 }
 

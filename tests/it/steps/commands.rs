@@ -1,6 +1,11 @@
 //! The commands that change files, each with the small folder that it begins in.
+//!
+//! A test compares them with what the program's help lists: no command can be forgotten. Three are left out, which take
+//! seconds for each run and write by what others here write by ([`ELSEWHERE`]).
 
-use super::run_once;
+use super::supervised::{self, Verdict};
+use super::{folder_with, program, run_once};
+use crate::program::STATE_HOME;
 use segy::WriteOptions;
 use std::fmt::Write;
 use std::fs;
@@ -59,6 +64,7 @@ impl Start {
 
 const ADD_TOP: &str = "horizon add p.petro top.csv --name Top";
 const ADD_FAULT: &str = "fault pick p.petro --name F --stick 3,2,4 3,2,60 --stick 3,9,4 3,9,60";
+const SET_SCALAR: &str = "scalar set p.petro seismic --interval 0,50,chalk";
 const PICK: &str = "pick p.petro --at 4,4,32 --horizon Picked --highest-valid";
 const PICK_MORE: &str = "pick p.petro --at 10,4,44 --horizon Picked";
 
@@ -91,10 +97,20 @@ fn write_files(at: &Path) {
         }
         fs::write(at.join(name), text).unwrap();
     }
+    let mut text = "x,y,z\n".to_owned();
+    for (x, y) in (0..20 * 20).map(|n| (n / 20, n % 20)) {
+        writeln!(text, "{},{},{}", x * 25, y * 25, if x < 10 { 24 } else { 40 }).unwrap();
+    }
+    fs::write(at.join("step.csv"), text).unwrap();
+    fs::write(at.join("g.ts"), TRIANGLES).unwrap();
     fs::write(at.join("A.csv"), "md_m,inc,azi\n0,0,0\n90,0,0\n").unwrap();
     fs::write(at.join("tops.csv"), "surface,md_m,well\nTop,35,A-1\n").unwrap();
     image::RgbImage::from_pixel(4, 4, image::Rgb([1, 0, 0])).save(at.join("tile.png")).unwrap();
 }
+
+/// A fault of two triangles.
+const TRIANGLES: &str = "GOCAD TSurf 1\nHEADER {\nname:G\n}\nTFACE\nVRTX 1 200 0 4\nVRTX 2 200 275 4\n\
+    VRTX 3 215 0 60\nVRTX 4 215 275 60\nTRGL 1 2 3\nTRGL 2 4 3\nEND\n";
 
 const fn of(start: Start, line: &'static str) -> Scenario {
     Scenario { start, prepare: |_| {}, line, project: "p.petro" }
@@ -116,12 +132,15 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 10] = [
+pub const INTERPRETING: [Scenario; 13] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "horizon rename p.petro Top Roof"),
+    of(Imported, "horizon fill p.petro Top"),
     of(Imported, "horizon contact p.petro Base erosional"),
     of(Imported, "horizon remove p.petro Top"),
     of(Imported, "fault pick p.petro --name G --stick 8,2,4 8,2,60 --stick 8,9,4 8,9,60"),
+    of(Imported, "fault add p.petro g.ts --name G"),
+    after(Imported, |at| all(at, &["fault add p.petro g.ts --name G"]), "fault truncate p.petro G --by F"),
     of(Imported, "fault remove p.petro F"),
     of(Imported, "well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"),
     after(Imported, with_well, "well rename p.petro A-1 B-2"),
@@ -130,22 +149,25 @@ pub const INTERPRETING: [Scenario; 10] = [
 ];
 
 /// What is done with candidates and proposals.
-pub const PICKING: [Scenario; 8] = [
+pub const PICKING: [Scenario; 10] = [
     of(Imported, "extract p.petro --min-leaf-triangles 20"),
     of(Extracted, "pick p.petro --at 4,4,64 --horizon Second --highest-valid"),
     of(Extracted, "climb p.petro 2 --levels 2"),
+    after(Extracted, |at| all(at, &["climb p.petro 2 --levels 2"]), "descend p.petro 2"),
     of(Extracted, "horizon unpick p.petro 1"),
     of(Extracted, "horizon colour p.petro Picked '#ff0000'"),
     of(Extracted, "horizon replay p.petro"),
     of(Extracted, "fault propose p.petro"),
+    after(Files, proposed, "fault accept p.petro 1 --name G"),
     of(Extracted, "horizon remove p.petro Picked"),
 ];
 
 /// What changes how it looks.
-pub const LOOKING: [Scenario; 7] = [
+pub const LOOKING: [Scenario; 8] = [
     of(Imported, "layer set p.petro 'Top - Base' --name Chalk --pattern chalk"),
     of(Imported, "layer reset p.petro 'Top - Base'"),
-    of(Imported, "scalar set p.petro seismic --interval 0,50,chalk"),
+    of(Imported, SET_SCALAR),
+    after(Imported, |at| all(at, &[SET_SCALAR]), "scalar remove p.petro seismic"),
     of(Imported, "raw p.petro --map grey"),
     of(Imported, "texture p.petro tile.png"),
     of(Imported, "scene add p.petro front --blend 0.5"),
@@ -174,6 +196,15 @@ pub const MENDING: [Scenario; 7] = [
     after(Imported, damaged, "check p.petro --repair"),
 ];
 
+/// A project with a horizon that has a step of 16 ms, for which a fault was proposed.
+fn proposed(at: &Path) {
+    let create = "create p.petro --bounds 0,475,0,475,0,92 --size 20x20x24 --z-unit ms";
+    all(at, &[create, "horizon add p.petro step.csv --name Step", "fault propose p.petro"]);
+}
+
+/// A long history, of which the present step is in the middle.
+pub const LONG_PRUNE: Scenario = after(Extracted, |at| all(at, &["undo p.petro", "undo p.petro"]), "prune p.petro");
+
 fn with_well(at: &Path) {
     all(at, &["well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"]);
 }
@@ -194,4 +225,73 @@ fn damaged(at: &Path) {
     fs::write(root.join("unfinished/volumes/x.zarr/zarr.json"), "{}").unwrap();
     fs::create_dir_all(root.join("horizons/Orphan.zarr/0")).unwrap();
     fs::write(root.join("horizons/Orphan.zarr/0/zarr.json"), "{}").unwrap();
+}
+
+/// Commands that change no file.
+const READING: [&str; 15] = [
+    "info p.petro",
+    "volume list p.petro",
+    "horizon list p.petro",
+    "horizon show p.petro Top",
+    "fault list p.petro",
+    "well list p.petro",
+    "well show p.petro A-1",
+    "layer list p.petro",
+    "scalar list p.petro",
+    "scene list p.petro",
+    "scene show p.petro front",
+    "check p.petro",
+    "info a.sgy",
+    "info top.csv",
+    "--version",
+];
+
+/// What is not disturbed itself, and why.
+const ELSEWHERE: [(&str, &str); 5] = [
+    (
+        "demo",
+        "carries out `synth`, `import`, `extract`, `pick`, `climb`, `horizon fill`, `layer set`, `scene add` and `render`",
+    ),
+    ("patterns", "writes its picture by what `render` writes pictures by, and draws it for seconds"),
+    ("bench", "changes no project; with `--dump` and `--segy` it writes files of its own to a folder"),
+    ("evaluate", "reads a project and the truth, and prints"),
+    ("view", "is the window, which changes projects by the same commands"),
+];
+
+#[test]
+fn every_command_is_disturbed_or_changes_nothing() {
+    let groups = [&MAKING[..], &INTERPRETING, &PICKING, &LOOKING, &COMPUTING, &MENDING];
+    let disturbed = groups.into_iter().flatten().map(|scenario| scenario.line);
+    let known: Vec<&str> = disturbed.chain(READING).chain(ELSEWHERE.map(|(command, _)| command)).collect();
+    let begins = |line: &str, command: &str| line == command || line.starts_with(&format!("{command} "));
+    let commands = crate::help::commands();
+    let is_known = |command: &str| known.iter().any(|line| begins(line, command));
+    let forgotten: Vec<_> = commands.iter().map(|(command, _)| command).filter(|command| !is_known(command)).collect();
+    assert!(forgotten.is_empty(), "neither disturbed nor said to change nothing: {forgotten:?}");
+    let gone = |(command, _): &&(&str, &str)| !commands.iter().any(|(real, _)| real == command);
+    assert!(!ELSEWHERE.iter().any(|one| gone(&one)), "{ELSEWHERE:?}");
+}
+
+#[test]
+fn what_is_said_to_change_nothing_changes_nothing() {
+    let folder = folder_with(Imported.folder());
+    with_well(folder.path());
+    all(folder.path(), &["scene add p.petro front"]);
+    // A check notes outside of a project that it is known, once.
+    let reading = |line: &str| {
+        let mut program = program(folder.path(), line);
+        program.env("XDG_STATE_HOME", STATE_HOME);
+        program
+    };
+    assert!(reading("check p.petro").status().expect("the program runs").success());
+    for line in READING {
+        let mut calls = Vec::new();
+        let run = supervised::run(reading(line), |_, call| {
+            calls.push(call.name());
+            Verdict::Go
+        });
+        let Some(run) = run else { return };
+        run.done();
+        assert!(calls.is_empty(), "`{line}`: {calls:?}");
+    }
 }

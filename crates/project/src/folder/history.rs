@@ -89,7 +89,7 @@ pub(crate) fn record(root: &Path, number: u32, step: &Step) -> Result<(), Projec
 /// Makes a prepared step the last one: steps that were undone before it are dropped, and so are steps beyond the limit,
 /// with their data.
 pub(crate) fn complete(root: &Path, number: u32) -> Result<(), ProjectError> {
-    forget(root, |old| old >= number || old.saturating_add(HISTORY_LIMIT) <= number)?;
+    forget(root, number, |old| old >= number || old.saturating_add(HISTORY_LIMIT) <= number)?;
     storage::rename(&storage::unfinished(root, &file_of(number)), &root.join(file_of(number)))?;
     release_forgotten(root)
 }
@@ -101,15 +101,17 @@ pub(crate) fn is_incomplete(root: &Path) -> bool {
 
 /// Drops everything but step `number`, and the data that only the dropped steps refer to.
 pub(crate) fn forget_all_but(root: &Path, number: u32) -> Result<(), ProjectError> {
-    forget(root, |old| old != number)?;
+    forget(root, number, |old| old != number)?;
     release_forgotten(root)?;
     storage::remove(root, storage::UNFINISHED);
     Ok(())
 }
 
-/// Takes steps out of the history; their data stay until [`release_forgotten`].
-fn forget(root: &Path, which: impl Fn(u32) -> bool) -> Result<(), ProjectError> {
-    for old in numbers(root).into_iter().filter(|&old| which(old)) {
+/// Takes steps out of the history; their data stay until [`release_forgotten`]. Those furthest from the `present` step go
+/// first, so that undo and redo still lead to all that are left after a kill.
+fn forget(root: &Path, present: u32, which: impl Fn(u32) -> bool) -> Result<(), ProjectError> {
+    let (before, after): (Vec<u32>, Vec<u32>) = numbers(root).into_iter().partition(|&old| old < present);
+    for old in before.into_iter().chain(after.into_iter().rev()).filter(|&old| which(old)) {
         storage::rename(&root.join(file_of(old)), &root.join(forgotten_file_of(old)))?;
     }
     Ok(())
