@@ -141,6 +141,7 @@ pub const INTERPRETING: [Scenario; 13] = [
     of(Imported, "fault pick p.petro --name G --stick 8,2,4 8,2,60 --stick 8,9,4 8,9,60"),
     of(Imported, "fault add p.petro g.ts --name G"),
     after(Imported, |at| all(at, &["fault add p.petro g.ts --name G"]), "fault truncate p.petro G --by F"),
+    of(Imported, "fault extent p.petro F grow 20"),
     of(Imported, "fault remove p.petro F"),
     of(Imported, "well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"),
     after(Imported, with_well, "well rename p.petro A-1 B-2"),
