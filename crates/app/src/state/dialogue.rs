@@ -89,7 +89,7 @@ const INCH_MM: f64 = 25.4;
 /// The settings of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportForm {
-    /// File to write: .png for pixels, .svg for paths and text.
+    /// File to write: .png or .tif for pixels, .svg or .pdf for paths and text.
     pub path: String,
     /// Width and height on paper, cm.
     pub size_cm: [f64; 2],

@@ -27,7 +27,7 @@ pub fn show(
         Grid::new("export").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
             let label = ui.label("File");
             let field = ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
-            field.on_hover_text("A name that ends in .png gives pixels, in .svg paths and text");
+            field.on_hover_text("A name that ends in .png or .tif gives pixels, in .svg or .pdf paths and text");
             ui.end_row();
             ui.label("Size");
             ui.horizontal(|ui| {
@@ -70,7 +70,7 @@ pub fn show(
         }
         let has_format = FigureFormat::of(Path::new(next.path.trim())).is_some();
         if !has_format {
-            ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png or .svg");
+            ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
         }
         ui.horizontal(|ui| {
             let can = !is_drawing && !is_too_large && has_format;

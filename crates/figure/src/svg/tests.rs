@@ -2,10 +2,11 @@
 
 use super::*;
 use crate::Rect;
-use crate::list::{Text, Upright};
+use crate::list::{Path, Upright};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
 use resvg::{tiny_skia, usvg};
+use std::sync::Arc;
 use ttf::Colour;
 
 fn rect(low: [f64; 2], high: [f64; 2]) -> Rect {
@@ -69,6 +70,19 @@ fn a_page_without_paper_is_transparent() {
     let page = DisplayList { paper: None, ..page() };
     let image = drawn(&svg(&page, "test").unwrap(), 1.0);
     assert_eq!(image.get_pixel(1, 1).0[3], 0);
+}
+
+#[test]
+fn what_draws_nothing_is_left_out() {
+    let mut page = DisplayList { paper: None, ..DisplayList::new(DVec2::splat(50.0)) };
+    let line = |end: DVec2| Path::line(&[DVec2::ZERO, end]);
+    page.items.push(PathItem::stroked(line(DVec2::new(f64::NAN, 1.0)), Stroke::new(1.0, Ink::BLACK)).into());
+    page.items.push(PathItem::stroked(line(DVec2::ONE), Stroke::new(0.0, Ink::BLACK)).into());
+    page.items.push(Text::new(DVec2::ZERO, " ").into());
+    page.items.push(Group::new(GroupKind::Layer, "empty").into());
+    assert!(svg(&page, "t").unwrap().ends_with("<title>t</title>\n</svg>\n"));
+    page.items.push(PathItem::stroked(line(DVec2::ONE), Stroke::new(1.0, Ink::BLACK)).into());
+    assert!(svg(&page, "t").unwrap().contains("<path"));
 }
 
 #[test]

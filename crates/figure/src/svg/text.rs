@@ -10,9 +10,6 @@ const FAMILY: &str = "'Ubuntu Light', Ubuntu, 'DejaVu Sans', sans-serif";
 
 /// Adds a line of text: its left end on its baseline, at the length that the page gives it.
 pub(super) fn text(into: &mut String, line: &Text) {
-    if line.text.trim().is_empty() {
-        return;
-    }
     let start = line.baseline_start();
     let _ = write!(
         into,
