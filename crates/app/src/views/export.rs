@@ -42,12 +42,18 @@ pub fn show(
             let drag = DragValue::new(&mut next.dpi).speed(5.0).range(36.0..=1200.0).max_decimals(0).suffix(" dpi");
             ui.add(drag).labelled_by(label.id);
             ui.end_row();
+            for (name, words) in [("Title", &mut next.title), ("Caption", &mut next.caption)] {
+                let label = ui.label(name);
+                ui.add(TextEdit::singleline(words).desired_width(300.0)).labelled_by(label.id);
+                ui.end_row();
+            }
             ui.label("With");
             ui.vertical(|ui| {
                 let has_layers = !session.document.horizons.is_empty();
                 for (shown, name, can) in [
                     (&mut next.legend, "Legend", has_layers),
                     (&mut next.scale_bar, "Scale bar and exaggeration", true),
+                    (&mut next.north_arrow, "North arrow", true),
                 ] {
                     let mut is_shown = *shown == Shown::Yes;
                     if ui.add_enabled(can, eframe::egui::Checkbox::new(&mut is_shown, name)).changed() {

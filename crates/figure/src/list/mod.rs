@@ -86,9 +86,10 @@ impl DisplayList {
         texts.collect()
     }
 
-    /// The characters of all texts.
+    /// The characters of all texts that are not blank.
     pub(crate) fn characters(&self) -> BTreeSet<char> {
-        self.texts().iter().flat_map(|text| text.text.chars()).collect()
+        let said = self.texts().into_iter().filter(|text| !text.text.trim().is_empty());
+        said.flat_map(|text| text.text.chars()).collect()
     }
 }
 

@@ -10,9 +10,11 @@ use glam::DVec2;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Name, Pdf, Ref, Str};
 
-/// A group that a viewer switches.
+/// What a viewer switches: the groups of one kind and name within one other group. Where faces of a block hide one
+/// another, a layer is drawn in several groups.
 pub(super) struct Layer {
     pub(super) id: Ref,
+    kind: GroupKind,
     pub(super) name: String,
     /// Groups in it, by index.
     pub(super) inner: Vec<usize>,
@@ -60,6 +62,26 @@ impl<'a> PageContent<'a> {
         }
     }
 
+    /// The layer of a group that begins here.
+    fn layer(&mut self, group: &Group) -> usize {
+        let outer = self.open.last().copied();
+        let beside = outer.map_or(&self.roots, |outer| &self.layers[outer].inner);
+        let is_same = |index: &usize| {
+            let layer = &self.layers[*index];
+            layer.kind == group.kind && layer.name == group.name
+        };
+        if let Some(known) = beside.iter().copied().find(is_same) {
+            return known;
+        }
+        let index = self.layers.len();
+        self.layers.push(Layer { id: self.refs.next(), kind: group.kind, name: group.name.clone(), inner: Vec::new() });
+        match outer {
+            Some(outer) => self.layers[outer].inner.push(index),
+            None => self.roots.push(index),
+        }
+        index
+    }
+
     fn trace(&mut self, path: &Path) {
         for segment in &path.segments {
             match segment {
@@ -105,12 +127,7 @@ impl<'a> PageContent<'a> {
 impl VectorWriter for PageContent<'_> {
     fn begin(&mut self, group: &Group) {
         if group.kind != GroupKind::Part {
-            let index = self.layers.len();
-            self.layers.push(Layer { id: self.refs.next(), name: group.name.clone(), inner: Vec::new() });
-            match self.open.last() {
-                Some(outer) => self.layers[*outer].inner.push(index),
-                None => self.roots.push(index),
-            }
+            let index = self.layer(group);
             self.open.push(index);
             let named = name('L', index);
             self.content.begin_marked_content_with_properties(Name(b"OC")).properties_named(Name(named.as_bytes()));

@@ -2,7 +2,9 @@
 //!
 //! Groups that stand for something have an `id` and are layers in Inkscape (`inkscape:groupmode`), so that a reader can
 //! switch a layer or fault off. Each picture is written once, as PNG inside the file, and used where it is seen. Clips
-//! are definitions that groups refer to. Coordinates are points to a hundredth, relative from step to step.
+//! are definitions that groups refer to. The glyphs that the page needs are embedded as a font ([`ttf::subset`]), so that
+//! browsers show the same letters everywhere; programs that know no fonts in files take an installed one, in the same
+//! length. Coordinates are points to a hundredth, relative from step to step.
 
 mod numbers;
 mod text;
@@ -37,6 +39,7 @@ use text::{escaped, text};
 /// A picture that cannot be encoded.
 pub fn svg(list: &DisplayList, title: &str) -> Result<String, FigureError> {
     let mut writer = Writer::default();
+    text::face(&mut writer.definitions, &list.characters());
     write_vectors(list, &mut writer)?;
     let [width, height] = [number(list.size.x), number(list.size.y)];
     let Writer { body, definitions, .. } = writer;
@@ -60,7 +63,7 @@ pub fn svg(list: &DisplayList, title: &str) -> Result<String, FigureError> {
 #[derive(Default)]
 struct Writer {
     body: String,
-    /// Clips and pictures.
+    /// The face, clips and pictures.
     definitions: String,
     clips: usize,
     /// How often each name of a group was used.

@@ -121,6 +121,19 @@ fn text_stays_text() {
 }
 
 #[test]
+fn letters_come_with_the_page() {
+    let mut page = DisplayList::new(DVec2::splat(50.0));
+    assert!(!svg(&page, "t").unwrap().contains("@font-face"));
+    page.items.push(Text::new(DVec2::splat(20.0), "Chalk").into());
+    let svg = svg(&page, "t").unwrap();
+    let document = usvg::roxmltree::Document::parse(&svg).unwrap();
+    let style = document.descendants().find(|node| node.has_tag_name("style")).unwrap().text().unwrap();
+    let file = style.split("base64,").nth(1).unwrap().split('\'').next().unwrap();
+    // A TrueType font with the box and five letters: version 1.0, ten tables.
+    assert!(file.starts_with(&base64(&[0, 1, 0, 0, 0, 10])) && file.len() < 6000, "{}", file.len());
+}
+
+#[test]
 fn a_picture_is_written_once_and_laid_on_its_corners() {
     let mut page = DisplayList::new(DVec2::splat(50.0));
     let pixels = Arc::new(RgbaImage::new(3, 3));
