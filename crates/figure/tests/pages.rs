@@ -36,20 +36,20 @@ fn model(geometry: &SurveyGeometry) -> StructuralModel {
 }
 
 fn made(figure: &Figure) -> Result<DisplayList, FigureError> {
-    made_with(figure, &[], None)
+    made_of(&model(&geometry()), figure, &[], None)
 }
 
-fn made_with(
+fn made_of(
+    model: &StructuralModel,
     figure: &Figure,
     layers: &[LayerStyle],
     library: Option<&TextureLibrary>,
 ) -> Result<DisplayList, FigureError> {
     let geometry = geometry();
-    let model = model(&geometry);
     let volume = Volume::filled(SIZE, 1.0f32);
     let volumes = [NamedVolume::whole("seismic", &volume)];
     let raw = RawColour::new("seismic", RgbaFunction::over(ColourMap::Grey, [0.0, 2.0]));
-    let data = Inputs { model: Some(&model), ..Inputs::raw(&geometry, &volumes) };
+    let data = Inputs { model: Some(model), ..Inputs::raw(&geometry, &volumes) };
     let horizons = [("Top", Colour::new(255, 0, 0)), ("Base", Colour::new(0, 0, 255))]
         .map(|(name, colour)| NamedColour { name: name.into(), colour });
     let inputs = FigureInputs {
@@ -206,14 +206,17 @@ fn random_figure(random: &mut Random) -> Figure {
 
 #[test]
 fn no_two_labels_overlap_on_two_hundred_random_pages() {
-    let library = TextureLibrary::builtin().unwrap();
+    let (library, model) = (TextureLibrary::builtin().unwrap(), model(&geometry()));
     let mut random = Random(16);
     let (mut drawn, mut labels) = (0, 0);
     for n in 0..260 {
         let figure = random_figure(&mut random);
-        let style = |k: u64| LayerStyle::textured(&format!("Layer {k} of marl and chalk"), Colour::WHITE, "shale");
+        let style = |k: u64| match format!("Layer {k} of marl and chalk") {
+            name if k == 0 => LayerStyle::textured(&name, Colour::WHITE, "shale"),
+            name => LayerStyle::plain(&name, Colour::WHITE),
+        };
         let layers: Vec<LayerStyle> = (0..random.below(14)).map(style).collect();
-        let page = match made_with(&figure, &layers, Some(&library)) {
+        let page = match made_of(&model, &figure, &layers, Some(&library)) {
             Ok(page) => page,
             Err(FigureError::NoRoom { .. }) => continue,
             Err(error) => panic!("page {n}: {error}"),

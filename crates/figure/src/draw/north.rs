@@ -12,7 +12,7 @@ use ttf::Colour;
 pub const SIDE_PT: f64 = 36.0;
 /// From the middle of the square to the farthest point of the needle, and to the middle of its letter, points.
 const NEEDLE_PT: f64 = 9.0;
-const LETTER_PT: f64 = 13.4;
+const LETTER_PT: f64 = 13.2;
 /// A needle that is seen shorter than this share of its length points at the reader, and says nothing.
 const LEAST: f64 = 0.02;
 /// Step over which directions are measured, voxels.
