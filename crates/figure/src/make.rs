@@ -87,7 +87,7 @@ pub fn make(
             room = rest;
         }
     }
-    if !is_bare && !(room.size().min_element() >= LEAST_PT) {
+    if !is_bare && room.size().min_element() < LEAST_PT {
         return Err(maker.no_room());
     }
     if let Some(legend) = &legend {
@@ -96,7 +96,7 @@ pub fn make(
         list.items.push(legend.drawn(right.inside([0.0, 2.0, 0.0, 0.0]))?.into());
         room = left.inside([0.0, 0.0, GAP_PT, 0.0]);
     }
-    if !is_bare && !(room.size().min_element() >= LEAST_PT) {
+    if !is_bare && room.size().min_element() < LEAST_PT {
         return Err(maker.no_room());
     }
     let rooms = rooms(figure.parts.len(), room);

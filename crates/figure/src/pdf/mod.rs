@@ -15,6 +15,7 @@ use crate::list::{DisplayList, write_vectors};
 use content::{Layer, PageContent};
 use font::PageFont;
 use pdf_writer::types::PageMode;
+use pdf_writer::writers::Resources;
 use pdf_writer::{Array, Filter, Finish, Name, Pdf, Rect, Ref, TextStr};
 
 /// What made the file.
@@ -48,7 +49,26 @@ pub fn pdf(list: &DisplayList, title: &str) -> Result<Vec<u8>, FigureError> {
     let mut content = PageContent::new(&font, list.size.y, &mut pdf, &mut refs);
     write_vectors(list, &mut content)?;
     let PageContent { content, layers, roots, opacities, pictures, .. } = content;
+    describe(&mut pdf, catalogue, pages, &layers, &roots);
+    pdf.document_info(information).title(TextStr(title)).creator(TextStr(CREATOR)).producer(TextStr(CREATOR));
+    pdf.pages(pages).kids([page]).count(1);
+    let mut described = pdf.page(page);
+    described.parent(pages).contents(drawn);
+    described.media_box(Rect::new(0.0, 0.0, list.size.x as f32, list.size.y as f32));
+    // Colours are mixed as they are encoded.
+    described.group().transparency().color_space().device_rgb();
+    let face = (!font.is_empty()).then(|| refs.next());
+    resources(&mut described.resources(), &layers, &opacities, &pictures, face);
+    described.finish();
+    if let Some(face) = face {
+        font.write(&mut pdf, face, &mut refs);
+    }
+    pdf.stream(drawn, &deflated(&content.finish())).filter(Filter::FlateDecode);
+    Ok(pdf.finish())
+}
 
+/// Writes the catalogue, and what a viewer switches.
+fn describe(pdf: &mut Pdf, catalogue: Ref, pages: Ref, layers: &[Layer], roots: &[usize]) {
     let mut described = pdf.catalog(catalogue);
     described.pages(pages).viewer_preferences().display_doc_title(true);
     if !layers.is_empty() {
@@ -57,30 +77,30 @@ pub fn pdf(list: &DisplayList, title: &str) -> Result<Vec<u8>, FigureError> {
         optional.insert(Name(b"OCGs")).array().items(layers.iter().map(|layer| layer.id));
         let mut shown = optional.insert(Name(b"D")).dict();
         shown.pair(Name(b"Name"), TextStr("Layers"));
-        order(&mut shown.insert(Name(b"Order")).array(), &roots, &layers);
+        order(&mut shown.insert(Name(b"Order")).array(), roots, layers);
     }
     described.finish();
-    pdf.document_info(information).title(TextStr(title)).creator(TextStr(CREATOR)).producer(TextStr(CREATOR));
-    pdf.pages(pages).kids([page]).count(1);
-    for layer in &layers {
+    for (number, layer) in layers.iter().enumerate() {
         let mut group = pdf.indirect(layer.id).dict();
         group.pair(Name(b"Type"), Name(b"OCG")).pair(Name(b"Name"), TextStr(&layer.name));
+        // MuPDF takes groups that say the same for one: a layer and its entry in the legend have the same name.
+        let mut usage = group.insert(Name(b"Usage")).dict();
+        let mut creator = usage.insert(Name(b"CreatorInfo")).dict();
+        let kind = content::name('L', number);
+        creator.pair(Name(b"Creator"), TextStr(CREATOR)).pair(Name(b"Subtype"), Name(kind.as_bytes()));
     }
+}
 
-    let mut described = pdf.page(page);
-    described.parent(pages).contents(drawn);
-    described.media_box(Rect::new(0.0, 0.0, list.size.x as f32, list.size.y as f32));
-    // Colours are mixed as they are encoded.
-    described.group().transparency().color_space().device_rgb();
-    let mut resources = described.resources();
+/// Lists what the page's operators name.
+fn resources(into: &mut Resources, layers: &[Layer], opacities: &[u16], pictures: &[Ref], face: Option<Ref>) {
     if !layers.is_empty() {
-        let mut named = resources.insert(Name(b"Properties")).dict();
+        let mut named = into.insert(Name(b"Properties")).dict();
         for (number, layer) in layers.iter().enumerate() {
             named.pair(Name(content::name('L', number).as_bytes()), layer.id);
         }
     }
     if !opacities.is_empty() {
-        let mut states = resources.ext_g_states();
+        let mut states = into.ext_g_states();
         for (number, opacity) in opacities.iter().enumerate() {
             let mut state = states.insert(Name(content::name('G', number).as_bytes())).dict();
             let share = f32::from(*opacity) / 1000.0;
@@ -88,23 +108,14 @@ pub fn pdf(list: &DisplayList, title: &str) -> Result<Vec<u8>, FigureError> {
         }
     }
     if !pictures.is_empty() {
-        let mut named = resources.x_objects();
+        let mut named = into.x_objects();
         for (number, picture) in pictures.iter().enumerate() {
             named.pair(Name(content::name('P', number).as_bytes()), *picture);
         }
     }
-    let face = (!font.is_empty()).then(|| refs.next());
     if let Some(face) = face {
-        resources.fonts().pair(FACE, face);
+        into.fonts().pair(FACE, face);
     }
-    resources.finish();
-    described.finish();
-    if let Some(face) = face {
-        font.write(&mut pdf, face, &mut refs);
-    }
-    let bytes = deflated(&content.finish());
-    pdf.stream(drawn, &bytes).filter(Filter::FlateDecode);
-    Ok(pdf.finish())
 }
 
 /// The layers as a viewer lists them: what lies on top first, with what is in it below.

@@ -88,6 +88,21 @@ fn groups_are_layers_of_a_viewer_nested_as_on_the_page() {
     assert_eq!(drawn.matches("W\n").count(), 1);
 }
 
+/// MuPDF tells groups apart by what they say.
+#[test]
+fn layers_of_one_name_in_different_groups_are_told_apart() {
+    let mut page = DisplayList::new(DVec2::splat(50.0));
+    for outer in ["block", "legend"] {
+        let chalk = Group::new(GroupKind::Layer, "Chalk").with([square().into()]);
+        page.items.push(Group::new(GroupKind::Panel, outer).with([chalk.into()]).into());
+    }
+    let objects = Objects::of(&pdf(&page, "t").unwrap());
+    let chalk = objects.all_with("/Name (Chalk)");
+    let said = |n: usize| chalk[n].0.split_once(" obj ").unwrap().1;
+    assert_eq!(chalk.len(), 2);
+    assert_ne!(said(0), said(1));
+}
+
 #[test]
 fn text_is_text_in_the_glyphs_that_it_needs() {
     let mut page = DisplayList::new(DVec2::splat(100.0));
@@ -96,8 +111,8 @@ fn text_is_text_in_the_glyphs_that_it_needs() {
     }
     page.items.push(Text::new(DVec2::splat(60.0), "A").turned(-90.0).haloed(1.0, Ink::WHITE).into());
     let objects = Objects::of(&pdf(&page, "t").unwrap());
-    let streams = objects.0.iter().map(|(_, stream)| String::from_utf8_lossy(stream));
-    let meanings = streams.filter(|stream| stream.contains("begincmap")).next_back().unwrap();
+    let mut streams = objects.0.iter().map(|(_, stream)| String::from_utf8_lossy(stream));
+    let meanings = streams.rfind(|stream| stream.contains("begincmap")).unwrap();
     // Numbers in the order of characters: control characters have no meaning, the blank is 2.
     for (character, number) in [(' ', 2), ('&', 3), ('A', 7), ('白', 19)] {
         let line = format!("<{number:04X}> <{:04X}>", u32::from(character));
@@ -186,6 +201,6 @@ fn the_same_page_gives_the_same_bytes_and_says_what_it_is() {
     assert_eq!(file, pdf(&page(), "Nørdsee <a> & (b").unwrap());
     let objects = Objects::of(&file);
     assert!(objects.text(3).contains("/MediaBox [0 0 28.35 28.35]"), "{}", objects.text(3));
-    let [(information, _)] = objects.all_with("/Creator")[..] else { panic!("one record") };
+    let [(information, _)] = objects.all_with("/Producer")[..] else { panic!("one record") };
     assert!(information.contains(CREATOR) && !information.contains("Date"), "{information}");
 }
