@@ -1,8 +1,8 @@
 //! Figures for print: sections, fences, maps and blocks, as pages that know nothing of the file they end in.
 //!
 //! [`make()`] turns what a figure shows ([`Figure`]) and borrowed data ([`FigureInputs`]) into a page, a
-//! [`DisplayList`] of paths, text and images in points. [`raster()`] draws a page in
-//! pixels, which [`tiff()`] writes for printers, [`svg()`] and [`pdf()`] write it as vectors; the window's preview draws the same list.
+//! [`DisplayList`] of paths, text and images in points. [`raster()`] draws a page in pixels, which [`tiff()`] writes
+//! for printers, [`svg()`] and [`pdf()`] write it as vectors; the window's preview draws the same list.
 //!
 //! | module | holds |
 //! |---|---|

@@ -26,8 +26,8 @@ pub fn length_text(length_m: f64) -> String {
     if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") }
 }
 
-/// A bar of a round length at the left of a strip that is wide enough for its numbers, and a caption beside it. `points_per_m` is the scale on
-/// paper; without one there is the caption alone.
+/// A bar of a round length at the left of a strip that is wide enough for its numbers, and a caption beside it.
+/// `points_per_m` is the scale on paper; without one there is the caption alone.
 pub fn drawn(strip: Rect, points_per_m: Option<f64>, caption: &str) -> Group {
     let mut group = Group::new(GroupKind::Annotation, "scale bar");
     let mut left = strip.min.x;

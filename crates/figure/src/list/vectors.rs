@@ -27,8 +27,8 @@ pub(crate) trait VectorWriter {
     fn end(&mut self, group: &Group);
 }
 
-/// Takes a page through a writer: its paper, then its items. Left out are groups that show nothing, paths without ink or with
-/// places that are not finite, and blank text.
+/// Takes a page through a writer: its paper, then its items. Left out are groups that show nothing, paths without ink
+/// or with places that are not finite, and blank text.
 ///
 /// # Errors
 /// What the writer says.

@@ -8,7 +8,7 @@ use crate::list::{
 };
 use glam::DVec2;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
-use pdf_writer::{Content, Name, Pdf, Ref, Str, TextStr};
+use pdf_writer::{Content, Name, Pdf, Ref, Str};
 
 /// What a viewer switches: the groups of one kind and name within one other group. Where faces of a block hide one
 /// another, a layer is drawn in several groups.
@@ -184,17 +184,7 @@ impl VectorWriter for PageContent<'_> {
         // Letters stand upright where y points down.
         let [x, y] = along.to_array().map(|part| (part * 1e6).round() as f32 / 1e6);
         self.content.set_text_matrix([x, y, y, -x, number(start.x), number(start.y)]);
-        // Letters run from left to right, as in pictures; readers who expect otherwise are told the words themselves.
-        let is_reversed = line.text.chars().any(is_right_to_left);
-        if is_reversed {
-            let mut span = self.content.begin_marked_content_with_properties(Name(b"Span"));
-            span.properties().actual_text(TextStr(&line.text));
-        }
-        self.content.show(Str(&self.font.encoded(&line.text)));
-        if is_reversed {
-            self.content.end_marked_content();
-        }
-        self.content.end_text().restore_state();
+        self.content.show(Str(&self.font.encoded(&line.text))).end_text().restore_state();
     }
 
     /// A picture: a square of one unit, laid on its parallelogram.
@@ -211,11 +201,6 @@ impl VectorWriter for PageContent<'_> {
         self.content.save_state().transform(matrix).x_object(Name(named.as_bytes())).restore_state();
         Ok(())
     }
-}
-
-/// Whether a character belongs to a script that is written from right to left: Hebrew, Arabic and their neighbours.
-fn is_right_to_left(character: char) -> bool {
-    matches!(character, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{feff}')
 }
 
 /// A coordinate to a hundredth of a point, as in SVG.

@@ -48,10 +48,10 @@ impl PageFont {
         self.characters.is_empty()
     }
 
-    /// A line as codes.
+    /// A line as codes, in the order in which it is seen.
     pub(super) fn encoded(&self, text: &str) -> Vec<u8> {
         let number = |character| self.characters.binary_search(&character).map_or(0, |place| place as u16 + 1);
-        text.chars().flat_map(|character| number(character).to_be_bytes()).collect()
+        as_seen(text).into_iter().flat_map(|character| number(character).to_be_bytes()).collect()
     }
 
     /// Writes the face as object `id`.
@@ -92,5 +92,38 @@ impl PageFont {
             map.pair(place as u16 + 1, *character);
         }
         pdf.stream(meanings, &deflated(&map.finish())).filter(Filter::FlateDecode);
+    }
+}
+
+/// A line from left to right: words of scripts that run from right to left are turned round, since readers of text turn
+/// them again. The face has none of these letters, and their boxes look the same in either order.
+fn as_seen(text: &str) -> Vec<char> {
+    let mut characters: Vec<char> = text.chars().collect();
+    let mut begin = 0;
+    while let Some(first) = characters[begin..].iter().position(|c| is_right_to_left(*c)).map(|at| begin + at) {
+        // As far as the last such word that only blanks part from the one before.
+        let length = characters[first..].iter().take_while(|c| is_right_to_left(**c) || c.is_whitespace()).count();
+        let word = characters[first..first + length].iter().rposition(|c| is_right_to_left(*c)).map_or(1, |at| at + 1);
+        characters[first..first + word].reverse();
+        begin = first + word;
+    }
+    characters
+}
+
+/// Whether a character belongs to a script that is written from right to left: Hebrew, Arabic and their neighbours.
+fn is_right_to_left(character: char) -> bool {
+    matches!(character, '\u{590}'..='\u{8ff}' | '\u{fb1d}'..='\u{fdff}' | '\u{fe70}'..='\u{feff}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_that_run_from_right_to_left_are_turned_round_where_they_stand() {
+        let seen = |text: &str| as_seen(text).into_iter().collect::<String>();
+        assert_eq!(seen("Top Chalk, 2 m"), "Top Chalk, 2 m");
+        assert_eq!(seen("a \u{5d0}\u{5d1} \u{5d2} b \u{5d3}\u{5d4}"), "a \u{5d2} \u{5d1}\u{5d0} b \u{5d4}\u{5d3}");
+        assert_eq!(seen(""), "");
     }
 }

@@ -1,9 +1,10 @@
 //! A page as PDF (1.7): paths stay paths, text stays text, and groups are layers that a viewer switches.
 //!
-//! Groups that stand for something are optional content groups, nested as they are on the page, in the order of
-//! drawing from the top; groups of one name side by side are one. Lettering is text in the embedded glyphs that it needs ([`ttf::subset`]), each with the
-//! character that it stands for; a rim around letters is a path, so that no word is found twice. A picture is written
-//! once, its transparency as a soft mask. The file holds no time and no random number: one page gives one file.
+//! Groups that stand for something are optional content groups, nested as they are on the page, in the order of drawing
+//! from the top; groups of one name side by side are one. Lettering is text in the embedded glyphs that it needs
+//! ([`ttf::subset`]), each with the character that it stands for; a rim around letters is a path, so that no word is
+//! found twice. A picture is written once, its transparency as a soft mask. The file holds no time and no random
+//! number: one page gives one file.
 
 mod content;
 mod font;

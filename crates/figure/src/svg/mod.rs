@@ -2,9 +2,9 @@
 //!
 //! Groups that stand for something have an `id` and are layers in Inkscape (`inkscape:groupmode`), so that a reader can
 //! switch a layer or fault off. Each picture is written once, as PNG inside the file, and used where it is seen. Clips
-//! are definitions that groups refer to. The glyphs that the page needs are embedded as a font ([`ttf::subset`]), so that
-//! browsers show the same letters everywhere; programs that know no fonts in files take an installed one, in the same
-//! length. Coordinates are points to a hundredth, relative from step to step.
+//! are definitions that groups refer to. The glyphs that the page needs are embedded as a font ([`ttf::subset`]), so
+//! that browsers show the same letters everywhere; programs that know no fonts in files take an installed one, in the
+//! same length. Coordinates are points to a hundredth, relative from step to step.
 
 mod numbers;
 mod text;

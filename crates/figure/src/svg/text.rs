@@ -16,8 +16,8 @@ pub(super) fn face(into: &mut String, characters: &BTreeSet<char>) {
         let file = base64(&font_of(characters).file);
         let _ = writeln!(
             into,
-            "<style>@font-face {{ font-family: 'Ubuntu Light'; font-weight: 300; src: url('data:font/ttf;base64,{file}') \
-             format('truetype'); }}</style>"
+            "<style>@font-face {{ font-family: 'Ubuntu Light'; font-weight: 300; \
+             src: url('data:font/ttf;base64,{file}') format('truetype'); }}</style>"
         );
     }
 }
