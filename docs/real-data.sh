@@ -24,7 +24,7 @@ done
 "$petroglyph" layer set "$project" "B - C" --name "Sandstone" --pattern sandstone-bedded
 "$petroglyph" layer set "$project" "C - D" --name "Lower shale" --pattern shale-sandy
 "$petroglyph" layer set "$project" "below D" --name "Basement" --pattern granite
-for ending in png svg; do
+for ending in png svg pdf; do
     "$petroglyph" render "$project" "$pictures/claudius-block.$ending" --cut min-min,0.45,0.6 --exaggeration 2 --azimuth 35 --elevation 25 --ground off --size 1600x1100
 done
 

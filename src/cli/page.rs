@@ -27,6 +27,9 @@ pub(super) struct PageRequest {
     is_interpretation: bool,
     has_legend: bool,
     has_scale_bar: bool,
+    has_north_arrow: bool,
+    title: Option<String>,
+    caption: Option<String>,
     size_cm: Option<[f64; 2]>,
     file: Option<PathBuf>,
 }
@@ -56,6 +59,9 @@ impl PageRequest {
             is_interpretation: typed.interpretation,
             has_legend: typed.legend,
             has_scale_bar: typed.scale_bar,
+            has_north_arrow: typed.north_arrow,
+            title: typed.title,
+            caption: typed.caption,
             size_cm,
             file: typed.figure,
         };
@@ -72,7 +78,9 @@ impl PageRequest {
     /// Whether more was asked for than a picture of the block.
     fn is_page(&self) -> bool {
         let has_parts = !self.sections.is_empty() || !self.fence.is_empty() || self.map.is_some() || self.has_block;
-        let has_more = self.is_interpretation || self.has_legend || self.has_scale_bar;
+        let has_words = self.title.is_some() || self.caption.is_some();
+        let has_more =
+            self.is_interpretation || self.has_legend || self.has_scale_bar || self.has_north_arrow || has_words;
         let is_paper = self.size_cm.is_some() || self.file.is_some();
         has_parts || has_more || is_paper || self.comparison != Comparison::None
     }
@@ -107,6 +115,9 @@ impl PageRequest {
             parts,
             legend: self.has_legend,
             scale_bar: self.has_scale_bar,
+            north_arrow: self.has_north_arrow,
+            title: self.title.clone(),
+            caption: self.caption.clone(),
             interpretation: self.is_interpretation,
         })
     }

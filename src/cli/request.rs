@@ -310,12 +310,16 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         return Err(format!("--dpi {}: expected 1 to 10000", typed.dpi));
     }
     let Some(format) = FigureFormat::of(&typed.out) else {
-        return Err(format!("{}: pictures are written as .png, pictures of paths as .svg", typed.out.display()));
+        return Err(format!(
+            "{}: pictures are written as .png or .tif, pictures of paths as .svg or .pdf",
+            typed.out.display()
+        ));
     };
     let is_map = typed.technique.as_deref() == Some("map");
     Ok(RenderRequest {
-        // Paths lie on a page, also those of a block alone.
-        figure: PageRequest::meant(typed.figure, is_map)?.or_else(|| format.has_vectors().then(PageRequest::default)),
+        // All formats but PNG are written of pages, also those of a block alone.
+        figure: PageRequest::meant(typed.figure, is_map)?
+            .or_else(|| (format != FigureFormat::Png).then(PageRequest::default)),
         format,
         project: typed.project,
         out: typed.out,

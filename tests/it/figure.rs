@@ -165,9 +165,21 @@ fn a_figure_is_written_as_paths_and_text() {
     for name in ["inkscape:label=\"Alpha\"", "inkscape:label=\"above Alpha\"", "id=\"horizon-alpha\"", "</text>"] {
         assert!(svg.contains(name), "no {name}");
     }
-    // Rock is paths, not pixels: the legend's swatches are all the pictures there are.
-    let block = svg.split("inkscape:label=\"legend\"").next().unwrap();
-    assert!(!block.contains("<use") && block.matches("<path").count() > 20);
+    // Rock is paths, not pixels, in the legend, too.
+    let (block, legend) = svg.split_once("inkscape:label=\"legend\"").unwrap();
+    assert!(!svg.contains("<use") && block.matches("<path").count() > 20 && legend.matches("<path").count() > 6);
+    for out in ["a.pdf", "b.pdf"] {
+        run_in(at, &format!("render p.petro {out} {options}")).done();
+    }
+    let pdf = fs::read(at.join("a.pdf")).unwrap();
+    assert_eq!(pdf, fs::read(at.join("b.pdf")).unwrap(), "the same project gives the same bytes");
+    for name in ["%PDF-1.7", "/Name (Alpha)", "/Name (above Alpha)", "/Title (p)"] {
+        assert!(pdf.windows(name.len()).any(|bytes| bytes == name.as_bytes()), "no {name}");
+    }
+    // Pixels for print, of a block alone as well.
+    run_in(at, "render p.petro block.tif --size 90x60 --background transparent --device cpu").done();
+    let tiff = image::ImageReader::open(at.join("block.tif")).unwrap().with_guessed_format().unwrap();
+    assert_eq!(tiff.format(), Some(image::ImageFormat::Tiff));
     // With relief the ground is a picture, and the sides are still paths.
     run_in(at, "render p.petro ground.svg --size-cm 6x5 --device cpu").done();
     let ground = fs::read_to_string(at.join("ground.svg")).unwrap();
@@ -175,6 +187,12 @@ fn a_figure_is_written_as_paths_and_text() {
     // Sections, too.
     run_in(at, "render p.petro section.svg --inline 120 --size-cm 12x8 --scale-bar").done();
     assert!(fs::read_to_string(at.join("section.svg")).unwrap().contains(">Inline 120</text>"));
+    // Words of the page are found in it.
+    run_in(at, "render p.petro words.svg --size-cm 12x9 --north-arrow --title Basin --caption folded").done();
+    let words = fs::read_to_string(at.join("words.svg")).unwrap();
+    for name in [">Basin</text>", ">folded</text>", ">N</text>", "inkscape:label=\"north arrow\""] {
+        assert!(words.contains(name), "no {name}");
+    }
     assert_eq!(run_in(at, "render p.petro a.gif").code, 2);
     run_in(at, "render p.petro p.petro/inside.svg").failed(&["project"]);
     assert!(!at.join("p.petro/inside.svg").exists());

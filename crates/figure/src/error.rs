@@ -16,6 +16,9 @@ pub enum FigureError {
         /// Most pixels a side.
         most: u32,
     },
+    /// A TIFF file that its own numbers cannot address.
+    #[error("this picture is too large for a TIFF file, which holds 4 GiB; make it smaller or write a PNG")]
+    TiffSize,
     /// A page with no room for what is to be on it.
     #[error(
         "there is no room for {what} on a page of {:.1} x {:.1} cm; make the page larger, or leave legend and scale bar out",

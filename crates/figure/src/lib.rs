@@ -1,14 +1,15 @@
 //! Figures for print: sections, fences, maps and blocks, as pages that know nothing of the file they end in.
 //!
 //! [`make()`] turns what a figure shows ([`Figure`]) and borrowed data ([`FigureInputs`]) into a page, a
-//! [`DisplayList`] of paths, text and images in points. [`raster()`] draws a page in
-//! pixels, [`svg()`] writes it as vectors; the window's preview draws the same list.
+//! [`DisplayList`] of paths, text and images in points. [`raster()`] draws a page in pixels, which [`tiff()`] writes
+//! for printers, [`svg()`] and [`pdf()`] write it as vectors; the window's preview draws the same list.
 //!
 //! | module | holds |
 //! |---|---|
 //! | [`list`] | the page as data |
 //! | [`mod@raster`] | a page as pixels |
 //! | [`svg()`] | a page as an SVG document |
+//! | [`pdf()`] | a page as a PDF document |
 //! | [`cut`] | sections and fences as data: rasters and lines |
 //! | [`map`] | horizons and thicknesses as data: values, contours, hatching |
 //! | [`interpretation`] | what an interpreter sees, as borrowed data |
@@ -20,6 +21,7 @@
 //! down). Absent here: files, projects, windows, and any drawing of rock: blocks come from a
 //! [`BlockPainter`](draw::block::BlockPainter).
 
+mod compress;
 pub mod cut;
 pub mod draw;
 pub mod error;
@@ -27,6 +29,7 @@ pub mod interpretation;
 pub mod list;
 pub mod make;
 pub mod map;
+mod pdf;
 pub mod raster;
 mod rect;
 pub mod spec;
@@ -37,7 +40,8 @@ pub use cut::SectionKind;
 pub use error::FigureError;
 pub use list::DisplayList;
 pub use make::{FigureInputs, make};
-pub use raster::raster;
+pub use pdf::pdf;
+pub use raster::{raster, tiff};
 pub use rect::Rect;
 pub use spec::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
 pub use svg::svg;

@@ -9,7 +9,7 @@ use crate::draw::map::{MapPanel, title};
 use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
 use crate::draw::vector_block::BlockNames;
-use crate::draw::{NamedColour, scale};
+use crate::draw::{NamedColour, north, scale, words};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
 use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
@@ -25,6 +25,8 @@ use ttf::{Colour, LayerStyle, TextureLibrary};
 const MARGIN_PT: f64 = 8.0;
 /// Room between parts, points.
 const GAP_PT: f64 = 9.0;
+/// Least width and height of what is left for the parts, points.
+const LEAST_PT: f64 = 20.0;
 /// Share of the page that a legend may take.
 const LEGEND_SHARE: f64 = 0.36;
 /// Two parts stand beside one another where the room is broader than so many heights, else one over the other.
@@ -70,9 +72,23 @@ pub fn make(
     let legend = maker.legend();
     let mut room = list.bounds();
     // A block alone fills its page to the rim: it has its own margin.
-    let is_bare = matches!(figure.parts[..], [Part::Block(_)]) && legend.is_none() && !figure.scale_bar;
+    let has_words = figure.title.is_some() || figure.caption.is_some();
+    let has_strip = figure.scale_bar || figure.north_arrow;
+    let is_bare = matches!(figure.parts[..], [Part::Block(_)]) && legend.is_none() && !has_strip && !has_words;
     if !is_bare {
         room = room.grown(-MARGIN_PT);
+    }
+    for (said, place) in
+        [(&figure.title, words::title as fn(Rect, &str) -> (Group, Rect)), (&figure.caption, words::caption)]
+    {
+        if let Some(said) = said {
+            let (group, rest) = place(room, said);
+            list.items.push(group.into());
+            room = rest;
+        }
+    }
+    if !is_bare && room.size().min_element() < LEAST_PT {
+        return Err(maker.no_room());
     }
     if let Some(legend) = &legend {
         let width = legend.width(LEGEND_SHARE * room.width());
@@ -80,7 +96,7 @@ pub fn make(
         list.items.push(legend.drawn(right.inside([0.0, 2.0, 0.0, 0.0]))?.into());
         room = left.inside([0.0, 0.0, GAP_PT, 0.0]);
     }
-    if room.size().min_element() < 20.0 && !is_bare {
+    if !is_bare && room.size().min_element() < LEAST_PT {
         return Err(maker.no_room());
     }
     let rooms = rooms(figure.parts.len(), room);
@@ -179,7 +195,11 @@ impl<'a> Maker<'a> {
     }
 
     fn block(&self, part: &BlockPart, room: Rect, painter: &mut dyn BlockPainter) -> Result<Group, FigureError> {
-        let strip = if self.figure.scale_bar { scale::STRIP_PT } else { 0.0 };
+        let strip = match (self.figure.north_arrow, self.figure.scale_bar) {
+            (true, _) => north::SIDE_PT,
+            (false, true) => scale::STRIP_PT,
+            (false, false) => 0.0,
+        };
         let body = room.inside([0.0, 0.0, 0.0, strip]);
         if body.size().min_element() < 1.0 {
             return Err(self.no_room());
@@ -197,12 +217,19 @@ impl<'a> Maker<'a> {
                 faults: self.inputs.faults,
             },
         };
-        let (mut group, points_per_m) = panel.drawn(body, painter)?;
-        if self.figure.scale_bar {
-            let below = Rect::new(DVec2::new(room.min.x, body.max.y), room.max);
-            group.push(scale::drawn(below, Some(points_per_m), &scale::block_caption(&part.scene, self.geometry)));
+        let mut drawn = panel.drawn(body, painter)?;
+        let mut below = Rect::new(DVec2::new(room.min.x, body.max.y), room.max);
+        if self.figure.north_arrow {
+            // At the right end, so that bar and caption keep their place.
+            let left = (below.max.x - north::SIDE_PT).max(below.min.x);
+            drawn.group.push(north::drawn(Rect::new(DVec2::new(left, below.min.y), below.max), drawn.compass));
+            below.max.x = left;
         }
-        Ok(group)
+        if self.figure.scale_bar {
+            let caption = scale::block_caption(&part.scene, self.geometry);
+            drawn.group.push(scale::drawn(below, Some(drawn.points_per_m), &caption));
+        }
+        Ok(drawn.group)
     }
 
     fn section(&self, part: &SectionPart, room: Rect) -> Result<Group, FigureError> {

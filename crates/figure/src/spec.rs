@@ -36,6 +36,14 @@ pub struct Figure {
     pub legend: bool,
     /// Whether scale bars and captions stand below blocks, sections and maps. Default no.
     pub scale_bar: bool,
+    /// Whether an arrow below each block points to north as it lies in the block's middle. Default no.
+    pub north_arrow: bool,
+    /// A line above everything else.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+    /// A sentence or two below everything else.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub caption: Option<String>,
     /// Whether it shows what an interpreter sees, sheets as they were picked, instead of the model. Default no.
     pub interpretation: bool,
 }
@@ -48,6 +56,9 @@ impl Default for Figure {
             parts: Vec::new(),
             legend: false,
             scale_bar: false,
+            north_arrow: false,
+            title: None,
+            caption: None,
             interpretation: false,
         }
     }

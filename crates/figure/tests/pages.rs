@@ -10,12 +10,12 @@ use figure::{
 };
 use image::{Rgba, RgbaImage};
 use model::{ModelSettings, StructuralModel};
-use render::{FaceData, Inputs, NamedVolume, Scene};
+use render::{FaceData, Inputs, NamedVolume, Projection, Scene};
 use survey::{
     Contact, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,
     VerticalUnit, Volume,
 };
-use ttf::{Colour, ColourMap, RawColour, RgbaFunction};
+use ttf::{Colour, ColourMap, LayerStyle, RawColour, RgbaFunction, TextureLibrary};
 
 const SIZE: [usize; 3] = [31, 25, 41];
 
@@ -36,20 +36,28 @@ fn model(geometry: &SurveyGeometry) -> StructuralModel {
 }
 
 fn made(figure: &Figure) -> Result<DisplayList, FigureError> {
+    made_of(&model(&geometry()), figure, &[], None)
+}
+
+fn made_of(
+    model: &StructuralModel,
+    figure: &Figure,
+    layers: &[LayerStyle],
+    library: Option<&TextureLibrary>,
+) -> Result<DisplayList, FigureError> {
     let geometry = geometry();
-    let model = model(&geometry);
     let volume = Volume::filled(SIZE, 1.0f32);
     let volumes = [NamedVolume::whole("seismic", &volume)];
     let raw = RawColour::new("seismic", RgbaFunction::over(ColourMap::Grey, [0.0, 2.0]));
-    let data = Inputs { model: Some(&model), ..Inputs::raw(&geometry, &volumes) };
+    let data = Inputs { model: Some(model), ..Inputs::raw(&geometry, &volumes) };
     let horizons = [("Top", Colour::new(255, 0, 0)), ("Base", Colour::new(0, 0, 255))]
         .map(|(name, colour)| NamedColour { name: name.into(), colour });
     let inputs = FigureInputs {
         source: SectionSource { data, raw: Some(&raw) },
         horizons: &horizons,
         faults: &[],
-        layers: &[],
-        library: None,
+        layers,
+        library,
         interpretation: None,
     };
     let mut paint = |scene: &Scene| {
@@ -144,4 +152,95 @@ fn what_has_no_page_is_refused() {
     assert!(matches!(made(&seen), Err(FigureError::NoInterpretation)));
     let short = Part::Fence(FencePart { corners: vec![[2.0, 3.0]; 3], show: FaceData::Rock });
     assert!(matches!(made(&figure(vec![short])), Err(FigureError::ShortFence { corners: 1 })));
+}
+
+/// Numbers that look random, the same in every run (Knuth's linear congruential generator).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % limit
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.below(1001) as f64 / 1000.0
+    }
+
+    fn is_so(&mut self) -> bool {
+        self.below(2) == 1
+    }
+}
+
+/// A figure of blocks with every annotation switched by chance.
+fn random_figure(random: &mut Random) -> Figure {
+    let words = "Seen towards north-west, with a corner cut away that shows how the folded limestone ends at the fault";
+    let mut said = |most: u64| {
+        let count = random.below(most) as usize;
+        (count > 0).then(|| words.split(' ').cycle().take(count).collect::<Vec<_>>().join(" "))
+    };
+    let (title, caption) = (said(9), said(40));
+    let block = |random: &mut Random| {
+        let mut scene = Scene::default();
+        scene.camera.azimuth_deg = Some(random.between(0.0, 360.0));
+        scene.camera.elevation_deg = random.between(-80.0, 90.0);
+        if random.is_so() {
+            scene.camera.projection = Projection::Perspective { fov_deg: random.between(10.0, 70.0) };
+        }
+        scene.exaggeration = random.between(0.5, 5.0);
+        BlockPart { scene, comparison: Comparison::None }.into()
+    };
+    let count = 1 + random.below(4);
+    Figure {
+        size: PageSize::Cm([random.between(5.0, 25.0), random.between(4.0, 18.0)]),
+        dpi: 72.0,
+        parts: (0..count).map(|_| block(random)).collect(),
+        legend: random.is_so(),
+        scale_bar: random.is_so(),
+        north_arrow: random.is_so(),
+        title,
+        caption,
+        ..Figure::default()
+    }
+}
+
+#[test]
+fn no_two_labels_overlap_on_two_hundred_random_pages() {
+    let (library, model) = (TextureLibrary::builtin().unwrap(), model(&geometry()));
+    let mut random = Random(16);
+    let (mut drawn, mut labels) = (0, 0);
+    for n in 0..260 {
+        let figure = random_figure(&mut random);
+        let style = |k: u64| match format!("Layer {k} of marl and chalk") {
+            name if k == 0 => LayerStyle::textured(&name, Colour::WHITE, "shale"),
+            name => LayerStyle::plain(&name, Colour::WHITE),
+        };
+        let layers: Vec<LayerStyle> = (0..random.below(14)).map(style).collect();
+        let page = match made_of(&model, &figure, &layers, Some(&library)) {
+            Ok(page) => page,
+            Err(FigureError::NoRoom { .. }) => continue,
+            Err(error) => panic!("page {n}: {error}"),
+        };
+        drawn += 1;
+        let texts = page.texts();
+        labels += texts.len();
+        for (index, text) in texts.iter().enumerate() {
+            let bounds = lettering(text);
+            assert!(
+                page.bounds().contains(bounds.min) && page.bounds().contains(bounds.max),
+                "page {n}: {} at {bounds:?} leaves {:?}",
+                text.text,
+                page.size
+            );
+            for other in &texts[..index] {
+                assert!(!lettering(other).meets(&bounds), "page {n}: {} lies over {}", text.text, other.text);
+            }
+        }
+    }
+    assert!(drawn >= 200 && labels > 1000, "{drawn} pages, {labels} labels");
+}
+
+/// The rectangle of a text's letters.
+fn lettering(text: &Text) -> Rect {
+    text.outline().bounds().unwrap_or(Rect::new(text.at, text.at))
 }

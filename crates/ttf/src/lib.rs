@@ -31,6 +31,7 @@ mod rgba;
 mod scalar;
 mod shade;
 mod sheet;
+pub mod subset;
 mod svg;
 pub mod tables;
 pub mod text;

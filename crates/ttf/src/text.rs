@@ -3,7 +3,8 @@
 //! The face is Ubuntu Light (Ubuntu Font Licence 1.0), embedded through `epaint_default_fonts`. Glyphs are
 //! outlined by `ab_glyph` with exact area coverage, kerned, and composited on sRGB-encoded values. Text runs
 //! left to right only. A character that the face lacks is drawn as its missing-glyph box.
-//! [`outline_text`] gives the same lettering as curves, for whoever turns it, strokes it or writes it as vectors.
+//! [`outline_text`] gives the same lettering as curves, for whoever turns it, strokes it or writes it as vectors;
+//! [`crate::subset`] gives the face itself, for files that carry it along.
 
 use std::sync::OnceLock;
 
@@ -150,7 +151,8 @@ fn blend(pixel: &mut [u8; 4], colour: Colour, coverage: f32) {
     pixel[3] = (alpha * 255.0).round() as u8;
 }
 
-fn face() -> &'static FontRef<'static> {
+/// The face.
+pub(crate) fn face() -> &'static FontRef<'static> {
     static FACE: OnceLock<FontRef<'static>> = OnceLock::new();
     FACE.get_or_init(|| {
         FontRef::try_from_slice(epaint_default_fonts::UBUNTU_LIGHT)

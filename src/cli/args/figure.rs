@@ -44,6 +44,15 @@ pub(in crate::cli) struct FigureArgs {
     /// Draw scale bars and state the vertical exaggeration
     #[arg(long)]
     pub(in crate::cli) scale_bar: bool,
+    /// Draw a north arrow below the block, as it lies in the block's middle
+    #[arg(long)]
+    pub(in crate::cli) north_arrow: bool,
+    /// Title above the figure
+    #[arg(long, value_name = "TEXT")]
+    pub(in crate::cli) title: Option<String>,
+    /// Caption below the figure, broken into lines
+    #[arg(long, value_name = "TEXT")]
+    pub(in crate::cli) caption: Option<String>,
     /// Size of the page on paper, in centimetres at --dpi
     #[arg(long, value_name = "WxH", conflicts_with = "size")]
     pub(in crate::cli) size_cm: Option<String>,
@@ -53,7 +62,7 @@ pub(in crate::cli) struct FigureArgs {
         value_name = "FILE.toml",
         conflicts_with_all = [
             "inline", "crossline", "slice", "fence", "map", "block", "compare", "size_cm", "interpretation", "legend",
-            "scale_bar",
+            "scale_bar", "north_arrow", "title", "caption",
         ]
     )]
     pub(in crate::cli) figure: Option<PathBuf>,

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 pub(in crate::cli) struct RenderArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
-    /// File to write: .png for pixels, .svg for paths and text
+    /// File to write: .png or .tif for pixels, .svg or .pdf for paths and text
     pub(in crate::cli) out: PathBuf,
     /// Named scene of the project, or a TOML file [default: the project's first, else a three-quarter view]
     #[arg(long, value_name = "NAME|FILE.toml")]

@@ -132,7 +132,7 @@ pub const MAKING: [Scenario; 5] = [
 ];
 
 /// What changes horizons, faults and wells.
-pub const INTERPRETING: [Scenario; 13] = [
+pub const INTERPRETING: [Scenario; 14] = [
     of(Imported, "horizon add p.petro top.csv --name Another"),
     of(Imported, "horizon rename p.petro Top Roof"),
     of(Imported, "horizon fill p.petro Top"),

@@ -89,7 +89,7 @@ const INCH_MM: f64 = 25.4;
 /// The settings of an export.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExportForm {
-    /// File to write: .png for pixels, .svg for paths and text.
+    /// File to write: .png or .tif for pixels, .svg or .pdf for paths and text.
     pub path: String,
     /// Width and height on paper, cm.
     pub size_cm: [f64; 2],
@@ -99,6 +99,12 @@ pub struct ExportForm {
     pub legend: Shown,
     /// Draw a scale bar below the block.
     pub scale_bar: Shown,
+    /// Draw a north arrow below the block.
+    pub north_arrow: Shown,
+    /// A line above the picture; empty: none.
+    pub title: String,
+    /// A sentence or two below the picture; empty: none.
+    pub caption: String,
 }
 
 /// Whether the page has a part such as a legend.
@@ -113,7 +119,16 @@ pub enum Shown {
 impl ExportForm {
     /// The defaults: a third of a page in print quality.
     pub fn new(path: String) -> Self {
-        Self { path, size_cm: [16.0, 11.0], dpi: 300.0, legend: Shown::Yes, scale_bar: Shown::Yes }
+        Self {
+            path,
+            size_cm: [16.0, 11.0],
+            dpi: 300.0,
+            legend: Shown::Yes,
+            scale_bar: Shown::Yes,
+            north_arrow: Shown::No,
+            title: String::new(),
+            caption: String::new(),
+        }
     }
 
     /// Size in pixels.

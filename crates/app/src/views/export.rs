@@ -27,7 +27,7 @@ pub fn show(
         Grid::new("export").num_columns(2).spacing([14.0, 10.0]).show(ui, |ui| {
             let label = ui.label("File");
             let field = ui.add(TextEdit::singleline(&mut next.path).desired_width(300.0)).labelled_by(label.id);
-            field.on_hover_text("A name that ends in .png gives pixels, in .svg paths and text");
+            field.on_hover_text("A name that ends in .png or .tif gives pixels, in .svg or .pdf paths and text");
             ui.end_row();
             ui.label("Size");
             ui.horizontal(|ui| {
@@ -42,12 +42,18 @@ pub fn show(
             let drag = DragValue::new(&mut next.dpi).speed(5.0).range(36.0..=1200.0).max_decimals(0).suffix(" dpi");
             ui.add(drag).labelled_by(label.id);
             ui.end_row();
+            for (name, words) in [("Title", &mut next.title), ("Caption", &mut next.caption)] {
+                let label = ui.label(name);
+                ui.add(TextEdit::singleline(words).desired_width(300.0)).labelled_by(label.id);
+                ui.end_row();
+            }
             ui.label("With");
             ui.vertical(|ui| {
                 let has_layers = !session.document.horizons.is_empty();
                 for (shown, name, can) in [
                     (&mut next.legend, "Legend", has_layers),
                     (&mut next.scale_bar, "Scale bar and exaggeration", true),
+                    (&mut next.north_arrow, "North arrow", true),
                 ] {
                     let mut is_shown = *shown == Shown::Yes;
                     if ui.add_enabled(can, eframe::egui::Checkbox::new(&mut is_shown, name)).changed() {
@@ -70,7 +76,7 @@ pub fn show(
         }
         let has_format = FigureFormat::of(Path::new(next.path.trim())).is_some();
         if !has_format {
-            ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png or .svg");
+            ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
         }
         ui.horizontal(|ui| {
             let can = !is_drawing && !is_too_large && has_format;

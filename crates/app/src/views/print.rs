@@ -49,6 +49,9 @@ impl Page {
             parts: parts(session, geometry, overlay, sections, mapped),
             legend: form.legend == Shown::Yes,
             scale_bar: form.scale_bar == Shown::Yes,
+            north_arrow: form.north_arrow == Shown::Yes,
+            title: said(&form.title),
+            caption: said(&form.caption),
             interpretation: is_interpreting,
         };
         let view = interpreter_view(session, overlay.selected());
@@ -78,6 +81,11 @@ impl Page {
             figures::write(&made.page, format, path, self.figure.dpi, &figures::title(&project))
         })
     }
+}
+
+/// Words that were typed; `None` of a field that was left empty.
+fn said(words: &str) -> Option<String> {
+    Some(words.trim().to_owned()).filter(|words| !words.is_empty())
 }
 
 /// The views on the screen as parts of a figure, in the order of the page.

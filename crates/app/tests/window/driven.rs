@@ -284,7 +284,7 @@ fn a_picture_is_exported_as_paths_by_its_files_name() {
     };
     name(&mut harness, "out.gif");
     assert!(harness.get_by_label("Export").accesskit_node().is_disabled());
-    harness.get_by_label("The file's name must end in .png or .svg");
+    harness.get_by_label("The file's name must end in .png, .tif, .svg or .pdf");
     click(&mut harness, "Cancel");
     let path = name(&mut harness, "out.svg");
     click(&mut harness, "Export");

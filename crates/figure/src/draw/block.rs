@@ -1,5 +1,6 @@
 //! The block on a page: one picture or two compared, surfaces and sticks before them, and which is which.
 
+use super::north;
 use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};
 use super::vector_block::{self, BlockNames};
@@ -126,14 +127,25 @@ pub struct BlockPanel<'a> {
     pub names: BlockNames<'a>,
 }
 
+/// A block on its page.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnBlock {
+    /// What is drawn.
+    pub group: Group,
+    /// The scale on paper in the block's middle, points a metre.
+    pub points_per_m: f64,
+    /// East and north in the block's middle ([`north::compass`]).
+    pub compass: [DVec2; 2],
+}
+
 impl BlockPanel<'_> {
-    /// The panel in its room, and the scale on paper in its middle, points a metre.
+    /// The panel in its room, with what holds in the block's middle.
     ///
     /// # Errors
     /// What the painter says.
-    pub fn drawn(&self, room: Rect, painter: &mut dyn BlockPainter) -> Result<(Group, f64), FigureError> {
+    pub fn drawn(&self, room: Rect, painter: &mut dyn BlockPainter) -> Result<DrawnBlock, FigureError> {
         let mut group = Group::new(GroupKind::Panel, "block");
-        let mut points_per_m = 0.0;
+        let (mut points_per_m, mut compass) = (0.0, [DVec2::ZERO; 2]);
         let blends = self.comparison.blends();
         for (index, pane) in self.comparison.panes(room).into_iter().enumerate() {
             let pane = self.on_pixels(pane);
@@ -162,11 +174,12 @@ impl BlockPanel<'_> {
             group.push(shown);
             let middle = scene.box_in(self.geometry).centre();
             points_per_m = pixels_per_metre(&view, middle) * POINTS_PER_INCH / self.dpi;
+            compass = north::compass(&view, self.geometry, middle);
         }
         if let Some(blends) = blends {
             group.push(self.rule(room, blends));
         }
-        Ok((group, points_per_m))
+        Ok(DrawnBlock { group, points_per_m, compass })
     }
 
     /// The rectangle with its sides on pixels, so that a picture is not sampled again.
@@ -273,10 +286,10 @@ mod tests {
             Ok(RgbaImage::new(scene.size_px[0], scene.size_px[1]))
         };
         let room = Rect::sized(DVec2::new(0.26, 0.0), DVec2::new(100.0, 40.0));
-        let (group, scale) = panel.drawn(room, &mut paint).unwrap();
+        let drawn = panel.drawn(room, &mut paint).unwrap();
         assert_eq!(asked, [([100, 80], 0.0), ([100, 80], 1.0)]);
-        assert!(scale > 0.0);
-        assert_eq!(group.items.len(), 3);
+        assert!(drawn.points_per_m > 0.0);
+        assert_eq!(drawn.group.items.len(), 3);
     }
 
     #[test]

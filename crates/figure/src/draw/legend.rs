@@ -91,12 +91,17 @@ fn horizon(named: &NamedColour, place: Rect) -> Group {
 /// An entry of a layer in its place: a row of the legend.
 fn layer(style: &LayerStyle, library: &TextureLibrary, place: Rect, dpi: f64) -> Result<Group, FigureError> {
     let rect = Rect::sized(place.min, DVec2::new(SWATCH_PT[0], SWATCH_PT[1].min(0.8 * place.height())));
-    let px_per_pt = dpi / crate::list::POINTS_PER_INCH;
-    let size_px = [rect.width(), rect.height()].map(|side| (side * px_per_pt).round().max(2.0) as u32);
-    let drawn = swatch::draw(style, library, size_px, (px_per_pt * POINTS_PER_MM) as f32)?;
+    let swatch = match swatch::items(style, library, rect)? {
+        Some(items) => items,
+        None => {
+            let px_per_pt = dpi / crate::list::POINTS_PER_INCH;
+            let size_px = [rect.width(), rect.height()].map(|side| (side * px_per_pt).round().max(2.0) as u32);
+            let drawn = swatch::draw(style, library, size_px, (px_per_pt * POINTS_PER_MM) as f32)?;
+            vec![Picture::in_rect(drawn, rect).into()]
+        }
+    };
     let middle = DVec2::new(rect.max.x, rect.centre().y);
-    Ok(Group::new(GroupKind::Layer, &style.layer).with([
-        Picture::in_rect(drawn, rect).into(),
+    Ok(Group::new(GroupKind::Layer, &style.layer).with(swatch).with([
         PathItem::stroked(Path::rect(rect), Stroke::new(FRAME_PT, INK)).into(),
         name(&style.layer, middle, place, place.height()).into(),
     ]))

@@ -7,12 +7,14 @@ pub mod axes;
 pub mod block;
 pub mod legend;
 pub mod map;
+pub mod north;
 pub mod overlay;
 pub mod scale;
 pub mod section;
 pub mod surfaces;
 pub mod swatch;
 pub mod vector_block;
+pub mod words;
 
 use ttf::Colour;
 

@@ -1,6 +1,6 @@
 //! Scale bars, and what a reader must know to read lengths.
 
-use crate::list::{Across, Group, GroupKind, Path, PathItem, Text, Upright};
+use crate::list::{Across, Group, GroupKind, Path, PathItem, Text, Upright, width_of};
 use crate::style::{INK, NUMBER_PT, QUIET_INK, TEXT_PT};
 use crate::{Rect, list::Stroke};
 use glam::DVec2;
@@ -26,16 +26,19 @@ pub fn length_text(length_m: f64) -> String {
     if length_m >= 1000.0 { format!("{} km", length_m / 1000.0) } else { format!("{length_m} m") }
 }
 
-/// A bar of a round length at the left of a strip, and a caption beside it. `points_per_m` is the scale on
-/// paper; without one there is the caption alone.
+/// A bar of a round length at the left of a strip that is wide enough for its numbers, and a caption beside it.
+/// `points_per_m` is the scale on paper; without one there is the caption alone.
 pub fn drawn(strip: Rect, points_per_m: Option<f64>, caption: &str) -> Group {
     let mut group = Group::new(GroupKind::Annotation, "scale bar");
     let mut left = strip.min.x;
     let y = strip.min.y + 7.0;
     let longest_m = points_per_m.map(|scale| (SHARE * strip.width() / scale, scale));
-    if let Some((longest_m, scale)) = longest_m.filter(|(longest, _)| *longest > 0.0 && longest.is_finite()) {
+    let bar = longest_m.filter(|(longest, _)| *longest > 0.0 && longest.is_finite()).map(|(longest_m, scale)| {
         let length_m = round_length(longest_m);
-        let length = length_m * scale;
+        // Under a short bar the number begins where the 0 has ended.
+        (length_m, length_m * scale, (length_m * scale).max(8.0 + width_of(&length_text(length_m), NUMBER_PT)))
+    });
+    if let Some((length_m, length, room)) = bar.filter(|(.., room)| *room <= strip.width()) {
         // Two halves, one filled: the eye halves lengths by itself, and the bar prints on any ground.
         let bar = Rect::sized(DVec2::new(left, y - 0.5 * BAR_PT), DVec2::new(length, BAR_PT));
         group.push(PathItem::filled(Path::rect(bar), ttf::Colour::WHITE).outlined(Stroke::new(0.5, INK)));
@@ -43,11 +46,8 @@ pub fn drawn(strip: Rect, points_per_m: Option<f64>, caption: &str) -> Group {
         let at = |x: f64| DVec2::new(x, bar.max.y + 3.0);
         let number = |x: f64, text: String| Text::new(at(x), text).sized(NUMBER_PT).inked(INK);
         group.push(number(left, "0".into()).anchored(Across::Start, Upright::Top));
-        let end = number(left + length, length_text(length_m));
-        let width = end.width();
-        // Under a short bar the number begins where the 0 has ended.
-        let room = length.max(8.0 + width);
-        group.push(Text { at: at(left + room), ..end }.anchored(Across::End, Upright::Top));
+        let end = number(left + room, length_text(length_m));
+        group.push(end.anchored(Across::End, Upright::Top));
         left += room + 14.0;
     }
     if !caption.is_empty() {

@@ -9,14 +9,17 @@
 mod path;
 mod picture;
 mod text;
+mod vectors;
 
 pub use path::{Cap, Ink, Path, PathItem, Rule, Segment, Stroke};
 pub use picture::{Picture, Sampling};
 pub use text::{Across, Anchor, Halo, Text, Upright, width_of};
+pub(crate) use vectors::{KnownPictures, VectorWriter, png, write_vectors};
 
 use crate::Rect;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// Points in an inch.
 pub const POINTS_PER_INCH: f64 = 72.0;
@@ -81,6 +84,12 @@ impl DisplayList {
             _ => None,
         });
         texts.collect()
+    }
+
+    /// The characters of all texts that are not blank.
+    pub(crate) fn characters(&self) -> BTreeSet<char> {
+        let said = self.texts().into_iter().filter(|text| !text.text.trim().is_empty());
+        said.flat_map(|text| text.text.chars()).collect()
     }
 }
 

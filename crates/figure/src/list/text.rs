@@ -1,11 +1,11 @@
 //! Lines of text: where they stand, and the room they take.
 
-use super::Ink;
+use super::{Ink, Path, Segment, Stroke};
 use crate::Rect;
 use crate::style::INK;
 use glam::DVec2;
 use serde::{Deserialize, Serialize};
-use ttf::text::measure_text;
+use ttf::text::{TextCurve, measure_text, outline_text};
 
 /// Share of the font size that capital letters are high: what is centred upright is centred on them.
 const CAPITALS: f64 = 0.69;
@@ -169,16 +169,54 @@ impl Text {
         self.at + DVec2::new(left, down)
     }
 
+    /// The left end of its baseline on the page, and the direction in which it is read.
+    pub fn baseline(&self) -> (DVec2, DVec2) {
+        let turn = DVec2::from_angle(self.turn_deg.to_radians());
+        (self.at + turn.rotate(self.baseline_start() - self.at), turn)
+    }
+
+    /// The contours of its letters, to be filled by the non-zero rule.
+    pub fn outline(&self) -> Path {
+        let (start, turn) = self.baseline();
+        let place = |p: [f32; 2]| start + turn.rotate(DVec2::new(f64::from(p[0]), f64::from(p[1])));
+        let mut path = Path::default();
+        let mut end = None;
+        for curve in outline_text(self.size as f32, &self.text) {
+            let (first, segment) = match curve {
+                TextCurve::Line([a, b]) => (a, Segment::Line(place(b))),
+                TextCurve::Quad([a, b, c]) => {
+                    // The same curve as a cubic one.
+                    let (from, control, to) = (place(a), place(b), place(c));
+                    (a, Segment::Cubic(from.lerp(control, 2.0 / 3.0), to.lerp(control, 2.0 / 3.0), to))
+                }
+                TextCurve::Cubic([a, b, c, d]) => (a, Segment::Cubic(place(b), place(c), place(d))),
+            };
+            let last = match curve {
+                TextCurve::Line([.., last]) | TextCurve::Quad([.., last]) | TextCurve::Cubic([.., last]) => last,
+            };
+            if end != Some(first) {
+                path.segments.push(Segment::Move(place(first)));
+            }
+            path.segments.push(segment);
+            end = Some(last);
+        }
+        path
+    }
+
+    /// Its halo as a stroke of its contours; absent without one.
+    pub(crate) fn rim(&self) -> Option<(Path, Stroke)> {
+        let halo = self.halo?;
+        Some((self.outline(), Stroke::new(2.0 * halo.width, halo.ink).round()))
+    }
+
     /// The corners of its room from ascenders to descenders, turned: upper left, upper right, lower right,
     /// lower left.
     pub fn corners(&self) -> [DVec2; 4] {
         let extent = measure_text(self.size as f32, &self.text);
-        let start = self.baseline_start() - self.at;
-        let (top, bottom) = (start.y - f64::from(extent.ascent_px), start.y + f64::from(extent.descent_px));
-        let (left, right) = (start.x, start.x + f64::from(extent.width_px));
-        let turn = DVec2::from_angle(self.turn_deg.to_radians());
-        [[left, top], [right, top], [right, bottom], [left, bottom]]
-            .map(|p| self.at + turn.rotate(DVec2::from_array(p)))
+        let (start, turn) = self.baseline();
+        let (top, bottom) = (-f64::from(extent.ascent_px), f64::from(extent.descent_px));
+        let right = f64::from(extent.width_px);
+        [[0.0, top], [right, top], [right, bottom], [0.0, bottom]].map(|p| start + turn.rotate(DVec2::from_array(p)))
     }
 
     /// The smallest upright rectangle around it and its halo.

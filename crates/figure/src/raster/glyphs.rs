@@ -1,6 +1,6 @@
 //! Letters: covered exactly, pixel by pixel, whatever their turn.
 
-use crate::list::{Cap, Ink, Path, Segment, Stroke, Text};
+use crate::list::{Ink, Text};
 use ab_glyph_rasterizer::{Rasterizer, point};
 use glam::DVec2;
 use tiny_skia::{Mask, Paint, PixmapMut};
@@ -68,26 +68,9 @@ impl Lettering {
 
 /// The rim around letters, as a stroke of their contours.
 pub(super) fn halo(text: &Text, scale: f64) -> Option<(tiny_skia::Path, tiny_skia::Stroke, Paint<'static>)> {
-    let halo = text.halo?;
-    let mut path = Path::default();
-    let mut end: Option<[f64; 2]> = None;
-    for curve in curves_px(text, scale) {
-        let corners = places(&curve);
-        if end != Some(corners[0]) {
-            path.segments.push(Segment::Move(DVec2::from_array(corners[0])));
-        }
-        let at = |n: usize| DVec2::from_array(corners[n]);
-        path.segments.push(match curve {
-            CurvePx::Line(_) => Segment::Line(at(1)),
-            // The same curve as a cubic one.
-            CurvePx::Quad(_) => Segment::Cubic(at(0).lerp(at(1), 2.0 / 3.0), at(2).lerp(at(1), 2.0 / 3.0), at(2)),
-            CurvePx::Cubic(_) => Segment::Cubic(at(1), at(2), at(3)),
-        });
-        end = corners.last().copied();
-    }
-    let stroke = Stroke { cap: Cap::Round, ..Stroke::new(2.0 * halo.width, halo.ink) };
+    let (path, stroke) = text.rim()?;
     let (drawn, paint) = super::paths::stroke(&stroke, scale)?;
-    Some((super::paths::trace(&path, 1.0)?, drawn, paint))
+    Some((super::paths::trace(&path, scale)?, drawn, paint))
 }
 
 /// A piece of a contour in pixels of the page.
@@ -106,11 +89,8 @@ fn places(curve: &CurvePx) -> &[[f64; 2]] {
 }
 
 fn curves_px(text: &Text, scale: f64) -> Vec<CurvePx> {
-    let (start, turn) = (text.baseline_start() - text.at, DVec2::from_angle(text.turn_deg.to_radians()));
-    let place = |p: [f32; 2]| {
-        let flat = start + DVec2::new(f64::from(p[0]), f64::from(p[1]));
-        ((text.at + turn.rotate(flat)) * scale).to_array()
-    };
+    let (start, turn) = text.baseline();
+    let place = |p: [f32; 2]| ((start + turn.rotate(DVec2::new(f64::from(p[0]), f64::from(p[1])))) * scale).to_array();
     let curve = |curve: TextCurve| match curve {
         TextCurve::Line(places) => CurvePx::Line(places.map(place)),
         TextCurve::Quad(places) => CurvePx::Quad(places.map(place)),

@@ -10,6 +10,9 @@ mod paths;
 mod pictures;
 #[cfg(test)]
 mod tests;
+mod tiff;
+
+pub use tiff::tiff;
 
 use crate::error::FigureError;
 use crate::list::{DisplayList, Group, Item, POINTS_PER_INCH, Picture};

@@ -2,17 +2,22 @@
 //!
 //! Groups that stand for something have an `id` and are layers in Inkscape (`inkscape:groupmode`), so that a reader can
 //! switch a layer or fault off. Each picture is written once, as PNG inside the file, and used where it is seen. Clips
-//! are definitions that groups refer to. Coordinates are points to a hundredth, relative from step to step.
+//! are definitions that groups refer to. The glyphs that the page needs are embedded as a font ([`ttf::subset`]), so
+//! that browsers show the same letters everywhere; programs that know no fonts in files take an installed one, in the
+//! same length. Coordinates are points to a hundredth, relative from step to step.
 
 mod numbers;
 mod text;
 
 use crate::error::FigureError;
-use crate::list::{Cap, DisplayList, Group, GroupKind, Ink, Item, Path, PathItem, Picture, Rule, Sampling, Stroke};
+use crate::list::{
+    Cap, DisplayList, Group, GroupKind, Ink, KnownPictures, PathItem, Picture, Rule, Sampling, Stroke, Text,
+    VectorWriter, png, write_vectors,
+};
+use image::RgbaImage;
 use numbers::{decimals, number, steps};
 use std::collections::HashMap;
 use std::fmt::Write;
-use std::sync::Arc;
 use text::{escaped, text};
 
 /// Writes a page as an SVG document; `title` is what readers announce.
@@ -34,13 +39,8 @@ use text::{escaped, text};
 /// A picture that cannot be encoded.
 pub fn svg(list: &DisplayList, title: &str) -> Result<String, FigureError> {
     let mut writer = Writer::default();
-    if let Some(paper) = list.paper {
-        let rect = PathItem::filled(Path::rect(list.bounds()), paper);
-        writer.path(&rect);
-    }
-    for item in &list.items {
-        writer.item(item)?;
-    }
+    text::face(&mut writer.definitions, &list.characters());
+    write_vectors(list, &mut writer)?;
     let [width, height] = [number(list.size.x), number(list.size.y)];
     let Writer { body, definitions, .. } = writer;
     let mut svg = String::with_capacity(body.len() + definitions.len() + 1000);
@@ -63,30 +63,16 @@ pub fn svg(list: &DisplayList, title: &str) -> Result<String, FigureError> {
 #[derive(Default)]
 struct Writer {
     body: String,
-    /// Clips and pictures.
+    /// The face, clips and pictures.
     definitions: String,
     clips: usize,
     /// How often each name of a group was used.
     names: HashMap<String, usize>,
-    /// Pictures that are defined, by address, and their numbers.
-    pictures: HashMap<(usize, Sampling), usize>,
+    pictures: KnownPictures,
 }
 
-impl Writer {
-    fn item(&mut self, item: &Item) -> Result<(), FigureError> {
-        match item {
-            Item::Group(group) => self.group(group)?,
-            Item::Path(path) => self.path(path),
-            Item::Text(line) => text(&mut self.body, line),
-            Item::Picture(picture) => self.picture(picture)?,
-        }
-        Ok(())
-    }
-
-    fn group(&mut self, group: &Group) -> Result<(), FigureError> {
-        if group.items.is_empty() {
-            return Ok(());
-        }
+impl VectorWriter for Writer {
+    fn begin(&mut self, group: &Group) {
         self.body.push_str("<g");
         if group.kind != GroupKind::Part {
             let id = self.id(group);
@@ -104,13 +90,60 @@ impl Writer {
             let _ = write!(self.body, " clip-path=\"url(#clip-{})\"", self.clips);
         }
         self.body.push_str(">\n");
-        for item in &group.items {
-            self.item(item)?;
-        }
-        self.body.push_str("</g>\n");
-        Ok(())
     }
 
+    fn end(&mut self, _: &Group) {
+        self.body.push_str("</g>\n");
+    }
+
+    fn path(&mut self, item: &PathItem) {
+        let _ = write!(self.body, "<path d=\"{}\"", steps(&item.path));
+        match item.fill {
+            Some(ink) => {
+                attribute(&mut self.body, "fill", ink);
+                if item.rule == Rule::EvenOdd {
+                    self.body.push_str(" fill-rule=\"evenodd\"");
+                }
+            }
+            None => self.body.push_str(" fill=\"none\""),
+        }
+        if let Some(stroke) = &item.stroke {
+            self.stroke(stroke);
+        }
+        self.body.push_str("/>\n");
+    }
+
+    fn text(&mut self, line: &Text) {
+        text(&mut self.body, line);
+    }
+
+    /// A picture: a square of one unit, laid on its parallelogram.
+    fn picture(&mut self, picture: &Picture) -> Result<(), FigureError> {
+        let (known, is_new) = self.pictures.number(picture);
+        let number = known + 1;
+        if is_new {
+            let png = base64(&png(&RgbaImage::clone(&picture.pixels).into())?);
+            let rendering = match picture.sampling {
+                Sampling::Smooth => "",
+                Sampling::Nearest => " image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\"",
+            };
+            let _ = writeln!(
+                self.definitions,
+                "<image id=\"picture-{number}\" width=\"1\" height=\"1\" preserveAspectRatio=\"none\"{rendering} \
+                 href=\"data:image/png;base64,{png}\"/>"
+            );
+        }
+        let matrix = [picture.right.x, picture.right.y, picture.down.x, picture.down.y]
+            .into_iter()
+            .chain([picture.corner.x, picture.corner.y])
+            .map(|part| format!("{part:.4}"));
+        let matrix = matrix.collect::<Vec<_>>().join(" ");
+        let _ = writeln!(self.body, "<use href=\"#picture-{number}\" transform=\"matrix({matrix})\"/>");
+        Ok(())
+    }
+}
+
+impl Writer {
     /// An identifier from the kind and name of a group, with a number where it was used before.
     fn id(&mut self, group: &Group) -> String {
         let kind = match group.kind {
@@ -131,27 +164,6 @@ impl Writer {
         if *used == 1 { id } else { format!("{id}-{used}") }
     }
 
-    fn path(&mut self, item: &PathItem) {
-        let steps = steps(&item.path);
-        if steps.is_empty() || (item.fill.is_none() && item.stroke.is_none()) {
-            return;
-        }
-        let _ = write!(self.body, "<path d=\"{steps}\"");
-        match item.fill {
-            Some(ink) => {
-                attribute(&mut self.body, "fill", ink);
-                if item.rule == Rule::EvenOdd {
-                    self.body.push_str(" fill-rule=\"evenodd\"");
-                }
-            }
-            None => self.body.push_str(" fill=\"none\""),
-        }
-        if let Some(stroke) = &item.stroke {
-            self.stroke(stroke);
-        }
-        self.body.push_str("/>\n");
-    }
-
     fn stroke(&mut self, stroke: &Stroke) {
         attribute(&mut self.body, "stroke", stroke.ink);
         let _ = write!(self.body, " stroke-width=\"{}\" stroke-linejoin=\"round\"", number(stroke.width));
@@ -163,36 +175,6 @@ impl Writer {
             let _ = write!(self.body, " stroke-dasharray=\"{}\"", dashes.join(" "));
         }
     }
-
-    /// A picture: a square of one unit, laid on its parallelogram.
-    fn picture(&mut self, picture: &Picture) -> Result<(), FigureError> {
-        let key = (Arc::as_ptr(&picture.pixels) as usize, picture.sampling);
-        let known = self.pictures.len() + 1;
-        let number = match self.pictures.get(&key) {
-            Some(number) => *number,
-            None => {
-                let png = base64(&png(picture)?);
-                let rendering = match picture.sampling {
-                    Sampling::Smooth => "",
-                    Sampling::Nearest => " image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\"",
-                };
-                let _ = writeln!(
-                    self.definitions,
-                    "<image id=\"picture-{known}\" width=\"1\" height=\"1\" preserveAspectRatio=\"none\"{rendering} \
-                     href=\"data:image/png;base64,{png}\"/>"
-                );
-                self.pictures.insert(key, known);
-                known
-            }
-        };
-        let matrix = [picture.right.x, picture.right.y, picture.down.x, picture.down.y]
-            .into_iter()
-            .chain([picture.corner.x, picture.corner.y])
-            .map(|part| format!("{part:.4}"));
-        let matrix = matrix.collect::<Vec<_>>().join(" ");
-        let _ = writeln!(self.body, "<use href=\"#picture-{number}\" transform=\"matrix({matrix})\"/>");
-        Ok(())
-    }
 }
 
 /// A colour, and its opacity where it is not opaque.
@@ -202,12 +184,6 @@ fn attribute(into: &mut String, what: &str, ink: Ink) {
     if ink.opacity < 1.0 {
         let _ = write!(into, " {what}-opacity=\"{}\"", decimals(f64::from(ink.opacity), 3));
     }
-}
-
-fn png(picture: &Picture) -> Result<Vec<u8>, FigureError> {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    picture.pixels.write_to(&mut bytes, image::ImageFormat::Png).map_err(FigureError::Encode)?;
-    Ok(bytes.into_inner())
 }
 
 /// Base64 with padding (RFC 4648).

@@ -2,10 +2,11 @@
 
 use super::*;
 use crate::Rect;
-use crate::list::{Text, Upright};
+use crate::list::{Path, Upright};
 use glam::DVec2;
 use image::{Rgba, RgbaImage};
 use resvg::{tiny_skia, usvg};
+use std::sync::Arc;
 use ttf::Colour;
 
 fn rect(low: [f64; 2], high: [f64; 2]) -> Rect {
@@ -72,6 +73,19 @@ fn a_page_without_paper_is_transparent() {
 }
 
 #[test]
+fn what_draws_nothing_is_left_out() {
+    let mut page = DisplayList { paper: None, ..DisplayList::new(DVec2::splat(50.0)) };
+    let line = |end: DVec2| Path::line(&[DVec2::ZERO, end]);
+    page.items.push(PathItem::stroked(line(DVec2::new(f64::NAN, 1.0)), Stroke::new(1.0, Ink::BLACK)).into());
+    page.items.push(PathItem::stroked(line(DVec2::ONE), Stroke::new(0.0, Ink::BLACK)).into());
+    page.items.push(Text::new(DVec2::ZERO, " ").into());
+    page.items.push(Group::new(GroupKind::Layer, "empty").into());
+    assert!(svg(&page, "t").unwrap().ends_with("<title>t</title>\n</svg>\n"));
+    page.items.push(PathItem::stroked(line(DVec2::ONE), Stroke::new(1.0, Ink::BLACK)).into());
+    assert!(svg(&page, "t").unwrap().contains("<path"));
+}
+
+#[test]
 fn names_are_labels_as_they_are_and_identifiers_once() {
     let mut page = DisplayList::new(DVec2::splat(50.0));
     for name in ["Top <Chalk> & \"co\"", "top chalk co", "白垩", "الطباشير"] {
@@ -104,6 +118,19 @@ fn text_stays_text() {
     assert_eq!(text.attribute("transform"), Some("rotate(-90 25 25)"));
     let x: f64 = text.attribute("x").unwrap().parse().unwrap();
     assert!((x - (25.0 - line.width())).abs() < 0.006);
+}
+
+#[test]
+fn letters_come_with_the_page() {
+    let mut page = DisplayList::new(DVec2::splat(50.0));
+    assert!(!svg(&page, "t").unwrap().contains("@font-face"));
+    page.items.push(Text::new(DVec2::splat(20.0), "Chalk").into());
+    let svg = svg(&page, "t").unwrap();
+    let document = usvg::roxmltree::Document::parse(&svg).unwrap();
+    let style = document.descendants().find(|node| node.has_tag_name("style")).unwrap().text().unwrap();
+    let file = style.split("base64,").nth(1).unwrap().split('\'').next().unwrap();
+    // A TrueType font with the box and five letters: version 1.0, ten tables.
+    assert!(file.starts_with(&base64(&[0, 1, 0, 0, 0, 10])) && file.len() < 6000, "{}", file.len());
 }
 
 #[test]

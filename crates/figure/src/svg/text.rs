@@ -1,18 +1,29 @@
 //! Lines of text, which stay text.
 
-use super::attribute;
 use super::numbers::number;
+use super::{attribute, base64};
 use crate::list::Text;
+use std::collections::BTreeSet;
 use std::fmt::Write;
+use ttf::subset::font_of;
 
 /// The face by name, and what stands in for it where it is not installed.
 const FAMILY: &str = "'Ubuntu Light', Ubuntu, 'DejaVu Sans', sans-serif";
 
+/// Adds the face with these characters; nothing without any.
+pub(super) fn face(into: &mut String, characters: &BTreeSet<char>) {
+    if !characters.is_empty() {
+        let file = base64(&font_of(characters).file);
+        let _ = writeln!(
+            into,
+            "<style>@font-face {{ font-family: 'Ubuntu Light'; font-weight: 300; \
+             src: url('data:font/ttf;base64,{file}') format('truetype'); }}</style>"
+        );
+    }
+}
+
 /// Adds a line of text: its left end on its baseline, at the length that the page gives it.
 pub(super) fn text(into: &mut String, line: &Text) {
-    if line.text.trim().is_empty() {
-        return;
-    }
     let start = line.baseline_start();
     let _ = write!(
         into,

@@ -15,8 +15,12 @@ use store::Replacement;
 pub enum FigureFormat {
     /// Pixels.
     Png,
-    /// Paths and text.
+    /// Pixels, to print.
+    Tiff,
+    /// Paths and text, to edit and for the web.
     Svg,
+    /// Paths and text, to print.
+    Pdf,
 }
 
 impl FigureFormat {
@@ -31,14 +35,16 @@ impl FigureFormat {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
             "png" => Some(Self::Png),
+            "tif" | "tiff" => Some(Self::Tiff),
             "svg" => Some(Self::Svg),
+            "pdf" => Some(Self::Pdf),
             _ => None,
         }
     }
 
     /// Whether a figure in this format is made of paths.
     pub fn has_vectors(self) -> bool {
-        self != Self::Png
+        matches!(self, Self::Svg | Self::Pdf)
     }
 }
 
@@ -57,16 +63,19 @@ pub fn title(project: &Project) -> String {
 pub fn write(page: &DisplayList, format: FigureFormat, path: &Path, dpi: f64, title: &str) -> Result<(), ProjectError> {
     match format {
         FigureFormat::Png => write_png(path, &figure::raster(page, dpi)?, dpi),
-        FigureFormat::Svg => {
-            folder::refuse_inside_project(path)?;
-            let text = figure::svg(page, title)?;
-            let replacement = Replacement::of(path)?;
-            let written = File::create(replacement.path()).and_then(|mut file| {
-                file.write_all(text.as_bytes())?;
-                file.sync_all()
-            });
-            written.map_err(|source| ProjectError::io("written", path, source))?;
-            Ok(replacement.commit()?)
-        }
+        FigureFormat::Tiff => write_bytes(path, &figure::tiff(&figure::raster(page, dpi)?, dpi)?),
+        FigureFormat::Svg => write_bytes(path, figure::svg(page, title)?.as_bytes()),
+        FigureFormat::Pdf => write_bytes(path, &figure::pdf(page, title)?),
     }
+}
+
+fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), ProjectError> {
+    folder::refuse_inside_project(path)?;
+    let replacement = Replacement::of(path)?;
+    let written = File::create(replacement.path()).and_then(|mut file| {
+        file.write_all(bytes)?;
+        file.sync_all()
+    });
+    written.map_err(|source| ProjectError::io("written", path, source))?;
+    Ok(replacement.commit()?)
 }
