@@ -87,7 +87,7 @@ ATTACKS = hostile:: foreign:: check:: steps:: bombs:: sources:: kill:: safety:: 
 attack: export XDG_STATE_HOME = $(CURDIR)/target/state
 attack: setup
 	cargo test --locked --test it -- $(ATTACKS)
-	cargo test --locked --lib -p petroglyph-project -p petroglyph-store -p petroglyph-survey -p petroglyph-app -- $(ATTACKS_ON_CRATES)
+	cargo test --locked --workspace --lib -- $(ATTACKS_ON_CRATES)
 	PETROGLYPH_MEMORY_SIDE=256 cargo test --locked --test it -- --nocapture memory::
 
 # The same inputs each time, so that a change fails by its own fault alone.

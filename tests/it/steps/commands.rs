@@ -1,7 +1,7 @@
 //! The commands that change files, each with the small folder that it begins in.
 //!
-//! A test compares them with what the program's help lists: no command can be forgotten. Three are left out, which take
-//! seconds for each run and write by what others here write by ([`ELSEWHERE`]).
+//! A test compares them with what the program's help lists: no command can be forgotten. Five are left out, each with
+//! its reason ([`ELSEWHERE`]).
 
 use super::supervised::{self, Verdict};
 use super::{folder_with, program, run_once};
