@@ -175,7 +175,7 @@ fn grown_m(option: &str, words: &[String]) -> Result<f64, Usage> {
         ["grow", metres] => metres.parse().ok().filter(|metres: &f64| metres.is_finite() && *metres >= 0.0),
         _ => None,
     };
-    metres.ok_or_else(|| format!("{option} {}: expected drawn, or grow and metres", words.join(" ")).into())
+    metres.ok_or_else(|| format!("{option} {}: expected drawn, or grow and metres", words.join(" ")))
 }
 
 pub(super) fn fault(action: FaultAction) -> Result<Request, Usage> {

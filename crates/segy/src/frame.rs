@@ -100,7 +100,7 @@ fn refuse_seismic_unix(file: &Bytes) -> Result<(), SegyProblem> {
         let Some(first @ [samples, interval]) = shape_at(0)? else { continue };
         let stride = TRACE_HEADER_BYTES as u64 + 4 * u64::from(samples);
         let traces = file.len() / stride;
-        if samples < 2 || interval == 0 || traces < 2 || file.len() % stride != 0 {
+        if samples < 2 || interval == 0 || traces < 2 || !file.len().is_multiple_of(stride) {
             continue;
         }
         let mut is_alike = true;
