@@ -16,8 +16,9 @@ use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
 use crate::map::{HorizonMap, MapSource, Mapped};
 use crate::spec::{BlockPart, FencePart, Figure, MapPart, Part, SectionPart};
 use glam::DVec2;
-use render::{Background, Scene};
-use std::sync::Arc;
+use render::distortion::{self, Stretch};
+use render::{Background, FaceData, Scene};
+use std::sync::{Arc, OnceLock};
 use survey::{SurveyGeometry, VerticalUnit};
 use ttf::{Colour, LayerStyle, TextureLibrary};
 
@@ -148,6 +149,26 @@ fn rooms(count: usize, room: Rect) -> Vec<Rect> {
     }
 }
 
+/// The colours of a picture of distortion, densest on top.
+fn distortion_classes() -> &'static [LayerStyle] {
+    static CLASSES: OnceLock<Vec<LayerStyle>> = OnceLock::new();
+    CLASSES.get_or_init(|| {
+        let classes = [
+            (4.0, "4 × too dense"),
+            (2.0, "2 × too dense"),
+            (1.0, "undistorted"),
+            (0.5, "2 × too sparse"),
+            (0.25, "4 × too sparse"),
+        ];
+        let class = |(area, name): (f32, &str)| {
+            let side = area.sqrt();
+            let colour = distortion::tone(Stretch { densest: side, sparsest: side });
+            LayerStyle::plain(name, Colour::from_unit(colour.to_array()))
+        };
+        classes.map(class).to_vec()
+    })
+}
+
 /// A figure being made.
 struct Maker<'a> {
     figure: &'a Figure,
@@ -169,7 +190,7 @@ impl<'a> Maker<'a> {
         }
     }
 
-    /// Layers where blocks show them, horizons where sections show their lines.
+    /// Layers where blocks show them, or the colours of distortion; horizons where sections show their lines.
     fn legend(&self) -> Option<Legend<'a>> {
         let parts = &self.figure.parts;
         let is_illustrated = |block: &BlockPart| match block.comparison {
@@ -178,7 +199,10 @@ impl<'a> Maker<'a> {
         };
         let has_layers = !self.figure.interpretation
             && parts.iter().any(|part| matches!(part, Part::Block(block) if is_illustrated(block)));
-        let layers = self.inputs.library.filter(|_| has_layers).map(|library| (self.inputs.layers, library));
+        let is_measured =
+            |part: &Part| matches!(part, Part::Block(block) if block.scene.face_data == FaceData::Distortion);
+        let swatches = if parts.iter().any(is_measured) { distortion_classes() } else { self.inputs.layers };
+        let layers = self.inputs.library.filter(|_| has_layers).map(|library| (swatches, library));
         let has_lines = parts.iter().any(|part| matches!(part, Part::Section(_) | Part::Fence(_)));
         let horizons = if has_lines || layers.is_none() { self.inputs.horizons } else { &[] };
         let legend = Legend { layers, horizons, dpi: self.figure.dpi };

@@ -143,6 +143,22 @@ fn a_wipe_shows_one_blend_on_each_side() {
 }
 
 #[test]
+fn a_picture_of_distortion_has_its_colours_in_the_legend() {
+    let library = TextureLibrary::builtin().unwrap();
+    let layers = [LayerStyle::textured("Chalk", Colour::WHITE, "chalk")];
+    let legend = |face_data: FaceData| -> Vec<String> {
+        let scene = Scene { face_data, ..Scene::default() };
+        let page = figure(vec![BlockPart { scene, comparison: Comparison::None }.into()]);
+        let made = made_of(&model(&geometry()), &page, &layers, Some(&library)).unwrap();
+        made.texts().into_iter().map(|text| text.text.clone()).collect()
+    };
+    let measured = legend(FaceData::Distortion);
+    let classes = ["4 × too dense", "2 × too dense", "undistorted", "2 × too sparse", "4 × too sparse"];
+    assert!(classes.iter().all(|class| measured.iter().any(|text| text == class)), "{measured:?}");
+    assert!(!measured.contains(&"Chalk".to_owned()) && legend(FaceData::Rock).contains(&"Chalk".to_owned()));
+}
+
+#[test]
 fn what_has_no_page_is_refused() {
     assert!(matches!(made(&figure(Vec::new())), Err(FigureError::Parts { found: 0 })));
     assert!(matches!(made(&figure(vec![section(SectionKind::Inline, 99.0)])), Err(FigureError::Outside { .. })));

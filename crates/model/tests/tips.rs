@@ -70,7 +70,7 @@ fn horizons(is_picked: impl Fn(usize, usize) -> bool) -> Vec<Horizon> {
             if is_picked(n / SIZE[1], n % SIZE[1]) { (10.0 * height(level, hanging, x, y)) as f32 } else { f32::NAN }
         };
         let depth = (0..SIZE[0] * SIZE[1]).map(node).collect();
-        Horizon { name: format!("H{h}"), sheets: vec![Sheet::new(grid.clone(), depth, Quality::Picked)] }
+        Horizon { name: format!("H{h}"), sheets: vec![Sheet::new(grid, depth, Quality::Picked)] }
     };
     LEVELS.iter().enumerate().map(of).collect()
 }
@@ -169,7 +169,8 @@ fn horizons_beyond_the_tip_stay_as_they_were() {
     let fault = drawn(&STICKS, 5);
     // All nodes; every sixth line; scattered ones, a hundred for a horizon.
     let scattered = |x: usize, y: usize| (x * 7919 + y * 104_729 + x * y * 31).is_multiple_of(72);
-    let pickings: [(&str, &dyn Fn(usize, usize) -> bool); 3] = [
+    type Picking<'a> = (&'a str, &'a dyn Fn(usize, usize) -> bool);
+    let pickings: [Picking; 3] = [
         ("dense", &|_, _| true),
         ("lines", &|x, y| x.is_multiple_of(6) || y.is_multiple_of(6)),
         ("scattered", &scattered),

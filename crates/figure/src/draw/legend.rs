@@ -43,10 +43,22 @@ impl Legend<'_> {
 
     /// The width that shows all names, but no more than `most`, points.
     pub fn width(&self, most: f64) -> f64 {
-        let layers = self.styles().iter().map(|style| style.layer.as_str());
-        let names = layers.chain(self.horizons.iter().map(|horizon| horizon.name.as_str()));
-        let longest = names.map(|name| width_of(name, TEXT_PT)).fold(LEAST_NAME_PT, f64::max);
+        let longest = self.names().map(|name| width_of(name, TEXT_PT)).fold(LEAST_NAME_PT, f64::max);
         (SWATCH_PT[0] + GAP_PT + longest + 1.0).min(most)
+    }
+
+    fn names(&self) -> impl Iterator<Item = &str> {
+        let layers = self.styles().iter().map(|style| style.layer.as_str());
+        layers.chain(self.horizons.iter().map(|horizon| horizon.name.as_str()))
+    }
+
+    /// Size of all names in a legend of a width, points: that of the one which needs the smallest.
+    fn size_pt(&self, width: f64, share: f64) -> f64 {
+        let pitch = if self.horizons.is_empty() { PITCH_PT[0] } else { PITCH_PT[1] };
+        let largest = TEXT_PT.min(0.9 * share * pitch);
+        let room = width - SWATCH_PT[0] - GAP_PT;
+        let fitted = |name: &str| Text::new(DVec2::ZERO, name).sized(largest).fitted(room).size;
+        self.names().map(fitted).fold(largest, f64::min)
     }
 
     /// The legend in its room; entries that do not fit stand closer.
@@ -62,16 +74,17 @@ impl Legend<'_> {
         let place = |top: f64, pitch: f64| {
             Rect::sized(room.min + DVec2::new(0.0, share * top), DVec2::new(room.width(), share * pitch))
         };
+        let size = self.size_pt(room.width(), share);
         let mut top = 0.0;
         if let Some((styles, library)) = self.layers {
             for style in styles {
-                group.push(layer(style, library, place(top, PITCH_PT[0]), self.dpi)?);
+                group.push(layer(style, library, place(top, PITCH_PT[0]), size, self.dpi)?);
                 top += PITCH_PT[0];
             }
         }
         top += between;
         for named in self.horizons {
-            group.push(horizon(named, place(top, PITCH_PT[1])));
+            group.push(horizon(named, place(top, PITCH_PT[1]), size));
             top += PITCH_PT[1];
         }
         Ok(group)
@@ -79,17 +92,23 @@ impl Legend<'_> {
 }
 
 /// An entry of a horizon in its place.
-fn horizon(named: &NamedColour, place: Rect) -> Group {
+fn horizon(named: &NamedColour, place: Rect, size_pt: f64) -> Group {
     let middle = DVec2::new(place.min.x, place.centre().y);
     let line = Path::line(&[middle, middle + DVec2::new(SWATCH_PT[0], 0.0)]);
     Group::new(GroupKind::Horizon, &named.name).with([
         PathItem::stroked(line, Stroke::new(1.5 * HORIZON_PT, named.colour)).into(),
-        name(&named.name, middle + DVec2::new(SWATCH_PT[0], 0.0), place, place.height()).into(),
+        name(&named.name, middle + DVec2::new(SWATCH_PT[0], 0.0), place, size_pt).into(),
     ])
 }
 
 /// An entry of a layer in its place: a row of the legend.
-fn layer(style: &LayerStyle, library: &TextureLibrary, place: Rect, dpi: f64) -> Result<Group, FigureError> {
+fn layer(
+    style: &LayerStyle,
+    library: &TextureLibrary,
+    place: Rect,
+    size_pt: f64,
+    dpi: f64,
+) -> Result<Group, FigureError> {
     let rect = Rect::sized(place.min, DVec2::new(SWATCH_PT[0], SWATCH_PT[1].min(0.8 * place.height())));
     let swatch = match swatch::items(style, library, rect)? {
         Some(items) => items,
@@ -103,13 +122,13 @@ fn layer(style: &LayerStyle, library: &TextureLibrary, place: Rect, dpi: f64) ->
     let middle = DVec2::new(rect.max.x, rect.centre().y);
     Ok(Group::new(GroupKind::Layer, &style.layer).with(swatch).with([
         PathItem::stroked(Path::rect(rect), Stroke::new(FRAME_PT, INK)).into(),
-        name(&style.layer, middle, place, place.height()).into(),
+        name(&style.layer, middle, place, size_pt).into(),
     ]))
 }
 
-fn name(name: &str, beside: DVec2, room: Rect, pitch: f64) -> Text {
+fn name(name: &str, beside: DVec2, room: Rect, size_pt: f64) -> Text {
     let at = beside + DVec2::new(GAP_PT, 0.0);
-    let text = Text::new(at, name).sized(TEXT_PT.min(0.9 * pitch)).anchored(Across::Start, Upright::Middle);
+    let text = Text::new(at, name).sized(size_pt).anchored(Across::Start, Upright::Middle);
     text.fitted(room.max.x - at.x)
 }
 
@@ -134,7 +153,8 @@ mod tests {
         let library = TextureLibrary::builtin().unwrap();
         for count in [1, 5, 60] {
             let style = |n: usize| {
-                LayerStyle::textured(&format!("layer {n} of a long and winding name"), Colour::WHITE, "shale")
+                let name = if n == 0 { "Top".to_owned() } else { format!("layer {n} of a long and winding name") };
+                LayerStyle::textured(&name, Colour::WHITE, "shale")
             };
             let styles: Vec<LayerStyle> = (0..count).map(style).collect();
             let legend = Legend { layers: Some((&styles, &library)), horizons: &[], dpi: 100.0 };
@@ -145,6 +165,7 @@ mod tests {
             for pair in found.windows(2) {
                 assert!(pair[1].at.y - pair[0].at.y >= pair[0].size, "{count}");
             }
+            assert!(found.iter().all(|text| text.size == found[0].size), "one size for all, also beside short names");
             assert!(found.iter().all(|text| text.bounds().max.x <= room.max.x + 0.1));
         }
     }
