@@ -44,15 +44,12 @@ project=$out/f3.petro
 "$petroglyph" import "$data/volumes/f3_depth_il300-427_xl720-975_int16.sgy" "$project"
 "$petroglyph" raw "$project" --volume seismic --map grey
 "$petroglyph" extract "$project" --fault-evidence 200
-"$petroglyph" fault pick "$project" --name "Graben, south-east wall" --stick 380,866,1480 380,856,1640 \
-    --stick 385,861,1480 385,850,1640 --stick 395,843,1500 395,833,1670 --stick 405,834,1530 405,825,1670
-"$petroglyph" fault pick "$project" --name "Graben, north-west wall" --stick 385,831,1530 385,838,1650 \
-    --stick 395,815,1530 395,822,1670 --stick 405,801,1540 405,808,1670
+"$petroglyph" fault pick "$project" --name "Graben, south-east wall" --stick 380,866,1480 380,856,1640 380,847,1790 \
+    --stick 385,861,1480 385,850,1640 385,840,1790 --stick 395,843,1500 395,833,1670 395,826,1790 \
+    --stick 405,834,1530 405,825,1670 405,815,1824
+"$petroglyph" fault pick "$project" --name "Graben, north-west wall" --stick 385,831,1530 385,838,1650 385,843,1735 \
+    --stick 395,815,1530 395,822,1670 395,827,1765 --stick 405,801,1540 405,808,1670 405,815,1805
 "$petroglyph" fault truncate "$project" "Graben, north-west wall" --by "Graben, south-east wall"
-# Its walls are seen down to the chalk only; they are taken to go on until they meet.
-for wall in south-east north-west; do
-    "$petroglyph" fault extent "$project" "Graben, $wall wall" grow 150
-done
 "$petroglyph" fault pick "$project" --name "Crest, east wall" --stick 336,884,1470 336,877,1610 \
     --stick 345,881,1480 345,875,1620 --stick 352,879,1480 352,873,1620 --stick 358,879,1490 358,873,1620
 "$petroglyph" fault pick "$project" --name "Crest, west wall" --stick 326,847,1470 326,852,1600 \
@@ -89,6 +86,10 @@ rm -rf "$project"
 "$petroglyph" fault pick "$project" --name "North-west fault" --stick 1268,1375,984 1264,1375,1020 --stick 1272,1393,988 1268,1393,1020
 "$petroglyph" fault pick "$project" --name "North-east fault" --stick 1435,1343,972 1429,1343,1020 --stick 1433,1360,960 1430,1360,1000 \
     --stick 1435,1374,956 1431,1374,1008 --stick 1435,1388,944 1429,1388,1024 --stick 1433,1400,956 1429,1400,1012
+# The faults are drawn around the horizon, and taken to go on through the thin volume and to its border.
+for fault in South-west West North-west North-east; do
+    "$petroglyph" fault extent "$project" "$fault fault" grow 250
+done
 for place in 1349,1330,954.7 1229,1336,962.8 1249,1265,977.7; do
     "$petroglyph" pick "$project" --at $place --horizon B --highest-valid
 done
@@ -124,4 +125,4 @@ named "Dongen Tuffite - Ekofisk" "Dongen Tuffite, Landen Clay" --interval 0,0.7,
 named "Ekofisk - Ommelanden" "Ekofisk Fm (chalk)" --pattern chalk --colour "#dfe9ee"
 named "below Ommelanden" "Ommelanden Fm (chalk, chert)" --pattern limestone-cherty --colour "#b5d0dc"
 "$petroglyph" render "$project" "$pictures/f02-1.png" --exaggeration 3 --azimuth 145 --elevation 25 --ground off --legend \
-    --cut nearest,0.5175,0.5 --size 1600x1000
+    --cut nearest,0.5175,0.5 --size 1700x880
