@@ -423,7 +423,7 @@ mod tests {
 
     #[test]
     fn entries_are_laid_out_for_the_gpu() {
-        assert_eq!(size_of::<TtfGlobals>(), 48);
+        assert_eq!(size_of::<TtfGlobals>(), 64);
         assert_eq!(size_of::<LayerEntry>(), 32);
         assert_eq!(size_of::<IntervalEntry>(), 64);
         assert_eq!(size_of::<ScalarEntry>(), 64);
