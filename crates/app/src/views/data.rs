@@ -3,10 +3,13 @@
 use super::notices;
 use super::sections::entry_colour;
 use crate::state::{Action, Choice, Dialogue, Place, Session, State};
-use eframe::egui::{Align, Button, DragValue, Id, Key, Layout, ScrollArea, Sense, TextEdit, Ui, UiBuilder, vec2};
-use project::command::{
-    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetRaw, SetVelocity,
+use eframe::egui::{
+    Align, Button, DragValue, Id, Key, Layout, Response, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, vec2,
 };
+use project::command::{
+    Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetFaultExtent, SetRaw, SetVelocity,
+};
+use project::document::FaultEntry;
 use project::styles;
 use survey::VerticalUnit;
 use ttf::ColourMap;
@@ -17,6 +20,8 @@ pub struct Data {
     /// A horizon and the new name being typed.
     renaming: Option<(String, String)>,
     velocity: Option<f64>,
+    /// The fault whose extent is being changed, and the metres so far.
+    extent: Option<(String, f64)>,
 }
 
 impl Data {
@@ -31,7 +36,7 @@ impl Data {
             self.horizons(ui, session, actions);
             ui.add_space(10.0);
             ui.heading("Faults");
-            faults(ui, session, actions);
+            self.faults(ui, session, actions);
             ui.add_space(10.0);
             wells(ui, session, actions);
             self.survey(ui, session, actions);
@@ -75,6 +80,47 @@ impl Data {
         add(ui, "Add a horizon…", Choice::Horizon, session.document.geometry.is_some(), actions);
     }
 
+    fn faults(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+        for entry in &session.document.faults {
+            ui.horizontal(|ui| {
+                ui.label(&entry.name).on_hover_text(&entry.source.reading);
+                if let Some(other) = &entry.truncated_by {
+                    ui.weak(format!("ends at {other}"));
+                }
+                if remove(ui, &format!("Remove fault {}", entry.name)) {
+                    let command = RemoveFault { name: entry.name.clone() };
+                    actions.push(Action::Apply(Box::new(Command::RemoveFault(command))));
+                }
+            });
+            // The identity is fixed, as that of the velocity.
+            let row = UiBuilder::new().scope_id(Id::unique(("extent", &entry.name)));
+            ui.scope_builder(row, |ui| ui.horizontal(|ui| self.extent(ui, entry, actions)));
+        }
+        add(ui, "Add a fault…", Choice::Fault, session.document.geometry.is_some(), actions);
+    }
+
+    /// By how much a fault reaches beyond what was drawn.
+    fn extent(&mut self, ui: &mut Ui, entry: &FaultEntry, actions: &mut Vec<Action>) {
+        ui.add_space(12.0);
+        ui.weak("reaches farther by");
+        let held = self.extent.take_if(|(name, _)| *name == entry.name);
+        let mut metres = held.map(|(_, metres)| metres);
+        let (response, settled) = settled(ui, &mut metres, entry.grown_m, |metres| {
+            DragValue::new(metres).speed(5.0).range(0.0..=100_000.0).suffix(" m").max_decimals(1)
+        });
+        let label = Some(format!("Extent of fault {}", entry.name));
+        let now = metres.unwrap_or(entry.grown_m);
+        response.widget_info(|| WidgetInfo { label: label.clone(), ..WidgetInfo::drag_value(true, now) });
+        response.on_hover_text("A fault ends where it was drawn, unless it was drawn too short");
+        if let Some(metres) = metres {
+            self.extent = Some((entry.name.clone(), metres));
+        }
+        if let Some(grown_m) = settled {
+            let command = SetFaultExtent { fault: entry.name.clone(), grown_m };
+            actions.push(Action::Apply(Box::new(Command::SetFaultExtent(command))));
+        }
+    }
+
     fn survey(&mut self, ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         let Some(geometry) = &session.document.geometry else { return };
         ui.heading("Survey");
@@ -92,24 +138,35 @@ impl Data {
             ui.scope_builder(row, |ui| {
                 ui.horizontal(|ui| {
                     let label = ui.label("Velocity").on_hover_text("Turns two-way time into metres");
-                    let mut velocity = self.velocity.unwrap_or(geometry.velocity_m_s);
-                    let drag =
-                        DragValue::new(&mut velocity).speed(10.0).range(300.0..=9000.0).suffix(" m/s").max_decimals(0);
-                    let response = ui.add(drag).labelled_by(label.id);
-                    if response.changed() {
-                        self.velocity = Some(velocity);
-                    }
-                    let is_done = !response.dragged() && !response.has_focus();
-                    if let Some(velocity_m_s) = self.velocity.filter(|_| is_done) {
-                        self.velocity = None;
-                        if velocity_m_s != geometry.velocity_m_s {
-                            actions.push(Action::Apply(Box::new(Command::SetVelocity(SetVelocity { velocity_m_s }))));
-                        }
+                    let (response, settled) = settled(ui, &mut self.velocity, geometry.velocity_m_s, |velocity| {
+                        DragValue::new(velocity).speed(10.0).range(300.0..=9000.0).suffix(" m/s").max_decimals(0)
+                    });
+                    response.labelled_by(label.id);
+                    if let Some(velocity_m_s) = settled {
+                        actions.push(Action::Apply(Box::new(Command::SetVelocity(SetVelocity { velocity_m_s }))));
                     }
                 })
             });
         }
     }
+}
+
+/// A number that is changed by dragging or typing, and held meanwhile; returned once when that is done and it is another
+/// than `now`.
+fn settled(
+    ui: &mut Ui,
+    held: &mut Option<f64>,
+    now: f64,
+    drag: impl FnOnce(&mut f64) -> DragValue<'_>,
+) -> (Response, Option<f64>) {
+    let mut value = held.unwrap_or(now);
+    let response = ui.add(drag(&mut value));
+    if response.changed() {
+        *held = Some(value);
+    }
+    let is_done = !response.dragged() && !response.has_focus();
+    let settled = if is_done { held.take() } else { None };
+    (response, settled.filter(|value| *value != now))
 }
 
 /// A button at the right end of a row; returns whether it was clicked.
@@ -160,23 +217,4 @@ fn wells(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
     }
     add(ui, "Add a well…", Choice::Well, session.document.geometry.is_some(), actions);
     ui.add_space(10.0);
-}
-
-fn faults(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
-    for entry in &session.document.faults {
-        ui.horizontal(|ui| {
-            ui.label(&entry.name).on_hover_text(&entry.source.reading);
-            if let Some(other) = &entry.truncated_by {
-                ui.weak(format!("ends at {other}"));
-            }
-            if entry.grown_m != 0.0 {
-                ui.weak(format!("reaches {} m farther", entry.grown_m));
-            }
-            if remove(ui, &format!("Remove fault {}", entry.name)) {
-                let command = RemoveFault { name: entry.name.clone() };
-                actions.push(Action::Apply(Box::new(Command::RemoveFault(command))));
-            }
-        });
-    }
-    add(ui, "Add a fault…", Choice::Fault, session.document.geometry.is_some(), actions);
 }

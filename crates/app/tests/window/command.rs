@@ -123,6 +123,14 @@ fn data_are_renamed_removed_and_given_a_velocity() {
     harness.key_press(Key::Enter);
     wait(&mut harness, "the horizon has another name", |harness| document(harness).horizons[1].name.contains("ment"));
     harness.get_by_label("East");
+    harness.get_by_label("Extent of fault East").focus();
+    harness.run_steps(2);
+    for _ in 0..3 {
+        harness.key_press(Key::ArrowUp);
+        harness.run_steps(2);
+    }
+    harness.key_press(Key::Tab);
+    wait(&mut harness, "the fault reaches farther", |harness| document(harness).faults[0].grown_m > 0.0);
     // Volume, two horizons, the fault.
     harness.query_all_by_label("Remove").nth(3).unwrap().click();
     wait(&mut harness, "the fault is gone", |harness| document(harness).faults.is_empty());
