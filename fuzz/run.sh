@@ -29,10 +29,15 @@ mkdir -p "$findings"
 case " ${*:-documents tile} " in
     *" documents"* | *" derived"* | *" model"*)
         compile libfuzzer,documents documents derived model
-        seed documents && seed derived && seed model ;;
+        seed documents
+        seed derived
+        seed model ;;
 esac
 case " ${*:-tile} " in
-    *" tile"* | *" store"*) compile libfuzzer,data tile store && seed tile && seed store ;;
+    *" tile"* | *" store"*)
+        compile libfuzzer,data tile store
+        seed tile
+        seed store ;;
 esac
 compile libfuzzer segy segy-headers surface well
 seed segy

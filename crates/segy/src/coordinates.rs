@@ -127,11 +127,12 @@ impl<'a> Coordinates<'a> {
             return false;
         }
         let numbers = |(inline, crossline, trace): (usize, usize, usize)| {
-            let number = |axis: &LineAxis, n: usize| axis.first + axis.step * n as i32;
+            // Where a number of the lattice is beyond what a field can hold, no field repeats it.
+            let number = |axis: &LineAxis, n: usize| i64::from(axis.first) + i64::from(axis.step) * n as i64;
             ([number(&lattice.inlines, inline), number(&lattice.crosslines, crossline)], trace)
         };
-        let held = |trace: usize| [self.x.at(trace), self.y.at(trace)];
-        let swapped = |[x, y]: [i32; 2]| [y, x];
+        let held = |trace: usize| [self.x.at(trace), self.y.at(trace)].map(i64::from);
+        let swapped = |[x, y]: [i64; 2]| [y, x];
         lattice.traces().map(numbers).all(|(numbers, trace)| held(trace) == numbers)
             || lattice.traces().map(numbers).all(|(numbers, trace)| held(trace) == swapped(numbers))
     }

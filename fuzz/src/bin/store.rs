@@ -83,12 +83,11 @@ fn read(kind: &str, path: &Path) {
     let silent = Progress::silent();
     match kind {
         "volume" => {
-            let Ok(mut stored) = StoredVolume::open(path) else { return };
+            let Ok(stored) = StoredVolume::open(path) else { return };
             let _ = stored.brick_ranges(0);
             let _ = stored.checksums();
             let _ = stored.read_f32(0, &silent);
             let _ = stored.read_box_f32(0, [1, 1, 1], [1, 2, 3]);
-            stored.release();
         }
         "horizon" => drop(store::read_horizon(path, &silent)),
         "candidates" => {
