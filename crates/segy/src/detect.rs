@@ -46,6 +46,8 @@ fn any_fields() -> impl Iterator<Item = u16> {
     (1..=237).step_by(4)
 }
 
+/// So many of them are tried at most.
+const MOST_FIELDS: usize = 16;
 /// Fields that usually count traces along a line: they make a lattice of any regular file.
 const COUNTERS: [u16; 2] = [1, 13];
 
@@ -407,7 +409,14 @@ impl Search<'_> {
             let is_small = column.range.iter().all(|number| number.unsigned_abs() <= MAX_LINE_NUMBER);
             column.constant().is_none() && is_small && !is_coordinate(*byte)
         };
-        let varying: Vec<u16> = any_fields().filter(is_line).collect();
+        let mut varying: Vec<u16> = any_fields().filter(is_line).collect();
+        // Lines have few numbers: in headers full of something else, the fields with the smallest spans are tried.
+        varying.sort_by_key(|&byte| {
+            let [low, high] = self.column(byte).range.map(i64::from);
+            high - low
+        });
+        varying.truncate(MOST_FIELDS);
+        varying.sort_unstable();
         let pairs: Vec<[u16; 2]> = match (inline, crossline) {
             (Some(inline), _) => {
                 varying.iter().filter(|&&other| other != inline).map(|&other| [inline, other]).collect()
