@@ -161,6 +161,9 @@ fn extend_one(
 /// that it continues them with their slope; in the end each block takes over what those after it hold.
 fn join(lattice: MarginLattice, sheets: &mut [Option<ExtendedSheet>], faults: &FaultNetwork, extension: &Extension) {
     let mut order: Vec<usize> = (0..sheets.len()).filter(|&b| sheets[b].is_some()).collect();
+    if order.len() < 2 {
+        return;
+    }
     order.sort_by_key(|&b| (std::cmp::Reverse(sheets[b].as_ref().map_or(0, |sheet| sheet.own)), b));
     let mut shared: Vec<Shared> = Vec::with_capacity(order.len());
     for (done, &b) in order.iter().enumerate() {
