@@ -279,20 +279,12 @@ impl CoordinatePlace {
         };
         let units = columns.get(Field::I16(at::COORDINATE_UNIT));
         if options.coordinate_unit.is_none() {
-            let largest = coordinates.largest();
             let angles = match units.constant() {
                 Some(unit) => Angles::of(unit),
                 None => units.iter().find_map(Angles::of),
             };
             match angles {
-                Some(angles) if largest <= angles.largest => return Err(angles.refused()),
-                Some(angles) => findings.warning(Note::unless(
-                    format!(
-                        "byte 89 is {}, {}, but X and Y reach {largest:.0}, which no angle does; they are taken as lengths",
-                        angles.code, angles.unit
-                    ),
-                    Setting::Bin.stated(),
-                )),
+                Some(angles) => angles.must_be_lengths(coordinates.largest(), findings)?,
                 None => note_unknown_units(units, findings),
             }
         }
@@ -374,8 +366,19 @@ impl Angles {
         Some(Self { code, unit, largest })
     }
 
-    fn refused(&self) -> SegyProblem {
-        SegyProblem::AngularCoordinates { code: self.code as i16, unit: self.unit }
+    /// Refuses X and Y unless `reach`, the largest of them, is none of an angle.
+    fn must_be_lengths(&self, reach: f64, findings: &mut Findings) -> Result<(), SegyProblem> {
+        let Self { code, unit, largest } = *self;
+        if reach <= largest {
+            return Err(SegyProblem::AngularCoordinates { code: code as i16, unit });
+        }
+        findings.warning(Note::unless(
+            format!(
+                "byte 89 is {code}, {unit}, but X and Y reach {reach:.0}, which no angle does; they are taken as lengths"
+            ),
+            Setting::Bin.stated(),
+        ));
+        Ok(())
     }
 }
 

@@ -78,7 +78,7 @@ pub(super) struct Detected {
 pub(super) fn fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> {
     let conventions = CONVENTIONS.iter().flat_map(|&(inline, crossline, _)| [inline, crossline]);
     let narrow = NARROW_PAIRS.into_iter().flat_map(|(inline, crossline)| [inline, crossline]);
-    let mut bytes: Vec<u16> = conventions.chain(narrow).chain(OTHER_LINE_FIELDS).chain(any_fields()).collect();
+    let mut bytes: Vec<u16> = conventions.chain(narrow).chain(OTHER_LINE_FIELDS).collect();
     let stated = [options.inline_byte, options.crossline_byte].into_iter().flatten();
     let mut fields = coordinate_fields(options, layout);
     match options.line_type {
@@ -99,13 +99,24 @@ pub(super) fn fields(options: &SegyOptions, layout: HeaderLayout) -> Vec<Field> 
     once
 }
 
-/// Finds the line numbers.
+/// Reads every field of the trace headers.
+type EveryField<'a> = dyn Fn() -> Result<Columns, SegyProblem> + Sync + 'a;
+
+/// The same with every 4-byte field.
+pub(super) fn with_any_fields(mut fields: Vec<Field>) -> Vec<Field> {
+    fields.extend(any_fields().map(Field::I32).filter(|field| !fields.contains(field)).collect::<Vec<_>>());
+    fields
+}
+
+/// Finds the line numbers. `every_field` reads the columns of [`with_any_fields`]; that is done for the few files
+/// whose line numbers are at none of the usual places.
 pub(super) fn detect(
     columns: &Columns,
+    every_field: &EveryField<'_>,
     options: &SegyOptions,
     findings: &mut Findings,
 ) -> Result<Detected, SegyProblem> {
-    let search = Search { columns, options };
+    let search = Search { columns, every_field: Some(every_field), options };
     if options.line_source != LineSource::Headers {
         return match bins::find(columns, options, bins::MIN_FILL_STATED) {
             Ok(bins) => search.by_coordinates(&bins, Vec::new(), findings),
@@ -147,6 +158,8 @@ pub(super) fn detect(
 
 struct Search<'a> {
     columns: &'a Columns,
+    /// Reads every field; none where that is done.
+    every_field: Option<&'a EveryField<'a>>,
     options: &'a SegyOptions,
 }
 
@@ -364,6 +377,13 @@ impl Search<'_> {
             .filter(Candidate::fits)
             .collect();
         let fitting = if fitting.is_empty() { self.in_other_types() } else { fitting };
+        if fitting.is_empty()
+            && let Some(every_field) = self.every_field
+        {
+            let columns = every_field()?;
+            let search = Search { columns: &columns, every_field: None, options: self.options };
+            return search.elsewhere(candidates, findings);
+        }
         let fitting = if fitting.is_empty() { self.anywhere() } else { fitting };
         let mut readings = self.distinct(fitting.iter());
         if inline.is_none() && crossline.is_none() {

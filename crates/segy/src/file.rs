@@ -7,7 +7,7 @@ use glam::DVec2;
 use super::bytes::{Bytes, Stamp};
 use super::columns::{Columns, HeaderColumn, HeaderLayout};
 use super::coordinates::CoordinatePlace;
-use super::detect::{Detected, detect, fields};
+use super::detect::{Detected, detect, fields, with_any_fields};
 use super::error::{SegyError, SegyProblem};
 use super::frame::FileLayout;
 use super::header::{Field, at};
@@ -222,8 +222,12 @@ fn understand(path: &Path, bytes: Bytes, options: &SegyOptions, progress: &Progr
     let count = traces.count;
 
     let dead = dead_traces(&columns, count, &mut findings);
-    let detected =
-        if count == 1 { single_trace(&columns, options)? } else { detect(&columns, options, &mut findings)? };
+    let every_field = || Columns::read(&traces, &with_any_fields(wanted.clone()), named, progress);
+    let detected = if count == 1 {
+        single_trace(&columns, options)?
+    } else {
+        detect(&columns, &every_field, options, &mut findings)?
+    };
     let vertical = Vertical::find(&frame, &columns, &dead, options, &mut findings)?;
     let unit = coordinate_unit(&frame, options);
     // Coordinates may number the lines, but line numbers are no coordinates.
