@@ -74,7 +74,7 @@ fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
         report.say(format!("  sheet of {u} x {v} nodes: {nodes} with a depth, {low} to {high} {unit}, {holes} holes"));
         sheets.push(json!({ "count": [u, v], "nodes": nodes, "holes": holes, "range": [low, high] }));
     }
-    if let Some(surface) = &horizon.surface {
+    if let Some(surface) = horizon.any_shape() {
         let (corners, triangles) = (surface.vertices.len(), surface.triangles.len());
         let low = surface.vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
         let high = surface.vertices.iter().map(|v| v.z).fold(f64::NEG_INFINITY, f64::max);

@@ -36,6 +36,8 @@ pub(super) enum Request {
     Demo { out: PathBuf },
     /// Make a synthetic survey.
     Synth { out: PathBuf, settings: SynthSettings },
+    /// An outcrop of the size and seed of the settings.
+    SynthOutcrop { out: PathBuf, settings: SynthSettings },
     /// Describe a file or project.
     Info { path: PathBuf, distortion: bool, segy: SegyOptions, reading: ImportOptions },
     /// Import a volume; the project is created if it does not exist.
@@ -276,9 +278,15 @@ fn synth(typed: &SynthArgs) -> Result<Request, Usage> {
             _ => return Err(format!("--snr {text}: expected a positive number or none")),
         },
     };
-    let settings =
-        SynthSettings { size: counts::<3>("--size", &typed.size)?, seed: typed.seed, snr, ..SynthSettings::default() };
-    Ok(Request::Synth { out: typed.out.clone(), settings })
+    let settings = SynthSettings {
+        size: counts::<3>("--size", &typed.size)?,
+        seed: typed.seed,
+        snr,
+        salt: typed.salt,
+        ..SynthSettings::default()
+    };
+    let out = typed.out.clone();
+    Ok(if typed.overturned { Request::SynthOutcrop { out, settings } } else { Request::Synth { out, settings } })
 }
 
 fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {

@@ -69,6 +69,10 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             refuse_inside_project(&out)?;
             survey_files::write(&out, &settings, &progress)?
         }),
+        Request::SynthOutcrop { out, settings } => told({
+            refuse_inside_project(&out)?;
+            survey_files::write_outcrop(&out, settings.size, settings.seed, &progress)?
+        }),
         Request::Info { path, distortion, segy, reading } => {
             info::describe(&path, distortion, &segy, &reading, &progress)?
         }

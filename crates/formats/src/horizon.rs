@@ -199,7 +199,7 @@ fn from_points(
                 outside: placed.outside,
                 notes,
                 warnings,
-                surface: None,
+                surface: any_shape(Vec::new(), None).surface,
             });
         };
         let (u, v) = (lattice.grid.u_step, lattice.grid.v_step);

@@ -425,7 +425,7 @@ pub fn write_horizon_as(
         Format::Zmap | Format::Cps3 => unrotated::of(horizon, format, options)?,
         _ => (Cow::Borrowed(horizon), Vec::new()),
     };
-    let is_map_alone = horizon.surface.is_some() && !matches!(format, Format::Tsurf | Format::Csv);
+    let is_map_alone = horizon.any_shape().is_some() && !matches!(format, Format::Tsurf | Format::Csv);
     write::beside(path, &horizon.name, format, |out| {
         if is_map_alone {
             let why = "it is no map: it has several depths over one place".to_owned();
@@ -433,7 +433,7 @@ pub fn write_horizon_as(
         }
         writer(out, &horizon, geometry)
     })?;
-    let corners = horizon.surface.as_ref().map_or(0, |surface| surface.vertices.len());
+    let corners = horizon.any_shape().map_or(0, |surface| surface.vertices.len());
     Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum::<usize>() + corners, notes })
 }
 

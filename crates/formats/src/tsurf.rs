@@ -231,7 +231,7 @@ pub(super) fn mesh_of(sheet: &Sheet) -> TriangleMesh {
 }
 
 fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), WriteFailure> {
-    if let Some(surface) = horizon.surface.as_ref().filter(|surface| !surface.triangles.is_empty()) {
+    if let Some(surface) = horizon.any_shape().filter(|surface| !surface.triangles.is_empty()) {
         write_head(out, &horizon.name, geometry)?;
         write_face(out, surface, 1)?;
         writeln!(out, "END")?;

@@ -72,7 +72,7 @@ pub(super) fn nodes<'a>(horizon: &'a Horizon, geometry: &'a SurveyGeometry) -> i
             TableNode { lines: geometry.lines_from_voxel(voxel), xy, z, sheet, quality: s.quality[n] }
         })
     });
-    let corners = horizon.surface.iter().flat_map(|surface| &surface.vertices).map(|corner| {
+    let corners = horizon.any_shape().into_iter().flat_map(|surface| &surface.vertices).map(|corner| {
         let (xy, z) = (corner.truncate(), corner.z as f32);
         let lines = geometry.lines_from_voxel(super::placement::voxel_xy(geometry, xy));
         TableNode { lines, xy, z, sheet: 0, quality: Quality::Picked }

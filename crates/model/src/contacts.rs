@@ -48,6 +48,11 @@ impl ContactRules {
         Self { contacts: horizons.iter().map(|&h| self.contacts[h]).collect() }
     }
 
+    /// The rules of contacts, youngest horizon first.
+    pub fn of(contacts: Vec<Contact>) -> Self {
+        Self { contacts }
+    }
+
     /// The contacts, youngest horizon first.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts

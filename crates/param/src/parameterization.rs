@@ -82,12 +82,15 @@ impl Parameterization {
             let (grid, _) = &planned[usize::from(at.block) * layers + usize::from(at.layer)];
             grid.rise(model, &metric, p)
         };
+        let is_unfolded = |layer: &u16| {
+            let of_layer = planned.iter().skip(usize::from(*layer)).step_by(layers);
+            of_layer.into_iter().any(|(_, method)| *method == Method::Unfolded)
+        };
+        let folded: Vec<u16> = (0..layers as u16).filter(is_unfolded).collect();
         // [layer][block]
         let mut unfolded = vec![Vec::new(); layers];
-        for layer in
-            (0..layers).filter(|&n| planned.iter().skip(n).step_by(layers).any(|(_, m)| *m == Method::Unfolded))
-        {
-            unfolded[layer] = unfold::unfold(model, &metric, layer as u16, up, progress)?;
+        for (&layer, of_layer) in folded.iter().zip(unfold::unfold(model, &metric, &folded, up, progress)?) {
+            unfolded[usize::from(layer)] = of_layer;
         }
         let mut cost = ComputeCost::default();
         let mut grids = Vec::with_capacity(layers * blocks);

@@ -27,13 +27,8 @@ use survey::progress::{Cancelled, Progress};
 /// The unfolded place of every voxel of a region: i·(Nx − 1) and j·(Ny − 1). Memory: 1 byte a voxel.
 pub type Unfolding = Arc<[LevelField; 2]>;
 
-/// Nodes in the layer, all blocks together, and in the whole lattice at most.
-const NODES: f64 = 30_000.0;
-const MOST_NODES: f64 = 600_000.0;
-/// A thinner layer is solved as if it filled this share of the volume.
-const LEAST_SHARE: f64 = 0.02;
-/// Places at which the share of a layer is counted.
-const SAMPLED: f64 = 20_000.0;
+/// Nodes of the lattice around the volume; a layer is solved on those that it holds.
+const NODES: f64 = 250_000.0;
 /// Nodes around the layer that are solved with it.
 const AROUND: usize = 2;
 /// Voxels between the nodes of an unfolding.
@@ -47,57 +42,65 @@ const HELD: f64 = 1e-3;
 /// Coarser lattices before the finest, each of twice the spacing of the next.
 const COARSER: u32 = 2;
 /// Steps of the solver on each lattice, and the share of the first gradient at which it stops.
-const MOST_STEPS: usize = 400;
+const MOST_STEPS: usize = 250;
 const TOLERANCE: f64 = 1e-4;
 /// Normals nearer to the fold axis than this (sine) say nothing about the direction along the layer.
 const ALONG_AXIS: f64 = 0.2;
 
-/// The unfolding of a layer in each block. `up` is the metric direction of k at a voxel place in it.
+/// The unfolding of each of `layers` in each block. `up` is the metric direction of k at a voxel place of a region.
 pub fn unfold<M: LayerModel + ?Sized>(
     model: &M,
     metric: &Metric,
-    layer: u16,
+    layers: &[u16],
     up: impl Fn(Vec3, Region) -> Option<DVec3> + Sync,
     progress: &Progress,
-) -> Result<Vec<Unfolding>, Cancelled> {
+) -> Result<Vec<Vec<Unfolding>>, Cancelled> {
     let none = FaultNetwork::none();
     let faults = model.faults().unwrap_or(&none);
     let metres = metric.scaled_from_voxel() * metric.unit_m;
     let size = model.size();
     let last = Vec3::from_array(size.map(|n| n as f32 - 1.0));
-    let inside = |p: Vec3| p.cmpge(Vec3::ZERO).all() && p.cmple(last).all();
-    let is_in = |p: Vec3| model.region_at(p.clamp(Vec3::ZERO, last)).layer == layer;
-    let count = (NODES / share(size, metres, is_in)).min(MOST_NODES) / faults.block_count() as f64;
-    let mut found: Option<[Vec<LevelField>; 2]> = None;
+    let region_near = |p: Vec3| model.region_at(p.clamp(Vec3::ZERO, last));
+    let mut found: Vec<Option<[Vec<LevelField>; 2]>> = vec![None; layers.len()];
+    progress.begin("unfolding", layers.len() as u64 * u64::from(COARSER + 1));
     for level in (0..=COARSER).rev() {
-        let nodes = CutLattice::nodes_around(size, metres, count, f64::from(1u32 << level));
-        let mut wanted: Vec<bool> = (0..nodes.len()).into_par_iter().map(|node| is_in(nodes.place(node))).collect();
-        for _ in 0..AROUND {
-            let before = wanted.clone();
-            let next = |node: usize| before[node] || nodes.beside(node).any(|m| before[m]);
-            wanted = (0..nodes.len()).into_par_iter().map(next).collect();
-        }
-        let lattice = CutLattice::of(faults, nodes, |node| wanted[node]);
-        let normal = |&(block, node): &(usize, usize)| {
-            let p = lattice.middle(node);
-            let region = inside(p).then(|| model.region_at(p))?;
-            (region == Region { layer, block: block as u16 }).then(|| up(p, region)).flatten()
-        };
-        let all: Vec<(usize, usize)> =
-            (0..lattice.blocks).flat_map(|block| lattice.cells(block).map(move |node| (block, node))).collect();
-        let cells: Vec<Cell> = all.par_iter().map(|cell| (cell.0, cell.1, normal(cell))).collect();
-        let frame = Frame::of(metres, cells.iter().filter_map(|(_, _, normal)| *normal));
-        let problem = Problem { lattice: &lattice, cells: &cells, frame: &frame, metres };
-        let before = found.as_ref();
-        let (u, v) = rayon::join(|| problem.solve(0, before, progress), || problem.solve(1, before, progress));
-        found = Some([lattice.spread(&u?), lattice.spread(&v?)]);
+        let nodes = CutLattice::nodes_around(size, metres, NODES, f64::from(1u32 << level));
+        let of_node: Vec<u16> =
+            (0..nodes.len()).into_par_iter().map(|node| region_near(nodes.place(node)).layer).collect();
+        found = layers
+            .par_iter()
+            .zip(found)
+            .map(|(&layer, before)| {
+                let mut wanted: Vec<bool> = of_node.iter().map(|&own| own == layer).collect();
+                for _ in 0..AROUND {
+                    let inside = wanted.clone();
+                    for node in (0..nodes.len()).filter(|&node| inside[node]) {
+                        nodes.beside(node).for_each(|m| wanted[m] = true);
+                    }
+                }
+                let lattice = CutLattice::of(faults, nodes, |node| wanted[node]);
+                let normal = |block: usize, node: usize| {
+                    let p = lattice.middle(node);
+                    let inside = p.cmpge(Vec3::ZERO).all() && p.cmple(last).all();
+                    let region = inside.then(|| model.region_at(p))?;
+                    (region == Region { layer, block: block as u16 }).then(|| up(p, region)).flatten()
+                };
+                let of_block = |block: usize| {
+                    let normal = &normal;
+                    lattice.cells(block).map(move |node| (block, node, normal(block, node)))
+                };
+                let cells: Vec<Cell> = (0..lattice.blocks).flat_map(of_block).collect();
+                let frame = Frame::of(metres, cells.iter().filter_map(|(_, _, normal)| *normal));
+                let problem = Problem { lattice: &lattice, cells: &cells, frame: &frame, metres };
+                let solve = |which: usize| problem.solve(which, before.as_ref(), progress);
+                let (u, v) = rayon::join(|| solve(0), || solve(1));
+                progress.step(1)?;
+                Ok(Some([lattice.spread(&u?), lattice.spread(&v?)]))
+            })
+            .collect::<Result<_, Cancelled>>()?;
     }
-    let Some(found) = found else { return Ok(Vec::new()) };
-    let field = |block: usize| {
-        let holds = |p: Vec3| {
-            let region = model.region_at(p.clamp(Vec3::ZERO, last));
-            usize::from(region.block) == block && region.layer == layer
-        };
+    let unfolding = |layer: u16, found: &[Vec<LevelField>; 2], block: usize| {
+        let holds = |p: Vec3| region_near(p) == Region { layer, block: block as u16 };
         Arc::new([0, 1].map(|n: usize| {
             let mut field = resampled(&found[n][block], size, STEP, holds);
             let length = metres.col(n).length() as f32;
@@ -105,14 +108,11 @@ pub fn unfold<M: LayerModel + ?Sized>(
             field
         }))
     };
-    Ok((0..found[0].len()).into_par_iter().map(field).collect())
-}
-
-/// About the share of a volume in which `is_in` holds, at least [`LEAST_SHARE`].
-fn share(size: [usize; 3], metres: DMat3, is_in: impl Fn(Vec3) -> bool + Sync) -> f64 {
-    let nodes = CutLattice::nodes_around(size, metres, SAMPLED, 1.0);
-    let found = (0..nodes.len()).into_par_iter().filter(|&node| is_in(nodes.place(node))).count();
-    (found as f64 / nodes.len() as f64).max(LEAST_SHARE)
+    let of_layer = |(&layer, found): (&u16, &Option<[Vec<LevelField>; 2]>)| {
+        let blocks = found.as_ref().map_or(0, |found| found[0].len());
+        (0..blocks).flat_map(|block| found.as_ref().map(|found| unfolding(layer, found, block))).collect()
+    };
+    Ok(layers.par_iter().zip(&found).map(of_layer).collect())
 }
 
 /// A cell of the lattice: block, first node, and the metric normal of the layering at its middle.

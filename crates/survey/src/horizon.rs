@@ -144,9 +144,10 @@ impl Sheet {
 pub struct Horizon {
     /// Unique within a project.
     pub name: String,
-    /// Its sheets; none where it has a surface of any shape.
+    /// Its sheets; none where it is no height field.
     pub sheets: Vec<Sheet>,
-    /// A surface that may be overturned or closed: triangles, or scattered points alone.
+    /// A surface that may be overturned or closed: triangles, or scattered points alone. Beside sheets, the points that
+    /// they were interpolated between.
     pub surface: Option<TriangleMesh>,
 }
 
@@ -154,6 +155,11 @@ impl Horizon {
     /// A horizon of sheets.
     pub fn new(name: impl Into<String>, sheets: Vec<Sheet>) -> Self {
         Self { name: name.into(), sheets, surface: None }
+    }
+
+    /// The surface of a horizon that is no height field.
+    pub fn any_shape(&self) -> Option<&TriangleMesh> {
+        self.surface.as_ref().filter(|_| self.sheets.is_empty())
     }
 
     /// A horizon of any shape: overturned limbs, a closed body. A mesh without triangles is a set of points.

@@ -9,6 +9,7 @@ use super::column::BedSequence;
 use super::faulting::{Tip, TruthFault};
 use super::fold::{FoldedBeds, Undulation, Wave};
 use super::random::Draws;
+use super::shapes::Diapir;
 use super::truth::{Sequence, SynthTruth, TruthHorizon};
 use super::{SynthError, SynthSettings};
 use glam::{DVec2, DVec3};
@@ -124,6 +125,7 @@ pub(super) fn design(settings: &SynthSettings) -> Result<SynthTruth, SynthError>
         faults: faults(extent, &mut Draws::new(settings.seed, 3)),
         horizons,
         unconformity: YOUNG_HORIZONS.len() - 1,
+        salt: settings.salt.then(|| Diapir::of_extent(extent)),
     })
 }
 

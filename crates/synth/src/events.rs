@@ -7,7 +7,12 @@
 
 use super::column::reflectivity;
 use super::truth::{Sequence, SynthTruth};
-use glam::DVec2;
+use glam::{DVec2, DVec3};
+
+/// Reflectivity where a vertical line enters salt; the other way round where it leaves.
+const SALT_REFLECTIVITY: f64 = 0.12;
+/// Step at which the outline of the salt is looked for along a vertical line, m.
+const SALT_STEP_M: f64 = 2.0;
 
 /// A reflector of the model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -43,7 +48,17 @@ impl SynthTruth {
     /// The reflectors along a vertical line, from 1.5 wavelengths above the volume to as far below: (voxel z,
     /// reflectivity), top first.
     pub fn reflectors(&self, x: f64, y: f64) -> Vec<(f64, f64)> {
-        self.events(x, y).iter().map(|event| (event.z, event.reflectivity)).collect()
+        let mut found: Vec<(f64, f64)> = self.events(x, y).iter().map(|event| (event.z, event.reflectivity)).collect();
+        if let Some(salt) = &self.salt {
+            found.retain(|&(z, _)| !self.in_salt(DVec3::new(x, y, z)));
+            let place = DVec2::new(x, y) * self.step_m.truncate();
+            let outline = salt.crossings(place.distance(salt.axis), SALT_STEP_M);
+            found.extend(outline.map(|(z_m, enters)| {
+                (z_m / self.step_m.z, if enters { SALT_REFLECTIVITY } else { -SALT_REFLECTIVITY })
+            }));
+            found.sort_by(|a, b| a.0.total_cmp(&b.0));
+        }
+        found
     }
 
     /// [`SynthTruth::reflectors`] with what each of them is.

@@ -11,6 +11,12 @@ use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 /// Names of the layers, youngest first.
 const LAYER_NAMES: [&str; 6] = ["Cover mudstone", "Upper sandstone", "Marl", "Shale", "Limestone", "Lower sandstone"];
 
+/// Name of the outline of the salt, and of its layer.
+const SALT: &str = "Salt";
+
+/// Rings of triangles of the outline of the salt.
+const SALT_RINGS: usize = 120;
+
 /// Voxels between nodes of a fault mesh along strike and down dip.
 const FAULT_MESH_STEP: [usize; 2] = [2, 4];
 
@@ -20,7 +26,14 @@ pub(super) fn stratigraphy(truth: &SynthTruth) -> Stratigraphy {
         name: horizon.name.clone(),
         contact: if index == truth.unconformity { Contact::Erosional } else { Contact::Conformable },
     });
-    Stratigraphy { horizons: horizons.collect(), layer_names: LAYER_NAMES.map(str::to_owned).into() }
+    let salt = truth.salt.map(|_| StratigraphicHorizon { name: SALT.into(), contact: Contact::Intrusive });
+    let names = LAYER_NAMES.into_iter().chain(truth.salt.map(|_| SALT)).map(str::to_owned);
+    Stratigraphy { horizons: horizons.chain(salt).collect(), layer_names: names.collect() }
+}
+
+/// The outline of the salt, if there is some.
+pub(super) fn salt(truth: &SynthTruth, geometry: &SurveyGeometry) -> Option<Horizon> {
+    truth.salt.map(|salt| Horizon::of_surface(SALT, salt.mesh(geometry, SALT_RINGS)))
 }
 
 /// One horizon as a sheet for each block, in block order. A node has a depth where the horizon exists:

@@ -21,6 +21,7 @@ mod events;
 mod faulting;
 mod fold;
 mod interpretation;
+mod overturned;
 mod random;
 mod seismic;
 pub mod shapes;
@@ -32,6 +33,7 @@ pub use column::BedSequence;
 pub use events::{Reflector, ReflectorEvent};
 pub use faulting::{Tip, TruthFault};
 pub use fold::{FoldedBeds, Undulation, Wave};
+pub use overturned::{OutcropFault, OutcropTruth, Overturned};
 pub use seismic::AMPLITUDE;
 pub use truth::{Sequence, SynthTruth, TruthHorizon};
 
@@ -63,6 +65,8 @@ pub struct SynthSettings {
     /// Wavelength of the wavelet, 1/f of its peak frequency, samples; default 8. It is shortened where the
     /// volume's depth holds fewer than twelve wavelengths.
     pub wavelength_samples: f64,
+    /// Whether a dome of salt with an overhang pierces the beds; default not.
+    pub salt: bool,
 }
 
 impl Default for SynthSettings {
@@ -75,6 +79,7 @@ impl Default for SynthSettings {
             vertical: VerticalUnit::Metres,
             interval: 10.0,
             wavelength_samples: 8.0,
+            salt: false,
         }
     }
 }
@@ -200,7 +205,10 @@ impl Synthetic {
         Ok(Self {
             attribute: attribute(&truth, &geometry, progress)?,
             stratigraphy: interpretation::stratigraphy(&truth),
-            horizons: (0..truth.horizons.len()).map(|h| interpretation::horizon(&truth, &geometry, h)).collect(),
+            horizons: (0..truth.horizons.len())
+                .map(|h| interpretation::horizon(&truth, &geometry, h))
+                .chain(interpretation::salt(&truth, &geometry))
+                .collect(),
             faults: interpretation::faults(&truth, &geometry),
             geometry,
             seismic,

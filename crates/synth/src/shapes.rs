@@ -4,6 +4,7 @@
 //! index, y along the crosslines', z down.
 
 use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 use survey::{SurveyGeometry, TriangleMesh};
 
@@ -15,7 +16,7 @@ use survey::{SurveyGeometry, TriangleMesh};
 ///
 /// Bed t = c is overturned where 1 + s·A·2π/L·cos(2πz/L) < 0. Beds are given by x as a function of z, so a vertical line
 /// meets one up to three times in a wavelength L.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct RecumbentFold {
     /// Slope s of the beds before the shear.
     pub slope: f64,
@@ -70,7 +71,7 @@ impl RecumbentFold {
 /// ```text
 /// ρ < R(z),   R = (bulb⁶ + stem⁶)^⅙,   bulb = r_b·√(1 − ((z − z_b)/h)²),   stem = r_s for z > z_b, widening from 0 above
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Diapir {
     /// The axis, x and y in m.
     pub axis: DVec2,
@@ -89,7 +90,11 @@ pub struct Diapir {
 impl Diapir {
     /// A diapir in a survey: its bulb in the upper half, its stem through the bottom.
     pub fn fitting(geometry: &SurveyGeometry) -> Self {
-        let extent = extent_m(geometry);
+        Self::of_extent(extent_m(geometry))
+    }
+
+    /// The same in a volume of an extent, m.
+    pub fn of_extent(extent: DVec3) -> Self {
         let width = extent.x.min(extent.y);
         Self {
             axis: DVec2::new(0.42 * extent.x, 0.4 * extent.y),
@@ -122,6 +127,27 @@ impl Diapir {
         p.truncate().distance(self.axis) < self.radius(p.z)
     }
 
+    /// Where a vertical line at a distance from the axis crosses the outline: depths in m, found at steps of `step_m`
+    /// and then exactly, and whether the line enters the body there.
+    pub fn crossings(&self, rho: f64, step_m: f64) -> impl Iterator<Item = (f64, bool)> + use<> {
+        let body = *self;
+        let (top, steps) = (self.top_z() - step_m, ((self.base_z - self.top_z()) / step_m) as usize + 2);
+        let inside = move |z: f64| rho < body.radius(z);
+        (0..steps).map(move |n| [n, n + 1].map(|n| top + n as f64 * step_m)).filter_map(
+            move |[mut above, mut below]| {
+                let enters = inside(below);
+                if inside(above) == enters {
+                    return None;
+                }
+                for _ in 0..30 {
+                    let middle = 0.5 * (above + below);
+                    if inside(middle) == enters { below = middle } else { above = middle }
+                }
+                Some((0.5 * (above + below), enters))
+            },
+        )
+    }
+
     /// The closed outline, `rings` from top to base, in world coordinates.
     pub fn mesh(&self, geometry: &SurveyGeometry, rings: usize) -> TriangleMesh {
         // Rings stand closer where the outline turns: at the top of the bulb.
@@ -135,7 +161,7 @@ impl Diapir {
 /// ```text
 /// z_r = base − H·(1 − (ρ/R)²)²
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Laccolith {
     /// The axis, x and y in m.
     pub axis: DVec2,
@@ -165,7 +191,7 @@ impl Laccolith {
 }
 
 /// The survey's extent along x, y, z, m.
-fn extent_m(geometry: &SurveyGeometry) -> DVec3 {
+pub(super) fn extent_m(geometry: &SurveyGeometry) -> DVec3 {
     let metric = geometry.metric_from_voxel();
     let counts = geometry.size().map(|n| n as f64 - 1.0);
     DVec3::from_array([0, 1, 2].map(|axis: usize| metric.col(axis).length() * counts[axis]))
@@ -179,7 +205,7 @@ pub fn world(geometry: &SurveyGeometry, p: DVec3) -> DVec3 {
 }
 
 /// The triangles of a grid of places, given for u and v from 0 to 1.
-fn grid_mesh([nu, nv]: [usize; 2], place: impl Fn(f64, f64) -> DVec3) -> TriangleMesh {
+pub(super) fn grid_mesh([nu, nv]: [usize; 2], place: impl Fn(f64, f64) -> DVec3) -> TriangleMesh {
     let at = |u: usize, v: usize| (u * (nv + 1) + v) as u32;
     let vertices = (0..=nu).flat_map(|u| (0..=nv).map(move |v| (u, v)));
     let vertices = vertices.map(|(u, v)| place(u as f64 / nu as f64, v as f64 / nv as f64)).collect();

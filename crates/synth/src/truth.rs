@@ -12,8 +12,12 @@
 use super::column::BedSequence;
 use super::faulting::TruthFault;
 use super::fold::FoldedBeds;
+use super::shapes::Diapir;
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
+
+/// Acoustic impedance of salt, kg/(m²·s).
+const SALT_IMPEDANCE: f64 = 9.7e6;
 
 /// The sequence of beds that a horizon belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -59,6 +63,9 @@ pub struct SynthTruth {
     pub horizons: Vec<TruthHorizon>,
     /// Index of the unconformity in `horizons`.
     pub unconformity: usize,
+    /// A body of salt that cuts everything, if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub salt: Option<Diapir>,
 }
 
 impl SynthTruth {
@@ -72,9 +79,14 @@ impl SynthTruth {
         self.faults.len() + 1
     }
 
-    /// Count of layers.
+    /// Count of layers, that of the salt included.
     pub fn layer_count(&self) -> usize {
-        self.horizons.len() + 1
+        self.horizons.len() + 1 + usize::from(self.salt.is_some())
+    }
+
+    /// Whether voxel `p` lies in salt.
+    pub fn in_salt(&self, p: DVec3) -> bool {
+        self.salt.is_some_and(|salt| salt.holds(self.metric(p)))
     }
 
     /// The fault block at voxel `p`.
@@ -127,14 +139,18 @@ impl SynthTruth {
         let eroded =
             self.horizons[horizon].sequence == Sequence::Old && z <= self.sheet_z(self.unconformity, block, x, y);
         let inside = z >= 0.0 && z <= (self.size[2] - 1) as f64;
-        !eroded && inside && self.block_at(DVec3::new(x, y, z)) == block
+        let p = DVec3::new(x, y, z);
+        !eroded && inside && self.block_at(p) == block && !self.in_salt(p)
     }
 
     /// The layer at voxel `p`, 0 = deepest.
     pub fn layer_at(&self, p: DVec3) -> u16 {
+        if self.in_salt(p) {
+            return 0;
+        }
         let block = self.block_at(p);
         let above = (0..self.horizons.len()).filter(|&h| self.horizon_z(h, block, p.x, p.y) <= p.z).count();
-        (self.horizons.len() - above) as u16
+        (self.horizons.len() - above + usize::from(self.salt.is_some())) as u16
     }
 
     /// Sequence and stratigraphic depth (m) of what lies at voxel `p`.
@@ -154,6 +170,9 @@ impl SynthTruth {
 
     /// Acoustic impedance at voxel `p`, kg/(m²·s): of the bed, and a few per cent of slow change along it.
     pub fn impedance_at(&self, p: DVec3) -> f64 {
+        if self.in_salt(p) {
+            return SALT_IMPEDANCE;
+        }
         let (sequence, strat_m) = self.restored(p);
         let column = match sequence {
             Sequence::Young => &self.young_column,

@@ -74,6 +74,12 @@ pub(in crate::cli) struct SynthArgs {
     /// RMS signal over RMS noise; `none` for no noise
     #[arg(long, value_name = "R", default_value = "4")]
     pub(in crate::cli) snr: String,
+    /// With a dome of salt that overhangs and pierces the beds
+    #[arg(long)]
+    pub(in crate::cli) salt: bool,
+    /// Instead, an outcrop without seismic: nine horizons as scattered points with an overturned limb, three faults
+    #[arg(long, conflicts_with_all = ["salt", "snr"])]
+    pub(in crate::cli) overturned: bool,
 }
 
 #[derive(Debug, Args)]

@@ -48,13 +48,16 @@ impl CutLattice {
     }
 
     /// The unknowns at the nodes for which `is_wanted` holds.
-    pub fn of(faults: &FaultNetwork, nodes: NodeBox, is_wanted: impl Fn(usize) -> bool) -> Self {
+    pub fn of(faults: &FaultNetwork, nodes: NodeBox, is_wanted: impl Fn(usize) -> bool + Sync) -> Self {
         let signatures = faults.signatures();
         let blocks = faults.block_count();
         // For each node, the first block that each block shares its value with.
         let shared: Vec<Vec<u16>> = (0..nodes.len())
             .into_par_iter()
             .map(|node| {
+                if !is_wanted(node) {
+                    return Vec::new();
+                }
                 let p = nodes.place(node).as_dvec3();
                 let is_virtual = |f: usize| u64::from(faults.surfaces()[f].extent_at(p) < 0.0) << f;
                 let beyond: u64 = (0..faults.surfaces().len()).map(is_virtual).sum();
@@ -74,7 +77,7 @@ impl CutLattice {
             .collect();
         let mut unknown = vec![NONE; blocks * nodes.len()];
         let mut unknowns = 0;
-        for (node, first) in shared.iter().enumerate().filter(|(node, _)| is_wanted(*node)) {
+        for (node, first) in shared.iter().enumerate() {
             for (block, &of) in first.iter().enumerate() {
                 unknown[block * nodes.len() + node] = if usize::from(of) == block {
                     unknowns += 1;

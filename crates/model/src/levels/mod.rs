@@ -98,7 +98,7 @@ impl LevelSurface {
 
 /// Whether a horizon has triangles that enclose a body.
 pub fn is_closed(horizon: &Horizon, geometry: &SurveyGeometry) -> bool {
-    let mesh = horizon.surface.as_ref().filter(|mesh| !mesh.triangles.is_empty());
+    let mesh = horizon.any_shape().filter(|mesh| !mesh.triangles.is_empty());
     mesh.is_some_and(|mesh| Shape::of(&horizon.name, mesh, geometry).is_ok_and(|shape| shape.is_closed()))
 }
 
@@ -108,7 +108,7 @@ pub fn is_closed(horizon: &Horizon, geometry: &SurveyGeometry) -> bool {
 /// # Errors
 /// [`ModelError::Surface`] with the place.
 pub fn check_surface(horizon: &Horizon, contact: Contact, geometry: &SurveyGeometry) -> Result<(), ModelError> {
-    let Some(mesh) = &horizon.surface else { return Ok(()) };
+    let Some(mesh) = horizon.any_shape() else { return Ok(()) };
     let is_body = contact == Contact::Intrusive;
     if mesh.triangles.is_empty() {
         return if is_body { Err(problem(&horizon.name, geometry, SurfaceProblem::PointBody, None)) } else { Ok(()) };
@@ -139,7 +139,7 @@ impl Given<'_> {
         let blocks = self.faults.block_count();
         let count = self.horizons.len();
         let mut levels = Levels { surfaces: vec![vec![None; blocks]; count], notes: Vec::new() };
-        if self.horizons.iter().all(|h| h.surface.is_none()) {
+        if self.horizons.iter().all(|h| h.any_shape().is_none()) {
             return Ok(levels);
         }
         progress.begin("surfaces", count as u64);
@@ -147,7 +147,7 @@ impl Given<'_> {
         while first < count {
             let end = self.end_of_series(first);
             let members: Vec<usize> = (first..end).filter(|&h| self.contacts[h] != Contact::Intrusive).collect();
-            if members.iter().any(|&h| self.points(h).is_some_and(|mesh| mesh.triangles.is_empty())) {
+            if members.iter().any(|&h| self.mesh(h).is_some_and(|mesh| mesh.triangles.is_empty())) {
                 self.add_series(&members, &mut levels, progress)?;
             } else {
                 for &h in &members {
@@ -164,8 +164,8 @@ impl Given<'_> {
         Ok(levels)
     }
 
-    fn points(&self, h: usize) -> Option<&TriangleMesh> {
-        self.horizons[h].surface.as_ref()
+    fn mesh(&self, h: usize) -> Option<&TriangleMesh> {
+        self.horizons[h].any_shape()
     }
 
     /// Where the series that begins with horizon `first` ends: after an unconformity, which belongs to what lies above.
@@ -175,7 +175,7 @@ impl Given<'_> {
     }
 
     fn add_mesh(&self, h: usize, levels: &mut Levels, progress: &Progress) -> Result<(), ModelError> {
-        let Some(mesh) = self.points(h) else { return Ok(()) };
+        let Some(mesh) = self.mesh(h) else { return Ok(()) };
         let shape = Shape::of(&self.horizons[h].name, mesh, self.geometry)?;
         let blocks = self.faults.block_count();
         for block in 0..blocks {
@@ -204,7 +204,7 @@ impl Given<'_> {
     }
 
     fn add_body(&self, h: usize, levels: &mut Levels, progress: &Progress) -> Result<(), ModelError> {
-        let Some(mesh) = self.points(h) else { return Ok(()) };
+        let Some(mesh) = self.mesh(h) else { return Ok(()) };
         let name = &self.horizons[h].name;
         if mesh.triangles.is_empty() {
             return Err(problem(name, self.geometry, SurfaceProblem::PointBody, None));
@@ -221,7 +221,7 @@ impl Given<'_> {
         let last = Vec3::from_array(self.geometry.size().map(|n| n as f32 - 1.0));
         let mut points = Vec::new();
         for (horizon, &h) in members.iter().enumerate() {
-            let all: Vec<Vec3> = match self.points(h) {
+            let all: Vec<Vec3> = match &self.horizons[h].surface {
                 Some(mesh) => mesh.vertices.iter().map(|&v| self.geometry.voxel_from_world(v).as_vec3()).collect(),
                 None => self.picked_nodes(h),
             };

@@ -12,7 +12,7 @@ use formats::{ImportOptions, ImportReport};
 use model::ContactRules;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
-use survey::{Contact, Horizon, Progress};
+use survey::{Contact, Horizon, Note, Progress, SurveyGeometry};
 
 /// Where a horizon goes in the stratigraphy.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -83,6 +83,9 @@ impl AddHorizon {
         model::check_surface(&horizon, contact, &geometry)?;
         let others = load_all(draft, progress)?;
         let position = self.position(draft, &horizon, contact, &others)?;
+        let contacts = draft.document.stratigraphy().horizons.iter().map(|h| h.contact).collect::<Vec<_>>();
+        let contacts = [&contacts[..position], &[contact], &contacts[position..]].concat();
+        self.check_order(&mut horizon, &others, position, &ContactRules::of(contacts), &geometry, &mut report)?;
         let hash = content::hash_horizon(&horizon);
         let (file, new) = draft.generation("horizons", &self.name, "zarr")?;
         store::write_horizon(&new, &horizon, progress)?;
@@ -95,17 +98,39 @@ impl AddHorizon {
             assembly: None,
         };
         draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
-        let rules = ContactRules::new(&draft.document.stratigraphy());
+        Ok(Effect::HorizonAdded(Box::new(HorizonAdded { position, report })))
+    }
+
+    /// Refuses a horizon that crosses another where neither ends the other. Scattered points whose maps cross though they
+    /// lie in order are no maps: then the points themselves are the horizon.
+    fn check_order(
+        &self,
+        horizon: &mut Horizon,
+        others: &[Horizon],
+        position: usize,
+        rules: &ContactRules,
+        geometry: &SurveyGeometry,
+        report: &mut ImportReport,
+    ) -> Result<(), ProjectError> {
         for (index, other) in others.iter().enumerate() {
             let index = if index < position { index } else { index + 1 };
             let (young, old) = (index.min(position), index.max(position));
-            let are_maps = other.surface.is_none() && horizon.surface.is_none();
-            if are_maps && !rules.may_cross(young, old) {
-                let (younger, older) = if index < position { (other, &horizon) } else { (&horizon, other) };
-                order::check(younger, older, &geometry)?;
+            if rules.may_cross(young, old) || other.any_shape().is_some() || horizon.any_shape().is_some() {
+                continue;
             }
+            let (younger, older) = if index < position { (other, &*horizon) } else { (&*horizon, other) };
+            let Err(crossing) = order::check(younger, older, geometry) else { continue };
+            let are_points = self.options.shape.is_none() && horizon.surface.is_some() && other.surface.is_some();
+            if !(are_points && order::is_topmost(younger, older, geometry)) {
+                return Err(crossing);
+            }
+            horizon.sheets.clear();
+            report.sheets = 0;
+            report.warnings.push(Note::from(format!(
+                "as a map, {crossing}. Its points are taken as a surface of any shape, in order of age"
+            )));
         }
-        Ok(Effect::HorizonAdded(Box::new(HorizonAdded { position, report })))
+        Ok(())
     }
 
     /// The name chooses among several horizons of a file, unless the user selects one by its name in the file.
@@ -126,7 +151,7 @@ impl AddHorizon {
             Age::Above(name) => draft.document.position(Noun::Horizon, name),
             Age::Below(name) => Ok(draft.document.position(Noun::Horizon, name)? + 1),
             // A body is drawn over whatever it cuts; its layer is its own at the end of the list.
-            Age::ByDepth if horizon.surface.is_some() && contact == Contact::Intrusive => Ok(others.len()),
+            Age::ByDepth if horizon.any_shape().is_some() && contact == Contact::Intrusive => Ok(others.len()),
             Age::ByDepth => {
                 let geometry = draft.document.frame()?;
                 let deeper = |other: &Horizon| order::is_above(horizon, other, geometry);

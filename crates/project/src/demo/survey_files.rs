@@ -7,6 +7,7 @@
 //! horizons/NAME-N.irap        sheet N alone, since the format holds one depth at a node
 //! faults/NAME.ts              triangles up to the tip
 //! faults/NAME.dat             the same as sticks (OpendTect)
+//! horizons/Salt.ts            the outline of the salt, if there is some
 //! truth.json                  the closed form, the age order and where the attribute lies
 //! ```
 
@@ -19,7 +20,7 @@ use std::fmt;
 use std::path::{Path, PathBuf};
 use store::{StoreError, replace_file};
 use survey::{Contact, Horizon, Progress, file};
-use synth::{SynthSettings, SynthTruth, Synthetic};
+use synth::{Overturned, SynthSettings, SynthTruth, Synthetic};
 
 /// Files of a synthetic survey.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -136,6 +137,12 @@ pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<
     for horizon in &made.horizons {
         progress.check()?;
         let stem = &horizon.name;
+        if horizon.surface.is_some() {
+            let tsurf = horizons.join(format!("{stem}.ts"));
+            formats::write_horizon(&tsurf, horizon, &made.geometry, Format::Tsurf)?;
+            files.horizons.push(tsurf);
+            continue;
+        }
         let csv = horizons.join(format!("{stem}.csv"));
         formats::write_horizon(&csv, horizon, &made.geometry, Format::Csv)?;
         for (n, sheet) in horizon.sheets.iter().enumerate() {
@@ -159,6 +166,68 @@ pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<
         "attribute": { "origin": made.attribute.origin, "extent": made.attribute.extent },
         "truth": made.truth,
     });
+    replace_file(&files.truth, format!("{truth:#}\n").as_bytes())?;
+    Ok(files)
+}
+
+/// The files of an outcrop, and the commands that make a project of them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OutcropFiles {
+    /// Scattered points, CSV, youngest first.
+    pub horizons: Vec<PathBuf>,
+    /// Triangles, TSurf.
+    pub faults: Vec<PathBuf>,
+    /// The closed form, JSON.
+    pub truth: PathBuf,
+    /// `X0,X1,Y0,Y1,Z0,Z1` of the block, as `create --bounds` takes it.
+    pub bounds: String,
+    /// Inlines, crosslines, samples, as `create --size` takes it.
+    pub size: String,
+}
+
+impl fmt::Display for OutcropFiles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.horizons.iter().chain(&self.faults).try_for_each(|file| writeln!(f, "{}", file.display()))?;
+        writeln!(f, "{}: the truth", self.truth.display())?;
+        write!(f, "petroglyph create OUTCROP.petro --bounds {} --size {}", self.bounds, self.size)
+    }
+}
+
+/// Makes an outcrop ([`synth::Overturned`]) and writes it to the folder `out`.
+///
+/// # Errors
+/// The size is too small, a file could not be written, or the user cancelled.
+pub fn write_outcrop(
+    out: &Path,
+    size: [usize; 3],
+    seed: u64,
+    progress: &Progress,
+) -> Result<OutcropFiles, ProjectError> {
+    let made = Overturned::generate(size, seed)?;
+    let folder = |name: &str| {
+        let path = out.join(name);
+        file::create_folders(&path).map_err(|source| StoreError::io("written", &path, source)).map(|()| path)
+    };
+    let (horizons, faults) = (folder("horizons")?, folder("faults")?);
+    let last = made.geometry.world_from_voxel(glam::DVec3::from_array(size.map(|n| n as f64 - 1.0)));
+    let first = made.geometry.world_from_voxel(glam::DVec3::ZERO);
+    let bounds = [first.x, last.x, first.y, last.y, first.z, last.z].map(|c| c.to_string()).join(",");
+    let size = size.map(|n| n.to_string()).join("x");
+    let truth = out.join("truth.json");
+    let mut files = OutcropFiles { horizons: Vec::new(), faults: Vec::new(), truth, bounds, size };
+    for horizon in &made.horizons {
+        progress.check()?;
+        let csv = horizons.join(format!("{}.csv", horizon.name));
+        formats::write_horizon(&csv, horizon, &made.geometry, Format::Csv)?;
+        files.horizons.push(csv);
+    }
+    for fault in &made.faults {
+        progress.check()?;
+        let tsurf = faults.join(format!("{}.ts", fault.name));
+        formats::write_fault(&tsurf, fault, &made.geometry, Format::Tsurf)?;
+        files.faults.push(tsurf);
+    }
+    let truth = json!({ "geometry": made.geometry, "stratigraphy": made.stratigraphy, "outcrop": made.truth });
     replace_file(&files.truth, format!("{truth:#}\n").as_bytes())?;
     Ok(files)
 }

@@ -26,7 +26,7 @@ struct Depths {
 /// Whether `a` lies above `b` at most traces; horizons without a common trace are compared by their mean depth. Where one
 /// of them is no height field, their topmost places are compared: the highest limb of a fold is the right way up.
 pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
-    if a.surface.is_some() || b.surface.is_some() {
+    if a.any_shape().is_some() || b.any_shape().is_some() {
         return is_topmost(a, b, geometry);
     }
     let (mut difference, mut common) = (0.0f64, 0usize);
@@ -40,7 +40,8 @@ pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> b
 /// Cells along each side of the map in which topmost places are compared.
 const CELLS: usize = 8;
 
-fn is_topmost(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
+/// Whether the topmost places of `a` lie above those of `b` at most places of the map.
+pub(crate) fn is_topmost(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
     let (tops_a, tops_b) = (tops(a, geometry), tops(b, geometry));
     let common = || tops_a.iter().zip(&tops_b).filter(|(a, b)| a.is_finite() && b.is_finite());
     let difference: f64 = common().map(|(a, b)| a - b).sum();
@@ -53,7 +54,7 @@ fn lowest(tops: &[f64]) -> f64 {
 
 /// The topmost place in each cell of the map, voxel z.
 fn tops(horizon: &Horizon, geometry: &SurveyGeometry) -> Vec<f64> {
-    let corners = horizon.surface.iter().flat_map(|surface| surface.vertices.iter().copied());
+    let corners = horizon.any_shape().into_iter().flat_map(|surface| surface.vertices.iter().copied());
     let nodes = horizon.sheets.iter().flat_map(|sheet| {
         let nv = sheet.grid.count[1];
         let known = sheet.depth.iter().enumerate().filter(|(_, depth)| depth.is_finite());
