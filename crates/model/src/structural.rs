@@ -185,6 +185,11 @@ impl StructuralModel {
         self.levels[horizon][usize::from(block)].as_ref()
     }
 
+    /// Whether any horizon is no height field.
+    pub fn has_levels(&self) -> bool {
+        self.levels.iter().flatten().any(Option::is_some)
+    }
+
     /// Whether `horizon` is the outline of a body that cuts through all others.
     pub fn is_body(&self, horizon: usize) -> bool {
         self.rules.contacts()[horizon] == Contact::Intrusive && self.levels[horizon].iter().any(Option::is_some)
@@ -256,7 +261,7 @@ impl StructuralModel {
     /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n,
     /// region)` for `depths[n]`. The sheets are evaluated once per block instead of once per depth.
     pub fn regions_down(&self, x: f32, y: f32, depths: &[f32], mut found: impl FnMut(usize, Region)) {
-        let has_levels = self.levels.iter().any(|of_block| of_block.iter().any(Option::is_some));
+        let has_levels = self.has_levels();
         let mut sheets_z: Vec<Option<Vec<f32>>> = vec![None; self.block_count()];
         for (n, &z) in depths.iter().enumerate() {
             let p = Vec3::new(x, y, z);

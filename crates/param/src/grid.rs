@@ -16,6 +16,7 @@
 //! Memory: 12 bytes a node and one bit for the crease flag.
 
 use crate::metric::Metric;
+use crate::touched::RegionColumns;
 use crate::unfold::Unfolding;
 use crate::{LayerModel, Region};
 use glam::{DVec3, Vec3};
@@ -24,6 +25,9 @@ use survey::HeightField;
 
 /// A layer thinner than this (voxels) counts as pinched out: its offsets are 0 and v is ½.
 pub const PINCHED: f32 = 1e-3;
+
+/// Columns and samples between the places at which the rise of k is measured.
+const RISES_EVERY: usize = 5;
 
 /// A sheet that v is measured from: that of a horizon in the region's block, a calm one, or a horizontal plane,
 /// shifted vertically.
@@ -108,7 +112,8 @@ pub struct RegionGrid {
     /// Where v = 1. In an open or parallel layer one of the two is the other shifted by the reference
     /// thickness.
     pub top: SheetRef,
-    /// Reference thickness in metres (k = 0 … 1) of an open or parallel layer.
+    /// Reference thickness in metres (k = 0 … 1) of an open, parallel or unlayered layer, or one between surfaces of any
+    /// shape.
     pub thickness_m: Option<f64>,
     /// `[dx, dy, dk]` per node `[x][y][level]`; dx and dy in voxels.
     pub offsets: Vec<[f32; 3]>,
@@ -205,6 +210,24 @@ impl RegionGrid {
         let (_, slope) = self.level_k(model, p);
         let rise = metric.scaled_from_voxel().inverse().transpose() * slope.as_dvec3();
         rise.try_normalize()
+    }
+
+    /// How fast k rises at places of the region, per metre.
+    pub(crate) fn rises<M: LayerModel + ?Sized>(
+        &self,
+        model: &M,
+        metric: &Metric,
+        touched: &RegionColumns,
+        region: Region,
+    ) -> Vec<f64> {
+        let last = model.size()[2].saturating_sub(1);
+        let covector = (metric.scaled_from_voxel() * metric.unit_m).inverse().transpose();
+        let columns = touched.columns().step_by(RISES_EVERY);
+        let places = columns.flat_map(|(_, [x, y], _)| {
+            (0..=last).step_by(RISES_EVERY).map(move |z| Vec3::new(x as f32, y as f32, z as f32))
+        });
+        let inside = places.filter(|&p| model.region_at(p) == region);
+        inside.map(|p| (covector * self.level_k(model, p).1.as_dvec3()).length()).filter(|rate| *rate > 0.0).collect()
     }
 
     /// Whether the layer is drawn with boundaries of its own: v then goes on beyond the sheets, and the offsets stay as

@@ -87,6 +87,18 @@ impl Parameterization {
             of_layer.into_iter().any(|(_, method)| *method == Method::Unfolded)
         };
         let folded: Vec<u16> = (0..layers as u16).filter(is_unfolded).collect();
+        // Between two surfaces of any shape a vertical line says nothing of the thickness: it is how fast k rises.
+        let thickness_m: Vec<Option<f64>> = (0..layers)
+            .map(|layer| {
+                let of_layer = || (0..blocks).map(move |block| block * layers + layer);
+                let closed =
+                    of_layer().filter(|&n| planned[n].1 == Method::Unfolded && planned[n].0.thickness_m.is_none());
+                let rates = closed.flat_map(|n| planned[n].0.rises(model, &metric, &touched[n], region(n)));
+                let mut rates: Vec<f64> = rates.collect();
+                rates.sort_by(f64::total_cmp);
+                rates.get(rates.len() / 2).map(|rate| 1.0 / rate)
+            })
+            .collect();
         // [layer][block]
         let mut unfolded = vec![Vec::new(); layers];
         for (&layer, of_layer) in folded.iter().zip(unfold::unfold(model, &metric, &folded, up, progress)?) {
@@ -112,6 +124,7 @@ impl Parameterization {
                     flow::fill(&mut grid, flow, planner.stride, &metric, [&bottom, &top], progress)?
                 }
                 Method::Unfolded => {
+                    grid.thickness_m = grid.thickness_m.or(thickness_m[n % layers]);
                     grid.unfolded = unfolded[n % layers].get(usize::from(block)).cloned();
                     ComputeCost::default()
                 }

@@ -184,7 +184,10 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             }
         };
         let is_open = matches!(horizons(self.model, usize::from(region.layer)), (Some(_), None) | (None, Some(_)));
-        let is_parallel = matches!(method, Method::Closest(LayerKind::AboveBottom(_) | LayerKind::BelowTop(_)));
+        let is_vertical = method == Method::Closest(LayerKind::Vertical);
+        let thickness = if is_vertical { last.max(1.0) * self.metric.vertical_step() } else { thickness };
+        let is_parallel =
+            is_vertical || matches!(method, Method::Closest(LayerKind::AboveBottom(_) | LayerKind::BelowTop(_)));
         let grid = RegionGrid {
             region,
             origin: touched.origin,

@@ -66,7 +66,7 @@ pub fn unfold<M: LayerModel + ?Sized>(
     for level in (0..=COARSER).rev() {
         let nodes = CutLattice::nodes_around(size, metres, NODES, f64::from(1u32 << level));
         let of_node: Vec<u16> =
-            (0..nodes.len()).into_par_iter().map(|node| region_near(nodes.place(node)).layer).collect();
+            (0..nodes.count()).into_par_iter().map(|node| region_near(nodes.place(node)).layer).collect();
         found = layers
             .par_iter()
             .zip(found)
@@ -74,7 +74,7 @@ pub fn unfold<M: LayerModel + ?Sized>(
                 let mut wanted: Vec<bool> = of_node.iter().map(|&own| own == layer).collect();
                 for _ in 0..AROUND {
                     let inside = wanted.clone();
-                    for node in (0..nodes.len()).filter(|&node| inside[node]) {
+                    for node in (0..nodes.count()).filter(|&node| inside[node]) {
                         nodes.beside(node).for_each(|m| wanted[m] = true);
                     }
                 }

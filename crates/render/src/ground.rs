@@ -75,7 +75,8 @@ pub struct Relief {
 struct Probe {
     is_rock: bool,
     block: u16,
-    /// Vertical distance to the nearest sheet of [`Relief::horizons`], voxels, and the horizon of that sheet.
+    /// Vertical distance to the nearest sheet of [`Relief::horizons`], voxels, and the horizon of that sheet; to a surface
+    /// of any shape, the distance.
     gap: f32,
     horizon: usize,
     /// Distance from the nearest fault, m, and that fault.
@@ -129,6 +130,8 @@ impl Relief {
     pub fn march(&self, model: &StructuralModel, ray: &Ray, from: f32, to: f32) -> Option<GroundHit> {
         let (start, end) = self.clip(ray, from, to)?;
         let fall = ray.direction.z.abs() + self.steepest * ray.direction.truncate().length();
+        // A surface of any shape may lie in any direction.
+        let fall = if model.has_levels() { fall.max(1.0) } else { fall };
         let (mut air_t, mut air) = (from, None);
         let mut t = start;
         for _ in 0..MAX_STEPS {
@@ -217,8 +220,13 @@ impl Relief {
         }
         let point = ray.at(t);
         let normal = if air_block == inside.block {
-            let slope = model.sheet(inside.horizon, inside.block).sample(point.x, point.y).gradient;
-            slope.extend(-1.0)
+            match model.level(inside.horizon, inside.block) {
+                Some(level) => -level.sample_m(point).1,
+                None => {
+                    let slope = model.sheet(inside.horizon, inside.block).sample(point.x, point.y).gradient;
+                    slope.extend(-1.0)
+                }
+            }
         } else {
             let normal = model.faults().surfaces()[inside.fault].frame_from_voxel.row(2).as_vec3();
             if normal.dot(ray.direction) > 0.0 { -normal } else { normal }
@@ -234,10 +242,13 @@ impl Relief {
         let mut below = 0u64;
         let (mut horizon, mut gap) = (0, f32::MAX);
         for &h in &self.horizons {
-            let z = model.sheet(h, block).z_at(p.x, p.y);
-            below |= u64::from(p.z >= z) << h;
-            if (z - p.z).abs() < gap {
-                (horizon, gap) = (h, (z - p.z).abs());
+            let offset = match model.level(h, block) {
+                Some(level) => level.offset_m(p) / self.longest_m,
+                None => p.z - model.sheet(h, block).z_at(p.x, p.y),
+            };
+            below |= u64::from(offset >= 0.0) << h;
+            if offset.abs() < gap {
+                (horizon, gap) = (h, offset.abs());
             }
         }
         let is_rock = model.rules().layer(below) != air_layer(model);
@@ -308,6 +319,12 @@ impl HeightRow {
                     continue;
                 }
                 *range = [range[0].min(z), range[1].max(z)];
+                // A body may stand out of the ground.
+                for h in (0..model.stratigraphy().horizons.len()).filter(|&h| model.is_body(h)) {
+                    let top = model.sheet(h, block).z_at(x, y);
+                    row.horizons |= u64::from(top <= z + HEIGHT_MARGIN) << h;
+                    range[0] = range[0].min(top);
+                }
                 let slope = (ground(x + 1.0, y) - z).hypot(ground(x, y + 1.0) - z);
                 row.steepest = row.steepest.max(slope);
                 for h in 0..model.stratigraphy().horizons.len() {

@@ -52,7 +52,7 @@ impl CutLattice {
         let signatures = faults.signatures();
         let blocks = faults.block_count();
         // For each node, the first block that each block shares its value with.
-        let shared: Vec<Vec<u16>> = (0..nodes.len())
+        let shared: Vec<Vec<u16>> = (0..nodes.count())
             .into_par_iter()
             .map(|node| {
                 if !is_wanted(node) {
@@ -75,15 +75,15 @@ impl CutLattice {
                 first
             })
             .collect();
-        let mut unknown = vec![NONE; blocks * nodes.len()];
+        let mut unknown = vec![NONE; blocks * nodes.count()];
         let mut unknowns = 0;
         for (node, first) in shared.iter().enumerate() {
             for (block, &of) in first.iter().enumerate() {
-                unknown[block * nodes.len() + node] = if usize::from(of) == block {
+                unknown[block * nodes.count() + node] = if usize::from(of) == block {
                     unknowns += 1;
                     unknowns as u32 - 1
                 } else {
-                    unknown[usize::from(of) * nodes.len() + node]
+                    unknown[usize::from(of) * nodes.count() + node]
                 };
             }
         }
@@ -92,7 +92,7 @@ impl CutLattice {
 
     /// The unknown of a block at a node, [`u32::MAX`] where none is wanted.
     fn unknown(&self, block: usize, node: usize) -> u32 {
-        self.unknown[block * self.nodes.len() + node]
+        self.unknown[block * self.nodes.count() + node]
     }
 
     /// The first node of the cell around a voxel position, and the fractions inside it.
@@ -125,7 +125,7 @@ impl CutLattice {
     pub fn guess(&self, value: impl Fn(usize, Vec3) -> f64) -> Vec<f64> {
         let mut guess = vec![0.0; self.unknowns];
         for block in 0..self.blocks {
-            for node in 0..self.nodes.len() {
+            for node in 0..self.nodes.count() {
                 if let Some(at) = guess.get_mut(self.unknown(block, node) as usize) {
                     *at = value(block, self.nodes.place(node));
                 }
@@ -140,7 +140,7 @@ impl CutLattice {
         let field = |block: usize| {
             let at =
                 |node: usize| values.get(self.unknown(block, node) as usize).map_or(f32::NAN, |&value| value as f32);
-            let mut found: Vec<f32> = (0..self.nodes.len()).map(at).collect();
+            let mut found: Vec<f32> = (0..self.nodes.count()).map(at).collect();
             let mut edge: Vec<usize> = (0..found.len()).filter(|&node| found[node].is_finite()).collect();
             while !edge.is_empty() {
                 let mut next: Vec<usize> = edge.iter().flat_map(|&node| self.nodes.beside(node)).collect();
@@ -165,7 +165,7 @@ impl CutLattice {
     /// The first node of every cell in which `block` has corners that no block before it has all of.
     pub fn cells(&self, block: usize) -> impl Iterator<Item = usize> + '_ {
         let size = self.nodes.size;
-        (0..self.nodes.len()).filter(move |&node| {
+        (0..self.nodes.count()).filter(move |&node| {
             let index = self.nodes.index(node);
             let inside = (0..3).all(|axis| index[axis] + 1 < size[axis]);
             inside && {
@@ -195,7 +195,7 @@ impl CutLattice {
         let size = self.nodes.size;
         let strides = [size[1] * size[2], size[2], 1];
         for block in 0..self.blocks {
-            for node in 0..self.nodes.len() {
+            for node in 0..self.nodes.count() {
                 let index = self.nodes.index(node);
                 let mut add = |nodes: &[(usize, f64)], weight: f64| {
                     let of = |block: usize| nodes.iter().map(move |&(n, _)| self.unknown(block, n));
@@ -225,7 +225,7 @@ impl CutLattice {
 /// `size` that `holds` coarse nodes.
 pub fn resampled(coarse: &LevelField, size: [usize; 3], step: f32, holds: impl Fn(Vec3) -> bool) -> LevelField {
     let nodes = NodeBox { origin: coarse.origin, step: coarse.step, size: coarse.size };
-    let held = (0..nodes.len()).map(|node| nodes.place(node)).filter(|&p| holds(p));
+    let held = (0..nodes.count()).map(|node| nodes.place(node)).filter(|&p| holds(p));
     let (mut low, mut high) = held.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
     if low.x > high.x {
         (low, high) = (Vec3::ZERO, Vec3::ONE);
@@ -237,7 +237,7 @@ pub fn resampled(coarse: &LevelField, size: [usize; 3], step: f32, holds: impl F
     let fine = NodeBox::covering(low, high, Vec3::splat(step));
     let at = |[x, y, z]: [usize; 3]| f64::from(coarse.values[(x * nodes.size[1] + y) * nodes.size[2] + z]);
     let value = |node: usize| tricubic(nodes, fine.place(node), at) as f32;
-    let values = (0..fine.len()).into_par_iter().map(value).collect();
+    let values = (0..fine.count()).into_par_iter().map(value).collect();
     LevelField { origin: low, step: fine.step, size: fine.size, values }
 }
 

@@ -139,7 +139,7 @@ impl NodeBox {
     }
 
     /// Number of nodes.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.size.iter().product()
     }
 
@@ -176,7 +176,7 @@ pub(super) fn signed_distance(
 ) -> Result<(LevelField, Option<Contradiction>), Cancelled> {
     let place = |node: usize| metric * nodes.place(node).as_dvec3();
     let tree = Tree::of(&surface.corners);
-    let mut values = vec![0.0f32; nodes.len()];
+    let mut values = vec![0.0f32; nodes.count()];
     let height = nodes.size[2];
     values.par_chunks_mut(height).enumerate().try_for_each(|(column, values)| {
         progress.check()?;
@@ -199,7 +199,7 @@ fn contradiction(values: &[f32], nodes: NodeBox, metric: DMat3, volume: Vec3) ->
     let apart = [0, 1, 2].map(|axis| (metric.col(axis).length() * f64::from(nodes.step[axis])) as f32);
     let strides = [nodes.size[1] * nodes.size[2], nodes.size[2], 1];
     let mut worst: Option<(f32, usize)> = None;
-    for node in 0..nodes.len() {
+    for node in 0..nodes.count() {
         let index = nodes.index(node);
         for axis in (0..3).filter(|&axis| index[axis] + 1 < nodes.size[axis]) {
             let (a, b) = (values[node], values[node + strides[axis]]);

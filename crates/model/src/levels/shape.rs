@@ -129,7 +129,8 @@ impl<'a> Shape<'a> {
             high = high.min((most + 2.0).ceil()).max(low + 1.0);
         }
         let fine = NodeBox::covering(low, high, Vec3::splat(FINE_STEP));
-        let nodes = if is_closed && fine.len() <= FINE_NODES { fine } else { NodeBox::covering(low, high, Vec3::ONE) };
+        let nodes =
+            if is_closed && fine.count() <= FINE_NODES { fine } else { NodeBox::covering(low, high, Vec3::ONE) };
         let (field, contradiction) = signed_distance(&Surface::of(mesh), nodes, self.metric, last, progress)?;
         if let Some(found) = contradiction {
             return Err(problem(self.name, self.geometry, SurfaceProblem::Contradiction, Some(found.at.as_dvec3())));

@@ -17,6 +17,11 @@ const SHORTEST_RUN: f64 = 8.0;
 /// Whether `edge` is part of a fault where it was interpreted.
 pub(super) fn is_real_fault(model: &StructuralModel, plane: &SectionPlane, positions: &[DVec2], edge: &Edge) -> bool {
     let Tag::Fault { fault, .. } = edge.tag else { return false };
+    // A body cuts the faults, too.
+    let top = model.stratigraphy().top_of(usize::from(edge.region.layer));
+    if top.is_some_and(|top| model.is_body(top)) {
+        return false;
+    }
     model.faults().surfaces()[usize::from(fault)].extent_at(middle(plane, positions, edge)) >= 0.0
 }
 
