@@ -1,6 +1,6 @@
 //! What each action does to the state.
 
-use super::{Action, Compare, Dialogue, Notice, Panel, PickingTask, Place, Session, State, Task, ViewState, camera};
+use super::{Action, Compare, Notice, Panel, PickingTask, Place, Session, State, Task, ViewState, camera};
 use project::picture::scene;
 
 impl State {
@@ -9,6 +9,7 @@ impl State {
         match action {
             Action::Open(path) => {
                 self.quieten(Place::Start);
+                self.quieten(Place::Dialogue);
                 return vec![Task::Open(path)];
             }
             Action::Check(path, place) => {
@@ -164,11 +165,6 @@ impl State {
     /// Removes the messages of one place, because something new begins there.
     fn quieten(&mut self, place: Place) {
         self.notices.retain(|notice| notice.place != place);
-    }
-
-    /// Whether a dialogue or a text field in it takes the keyboard, so that the shortcuts of the views must not act.
-    pub fn is_asking(&self) -> bool {
-        matches!(&self.dialogue, Some(dialogue) if !matches!(dialogue, Dialogue::Shortcuts))
     }
 
     /// The scenes that the block view draws, side by side or over one another: their blends, in order.

@@ -2,10 +2,11 @@
 
 use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
-use crate::theme;
-use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
+use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit};
 use project::figures::FigureFormat;
 use std::path::Path;
+use widgets::keyboard::is_entered;
+use widgets::theme;
 
 /// Largest side of a picture, pixels.
 const LARGEST: u32 = 16_000;
@@ -80,8 +81,7 @@ pub fn show(
         }
         ui.horizontal(|ui| {
             let can = !is_drawing && !is_too_large && has_format;
-            let is_entered = can && ui.input(|input| input.key_pressed(Key::Enter));
-            if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || is_entered {
+            if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || can && is_entered(ui) {
                 actions.push(Action::Export(Box::new(next.clone())));
             }
             if ui.button("Cancel").clicked() {

@@ -166,9 +166,9 @@ impl Work {
     pub fn run(&mut self, task: Task, place: Place) {
         let root = || self.root.clone();
         let order = match task {
-            Task::Open(root) => orders::Order::Open(root),
+            Task::Open(root) => orders::Order::Open(root, place),
             Task::Check(root, place) => orders::Order::Check(root, place),
-            Task::Demo(folder) => orders::Order::Demo(folder),
+            Task::Demo(folder) => orders::Order::Demo(folder, place),
             Task::Create { command, root } => orders::Order::Create { command, root },
             Task::Apply(command) => match root() {
                 Some(root) => orders::Order::Apply { root, command, place },

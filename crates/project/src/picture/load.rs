@@ -395,7 +395,15 @@ fn read_volumes(
     Ok(volumes)
 }
 
-fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Result<Vec<LoadedWell>, ProjectError> {
+/// Reads the wells of a project's state, in voxels of `geometry`.
+///
+/// # Errors
+/// A well cannot be read.
+pub fn read_wells(
+    root: &Path,
+    document: &Document,
+    geometry: &SurveyGeometry,
+) -> Result<Vec<LoadedWell>, ProjectError> {
     let mut wells = Vec::new();
     for entry in &document.wells {
         let well = content::read_well(root, entry)?;

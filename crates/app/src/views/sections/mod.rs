@@ -11,7 +11,7 @@ pub use lines::{entry_colour, horizon_colour};
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
-use super::{canvas, texture};
+use super::texture;
 use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, Session};
 use crate::work::{Rocks, SliceRequest, Slices};
 use eframe::egui::{Context, DragValue, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
@@ -26,13 +26,13 @@ use render::FaceData;
 use std::collections::HashMap;
 use std::sync::Arc;
 use survey::SurveyGeometry;
+use widgets::canvas;
+use widgets::event_order::wheel_lines;
 
 /// Margin for the numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
 /// Smallest and largest zoom.
 const ZOOM: [f32; 2] = [1.0, 40.0];
-/// Wheel travel that goes to the next section, points.
-const WHEEL_STEP: f32 = 24.0;
 
 /// One section on the screen.
 struct Pane {
@@ -43,7 +43,7 @@ struct Pane {
     zoom: f32,
     /// The point of the section that is in the middle of the view, shares of its width and height.
     middle: Vec2,
-    /// Wheel travel that has not changed the section yet, points.
+    /// The part of a line of the wheel that has not changed the section yet.
     wheel: f32,
     lasso: LassoLine,
 }
@@ -117,7 +117,7 @@ impl Sections {
             let share = (pointer - image.min) / image.size();
             DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y)
         };
-        if let Some(line) = pane.lasso.draw(&painter, &response, has_lasso) {
+        if let Some(line) = pane.lasso.draw(ui, &painter, &response, has_lasso) {
             let corners = line.into_iter().map(to_section).collect();
             let on = LassoOn::Section(kind, at);
             actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));
@@ -220,14 +220,10 @@ impl Pane {
 
     /// Goes to the next section by the wheel.
     fn step(&mut self, ui: &Ui, session: &Session, kind: SectionKind, actions: &mut Vec<Action>) {
-        let (scroll, has_zoomed) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta() != 1.0));
-        if has_zoomed {
-            return;
-        }
-        self.wheel += scroll;
-        let steps = (self.wheel / WHEEL_STEP).trunc();
+        self.wheel += wheel_lines(ui);
+        let steps = self.wheel.trunc();
         if steps != 0.0 {
-            self.wheel -= steps * WHEEL_STEP;
+            self.wheel -= steps;
             let mut slices = session.view.slices;
             slices[kind.axis()] -= f64::from(steps);
             actions.push(Action::Slices(slices));
