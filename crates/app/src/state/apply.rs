@@ -34,6 +34,7 @@ impl State {
                 return vec![Task::Demo(folder)];
             }
             Action::Close => {
+                self.put_by();
                 self.session = None;
                 self.dialogue = None;
                 self.notices.clear();
@@ -141,12 +142,21 @@ impl State {
 
     fn opened(&mut self, snapshot: super::Snapshot) -> Vec<Task> {
         let left = self.remembered.left.take().filter(|left| left.root == snapshot.root);
+        self.put_by();
+        let closed = || self.remembered.closed.iter().find(|left| left.root == snapshot.root).cloned();
+        let left = left.or_else(closed);
         self.remembered.add(&snapshot.root);
         self.notices.clear();
         self.dialogue = None;
         self.session = Some(Session::new(snapshot, left.map(|left| left.view)));
         self.mark();
         vec![Task::Remember]
+    }
+
+    /// Keeps the view of the open project for when it is opened again.
+    pub fn put_by(&mut self) {
+        let Some(session) = &self.session else { return };
+        self.remembered.put_by(&session.root, &session.view);
     }
 
     /// Records the present view, so that work can be continued from it.

@@ -4,6 +4,7 @@ use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
 use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit};
 use project::figures::FigureFormat;
+use project::picture::SparseHorizon;
 use std::path::Path;
 use widgets::keyboard::is_entered;
 use widgets::theme;
@@ -18,6 +19,7 @@ pub fn show(
     session: &Session,
     form: &ExportForm,
     is_drawing: bool,
+    sparse: &[SparseHorizon],
     actions: &mut Vec<Action>,
 ) {
     let modal = Modal::new(Id::unique("export")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
@@ -79,9 +81,22 @@ pub fn show(
         if !has_format {
             ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
         }
+        for horizon in sparse {
+            ui.colored_label(ui.visuals().warn_fg_color, capital(&horizon.sentence()));
+        }
+        if !sparse.is_empty() {
+            ui.checkbox(&mut next.accepts_sparse, "Draw it all the same");
+        }
         ui.horizontal(|ui| {
-            let can = !is_drawing && !is_too_large && has_format;
-            if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || can && is_entered(ui) {
+            let is_accepted = sparse.is_empty() || next.accepts_sparse;
+            let can = !is_drawing && !is_too_large && has_format && is_accepted;
+            if ui
+                .add_enabled(can, Button::new("Export"))
+                .on_hover_text("Enter")
+                .on_disabled_hover_text(obstacle(is_accepted))
+                .clicked()
+                || can && is_entered(ui)
+            {
                 actions.push(Action::Export(Box::new(next.clone())));
             }
             if ui.button("Cancel").clicked() {
@@ -99,4 +114,19 @@ pub fn show(
     if modal.should_close() {
         actions.push(Action::Answered);
     }
+}
+
+/// Why nothing can be written yet.
+fn obstacle(is_accepted: bool) -> &'static str {
+    if is_accepted {
+        "Drawing, or what is written in red stands against it"
+    } else {
+        "Say first that it is wanted all the same"
+    }
+}
+
+/// A sentence from a clause.
+fn capital(clause: &str) -> String {
+    let mut letters = clause.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).chain(['.']).collect()
 }

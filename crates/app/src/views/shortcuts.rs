@@ -85,7 +85,7 @@ pub const SHORTCUTS: &[Shortcut] = &[
         let is_interpreting = session.view.panel == Panel::Interpret;
         Some(Action::Panel(if is_interpreting { Panel::Layers } else { Panel::Interpret }))
     }),
-    plain(Key::V, "V", "Values", |_| Some(Action::Panel(Panel::Values))),
+    plain(Key::V, "V", "Volume display", |_| Some(Action::Panel(Panel::Values))),
     plain(Key::B, "B", "Blend", |_| Some(Action::Compare(Compare::Blend))),
     plain(Key::S, "S", "Side by side", |_| Some(Action::Compare(Compare::SideBySide))),
     plain(Key::W, "W", "Wipe", |_| Some(Action::Compare(Compare::Wipe))),
@@ -146,7 +146,7 @@ pub const INTERPRETING: &[Shortcut] = &[
         let is_clear = session.view.picking.look == Look::VolumeRendering;
         picking(PickingStep::Look(if is_clear { Look::Faces } else { Look::VolumeRendering }))
     }),
-    plain(Key::G, "G", "Amplitudes, leaves, distances in turn", |session| {
+    plain(Key::G, "G", "Amplitudes, candidate pieces, distances in turn", |session| {
         picking(PickingStep::Show(match session.view.picking.show {
             FaceData::Rock => FaceData::Leaves,
             FaceData::Leaves => FaceData::Distance,

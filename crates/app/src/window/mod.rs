@@ -101,6 +101,8 @@ pub struct Window {
     chooser: Chooser,
     dropped: Dropped,
     listener: Listener,
+    /// The project that the window's title names.
+    titled: Option<String>,
     controls: Controls,
     pointed: Option<Pointed>,
     rocks: Option<(Rocks, u64)>,
@@ -150,6 +152,7 @@ impl Window {
             chooser: Chooser::default(),
             dropped: Dropped::default(),
             listener: Listener::default(),
+            titled: None,
             controls: Controls::default(),
             pointed: None,
             rocks: None,
@@ -269,6 +272,16 @@ impl Window {
         ctx.set_zoom_factor(self.state.remembered.scale.unwrap_or(1.0));
     }
 
+    /// Names the open project in the title of the window.
+    fn entitle(&mut self, ctx: &Context) {
+        let name = self.state.session.as_ref().map(super::state::Session::name);
+        if self.titled != name {
+            let title = name.as_ref().map_or_else(|| "Petroglyph".to_owned(), |name| format!("{name} – Petroglyph"));
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+            self.titled = name;
+        }
+    }
+
     /// Draws everything.
     pub fn show(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
@@ -289,6 +302,7 @@ impl Window {
             CentralPanel::default().show(ui, |ui| self.start.show(ui, &self.state, !running.is_empty(), &mut actions));
         }
         self.dialogues(&ctx, &mut actions);
+        self.entitle(&ctx);
         self.listener.end_frame(&ctx);
         for action in actions {
             self.act(action);
@@ -337,7 +351,9 @@ impl Window {
             Some(Dialogue::Export(form)) => {
                 if let Some(session) = &self.state.session {
                     let is_drawing = self.work.running.lines().iter().any(|line| line.place == Place::Dialogue);
-                    export::show(ctx, &self.state, session, form, is_drawing, actions);
+                    let loaded = self.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
+                    let sparse = loaded.as_ref().map_or(&[][..], |loaded| &loaded.sparse);
+                    export::show(ctx, &self.state, session, form, is_drawing, sparse, actions);
                 }
             }
             None => {}
@@ -356,6 +372,7 @@ impl eframe::App for Window {
     }
 
     fn on_exit(&mut self) {
+        self.state.put_by();
         // The window is closed properly, so there is nothing to recover.
         self.state.remembered.left = None;
         self.hold = None;

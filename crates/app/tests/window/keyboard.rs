@@ -4,8 +4,9 @@
 use super::driven::{Driven, click, document, driven, open, project, state, wait};
 use super::picking::{act, interpreting, on_a_trough, picking};
 use app::state::{Action, Choice, Dialogue, How, Panel, PickingStep};
-use eframe::egui::{Event, Key, Modifiers};
+use eframe::egui::{Event, Key, Modifiers, ViewportCommand};
 use egui_kittest::kittest::Queryable;
+use std::cell::RefCell;
 
 fn type_text(harness: &mut Driven, text: &str) {
     // As a keyboard does it: each letter is a key and a text.
@@ -98,4 +99,39 @@ fn a_project_that_cannot_be_opened_is_told_in_the_chooser() {
     });
     assert!(asks(&harness));
     assert_eq!(state(&harness).session.as_ref().unwrap().root, root);
+}
+
+#[test]
+fn the_title_names_the_project_and_its_view_comes_back_when_it_is_opened_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = project(folder.path());
+    let mut harness = driven(folder.path(), Some(root.clone()));
+    let titles = |harness: &Driven| -> Vec<String> {
+        let commands = harness.output().viewport_output.values().flat_map(|viewport| viewport.commands.iter());
+        let title = |command: &ViewportCommand| match command {
+            ViewportCommand::Title(title) => Some(title.clone()),
+            _ => None,
+        };
+        commands.filter_map(title).collect()
+    };
+    wait(&mut harness, "the project is open", |harness| state(harness).session.is_some());
+    harness.state_mut().as_mut().unwrap().act(Action::Close);
+    harness.step();
+    assert_eq!(titles(&harness), ["Petroglyph"]);
+    harness.state_mut().as_mut().unwrap().act(Action::Open(root.clone()));
+    let seen = RefCell::new(Vec::new());
+    wait(&mut harness, "the project is open", |harness| {
+        seen.borrow_mut().extend(titles(harness));
+        state(harness).session.is_some()
+    });
+    assert_eq!(seen.into_inner(), ["north – Petroglyph"]);
+    // Closed and opened again, it is shown as it was left.
+    press(&mut harness, Key::D);
+    press(&mut harness, Key::T);
+    harness.state_mut().as_mut().unwrap().act(Action::Close);
+    harness.run_steps(2);
+    harness.state_mut().as_mut().unwrap().act(Action::Open(root));
+    wait(&mut harness, "the project is open again", |harness| state(harness).session.is_some());
+    let view = &state(&harness).session.as_ref().unwrap().view;
+    assert_eq!((view.panel, view.scene.camera.elevation_deg), (Panel::Data, 90.0));
 }

@@ -9,4 +9,5 @@ mod horizon;
 mod keyboard;
 mod panel;
 mod picking;
+mod unpicked;
 mod volumes;

@@ -152,6 +152,44 @@ fn each_polygon_of_a_table_is_a_fault_of_its_own() {
 }
 
 #[test]
+fn rows_of_iesx_as_opendtect_writes_them_are_a_horizon() {
+    let mut text =
+        "PROFILE Segment          TYPE 1  4                                               3d_ci7m.ifdf     m  ms\n\
+                    SNAPPING PARAMETERS 5     0 1\n"
+            .to_owned();
+    let e = |value: f64| {
+        let exponent = if value == 0.0 { 0 } else { value.abs().log10().floor() as i32 };
+        format!("{:>16}", format!("{:.8}E+{exponent:02}", value / 10f64.powi(exponent)))
+    };
+    for x in 0..21 {
+        for y in 0..16 {
+            let [east, north] = [25.0 * f64::from(x), 25.0 * f64::from(y)];
+            let is_hole = x == 3 && y == 4;
+            let z = if is_hole { 3.4028234663852886e38 } else { depth(east, north) };
+            let crossline = f64::from(y + 1);
+            text += &format!(
+                "{}{}{:>3}{:>3}{z:>9.2}{crossline:>10.2}{crossline:>10.2}{:>5}{:>14} I{:>7} XX\n{}\t{}\t{z:.2}\nEOD",
+                e(east),
+                e(north),
+                0,
+                14,
+                y + 1,
+                "3.4028235E+38",
+                x + 1,
+                x + 1,
+                y + 1
+            );
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(&folder, "segment.dat", &text);
+    let geometry = SurveyGeometry::regular([21, 16, 101], 25.0, 4.0, VerticalUnit::Milliseconds);
+    let (segment, _) = read_horizons(&path, &geometry, &ImportOptions::default()).unwrap().remove(0);
+    assert_eq!((segment.name.as_str(), segment.sheets[0].node_count()), ("Segment", 21 * 16 - 1));
+    assert_on_the_plane(&segment, "IESX");
+}
+
+#[test]
 fn what_is_known_but_not_read_is_named() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |name: &str, text: &str| {

@@ -1,0 +1,39 @@
+//! What was filled or extrapolated does not look like what was picked, and a figure says how much was.
+
+use crate::program::run_in;
+use image::RgbImage;
+use std::fs;
+use std::path::Path;
+
+/// A project with a horizon on all traces and one on a sixth of them.
+fn sparse(at: &Path) {
+    run_in(at, "create p.petro --bounds 0,1000,0,1000,0,500 --size 41x41x51").done();
+    for (name, z, last) in [("Whole", 120.0, 40), ("Sparse", 300.0, 6)] {
+        let rows = (0..=last).flat_map(|x| (0..=40).map(move |y| (25 * x, 25 * y)));
+        let text =
+            rows.fold("x,y,z\n".to_owned(), |text, (x, y)| text + &format!("{x},{y},{}\n", z + 0.05 * f64::from(y)));
+        fs::write(at.join("h.csv"), text).unwrap();
+        run_in(at, &format!("horizon add p.petro h.csv --name {name} --z-unit m --z-positive down")).done();
+    }
+}
+
+fn picture(at: &Path, outlines: &str) -> RgbImage {
+    let line = format!("render p.petro {outlines}.png --outlines {outlines} --device cpu --samples 1 --size 500x400");
+    let told = run_in(at, &line).done().stderr;
+    assert!(told.contains("horizon Sparse was picked on 17 % of its traces"), "{told}");
+    assert!(!told.contains("Whole"), "{told}");
+    image::open(at.join(format!("{outlines}.png"))).unwrap().to_rgb8()
+}
+
+#[test]
+fn a_figure_says_how_little_of_a_horizon_was_picked_and_can_dash_the_rest() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    sparse(at);
+    let pictures = ["on", "dashed", "off"].map(|outlines| picture(at, outlines));
+    let ink = |image: &RgbImage| image.pixels().filter(|pixel| pixel.0.iter().all(|channel| *channel < 70)).count();
+    let [whole, dashed, none] = [&pictures[0], &pictures[1], &pictures[2]].map(ink);
+    // The edges and the other horizon stay solid.
+    assert!(dashed + 150 < whole && dashed > none + 500, "{whole}, {dashed}, {none}");
+    run_in(at, "render p.petro a.png --outlines dotted").failed(&["expected on, dashed or off"]);
+}
