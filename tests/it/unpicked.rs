@@ -5,7 +5,8 @@ use image::RgbImage;
 use std::fs;
 use std::path::Path;
 
-/// A project with a horizon on all traces and one on a sixth of them.
+/// A project with a horizon on all traces and one on a sixth of them; with the four traces beside its border, which count
+/// as picked, that is 11 of 41.
 fn sparse(at: &Path) {
     run_in(at, "create p.petro --bounds 0,1000,0,1000,0,500 --size 41x41x51").done();
     for (name, z, last) in [("Whole", 120.0, 40), ("Sparse", 300.0, 6)] {
@@ -20,7 +21,7 @@ fn sparse(at: &Path) {
 fn picture(at: &Path, outlines: &str) -> RgbImage {
     let line = format!("render p.petro {outlines}.png --outlines {outlines} --device cpu --samples 1 --size 500x400");
     let told = run_in(at, &line).done().stderr;
-    assert!(told.contains("horizon Sparse was picked on 17 % of its traces"), "{told}");
+    assert!(told.contains("horizon Sparse was picked on 27 % of its traces"), "{told}");
     assert!(!told.contains("Whole"), "{told}");
     image::open(at.join(format!("{outlines}.png"))).unwrap().to_rgb8()
 }

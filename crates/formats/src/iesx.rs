@@ -151,6 +151,11 @@ mod tests {
         let numbers = overflown(left.trim()).unwrap();
         assert_eq!((numbers[0], numbers[1], numbers[7]), (620986.88, 6080882.36, 914.0));
         assert!(numbers[4] > UNDEFINED);
-        assert!(is_echo("376\t914\t648.62") && is_echo("648.62") && !is_echo(&left) && !is_echo("EOD"));
+        assert!(
+            is_echo("376\t914\t648.62")
+                && is_echo("648.62")
+                && !is_echo(&format!("{left} I    376 XX"))
+                && !is_echo("EOD")
+        );
     }
 }

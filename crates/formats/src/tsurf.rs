@@ -168,12 +168,11 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         if keyword == "GOCAD" {
             // A file may end an object with the next one instead of END.
             surfaces.extend(object.take().map(Object::surface));
-            match rest.split_whitespace().next() {
-                Some(word) => match Kind::of(word) {
+            if let Some(word) = rest.split_whitespace().next() {
+                match Kind::of(word) {
                     Some(kind) => object = Some(Object { kind, ..Object::default() }),
                     None => other = Some(word.to_string()),
-                },
-                None => {}
+                }
             }
             continue;
         }

@@ -33,14 +33,7 @@ impl State {
                 self.quieten(Place::Start);
                 return vec![Task::Demo(folder)];
             }
-            Action::Close => {
-                self.put_by();
-                self.session = None;
-                self.dialogue = None;
-                self.notices.clear();
-                self.remembered.left = None;
-                return vec![Task::Release, Task::Remember];
-            }
+            Action::Close => return self.close(),
             Action::Opened(snapshot) => return self.opened(*snapshot),
             Action::Changed(snapshot) => {
                 if let Some(session) = self.session.as_mut().filter(|session| session.root == snapshot.root) {
@@ -138,6 +131,15 @@ impl State {
             Action::Handles(shown) => view.handles = shown,
             _ => {}
         }
+    }
+
+    fn close(&mut self) -> Vec<Task> {
+        self.put_by();
+        self.session = None;
+        self.dialogue = None;
+        self.notices.clear();
+        self.remembered.left = None;
+        vec![Task::Release, Task::Remember]
     }
 
     fn opened(&mut self, snapshot: super::Snapshot) -> Vec<Task> {

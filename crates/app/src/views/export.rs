@@ -2,7 +2,7 @@
 
 use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
-use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit};
+use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui};
 use project::figures::FigureFormat;
 use project::picture::SparseHorizon;
 use std::path::Path;
@@ -81,14 +81,8 @@ pub fn show(
         if !has_format {
             ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
         }
-        for horizon in sparse {
-            ui.colored_label(ui.visuals().warn_fg_color, capital(&horizon.sentence()));
-        }
-        if !sparse.is_empty() {
-            ui.checkbox(&mut next.accepts_sparse, "Draw it all the same");
-        }
+        let is_accepted = accept(ui, sparse, &mut next);
         ui.horizontal(|ui| {
-            let is_accepted = sparse.is_empty() || next.accepts_sparse;
             let can = !is_drawing && !is_too_large && has_format && is_accepted;
             if ui
                 .add_enabled(can, Button::new("Export"))
@@ -114,6 +108,17 @@ pub fn show(
     if modal.should_close() {
         actions.push(Action::Answered);
     }
+}
+
+/// Says which horizons were hardly picked; returns whether there are none, or a picture is wanted all the same.
+fn accept(ui: &mut Ui, sparse: &[SparseHorizon], next: &mut ExportForm) -> bool {
+    for horizon in sparse {
+        ui.colored_label(ui.visuals().warn_fg_color, capital(&horizon.sentence()));
+    }
+    if !sparse.is_empty() {
+        ui.checkbox(&mut next.accepts_sparse, "Draw it all the same");
+    }
+    sparse.is_empty() || next.accepts_sparse
 }
 
 /// Why nothing can be written yet.

@@ -34,6 +34,7 @@ use super::state::{Notice, PickingStep, Place, Snapshot, Task};
 use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
 use project::command::PickNode;
+use render::FaceData;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
@@ -61,7 +62,12 @@ pub enum Event {
     /// A picture of the block.
     Drawn(Drawn),
     /// A section.
-    Sliced(SectionCut),
+    Sliced {
+        /// The section.
+        cut: SectionCut,
+        /// Its position, the number of its data, and what of the candidates it shows.
+        of: (f64, u64, FaceData),
+    },
     /// A section along a line.
     Fenced(FenceCut),
     /// A map.

@@ -1,4 +1,6 @@
 //! How much of each horizon was picked, as against filled or extrapolated: a picture shows the one like the other.
+//!
+//! As in the model and in the dashes of pictures, a place within four traces of a pick counts as picked.
 
 use super::load::Rock;
 use glam::Vec3;

@@ -3,9 +3,9 @@
 use glam::DVec2;
 
 /// The lengths of a dash and of the gap after it, pixels of an image whose smaller side has 1000 pixels.
-pub(super) const APPROXIMATE: [f64; 2] = [9.0, 6.5];
+pub(super) const APPROXIMATE: [f64; 2] = [12.0, 6.0];
 /// The same of what is inferred.
-pub(super) const INFERRED: [f64; 2] = [2.5, 6.0];
+pub(super) const INFERRED: [f64; 2] = [5.0, 5.5];
 
 /// The dashes along a line that begins with a dash; `on` and `off` in the unit of its places.
 pub(super) fn dashed(points: &[DVec2], [on, off]: [f64; 2]) -> Vec<Vec<DVec2>> {
