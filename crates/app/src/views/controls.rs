@@ -5,7 +5,7 @@ use crate::state::{Action, Panel, Place, Session, StandardView, State};
 use eframe::egui::{Button, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
 use project::command::{AddScene, Command, RemoveScene};
-use render::{Corner, Ground, PatternSize, Projection, Scene, Unpicked, VoxelBox};
+use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
 
 /// Opening angle that a perspective starts with.
@@ -122,16 +122,6 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
                     scene.pattern_size = if on_paper { PatternSize::Paper } else { PatternSize::Rock };
                 }
                 constant
-            });
-        }
-        if has_layers {
-            row(ui, "Not picked", |ui| {
-                let mut is_dashed = scene.outlines.unpicked == Unpicked::Dashed;
-                let dashed = ui.checkbox(&mut is_dashed, "dashed lines");
-                if dashed.changed() {
-                    scene.outlines.unpicked = if is_dashed { Unpicked::Dashed } else { Unpicked::Solid };
-                }
-                dashed.on_hover_text("Horizons are dashed on the block where they were filled or extrapolated")
             });
         }
         row(ui, "Face tone", |ui| ui.add(Slider::new(&mut scene.face_tone, 0.0..=0.5).max_decimals(2)));

@@ -4,7 +4,6 @@
 use super::command::applied;
 use super::driven::{click, open, state, wait};
 use eframe::egui::Key;
-use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use formats::ImportOptions;
 use project::command::{AddHorizon, Age, Command};
@@ -36,7 +35,6 @@ fn an_export_with_a_horizon_that_was_hardly_picked_is_asked_for() {
     let unpicked =
         |harness: &super::driven::Driven| state(harness).session.as_ref().unwrap().view.scene.outlines.unpicked;
     assert_eq!(unpicked(&harness), Unpicked::Dashed);
-    harness.get_by_role_and_label(Role::CheckBox, "Not picked").click();
-    harness.run_steps(3);
+    click(&mut harness, "Dashed where not picked");
     assert_eq!(unpicked(&harness), Unpicked::Solid);
 }

@@ -44,7 +44,9 @@ impl Rock {
             let counts = places.map(|(x, y)| {
                 let (x, y) = (at(x, across, nx), at(y, along, ny));
                 let mut counts = [0usize; 2];
-                for block in 0..model.block_count() as u16 {
+                let blocks = 0..model.block_count() as u16;
+                // What is no height field is whole: it was made of all of its points.
+                for block in blocks.filter(|block| model.level(horizon, *block).is_none()) {
                     let z = model.horizon_z(horizon, block, x, y);
                     if !(z >= 0.0 && z <= (nz - 1) as f32) {
                         continue;
