@@ -124,9 +124,9 @@ fn accept(ui: &mut Ui, sparse: &[SparseHorizon], next: &mut ExportForm) -> bool 
 /// Why nothing can be written yet.
 fn obstacle(is_accepted: bool) -> &'static str {
     if is_accepted {
-        "Drawing, or what is written in red stands against it"
+        "It is being drawn, or what is written in red has to be mended first"
     } else {
-        "Say first that it is wanted all the same"
+        "Tick the line above first"
     }
 }
 
