@@ -143,7 +143,7 @@ mod tests {
         // Two clicks at one place count as two, and a key after a click comes after it.
         assert_eq!(frames([&click[..], &click[..]].concat()), [4, 2]);
         let key = Event::ModifiersChanged(Modifiers::SHIFT);
-        assert_eq!(frames([&[key.clone()], &click[..], &[key]].concat()), [4, 1]);
+        assert_eq!(frames([std::slice::from_ref(&key), &click[..], std::slice::from_ref(&key)].concat()), [4, 1]);
     }
 
     #[test]
