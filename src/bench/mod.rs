@@ -207,6 +207,7 @@ fn measure(side: usize, progress: &Progress) -> Result<(Cube, Loaded), ProjectEr
     Ok((
         cube,
         Loaded {
+            sparse: Vec::new(),
             geometry,
             rock: Some(rock),
             volumes: Vec::new(),

@@ -44,6 +44,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
             "make them again with `petroglyph horizon replay`, or extract with the former settings"
         }
         ProjectError::UnfitPicks { .. } => "remove them with `petroglyph horizon replay --drop-unfit`, then pick again",
+        ProjectError::NoPickFits { .. } => {
+            "note its picks (`petroglyph horizon show PROJECT NAME`), remove it (`petroglyph horizon remove PROJECT NAME`) and pick it again, or extract with the former settings; the others are made again by naming them"
+        }
         ProjectError::ShortStick { .. } => "write a stick as --stick IL,XL,Z IL,XL,Z …",
         ProjectError::NotDrawn { .. } => "choose another --name",
         ProjectError::NoProposals | ProjectError::OutdatedProposals => "run `petroglyph fault propose PROJECT`",

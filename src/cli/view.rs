@@ -3,7 +3,9 @@
 use super::args::ViewArgs;
 use super::request::{Usage, counts, numbers};
 use glam::DVec3;
-use render::{Background, Corner, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, VoxelBox};
+use render::{
+    Background, Corner, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked, VoxelBox,
+};
 use survey::SurveyGeometry;
 
 /// Changes to a scene; what is `None` stays.
@@ -94,7 +96,13 @@ impl TryFrom<ViewArgs> for ViewChanges {
                 Some(other) => return Err(format!("--show {other}: expected rock, leaves, distance or distortion")),
             },
             tree_level: typed.level,
-            outlines: switch("--outlines", typed.outlines.as_deref(), Outlines::default(), Outlines::none())?,
+            outlines: match typed.outlines.as_deref() {
+                None => None,
+                Some("on") => Some(Outlines::default()),
+                Some("dashed") => Some(Outlines { unpicked: Unpicked::Dashed, ..Outlines::default() }),
+                Some("off") => Some(Outlines::none()),
+                Some(other) => return Err(format!("--outlines {other}: expected on, dashed or off")),
+            },
             global_frequency: typed.global_frequency,
             pattern_size: match typed.pattern_size.as_deref() {
                 None => None,

@@ -25,5 +25,6 @@ mod sources;
 #[cfg(target_os = "linux")]
 mod steps;
 mod store;
+mod unpicked;
 mod volume_rendering;
 mod well;

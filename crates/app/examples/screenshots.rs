@@ -10,7 +10,6 @@
 
 use anyhow::{Context as _, bail};
 use app::Window;
-use app::raster::Raster;
 use app::state::picking::voxel_of;
 use app::state::{
     Action, Appearance, Choice, Compare, Dialogue, ExportForm, FileContent, How, Layout, Look, Notice, Panel,
@@ -26,6 +25,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use survey::SurveyGeometry;
+use widgets::raster::Raster;
 
 /// Margin that the harness leaves around the window, points.
 const MARGIN: f32 = 8.0;

@@ -41,8 +41,9 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::OutdatedPicks { .. } => {
             "choose the horizon and use Pick again, or extract with the former settings"
         }
-        ProjectError::UnfitPicks { .. } => {
-            "Pick again what fits leaves them out; where none fits, pick another horizon"
+        ProjectError::UnfitPicks { .. } => "Pick again what fits leaves them out",
+        ProjectError::NoPickFits { .. } => {
+            "remove the horizon and pick it again (its picks are listed under its name), or extract with the former settings"
         }
         ProjectError::ShortStick { .. } => "click at least two points before you end a stick",
         ProjectError::NotDrawn { .. } => "choose another fault",

@@ -16,12 +16,9 @@
 //! Deliberately absent: project state that is not on disk, and any drawing of rock.
 
 pub mod error;
-pub mod fields;
 mod hint;
 mod hold;
-pub mod raster;
 pub mod state;
-pub mod theme;
 pub mod views;
 pub mod window;
 pub mod work;

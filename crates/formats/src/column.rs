@@ -21,6 +21,8 @@ pub enum Column {
     Name,
     /// Number of a fault stick.
     Stick,
+    /// Number of a polygon or line, each of which is a fault of its own.
+    Polygon,
     /// Number of a node along its stick.
     Node,
     /// Number of a sheet.
@@ -91,12 +93,12 @@ pub(super) fn of_name(name: &str) -> NamedColumn {
         "crossline" | "xline" | "xl" | "crl" | "cross_line" | "x_line" | "crossline_number" | "crossline_no"
         | "crosslineno" | "xline_no" | "crossline_3d" | "crossline3d" => (Column::Crossline, None, None),
         "x" | "easting" | "east" | "utmx" | "utm_x" | "x_utm" | "cdp_x" | "cdpx" | "x_coord" | "xcoord" | "coord_x"
-        | "x_coordinate" | "xcoordinate" | "x_world" | "world_x" => (Column::X, None, None),
+        | "x_utme" | "x_coordinate" | "xcoordinate" | "x_world" | "world_x" => (Column::X, None, None),
         "y" | "northing" | "north" | "utmy" | "utm_y" | "y_utm" | "cdp_y" | "cdpy" | "y_coord" | "ycoord"
-        | "coord_y" | "y_coordinate" | "ycoordinate" | "y_world" | "world_y" => (Column::Y, None, None),
+        | "coord_y" | "y_utmn" | "y_coordinate" | "ycoordinate" | "y_world" | "world_y" => (Column::Y, None, None),
         "z" | "z_value" | "zvalue" | "value" | "z_coordinate" => (Column::Z, None, None),
         "twt" | "time" | "twt_auto" | "twtime" | "two_way_time" | "t" => (Column::Z, Some(Domain::Time), None),
-        "depth" | "tvd" | "tvdss" | "z_depth" => (Column::Z, Some(Domain::Depth), None),
+        "depth" | "tvd" | "tvdss" | "z_tvdss" | "z_depth" => (Column::Z, Some(Domain::Depth), None),
         "elevation" | "elev" | "altitude" => (Column::Z, Some(Domain::Depth), Some(ZPositive::Up)),
         "name" | "horizon" | "surface" | "fault" | "horizon_name" | "fault_name" | "surface_name" => {
             (Column::Name, None, None)
@@ -104,6 +106,7 @@ pub(super) fn of_name(name: &str) -> NamedColumn {
         "stick" | "stick_id" | "stick_number" | "stick_no" | "sticknr" | "segment" | "seg_id" | "stick_index" => {
             (Column::Stick, None, None)
         }
+        "poly_id" | "polygon_id" | "polygon" | "pol_id" | "polyid" => (Column::Polygon, None, None),
         "node" | "knot" | "node_id" | "node_number" | "knot_number" | "node_no" | "node_index" => {
             (Column::Node, None, None)
         }
@@ -129,6 +132,9 @@ mod tests {
             ("twt_ms", Column::Z),
             ("Depth (ft)", Column::Z),
             ("stick#", Column::Stick),
+            ("POLY_ID", Column::Polygon),
+            ("X_UTME", Column::X),
+            ("Z_TVDSS", Column::Z),
             ("Correlation", Column::Other),
         ] {
             assert_eq!(of_name(name).column, column, "{name}");

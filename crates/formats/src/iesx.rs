@@ -3,6 +3,9 @@
 //! `PROFILE name … TYPE 1  4 … 3d_ci7m.ifdf     m ms` begins a horizon and states the units of X, Y and Z; `SNAPPING
 //! PARAMETERS …` is ignored; `EOD` ends the horizon. Rows have fixed columns `X Y (16 each) 3 3 Z (9) 10 10 crossline
 //! (5) value (14)`, then ` I` and the inline; fields of full width touch. Magnitudes from 1e29 on are undefined.
+//!
+//! OpendTect writes an undefined Z with all its 39 digits, so that the row grows, and in some versions puts a line of the
+//! row's own numbers behind it and `EOD` before the next.
 
 use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::table::UNDEFINED;
@@ -45,12 +48,21 @@ fn read(source: &SourceFile, _: &ReadContext<'_>) -> Result<Vec<RawSurface>, For
             surfaces.push((begin(rest), Vec::new()));
             continue;
         }
+        if is_echo(words) {
+            continue;
+        }
         let Some((_, points)) = surfaces.last_mut() else {
             return Err(source.syntax(line.number, "PROFILE before rows", line.text));
         };
         points.push(point(source, Line { text: words, ..line }, line.text.len() - words.len())?);
     }
     Ok(surfaces.into_iter().map(|(s, points)| RawSurface { shape: RawShape::Points(points), ..s }).collect())
+}
+
+/// Whether a line repeats numbers of the row before: it is too short for a row, and has no mark of an inline.
+fn is_echo(words: &str) -> bool {
+    let numbers: Option<Vec<f64>> = words.split_whitespace().map(text::number).collect();
+    numbers.is_some_and(|numbers| numbers.len() < WIDTHS.len())
 }
 
 fn begin(rest: &str) -> RawSurface {
@@ -73,7 +85,7 @@ fn point(source: &SourceFile, line: Line<'_>, indent: usize) -> Result<RawPoint,
     let (left, right) = line.text.split_once(" I").ok_or_else(wrong)?;
     let inline = right.split_whitespace().next().and_then(text::number).ok_or_else(wrong)?;
     let free: Vec<f64> = left.split_whitespace().map_while(text::number).collect();
-    let numbers = if free.len() == WIDTHS.len() { Some(free) } else { fixed(left, indent) };
+    let numbers = if free.len() == WIDTHS.len() { Some(free) } else { fixed(left, indent).or_else(|| overflown(left)) };
     let numbers = numbers.ok_or_else(wrong)?;
     let [x, y, z, crossline] = [0, 1, 4, 7].map(|n| numbers[n]);
     if [x, y, crossline, inline].iter().any(|v| !v.is_finite() || v.abs() > 1e12) {
@@ -105,4 +117,45 @@ fn fixed(left: &str, indent: usize) -> Option<Vec<f64>> {
             text::number(field)
         })
         .collect()
+}
+
+/// The numbers of a row whose Z is wider than its column: X ends with its exponent, and what follows Z is cut from the
+/// end.
+fn overflown(left: &str) -> Option<Vec<f64>> {
+    if !left.is_ascii() {
+        return None;
+    }
+    let after_x = left.find('E')? + 4;
+    let before_z = after_x + WIDTHS[1..4].iter().sum::<usize>();
+    let after_z = left.len().checked_sub(WIDTHS[5..].iter().sum())?;
+    let mut numbers = vec![text::number(left.get(..after_x)?)?];
+    let mut at = after_x;
+    for (n, width) in WIDTHS.iter().enumerate().skip(1) {
+        let end = if n == 4 { after_z } else { at + width };
+        numbers.push(text::number(left.get(at..end)?)?);
+        at = end;
+    }
+    (before_z < after_z).then_some(numbers)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_with_an_undefined_z_of_all_its_digits_is_a_hole() {
+        let undefined = "340282346638528859811704183484516925440.00";
+        let x = format!("{:>16}{:>16}", "6.20986880E+05", "6.08088236E+06");
+        let left =
+            format!("{x}{:>3}{:>3}{undefined}{:>10}{:>10}{:>5}{:>14}", 0, 14, "914.00", "914.00", 914, "3.4028235E+38");
+        let numbers = overflown(left.trim()).unwrap();
+        assert_eq!((numbers[0], numbers[1], numbers[7]), (620986.88, 6080882.36, 914.0));
+        assert!(numbers[4] > UNDEFINED);
+        assert!(
+            is_echo("376\t914\t648.62")
+                && is_echo("648.62")
+                && !is_echo(&format!("{left} I    376 XX"))
+                && !is_echo("EOD")
+        );
+    }
 }

@@ -41,11 +41,13 @@
 //! | Irap classic ASCII | ✓ | | ✓ | |
 //! | OpendTect ASCII | ✓ | sticks | ✓ | sticks |
 //! | GOCAD TSurf | ✓ | ✓ | ✓ | ✓ |
+//! | GOCAD VSet, PLine | ✓ | points, sticks | | |
+//! | DXF (3DFACE, polylines) | ✓ | ✓, sticks | | |
 //! | ZMAP+, CPS-3 (unrotated: others are resampled) | ✓ | | ✓ | |
 //! | Irap binary, PetroMod binary, IJXYZ, IESX, DUG | ✓ | | | |
 //! | EarthVision, Petrel points and well tops | ✓ | points | | |
 //! | Charisma | ✓ | sticks | | |
-//! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators) | ✓ | outlines, sticks | | |
+//! | ZMAP+ points, RMS points (CSV/XYZ with 999 separators or attributes), polygons with ids | ✓ | outlines, sticks | | |
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
@@ -58,6 +60,7 @@ mod cps3;
 mod csv;
 mod describe;
 mod dug;
+mod dxf;
 mod earthvision;
 mod error;
 mod export;
@@ -158,6 +161,8 @@ pub enum Format {
     Dug,
     /// ZMAP+ points and polygons.
     ZmapPoints,
+    /// DXF drawings.
+    Dxf,
 }
 
 /// The kind of surface that a file holds, or that is to be read from it.
@@ -212,6 +217,7 @@ const CODECS: &[Codec] = &[
     earthvision::CODEC,
     iesx::CODEC,
     dug::CODEC,
+    dxf::CODEC,
     ijxyz::CODEC,
     opendtect::CODEC,
     csv::CODEC,
@@ -277,16 +283,17 @@ fn read_source(
     let format = match options.format {
         Some(format) => Settled { value: format, source: Provenance::Option },
         None => {
-            let found = CODECS.iter().find_map(|c| Some((c.format, (c.detect)(source)?)));
+            // What is known by its first bytes is no table, even where its rows look like one.
+            let known = known_by_name(&source.bytes);
+            let mut open = CODECS.iter().filter(|c| known.is_none() || c.format != Format::Csv);
+            let found = open.find_map(|c| Some((c.format, (c.detect)(source)?)));
             let (value, evidence) = found.ok_or_else(|| {
                 let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(80)]);
-                if source.bytes.starts_with(b"\x93NUMPY") {
-                    let found = "it is a NumPy array, which has values but no places: write x, y, z as csv".into();
-                    return FormatError::UnknownFormat { file: path.to_path_buf(), found, known: names(|_| true) };
-                }
-                let found = text::lines(&start)
-                    .next()
-                    .map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)));
+                let begins = || {
+                    let first = text::lines(&start).next();
+                    first.map_or_else(|| "it is empty".into(), |l| format!("it begins with {}", text::excerpt(l.text)))
+                };
+                let found = known.map_or_else(begins, str::to_owned);
                 FormatError::UnknownFormat { file: path.to_path_buf(), found, known: names(|_| true) }
             })?;
             Settled { value, source: Provenance::File(evidence) }
@@ -303,6 +310,19 @@ fn read_source(
     }
     let surfaces = selected(source, surfaces, options, kind)?;
     Ok((format, surfaces))
+}
+
+/// What a file is that is known but not read, and what to export instead.
+fn known_by_name(bytes: &[u8]) -> Option<&'static str> {
+    const KNOWN: [(&[u8], &str); 6] = [
+        (b"\x93NUMPY", "it is a NumPy array, which has values but no places: write x, y, z as csv"),
+        (b"AutoCAD Binary DXF", "it is a binary DXF drawing: save it as ASCII DXF"),
+        (b"#GeoProbe", "it is a GeoProbe surface, which is not read: export it as GOCAD TSurf or as x, y, z"),
+        (b"GOCAD ", "of GOCAD's objects TSurf, VSet and PLine are read: export it as one of these"),
+        (b"SQLite format 3", "it is a database such as a GeoPackage: export the layer as csv with x, y, z"),
+        (b"PK\x03\x04", "it is a ZIP archive: unpack it first"),
+    ];
+    KNOWN.iter().find(|(start, _)| bytes.starts_with(start)).map(|(_, what)| *what)
 }
 
 /// The surfaces to import: those of the selected name; of several, the one of the given name; otherwise all.

@@ -58,9 +58,20 @@ impl Cut {
     }
 }
 
-/// Whether a line is a comment or an end mark.
+/// Whether a line declares an attribute of RMS points, such as `Float VerticalSep`.
+fn is_attribute(line: &str) -> bool {
+    let mut words = line.split_whitespace();
+    matches!(words.next(), Some("Discrete" | "Float" | "Integer" | "String"))
+        && words.next().is_some()
+        && words.next().is_none()
+}
+
+/// Whether a line is a comment, an end mark or the declaration of an attribute.
 pub(crate) fn is_comment(line: &str) -> bool {
-    line.starts_with(['#', '!', '%', '@']) || line.starts_with("//") || matches!(line, "END" | "EOD" | "EOB" | "EOF")
+    is_attribute(line)
+        || line.starts_with(['#', '!', '%', '@'])
+        || line.starts_with("//")
+        || matches!(line, "END" | "EOD" | "EOB" | "EOF")
 }
 
 /// The numbers of up to 2000 rows spread over the table, to identify columns, and whether a name precedes them.
@@ -85,9 +96,14 @@ pub(super) fn surfaces(
     source: &SourceFile,
     rows: &[Line<'_>],
     cut: Cut,
-    layout: ColumnLayout,
+    mut layout: ColumnLayout,
     context: &ReadContext<'_>,
 ) -> Result<Vec<RawSurface>, FormatError> {
+    if context.kind == super::SurfaceKind::Horizon {
+        // The polygons of a horizon are its points.
+        let polygons = layout.columns.iter_mut().filter(|column| **column == Column::Polygon);
+        polygons.for_each(|column| *column = Column::Other);
+    }
     if !layout.is_complete() {
         return Err(FormatError::Columns {
             file: source.path.clone(),
@@ -176,6 +192,10 @@ fn point_of(
             }
             Column::Name => name = Some(field.text.to_string()),
             Column::Stick => point.stick = Some(finite("stick")?),
+            Column::Polygon => {
+                point.stick = Some(finite("polygon")?);
+                name = Some(field.text.to_string());
+            }
             Column::Node => point.node = Some(finite("node")?),
             Column::Sheet => point.sheet = Some(finite("sheet")?),
             Column::Quality => point.quality = columns::quality_of(field.text),

@@ -1,13 +1,15 @@
-//! GOCAD TSurf: triangulated surfaces.
+//! GOCAD TSurf: triangulated surfaces; VSet and PLine: points and lines.
 //!
 //! One or more objects `GOCAD TSurf 1 … END`; in each a `HEADER { name: … }`, an optional coordinate system
 //! block (`AXIS_UNIT` and `ZPOSITIVE` state unit and sign), then `TFACE` parts of `VRTX id x y z` or
 //! `PVRTX id x y z p…`, `ATOM id ref` (a vertex at the place of another) and `TRGL a b c`. Ids may start
 //! anywhere. Everything else (`BSTONE`, `BORDER`, properties, colours) is ignored.
 //!
+//! A VSet is its vertices; a PLine has an `ILINE` before the vertices of each line, and each is a stick.
+//!
 //! Written with ZPOSITIVE Depth, one TFACE for each sheet, and CNXYZ at each vertex, which strict readers require.
 
-use super::raw::{RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
 use super::text::{self, Line, SourceFile};
 use super::unit::{Domain, ZPositive, ZUnit};
 use super::write::WriteFailure;
@@ -35,13 +37,33 @@ fn detect(source: &SourceFile) -> Option<String> {
     let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(400)]).into_owned();
     let first = text::lines(&start).find(|l| !l.text.starts_with('#'))?;
     let mut words = first.text.split_whitespace();
-    (words.next()? == "GOCAD" && words.next()?.eq_ignore_ascii_case("TSurf"))
-        .then(|| "it begins with GOCAD TSurf".to_string())
+    let kind = (words.next()? == "GOCAD").then(|| words.next())??;
+    Kind::of(kind).map(|_| format!("it begins with GOCAD {kind}"))
+}
+
+/// The kinds of objects that are read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+enum Kind {
+    #[default]
+    Surface,
+    Points,
+    Lines,
+}
+
+impl Kind {
+    fn of(word: &str) -> Option<Self> {
+        let named = [("TSurf", Self::Surface), ("VSet", Self::Points), ("PLine", Self::Lines)];
+        named.into_iter().find(|(name, _)| name.eq_ignore_ascii_case(word)).map(|(_, kind)| kind)
+    }
 }
 
 /// The state of the object being read.
 #[derive(Default)]
 struct Object {
+    kind: Kind,
+    /// The line of each vertex, of a PLine.
+    lines: Vec<f64>,
+    line: f64,
     name: Option<String>,
     mesh: TriangleMesh,
     index: HashMap<u64, u32>,
@@ -52,13 +74,19 @@ struct Object {
 
 impl Object {
     fn surface(self) -> RawSurface {
-        RawSurface {
-            name: self.name,
-            shape: RawShape::Mesh(self.mesh),
-            vertical: self.vertical,
-            notes: Vec::new(),
-            warnings: Vec::new(),
-        }
+        let shape = if self.kind == Kind::Surface {
+            RawShape::Mesh(self.mesh)
+        } else {
+            let stick = |n: usize| (self.kind == Kind::Lines).then(|| self.lines[n]);
+            let point = |(n, at): (usize, &DVec3)| RawPoint {
+                xy: Some(at.truncate()),
+                z: at.z,
+                stick: stick(n),
+                ..RawPoint::default()
+            };
+            RawShape::Points(self.mesh.vertices.iter().enumerate().map(point).collect())
+        };
+        RawSurface { name: self.name, shape, vertical: self.vertical, notes: Vec::new(), warnings: Vec::new() }
     }
 
     /// The name in a `HEADER {` block or line: `name: F5`, `name:F5`, `HEADER { name: F5 }`.
@@ -111,6 +139,7 @@ impl Object {
     fn add(&mut self, id: u64, position: DVec3) {
         self.index.insert(id, self.mesh.vertices.len() as u32);
         self.mesh.vertices.push(position);
+        self.lines.push(self.line);
     }
 
     fn read_triangle(&mut self, source: &SourceFile, line: Line<'_>, rest: &str) -> Result<(), FormatError> {
@@ -139,9 +168,11 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
         if keyword == "GOCAD" {
             // A file may end an object with the next one instead of END.
             surfaces.extend(object.take().map(Object::surface));
-            match rest.split_whitespace().next() {
-                Some(kind) if kind.eq_ignore_ascii_case("TSurf") => object = Some(Object::default()),
-                kind => other = kind.map(str::to_string),
+            if let Some(word) = rest.split_whitespace().next() {
+                match Kind::of(word) {
+                    Some(kind) => object = Some(Object { kind, ..Object::default() }),
+                    None => other = Some(word.to_string()),
+                }
             }
             continue;
         }
@@ -163,6 +194,7 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
                 })?;
                 o.add(id, vertex);
             }
+            "ILINE" => o.line += 1.0,
             "TRGL" => o.read_triangle(source, line, rest)?,
             _ => o.read_name(line.text),
         }
@@ -171,8 +203,8 @@ fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface
     let empty = |why: String| FormatError::Empty { file: source.path.clone(), kind: context.kind, why };
     if surfaces.is_empty() {
         return Err(empty(other.map_or_else(
-            || "there is no GOCAD TSurf object".into(),
-            |kind| format!("it holds a GOCAD {kind}, not a TSurf"),
+            || "there is no GOCAD TSurf, VSet or PLine".into(),
+            |kind| format!("it holds a GOCAD {kind}, not a TSurf, VSet or PLine"),
         )));
     }
     for surface in &surfaces {

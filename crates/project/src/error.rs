@@ -428,6 +428,12 @@ pub enum ProjectError {
         /// Their numbers.
         picks: Vec<u32>,
     },
+    /// A horizon whose picks were all made on another extraction, and none of which fits the present one.
+    #[error("no pick of horizon \"{horizon}\" fits the present extraction: their nodes no longer exist")]
+    NoPickFits {
+        /// The horizon.
+        horizon: String,
+    },
     /// A stick of one point.
     #[error("stick {stick} has one point; a stick is a line of at least two")]
     ShortStick {

@@ -51,7 +51,7 @@ pub use leaves::FaceData;
 pub use media::{
     Faces, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading,
 };
-pub use outline::{Outlines, Stroke};
+pub use outline::{Outlines, Stroke, Unpicked};
 pub use pick::{PickedObject, PickedPoint, pick};
 pub use scene::{Background, Ground, Lookup, PatternSize, Scene};
 pub use voxel_box::{Corner, VoxelBox};

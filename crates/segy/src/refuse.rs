@@ -6,6 +6,7 @@ use super::columns::Columns;
 use super::error::SegyProblem;
 use super::header::{Field, at};
 use super::lines::LineLattice;
+use std::collections::BTreeSet;
 
 /// Several traces a bin: the line numbers of the standard (or the stated ones) repeat, or gathers are
 /// numbered.
@@ -84,6 +85,29 @@ pub(super) fn shot_gathers(columns: &Columns) -> Result<(), SegyProblem> {
     Ok(())
 }
 
+/// One line of a pre-stack survey: one number is constant, the other repeats with other offsets.
+fn gathers_of_a_line(columns: &Columns, candidate: &Candidate) -> Result<(), SegyProblem> {
+    let (kind, byte) = match candidate.verdict {
+        Verdict::ConstantInline(_) => ("crossline", candidate.crossline_byte),
+        Verdict::ConstantCrossline(_) => ("inline", candidate.inline_byte),
+        _ => return Ok(()),
+    };
+    let numbers = columns.numbers(byte, candidate.number_type);
+    let traces = numbers.iter().count();
+    let places = numbers.iter().collect::<BTreeSet<i32>>().len();
+    let offset = columns.get(Field::I32(at::OFFSET));
+    if traces < 2 * places || offset.constant().is_some() {
+        return Ok(());
+    }
+    Err(SegyProblem::PreStack {
+        evidence: format!(
+            "{traces} traces stand at {places} {kind}s (byte {byte}) of one line and {}",
+            offsets(columns).0
+        ),
+        may_repeat: false,
+    })
+}
+
 /// One line: an axis that does not vary, or both numbers changing from trace to trace.
 pub(super) fn two_dimensional(columns: &Columns, candidates: &[Candidate]) -> Result<(), SegyProblem> {
     let of = |byte: u16| {
@@ -108,6 +132,7 @@ pub(super) fn two_dimensional(columns: &Columns, candidates: &[Candidate]) -> Re
             ),
             _ => continue,
         };
+        gathers_of_a_line(columns, candidate)?;
         return Err(SegyProblem::TwoDimensional { evidence });
     }
     let cdp = columns.get(Field::I32(at::CDP));

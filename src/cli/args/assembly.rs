@@ -71,7 +71,7 @@ pub(in crate::cli) struct ReplayArgs {
     pub(in crate::cli) project: PathBuf,
     /// Horizon [default: all that were assembled]
     pub(in crate::cli) name: Option<String>,
-    /// Remove from the log the picks that no longer fit
+    /// Remove from the log the picks that no longer fit; a horizon that none fits stays as it was
     #[arg(long)]
     pub(in crate::cli) drop_unfit: bool,
 }

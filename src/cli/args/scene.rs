@@ -101,8 +101,9 @@ pub(in crate::cli) struct ViewArgs {
     /// unless --show says otherwise
     #[arg(long, value_name = "N")]
     pub(in crate::cli) level: Option<u32>,
-    /// Draw lines along horizons, faults and edges
-    #[arg(long, value_name = "on|off")]
+    /// Draw lines along horizons, faults and edges; dashed: dashed on the block where a horizon was not picked, but
+    /// filled or extrapolated (sections and fences always are)
+    #[arg(long, value_name = "on|dashed|off")]
     pub(in crate::cli) outlines: Option<String>,
     /// Factor on the frequency of every pattern
     #[arg(long, value_name = "FACTOR")]

@@ -1,6 +1,6 @@
 //! What each action does to the state.
 
-use super::{Action, Compare, Dialogue, Notice, Panel, PickingTask, Place, Session, State, Task, ViewState, camera};
+use super::{Action, Compare, Notice, Panel, PickingTask, Place, Session, State, Task, ViewState, camera};
 use project::picture::scene;
 
 impl State {
@@ -9,6 +9,7 @@ impl State {
         match action {
             Action::Open(path) => {
                 self.quieten(Place::Start);
+                self.quieten(Place::Dialogue);
                 return vec![Task::Open(path)];
             }
             Action::Check(path, place) => {
@@ -32,13 +33,7 @@ impl State {
                 self.quieten(Place::Start);
                 return vec![Task::Demo(folder)];
             }
-            Action::Close => {
-                self.session = None;
-                self.dialogue = None;
-                self.notices.clear();
-                self.remembered.left = None;
-                return vec![Task::Release, Task::Remember];
-            }
+            Action::Close => return self.close(),
             Action::Opened(snapshot) => return self.opened(*snapshot),
             Action::Changed(snapshot) => {
                 if let Some(session) = self.session.as_mut().filter(|session| session.root == snapshot.root) {
@@ -138,14 +133,32 @@ impl State {
         }
     }
 
+    fn close(&mut self) -> Vec<Task> {
+        self.put_by();
+        self.session = None;
+        self.dialogue = None;
+        self.notices.clear();
+        self.remembered.left = None;
+        vec![Task::Release, Task::Remember]
+    }
+
     fn opened(&mut self, snapshot: super::Snapshot) -> Vec<Task> {
         let left = self.remembered.left.take().filter(|left| left.root == snapshot.root);
+        self.put_by();
+        let closed = || self.remembered.closed.iter().find(|left| left.root == snapshot.root).cloned();
+        let left = left.or_else(closed);
         self.remembered.add(&snapshot.root);
         self.notices.clear();
         self.dialogue = None;
         self.session = Some(Session::new(snapshot, left.map(|left| left.view)));
         self.mark();
         vec![Task::Remember]
+    }
+
+    /// Keeps the view of the open project for when it is opened again.
+    pub fn put_by(&mut self) {
+        let Some(session) = &self.session else { return };
+        self.remembered.put_by(&session.root, &session.view);
     }
 
     /// Records the present view, so that work can be continued from it.
@@ -164,11 +177,6 @@ impl State {
     /// Removes the messages of one place, because something new begins there.
     fn quieten(&mut self, place: Place) {
         self.notices.retain(|notice| notice.place != place);
-    }
-
-    /// Whether a dialogue or a text field in it takes the keyboard, so that the shortcuts of the views must not act.
-    pub fn is_asking(&self) -> bool {
-        matches!(&self.dialogue, Some(dialogue) if !matches!(dialogue, Dialogue::Shortcuts))
     }
 
     /// The scenes that the block view draws, side by side or over one another: their blends, in order.

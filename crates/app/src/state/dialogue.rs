@@ -105,6 +105,8 @@ pub struct ExportForm {
     pub title: String,
     /// A sentence or two below the picture; empty: none.
     pub caption: String,
+    /// Whether a picture is wanted although a horizon was picked on less than half of its traces.
+    pub accepts_sparse: bool,
 }
 
 /// Whether the page has a part such as a legend.
@@ -128,6 +130,7 @@ impl ExportForm {
             north_arrow: Shown::No,
             title: String::new(),
             caption: String::new(),
+            accepts_sparse: false,
         }
     }
 

@@ -76,6 +76,9 @@ pub struct Remembered {
     pub scale: Option<f32>,
     /// Recent projects, newest first.
     pub recent: Vec<PathBuf>,
+    /// The last views of projects that were closed, newest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub closed: Vec<Left>,
     /// The project that was open when the window last wrote this file; removed when the window is closed properly.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub left: Option<Left>,
@@ -89,9 +92,17 @@ impl Remembered {
         self.recent.truncate(RECENT);
     }
 
+    /// Keeps the view of a project that is closed.
+    pub fn put_by(&mut self, root: &Path, view: &ViewState) {
+        self.closed.retain(|known| known.root != root);
+        self.closed.insert(0, Left { root: root.to_owned(), view: view.clone() });
+        self.closed.truncate(RECENT);
+    }
+
     /// Removes a project from the list.
     pub fn forget(&mut self, root: &Path) {
         self.recent.retain(|known| known != root);
+        self.closed.retain(|known| known.root != root);
     }
 
     /// The file of the settings: `petroglyph/window.toml` in the system's folder for settings.

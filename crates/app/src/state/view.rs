@@ -5,7 +5,7 @@ pub use figure::SectionKind;
 use super::picking::Picking;
 use project::document::Document;
 use project::picture::scene;
-use render::{Scene, VoxelBox};
+use render::{Scene, Unpicked, VoxelBox};
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
 
@@ -118,7 +118,10 @@ pub struct ViewState {
 impl ViewState {
     /// The view of a project's first scene, or its default view.
     pub fn of(document: &Document) -> Self {
-        let scene = scene::choose(document, None).unwrap_or_default();
+        let mut scene = scene::choose(document, None).unwrap_or_default();
+        if document.scenes.is_empty() {
+            scene.outlines.unpicked = Unpicked::Dashed;
+        }
         let size = document.geometry.as_ref().map_or([1; 3], SurveyGeometry::size);
         Self {
             scene,

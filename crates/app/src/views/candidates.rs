@@ -71,7 +71,8 @@ impl CandidatesPanel {
             }
             ui.label("Method");
             ui.horizontal(|ui| {
-                ui.selectable_value(&mut settings.grow.method, Method::Ours, "Ours");
+                ui.selectable_value(&mut settings.grow.method, Method::Ours, "Accurate")
+                    .on_hover_text("Follows reflections with their dips, and keeps side lobes apart");
                 ui.selectable_value(&mut settings.grow.method, Method::Paper, "As published");
             });
             ui.end_row();

@@ -5,10 +5,11 @@
 
 use super::notices;
 use crate::state::{Action, Choice, Dialogue, FileContent, Place, State, Target};
-use crate::theme;
 use crate::work::folder::Folder;
-use eframe::egui::{Context, Id, Key, Modal, RichText, ScrollArea, TextEdit, Ui};
+use eframe::egui::{Context, Id, Modal, RichText, ScrollArea, TextEdit, Ui};
 use std::path::{Path, PathBuf};
+use widgets::keyboard::is_entered;
+use widgets::theme;
 
 /// The chooser.
 pub struct Chooser {
@@ -41,14 +42,14 @@ impl Chooser {
             notices::show(ui, state, Place::Dialogue, actions);
             let line = ui.label("Path");
             let edit = ui.add(TextEdit::singleline(&mut self.text).desired_width(f32::INFINITY)).labelled_by(line.id);
+            let is_entered = is_entered(ui);
             if ui.memory(|memory| memory.focused().is_none()) {
                 edit.request_focus();
             }
-            let entered = edit.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
-            let is_taken = self.list(ui, choice);
+            let is_taken = self.list(ui, choice) || is_entered;
             ui.horizontal(|ui| {
                 let path = PathBuf::from(self.text.trim());
-                if ui.button(verb(choice)).clicked() || entered || is_taken {
+                if ui.button(verb(choice)).clicked() || is_taken {
                     self.choose(choice, path, actions);
                 }
                 if ui.button("Cancel").clicked() {
@@ -59,9 +60,11 @@ impl Chooser {
         if modal.should_close() {
             actions.push(Action::Answered);
         }
-        if actions.iter().any(|action| matches!(action, Action::Answered)) {
-            self.choice = None;
-        }
+    }
+
+    /// Begins anew when it is next shown.
+    pub fn forget(&mut self) {
+        self.choice = None;
     }
 
     /// The folder that the typed path names or lies in.
@@ -119,7 +122,6 @@ impl Chooser {
         self.home = self.folder();
         let dialogue = match choice {
             Choice::Project => {
-                actions.push(Action::Answered);
                 actions.push(Action::Open(path));
                 return;
             }
@@ -128,7 +130,6 @@ impl Chooser {
                 return;
             }
             Choice::Texture => {
-                actions.push(Action::Answered);
                 let command = project::command::AddTexture { path, width_mm: None };
                 actions.push(Action::Apply(Box::new(project::Command::AddTexture(command))));
                 return;
@@ -139,7 +140,6 @@ impl Chooser {
             Choice::Fault => Dialogue::Interpretation { path, kind: FileContent::Fault },
             Choice::Well => Dialogue::Well { path },
         };
-        self.choice = None;
         actions.push(Action::Ask(Box::new(dialogue)));
     }
 }

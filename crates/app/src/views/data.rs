@@ -4,7 +4,7 @@ use super::notices;
 use super::sections::entry_colour;
 use crate::state::{Action, Choice, Dialogue, Place, Session, State};
 use eframe::egui::{
-    Align, Button, DragValue, Id, Key, Layout, Response, ScrollArea, Sense, TextEdit, Ui, UiBuilder, WidgetInfo, vec2,
+    Align, Button, DragValue, Id, Layout, Response, ScrollArea, Sense, Ui, UiBuilder, WidgetInfo, vec2,
 };
 use project::command::{
     Command, RemoveFault, RemoveHorizon, RemoveVolume, RemoveWell, RenameHorizon, SetFaultExtent, SetRaw, SetVelocity,
@@ -13,12 +13,12 @@ use project::document::FaultEntry;
 use project::styles;
 use survey::VerticalUnit;
 use ttf::ColourMap;
+use widgets::keyboard::{Renamed, Renaming};
 
 /// The panel, with the text being typed in it.
 #[derive(Default)]
 pub struct Data {
-    /// A horizon and the new name being typed.
-    renaming: Option<(String, String)>,
+    renaming: Option<Renaming>,
     velocity: Option<f64>,
     /// The fault whose extent is being changed, and the metres so far.
     extent: Option<(String, f64)>,
@@ -48,15 +48,13 @@ impl Data {
             ui.horizontal(|ui| {
                 let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
                 ui.painter().circle_filled(rect.center(), 5.0, entry_colour(entry, index));
-                if let Some((_, text)) = self.renaming.as_mut().filter(|(name, _)| *name == entry.name) {
-                    let edit = ui.name_inputs("New name", |ui| ui.add(TextEdit::singleline(text).desired_width(150.0)));
-                    edit.request_focus();
-                    if ui.input(|input| input.key_pressed(Key::Enter)) || edit.clicked_elsewhere() {
-                        let to = text.trim().to_owned();
-                        if !to.is_empty() && to != entry.name {
-                            let command = RenameHorizon { from: entry.name.clone(), to };
-                            actions.push(Action::Apply(Box::new(Command::RenameHorizon(command))));
-                        }
+                if let Some(renaming) = self.renaming.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
+                    let renamed = renaming.show(ui, 150.0);
+                    if let Renamed::To(to) = &renamed {
+                        let command = RenameHorizon { from: entry.name.clone(), to: to.clone() };
+                        actions.push(Action::Apply(Box::new(Command::RenameHorizon(command))));
+                    }
+                    if renamed != Renamed::Typing {
                         self.renaming = None;
                     }
                     return;
@@ -69,7 +67,7 @@ impl Data {
                 if is_chosen
                     && ui.small_button("Rename").on_hover_text(format!("Rename horizon {}", entry.name)).clicked()
                 {
-                    self.renaming = Some((entry.name.clone(), entry.name.clone()));
+                    self.renaming = Some(Renaming::of(&entry.name));
                 }
                 if remove(ui, &format!("Remove horizon {}", entry.name)) {
                     let command = RemoveHorizon { name: entry.name.clone() };

@@ -2,10 +2,10 @@
 //! asks what it holds.
 
 use crate::state::{Action, Choice, Dialogue, FileContent, Notice, Place, State, Target};
-use crate::theme;
 use crate::views::chooser;
 use eframe::egui::{Align2, Color32, Context, FontId, Id, LayerId, Modal, Order};
 use std::path::{Path, PathBuf};
+use widgets::theme;
 
 /// The file that was dropped last, until the window can take it in.
 #[derive(Default)]

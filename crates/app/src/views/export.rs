@@ -2,10 +2,12 @@
 
 use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
-use crate::theme;
-use eframe::egui::{Button, Context, DragValue, Grid, Id, Key, Modal, Spinner, TextEdit};
+use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui};
 use project::figures::FigureFormat;
+use project::picture::SparseHorizon;
 use std::path::Path;
+use widgets::keyboard::is_entered;
+use widgets::theme;
 
 /// Largest side of a picture, pixels.
 const LARGEST: u32 = 16_000;
@@ -17,6 +19,7 @@ pub fn show(
     session: &Session,
     form: &ExportForm,
     is_drawing: bool,
+    sparse: &[SparseHorizon],
     actions: &mut Vec<Action>,
 ) {
     let modal = Modal::new(Id::unique("export")).frame(theme::dialogue(ctx)).show(ctx, |ui| {
@@ -78,10 +81,16 @@ pub fn show(
         if !has_format {
             ui.colored_label(ui.visuals().error_fg_color, "The file's name must end in .png, .tif, .svg or .pdf");
         }
+        let is_accepted = accept(ui, sparse, &mut next);
         ui.horizontal(|ui| {
-            let can = !is_drawing && !is_too_large && has_format;
-            let is_entered = can && ui.input(|input| input.key_pressed(Key::Enter));
-            if ui.add_enabled(can, Button::new("Export")).on_hover_text("Enter").clicked() || is_entered {
+            let can = !is_drawing && !is_too_large && has_format && is_accepted;
+            if ui
+                .add_enabled(can, Button::new("Export"))
+                .on_hover_text("Enter")
+                .on_disabled_hover_text(obstacle(is_accepted))
+                .clicked()
+                || can && is_entered(ui)
+            {
                 actions.push(Action::Export(Box::new(next.clone())));
             }
             if ui.button("Cancel").clicked() {
@@ -99,4 +108,30 @@ pub fn show(
     if modal.should_close() {
         actions.push(Action::Answered);
     }
+}
+
+/// Says which horizons were hardly picked; returns whether there are none, or a picture is wanted all the same.
+fn accept(ui: &mut Ui, sparse: &[SparseHorizon], next: &mut ExportForm) -> bool {
+    for horizon in sparse {
+        ui.colored_label(ui.visuals().warn_fg_color, capital(&horizon.sentence()));
+    }
+    if !sparse.is_empty() {
+        ui.checkbox(&mut next.accepts_sparse, "Draw it all the same");
+    }
+    sparse.is_empty() || next.accepts_sparse
+}
+
+/// Why nothing can be written yet.
+fn obstacle(is_accepted: bool) -> &'static str {
+    if is_accepted {
+        "It is being drawn, or what is written in red has to be mended first"
+    } else {
+        "Tick the line above first"
+    }
+}
+
+/// A sentence from a clause.
+fn capital(clause: &str) -> String {
+    let mut letters = clause.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).chain(['.']).collect()
 }

@@ -5,7 +5,7 @@
 use super::lasso;
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
-use super::{canvas, texture};
+use super::texture;
 use crate::state::{Action, Panel, Session};
 use crate::work::fence::FenceRequest;
 use crate::work::{Rocks, Slices};
@@ -17,6 +17,7 @@ use glam::DVec2;
 use image::RgbaImage;
 use render::FaceData;
 use std::sync::Arc;
+use widgets::canvas;
 
 /// Margin for the numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);

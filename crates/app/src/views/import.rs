@@ -1,10 +1,8 @@
 //! The dialogue that shows how a survey would be read: geometry, evidence, a map of the traces, a section. Header bytes
 //! can be changed, and the effect shows at once.
 
-use super::{form, notices, texture};
-use crate::fields;
+use super::{notices, texture};
 use crate::state::{Action, Place, State, Target};
-use crate::theme;
 use crate::work::Work;
 use crate::work::scan::{self, Reading, SurveyScan};
 use eframe::egui::{
@@ -18,6 +16,10 @@ use project::document::Polarity;
 use segy::{FileUnit, KeptDuplicate, LengthUnit, LineSource, SegyInfo, SegyOptions, TraceWeight};
 use std::path::{Path, PathBuf};
 use survey::{Setting, SurveyGeometry};
+use widgets::fields;
+use widgets::form;
+use widgets::keyboard::is_entered;
+use widgets::theme;
 
 /// The text of a field whose value is detected in the file.
 const AS_FOUND: &str = "as found";
@@ -192,7 +194,7 @@ impl Import {
                 ui.label(format!("Into {}", session.name()));
             }
             let verb = if target == Target::NewProject { "Create project" } else { "Import" };
-            if ui.add_enabled(can, Button::new(verb)).clicked() {
+            if ui.add_enabled(can, Button::new(verb)).clicked() || can && is_entered(ui) {
                 let name = self.name.trim();
                 let command = Box::new(ImportVolume {
                     path: self.path.clone(),

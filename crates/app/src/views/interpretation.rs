@@ -2,9 +2,8 @@
 //! it is added.
 
 use super::layers::contact_name;
-use super::{form, notices};
+use super::notices;
 use crate::state::{Action, FileContent, Place, Session, State};
-use crate::theme;
 use crate::work::Work;
 use crate::work::scan::{self, InterpretationScan, Reading};
 use eframe::egui::{
@@ -14,6 +13,9 @@ use formats::{Column, Format, ImportOptions, PlaceBy, ValueOrder, ZPositive, ZUn
 use project::command::{AddFault, AddHorizon, Age, Command};
 use std::path::{Path, PathBuf};
 use survey::{Contact, Setting};
+use widgets::form;
+use widgets::keyboard::is_entered;
+use widgets::theme;
 
 /// The dialogue.
 #[derive(Default)]
@@ -72,7 +74,7 @@ impl Interpretation {
             ui.separator();
             ui.horizontal(|ui| {
                 let can = !self.name.trim().is_empty() && self.reading.is_good(&self.options);
-                if ui.add_enabled(can, Button::new("Add")).clicked() {
+                if ui.add_enabled(can, Button::new("Add")).clicked() || can && is_entered(ui) {
                     actions.push(Action::Apply(Box::new(self.command(kind))));
                 }
                 if ui.button("Cancel").clicked() {

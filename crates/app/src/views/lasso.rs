@@ -1,9 +1,10 @@
 //! What the pointer does on sections and on the block: a click picks, a lasso erases.
 
 use crate::state::{Action, How, Panel, PickingStep, Session, Tool};
-use crate::theme;
 use eframe::egui::{Color32, Key, Painter, Pos2, Response, Shape, Stroke, Ui};
 use glam::DVec3;
+use widgets::event_order::moves;
+use widgets::theme;
 
 /// Smallest distance between two corners, points.
 const EVERY: f32 = 3.0;
@@ -18,13 +19,14 @@ pub struct LassoLine {
 
 impl LassoLine {
     /// Extends the line while it is dragged; returns it when the drag ends.
-    pub fn draw(&mut self, painter: &Painter, response: &Response, is_held: bool) -> Option<Vec<Pos2>> {
-        if is_held
-            && response.dragged()
-            && let Some(at) = response.interact_pointer_pos()
-            && self.corners.last().is_none_or(|last| last.distance(at) > EVERY)
-        {
-            self.corners.push(at);
+    pub fn draw(&mut self, ui: &Ui, painter: &Painter, response: &Response, is_held: bool) -> Option<Vec<Pos2>> {
+        if is_held && (response.dragged() || response.drag_stopped()) {
+            let begun = ui.input(|input| input.pointer.press_origin()).filter(|_| response.drag_started());
+            for at in begun.into_iter().chain(moves(ui)) {
+                if self.corners.last().is_none_or(|last| last.distance(at) > EVERY) {
+                    self.corners.push(at);
+                }
+            }
         }
         if !self.corners.is_empty() {
             let accent = theme::accent(&response.ctx.global_style().visuals);

@@ -1,13 +1,14 @@
 //! The map: the depth of a horizon, or the thickness below it, north up, with contours, the lines of the sections and a
 //! colour bar.
 
-use super::{canvas, texture};
+use super::texture;
 use crate::state::{Action, Session};
 use crate::work::map::{MapData, MapRequest, Maps};
 use eframe::egui::{ComboBox, Context, Rect, Role, Sense, TextWrapMode, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
 use figure::draw::map::{self as drawing, MapFrame};
 use figure::map::{HorizonMap, Mapped};
 use glam::DVec2;
+use widgets::canvas;
 
 /// Smallest and largest zoom.
 const ZOOM: [f32; 2] = [0.8, 40.0];

@@ -3,14 +3,12 @@
 pub mod bar;
 pub mod block;
 pub mod candidates;
-pub mod canvas;
 pub mod chooser;
 pub mod controls;
 pub mod data;
 pub mod dropped;
 pub mod export;
 pub mod fence;
-pub mod form;
 pub mod functions;
 pub mod import;
 pub mod interpretation;

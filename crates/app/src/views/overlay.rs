@@ -4,7 +4,7 @@
 //! Lines on sections are those that figures print ([`figure::draw::overlay`]); they are cut again when something has
 //! changed.
 
-use super::{canvas, surfaces};
+use super::surfaces;
 use crate::state::picking::voxel_of;
 use crate::state::{Panel, Session, camera};
 use crate::work::{Interpreted, ShownPick, sheet};
@@ -18,6 +18,7 @@ use project::figures::InterpreterView;
 use std::collections::HashMap;
 use std::sync::Arc;
 use ttf::Colour;
+use widgets::canvas;
 
 /// The sticks of a fault being drawn, and the stick being drawn.
 const STICKS: [Colour; 2] = [Colour::new(0x9c, 0x27, 0x6f), Colour::new(0xe0, 0x20, 0x60)];

@@ -3,11 +3,11 @@
 use super::notices;
 use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Place, Session, State};
-use crate::theme;
 use crate::work::Swatches;
 use eframe::egui::{Context, Id, Modal, Role, ScrollArea, Sense, Stroke, TextEdit, Ui, WidgetInfo, vec2};
 use project::command::{Command, SetLayer};
 use ttf::{LayerStyle, Pattern};
+use widgets::theme;
 
 /// Size of a swatch, points.
 const SWATCH: [f32; 2] = [104.0, 66.0];

@@ -6,12 +6,13 @@ use crate::state::{
     Action, Choice, Compare, Dialogue, ExportForm, Layout, Look, Panel, PickingStep, Session, StandardView, State,
     Tool, camera,
 };
-use crate::theme;
 use eframe::egui::{Context, Grid, Id, Key, Modal, Modifiers, ScrollArea};
 use glam::DVec2;
 use interp::holes::FillSettings;
 use project::command::{Command, FillHorizon};
 use render::{FaceData, Scene};
+use widgets::keyboard::{Listener, is_entered};
+use widgets::theme;
 
 /// What a key does to an open project.
 type Deed = fn(&Session) -> Option<Action>;
@@ -80,8 +81,11 @@ pub const SHORTCUTS: &[Shortcut] = &[
     plain(Key::Num4, "4", "Fence", |_| Some(Action::Arrange(Layout::Fence))),
     plain(Key::L, "L", "Layers", |_| Some(Action::Panel(Panel::Layers))),
     plain(Key::D, "D", "Data", |_| Some(Action::Panel(Panel::Data))),
-    plain(Key::P, "P", "Interpret", |_| Some(Action::Panel(Panel::Interpret))),
-    plain(Key::V, "V", "Values", |_| Some(Action::Panel(Panel::Values))),
+    plain(Key::P, "P", "Interpret, or back to the layers", |session| {
+        let is_interpreting = session.view.panel == Panel::Interpret;
+        Some(Action::Panel(if is_interpreting { Panel::Layers } else { Panel::Interpret }))
+    }),
+    plain(Key::V, "V", "Volume display", |_| Some(Action::Panel(Panel::Values))),
     plain(Key::B, "B", "Blend", |_| Some(Action::Compare(Compare::Blend))),
     plain(Key::S, "S", "Side by side", |_| Some(Action::Compare(Compare::SideBySide))),
     plain(Key::W, "W", "Wipe", |_| Some(Action::Compare(Compare::Wipe))),
@@ -114,16 +118,16 @@ pub const SHORTCUTS: &[Shortcut] = &[
     plain(Key::X, "X", "Crossline face inwards", |session| side(session, 1, SIDE)),
     shifted(Key::Z, "Shift Z", "Top up", |session| side(session, 2, -SIDE)),
     plain(Key::Z, "Z", "Top down", |session| side(session, 2, SIDE)),
-    plain(Key::H, "H", "Handles", |session| Some(Action::Handles(!session.view.handles))),
+    shifted(Key::H, "Shift H", "Handles", |session| Some(Action::Handles(!session.view.handles))),
     plain(Key::J, "J", "Previous inline", |session| step(session, 0, -1.0)),
     plain(Key::K, "K", "Next inline", |session| step(session, 0, 1.0)),
-    plain(Key::N, "N", "Previous crossline", |session| step(session, 1, -1.0)),
-    plain(Key::M, "M", "Next crossline", |session| step(session, 1, 1.0)),
+    shifted(Key::J, "Shift J", "Previous crossline", |session| step(session, 1, -1.0)),
+    shifted(Key::K, "Shift K", "Next crossline", |session| step(session, 1, 1.0)),
     plain(Key::Comma, ",", "Slice above", |session| step(session, 2, -1.0)),
     plain(Key::Period, ".", "Slice below", |session| step(session, 2, 1.0)),
 ];
 
-/// The shortcuts that take precedence while interpreting.
+/// The shortcuts that work only while interpreting.
 pub const INTERPRETING: &[Shortcut] = &[
     plain(Key::ArrowUp, "Up", "Climb", |_| picking(PickingStep::Climb(1))),
     plain(Key::ArrowDown, "Down", "Descend", |_| picking(PickingStep::Climb(-1))),
@@ -142,7 +146,7 @@ pub const INTERPRETING: &[Shortcut] = &[
         let is_clear = session.view.picking.look == Look::VolumeRendering;
         picking(PickingStep::Look(if is_clear { Look::Faces } else { Look::VolumeRendering }))
     }),
-    plain(Key::G, "G", "Amplitudes, leaves, distances in turn", |session| {
+    plain(Key::G, "G", "Amplitudes, candidate pieces, distances in turn", |session| {
         picking(PickingStep::Show(match session.view.picking.show {
             FaceData::Rock => FaceData::Leaves,
             FaceData::Leaves => FaceData::Distance,
@@ -160,7 +164,6 @@ pub const INTERPRETING: &[Shortcut] = &[
         Some(Action::Apply(Box::new(Command::FillHorizon(command))))
     }),
     plain(Key::Q, "Q", "Propose faults", |_| Some(Action::ProposeFaults)),
-    plain(Key::P, "P", "Back to the layers", |_| Some(Action::Panel(Panel::Layers))),
     // The key is held while dragging; pressing it does nothing by itself.
     plain(lasso::HELD, "A and drag", "Erase with the lasso", |_| None),
 ];
@@ -207,9 +210,9 @@ fn side(session: &Session, axis: usize, inwards: f64) -> Option<Action> {
     show(faces::move_face(scene, geometry, ANY_SIZE, face, if at_max { -inwards } else { inwards }))
 }
 
-/// Obeys the keys that were pressed, unless a text field or a dialogue takes them.
-pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
-    if state.is_asking() || ctx.egui_wants_keyboard_input() {
+/// Obeys the keys that were pressed, unless a text field, an open list or a dialogue takes them.
+pub fn obey(ctx: &Context, state: &State, listener: &Listener, actions: &mut Vec<Action>) {
+    if state.dialogue.is_some() || listener.is_typing(ctx) {
         return;
     }
     let asked = ctx.input_mut(|input| {
@@ -220,7 +223,10 @@ pub fn obey(ctx: &Context, state: &State, actions: &mut Vec<Action>) {
     }
     let Some(session) = &state.session else { return };
     let first = if session.view.panel == Panel::Interpret { INTERPRETING } else { &[] };
-    for shortcut in first.iter().chain(SHORTCUTS) {
+    // Those with Shift come first, because a key alone is taken with Shift, too.
+    let all = || first.iter().chain(SHORTCUTS);
+    let (with, without) = (all().filter(|shortcut| shortcut.modifiers.any()), all().filter(|s| s.modifiers.is_none()));
+    for shortcut in with.chain(without) {
         if ctx.input_mut(|input| input.consume_key(shortcut.modifiers, shortcut.key)) {
             actions.extend((shortcut.deed)(session));
         }
@@ -254,7 +260,7 @@ pub fn dialogue(ctx: &Context, actions: &mut Vec<Action>) {
         });
         ui.add_space(6.0);
         ui.weak("In the block: drag turns it, Shift drag moves it, the wheel zooms, a click moves the sections there.");
-        if ui.button("Close").clicked() {
+        if ui.button("Close").clicked() || is_entered(ui) {
             actions.push(Action::Answered);
         }
     });
@@ -268,22 +274,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_key_means_two_things_within_a_table() {
-        for table in [SHORTCUTS, INTERPRETING] {
-            for (index, shortcut) in table.iter().enumerate() {
-                for other in &table[..index] {
-                    let is_other = shortcut.key != other.key || shortcut.modifiers != other.modifiers;
-                    assert!(is_other, "{} and {}", shortcut.name, other.name);
-                }
+    fn a_key_has_one_meaning() {
+        let all: Vec<&Shortcut> = SHORTCUTS.iter().chain(INTERPRETING).collect();
+        for (index, shortcut) in all.iter().enumerate() {
+            for other in &all[..index] {
+                let is_other = shortcut.key != other.key || shortcut.modifiers != other.modifiers;
+                assert!(is_other, "{} and {}", shortcut.name, other.name);
             }
-        }
-    }
-
-    #[test]
-    fn panels_are_reached_by_the_same_keys_everywhere() {
-        let names = ["Layers", "Data", "Values", "Block alone", "Block and sections", "Map", "Fence"];
-        for shortcut in SHORTCUTS.iter().filter(|shortcut| names.contains(&shortcut.name)) {
-            assert!(INTERPRETING.iter().all(|other| other.key != shortcut.key), "{}", shortcut.name);
         }
     }
 }

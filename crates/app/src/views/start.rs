@@ -2,13 +2,13 @@
 
 use super::{notices, texture};
 use crate::state::{Action, Choice, Dialogue, Place, State};
-use crate::theme;
 use crate::work::folder::Presence;
 use eframe::egui::{
     Align, Button, Color32, Context, Label, Layout, Rect, RichText, Role, ScrollArea, Sense, Stroke, TextureHandle,
     TextureOptions, Ui, Vec2, WidgetInfo, pos2,
 };
 use std::path::Path;
+use widgets::theme;
 
 /// Width of the column in the middle.
 const WIDTH: f32 = 660.0;

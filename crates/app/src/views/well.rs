@@ -1,9 +1,7 @@
 //! The dialogue that shows how the files of a well would be read, before the well is added.
 
-use super::{form, notices};
-use crate::fields;
+use super::notices;
 use crate::state::{Action, Notice, Place, State};
-use crate::theme;
 use crate::work::Work;
 use crate::work::folder::{Folder, FolderListing};
 use crate::work::scan::Reading;
@@ -13,6 +11,10 @@ use formats::well::{WellFiles, WellOptions, read_well};
 use project::command::{AddWell, Command};
 use std::path::{Path, PathBuf};
 use survey::Setting;
+use widgets::fields;
+use widgets::form;
+use widgets::keyboard::is_entered;
+use widgets::theme;
 
 /// File extensions of tables.
 const TABLES: [&str; 3] = ["csv", "txt", "dat"];
@@ -64,7 +66,7 @@ impl WellDialogue {
             ui.separator();
             ui.horizontal(|ui| {
                 let can = !self.name.trim().is_empty() && self.unclear().is_none() && self.reading.is_good(&asked);
-                if ui.add_enabled(can, Button::new("Add")).clicked() {
+                if ui.add_enabled(can, Button::new("Add")).clicked() || can && is_entered(ui) {
                     let command = AddWell { name: self.name.trim().to_owned(), files, options };
                     actions.push(Action::Apply(Box::new(Command::AddWell(command))));
                 }

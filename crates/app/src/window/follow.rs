@@ -69,7 +69,7 @@ impl Window {
                     }
                 }
                 Event::Drawn(drawn) => self.block.receive(ctx, drawn),
-                Event::Sliced(picture) => self.sections.receive(ctx, picture),
+                Event::Sliced { cut, of } => self.sections.receive(ctx, cut, of),
                 Event::Fenced(picture) => self.fence.receive(ctx, picture),
                 Event::Mapped(picture) => self.map.receive(ctx, picture),
                 Event::Interpreted(shown) => {

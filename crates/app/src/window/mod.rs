@@ -8,7 +8,6 @@ use super::error::WindowError;
 use super::hold::Hold;
 use super::state::picking::Pick;
 use super::state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, Task};
-use super::theme;
 use super::views::dropped::{self, Dropped};
 use super::views::{
     block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
@@ -24,6 +23,9 @@ use project::command::Command;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use widgets::event_order::EventOrder;
+use widgets::keyboard::Listener;
+use widgets::theme;
 
 /// Interval at which the view is saved.
 const MARK_EVERY: Duration = Duration::from_secs(5);
@@ -98,6 +100,9 @@ pub struct Window {
     swatches: Swatches,
     chooser: Chooser,
     dropped: Dropped,
+    listener: Listener,
+    /// The project that the window's title names.
+    titled: Option<String>,
     controls: Controls,
     pointed: Option<Pointed>,
     rocks: Option<(Rocks, u64)>,
@@ -114,6 +119,7 @@ impl Window {
     /// Opens with the start page, or with a project; `settings` is the file of what outlives the window.
     pub fn new(ctx: &Context, settings: Option<PathBuf>, project: Option<PathBuf>) -> Self {
         theme::install(ctx);
+        EventOrder::install(ctx);
         let mut remembered = settings.as_deref().map(Remembered::read).unwrap_or_default();
         // A project that another window has open was not left by a crash.
         remembered.left = remembered.left.filter(|left| !Hold::is_elsewhere(&left.root));
@@ -145,6 +151,8 @@ impl Window {
             swatches: Swatches::start(wake),
             chooser: Chooser::default(),
             dropped: Dropped::default(),
+            listener: Listener::default(),
+            titled: None,
             controls: Controls::default(),
             pointed: None,
             rocks: None,
@@ -210,13 +218,20 @@ impl Window {
         (self.rocks, self.needs, self.wanted, self.pointed) = (None, None, None, None);
         (self.followed, self.selected, self.hold) = (None, None, None);
         self.block = BlockView::default();
+        self.sections = Sections::default();
+        (self.fence, self.map) = (FenceView::default(), MapView::default());
         self.overlay = Overlay::default();
         self.picking = PickingPanel::default();
     }
 
     /// Where a failure of the task is shown.
     fn place_of(&self, task: &Task) -> Place {
-        let Task::Apply(command) = task else { return Place::Block };
+        let command = match task {
+            Task::Apply(command) => command,
+            Task::Open(_) if self.state.dialogue.is_some() => return Place::Dialogue,
+            Task::Open(_) | Task::Demo(_) if self.state.session.is_none() => return Place::Start,
+            _ => return Place::Block,
+        };
         match command.as_ref() {
             _ if self.state.dialogue.is_some() => Place::Dialogue,
             Command::SetLayer(_) | Command::ResetLayer(_) | Command::SetContact(_) => Place::Layers,
@@ -257,6 +272,16 @@ impl Window {
         ctx.set_zoom_factor(self.state.remembered.scale.unwrap_or(1.0));
     }
 
+    /// Names the open project in the title of the window.
+    fn entitle(&mut self, ctx: &Context) {
+        let name = self.state.session.as_ref().map(super::state::Session::name);
+        if self.titled != name {
+            let title = name.as_ref().map_or_else(|| "Petroglyph".to_owned(), |name| format!("{name} – Petroglyph"));
+            ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));
+            self.titled = name;
+        }
+    }
+
     /// Draws everything.
     pub fn show(&mut self, ui: &mut Ui) {
         let ctx = ui.ctx().clone();
@@ -265,7 +290,7 @@ impl Window {
         self.keep_loaded();
         self.keep_interpreted();
         let mut actions = Vec::new();
-        shortcuts::obey(&ctx, &self.state, &mut actions);
+        shortcuts::obey(&ctx, &self.state, &self.listener, &mut actions);
         let running = self.work.running.lines();
         self.dropped.receive(&ctx, &self.state, !running.is_empty(), &mut actions);
         Panel::bottom("status").exact_size(32.0).show(ui, |ui| {
@@ -277,6 +302,8 @@ impl Window {
             CentralPanel::default().show(ui, |ui| self.start.show(ui, &self.state, !running.is_empty(), &mut actions));
         }
         self.dialogues(&ctx, &mut actions);
+        self.entitle(&ctx);
+        self.listener.end_frame(&ctx);
         for action in actions {
             self.act(action);
         }
@@ -299,6 +326,9 @@ impl Window {
     }
 
     fn dialogues(&mut self, ctx: &Context, actions: &mut Vec<Action>) {
+        if !matches!(self.state.dialogue, Some(Dialogue::Choose(_))) {
+            self.chooser.forget();
+        }
         match &self.state.dialogue {
             Some(Dialogue::Choose(choice)) => self.chooser.show(ctx, &self.state, *choice, actions),
             Some(Dialogue::Shortcuts) => shortcuts::dialogue(ctx, actions),
@@ -321,7 +351,9 @@ impl Window {
             Some(Dialogue::Export(form)) => {
                 if let Some(session) = &self.state.session {
                     let is_drawing = self.work.running.lines().iter().any(|line| line.place == Place::Dialogue);
-                    export::show(ctx, &self.state, session, form, is_drawing, actions);
+                    let loaded = self.rocks.as_ref().and_then(|(rocks, _)| rocks.try_read().ok());
+                    let sparse = loaded.as_ref().map_or(&[][..], |loaded| &loaded.sparse);
+                    export::show(ctx, &self.state, session, form, is_drawing, sparse, actions);
                 }
             }
             None => {}
@@ -340,6 +372,7 @@ impl eframe::App for Window {
     }
 
     fn on_exit(&mut self) {
+        self.state.put_by();
         // The window is closed properly, so there is nothing to recover.
         self.state.remembered.left = None;
         self.hold = None;

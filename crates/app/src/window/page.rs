@@ -68,7 +68,7 @@ impl Window {
             for (side, name, hint) in [
                 (Side::Layers, "Layers", "The stratigraphic column (L)"),
                 (Side::Data, "Data", "Volumes, horizons, faults and wells (D)"),
-                (Side::Values, "Values", "Colours and textures by value (V)"),
+                (Side::Values, "Volume display", "Colours of raw data, textures by value, volume rendering (V)"),
                 (Side::Interpret, "Interpret", "Candidates, picks and faults (P)"),
             ] {
                 if ui.selectable_label(session.view.panel == side, name).on_hover_text(hint).clicked() {

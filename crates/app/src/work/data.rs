@@ -9,7 +9,7 @@ use super::{Event, Outbox};
 use crate::state::{Notice, Place};
 use model::ModelSettings;
 use project::Project;
-use project::document::Document;
+use project::document::{Document, WellEntry};
 use project::error::ProjectError;
 use project::picture::load::{self, Loaded};
 use project::{derived, styles};
@@ -140,6 +140,7 @@ struct Kept {
     key: String,
     volumes: Vec<(String, String)>,
     seen: Seen,
+    wells: Vec<WellEntry>,
     rocks: Rocks,
 }
 
@@ -194,6 +195,12 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
             more.add_to(&mut kept.rocks.write().unwrap_or_else(PoisonError::into_inner));
             kept.seen = seen.clone();
         }
+        if kept.wells != document.wells {
+            let geometry = kept.rocks.read().unwrap_or_else(PoisonError::into_inner).geometry.clone();
+            let wells = load::read_wells(&wanted.root, document, &geometry)?;
+            kept.rocks.write().unwrap_or_else(PoisonError::into_inner).wells = wells;
+            kept.wells.clone_from(&document.wells);
+        }
         restyle(&kept.rocks, wanted)?;
         return Ok(kept.rocks.clone());
     }
@@ -203,7 +210,8 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     let scene = seen.scene(wanted.exaggeration);
     let loaded = super::compute(|| load::load(&project, &scene, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
-    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: seen.clone(), rocks: rocks.clone() });
+    let (seen, wells) = (seen.clone(), document.wells.clone());
+    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen, wells, rocks: rocks.clone() });
     Ok(rocks)
 }
 
@@ -231,7 +239,8 @@ fn load_bare(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> R
     let loaded =
         super::compute(|| load::load_bare(&project, &scene, project::memory_budget::half_of_available(), progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
-    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen: Seen::default(), rocks: rocks.clone() });
+    let (seen, wells) = (Seen::default(), document.wells.clone());
+    *kept = Some(Kept { root: wanted.root.clone(), key, volumes, seen, wells, rocks: rocks.clone() });
     Ok(rocks)
 }
 
@@ -270,8 +279,48 @@ fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use project::command::{AddHorizon, AddWell, Age, Command};
     use render::{Isosurface, IsosurfaceSource};
+    use survey::{SurveyGeometry, VerticalUnit};
     use ttf::RgbaFunction;
+
+    #[test]
+    fn a_well_added_while_a_model_is_loaded_is_drawn_with_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let write = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            std::fs::write(&path, text).unwrap();
+            path
+        };
+        let geometry = SurveyGeometry::regular([6, 6, 8], 25.0, 4.0, VerticalUnit::Metres);
+        let mut new = Project::create(&folder.path().join("a.petro"), Some(geometry)).unwrap();
+        let lines = (1..=6).flat_map(|inline| (1..=6).map(move |crossline| format!("{inline},{crossline},12\n")));
+        let add = Command::AddHorizon(AddHorizon {
+            path: write("top.csv", &lines.fold("inline,crossline,z\n".to_owned(), |text, line| text + &line)),
+            name: "Top".to_owned(),
+            contact: survey::Contact::Conformable,
+            age: Age::ByDepth,
+            options: formats::ImportOptions::default(),
+        });
+        new.project().apply(&add, &Progress::silent()).unwrap();
+        let mut project = new.publish().unwrap();
+        let wanted = |project: &Project| Wanted {
+            root: project.root().to_owned(),
+            document: project.document().clone(),
+            exaggeration: 1.0,
+            purpose: Purpose::Illustrate(Seen::default()),
+        };
+        let mut kept = None;
+        let before = load(&wanted(&project), &mut kept, &Progress::silent()).unwrap();
+        assert!(before.read().unwrap().wells.is_empty());
+        let deviation = write("w.csv", "md_m,x_m,y_m,tvdss_m\n0,50,50,0\n30,50,50,30\n");
+        let files = formats::well::WellFiles { deviation, ..Default::default() };
+        let well = AddWell { name: "W".to_owned(), files, options: Default::default() };
+        project.apply(&Command::AddWell(well), &Progress::silent()).unwrap();
+        let after = load(&wanted(&project), &mut kept, &Progress::silent()).unwrap();
+        assert_eq!(after.read().unwrap().wells.len(), 1);
+        assert!(Arc::ptr_eq(&before, &after), "the model is not computed again");
+    }
 
     #[test]
     fn volumes_of_isosurfaces_and_painted_horizons_are_listed() {

@@ -34,6 +34,7 @@ use super::state::{Notice, PickingStep, Place, Snapshot, Task};
 use figure::cut::{FenceCut, SectionCut};
 use figure::map::HorizonMap;
 use project::command::PickNode;
+use render::FaceData;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, OnceLock};
@@ -61,7 +62,12 @@ pub enum Event {
     /// A picture of the block.
     Drawn(Drawn),
     /// A section.
-    Sliced(SectionCut),
+    Sliced {
+        /// The section.
+        cut: SectionCut,
+        /// Its position, the number of its data, and what of the candidates it shows.
+        of: (f64, u64, FaceData),
+    },
     /// A section along a line.
     Fenced(FenceCut),
     /// A map.
@@ -166,9 +172,9 @@ impl Work {
     pub fn run(&mut self, task: Task, place: Place) {
         let root = || self.root.clone();
         let order = match task {
-            Task::Open(root) => orders::Order::Open(root),
+            Task::Open(root) => orders::Order::Open(root, place),
             Task::Check(root, place) => orders::Order::Check(root, place),
-            Task::Demo(folder) => orders::Order::Demo(folder),
+            Task::Demo(folder) => orders::Order::Demo(folder, place),
             Task::Create { command, root } => orders::Order::Create { command, root },
             Task::Apply(command) => match root() {
                 Some(root) => orders::Order::Apply { root, command, place },

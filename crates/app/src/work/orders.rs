@@ -16,9 +16,9 @@ use survey::Progress;
 
 /// A command, or another order on a project.
 pub(super) enum Order {
-    Open(PathBuf),
+    Open(PathBuf, Place),
     Check(PathBuf, Place),
-    Demo(PathBuf),
+    Demo(PathBuf, Place),
     Create { command: Box<ImportVolume>, root: PathBuf },
     Apply { root: PathBuf, command: Box<Command>, place: Place },
     Undo(PathBuf),
@@ -59,9 +59,9 @@ fn tell_warnings(guard: &RunningGuard, place: Place, outbox: &Outbox) {
 impl Order {
     fn title(&self) -> String {
         match self {
-            Self::Open(_) => "Opening the project".to_owned(),
+            Self::Open(..) => "Opening the project".to_owned(),
             Self::Check(..) => "Checking the project".to_owned(),
-            Self::Demo(_) => "Making the demonstration".to_owned(),
+            Self::Demo(..) => "Making the demonstration".to_owned(),
             Self::Create { command, .. } => format!("Reading {}", file_name(&command.path)),
             Self::Apply { command, .. } => match command.as_ref() {
                 Command::Import(import) => format!("Reading {}", file_name(&import.path)),
@@ -76,8 +76,7 @@ impl Order {
 
     fn place(&self) -> Place {
         match self {
-            Self::Open(_) | Self::Demo(_) => Place::Start,
-            Self::Check(_, place) => *place,
+            Self::Open(_, place) | Self::Check(_, place) | Self::Demo(_, place) => *place,
             Self::Create { .. } => Place::Dialogue,
             Self::Apply { place, .. } => *place,
             Self::Undo(_) | Self::Redo(_) => Place::Block,
@@ -87,16 +86,16 @@ impl Order {
     /// The project that is there already.
     fn root(&self) -> Option<PathBuf> {
         match self {
-            Self::Open(root) | Self::Apply { root, .. } | Self::Undo(root) | Self::Redo(root) => Some(root.clone()),
-            Self::Check(..) | Self::Demo(_) | Self::Create { .. } => None,
+            Self::Open(root, _) | Self::Apply { root, .. } | Self::Undo(root) | Self::Redo(root) => Some(root.clone()),
+            Self::Check(..) | Self::Demo(..) | Self::Create { .. } => None,
         }
     }
 
     fn carry_out(self, progress: &Progress) -> Result<Event, ProjectError> {
         Ok(match self {
-            Self::Open(root) => Event::Opened(Box::new(snapshot(&Project::open(&absolute(&root))?)?)),
+            Self::Open(root, _) => Event::Opened(Box::new(snapshot(&Project::open(&absolute(&root))?)?)),
             Self::Check(root, place) => Event::Told(Notice::checked(place, &check(&absolute(&root), progress)?)),
-            Self::Demo(folder) => {
+            Self::Demo(folder, _) => {
                 let done = demo::run(&folder, progress)?;
                 Event::Opened(Box::new(snapshot(&Project::open(&absolute(&done.project))?)?))
             }
@@ -153,7 +152,7 @@ mod tests {
         let root = folder.path().join("a.petro");
         Project::create(&root, None).unwrap().publish().unwrap();
         let open = || {
-            let order = Order::Open(root.clone());
+            let order = Order::Open(root.clone(), Place::Start);
             let (place, root) = (order.place(), order.root().unwrap());
             order.carry_out(&Progress::silent()).map_err(|error| Notice::failure_with(place, &error, &root))
         };

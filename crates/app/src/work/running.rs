@@ -1,13 +1,13 @@
 //! What is under way: titles, progress, a way to stop.
 
 use super::Wake;
-use crate::fields;
 use crate::state::Place;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use survey::progress::ProgressSink;
 use survey::{Note, Progress};
+use widgets::fields;
 
 /// Smallest interval at which progress wakes the window.
 const WAKE_EVERY: Duration = Duration::from_millis(100);

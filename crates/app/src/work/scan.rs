@@ -2,7 +2,6 @@
 
 use super::Work;
 use super::latest::Latest;
-use crate::fields;
 use crate::state::{Notice, Place};
 use eframe::egui::Context;
 use formats::{ImportOptions, ImportReport};
@@ -12,6 +11,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use survey::{Progress, SurveyGeometry};
 use ttf::{ColourMap, RgbaFunction};
+use widgets::fields;
 
 /// Longest side of a preview, pixels.
 const PREVIEW_PX: usize = 480;

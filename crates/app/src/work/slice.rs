@@ -19,6 +19,8 @@ pub struct SliceRequest {
     pub at: f64,
     /// The data that it is cut from.
     pub rocks: Rocks,
+    /// The number of these data.
+    pub version: u64,
     /// What it shows; amplitudes where no candidates are in memory.
     pub show: FaceData,
 }
@@ -58,7 +60,10 @@ impl Slices {
                     outbox.send(match next {
                         Next::Slice(request) => {
                             let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);
-                            Event::Sliced(cut(&loaded, &request))
+                            Event::Sliced {
+                                cut: cut(&loaded, &request),
+                                of: (request.at, request.version, request.show),
+                            }
                         }
                         Next::Fence(request) => {
                             let loaded = request.rocks.read().unwrap_or_else(PoisonError::into_inner);

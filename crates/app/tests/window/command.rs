@@ -188,7 +188,7 @@ fn contacts_beds_and_default_styles_are_set_in_the_column() {
 fn raw_colours_and_textures_by_value_are_changed_and_taken_away() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
-    click(&mut harness, "Values");
+    click(&mut harness, "Volume display");
     choose(&mut harness, "Colours", "grey");
     wait(&mut harness, "the colours are set", |harness| document(harness).style.raw.is_some());
     click(&mut harness, "Textures by seismic");

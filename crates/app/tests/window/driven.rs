@@ -328,7 +328,7 @@ fn data_is_listed_and_removed() {
 fn values_have_a_histogram_and_get_textures() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
-    click(&mut harness, "Values");
+    click(&mut harness, "Volume display");
     harness.get_by_label("Histogram");
     click(&mut harness, "Textures by seismic");
     wait(&mut harness, "the textures are there", |harness| document(harness).style.scalars.len() == 1);

@@ -19,7 +19,7 @@ fn drawn(harness: &mut Driven) {
 fn a_volume_fills_the_cut_outs_and_the_block() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
-    click(&mut harness, "Values");
+    click(&mut harness, "Volume display");
     click_last(&mut harness, "Cut-outs");
     drawn(&mut harness);
     assert_eq!(extent(scene(&harness)), Extent::CutOuts);
@@ -49,7 +49,7 @@ fn a_volume_fills_the_cut_outs_and_the_block() {
 fn a_horizon_is_shown_in_the_rendered_volume_with_fields_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let mut harness = open(folder.path());
-    click(&mut harness, "Values");
+    click(&mut harness, "Volume display");
     assert_eq!(scene(&harness).media, Media::default());
     click_last(&mut harness, "Top");
     wait(&mut harness, "the horizon is seen", |harness| !scene(harness).media.horizons.is_empty());

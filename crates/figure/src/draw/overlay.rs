@@ -10,6 +10,7 @@ use crate::interpretation::{DrawnInterpretation, PickedSheets, SheetHole, TraceS
 use crate::list::{Group, GroupKind, Ink, Path, PathItem, Stroke};
 use crate::style::{FAULT_PT, HORIZON_PT, PROPOSAL, RIM_OPACITY, RIM_PT};
 use glam::{DVec2, DVec3};
+use survey::Quality;
 use ttf::Colour;
 
 /// How far from a section sticks are drawn on it, traces or samples.
@@ -20,6 +21,43 @@ const DOT_PT: [f64; 2] = [1.5, 3.6];
 const SELECTED_PT: [f64; 2] = [2.4, 4.2];
 /// Radius of the places of a stick, points.
 const PLACE_PT: f64 = 2.0;
+
+/// Length of the dashes where a horizon was filled, and of the gaps between them, points.
+const FILLED_PT: [f64; 2] = [4.0, 2.6];
+
+/// A part of a sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum SheetPart {
+    /// What was picked or tracked.
+    Picked,
+    /// What was filled, up to the picked traces around it.
+    Filled,
+}
+
+impl SheetPart {
+    /// The values of this part, NaN at other traces; `[inlines, crosslines]` is the survey's size.
+    fn of(self, sheet: &TraceSheet, [nx, ny]: [usize; 2]) -> Vec<f32> {
+        let is_filled = |x: usize, y: usize| sheet.quality[x * ny + y] == Quality::Filled;
+        let is_beside = |x: usize, y: usize| {
+            let (xs, ys) = (x.saturating_sub(1)..nx.min(x + 2), y.saturating_sub(1)..ny.min(y + 2));
+            xs.into_iter().any(|x| ys.clone().any(|y| is_filled(x, y)))
+        };
+        let mut z = sheet.z.to_vec();
+        if self == Self::Picked && !sheet.quality.contains(&Quality::Filled) {
+            return z;
+        }
+        for (n, z) in z.iter_mut().enumerate() {
+            let is_own = match self {
+                Self::Picked => !is_filled(n / ny, n % ny),
+                Self::Filled => is_beside(n / ny, n % ny),
+            };
+            if !is_own {
+                *z = f32::NAN;
+            }
+        }
+        z
+    }
+}
 
 /// Lines of one colour under a name.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +75,8 @@ pub struct NamedLines {
 pub struct OverlayLines {
     /// Horizons.
     pub horizons: Vec<NamedLines>,
+    /// Where horizons were filled, not picked.
+    pub filled: Vec<NamedLines>,
     /// Across the holes of horizons.
     pub bridges: Vec<NamedLines>,
     /// Faults.
@@ -99,7 +139,10 @@ impl OverlayLines {
             colour: horizon.colour,
             lines,
         };
-        let sheets = |horizon: &PickedSheets| horizon.sheets.iter().flat_map(|sheet| on.sheet(sheet, size)).collect();
+        let sheets = |horizon: &PickedSheets, part: SheetPart| {
+            let lines = |sheet: &TraceSheet| on.sheet(&TraceSheet { z: &part.of(sheet, size), ..*sheet }, size);
+            horizon.sheets.iter().flat_map(lines).collect()
+        };
         let bridges = |horizon: &PickedSheets| {
             horizon.sheets.iter().flat_map(|sheet| on.bridges(sheet, &horizon.holes, size)).collect()
         };
@@ -114,7 +157,8 @@ impl OverlayLines {
             lines: on.mesh(fault.triangles),
         };
         Self {
-            horizons: shown.horizons.iter().map(|horizon| named(horizon, sheets(horizon))).collect(),
+            horizons: shown.horizons.iter().map(|h| named(h, sheets(h, SheetPart::Picked))).collect(),
+            filled: shown.horizons.iter().map(|h| named(h, sheets(h, SheetPart::Filled))).collect(),
             bridges: shown.horizons.iter().map(|horizon| named(horizon, bridges(horizon))).collect(),
             faults: shown.faults.iter().map(fault).collect(),
             proposals: shown.proposals.iter().flat_map(|fault| on.mesh(fault.triangles)).collect(),
@@ -140,8 +184,10 @@ impl OverlayLines {
         };
         let mut rims = Group::new(GroupKind::Annotation, "rims");
         let mut groups = Vec::new();
-        for (horizon, bridges) in self.horizons.iter().zip(&self.bridges) {
+        for ((horizon, filled), bridges) in self.horizons.iter().zip(&self.filled).zip(&self.bridges) {
             rims.push(rim(path(&horizon.lines), HORIZON_PT));
+            let [on, off] = FILLED_PT;
+            let dashes = Stroke::new(HORIZON_PT, horizon.colour).dashed(on, off);
             let dots = Stroke::new(DOT_PT[0], horizon.colour).dotted(DOT_PT[1]);
             let light = Stroke::new(DOT_PT[0] + 0.6, Ink::glass(Colour::WHITE, 0.8)).dotted(DOT_PT[1]);
             let mut group = line(
@@ -150,6 +196,7 @@ impl OverlayLines {
                 path(&horizon.lines),
                 Stroke::new(HORIZON_PT, horizon.colour).round(),
             );
+            group.push(PathItem::stroked(path(&filled.lines), dashes));
             group.push(PathItem::stroked(path(&bridges.lines), light));
             group.push(PathItem::stroked(path(&bridges.lines), dots));
             groups.push(group);
@@ -192,4 +239,26 @@ pub fn stick(places: Vec<DVec2>, colour: Colour) -> Group {
         group.push(dot.outlined(Stroke::new(0.9 * HORIZON_PT, colour)));
     }
     group
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_filled_is_dashed_and_the_rest_is_not() {
+        let (size, z) = ([3, 8], vec![5.0; 24]);
+        let mut quality = vec![Quality::Tracked; 24];
+        (0..3).for_each(|x| quality[x * 8 + 3..x * 8 + 6].fill(Quality::Filled));
+        let sheet = TraceSheet { block: 0, z: &z, quality: &quality };
+        let horizon = PickedSheets { name: "Top", colour: Colour::BLACK, sheets: vec![sheet], holes: Vec::new() };
+        let shown = DrawnInterpretation { horizons: vec![horizon], ..DrawnInterpretation::default() };
+        let lines = OverlayLines::new(&shown, size, SeenOn::Section(SectionKind::Inline, 1.0));
+        let ends = |lines: &[Line]| lines.iter().map(|l| [l[0].x, l[l.len() - 1].x]).collect::<Vec<_>>();
+        assert_eq!(ends(&lines.horizons[0].lines), [[0.0, 2.0], [6.0, 7.0]]);
+        assert_eq!(ends(&lines.filled[0].lines), [[2.0, 6.0]]);
+        let group = &lines.drawn(|st| st)[1];
+        let is_dashed = |item: &crate::list::Item| matches!(item, crate::list::Item::Path(path) if path.stroke.as_ref().is_some_and(|s| !s.dashes.is_empty()));
+        assert!(!is_dashed(&group.items[0]) && is_dashed(&group.items[1]));
+    }
 }

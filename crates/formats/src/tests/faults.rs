@@ -152,5 +152,5 @@ fn bad_faults_are_refused_with_a_reason() {
     assert!(matches!(read(&feet), FormatError::OutsideSurvey { .. }));
     let missing = "GOCAD TSurf 1\nTFACE\nVRTX 1 7300 100 0\nVRTX 2 7700 100 800\nTRGL 1 2 3\nEND\n";
     assert!(read(missing).to_string().contains("line 5: expected a vertex with id 3"), "{}", read(missing));
-    assert!(matches!(read("GOCAD PLine 1\nEND\n"), FormatError::UnknownFormat { .. }));
+    assert!(matches!(read("GOCAD SGrid 1\nEND\n"), FormatError::UnknownFormat { .. }));
 }

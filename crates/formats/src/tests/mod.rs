@@ -1,5 +1,6 @@
 //! Whole files, in and out: the formats' own examples, round trips, bad input, and real data.
 
+mod drawings;
 mod faults;
 mod foreign;
 mod penobscot;

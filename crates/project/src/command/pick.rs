@@ -128,6 +128,8 @@ pub struct Replayed {
     pub picks: Vec<ReplayedPick>,
     /// The present state of the horizons.
     pub horizons: Vec<(String, AssemblyReport)>,
+    /// Horizons none of whose picks fits, with the number of their picks; they stay as they were.
+    pub left: Vec<(String, usize)>,
 }
 
 /// A pick that was repeated.
@@ -150,7 +152,10 @@ impl std::fmt::Display for Replayed {
         if !dropped.is_empty() {
             write!(f, "; these no longer fit and were removed: {}", dropped.join(", "))?;
         }
-        self.horizons.iter().try_for_each(|(name, report)| write!(f, "\n{name}: {report}"))
+        self.horizons.iter().try_for_each(|(name, report)| write!(f, "\n{name}: {report}"))?;
+        self.left.iter().try_for_each(|(name, picks)| {
+            write!(f, "\n{name}: none of its {picks} picks fits; it stays as it was. Remove it and pick it again")
+        })
     }
 }
 
@@ -386,23 +391,32 @@ impl ReplayPicks {
             .collect();
         let candidates = Candidates::load(draft.root(), &draft.document, progress)?;
         let blocks = assembly::blocks(draft.root(), &draft.document, progress)?;
-        let mut done = Replayed { picks: Vec::new(), horizons: Vec::new() };
+        let mut done = Replayed { picks: Vec::new(), horizons: Vec::new(), left: Vec::new() };
         for (name, mut log) in logs {
-            let mut unfit = Vec::new();
+            let mut replayed = Vec::new();
             log.picks.retain_mut(|pick| {
                 let before = pick.node.triangles;
                 let fit = again(pick, &candidates, &geometry);
-                done.picks.push(ReplayedPick { pick: pick.id, fit, triangles: [before, pick.node.triangles] });
-                if fit == NodeFit::Different {
-                    unfit.push(pick.id);
-                }
+                replayed.push(ReplayedPick { pick: pick.id, fit, triangles: [before, pick.node.triangles] });
                 fit != NodeFit::Different
             });
-            if !unfit.is_empty() && (self.unfit == Unfit::Refuse || log.picks.is_empty()) {
+            if log.picks.is_empty() {
+                done.left.push((name, replayed.len()));
+                continue;
+            }
+            let is_unfit = |pick: &&ReplayedPick| pick.fit == NodeFit::Different;
+            let unfit: Vec<u32> = replayed.iter().filter(is_unfit).map(|pick| pick.pick).collect();
+            if !unfit.is_empty() && self.unfit == Unfit::Refuse {
                 return Err(ProjectError::UnfitPicks { horizon: name, picks: unfit });
             }
+            done.picks.extend(replayed);
             let report = rebuild(draft, &candidates, &blocks, &name, log, progress)?;
             done.horizons.push((name, report));
+        }
+        if let Some((horizon, _)) =
+            done.left.first().filter(|_| done.horizons.is_empty() || self.unfit == Unfit::Refuse)
+        {
+            return Err(ProjectError::NoPickFits { horizon: horizon.clone() });
         }
         Ok(Effect::Replayed(Box::new(done)))
     }

@@ -60,6 +60,7 @@ impl ProjectError {
             | Self::Figure(_)
             | Self::NoCandidate { .. }
             | Self::NoGeometry
+            | Self::NoPickFits { .. }
             | Self::NoProposals
             | Self::NoVolume
             | Self::NotATruth { .. }

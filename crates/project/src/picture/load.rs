@@ -1,6 +1,7 @@
 //! Loads the input of renderers from a project: reads data, builds the model, parameterizes layers and compiles styles.
 //! Each step does only what is needed, and earlier results are taken from `derived/`.
 
+use super::SparseHorizon;
 use crate::Project;
 use crate::document::Document;
 use crate::error::ProjectError;
@@ -209,6 +210,8 @@ pub struct Loaded {
     pub geometry: SurveyGeometry,
     /// The interpretation, if there is one and the scene shows it.
     pub rock: Option<Rock>,
+    /// Horizons that were picked on less than half of where they bound a layer.
+    pub sparse: Vec<SparseHorizon>,
     /// The volumes that the scene shows.
     pub volumes: Vec<LoadedVolume>,
     /// The packed volume, for the lookup that needs it.
@@ -255,6 +258,10 @@ pub fn load_within(
     let geometry = document.frame()?.clone();
     // Raw data alone needs no interpretation, but outlines and ground do.
     let rock = rock(project, progress)?;
+    let sparse = rock.as_ref().map_or_else(Vec::new, Rock::sparse_horizons);
+    if scene.blend < 1.0 {
+        sparse.iter().for_each(|horizon| progress.warn(horizon.sentence()));
+    }
     let mut functions = styles::transfer_functions(document);
     if let Some(raw) = &scene.raw {
         functions.raw = Some(raw.clone());
@@ -291,6 +298,7 @@ pub fn load_within(
         candidates,
         geometry,
         rock,
+        sparse,
         volumes,
         packed,
         raw: functions.raw,
@@ -357,6 +365,7 @@ pub fn load_bare(
     let wanted: Vec<&str> = raw.iter().map(|raw| raw.volume.as_str()).chain(volumes_within(scene)).collect();
     Ok(Loaded {
         rock: None,
+        sparse: Vec::new(),
         volumes: read_volumes(project.root(), document, &geometry, &wanted, volume_bytes, progress)?,
         packed: None,
         wells: read_wells(project.root(), document, &geometry)?,
@@ -395,7 +404,15 @@ fn read_volumes(
     Ok(volumes)
 }
 
-fn read_wells(root: &Path, document: &Document, geometry: &SurveyGeometry) -> Result<Vec<LoadedWell>, ProjectError> {
+/// Reads the wells of a project's state, in voxels of `geometry`.
+///
+/// # Errors
+/// A well cannot be read.
+pub fn read_wells(
+    root: &Path,
+    document: &Document,
+    geometry: &SurveyGeometry,
+) -> Result<Vec<LoadedWell>, ProjectError> {
     let mut wells = Vec::new();
     for entry in &document.wells {
         let well = content::read_well(root, entry)?;

@@ -1,16 +1,18 @@
 //! Collects the lines of a picture from sections and edges, and strokes them.
 
+use super::dash::{APPROXIMATE, INFERRED, dashed};
 use super::hidden::{ASIDE, IN_FRONT, covered_by, is_seen, seen_parts};
 use super::relief::relief_lines;
 use super::solid::{EdgeLine, FaceRect, edge_lines, face_rects};
 use super::stroke::stroke_lines;
 use super::underlay::underlay;
+use super::{NOMINAL_SIDE_PX, Unpicked};
 use crate::ground::{air_layer, is_air};
 use crate::media::Faces;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
-use model::section::{LineKind, Section, SectionPlane};
+use model::section::{LineKind, LineQuality, Section, SectionPlane};
 use rayon::prelude::*;
 
 /// Visible lines by kind, pixels.
@@ -71,7 +73,8 @@ impl OutlineLines {
                 // Beyond its tip a fault is not interpreted, but different layers meet there.
                 LineKind::Fault { .. } => self.horizons.extend(parts_of(None, seen(&line.points))),
                 LineKind::Horizon { horizon } => {
-                    self.horizons.extend(parts_of(Some(horizon), seen(&line.points)));
+                    let parts = inked(resolved, line.quality, seen(&line.points));
+                    self.horizons.extend(parts_of(Some(horizon), parts));
                 }
                 LineKind::Frame => {}
             }
@@ -85,6 +88,18 @@ impl OutlineLines {
             }
         }
     }
+}
+
+/// The visible parts of a horizon's line, in dashes where the horizon was not picked and the scene says so.
+fn inked(resolved: &ResolvedScene, quality: LineQuality, parts: Vec<Vec<DVec2>>) -> Vec<Vec<DVec2>> {
+    let lengths = match (resolved.scene.outlines.unpicked, quality) {
+        (Unpicked::Solid, _) | (_, LineQuality::Certain) => return parts,
+        (Unpicked::Dashed, LineQuality::Approximate) => APPROXIMATE,
+        (Unpicked::Dashed, LineQuality::Inferred) => INFERRED,
+    };
+    let [width, height] = resolved.scene.size_px;
+    let scale = f64::from(width.min(height)) / f64::from(NOMINAL_SIDE_PX);
+    parts.iter().flat_map(|part| dashed(part, lengths.map(|length| length * scale))).collect()
 }
 
 fn parts_of(of: Option<usize>, parts: Vec<Vec<DVec2>>) -> impl Iterator<Item = OutlineLine> {

@@ -7,6 +7,7 @@
 //! Widths are in pixels of an image whose smaller side has 1000 pixels, and scale with the image, so that a
 //! figure looks the same at any resolution.
 
+mod dash;
 pub(crate) mod draw;
 mod hidden;
 mod relief;
@@ -39,6 +40,19 @@ pub struct Outlines {
     pub horizons: Stroke,
     /// Faults within their interpreted extent. Default 3 px, near black.
     pub faults: Stroke,
+    /// How horizons are drawn where they were not picked, but filled or extrapolated. Default solid.
+    pub unpicked: Unpicked,
+}
+
+/// How horizons are drawn on the faces of the block where they were not picked.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Unpicked {
+    /// As everywhere.
+    #[default]
+    Solid,
+    /// Dashed where they were filled, with shorter dashes where they were extrapolated.
+    Dashed,
 }
 
 /// How a line is drawn.
@@ -60,6 +74,7 @@ impl Default for Outlines {
             edges: Stroke { width_px: 2.2, colour: INK },
             horizons: Stroke { width_px: 1.3, colour: INK },
             faults: Stroke { width_px: 3.0, colour: INK },
+            unpicked: Unpicked::Solid,
         }
     }
 }
@@ -68,7 +83,7 @@ impl Outlines {
     /// No lines at all.
     pub fn none() -> Self {
         let off = Stroke { width_px: 0.0, colour: INK };
-        Self { edges: off, horizons: off, faults: off }
+        Self { edges: off, horizons: off, faults: off, unpicked: Unpicked::Solid }
     }
 
     /// Checks that the widths can be drawn.

@@ -446,7 +446,13 @@ fn gathers_are_pre_stack() {
     let (problem, sentence) = offsets(grid()).refusal();
     assert!(matches!(problem, SegyProblem::PreStack { .. }), "{sentence}");
     assert!(sentence.contains("144 traces stand in 24 bins") && sentence.contains("100 to 600"), "{sentence}");
-    let line = Built::grid(&[0], &(1..40).collect::<Vec<_>>()).each(|_, t| {
+    // One line of a survey is no 2D line where its numbers repeat with other offsets.
+    let many: Vec<i32> = (1..40).collect();
+    for (one, kind) in [(Built::grid(&[5], &many), "39 crosslines"), (Built::grid(&many, &[7]), "39 inlines")] {
+        let (problem, sentence) = offsets(one).refusal();
+        assert!(matches!(problem, SegyProblem::PreStack { .. }) && sentence.contains(kind), "{sentence}");
+    }
+    let line = Built::grid(&[0], &many).each(|_, t| {
         t.i32(193, 0);
         t.i32(21, t.crossline);
     });

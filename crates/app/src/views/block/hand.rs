@@ -7,11 +7,10 @@ use crate::state::{Action, Compare, Session, StandardView, camera};
 use eframe::egui::{CursorIcon, Modifiers, PointerButton, Pos2, Rect, Response, Ui};
 use glam::DVec2;
 use render::Scene;
+use widgets::event_order::wheel_lines;
 
 /// Change of the natural logarithm of the zoom for each point of wheel travel.
 const WHEEL: f64 = 0.0022;
-/// Wheel travel that moves a face by a sample, points.
-const WHEEL_STEP: f32 = 24.0;
 
 /// What the pointer drags.
 enum Grab {
@@ -25,7 +24,7 @@ enum Grab {
 #[derive(Default)]
 pub(super) struct Hand {
     grab: Option<Grab>,
-    /// Wheel travel over a handle that has not moved its face yet, points.
+    /// The part of a line of the wheel, over a handle, that has not moved its face yet.
     wheel: f32,
 }
 
@@ -89,9 +88,9 @@ impl Hand {
             let is_near = |handle: &&Handle| (screen(pane, handle.at) - at).length() < REACH;
             let factor = (f64::from(scroll) * WHEEL).exp() * f64::from(pinch);
             if let Some(handle) = handles.iter().find(is_near) {
-                self.wheel += scroll;
-                let steps = (self.wheel / WHEEL_STEP).trunc();
-                self.wheel -= steps * WHEEL_STEP;
+                self.wheel += wheel_lines(ui);
+                let steps = self.wheel.trunc();
+                self.wheel -= steps;
                 if steps != 0.0 {
                     scene = faces::move_face(&scene, geometry, size, handle.face, f64::from(steps));
                 }

@@ -14,7 +14,6 @@ use super::pointed::{self, Pointed};
 use super::texture;
 use crate::state::faces::{self, Handle};
 use crate::state::{Action, Compare, Lasso, LassoOn, Look, Panel, PickingStep, Session, State, showing};
-use crate::theme;
 use crate::work::{Drawing, Drawn, PictureRequest, Rocks, Touch};
 use compare::fitted;
 use eframe::egui::{Color32, ColorImage, Pos2, Rect, Role, Sense, Stroke, TextureHandle, Ui, Vec2, WidgetInfo, pos2};
@@ -22,6 +21,7 @@ use glam::DVec2;
 use hand::Hand;
 use project::picture::load::Loaded;
 use render::{Background, Faces, Media, Scene};
+use widgets::theme;
 
 /// Distance within which the pointer catches a handle or the dividing line of the wipe, points.
 const REACH: f32 = 11.0;
@@ -151,7 +151,7 @@ impl BlockView {
             overlay.surfaces_on_block(ui, session, pane);
         }
         overlay.sticks_on_block(ui, session, pane);
-        if let Some(line) = self.lasso.draw(&ui.painter_at(rect), &response, has_lasso) {
+        if let Some(line) = self.lasso.draw(ui, &ui.painter_at(rect), &response, has_lasso) {
             let corners = line.into_iter().map(|at| dvec(at - pane.min)).collect();
             let on = LassoOn::Block(Box::new(view.scene.clone()), size);
             actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));

@@ -3,23 +3,21 @@
 //! The colour range is dragged on the histogram. The picture follows at once; releasing the pointer makes the change
 //! one command.
 
-mod curve;
-mod histogram;
 mod scalars;
 mod volume_rendering;
 
 use crate::state::{Action, Session};
-use crate::theme;
 use crate::work::{Rocks, Swatches};
-use curve::OpacityCurve;
 use eframe::egui::{Color32, ComboBox, DragValue, Pos2, Rect, Role, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
-use histogram::Histogram;
 use project::command::{Command, RemoveScalar, SetRaw, SetScalar};
 use project::document::Document;
 use project::styles;
 use scalars::{intervals, ranges};
 use std::collections::HashMap;
 use ttf::{ColourMap, RawColour, ScalarInterval, ScalarTtf};
+use widgets::histogram::Histogram;
+use widgets::opacity_curve::OpacityCurve;
+use widgets::theme;
 
 /// Distance within which the pointer catches an end of the range, points.
 const REACH: f32 = 10.0;
@@ -258,12 +256,6 @@ fn pull(domain: &mut [f32; 2], end: usize, value: f32) {
     if is_proper && value.is_finite() {
         domain[end] = value;
     }
-}
-
-/// A button that shows and changes a colour. It is given a name for screen readers, because egui gives it none.
-fn colour_well(ui: &mut Ui, name: &str, rgb: &mut [u8; 3]) {
-    let id = ui.color_edit_button_srgb(rgb).on_hover_text(name).id;
-    ui.ctx().accesskit_node_builder(id, |node| node.set_label(name));
 }
 
 #[cfg(test)]

@@ -1,9 +1,6 @@
 //! Volume rendering: a volume in the cut-outs or in the whole block with its RGBA function and shading, and horizons in
 //! it that may give off light (P-illus 5.1, P-horiz 5).
 
-use super::colour_well;
-use super::curve::OpacityCurve;
-use super::histogram::Histogram;
 use crate::state::volume_rendering::{self, Extent, Light};
 use crate::state::{Action, Notice, Place, Session};
 use crate::views::controls;
@@ -12,6 +9,9 @@ use eframe::egui::{ComboBox, DragValue, Grid, Slider, Ui};
 use render::media::{LayerOpacity, MediumColour};
 use render::{PickedHorizon, Scene, Scope, Shading};
 use ttf::Colour;
+use widgets::colour_well;
+use widgets::histogram::Histogram;
+use widgets::opacity_curve::OpacityCurve;
 
 /// The volume that is rendered, or that would be.
 pub(super) fn volume(session: &Session) -> Option<String> {

@@ -17,6 +17,7 @@ use eframe::egui::{
 use project::command::{Command, ResetLayer, SetContact, SetLayer};
 use project::document::Document;
 use project::document::HorizonEntry;
+use render::Unpicked;
 use style::{colours, definition, frequencies, intervals};
 use survey::Contact;
 use ttf::{Colour, LayerStyle, LayerTtf, TextureLibrary};
@@ -86,6 +87,7 @@ impl Layers {
                     boundary(ui, index, horizon, actions);
                 }
             }
+            unpicked(ui, session, actions);
             let chosen = session.view.layer.as_ref().and_then(|name| layers.iter().position(|layer| layer == name));
             if let Some(index) = chosen {
                 ui.add_space(8.0);
@@ -188,6 +190,17 @@ impl Layers {
                 self.name = Some((layer.to_owned(), text));
             }
         });
+    }
+}
+
+/// Whether horizons are dashed on the block where they were not picked.
+fn unpicked(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
+    let mut scene = session.view.scene.clone();
+    let mut is_dashed = scene.outlines.unpicked == Unpicked::Dashed;
+    let hint = "Horizons are dashed on the block where they were filled or extrapolated";
+    if ui.checkbox(&mut is_dashed, "Dashed where not picked").on_hover_text(hint).changed() {
+        scene.outlines.unpicked = if is_dashed { Unpicked::Dashed } else { Unpicked::Solid };
+        actions.push(Action::Show(Box::new(scene)));
     }
 }
 

@@ -14,6 +14,7 @@ use project::command::{
 };
 use project::document::HorizonEntry;
 use survey::SurveyGeometry;
+use widgets::keyboard::{Renamed, Renaming};
 
 /// Largest number of holes that are listed.
 const HOLES: usize = 5;
@@ -21,8 +22,7 @@ const HOLES: usize = 5;
 /// The list, with the text being typed in it.
 #[derive(Default)]
 pub(super) struct HorizonList {
-    /// A horizon and the new name being typed.
-    renaming: Option<(String, String)>,
+    renaming: Option<Renaming>,
     max_traces: usize,
 }
 
@@ -99,18 +99,18 @@ impl HorizonList {
         actions: &mut Vec<Action>,
     ) {
         ui.horizontal(|ui| {
-            if let Some((_, text)) = self.renaming.as_mut().filter(|(name, _)| *name == entry.name) {
-                let edit = ui.name_inputs("New name", |ui| ui.add(TextEdit::singleline(text).desired_width(140.0)));
-                if ui.small_button("Rename").clicked() || edit.lost_focus() {
-                    let to = text.trim().to_owned();
-                    if !to.is_empty() && to != entry.name {
-                        actions.push(apply(Command::RenameHorizon(RenameHorizon { from: entry.name.clone(), to })));
-                    }
+            if let Some(renaming) = self.renaming.as_mut().filter(|renaming| renaming.is_of(&entry.name)) {
+                let renamed = renaming.show(ui, 140.0);
+                if let Renamed::To(to) = &renamed {
+                    let command = RenameHorizon { from: entry.name.clone(), to: to.clone() };
+                    actions.push(apply(Command::RenameHorizon(command)));
+                }
+                if renamed != Renamed::Typing {
                     self.renaming = None;
                 }
             } else {
                 if ui.small_button("Rename…").clicked() {
-                    self.renaming = Some((entry.name.clone(), entry.name.clone()));
+                    self.renaming = Some(Renaming::of(&entry.name));
                 }
                 if ui.small_button("Remove").on_hover_text(format!("Remove horizon {}", entry.name)).clicked() {
                     let command = RemoveHorizon { name: entry.name.clone() };

@@ -102,8 +102,8 @@ fn look(ui: &mut Ui, session: &Session, actions: &mut Vec<Action>) {
         ui.label("Show");
         for (show, name, hint) in [
             (FaceData::Rock, "Amplitudes", "The volume as it is"),
-            (FaceData::Leaves, "Leaves", "Candidates, each leaf in a colour of its own"),
-            (FaceData::Distance, "Distances", "White on a candidate, darker away from it"),
+            (FaceData::Leaves, "Candidate pieces", "Each piece (leaf) of the candidates in a colour of its own"),
+            (FaceData::Distance, "Distance to candidates", "White on a candidate, darker away from it"),
         ] {
             if ui.selectable_label(picking.show == show, name).on_hover_text(hint).clicked() {
                 actions.push(Action::Picking(PickingStep::Show(show)));

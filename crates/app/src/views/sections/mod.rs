@@ -11,10 +11,13 @@ pub use lines::{entry_colour, horizon_colour};
 use super::lasso::{self, LassoLine};
 use super::overlay::Overlay;
 use super::pointed::{self, Pointed};
-use super::{canvas, texture};
+use super::texture;
 use crate::state::{Action, Lasso, LassoOn, Layout, Panel, PickingStep, SectionKind, Session};
 use crate::work::{Rocks, SliceRequest, Slices};
-use eframe::egui::{Context, DragValue, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo, vec2};
+use eframe::egui::{
+    Align2, Color32, Context, DragValue, FontId, Painter, Pos2, Rect, Role, Sense, TextureHandle, Ui, Vec2, WidgetInfo,
+    vec2,
+};
 use figure::cut::SectionCut;
 use figure::cut::{CutLine, value_at};
 use figure::draw::NamedColour;
@@ -25,25 +28,32 @@ use image::RgbaImage;
 use render::FaceData;
 use std::collections::HashMap;
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 use survey::SurveyGeometry;
+use widgets::canvas;
+use widgets::event_order::wheel_lines;
 
 /// Margin for the numbers at the left and the top, points.
 const MARGIN: Vec2 = vec2(52.0, 20.0);
+/// How long the picture of another section may stand under a title.
+const BELIEVED: Duration = Duration::from_millis(200);
 /// Smallest and largest zoom.
 const ZOOM: [f32; 2] = [1.0, 40.0];
-/// Wheel travel that goes to the next section, points.
-const WHEEL_STEP: f32 = 24.0;
 
 /// One section on the screen.
 struct Pane {
     texture: Option<TextureHandle>,
     /// The picture in the form that figures take, with its lines.
     shown: Option<(Arc<RgbaImage>, Vec<CutLine>)>,
-    requested: Option<(f64, u64, FaceData)>,
+    requested: Option<CutOf>,
+    /// What the picture shows.
+    of: Option<CutOf>,
+    /// When another was requested than the picture shows.
+    behind: Option<Instant>,
     zoom: f32,
     /// The point of the section that is in the middle of the view, shares of its width and height.
     middle: Vec2,
-    /// Wheel travel that has not changed the section yet, points.
+    /// The part of a line of the wheel that has not changed the section yet.
     wheel: f32,
     lasso: LassoLine,
 }
@@ -54,6 +64,8 @@ impl Default for Pane {
             texture: None,
             shown: None,
             requested: None,
+            of: None,
+            behind: None,
             zoom: 1.0,
             middle: vec2(0.5, 0.5),
             wheel: 0.0,
@@ -70,8 +82,9 @@ pub struct Sections {
 
 impl Sections {
     /// Takes over a section that was cut.
-    pub fn receive(&mut self, ctx: &Context, cut: SectionCut) {
+    pub fn receive(&mut self, ctx: &Context, cut: SectionCut, of: CutOf) {
         let pane = self.panes.entry(cut.kind).or_default();
+        pane.of = Some(of);
         texture::keep(&mut pane.texture, ctx, cut.kind.name(), texture::pixels(&cut.image));
         pane.shown = Some((Arc::new(cut.image), cut.lines));
     }
@@ -97,7 +110,7 @@ impl Sections {
             && pane.requested != Some((at, version, show))
         {
             pane.requested = Some((at, version, show));
-            slices.cut(SliceRequest { kind, at, rocks: rocks.clone(), show });
+            slices.cut(SliceRequest { kind, at, rocks: rocks.clone(), version, show });
         }
         header(ui, session, kind, geometry, actions);
         let (whole, response) = ui.allocate_exact_size(ui.available_size(), Sense::click_and_drag());
@@ -112,12 +125,13 @@ impl Sections {
         }
         let image = pane.paint(ui, session, kind, whole, overlay)?;
         let painter = ui.painter_at(body);
+        pane.cover(ui, &painter, kind, body);
         let extent = kind.extent(geometry.size());
         let to_section = |pointer: Pos2| {
             let share = (pointer - image.min) / image.size();
             DVec2::new(f64::from(share.x) * extent.x, f64::from(share.y) * extent.y)
         };
-        if let Some(line) = pane.lasso.draw(&painter, &response, has_lasso) {
+        if let Some(line) = pane.lasso.draw(ui, &painter, &response, has_lasso) {
             let corners = line.into_iter().map(to_section).collect();
             let on = LassoOn::Section(kind, at);
             actions.push(Action::Picking(PickingStep::Erase(Lasso { on, corners })));
@@ -158,7 +172,30 @@ fn body_of(whole: Rect) -> Rect {
     Rect::from_min_max(whole.min + MARGIN, whole.max - vec2(13.0, 4.0))
 }
 
+/// What a section shows: its position, the number of its data, what of the candidates.
+pub type CutOf = (f64, u64, FaceData);
+
 impl Pane {
+    /// Whether the picture shows another section than the one that its title names.
+    fn is_behind(&self) -> bool {
+        self.of.is_some() && self.of != self.requested
+    }
+
+    /// Covers the picture where it has been of another section for so long that it would be believed.
+    fn cover(&mut self, ui: &Ui, painter: &Painter, kind: SectionKind, body: Rect) {
+        if !self.is_behind() {
+            self.behind = None;
+            return;
+        }
+        if self.behind.get_or_insert_with(Instant::now).elapsed() < BELIEVED {
+            ui.ctx().request_repaint_after(BELIEVED);
+            return;
+        }
+        painter.rect_filled(body, 0.0, super::block::paper(ui).gamma_multiply(0.7));
+        let text = format!("Drawing the {}…", kind.name().to_lowercase());
+        painter.text(body.center(), Align2::CENTER_CENTER, text, FontId::proportional(15.0), Color32::BLACK);
+    }
+
     /// Paints the section with its numbers into a rectangle; returns the rectangle of the whole section.
     fn paint(&self, ui: &Ui, session: &Session, kind: SectionKind, whole: Rect, overlay: &mut Overlay) -> Option<Rect> {
         let geometry = session.document.geometry.as_ref()?;
@@ -220,14 +257,10 @@ impl Pane {
 
     /// Goes to the next section by the wheel.
     fn step(&mut self, ui: &Ui, session: &Session, kind: SectionKind, actions: &mut Vec<Action>) {
-        let (scroll, has_zoomed) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta() != 1.0));
-        if has_zoomed {
-            return;
-        }
-        self.wheel += scroll;
-        let steps = (self.wheel / WHEEL_STEP).trunc();
+        self.wheel += wheel_lines(ui);
+        let steps = self.wheel.trunc();
         if steps != 0.0 {
-            self.wheel -= steps * WHEEL_STEP;
+            self.wheel -= steps;
             let mut slices = session.view.slices;
             slices[kind.axis()] -= f64::from(steps);
             actions.push(Action::Slices(slices));
@@ -279,4 +312,22 @@ fn header(ui: &mut Ui, session: &Session, kind: SectionKind, geometry: &SurveyGe
             }
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_picture_of_another_section_is_known_to_be_one() {
+        let (here, there) = ((3.0, 1, FaceData::Rock), (4.0, 1, FaceData::Rock));
+        let mut pane = Pane { requested: Some(here), ..Pane::default() };
+        assert!(!pane.is_behind(), "nothing is shown yet");
+        pane.of = Some(here);
+        assert!(!pane.is_behind());
+        for other in [there, (3.0, 2, FaceData::Rock), (3.0, 1, FaceData::Leaves)] {
+            pane.requested = Some(other);
+            assert!(pane.is_behind(), "{other:?}");
+        }
+    }
 }

@@ -1,9 +1,8 @@
 //! An RGBA function drawn over the histogram of its volume: stops are dragged to change value and opacity, a double
 //! click adds one, and the stop chosen last is shown as numbers below.
 
-use super::colour_well;
-use super::histogram::Histogram;
-use crate::theme;
+use crate::histogram::Histogram;
+use crate::{colour_well, theme};
 use eframe::egui::{
     Button, Color32, DragValue, Pos2, Rect, Role, Sense, Stroke, StrokeKind, Ui, WidgetInfo, pos2, vec2,
 };
@@ -30,14 +29,14 @@ struct Stop {
 
 /// The stop being dragged, and the stop chosen last.
 #[derive(Debug, Default)]
-pub(super) struct OpacityCurve {
+pub struct OpacityCurve {
     held: Option<usize>,
     chosen: usize,
 }
 
 impl OpacityCurve {
     /// Shows a function and applies the user's changes to it.
-    pub(super) fn show(&mut self, ui: &mut Ui, histogram: Option<&Histogram>, function: &mut RgbaFunction) {
+    pub fn show(&mut self, ui: &mut Ui, histogram: Option<&Histogram>, function: &mut RgbaFunction) {
         let mut stops = stops_of(function);
         self.chosen = self.chosen.min(stops.len().saturating_sub(1));
         let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width(), HEIGHT), Sense::click_and_drag());

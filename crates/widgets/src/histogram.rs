@@ -8,17 +8,17 @@ const COLUMNS: usize = 96;
 const SAMPLES: usize = 1 << 16;
 
 /// The histogram of a volume.
-pub(super) struct Histogram {
+pub struct Histogram {
     /// Hash of the data that were counted.
-    pub(super) version: u64,
+    pub version: u64,
     counts: Vec<f32>,
     /// Lowest and highest value.
-    pub(super) range: [f32; 2],
+    pub range: [f32; 2],
 }
 
 impl Histogram {
     /// Counts samples.
-    pub(super) fn of(samples: &[f32], version: u64) -> Self {
+    pub fn of(samples: &[f32], version: u64) -> Self {
         let step = (samples.len() / SAMPLES).max(1);
         let values = || samples.iter().step_by(step).copied().filter(|value| value.is_finite());
         let range = [values().fold(f32::INFINITY, f32::min), values().fold(f32::NEG_INFINITY, f32::max)];
@@ -33,7 +33,7 @@ impl Histogram {
     }
 
     /// Draws the columns, each in the colour of its value.
-    pub(super) fn paint(&self, painter: &Painter, rect: Rect, colour: impl Fn(f32) -> Color32) {
+    pub fn paint(&self, painter: &Painter, rect: Rect, colour: impl Fn(f32) -> Color32) {
         let [first, last] = self.range;
         let tallest = self.counts.iter().copied().fold(1e-6, f32::max);
         let column = rect.width() / COLUMNS as f32;

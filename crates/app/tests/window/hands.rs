@@ -1,0 +1,91 @@
+//! What the hand does while a frame is slow: several events arrive at once, and each counts where and when it was made.
+
+use super::driven::{Driven, click, open, state};
+use super::picking::{act, interpreting, picking};
+use app::state::{PickingStep, Tool};
+use eframe::egui::{Event, Key, Modifiers, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, TouchPhase, vec2};
+use egui_kittest::kittest::Queryable;
+
+fn button(pos: Pos2, pressed: bool) -> Event {
+    Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers: Modifiers::default() }
+}
+
+fn clicked(at: Pos2) -> Vec<Event> {
+    vec![Event::PointerMoved(at), button(at, true), button(at, false)]
+}
+
+/// All events in one frame, as after a slow one.
+fn at_once(harness: &mut Driven, events: impl IntoIterator<Item = Event>) {
+    harness.input_mut().events.extend(events);
+    harness.run_steps(12);
+}
+
+#[test]
+fn a_click_counts_where_it_was_made_although_the_pointer_has_gone_on() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Sections");
+    harness.run_steps(3);
+    let slices = |harness: &Driven| state(harness).session.as_ref().unwrap().view.slices;
+    let middle = harness.get_by_label("Inline section").rect().center();
+    let [near, far] = [middle - vec2(60.0, 20.0), middle + vec2(90.0, 40.0)];
+    at_once(&mut harness, clicked(near));
+    let expected = slices(&harness);
+    at_once(&mut harness, clicked(far));
+    assert_ne!(slices(&harness), expected);
+    at_once(&mut harness, [clicked(near), vec![Event::PointerMoved(far)]].concat());
+    assert_eq!(slices(&harness), expected);
+    // A button is not pressed by a click that was made elsewhere.
+    let next = harness.query_all_by_label("›").next().unwrap().rect().center();
+    let before = expected;
+    at_once(&mut harness, [clicked(near), vec![Event::PointerMoved(next)]].concat());
+    assert_eq!(slices(&harness), before);
+    // Each of two clicks counts.
+    at_once(&mut harness, [clicked(next), clicked(next)].concat());
+    let moved: f64 = slices(&harness).iter().zip(before).map(|(now, before)| now - before).sum();
+    assert_eq!(moved, 2.0);
+}
+
+#[test]
+fn points_of_a_stick_are_where_they_were_clicked_and_enter_ends_it_after_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = interpreting(folder.path());
+    click(&mut harness, "Sections");
+    act(&mut harness, PickingStep::Use(Tool::Sticks));
+    let middle = harness.get_by_label("Inline section").rect().center();
+    let places = [vec2(-40.0, -30.0), vec2(0.0, 0.0), vec2(30.0, 35.0)].map(|off| middle + off);
+    let key = |pressed| Event::Key {
+        key: Key::Enter,
+        physical_key: None,
+        pressed,
+        repeat: false,
+        modifiers: Modifiers::default(),
+    };
+    let events: Vec<Event> = places.into_iter().flat_map(clicked).chain([key(true), key(false)]).collect();
+    at_once(&mut harness, events);
+    let sticks = picking(&harness).sticks.clone();
+    assert_eq!((sticks.len(), sticks[0].len()), (1, 3));
+    assert!(sticks[0].windows(2).all(|pair| pair[0][2] < pair[1][2]), "{sticks:?}");
+}
+
+#[test]
+fn a_notch_of_the_wheel_is_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    click(&mut harness, "Sections");
+    harness.run_steps(3);
+    let at = harness.get_by_label("Inline section").rect().center();
+    let inline = |harness: &Driven| state(harness).session.as_ref().unwrap().view.slices[0];
+    let before = inline(&harness);
+    let notch = Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, -1.0),
+        phase: TouchPhase::Move,
+        source: MouseWheelSource::Wheel,
+        modifiers: Modifiers::default(),
+    };
+    at_once(&mut harness, [Event::PointerMoved(at), notch.clone()]);
+    assert_eq!(inline(&harness), before + 1.0);
+    at_once(&mut harness, [notch.clone(), notch.clone(), notch]);
+    assert_eq!(inline(&harness), before + 4.0);
+}

@@ -1,0 +1,40 @@
+//! A horizon that was picked on less than half of its traces: the window asks before it shapes a figure, and shows on
+//! the block where it was not picked.
+
+use super::command::applied;
+use super::driven::{click, open, state, wait};
+use eframe::egui::Key;
+use egui_kittest::kittest::{NodeT, Queryable};
+use formats::ImportOptions;
+use project::command::{AddHorizon, Age, Command};
+use render::Unpicked;
+use survey::Contact;
+
+#[test]
+fn an_export_with_a_horizon_that_was_hardly_picked_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    let path = folder.path().join("few.csv");
+    let rows = (1..=6).flat_map(|inline| (1..=20).map(move |crossline| format!("{inline},{crossline},55\n")));
+    std::fs::write(&path, rows.fold("inline,crossline,z\n".to_owned(), |text, row| text + &row)).unwrap();
+    let options = ImportOptions::default();
+    let add = AddHorizon { path, name: "Few".into(), contact: Contact::Conformable, age: Age::ByDepth, options };
+    applied(&mut harness, &Command::AddHorizon(add));
+    wait(&mut harness, "the picture is drawn", |harness| harness.state().as_ref().unwrap().is_settled());
+    click(&mut harness, "Export…");
+    wait(&mut harness, "it is said", |harness| {
+        harness.query_by_label_contains("Horizon Few was picked on 42 % of its traces").is_some()
+    });
+    assert!(harness.get_by_label("Export").accesskit_node().is_disabled());
+    harness.key_press(Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.get_by_label("Export").accesskit_node().is_disabled(), "Enter does not answer it");
+    click(&mut harness, "Draw it all the same");
+    assert!(!harness.get_by_label("Export").accesskit_node().is_disabled());
+    click(&mut harness, "Cancel");
+    let unpicked =
+        |harness: &super::driven::Driven| state(harness).session.as_ref().unwrap().view.scene.outlines.unpicked;
+    assert_eq!(unpicked(&harness), Unpicked::Dashed);
+    click(&mut harness, "Dashed where not picked");
+    assert_eq!(unpicked(&harness), Unpicked::Solid);
+}

@@ -1,0 +1,195 @@
+//! DXF drawings in ASCII: surfaces of 3DFACE, lines of POLYLINE, LWPOLYLINE and LINE, single POINTs.
+//!
+//! The file is pairs of lines, a group code and its value. An entity begins with code 0; its layer is code 8, the
+//! coordinates of its n-th corner are codes 10 + n, 20 + n, 30 + n. A POLYLINE is followed by a VERTEX for each place
+//! and a SEQEND. Each layer is one surface: its faces a mesh, or its lines sticks. Drawings hold elevations as a rule,
+//! but nothing in the file says so.
+
+use super::raw::{RawPoint, RawShape, RawSurface, ReadContext, VerticalFacts};
+use super::text::{self, SourceFile};
+use super::{Codec, Format, FormatError};
+use glam::DVec3;
+use std::collections::HashMap;
+use survey::mesh::TriangleMesh;
+
+pub(super) const CODEC: Codec = Codec {
+    format: Format::Dxf,
+    name: "dxf",
+    extension: "dxf",
+    detect,
+    read_horizon: Some(read),
+    read_fault: Some(read),
+    write_horizon: None,
+    write_fault: None,
+};
+
+/// The flags of a POLYLINE that is not a line but a mesh.
+const MESH_FLAGS: u32 = 16 | 64;
+
+fn detect(source: &SourceFile) -> Option<String> {
+    let start = String::from_utf8_lossy(&source.bytes[..source.bytes.len().min(4000)]).into_owned();
+    let mut lines = text::lines(&start).map(|line| line.text).peekable();
+    while lines.next_if_eq(&"999").is_some() {
+        lines.next();
+    }
+    (lines.next()? == "0" && lines.next()? == "SECTION").then(|| "it begins with a DXF section".to_owned())
+}
+
+/// The entity being read.
+#[derive(Default)]
+struct Entity<'a> {
+    kind: &'a str,
+    layer: &'a str,
+    flags: u32,
+    elevation: f64,
+    /// Coordinates of the corners by axis; NaN = not given.
+    corners: [[f64; 3]; 4],
+    /// Places of an LWPOLYLINE, whose corner is given again and again.
+    places: Vec<[f64; 2]>,
+}
+
+/// A layer of the drawing.
+#[derive(Default)]
+struct Layer {
+    mesh: TriangleMesh,
+    index: HashMap<[u64; 3], u32>,
+    points: Vec<RawPoint>,
+}
+
+impl Layer {
+    fn vertex(&mut self, at: DVec3) -> u32 {
+        let mesh = &mut self.mesh;
+        *self.index.entry(at.to_array().map(f64::to_bits)).or_insert_with(|| {
+            mesh.vertices.push(at);
+            mesh.vertices.len() as u32 - 1
+        })
+    }
+
+    fn face(&mut self, corners: [DVec3; 4]) {
+        let [a, b, c, d] = corners.map(|corner| self.vertex(corner));
+        for triangle in [[a, b, c], [a, c, d]] {
+            if triangle[0] != triangle[1] && triangle[1] != triangle[2] && triangle[2] != triangle[0] {
+                self.mesh.triangles.push(triangle);
+            }
+        }
+    }
+}
+
+/// The layers in order of appearance, and the lines so far.
+#[derive(Default)]
+struct Drawing {
+    names: Vec<String>,
+    layers: Vec<Layer>,
+    /// Number of the line that places belong to.
+    line: f64,
+    /// Whether a POLYLINE is open, and its layer.
+    polyline: Option<String>,
+}
+
+impl Drawing {
+    fn layer(&mut self, name: &str) -> &mut Layer {
+        let index = self.names.iter().position(|known| known == name).unwrap_or_else(|| {
+            self.names.push(name.to_owned());
+            self.layers.push(Layer::default());
+            self.layers.len() - 1
+        });
+        &mut self.layers[index]
+    }
+
+    fn place(&mut self, layer: &str, at: DVec3) {
+        let stick = Some(self.line);
+        self.layer(layer).points.push(RawPoint { xy: Some(at.truncate()), z: at.z, stick, ..RawPoint::default() });
+    }
+
+    /// Takes over a complete entity.
+    fn add(&mut self, source: &SourceFile, entity: &Entity<'_>) -> Result<(), FormatError> {
+        let corners = entity.corners.map(DVec3::from_array);
+        let given = corners.iter().take_while(|corner| corner.is_finite()).count();
+        let wrong = |expected: &str| Err(source.syntax(0, expected, entity.kind));
+        match entity.kind {
+            "3DFACE" => match given {
+                4 => self.layer(entity.layer).face(corners),
+                3 => self.layer(entity.layer).face([corners[0], corners[1], corners[2], corners[2]]),
+                _ => return wrong("a 3DFACE with three or four corners"),
+            },
+            "POLYLINE" => {
+                if entity.flags & MESH_FLAGS != 0 {
+                    return wrong("lines or 3DFACE (explode the meshes of the drawing)");
+                }
+                self.line += 1.0;
+                self.polyline = Some(entity.layer.to_owned());
+            }
+            "VERTEX" => {
+                let layer = self.polyline.clone().unwrap_or_else(|| entity.layer.to_owned());
+                match given {
+                    0 => return wrong("a VERTEX with X, Y and Z"),
+                    _ => self.place(&layer, corners[0]),
+                }
+            }
+            "SEQEND" => self.polyline = None,
+            "LWPOLYLINE" => {
+                self.line += 1.0;
+                for [x, y] in &entity.places {
+                    self.place(entity.layer, DVec3::new(*x, *y, entity.elevation));
+                }
+            }
+            "LINE" | "POINT" => {
+                self.line += 1.0;
+                corners[..given].iter().for_each(|corner| self.place(entity.layer, *corner));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}
+
+fn read(source: &SourceFile, context: &ReadContext<'_>) -> Result<Vec<RawSurface>, FormatError> {
+    let text = source.text();
+    // A value may be empty, so lines are not skipped here.
+    let mut lines = text.lines().map(str::trim).enumerate();
+    let mut drawing = Drawing::default();
+    let mut entity = Entity::default();
+    while let (Some((number, code)), Some((_, value))) = (lines.next(), lines.next()) {
+        let code: u32 = match code.parse() {
+            Ok(code) => code,
+            Err(_) if code.is_empty() => continue,
+            Err(_) => return Err(source.syntax(number + 1, "a group code", code)),
+        };
+        let coordinate = || {
+            let found = text::number(value).filter(|v| v.is_finite() && v.abs() < 1e12);
+            found.ok_or_else(|| source.syntax(number + 2, "a coordinate", value))
+        };
+        match code {
+            0 => {
+                drawing.add(source, &entity)?;
+                entity = Entity { kind: value, corners: [[f64::NAN; 3]; 4], ..Entity::default() };
+            }
+            8 => entity.layer = value,
+            70 => entity.flags = value.parse().unwrap_or(0),
+            38 => entity.elevation = coordinate()?,
+            10 if entity.kind == "LWPOLYLINE" => entity.places.push([coordinate()?, f64::NAN]),
+            20 if entity.kind == "LWPOLYLINE" => {
+                let y = coordinate()?;
+                entity.places.last_mut().into_iter().for_each(|place| place[1] = y);
+            }
+            10..=13 | 20..=23 | 30..=33 => {
+                entity.corners[code as usize % 10][code as usize / 10 - 1] = coordinate()?;
+            }
+            _ => {}
+        }
+    }
+    drawing.add(source, &entity)?;
+    let mut surfaces = Vec::new();
+    for (name, layer) in drawing.names.into_iter().zip(drawing.layers) {
+        let is_surface = !layer.mesh.triangles.is_empty();
+        let shape = if is_surface { RawShape::Mesh(layer.mesh) } else { RawShape::Points(layer.points) };
+        let name = Some(name).filter(|name| !name.is_empty());
+        let vertical = VerticalFacts::default();
+        surfaces.push(RawSurface { name, shape, vertical, notes: Vec::new(), warnings: Vec::new() });
+    }
+    if surfaces.is_empty() {
+        let why = "the drawing has no 3DFACE, POLYLINE, LWPOLYLINE, LINE or POINT".into();
+        return Err(FormatError::Empty { file: source.path.clone(), kind: context.kind, why });
+    }
+    Ok(surfaces)
+}

@@ -1,0 +1,75 @@
+//! How much of each horizon was picked, as against filled or extrapolated: a picture shows the one like the other.
+//!
+//! As in the model and in the dashes of pictures, a place within four traces of a pick counts as picked.
+
+use super::load::Rock;
+use glam::Vec3;
+use rayon::prelude::*;
+use survey::Quality;
+
+/// Places along each line at which a horizon is looked at: the share is right to about a percent.
+const PLACES: usize = 72;
+/// Share below which a horizon is called sparse.
+const SPARSE: f64 = 0.5;
+/// Distance above and below a horizon at which the layers are compared, samples.
+const BESIDE: f32 = 0.05;
+
+/// A horizon that was picked on less than half of the traces where it bounds a layer.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SparseHorizon {
+    /// Its name.
+    pub name: String,
+    /// The share that was picked, 0 to 1.
+    pub share: f64,
+}
+
+impl SparseHorizon {
+    /// What there is to know before a picture is believed.
+    pub fn sentence(&self) -> String {
+        let percent = (100.0 * self.share).round();
+        format!("horizon {} was picked on {percent:.0} % of its traces; the rest is filled or extrapolated", self.name)
+    }
+}
+
+impl Rock {
+    /// The share of each horizon, youngest first, that was picked or tracked, 0 to 1, of the places where it bounds a
+    /// layer; NaN where it bounds none.
+    pub fn picked_shares(&self) -> Vec<f64> {
+        let model = &self.model;
+        let [nx, ny, nz] = model.size();
+        let at = |n: usize, count: usize, size: usize| n as f32 * (size - 1) as f32 / (count - 1).max(1) as f32;
+        let [across, along] = [nx, ny].map(|size| size.min(PLACES));
+        let share = |horizon: usize| {
+            let places = (0..across).into_par_iter().flat_map_iter(|x| (0..along).map(move |y| (x, y)));
+            let counts = places.map(|(x, y)| {
+                let (x, y) = (at(x, across, nx), at(y, along, ny));
+                let mut counts = [0usize; 2];
+                let blocks = 0..model.block_count() as u16;
+                // What is no height field is whole: it was made of all of its points.
+                for block in blocks.filter(|block| model.level(horizon, *block).is_none()) {
+                    let z = model.horizon_z(horizon, block, x, y);
+                    if !(z >= 0.0 && z <= (nz - 1) as f32) {
+                        continue;
+                    }
+                    let [above, below] = [-BESIDE, BESIDE].map(|off| model.region_at(Vec3::new(x, y, z + off)));
+                    if above.block == block && above.layer != below.layer {
+                        let quality = model.quality_at(horizon, block, x, y);
+                        counts[0] += usize::from(matches!(quality, Quality::Picked | Quality::Tracked));
+                        counts[1] += 1;
+                    }
+                }
+                counts
+            });
+            let [picked, all] = counts.reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
+            picked as f64 / all as f64
+        };
+        (0..model.stratigraphy().horizons.len()).map(share).collect()
+    }
+
+    /// The horizons that were picked on less than half of the places where they bound a layer.
+    pub fn sparse_horizons(&self) -> Vec<SparseHorizon> {
+        let named = self.model.stratigraphy().horizons.iter().zip(self.picked_shares());
+        let sparse = named.filter(|(_, share)| *share < SPARSE);
+        sparse.map(|(horizon, share)| SparseHorizon { name: horizon.name.clone(), share }).collect()
+    }
+}

@@ -1,0 +1,161 @@
+//! What the hand does counts in the order and at the place in which it was done, however slow a frame is.
+//!
+//! egui looks at the pointer once a frame: a click belongs to the widget, the place and the modifier keys of the frame's
+//! end. Where a frame takes long, the pointer has gone elsewhere by then. So a frame is given the events up to a button
+//! or the wheel, and no event that would change where or how that counts; the others wait for the next frame, which
+//! follows at once. Two clicks in one frame become two frames, so both count.
+
+use eframe::egui::{Context, Event, MouseWheelUnit, Plugin, Pos2, RawInput, Ui};
+
+/// Wheel travel of a touch pad that counts as one line, points.
+const LINE: f32 = 24.0;
+/// Lines of a page.
+const PAGE: f32 = 10.0;
+
+/// Holds back the events that belong to later frames.
+#[derive(Debug, Default)]
+pub struct EventOrder {
+    waiting: Vec<Event>,
+    at: Option<Pos2>,
+}
+
+impl EventOrder {
+    /// Puts the events of windows of this context in order, and lets a press that is held for long in a slow frame count
+    /// as a click.
+    pub fn install(ctx: &Context) {
+        ctx.add_plugin(Self::default());
+        ctx.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
+    }
+
+    /// Takes the events of the next frame out of those that wait.
+    fn next(&mut self, arrived: Vec<Event>) -> Vec<Event> {
+        self.waiting.extend(arrived);
+        let mut last = None;
+        let mut end = self.waiting.len();
+        for (index, event) in self.waiting.iter().enumerate() {
+            if last.is_some_and(|last| disturbs(last, event, self.at)) {
+                end = index;
+                break;
+            }
+            match event {
+                Event::PointerButton { pos, pressed, .. } => {
+                    (last, self.at) = (Some(if *pressed { Deed::Press } else { Deed::Release }), Some(*pos));
+                }
+                Event::MouseWheel { .. } => last = Some(Deed::Wheel),
+                Event::PointerMoved(pos) => self.at = Some(*pos),
+                _ => {}
+            }
+        }
+        let later = self.waiting.split_off(end);
+        std::mem::replace(&mut self.waiting, later)
+    }
+}
+
+/// What the hand did last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Deed {
+    Press,
+    Release,
+    Wheel,
+}
+
+/// Whether `event` in the same frame would change where or how the last deed counts; the pointer is at `at`.
+fn disturbs(last: Deed, event: &Event, at: Option<Pos2>) -> bool {
+    match event {
+        Event::PointerMoved(pos) => at != Some(*pos),
+        Event::PointerButton { pos, pressed, .. } => *pressed || last != Deed::Press || at != Some(*pos),
+        Event::MouseWheel { .. } => last != Deed::Wheel,
+        Event::PointerGone | Event::Key { .. } | Event::Text(_) | Event::ModifiersChanged(_) => true,
+        _ => false,
+    }
+}
+
+impl Plugin for EventOrder {
+    fn debug_name(&self) -> &'static str {
+        "event order"
+    }
+
+    fn input_hook(&mut self, _ctx: &Context, input: &mut RawInput) {
+        let arrived = std::mem::take(&mut input.events);
+        input.events = self.next(arrived);
+    }
+
+    fn on_end_pass(&mut self, ui: &mut Ui) {
+        if !self.waiting.is_empty() {
+            ui.ctx().request_repaint();
+        }
+    }
+}
+
+/// The lines that the wheel was turned in this frame, upwards positive: a notch is a line. Nothing while it zooms.
+pub fn wheel_lines(ui: &Ui) -> f32 {
+    ui.input(|input| {
+        let lines = |event: &Event| match event {
+            Event::MouseWheel { unit, delta, modifiers, .. } if !modifiers.command && !modifiers.ctrl => match unit {
+                MouseWheelUnit::Line => delta.y,
+                MouseWheelUnit::Point => delta.y / LINE,
+                MouseWheelUnit::Page => delta.y * PAGE,
+            },
+            _ => 0.0,
+        };
+        input.events.iter().map(lines).sum()
+    })
+}
+
+/// The places to which the pointer was moved in this frame, in order.
+pub fn moves(ui: &Ui) -> Vec<Pos2> {
+    let place = |event: &Event| match event {
+        Event::PointerMoved(at) => Some(*at),
+        _ => None,
+    };
+    ui.input(|input| input.events.iter().filter_map(place).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use eframe::egui::{Modifiers, PointerButton, pos2};
+
+    fn button(x: f32, pressed: bool) -> Event {
+        let modifiers = Modifiers::default();
+        Event::PointerButton { pos: pos2(x, 0.0), button: PointerButton::Primary, pressed, modifiers }
+    }
+
+    fn moved(x: f32) -> Event {
+        Event::PointerMoved(pos2(x, 0.0))
+    }
+
+    /// Lengths of the frames into which events are put.
+    fn frames(events: Vec<Event>) -> Vec<usize> {
+        let mut order = EventOrder::default();
+        let mut counts = vec![order.next(events).len()];
+        while !order.waiting.is_empty() {
+            counts.push(order.next(Vec::new()).len());
+        }
+        counts
+    }
+
+    #[test]
+    fn a_frame_ends_with_a_click_where_something_follows() {
+        let click = [moved(1.0), button(1.0, true), button(1.0, false)];
+        assert_eq!(frames(click.to_vec()), [3]);
+        assert_eq!(frames([&click[..], &[moved(9.0), moved(10.0)]].concat()), [3, 2]);
+        // Two clicks at one place count as two, and a key after a click comes after it.
+        assert_eq!(frames([&click[..], &click[..]].concat()), [4, 2]);
+        let key = Event::ModifiersChanged(Modifiers::SHIFT);
+        assert_eq!(frames([std::slice::from_ref(&key), &click[..], std::slice::from_ref(&key)].concat()), [4, 1]);
+    }
+
+    #[test]
+    fn a_drag_begins_where_it_was_begun_and_the_wheel_turns_where_the_pointer_was() {
+        assert_eq!(frames(vec![moved(1.0), button(1.0, true), moved(5.0), moved(9.0), button(9.0, false)]), [2, 3]);
+        let wheel = Event::MouseWheel {
+            unit: MouseWheelUnit::Line,
+            delta: eframe::egui::vec2(0.0, 1.0),
+            phase: eframe::egui::TouchPhase::Move,
+            source: eframe::egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::default(),
+        };
+        assert_eq!(frames(vec![moved(1.0), wheel.clone(), wheel, moved(5.0)]), [3, 1]);
+    }
+}

@@ -1,0 +1,24 @@
+//! Parts of the window that know of no project.
+//!
+//! - [`theme`]: the look of the window;
+//! - [`fields`] and [`form`]: in which field something about a file can be stated, and the rows of forms;
+//! - [`canvas`]: paints groups of a [`figure::DisplayList`] through egui;
+//! - [`event_order`]: a click counts where it was made, and a notch of the wheel is a line;
+//! - [`histogram`] and [`opacity_curve`]: the values of a volume, and an RGBA function drawn over them;
+//! - [`keyboard`]: what Enter and Escape do in every dialogue and field, and names changed in place;
+//! - [`raster`]: paints what egui draws into an image, without a display.
+//!
+//! Deliberately absent: the state of the window, projects, files, threads.
+
+pub mod canvas;
+mod colour_well;
+pub mod event_order;
+pub mod fields;
+pub mod form;
+pub mod histogram;
+pub mod keyboard;
+pub mod opacity_curve;
+pub mod raster;
+pub mod theme;
+
+pub use colour_well::colour_well;
