@@ -69,15 +69,19 @@ impl Stratigraphy {
     }
 
     /// The name of `layer` (0 = deepest): its own name, or else "above A", "A - B" or "below B" after its
-    /// horizons.
+    /// horizons; that of an intrusion is the intrusion's.
     pub fn layer_name(&self, layer: usize) -> String {
         let from_top = self.layer_count() - 1 - layer;
         if let Some(name) = self.layer_names.get(from_top).filter(|name| !name.is_empty()) {
             return name.clone();
         }
         let name = |h: usize| self.horizons[h].name.as_str();
-        match (self.top_of(layer), self.bottom_of(layer)) {
+        let is_intrusive = |h: usize| self.horizons[h].contact == Contact::Intrusive;
+        // An intrusion cuts its layer out of others, and is the bottom of none.
+        let bottom = self.bottom_of(layer).and_then(|first| (first..self.horizons.len()).find(|&h| !is_intrusive(h)));
+        match (self.top_of(layer), bottom) {
             (None, None) => "all".to_owned(),
+            (Some(top), _) if is_intrusive(top) => name(top).to_owned(),
             (None, Some(bottom)) => format!("above {}", name(bottom)),
             (Some(top), None) => format!("below {}", name(top)),
             (Some(top), Some(bottom)) => format!("{} - {}", name(top), name(bottom)),
@@ -104,6 +108,14 @@ mod tests {
         assert_eq!((s.top_of(2), s.bottom_of(2)), (Some(0), Some(1)));
         assert_eq!((s.top_of(0), s.bottom_of(0)), (Some(2), None));
         assert_eq!(s.layer_names_bottom_up(), ["below C", "B - C", "A - B", "above A"]);
+    }
+
+    #[test]
+    fn an_intrusion_names_its_layer_and_bounds_no_other() {
+        let horizons = [("A", Contact::Erosional), ("B", Contact::Onlap), ("Salt", Contact::Intrusive)]
+            .map(|(name, contact)| StratigraphicHorizon { name: name.into(), contact });
+        let s = Stratigraphy { horizons: horizons.into(), layer_names: Vec::new() };
+        assert_eq!(s.layer_names_bottom_up(), ["Salt", "below B", "A - B", "above A"]);
     }
 
     #[test]
