@@ -188,8 +188,7 @@ impl Renderer {
     /// A scene that cannot be drawn, missing inputs, cancellation, or an error of the device.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
         // A measurement has one implementation, on the processor; the shaders know height fields alone.
-        let is_measured = scene.face_data == crate::FaceData::Distortion;
-        if is_measured || inputs.model.is_some_and(|model| model.has_levels()) {
+        if scene.face_data == crate::FaceData::Distortion || inputs.model.is_some_and(|m| m.has_levels()) {
             return crate::reference::render(scene, inputs, progress);
         }
         match self.render_once(scene, inputs, progress) {
