@@ -43,5 +43,5 @@ pub use make::{FigureInputs, make};
 pub use pdf::pdf;
 pub use raster::{raster, tiff};
 pub use rect::Rect;
-pub use spec::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
+pub use spec::{Annotation, BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionPart};
 pub use svg::svg;

@@ -38,6 +38,12 @@ pub struct Figure {
     pub scale_bar: bool,
     /// Whether an arrow below each block points to north as it lies in the block's middle. Default no.
     pub north_arrow: bool,
+    /// What is written on and around its blocks, besides. Default nothing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub annotate: Vec<Annotation>,
+    /// Who the data belong to, for the line of provenance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub credit: Option<String>,
     /// A line above everything else.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
@@ -57,6 +63,8 @@ impl Default for Figure {
             legend: false,
             scale_bar: false,
             north_arrow: false,
+            annotate: Vec::new(),
+            credit: None,
             title: None,
             caption: None,
             interpretation: false,
@@ -84,6 +92,38 @@ impl Figure {
     pub fn size_pt(&self) -> DVec2 {
         let [width, height] = self.size_px().map(f64::from);
         DVec2::new(width, height) * crate::list::POINTS_PER_INCH / self.dpi
+    }
+}
+
+/// Something that is written on a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Annotation {
+    /// Inlines, crosslines and depth or time along the edges of a block.
+    Axes,
+    /// Names of layers along the layers, or beside the block with a leader.
+    Layers,
+    /// Names of faults, the throw measured there, and half-arrows that say which side went down.
+    Faults,
+    /// A bar that says which values the colours of measured data stand for.
+    Colours,
+    /// A line that says which program and which project a figure comes from, and whose data it shows.
+    Provenance,
+}
+
+impl Annotation {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Axes, Self::Layers, Self::Faults, Self::Colours, Self::Provenance];
+
+    /// What people call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Axes => "axes",
+            Self::Layers => "layers",
+            Self::Faults => "faults",
+            Self::Colours => "colours",
+            Self::Provenance => "provenance",
+        }
     }
 }
 
@@ -179,6 +219,7 @@ mod tests {
                 Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
             ],
             legend: true,
+            annotate: Annotation::ALL.to_vec(),
             ..Figure::default()
         };
         let read: Figure = serde_json::from_str(&serde_json::to_string(&figure).unwrap()).unwrap();
