@@ -246,7 +246,13 @@ fn texts(group: &Group) -> impl Iterator<Item = &Text> {
 ///
 /// Places in rings around each anchor are tried; short leaders are best, and those that run across rather than up.
 fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: &mut LabelRoom) -> Option<Group> {
-    let mut best: Option<(f64, Text, [DVec2; 2])> = None;
+    // The name right and left of (0, 0), and its outline there.
+    let sides = [(Across::Start, 2.0), (Across::End, -2.0)].map(|(across, aside)| {
+        let text = Text::new(DVec2::new(aside, 0.0), name).sized(TEXT_PT - 0.5).anchored(across, Upright::Middle);
+        let outline: Vec<DVec2> = room::outlines(&text).flatten().collect();
+        (text, outline)
+    });
+    let mut best: Option<(f64, &Text, [DVec2; 2])> = None;
     for (rank, anchor) in anchors.iter().enumerate() {
         for ring in 1..=LEADER_RINGS {
             let length = f64::from(ring) * LEADER_STEP_PT;
@@ -258,17 +264,17 @@ fn leader(anchors: &[DVec2], name: &str, faces: &[Vec<DVec2>], room: &mut LabelR
                 if best.as_ref().is_some_and(|(known, ..)| *known <= cost) {
                     continue;
                 }
-                let (across, aside) = if direction.x >= 0.0 { (Across::Start, 2.0) } else { (Across::End, -2.0) };
-                let text = Text::new(end + DVec2::new(aside, 0.0), name).sized(TEXT_PT - 0.5);
-                let text = text.anchored(across, Upright::Middle);
-                let is_outside = || !room::outlines(&text).any(|outline| faces.iter().any(|face| meet(&outline, face)));
-                if room.is_free(&text) && room.is_clear(*anchor, end) && is_outside() {
+                let (text, outline) = &sides[usize::from(direction.x < 0.0)];
+                let outline: Vec<DVec2> = outline.iter().map(|corner| *corner + end).collect();
+                let is_outside = || !faces.iter().any(|face| meet(&outline, face));
+                if room.is_area_free(&outline) && room.is_clear(*anchor, end) && is_outside() {
                     best = Some((cost, text, [*anchor, end]));
                 }
             }
         }
     }
     let (_, text, [anchor, end]) = best?;
+    let text = Text { at: text.at + end, ..text.clone() };
     room.take(&text);
     room.take_area(&[anchor, end]);
     let line = Path::line(&[anchor, end]);
