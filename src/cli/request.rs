@@ -242,6 +242,8 @@ fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
         colour: typed.colour.as_deref().map(colour).transpose()?,
         ink: typed.ink.as_deref().map(colour).transpose()?,
         pattern: typed.pattern,
+        rock: typed.rock,
+        age: typed.age,
         intervals: typed.interval.iter().map(|text| depth_interval(text)).collect::<Result<_, _>>()?,
         frequency,
         opacity: typed.opacity,
@@ -249,7 +251,9 @@ fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
         style: None,
     };
     if change == (SetLayer { layer: change.layer.clone(), ..SetLayer::default() }) {
-        return Err("layer set: nothing to change; give --name, --pattern, --colour or another option".to_owned());
+        return Err(
+            "layer set: nothing to change; give --name, --pattern, --rock, --colour or another option".to_owned()
+        );
     }
     Ok((typed.project, change))
 }
