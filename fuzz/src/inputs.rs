@@ -9,7 +9,7 @@ pub fn interpretation(geometry: &SurveyGeometry) -> (Horizon, Fault) {
     let grid = NodeGrid::of_survey(geometry);
     let [columns, rows] = grid.count;
     let depth = (0..columns * rows).map(|k| if k == 7 { f32::NAN } else { 40.0 + (k / rows) as f32 * 1.5 }).collect();
-    let horizon = Horizon { name: "Top A".to_owned(), sheets: vec![Sheet::new(grid, depth, Quality::Picked)] };
+    let horizon = Horizon::new("Top A", vec![Sheet::new(grid, depth, Quality::Picked)]);
     let vertices =
         [[50.0, 0.0, 20.0], [70.0, 0.0, 160.0], [50.0, 100.0, 20.0], [70.0, 100.0, 160.0], [50.0, 180.0, 20.0]];
     let mesh = TriangleMesh {

@@ -72,7 +72,7 @@ fn horizon(geometry: &SurveyGeometry, index: usize) -> Horizon {
         depth_m(HORIZONS_M[index], grid.world_at(node)) as f32
     });
     let sheet = Sheet::new(grid, nodes.collect(), Quality::Picked);
-    Horizon { name: format!("H{index}"), sheets: vec![sheet] }
+    Horizon::new(format!("H{index}"), vec![sheet])
 }
 
 fn fault(index: usize) -> Fault {

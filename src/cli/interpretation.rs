@@ -7,7 +7,9 @@ use super::assembly;
 use super::request::{Listing, Request, Usage};
 use super::segy::segy_options;
 use attribute::{DipSettings, SemblanceSettings};
-use formats::{Column, ExportOptions, Format, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit};
+use formats::{
+    Column, ExportOptions, Format, HorizonShape, ImportOptions, PlaceBy, ValueOrder, WhenRotated, ZPositive, ZUnit,
+};
 use project::command::{
     AddFault, AddHorizon, Age, AttributeKind, Command, ComputeAttribute, ImportVolume, RemoveFault, RemoveHorizon,
     RemovePick, RenameHorizon, SetContact, SetFaultExtent, SetHorizonColour, SetTruncation,
@@ -69,6 +71,7 @@ pub(super) fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage>
         ("rows", ValueOrder::Rows),
         ("row", ValueOrder::Rows),
     ];
+    let shapes = [("map", HorizonShape::Map), ("any", HorizonShape::Any)];
     let places = [("lines", PlaceBy::Lines), ("xy", PlaceBy::World)];
     let z_factor = typed.z_factor.unwrap_or(1.0);
     if !(z_factor.is_finite() && z_factor != 0.0) {
@@ -91,6 +94,7 @@ pub(super) fn import_options(typed: ReadingArgs) -> Result<ImportOptions, Usage>
         columns,
         place_by: typed.place_by.as_deref().map(|t| word("--place-by", t, &places)).transpose()?,
         gap_m: typed.gap_m,
+        shape: typed.shape.as_deref().map(|t| word("--shape", t, &shapes)).transpose()?,
         value_order: typed.value_order.as_deref().map(|t| word("--value-order", t, &orders)).transpose()?,
     })
 }

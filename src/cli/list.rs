@@ -74,6 +74,14 @@ fn show_horizon(project: &Project, name: &str) -> anyhow::Result<Report> {
         report.say(format!("  sheet of {u} x {v} nodes: {nodes} with a depth, {low} to {high} {unit}, {holes} holes"));
         sheets.push(json!({ "count": [u, v], "nodes": nodes, "holes": holes, "range": [low, high] }));
     }
+    if let Some(surface) = &horizon.surface {
+        let (corners, triangles) = (surface.vertices.len(), surface.triangles.len());
+        let low = surface.vertices.iter().map(|v| v.z).fold(f64::INFINITY, f64::min);
+        let high = surface.vertices.iter().map(|v| v.z).fold(f64::NEG_INFINITY, f64::max);
+        report
+            .say(format!("  a surface of any shape: {corners} corners, {triangles} triangles, {low} to {high} {unit}"));
+        report.field("surface", json!({ "corners": corners, "triangles": triangles, "range": [low, high] }));
+    }
     if let Some(log) = &entry.assembly {
         report.say(format!("  colour {}, {} picks:", log.colour, log.picks.len()));
         for pick in &log.picks {

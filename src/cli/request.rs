@@ -185,7 +185,7 @@ impl TryFrom<Action> for Request {
             }
             Action::Layer(LayerAction::List { project }) => Self::List { project, what: Listing::Layers },
             Action::Layer(LayerAction::Set(typed)) => {
-                let (project, command) = set_layer(typed)?;
+                let (project, command) = set_layer(*typed)?;
                 change(project, Command::SetLayer(command))
             }
             Action::Layer(LayerAction::Reset { project, layer }) => {

@@ -27,7 +27,7 @@ fn tracked(survey: &Synthetic, horizon: &Horizon) -> Vec<VoxelSheet> {
         Sheet::new(sheet.grid, depth, Quality::Tracked)
     };
     let sheets = horizon.sheets.iter().enumerate().map(draw).collect();
-    from_horizon(&Horizon { name: horizon.name.clone(), sheets }, &survey.geometry, &FaultNetwork::none())
+    from_horizon(&Horizon::new(horizon.name.clone(), sheets), &survey.geometry, &FaultNetwork::none())
 }
 
 /// One horizon knows a fault's place and not its dip: semblance along it does.

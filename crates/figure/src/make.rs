@@ -1,6 +1,7 @@
 //! From what a figure shows to its page: the one way that figures are made.
 
 use crate::Rect;
+use crate::annotation::Annotation;
 use crate::cut::{FenceCut, SectionCut, SectionKind, SectionSource, length_m, stations, value_at};
 use crate::draw::annotation::BlockAnnotation;
 use crate::draw::axes::Axis;
@@ -15,7 +16,7 @@ use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
 use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Stroke};
 use crate::map::{HorizonMap, MapSource, Mapped};
-use crate::spec::{Annotation, BlockPart, FencePart, Figure, MapPart, Part, SectionPart};
+use crate::spec::{BlockPart, FencePart, Figure, MapPart, Part, SectionPart};
 use crate::style::{FAULT_PT, HORIZON_PT};
 use glam::DVec2;
 use render::distortion::{self, Stretch};

@@ -26,10 +26,9 @@ fn geometry() -> SurveyGeometry {
 }
 
 fn model(geometry: &SurveyGeometry) -> StructuralModel {
-    let flat = |name: &str, ms: f32| Horizon {
-        name: name.into(),
-        sheets: vec![Sheet::new(NodeGrid::of_survey(geometry), vec![ms; SIZE[0] * SIZE[1]], Quality::Picked)],
-    };
+    let grid = NodeGrid::of_survey(geometry);
+    let flat =
+        |name: &str, ms: f32| Horizon::new(name, vec![Sheet::new(grid, vec![ms; SIZE[0] * SIZE[1]], Quality::Picked)]);
     let horizon = |name: &str| StratigraphicHorizon { name: name.into(), contact: Contact::Conformable };
     let stratigraphy = Stratigraphy { horizons: ["Top", "Base"].map(horizon).into(), layer_names: Vec::new() };
     let horizons = [flat("Top", 40.0), flat("Base", 120.0)];

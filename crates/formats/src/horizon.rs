@@ -1,9 +1,10 @@
 //! Makes a [`Horizon`] from a surface as read: converts it, places it on nodes, splits it into sheets and
 //! checks it against the survey.
 
+use super::any_shape::{self, Shape};
 use super::columns::is_inside;
 use super::lattice::{self, FittedLattice};
-use super::options::ImportOptions;
+use super::options::{HorizonShape, ImportOptions};
 use super::placement::{self, voxel_xy};
 use super::raster;
 use super::raw::{RawPoint, RawShape, RawSurface};
@@ -44,6 +45,23 @@ struct Nodes {
     multivalued: usize,
     notes: Vec<String>,
     warnings: Vec<Note>,
+    /// What it is instead of sheets.
+    surface: Option<TriangleMesh>,
+}
+
+impl Nodes {
+    /// A surface that is no height field, as it was given.
+    fn any_shape(surface: TriangleMesh, outside: usize, note: Option<&str>) -> Self {
+        Self {
+            sheets: Vec::new(),
+            gridding: Gridding::AnyShape { corners: surface.vertices.len(), triangles: surface.triangles.len() },
+            outside,
+            multivalued: 0,
+            notes: note.map(str::to_owned).into_iter().collect(),
+            warnings: Vec::new(),
+            surface: Some(surface),
+        }
+    }
 }
 
 /// Makes the horizon.
@@ -71,7 +89,7 @@ pub(super) fn build(
     let nodes = match &raw.shape {
         RawShape::Grid { grid, z } => from_grid(file, &name, *grid, z, geometry)?,
         RawShape::Points(points) => from_points(file, &name, points, geometry, options, tolerance)?,
-        RawShape::Mesh(mesh) => from_mesh(file, &name, mesh, geometry, tolerance)?,
+        RawShape::Mesh(mesh) => from_mesh(file, &name, mesh, geometry, options, tolerance)?,
     };
     let values: Vec<f64> = raw.shape.values().collect();
     let outside_range = rule.check(file, &name, &values, &geometry.vertical, SurfaceKind::Horizon)?;
@@ -100,7 +118,7 @@ pub(super) fn build(
         notes,
         warnings,
     };
-    Ok((Horizon { name, sheets: nodes.sheets }, report))
+    Ok((Horizon { name, sheets: nodes.sheets, surface: nodes.surface }, report))
 }
 
 fn from_grid(
@@ -125,6 +143,7 @@ fn from_grid(
         multivalued: 0,
         notes: Vec::new(),
         warnings: Vec::new(),
+        surface: None,
     })
 }
 
@@ -138,6 +157,16 @@ fn from_points(
 ) -> Result<Nodes, FormatError> {
     let placed = placement::place(file, name, points, geometry, options.place_by)?;
     let mut notes: Vec<String> = placed.note.into_iter().collect();
+    let is_any = options.shape == Some(HorizonShape::Any);
+    let any_shape = |notes: Vec<String>, note: Option<&str>| {
+        let place = |(voxel, p): (&DVec2, &RawPoint)| placement::world_xy(geometry, *voxel).extend(p.z);
+        let vertices = placed.voxels.iter().zip(points).map(place).collect();
+        let found = Nodes::any_shape(TriangleMesh { vertices, triangles: Vec::new() }, placed.outside, note);
+        Nodes { notes: notes.into_iter().chain(found.notes).collect(), ..found }
+    };
+    if is_any {
+        return Ok(any_shape(notes, None));
+    }
     let (lattice, gridding) = if let Some((lattice, step)) = lattice::of_survey(&placed.voxels, geometry) {
         (lattice, Gridding::SurveyTraces { step })
     } else {
@@ -147,6 +176,12 @@ fn from_points(
                 notes.push("fewer than three points: nothing lies between them".into());
             }
             let pairs: Vec<_> = placed.voxels.iter().zip(points).map(|(v, p)| (*v, p.z as f32)).collect();
+            if options.shape.is_none() && any_shape::is_overturned(&pairs, geometry) {
+                return Ok(any_shape(
+                    notes,
+                    Some("its points are overturned: several limbs lie over one place on the map"),
+                ));
+            }
             let gridded = scatter::grid(&pairs, geometry, options.gap_m, tolerance).map_err(|_| crowded(file, name))?;
             if gridded.repeated > 0 {
                 notes.push(format!(
@@ -164,6 +199,7 @@ fn from_points(
                 outside: placed.outside,
                 notes,
                 warnings,
+                surface: None,
             });
         };
         let (u, v) = (lattice.grid.u_step, lattice.grid.v_step);
@@ -182,7 +218,7 @@ fn from_points(
     if twice > 0 {
         notes.push(format!("{twice} points repeat the depth of another at the same node and were averaged with it"));
     }
-    Ok(Nodes { sheets, gridding, outside: placed.outside, multivalued, notes, warnings: Vec::new() })
+    Ok(Nodes { sheets, gridding, outside: placed.outside, multivalued, notes, warnings: Vec::new(), surface: None })
 }
 
 /// Puts points on their nodes; several depths at a node make several sheets. Also counts such nodes, and repeated
@@ -222,8 +258,22 @@ fn from_mesh(
     name: &str,
     mesh: &TriangleMesh,
     geometry: &SurveyGeometry,
+    options: &ImportOptions,
     tolerance: f32,
 ) -> Result<Nodes, FormatError> {
+    let found = if options.shape == Some(HorizonShape::Map) { None } else { any_shape::of_mesh(mesh) };
+    if found.is_some() || options.shape == Some(HorizonShape::Any) {
+        let worlds = || mesh.vertices.iter().map(|v| v.truncate());
+        let outside = worlds().filter(|w| !is_inside(voxel_xy(geometry, *w), geometry)).count();
+        if outside == mesh.vertices.len() {
+            return Err(placement::outside_by_world(file, name, worlds(), geometry));
+        }
+        let note = found.map(|shape| match shape {
+            Shape::Body => "it is closed: a body",
+            Shape::Overturned => "it is overturned: a part of it lies above another",
+        });
+        return Ok(Nodes::any_shape(mesh.clone(), outside, note));
+    }
     let grid = NodeGrid::of_survey(geometry);
     let most = (grid.count[0] * grid.count[1]).saturating_mul(MAX_MEAN_DEPTHS).saturating_add(FEW);
     let mut pairs = Vec::new();
@@ -256,5 +306,6 @@ fn from_mesh(
         multivalued: values.multivalued(),
         notes: Vec::new(),
         warnings: Vec::new(),
+        surface: None,
     })
 }

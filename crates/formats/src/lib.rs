@@ -24,7 +24,7 @@
 //! let geometry = SurveyGeometry::regular([3, 3, 101], 25.0, 4.0, VerticalUnit::Metres);
 //! let depths = vec![100.0, 110.0, 120.0, 105.0, 115.0, 125.0, 110.0, 120.0, 130.0];
 //! let sheet = Sheet::new(NodeGrid::of_survey(&geometry), depths, Quality::Picked);
-//! let chalk = Horizon { name: "chalk".into(), sheets: vec![sheet] };
+//! let chalk = Horizon::new("chalk", vec![sheet]);
 //! let written = formats::write_horizon(&path, &chalk, &geometry, Format::Csv)?;
 //! assert_eq!(written.nodes, 9);
 //!
@@ -49,6 +49,7 @@
 //!
 //! To add a format: one file with a `CODEC`, one variant of [`Format`], one line in `CODECS`.
 
+mod any_shape;
 mod bounds;
 mod charisma;
 mod column;
@@ -97,7 +98,7 @@ pub use column::Column;
 pub use describe::{FileDescription, SurfaceDescription, describe};
 pub use error::{FormatError, HorizontalExtent};
 pub use export::{ExportOptions, ExportReport, WhenRotated};
-pub use options::{ImportOptions, PlaceBy, ValueOrder};
+pub use options::{HorizonShape, ImportOptions, PlaceBy, ValueOrder};
 pub use report::{Gridding, ImportReport, Provenance, Settled};
 pub use unit::{ZPositive, ZUnit};
 
@@ -424,8 +425,16 @@ pub fn write_horizon_as(
         Format::Zmap | Format::Cps3 => unrotated::of(horizon, format, options)?,
         _ => (Cow::Borrowed(horizon), Vec::new()),
     };
-    write::beside(path, &horizon.name, format, |out| writer(out, &horizon, geometry))?;
-    Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum(), notes })
+    let is_map_alone = horizon.surface.is_some() && !matches!(format, Format::Tsurf | Format::Csv);
+    write::beside(path, &horizon.name, format, |out| {
+        if is_map_alone {
+            let why = "it is no map: it has several depths over one place".to_owned();
+            return Err(write::WriteFailure::NotRepresentable(why, "write tsurf (triangles) or csv (points)"));
+        }
+        writer(out, &horizon, geometry)
+    })?;
+    let corners = horizon.surface.as_ref().map_or(0, |surface| surface.vertices.len());
+    Ok(ExportReport { nodes: horizon.sheets.iter().map(Sheet::node_count).sum::<usize>() + corners, notes })
 }
 
 /// Reads the faults of a file as triangulated surfaces: triangles of a TSurf file are kept, sticks are joined

@@ -37,6 +37,16 @@ pub enum ValueOrder {
     Rows,
 }
 
+/// What a horizon is made into.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum HorizonShape {
+    /// Depths at the nodes of a map: a few sheets, each a height field.
+    Map,
+    /// The triangles or points as they are: overturned limbs, bodies.
+    Any,
+}
+
 /// What the user states about a file; everything has a default.
 ///
 /// ```
@@ -70,6 +80,9 @@ pub struct ImportOptions {
     /// Scattered points: a triangle whose circumcircle has a larger radius than this, m, becomes a hole.
     /// `None` = twice the typical distance of neighbouring points.
     pub gap_m: Option<f64>,
+    /// What a horizon is made into; `None` = a map, unless its triangles or points are overturned or closed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shape: Option<HorizonShape>,
     /// CPS-3: the order of the values; `None` = the smoother of the two, with the evidence in the report.
     pub value_order: Option<ValueOrder>,
 }
@@ -87,6 +100,7 @@ impl Default for ImportOptions {
             columns: None,
             place_by: None,
             gap_m: None,
+            shape: None,
             value_order: None,
         }
     }

@@ -99,6 +99,13 @@ pub enum Gridding {
     },
     /// The file's own triangles.
     NativeMesh,
+    /// A horizon that is no height field, as it was given.
+    AnyShape {
+        /// Count of corners or points.
+        corners: usize,
+        /// Count of triangles; 0 for points.
+        triangles: usize,
+    },
 }
 
 /// What was read, what was assumed and what was left out.
@@ -200,6 +207,8 @@ impl fmt::Display for Gridding {
                 write!(f, "a smooth surface over the best plane, {rms_m:.2} m from the points (RMS)")
             }
             Self::NativeMesh => write!(f, "the file's own triangles"),
+            Self::AnyShape { corners, triangles: 0 } => write!(f, "{corners} points of a surface of any shape"),
+            Self::AnyShape { triangles, .. } => write!(f, "{triangles} triangles of a surface of any shape"),
         }
     }
 }

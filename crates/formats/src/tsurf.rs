@@ -231,6 +231,12 @@ pub(super) fn mesh_of(sheet: &Sheet) -> TriangleMesh {
 }
 
 fn write_horizon(out: &mut dyn Write, horizon: &Horizon, geometry: &SurveyGeometry) -> Result<(), WriteFailure> {
+    if let Some(surface) = horizon.surface.as_ref().filter(|surface| !surface.triangles.is_empty()) {
+        write_head(out, &horizon.name, geometry)?;
+        write_face(out, surface, 1)?;
+        writeln!(out, "END")?;
+        return Ok(());
+    }
     let meshes: Vec<_> = horizon.sheets.iter().map(mesh_of).filter(|m| !m.triangles.is_empty()).collect();
     if meshes.is_empty() {
         return Err(WriteFailure::NotRepresentable(

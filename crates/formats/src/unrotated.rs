@@ -36,7 +36,7 @@ pub(super) fn of<'a>(
             return Err(FormatError::Io { action: "write", file: std::path::PathBuf::new(), source });
         }
     };
-    let alone = |sheet: Sheet| Cow::Owned(Horizon { name: horizon.name.clone(), sheets: vec![sheet] });
+    let alone = |sheet: Sheet| Cow::Owned(Horizon::new(horizon.name.clone(), vec![sheet]));
     if let Some(turned) = along_axes(&sheet) {
         return Ok((alone(turned), Vec::new()));
     }

@@ -62,16 +62,22 @@ pub(super) struct TableNode {
     pub quality: Quality,
 }
 
-/// Every node with a depth, sheet by sheet.
+/// Every node with a depth, sheet by sheet; or every corner of a surface of any shape.
 pub(super) fn nodes<'a>(horizon: &'a Horizon, geometry: &'a SurveyGeometry) -> impl Iterator<Item = TableNode> + 'a {
-    horizon.sheets.iter().enumerate().flat_map(move |(sheet, s)| {
+    let sheets = horizon.sheets.iter().enumerate().flat_map(move |(sheet, s)| {
         let nv = s.grid.count[1];
         s.depth.iter().enumerate().filter(|(_, z)| z.is_finite()).map(move |(n, &z)| {
             let xy = s.grid.world_at(DVec2::new((n / nv) as f64, (n % nv) as f64));
             let voxel = super::placement::voxel_xy(geometry, xy);
             TableNode { lines: geometry.lines_from_voxel(voxel), xy, z, sheet, quality: s.quality[n] }
         })
-    })
+    });
+    let corners = horizon.surface.iter().flat_map(|surface| &surface.vertices).map(|corner| {
+        let (xy, z) = (corner.truncate(), corner.z as f32);
+        let lines = geometry.lines_from_voxel(super::placement::voxel_xy(geometry, xy));
+        TableNode { lines, xy, z, sheet: 0, quality: Quality::Picked }
+    });
+    sheets.chain(corners)
 }
 
 /// A line number, written as an integer if it is one.

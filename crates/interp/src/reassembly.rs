@@ -282,7 +282,7 @@ pub fn to_horizon(name: &str, sheets: &[VoxelSheet], geometry: &SurveyGeometry) 
             .collect(),
         quality: sheet.quality.clone(),
     };
-    Horizon { name: name.to_owned(), sheets: sheets.iter().map(sheet).collect() }
+    Horizon::new(name, sheets.iter().map(sheet).collect())
 }
 
 /// The nodes of a horizon on the survey's lattice, in samples, sorted into fault blocks; the inverse of

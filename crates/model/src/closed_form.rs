@@ -132,7 +132,7 @@ impl ModelForm {
                         (sheet.node_count() > 0).then_some(sheet)
                     })
                     .collect();
-                Horizon { name: format!("H{h}"), sheets }
+                Horizon::new(format!("H{h}"), sheets)
             })
             .collect()
     }

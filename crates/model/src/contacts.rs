@@ -43,6 +43,11 @@ impl ContactRules {
         Self { contacts: stratigraphy.horizons.iter().map(|h| h.contact).collect() }
     }
 
+    /// The rules between some of the horizons, given by their places in the order.
+    pub(super) fn among(&self, horizons: &[usize]) -> Self {
+        Self { contacts: horizons.iter().map(|&h| self.contacts[h]).collect() }
+    }
+
     /// The contacts, youngest horizon first.
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts

@@ -46,6 +46,7 @@ pub(crate) mod closed_form;
 mod contacts;
 mod extension;
 mod lattice;
+mod levels;
 mod network;
 mod nodes;
 mod order;
@@ -57,8 +58,9 @@ mod strays;
 mod structural;
 
 pub use contacts::ContactRules;
+pub use levels::{CutLattice, Equations, LevelSurface, NodeBox, Terms, check_surface, is_closed, resampled};
 pub use network::{BlockSignature, FaultNetwork, FaultSurface, Truncation};
-pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport};
+pub use report::{InferredPlacement, ModelError, ModelNote, ModelReport, SurfaceProblem};
 pub use settings::ModelSettings;
 pub use structural::{Region, StructuralModel};
 

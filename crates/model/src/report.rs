@@ -3,6 +3,7 @@
 use std::fmt;
 use survey::geometry::GeometryError;
 use survey::progress::Cancelled;
+use survey::topology::TopologyError;
 
 /// Why no model could be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -111,6 +112,51 @@ pub enum ModelError {
         /// Inline and crossline number of the worst place.
         lines: [f64; 2],
     },
+    /// A surface of any shape cannot be used.
+    #[error("horizon \"{name}\": {problem}{}", near(place, unit))]
+    Surface {
+        /// Name of the horizon.
+        name: String,
+        /// Why, and what to do.
+        problem: SurfaceProblem,
+        /// Inline, crossline and vertical value of a place where it shows.
+        place: Option<[f64; 3]>,
+        /// Unit of the vertical value.
+        unit: &'static str,
+    },
+}
+
+/// What keeps a surface of any shape from being a horizon.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+pub enum SurfaceProblem {
+    /// Its triangles are no surface.
+    #[error(transparent)]
+    Topology(TopologyError),
+    /// It passes through itself.
+    #[error("its triangles cross each other; mend the surface there, or give its two parts as two horizons")]
+    Crossing,
+    /// The border of a body lies inside the volume.
+    #[error("it is to be a body, but it is open inside the volume; close it, or let it reach the edge of the volume")]
+    OpenBody,
+    /// One cannot tell which side of it a place lies on.
+    #[error(
+        "it ends inside the volume in a way that leaves open which side is which; continue it to the edge of the volume"
+    )]
+    Contradiction,
+    /// Points do not say where a body is closed.
+    #[error("a body needs triangles, points alone do not say what lies inside; give a closed mesh (TSurf)")]
+    PointBody,
+    /// Points of one horizon do not say which side is younger.
+    #[error(
+        "its points alone do not say which side is older; give a horizon above or below it as well, or triangles (TSurf)"
+    )]
+    PointsAlone,
+}
+
+fn near(place: &Option<[f64; 3]>, unit: &str) -> String {
+    place.map_or_else(String::new, |[inline, crossline, z]| {
+        format!(" (near inline {inline:.0}, crossline {crossline:.0}, {z:.0} {unit})")
+    })
 }
 
 /// How a horizon was placed in a block in which it was not picked.
@@ -203,6 +249,24 @@ pub enum ModelNote {
         /// The largest crossing, samples.
         worst: f32,
     },
+    /// Points of a series do not lie on the surface that fits all of them best.
+    Misfit {
+        /// Name of the horizon.
+        horizon: String,
+        /// How many.
+        points: usize,
+        /// The farthest, voxels.
+        worst: f32,
+    },
+    /// Two bodies share room.
+    BodiesOverlap {
+        /// The one that is drawn there.
+        younger: String,
+        /// The other.
+        older: String,
+        /// Inline and crossline number of a place in both.
+        lines: [f64; 2],
+    },
 }
 
 impl fmt::Display for ModelNote {
@@ -246,6 +310,16 @@ impl fmt::Display for ModelNote {
                 f,
                 "horizons \"{younger}\" and \"{older}\", continued without data, crossed by up to {worst:.1} \
                  samples at {nodes} traces of fault block {block} and were pulled together"
+            ),
+            Self::Misfit { horizon, points, worst } => write!(
+                f,
+                "{points} points of horizon \"{horizon}\" lie up to {worst:.1} voxels off the surface through all points \
+                 of its series; they contradict their neighbours"
+            ),
+            Self::BodiesOverlap { younger, older, lines: [inline, crossline] } => write!(
+                f,
+                "bodies \"{younger}\" and \"{older}\" overlap near inline {inline:.0}, crossline {crossline:.0}; \
+                 \"{younger}\", which is younger, is drawn there"
             ),
         }
     }

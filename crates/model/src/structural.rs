@@ -2,6 +2,7 @@
 
 use super::contacts::ContactRules;
 use super::lattice::MarginLattice;
+use super::levels::{Given, LevelSurface};
 use super::network::FaultNetwork;
 use super::nodes::{Nodes, gather};
 use super::order::keep_order;
@@ -10,12 +11,14 @@ use super::settings::ModelSettings;
 use super::sheets::{ExtendedSheet, extend_all};
 use glam::{DMat3, Vec3};
 use rayon::prelude::*;
+use std::sync::Arc;
+use survey::LevelField;
 use survey::fault::Fault;
 use survey::geometry::SurveyGeometry;
 use survey::height_field::HeightField;
 use survey::horizon::{Horizon, Quality};
 use survey::progress::Progress;
-use survey::stratigraphy::Stratigraphy;
+use survey::stratigraphy::{Contact, Stratigraphy};
 
 /// Largest number of horizons: each takes one bit of a mask.
 const MOST_HORIZONS: usize = 64;
@@ -66,8 +69,10 @@ pub struct StructuralModel {
     stratigraphy: Stratigraphy,
     rules: ContactRules,
     faults: FaultNetwork,
-    /// `[horizon][block]`.
+    /// `[horizon][block]`; the topmost part of a horizon that is no height field.
     sheets: Vec<Vec<ExtendedSheet>>,
+    /// `[horizon][block]`; `None` for height fields.
+    levels: Vec<Vec<Option<LevelSurface>>>,
     report: ModelReport,
 }
 
@@ -93,9 +98,15 @@ impl StructuralModel {
         let faults = FaultNetwork::build(geometry, faults, progress)?;
         let size = geometry.size();
         let lattice = MarginLattice::with_margin(size, settings.margin_for(size));
-        progress.begin("nodes", ordered.len() as u64);
-        let mut nodes = Vec::with_capacity(ordered.len());
-        for horizon in &ordered {
+        let rules = ContactRules::new(stratigraphy);
+        let given = Given { geometry, horizons: &ordered, contacts: rules.contacts(), faults: &faults };
+        let levels = given.levels(progress)?;
+        report.notes.extend(levels.notes);
+        let is_field = |h: &usize| levels.surfaces[*h].iter().all(Option::is_none);
+        let fields: Vec<usize> = (0..ordered.len()).filter(is_field).collect();
+        progress.begin("nodes", fields.len() as u64);
+        let mut nodes = Vec::with_capacity(fields.len());
+        for horizon in fields.iter().map(|&h| ordered[h]) {
             let found = gather(geometry, lattice, horizon, &faults, settings, &mut report);
             if found.nodes.is_empty() {
                 let Nodes { outside, holes, .. } = found;
@@ -107,12 +118,20 @@ impl StructuralModel {
             nodes.push(found);
             progress.step(1)?;
         }
-        let names: Vec<&str> = ordered.iter().map(|h| h.name.as_str()).collect();
-        let rules = ContactRules::new(stratigraphy);
+        let names: Vec<&str> = fields.iter().map(|&h| ordered[h].name.as_str()).collect();
         let (mut sheets, placed) = extend_all(lattice, &names, &nodes, &faults, settings, progress)?;
         report.notes.extend(placed);
         report.notes.extend(extended(lattice, &names, &sheets, &faults));
-        report.notes.extend(keep_order(geometry, lattice, &rules, &names, &mut sheets, settings, &faults)?);
+        let among = rules.among(&fields);
+        report.notes.extend(keep_order(geometry, lattice, &among, &names, &mut sheets, settings, &faults)?);
+        // The others stand among them with their topmost part.
+        for (h, surfaces) in levels.surfaces.iter().enumerate().filter(|(h, _)| !fields.contains(h)) {
+            let below = 2.0 * size[2] as f32;
+            let top = |level: &LevelSurface| {
+                ExtendedSheet::of_level(lattice, level.top(lattice.origin, lattice.size, below), level.own)
+            };
+            sheets.insert(h, surfaces.par_iter().flatten().map(top).collect());
+        }
         Ok(Self {
             size,
             metric: geometry.metric_from_voxel(),
@@ -120,6 +139,7 @@ impl StructuralModel {
             rules,
             faults,
             sheets,
+            levels: levels.surfaces,
             report,
         })
     }
@@ -159,7 +179,28 @@ impl StructuralModel {
         &self.faults
     }
 
-    /// The extended, unclipped sheet of `horizon` (0 = youngest) in `block`.
+    /// The surface of `horizon` in `block` if it is no height field: it has an overturned limb, encloses a body, or was
+    /// made of the points of a whole series.
+    pub fn level(&self, horizon: usize, block: u16) -> Option<&LevelSurface> {
+        self.levels[horizon][usize::from(block)].as_ref()
+    }
+
+    /// Whether `horizon` is the outline of a body that cuts through all others.
+    pub fn is_body(&self, horizon: usize) -> bool {
+        self.rules.contacts()[horizon] == Contact::Intrusive && self.levels[horizon].iter().any(Option::is_some)
+    }
+
+    /// Offset of voxel position `p` from the unclipped surface of `horizon` in `block`, positive below it, on its older
+    /// side or inside the body: voxels for a height field (vertical), about metres otherwise.
+    pub fn offset(&self, horizon: usize, block: u16, p: Vec3) -> f32 {
+        match self.level(horizon, block) {
+            Some(level) => level.offset_m(p),
+            None => p.z - self.sheet(horizon, block).z_at(p.x, p.y),
+        }
+    }
+
+    /// The extended, unclipped sheet of `horizon` (0 = youngest) in `block`. Where the horizon is no height field
+    /// ([`StructuralModel::level`]), its topmost part, and twice the depth of the volume where it has none.
     pub fn sheet(&self, horizon: usize, block: u16) -> &HeightField {
         &self.sheets[horizon][usize::from(block)].field
     }
@@ -187,9 +228,23 @@ impl StructuralModel {
         self.rules.layer(self.below_at(p, block))
     }
 
-    /// Bit h set: voxel position `p` lies at or below the unclipped sheet of horizon h in `block`.
+    /// Bit h set: voxel position `p` lies at or below the unclipped surface of horizon h in `block`, on its older side,
+    /// or inside the body.
     pub fn below_at(&self, p: Vec3, block: u16) -> u64 {
-        (0..self.sheets.len()).map(|h| u64::from(p.z >= self.sheet(h, block).z_at(p.x, p.y)) << h).sum()
+        let mut last: Option<(&Arc<LevelField>, f32)> = None;
+        let mut is_below = |h: usize| match self.level(h, block) {
+            None => p.z >= self.sheet(h, block).z_at(p.x, p.y),
+            // Horizons of one series share their field.
+            Some(level) => match last {
+                Some((field, value)) if Arc::ptr_eq(field, &level.field) => value >= level.at,
+                _ => {
+                    let value = level.field.value(p);
+                    last = Some((&level.field, value));
+                    value >= level.at
+                }
+            },
+        };
+        (0..self.sheets.len()).map(|h| u64::from(is_below(h)) << h).sum()
     }
 
     /// Layer and block at voxel position `p`.
@@ -201,9 +256,15 @@ impl StructuralModel {
     /// [`StructuralModel::region_at`] at every depth (voxel z) of the trace at (x, y), in order: `found(n,
     /// region)` for `depths[n]`. The sheets are evaluated once per block instead of once per depth.
     pub fn regions_down(&self, x: f32, y: f32, depths: &[f32], mut found: impl FnMut(usize, Region)) {
+        let has_levels = self.levels.iter().any(|of_block| of_block.iter().any(Option::is_some));
         let mut sheets_z: Vec<Option<Vec<f32>>> = vec![None; self.block_count()];
         for (n, &z) in depths.iter().enumerate() {
-            let block = self.block_at(Vec3::new(x, y, z));
+            let p = Vec3::new(x, y, z);
+            let block = self.block_at(p);
+            if has_levels {
+                found(n, Region { layer: self.layer_at(p, block), block });
+                continue;
+            }
             let sheets_z = sheets_z[usize::from(block)]
                 .get_or_insert_with(|| (0..self.sheets.len()).map(|h| self.sheet(h, block).z_at(x, y)).collect());
             let below = sheets_z.iter().enumerate().map(|(h, &sheet_z)| u64::from(z >= sheet_z) << h).sum();
@@ -212,9 +273,15 @@ impl StructuralModel {
     }
 
     /// Height of `horizon` in `block` as it is drawn, voxel z: cut by the contact rules, so that a horizon
-    /// which has ended lies on the one it ended at.
+    /// which has ended lies on the one it ended at. Of a horizon that is no height field, the topmost part; bodies cut
+    /// nothing here.
     pub fn horizon_z(&self, horizon: usize, block: u16, x: f32, y: f32) -> f32 {
-        let mut z: Vec<f32> = (0..self.sheets.len()).map(|h| self.sheet(h, block).z_at(x, y)).collect();
+        let z_of = |h: usize| self.sheet(h, block).z_at(x, y);
+        if self.is_body(horizon) {
+            return z_of(horizon);
+        }
+        let mut z: Vec<f32> =
+            (0..self.sheets.len()).map(|h| if self.is_body(h) { f32::MAX } else { z_of(h) }).collect();
         self.rules.clip(&mut z);
         z[horizon]
     }
@@ -282,9 +349,8 @@ mod tests {
     #[test]
     fn two_flat_horizons_make_three_layers() {
         let g = SurveyGeometry::regular([10, 12, 40], 25.0, 4.0, VerticalUnit::Milliseconds);
-        let flat = |name: &str, ms: f32| Horizon {
-            name: name.into(),
-            sheets: vec![Sheet::new(NodeGrid::of_survey(&g), vec![ms; 120], Quality::Picked)],
+        let flat = |name: &str, ms: f32| {
+            Horizon::new(name, vec![Sheet::new(NodeGrid::of_survey(&g), vec![ms; 120], Quality::Picked)])
         };
         let stratigraphy = Stratigraphy {
             horizons: ["A", "B"]

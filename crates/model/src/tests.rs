@@ -114,7 +114,7 @@ fn horizons(g: &SurveyGeometry, forms: &[&dyn Fn(f64, f64) -> f64]) -> Vec<Horiz
         .map(|(h, f)| {
             let depth = (0..nx * ny).map(|n| g.vertical.value_at(f((n / ny) as f64, (n % ny) as f64)) as f32).collect();
             let sheet = Sheet::new(NodeGrid::of_survey(g), depth, Quality::Picked);
-            Horizon { name: format!("H{h}"), sheets: vec![sheet] }
+            Horizon::new(format!("H{h}"), vec![sheet])
         })
         .collect()
 }
@@ -158,7 +158,7 @@ fn a_coarse_rotated_grid_is_resampled() {
             g.vertical.value_at(truth(voxel.x, voxel.y)) as f32
         })
         .collect();
-    let horizon = Horizon { name: "H0".into(), sheets: vec![Sheet::new(grid, depth, Quality::Picked)] };
+    let horizon = Horizon::new("H0", vec![Sheet::new(grid, depth, Quality::Picked)]);
     let model = build(&g, &stratigraphy(&[Contact::Conformable]), &[horizon]).unwrap();
     let mut worst = 0.0f64;
     for x in 12..36 {

@@ -70,7 +70,7 @@ fn horizons(is_picked: impl Fn(usize, usize) -> bool) -> Vec<Horizon> {
             if is_picked(n / SIZE[1], n % SIZE[1]) { (10.0 * height(level, hanging, x, y)) as f32 } else { f32::NAN }
         };
         let depth = (0..SIZE[0] * SIZE[1]).map(node).collect();
-        Horizon { name: format!("H{h}"), sheets: vec![Sheet::new(grid, depth, Quality::Picked)] }
+        Horizon::new(format!("H{h}"), vec![Sheet::new(grid, depth, Quality::Picked)])
     };
     LEVELS.iter().enumerate().map(of).collect()
 }
@@ -230,7 +230,7 @@ fn twenty_small_faults_break_nothing_but_themselves() {
     let level = |x: usize, y: usize| 18.0 + 0.2 * x as f64 - 0.1 * y as f64;
     let depth = (0..SIDE * SIDE).map(|n| (10.0 * level(n / SIDE, n % SIDE)) as f32).collect();
     let sheet = Sheet::new(NodeGrid::of_survey(&geometry), depth, Quality::Picked);
-    let horizon = Horizon { name: "H0".into(), sheets: vec![sheet] };
+    let horizon = Horizon::new("H0", vec![sheet]);
     let named = StratigraphicHorizon { name: "H0".into(), contact: Contact::Conformable };
     let stratigraphy = Stratigraphy { horizons: vec![named], layer_names: Vec::new() };
     let (settings, quiet) = (ModelSettings { margin: Some(6), ..ModelSettings::default() }, Progress::silent());

@@ -15,8 +15,10 @@
 //!
 //! Memory: 12 bytes a node and one bit for the crease flag.
 
+use crate::metric::Metric;
+use crate::unfold::Unfolding;
 use crate::{LayerModel, Region};
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use survey::HeightField;
 
@@ -113,6 +115,9 @@ pub struct RegionGrid {
     /// One bit per node, 64 a word, in the order of `offsets`. It is set where a closest point jumped along
     /// the node's trace, or the trace did not arrive at the middle.
     pub creases: Vec<u64>,
+    /// (i, j) where a horizon of the layer is no height field. The grid then has no nodes; k follows from `bottom` and
+    /// `top`, of which [`SheetSource::Plane`] stands for none.
+    pub unfolded: Option<Unfolding>,
 }
 
 impl RegionGrid {
@@ -164,6 +169,44 @@ impl RegionGrid {
         (if self.is_calm() { v } else { v.clamp(0.0, 1.0) }, slope)
     }
 
+    /// k between surfaces of any shape, and its voxel derivative: the share of the distances from both, or of the
+    /// reference thickness where one is missing.
+    fn level_k<M: LayerModel + ?Sized>(&self, model: &M, p: Vec3) -> (f32, Vec3) {
+        let block = self.region.block;
+        let below = |sheet: &SheetRef| match sheet.of {
+            SheetSource::Horizon(horizon) => Some(match model.level(horizon, block) {
+                Some(level) => level.sample_m(p),
+                None => {
+                    let (z, [x, y]) = sheet.sample(model, block, p.x, p.y);
+                    let vertical = model.metric().z_axis.length() as f32;
+                    ((p.z - z) * vertical, Vec3::new(-x, -y, 1.0) * vertical)
+                }
+            }),
+            _ => None,
+        };
+        let thickness = self.thickness_m.map_or(1.0, |thickness| thickness as f32);
+        match (below(&self.bottom), below(&self.top)) {
+            (Some((bottom, to_bottom)), Some((top, to_top))) => {
+                // Distances from both, positive in the layer: −bottom and top.
+                let sum = top - bottom;
+                if sum.abs() < PINCHED {
+                    return (0.5, Vec3::ZERO);
+                }
+                ((-bottom / sum).clamp(0.0, 1.0), (to_top * bottom - to_bottom * top) / (sum * sum))
+            }
+            (Some((bottom, slope)), None) => (-bottom / thickness, -slope / thickness),
+            (None, Some((top, slope))) => (1.0 - top / thickness, -slope / thickness),
+            (None, None) => (0.5, Vec3::ZERO),
+        }
+    }
+
+    /// The metric direction in which k rises at a voxel place.
+    pub(crate) fn rise<M: LayerModel + ?Sized>(&self, model: &M, metric: &Metric, p: Vec3) -> Option<DVec3> {
+        let (_, slope) = self.level_k(model, p);
+        let rise = metric.scaled_from_voxel().inverse().transpose() * slope.as_dvec3();
+        rise.try_normalize()
+    }
+
     /// Whether the layer is drawn with boundaries of its own: v then goes on beyond the sheets, and the offsets stay as
     /// they are on them.
     pub fn is_calm(&self) -> bool {
@@ -206,6 +249,9 @@ impl RegionGrid {
     /// Flat coordinates of voxel `p` in this region's parameterization, and their Jacobian ∂(i, j, k)/∂(x, y,
     /// z) per voxel. `model` is the one that was parameterized and `volume` its [`LayerModel::size`].
     pub fn lookup<M: LayerModel + ?Sized>(&self, model: &M, volume: [usize; 3], p: Vec3) -> (FlatPoint, [[f32; 3]; 3]) {
+        if let Some(unfolded) = &self.unfolded {
+            return self.lookup_unfolded(unfolded, model, volume, p);
+        }
         let (v, v_slope) = self.level_fraction(model, p);
         let ([dx, dy, dk], slope) = self.interpolate(p.x, p.y, v);
         let [si, sj] = [0, 1].map(|axis: usize| 1.0 / volume[axis].saturating_sub(1).max(1) as f32);
@@ -214,6 +260,25 @@ impl RegionGrid {
         };
         let flat = FlatPoint { i: (p.x + dx) * si, j: (p.y + dy) * sj, k: v + dk, region: self.region };
         (flat, [row(0, Vec3::X, si), row(1, Vec3::Y, sj), row(2, v_slope, 1.0)])
+    }
+}
+
+impl RegionGrid {
+    fn lookup_unfolded<M: LayerModel + ?Sized>(
+        &self,
+        unfolded: &Unfolding,
+        model: &M,
+        volume: [usize; 3],
+        p: Vec3,
+    ) -> (FlatPoint, [[f32; 3]; 3]) {
+        let (k, k_slope) = self.level_k(model, p);
+        let [(i, i_slope), (j, j_slope)] = [0, 1].map(|axis: usize| {
+            let unit = 1.0 / volume[axis].saturating_sub(1).max(1) as f32;
+            let (value, slope) = unfolded[axis].sample(p);
+            (value * unit, slope * unit)
+        });
+        let flat = FlatPoint { i, j, k, region: self.region };
+        (flat, [i_slope.to_array(), j_slope.to_array(), k_slope.to_array()])
     }
 }
 

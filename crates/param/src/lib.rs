@@ -100,6 +100,7 @@ mod settings;
 mod surface;
 mod touched;
 mod trace;
+mod unfold;
 mod voxels;
 
 pub use compute::ComputeCost;
@@ -109,4 +110,5 @@ pub use model::{LayerModel, Region};
 pub use packed::PackedVolume;
 pub use parameterization::Parameterization;
 pub use settings::{KDefinition, ParamSettings};
+pub use unfold::Unfolding;
 pub use voxels::{NO_REGION, VoxelParameterization, corner_aligned};

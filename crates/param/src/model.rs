@@ -2,7 +2,7 @@
 
 use glam::{DMat3, Vec3};
 pub use model::Region;
-use model::StructuralModel;
+use model::{FaultNetwork, LevelSurface, StructuralModel};
 use survey::HeightField;
 
 /// An interpretation as a solid model: sheets that are defined everywhere, and the region of every point.
@@ -22,6 +22,18 @@ pub trait LayerModel: Sync {
     /// The sheet of a horizon in a fault block. It continues past the outer boundary, past faults and across
     /// holes, and is not cut by other horizons.
     fn sheet(&self, horizon: usize, block: u16) -> &HeightField;
+    /// The surface of a horizon in a fault block where it is no height field. Default: all are height fields.
+    fn level(&self, _horizon: usize, _block: u16) -> Option<&LevelSurface> {
+        None
+    }
+    /// Whether a horizon is the outline of a body that cuts through all others. Default: none is.
+    fn is_body(&self, _horizon: usize) -> bool {
+        false
+    }
+    /// The faults between the blocks. Default: none.
+    fn faults(&self) -> Option<&FaultNetwork> {
+        None
+    }
     /// The region at a voxel position. Its layer is below [`LayerModel::layer_count`] and its block below
     /// [`LayerModel::block_count`].
     fn region_at(&self, p: Vec3) -> Region;
@@ -54,6 +66,18 @@ impl LayerModel for StructuralModel {
 
     fn sheet(&self, horizon: usize, block: u16) -> &HeightField {
         self.sheet(horizon, block)
+    }
+
+    fn level(&self, horizon: usize, block: u16) -> Option<&LevelSurface> {
+        self.level(horizon, block)
+    }
+
+    fn is_body(&self, horizon: usize) -> bool {
+        self.is_body(horizon)
+    }
+
+    fn faults(&self) -> Option<&FaultNetwork> {
+        Some(self.faults())
     }
 
     fn region_at(&self, p: Vec3) -> Region {

@@ -6,6 +6,7 @@ use crate::grid::{FlatPoint, RegionGrid, SheetSource};
 use crate::metric::Metric;
 use crate::plan::{self, Method, Planner};
 use crate::touched::{ColumnScan, RegionColumns};
+use crate::unfold::{self, Unfolding};
 use crate::{LayerModel, ParamError, ParamSettings, Region};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -51,11 +52,14 @@ impl Parameterization {
         let metric = Metric::new(model.metric(), settings.exaggeration)?;
         let planner = Planner::new(model, settings, &metric);
         let scan = ColumnScan::of(model, progress)?;
+        let region = |n: usize| Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
         let touched: Vec<RegionColumns> = (0..layers * blocks)
             .into_par_iter()
             .map(|n| {
-                let region = Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
-                let (bottom, top) = plan::horizons(n % layers, layers);
+                let region = region(n);
+                let (bottom, top) = plan::horizons(model, n % layers);
+                let field = |horizon: &usize| model.level(*horizon, region.block).is_none();
+                let (bottom, top) = (bottom.filter(field), top.filter(field));
                 let node = |horizon: Option<usize>, x, y, open| {
                     horizon.map_or(open, |horizon| model.sheet(horizon, region.block).node(x, y))
                 };
@@ -67,35 +71,51 @@ impl Parameterization {
         progress.begin("parameterizing", rows as u64);
         let mut reaches = vec![1.0f32; layers];
         for (n, touched) in touched.iter().enumerate() {
-            let region = Region { layer: (n % layers) as u16, block: (n / layers) as u16 };
             let reach = &mut reaches[n % layers];
-            *reach = reach.max(planner.farthest(region, touched));
+            *reach = reach.max(planner.farthest(region(n), touched));
+        }
+        let planned: Vec<(RegionGrid, Method)> = (0..layers * blocks)
+            .into_par_iter()
+            .map(|n| planner.plan(region(n), &touched[n], reaches[n % layers]))
+            .collect();
+        let up = |p: Vec3, at: Region| {
+            let (grid, _) = &planned[usize::from(at.block) * layers + usize::from(at.layer)];
+            grid.rise(model, &metric, p)
+        };
+        // [layer][block]
+        let mut unfolded = vec![Vec::new(); layers];
+        for layer in
+            (0..layers).filter(|&n| planned.iter().skip(n).step_by(layers).any(|(_, m)| *m == Method::Unfolded))
+        {
+            unfolded[layer] = unfold::unfold(model, &metric, layer as u16, up, progress)?;
         }
         let mut cost = ComputeCost::default();
         let mut grids = Vec::with_capacity(layers * blocks);
-        for block in 0..blocks {
-            for layer in 0..layers {
-                let touched = &touched[block * layers + layer];
-                let region = Region { layer: layer as u16, block: block as u16 };
-                let (mut grid, method) = planner.plan(region, touched, reaches[layer]);
-                if !touched.depths.is_empty() {
-                    let spent = match method {
-                        Method::Closest(kind) => {
-                            let layer = planner.layer(&grid, touched, kind);
-                            compute::fill(&mut grid, &layer, touched, settings.trace_tolerance, progress)?
-                        }
-                        Method::Flow(flow) => {
-                            let (bottom, top) = (grid.bottom.clone(), grid.top.clone());
-                            let bottom = |x: f32, y: f32| bottom.z(model, region.block, x, y);
-                            let top = |x: f32, y: f32| top.z(model, region.block, x, y);
-                            flow::fill(&mut grid, flow, planner.stride, &metric, [&bottom, &top], progress)?
-                        }
-                    };
-                    cost.closest_points += spent.closest_points;
-                    cost.traces += spent.traces;
-                }
+        for (n, (mut grid, method)) in planned.into_iter().enumerate() {
+            let (touched, block) = (&touched[n], region(n).block);
+            if touched.depths.is_empty() && method != Method::Unfolded {
                 grids.push(grid);
+                continue;
             }
+            let spent = match method {
+                Method::Closest(kind) => {
+                    let layer = planner.layer(&grid, touched, kind);
+                    compute::fill(&mut grid, &layer, touched, settings.trace_tolerance, progress)?
+                }
+                Method::Flow(flow) => {
+                    let (bottom, top) = (grid.bottom.clone(), grid.top.clone());
+                    let bottom = |x: f32, y: f32| bottom.z(model, block, x, y);
+                    let top = |x: f32, y: f32| top.z(model, block, x, y);
+                    flow::fill(&mut grid, flow, planner.stride, &metric, [&bottom, &top], progress)?
+                }
+                Method::Unfolded => {
+                    grid.unfolded = unfolded[n % layers].get(usize::from(block)).cloned();
+                    ComputeCost::default()
+                }
+            };
+            cost.closest_points += spent.closest_points;
+            cost.traces += spent.traces;
+            grids.push(grid);
         }
         Ok(Self { size, layers, blocks, grids, cost })
     }
@@ -148,9 +168,23 @@ impl Parameterization {
         found
     }
 
-    /// Memory of all grids and their sheets, bytes.
+    /// The unfoldings of the grids, each once, in the order of the grids.
+    pub fn unfoldings(&self) -> Vec<Unfolding> {
+        let mut found: Vec<Unfolding> = Vec::new();
+        for unfolded in self.grids.iter().filter_map(|grid| grid.unfolded.as_ref()) {
+            if !found.iter().any(|known| Arc::ptr_eq(known, unfolded)) {
+                found.push(Arc::clone(unfolded));
+            }
+        }
+        found
+    }
+
+    /// Memory of all grids, their sheets and unfoldings, bytes.
     pub fn bytes(&self) -> usize {
+        let unfolded = self.unfoldings();
+        let unfolded =
+            unfolded.iter().flat_map(|of_block| of_block.iter()).map(|field| size_of_val(field.values.as_slice()));
         let sheets = self.calm_sheets().iter().map(|sheet| size_of_val(sheet.z.as_slice())).sum::<usize>();
-        self.grids.iter().map(RegionGrid::bytes).sum::<usize>() + sheets
+        self.grids.iter().map(RegionGrid::bytes).sum::<usize>() + sheets + unfolded.sum::<usize>()
     }
 }

@@ -26,11 +26,25 @@ pub enum Method {
     Closest(LayerKind),
     /// As a flow ([`crate::flow`]).
     Flow(flow::Flow),
+    /// By arc length, k from the surfaces themselves ([`crate::unfold`]).
+    Unfolded,
 }
 
-/// Horizons at the bottom and the top of a layer.
-pub fn horizons(layer: usize, layers: usize) -> (Option<usize>, Option<usize>) {
-    ((layer > 0).then(|| layers - 1 - layer), (layer + 1 < layers).then(|| layers - 2 - layer))
+/// Horizons at the bottom and the top of a layer. Bodies bound nothing: they cut what is there, and inside them the rock
+/// is not layered.
+pub fn horizons<M: LayerModel + ?Sized>(model: &M, layer: usize) -> (Option<usize>, Option<usize>) {
+    let layers = model.layer_count();
+    let top = (layer + 1 < layers).then(|| layers - 2 - layer);
+    if top.is_some_and(|top| model.is_body(top)) {
+        return (None, None);
+    }
+    ((layers - 1 - layer..layers - 1).find(|&h| !model.is_body(h)), top)
+}
+
+/// Whether a horizon at the bottom or the top of a region is no height field.
+pub fn is_unfolded<M: LayerModel + ?Sized>(model: &M, region: Region) -> bool {
+    let (bottom, top) = horizons(model, usize::from(region.layer));
+    [bottom, top].into_iter().flatten().any(|h| model.level(h, region.block).is_some())
 }
 
 /// Plans the regions of a model.
@@ -75,7 +89,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
 
     /// The unshifted sheets at the bottom and the top of a region.
     fn sheets(&self, region: Region) -> (Option<SheetRef>, Option<SheetRef>) {
-        let (bottom, top) = horizons(usize::from(region.layer), self.model.layer_count());
+        let (bottom, top) = horizons(self.model, usize::from(region.layer));
         let sheet = |horizon| SheetRef { of: self.source(horizon, region), shift: 0.0 };
         (bottom.map(sheet), top.map(sheet))
     }
@@ -83,6 +97,9 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
     /// Vertical distance (voxels) from the reference sheet of an open or parallel layer to the farthest point of
     /// the region; the reference thickness has to cover it. The shortest distance to the sheet is never longer.
     pub fn farthest(&self, region: Region, touched: &RegionColumns) -> f32 {
+        if is_unfolded(self.model, region) {
+            return self.farthest_unfolded(region, touched);
+        }
         let (bottom, top) = self.sheets(region);
         let last = self.model.size()[2].saturating_sub(1) as f32;
         let node = |sheet: &SheetRef, [x, y]: [i32; 2]| sheet.node(self.model, region.block, x, y);
@@ -108,6 +125,23 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
         touched.columns().map(|(_, column, depths)| height(column, depths)).fold(0.0, f32::max)
     }
 
+    /// [`Planner::farthest`] from a surface of any shape: metres as vertical voxels.
+    fn farthest_unfolded(&self, region: Region, touched: &RegionColumns) -> f32 {
+        let horizon = match horizons(self.model, usize::from(region.layer)) {
+            (Some(h), None) | (None, Some(h)) => h,
+            _ => return 0.0,
+        };
+        let Some(level) = self.model.level(horizon, region.block) else { return 0.0 };
+        let last = self.model.size()[2].saturating_sub(1) as f32;
+        let columns = touched.columns().step_by(7);
+        let offsets = columns.flat_map(|(_, [x, y], _)| {
+            let place = move |n: usize| Vec3::new(x as f32, y as f32, (n * 4) as f32);
+            let inside = (0..=(last / 4.0) as usize).map(place).filter(|&p| self.model.region_at(p) == region);
+            inside.map(|p| level.offset_m(p).abs())
+        });
+        offsets.fold(0.0, f32::max) / self.model.metric().z_axis.length() as f32
+    }
+
     /// The empty grid of a region and the method that fills it. `reach` is the largest of [`Planner::farthest`] over
     /// the layer.
     pub fn plan(&self, region: Region, touched: &RegionColumns, reach: f32) -> (RegionGrid, Method) {
@@ -118,11 +152,15 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
         let definition = self.definition(region).unwrap_or_default();
         let spacing = if definition == Harmonic { Spacing::Harmonic } else { Spacing::Even };
         let shifted = |sheet: &SheetRef, shift: f32| SheetRef { shift, ..sheet.clone() };
+        let plane = |shift| SheetRef { of: SheetSource::Plane, shift };
         let (method, bottom, top) = match (self.sheets(region), definition) {
-            ((None, None), _) => {
-                let plane = |shift| SheetRef { of: SheetSource::Plane, shift };
-                (Method::Closest(LayerKind::Vertical), plane(last.max(1.0)), plane(0.0))
+            _ if is_unfolded(self.model, region) => {
+                let (bottom, top) = horizons(self.model, usize::from(region.layer));
+                let sheet =
+                    |h: Option<usize>| h.map_or(plane(0.0), |h| SheetRef { of: SheetSource::Horizon(h), shift: 0.0 });
+                (Method::Unfolded, sheet(bottom), sheet(top))
             }
+            ((None, None), _) => (Method::Closest(LayerKind::Vertical), plane(last.max(1.0)), plane(0.0)),
             ((Some(bottom), Some(top)), DistanceRatio) => (Method::Closest(LayerKind::Ratio), bottom, top),
             ((Some(bottom), Some(top)), Flow | Harmonic) => {
                 (Method::Flow(Smooth(Ends::Both, Spacing::Harmonic)), bottom, top)
@@ -145,19 +183,19 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
                 (Method::Closest(LayerKind::AboveBottom(thickness)), bottom.clone(), shifted(&bottom, -reach))
             }
         };
-        let is_open =
-            matches!(horizons(usize::from(region.layer), self.model.layer_count()), (Some(_), None) | (None, Some(_)));
+        let is_open = matches!(horizons(self.model, usize::from(region.layer)), (Some(_), None) | (None, Some(_)));
         let is_parallel = matches!(method, Method::Closest(LayerKind::AboveBottom(_) | LayerKind::BelowTop(_)));
         let grid = RegionGrid {
             region,
             origin: touched.origin,
-            size: touched.size,
+            size: if method == Method::Unfolded { [0; 2] } else { touched.size },
             levels: self.levels(region, touched, method, &bottom, &top),
             bottom,
             top,
             thickness_m: (is_open || is_parallel).then(|| f64::from(thickness) * self.metric.unit_m),
             offsets: Vec::new(),
             creases: Vec::new(),
+            unfolded: None,
         };
         (grid, method)
     }
@@ -180,7 +218,7 @@ impl<'a, M: LayerModel + ?Sized> Planner<'a, M> {
             .min(4.0 * (last + 1.0));
         let levels = ((thickest / self.settings.level_spacing).ceil() as usize + 1).max(FEWEST_LEVELS);
         match method {
-            Method::Closest(LayerKind::Vertical) => 3,
+            Method::Closest(LayerKind::Vertical) | Method::Unfolded => 3,
             Method::Closest(_) => levels,
             Method::Flow(_) => levels | 1,
         }

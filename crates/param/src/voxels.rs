@@ -103,6 +103,10 @@ struct TraceSheets {
 impl TraceSheets {
     fn at<M: LayerModel + ?Sized>(&mut self, param: &Parameterization, model: &M, region: Region, p: Vec3) -> [f32; 3] {
         let grid = param.grid(region);
+        if grid.unfolded.is_some() {
+            let (flat, _) = grid.lookup(model, param.size, p);
+            return [flat.i, flat.j, flat.k];
+        }
         if self.region != Some(region) {
             self.bottom = grid.bottom.z(model, region.block, p.x, p.y);
             self.thickness = self.bottom - grid.top.z(model, region.block, p.x, p.y);

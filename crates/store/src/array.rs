@@ -15,6 +15,7 @@ use serde_json::{Map, Value};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use survey::progress::Progress;
+use survey::sample::Sample;
 use zarrs::array::codec::{Crc32cCodec, ZstdCodec};
 use zarrs::array::{
     Array, ArrayBuilder, ArrayCreateError, ArrayError, ArraySubset, BytesToBytesCodecTraits, CodecError, CodecOptions,
@@ -134,7 +135,7 @@ fn create<T: StoredSample>(
 }
 
 /// Writes the metadata of a volume whose shards are then written one by one (see `shard`): fill value 0.
-pub(super) fn create_volume<T: StoredSample>(
+pub(super) fn create_volume<T: StoredSample + Sample>(
     group: &Path,
     name: &str,
     size: [usize; 3],
@@ -349,7 +350,7 @@ impl StoredArray {
             return Err(StoreError::WrongType {
                 path: self.group.clone(),
                 array: self.name.clone(),
-                expected: T::TYPE.name(),
+                expected: T::NAME,
                 found: self.type_name(),
             });
         }

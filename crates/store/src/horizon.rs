@@ -1,7 +1,8 @@
 //! Horizons on disk: `NAME.zarr`, a Zarr v3 group with a subgroup `0`, `1`, … for each sheet. Each subgroup
 //! has the arrays `depth` (float32, vertical value, NaN = hole) and `quality` (uint8, the numbers of
 //! [`Quality`]). Sheets on the survey's lattice are `[inline][crossline]`; the own grid of every sheet is in
-//! the group's attribute `petroglyph`.
+//! the group's attribute `petroglyph`. A horizon of any shape has the arrays `vertices` (float64, world X, Y and vertical
+//! value) and `triangles` (uint32, three corners each) instead of sheets; without triangles it is a set of points.
 //!
 //! Memory: 9 bytes per node of the sheet that is being read or written.
 
@@ -10,8 +11,10 @@ use super::error::StoreError;
 use super::header::{read_header, write_header};
 use super::layout::ArrayLayout;
 use super::replacement::Replacement;
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
+use survey::TriangleMesh;
 use survey::geometry::MAX_COORDINATE;
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::progress::Progress;
@@ -24,6 +27,9 @@ const KIND: &str = "horizon";
 struct Header {
     name: String,
     sheets: Vec<SheetHeader>,
+    /// Counts of corners and triangles of a horizon of any shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    surface: Option<[usize; 2]>,
 }
 
 /// Facts of a sheet.
@@ -41,7 +47,7 @@ struct SheetHeader {
 /// let path = folder.path().join("chalk.zarr");
 /// let geometry = SurveyGeometry::regular([2, 2, 50], 25.0, 4.0, VerticalUnit::Milliseconds);
 /// let sheet = Sheet::new(NodeGrid::of_survey(&geometry), vec![80.0, 84.0, 88.0, 92.0], Quality::Picked);
-/// let chalk = Horizon { name: "chalk".into(), sheets: vec![sheet] };
+/// let chalk = Horizon::new("chalk", vec![sheet]);
 /// store::write_horizon(&path, &chalk, &Progress::silent())?;
 /// assert_eq!(store::read_horizon(&path, &Progress::silent())?, chalk);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -56,7 +62,8 @@ pub fn write_horizon(path: &Path, horizon: &Horizon, progress: &Progress) -> Res
     }
     let replacement = Replacement::of(path)?;
     let group = replacement.path();
-    write_header(group, KIND, &Header { name: horizon.name.clone(), sheets })?;
+    let surface = horizon.surface.as_ref().map(|mesh| [mesh.vertices.len(), mesh.triangles.len()]);
+    write_header(group, KIND, &Header { name: horizon.name.clone(), sheets, surface })?;
     for (n, sheet) in horizon.sheets.iter().enumerate() {
         write_group(group, &n.to_string(), serde_json::Map::new())?;
         let layout = || ArrayLayout::map(sheet.grid.count, ["inline", "crossline"]);
@@ -64,7 +71,61 @@ pub fn write_horizon(path: &Path, horizon: &Horizon, progress: &Progress) -> Res
         let quality: Vec<u8> = sheet.quality.iter().map(|&quality| quality as u8).collect();
         write_array(group, &format!("{n}/quality"), layout(), Quality::Hole as u8, &quality, progress)?;
     }
+    if let Some(mesh) = &horizon.surface {
+        write_surface(path, group, mesh, progress)?;
+    }
     replacement.commit()
+}
+
+fn write_surface(path: &Path, group: &Path, mesh: &TriangleMesh, progress: &Progress) -> Result<(), StoreError> {
+    check_vertices(path, mesh)?;
+    let layout = |count: usize, of: &'static str| ArrayLayout::map([count, 3], [of, "axis"]);
+    let vertices: Vec<f64> = mesh.vertices.iter().flat_map(|v| v.to_array()).collect();
+    write_array(group, "vertices", layout(mesh.vertices.len(), "vertex"), f64::NAN, &vertices, progress)?;
+    if mesh.triangles.is_empty() {
+        return Ok(());
+    }
+    let layout = ArrayLayout::map([mesh.triangles.len(), 3], ["triangle", "corner"]);
+    write_array(group, "triangles", layout, 0u32, mesh.triangles.as_flattened(), progress)
+}
+
+fn read_surface(
+    path: &Path,
+    [vertices, triangles]: [usize; 2],
+    progress: &Progress,
+) -> Result<TriangleMesh, StoreError> {
+    let damaged =
+        |array: &str, reason: String| StoreError::Damaged { path: path.to_owned(), array: array.to_owned(), reason };
+    let open = |array: &str, count: usize| {
+        let found = StoredArray::open(path, array)?;
+        if found.shape() == [count, 3] {
+            Ok(found)
+        } else {
+            Err(damaged(array, format!("it has {:?}, the horizon [{count}, 3]", found.shape())))
+        }
+    };
+    let places = open("vertices", vertices)?.read::<f64>(progress)?;
+    let vertices: Vec<DVec3> = places.chunks_exact(3).map(DVec3::from_slice).collect();
+    let triangles: Vec<[u32; 3]> = if triangles == 0 {
+        Vec::new()
+    } else {
+        let corners = open("triangles", triangles)?.read::<u32>(progress)?;
+        corners.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect()
+    };
+    if triangles.iter().flatten().any(|&corner| corner as usize >= vertices.len()) {
+        return Err(damaged("triangles", "a triangle has a corner that is not there".to_owned()));
+    }
+    let mesh = TriangleMesh { vertices, triangles };
+    check_vertices(path, &mesh)?;
+    Ok(mesh)
+}
+
+/// Refuses corners that are no places, or farther off than any survey may reach.
+fn check_vertices(path: &Path, mesh: &TriangleMesh) -> Result<(), StoreError> {
+    let is_place = |v: &DVec3| v.is_finite() && v.abs().max_element() <= MAX_COORDINATE;
+    let Some(beyond) = mesh.vertices.iter().find(|v| !is_place(v)) else { return Ok(()) };
+    let reason = format!("the corner {beyond} lies beyond any survey, which reaches at most {MAX_COORDINATE:e}");
+    Err(StoreError::Damaged { path: path.to_owned(), array: "vertices".to_owned(), reason })
 }
 
 /// Reads a horizon back.
@@ -95,7 +156,8 @@ pub fn read_horizon(path: &Path, progress: &Progress) -> Result<Horizon, StoreEr
         })?;
         sheets.push(Sheet { block, grid, depth, quality });
     }
-    Ok(Horizon { name: header.name, sheets })
+    let surface = header.surface.map(|counts| read_surface(path, counts, progress)).transpose()?;
+    Ok(Horizon { name: header.name, sheets, surface })
 }
 
 /// Refuses a depth that lies farther off than any survey may reach; what is not finite is a hole.

@@ -25,6 +25,7 @@ use std::path::Path;
 use std::sync::Mutex;
 use survey::huge_pages::zeroed;
 use survey::progress::Progress;
+use survey::sample::Sample;
 use survey::sample::SampleType;
 use survey::source::{Block, BlockSource, LineOrder, SourceError};
 use survey::volume::Volume;
@@ -73,7 +74,7 @@ pub struct Ingested {
 ///
 /// # Errors
 /// [`StoreError`]; `path` is then what it was before.
-pub fn write_volume<T: StoredSample>(
+pub fn write_volume<T: StoredSample + Sample>(
     path: &Path,
     volume: &Volume<T>,
     info: &VolumeInfo,
@@ -150,7 +151,7 @@ fn ingest_blocks(
     ingest(group, path, source, info, memory_bytes, progress)
 }
 
-fn ingest_as<T: StoredSample>(
+fn ingest_as<T: StoredSample + Sample>(
     group: &Path,
     path: &Path,
     source: &mut dyn BlockSource,
@@ -227,7 +228,7 @@ struct Ingest<'a> {
 }
 
 impl Ingest<'_> {
-    fn run<'b, T: StoredSample>(
+    fn run<'b, T: StoredSample + Sample>(
         &self,
         size: [usize; 3],
         info: &VolumeInfo,
@@ -252,7 +253,7 @@ impl Ingest<'_> {
     }
 
     /// Writes level 0.
-    fn write_full<'b, T: StoredSample>(
+    fn write_full<'b, T: StoredSample + Sample>(
         &self,
         size: [usize; 3],
         mut supply: impl FnMut(&Block, Vec<T>) -> Result<Cow<'b, [T]>, SourceError>,
@@ -316,7 +317,7 @@ impl Ingest<'_> {
     }
 
     /// Writes a shard from samples that contain all of it, and determines the ranges of its bricks.
-    fn write_shard<T: StoredSample>(
+    fn write_shard<T: StoredSample + Sample>(
         &self,
         grid: &ShardGrid,
         place: [usize; 3],
@@ -332,7 +333,7 @@ impl Ingest<'_> {
     }
 
     /// Writes level `level` from the level before, whose files are `fine`.
-    fn write_level<T: StoredSample>(
+    fn write_level<T: StoredSample + Sample>(
         &self,
         level: usize,
         fine: ShardGrid,
@@ -416,7 +417,7 @@ impl<T> Default for LevelRoom<T> {
     }
 }
 
-impl<T: StoredSample> LevelRoom<T> {
+impl<T: StoredSample + Sample> LevelRoom<T> {
     /// Makes the box `[start, part]` of a level from the finer one; `[fine, size]` are their sizes, and the masks are
     /// given in the same way.
     fn fill(
@@ -469,7 +470,7 @@ struct Inlines<'a, T> {
     failed: Option<StoreError>,
 }
 
-impl<T: StoredSample> Inlines<'_, T> {
+impl<T: StoredSample + Sample> Inlines<'_, T> {
     /// The trace at x, y of the box; undefined once reading has failed.
     fn read_trace(&mut self, x: usize, y: usize, out: &mut [f32]) {
         if self.failed.is_some() {

@@ -6,6 +6,7 @@ use super::layout::{ArrayLayout, BRICK};
 use super::sample::StoredSample;
 use std::path::Path;
 use survey::progress::Progress;
+use survey::sample::Sample;
 
 /// Least and greatest value of bricks, by their index; the least is above the greatest where there is no
 /// value.
@@ -18,7 +19,7 @@ pub(super) struct Samples<'a, T> {
     pub size: [usize; 3],
 }
 
-impl<T: StoredSample> Samples<'_, T> {
+impl<T: StoredSample + Sample> Samples<'_, T> {
     /// Least and greatest live sample of each brick of the box from `start` of size `part`, with the brick's
     /// number in a volume of `volume` voxels; `start` is a multiple of the brick. NaN is ignored.
     pub fn ranges(&self, start: [usize; 3], part: [usize; 3], mask: &[bool], volume: [usize; 3]) -> IndexedRanges {
@@ -56,7 +57,7 @@ struct Range {
 impl Range {
     const NONE: Self = Self { lows: [f32::INFINITY; LANES], highs: [f32::NEG_INFINITY; LANES] };
 
-    fn add<T: StoredSample>(&mut self, samples: &[T]) {
+    fn add<T: StoredSample + Sample>(&mut self, samples: &[T]) {
         let (chunks, rest) = samples.as_chunks::<LANES>();
         let (mut lows, mut highs) = (self.lows, self.highs);
         let mut widen = |lane: usize, value: f32| {

@@ -1,6 +1,5 @@
 //! The numeric types of arrays.
 
-use survey::sample::Sample;
 use zarrs::array::{DataType, FillValue, data_type};
 
 mod sealed {
@@ -14,9 +13,11 @@ mod sealed {
 }
 
 /// A numeric type that the elements of an array may have.
-pub trait StoredSample: Sample + sealed::Element + bytemuck::Pod {
+pub trait StoredSample: PartialEq + Send + Sync + sealed::Element + bytemuck::Pod {
     /// Value of what was never written: NaN, or 0 for integers.
     const FILL: Self;
+    /// The type's name as Zarr spells it.
+    const NAME: &'static str;
 }
 
 macro_rules! stored {
@@ -31,6 +32,7 @@ macro_rules! stored {
         }
         impl StoredSample for $type {
             const FILL: Self = $fill;
+            const NAME: &'static str = stringify!($name);
         }
     };
 }
@@ -42,3 +44,4 @@ stored!(u16, uint16, 0);
 stored!(i32, int32, 0);
 stored!(u32, uint32, 0);
 stored!(f32, float32, f32::NAN);
+stored!(f64, float64, f64::NAN);

@@ -385,7 +385,7 @@ fn horizon() -> Horizon {
         vec![Sheet::new(survey, depth(600), Quality::Picked), Sheet::new(native, depth(63), Quality::Extrapolated)];
     sheets[1].block = Some(3);
     sheets[0].quality[0] = Quality::Filled;
-    Horizon { name: "Top Ølund/2".to_owned(), sheets }
+    Horizon::new("Top Ølund/2", sheets)
 }
 
 #[test]
@@ -401,7 +401,7 @@ fn a_horizon_comes_back_with_grids_blocks_and_qualities() {
         assert_eq!(bits(a), bits(b));
     }
     assert!(matches!(StoredVolume::open(&path), Err(StoreError::WrongKind { .. })));
-    let empty = Horizon { name: "none".to_owned(), sheets: Vec::new() };
+    let empty = Horizon::new("none", Vec::new());
     write_horizon(&path, &empty, &quiet()).unwrap();
     assert_eq!(read_horizon(&path, &quiet()).unwrap(), empty);
 }

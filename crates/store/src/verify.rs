@@ -71,6 +71,7 @@ impl StoredArray {
             "uint16" => self.find_damage_as::<u16>(findings, progress),
             "int32" => self.find_damage_as::<i32>(findings, progress),
             "uint32" => self.find_damage_as::<u32>(findings, progress),
+            "float64" => self.find_damage_as::<f64>(findings, progress),
             // What is no number of ours is refused with its type.
             _ => self.find_damage_as::<f32>(findings, progress),
         }

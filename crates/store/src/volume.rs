@@ -29,6 +29,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use survey::geometry::SurveyGeometry;
 use survey::progress::Progress;
+use survey::sample::Sample;
 use survey::source::{BoxSource, SlabSource, SourceError};
 use survey::volume::Volume;
 
@@ -125,7 +126,7 @@ impl StoredVolume {
     ///
     /// # Errors
     /// [`StoreError`], [`StoreError::WrongType`] when the samples are not `T`s.
-    pub fn read<T: StoredSample>(&self, level: usize, progress: &Progress) -> Result<Volume<T>, StoreError> {
+    pub fn read<T: StoredSample + Sample>(&self, level: usize, progress: &Progress) -> Result<Volume<T>, StoreError> {
         let samples = self.array(level)?.read(progress)?;
         self.with_mask(level, [0; 3], self.size(level), samples)
     }
@@ -134,7 +135,7 @@ impl StoredVolume {
     ///
     /// # Errors
     /// [`StoreError`], [`StoreError::OutOfBounds`] when the box is not inside the level.
-    pub fn read_box<T: StoredSample>(
+    pub fn read_box<T: StoredSample + Sample>(
         &self,
         level: usize,
         start: [usize; 3],
@@ -233,7 +234,7 @@ impl StoredVolume {
     }
 
     /// Adds the part of the mask that belongs to a box of a level.
-    fn with_mask<T: StoredSample>(
+    fn with_mask<T: StoredSample + Sample>(
         &self,
         level: usize,
         start: [usize; 3],
@@ -293,6 +294,6 @@ impl BoxSource for StoredVolume {
 }
 
 /// Samples as floats.
-fn as_f32<T: StoredSample>(samples: &[T]) -> Vec<f32> {
+fn as_f32<T: StoredSample + Sample>(samples: &[T]) -> Vec<f32> {
     samples.par_iter().map(|value| value.to_f32()).collect()
 }

@@ -1,9 +1,10 @@
-//! A horizon as a set of sheets, one for each fault block in which it was interpreted.
+//! A horizon as a set of sheets, one for each fault block in which it was interpreted, or as a surface of any shape.
 //!
 //! Depths are vertical values (ms TWT or m, positive down) at the nodes of the sheet's own grid; NaN marks a
 //! hole. Two sheets may cover the same trace, as they do at a reverse fault.
 
 use crate::geometry::SurveyGeometry;
+use crate::mesh::TriangleMesh;
 use glam::{DMat2, DVec2};
 use serde::{Deserialize, Serialize};
 
@@ -130,21 +131,35 @@ impl Sheet {
     }
 }
 
-/// An interpreted horizon: one or more sheets.
+/// An interpreted horizon: one or more sheets, or a surface of any shape.
 ///
 /// ```
 /// # use survey::{Horizon, NodeGrid, Quality, Sheet, SurveyGeometry, VerticalUnit};
 /// let geometry = SurveyGeometry::regular([3, 4, 50], 25.0, 4.0, VerticalUnit::Milliseconds);
 /// let flat = Sheet::new(NodeGrid::of_survey(&geometry), vec![120.0; 12], Quality::Tracked);
-/// let horizon = Horizon { name: "Top chalk".into(), sheets: vec![flat] };
+/// let horizon = Horizon::new("Top chalk", vec![flat]);
 /// assert_eq!(horizon.sheets[0].grid.world_at(glam::DVec2::new(2.0, 3.0)), glam::DVec2::new(50.0, 75.0));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Horizon {
     /// Unique within a project.
     pub name: String,
-    /// Its sheets.
+    /// Its sheets; none where it has a surface of any shape.
     pub sheets: Vec<Sheet>,
+    /// A surface that may be overturned or closed: triangles, or scattered points alone.
+    pub surface: Option<TriangleMesh>,
+}
+
+impl Horizon {
+    /// A horizon of sheets.
+    pub fn new(name: impl Into<String>, sheets: Vec<Sheet>) -> Self {
+        Self { name: name.into(), sheets, surface: None }
+    }
+
+    /// A horizon of any shape: overturned limbs, a closed body. A mesh without triangles is a set of points.
+    pub fn of_surface(name: impl Into<String>, surface: TriangleMesh) -> Self {
+        Self { name: name.into(), sheets: Vec::new(), surface: Some(surface) }
+    }
 }
 
 #[cfg(test)]

@@ -280,7 +280,7 @@ impl ClosedForm {
             });
             Sheet::new(grid, depth.collect(), Quality::Picked)
         };
-        Horizon { name: format!("H{}", horizon + 1), sheets: (0..blocks).map(sheet).collect() }
+        Horizon::new(format!("H{}", horizon + 1), (0..blocks).map(sheet).collect())
     }
 }
 

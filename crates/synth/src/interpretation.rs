@@ -40,10 +40,8 @@ pub(super) fn horizon(truth: &SynthTruth, geometry: &SurveyGeometry, horizon: us
         });
         Sheet::new(grid, depth.collect(), Quality::Picked)
     };
-    Horizon {
-        name: truth.horizons[horizon].name.clone(),
-        sheets: (0..truth.block_count() as u16).map(sheet).filter(|sheet| sheet.node_count() > 0).collect(),
-    }
+    let sheets = (0..truth.block_count() as u16).map(sheet).filter(|sheet| sheet.node_count() > 0);
+    Horizon::new(truth.horizons[horizon].name.clone(), sheets.collect())
 }
 
 /// The faults up to their tips.

@@ -23,6 +23,7 @@ mod fold;
 mod interpretation;
 mod random;
 mod seismic;
+pub mod shapes;
 #[cfg(test)]
 mod tests;
 mod truth;

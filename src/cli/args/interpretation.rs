@@ -169,6 +169,10 @@ pub(in crate::cli) struct ReadingArgs {
     /// CPS-3: the order of the values, columns from the north or rows from the south [default: the smoother]
     #[arg(long, value_name = "columns|rows")]
     pub(in crate::cli) value_order: Option<String>,
+    /// A horizon as depths on a map, or of any shape (overturned limbs, closed bodies) [default: as its triangles or
+    /// points are]
+    #[arg(long, value_name = "map|any")]
+    pub(in crate::cli) shape: Option<String>,
     /// Scattered points: gaps that a circle of this radius fits into stay holes
     #[arg(long = "gap", value_name = "M")]
     pub(in crate::cli) gap_m: Option<f64>,

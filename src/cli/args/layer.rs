@@ -16,7 +16,7 @@ pub(in crate::cli) enum LayerAction {
                       \n  petroglyph layer set north.petro Chalk --rock \"oolitic limestone\" --age Campanian\
                       \n  petroglyph layer set north.petro Chalk --interval 0,0.3,marl --interval 0.3,1,chalk \
                       --frequency 12,3")]
-    Set(LayerSetArgs),
+    Set(Box<LayerSetArgs>),
     /// Give a layer its default style again
     #[command(after_help = "Example:\n  petroglyph layer reset north.petro Chalk")]
     Reset {

@@ -56,7 +56,7 @@ fn random_horizon(random: &mut Random, geometry: &SurveyGeometry) -> Horizon {
                 }
             })
             .collect();
-    Horizon { name: "Top chalk".into(), sheets: vec![Sheet::new(grid, depth, Quality::Picked)] }
+    Horizon::new("Top chalk", vec![Sheet::new(grid, depth, Quality::Picked)])
 }
 
 #[test]

@@ -163,7 +163,7 @@ fn irap_round_trip_of_a_rotated_mirrored_grid() {
         count: [7, 5],
     };
     let values = (0..35).map(|n| if n == 11 { f32::NAN } else { 100.0 + 1.375 * n as f32 }).collect();
-    let read = Horizon { name: "A".into(), sheets: vec![Sheet::new(grid, values, Quality::Picked)] };
+    let read = Horizon::new("A", vec![Sheet::new(grid, values, Quality::Picked)]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("A.irap");
     write_horizon(&path, &read, &geometry, Format::Irap).unwrap();

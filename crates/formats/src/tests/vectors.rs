@@ -95,7 +95,7 @@ fn tsurf_horizon_of_an_overthrust_keeps_both_depths() {
         }
         Sheet::new(survey::NodeGrid::of_survey(&survey()), depth, survey::Quality::Picked)
     };
-    let written = Horizon { name: "Over".into(), sheets: vec![sheet(0, 5, 20.0), sheet(2, 8, 60.0)] };
+    let written = Horizon::new("Over", vec![sheet(0, 5, 20.0), sheet(2, 8, 60.0)]);
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("over.ts");
     write_horizon(&path, &written, &survey(), Format::Tsurf).unwrap();

@@ -34,7 +34,7 @@ fn tracked(survey: &Synthetic) -> Vec<Vec<VoxelSheet>> {
         .iter()
         .map(|horizon| {
             let sheets = horizon.sheets.iter().enumerate().map(|(n, sheet)| draw(sheet, n as u32)).collect();
-            let drawn = survey::Horizon { name: horizon.name.clone(), sheets };
+            let drawn = survey::Horizon::new(horizon.name.clone(), sheets);
             from_horizon(&drawn, &survey.geometry, &FaultNetwork::none())
         })
         .collect()
@@ -106,8 +106,7 @@ fn a_horizon_with_holes_has_no_faults() {
         let hole = (x - 30.0).hypot(y - 30.0) < 12.0 || (x - 60.0).abs() < 3.0 && y > 20.0;
         if hole { f32::NAN } else { 300.0 + 80.0 * (x / 15.0).sin() + 30.0 * (y / 20.0).cos() }
     });
-    let horizon =
-        survey::Horizon { name: "H".into(), sheets: vec![Sheet::new(grid, depth.collect(), Quality::Tracked)] };
+    let horizon = survey::Horizon::new("H", vec![Sheet::new(grid, depth.collect(), Quality::Tracked)]);
     let sheets = from_horizon(&horizon, &geometry, &FaultNetwork::none());
     let evidence = [Evidence { name: "H", sheets: &sheets }];
     let found = proposed(&evidence, &geometry, None);

@@ -224,9 +224,10 @@ impl Clipper<'_> {
         let p = self.plane.voxel(st);
         match cut {
             Cut::Fault(f) => self.model.faults().surfaces()[usize::from(f)].side(p),
-            Cut::Sheet { horizon, block } => {
-                p.z - f64::from(self.model.sheet(usize::from(horizon), block).z_at(p.x as f32, p.y as f32))
-            }
+            Cut::Sheet { horizon, block } => match self.model.level(usize::from(horizon), block) {
+                Some(level) => f64::from(level.offset_m(p.as_vec3())),
+                None => p.z - f64::from(self.model.sheet(usize::from(horizon), block).z_at(p.x as f32, p.y as f32)),
+            },
         }
     }
 

@@ -185,7 +185,7 @@ fn tangle(seed: u32, faults: usize) -> StructuralModel {
                 })
                 .collect();
             let sheet = Sheet::new(NodeGrid::of_survey(&g), depth, Quality::Picked);
-            Horizon { name: format!("H{h}"), sheets: vec![sheet] }
+            Horizon::new(format!("H{h}"), vec![sheet])
         })
         .collect();
     let named = |(h, &contact): (usize, &Contact)| StratigraphicHorizon { name: format!("H{h}"), contact };
@@ -251,7 +251,7 @@ fn layered(forms: &[Layered]) -> StructuralModel {
         .map(|(h, (_, z))| {
             let depth = (0..81 * 20).map(|n| (10.0 * z((n / 20) as f64)) as f32).collect();
             let sheet = Sheet::new(NodeGrid::of_survey(&g), depth, Quality::Picked);
-            Horizon { name: format!("H{h}"), sheets: vec![sheet] }
+            Horizon::new(format!("H{h}"), vec![sheet])
         })
         .collect();
     let named = |(h, f): (usize, &Layered)| StratigraphicHorizon { name: format!("H{h}"), contact: f.0 };
@@ -297,7 +297,7 @@ fn a_dome_cut_at_its_flank_is_a_ring_with_a_hole() {
     let z = |x: f64, y: f64| 40.0 - 20.0 * (-((x - 40.0).powi(2) + (y - 40.0).powi(2)) / 800.0).exp();
     let depth = (0..81 * 81).map(|n| (10.0 * z((n / 81) as f64, (n % 81) as f64)) as f32).collect();
     let sheet = Sheet::new(NodeGrid::of_survey(&g), depth, Quality::Picked);
-    let horizon = Horizon { name: "H0".into(), sheets: vec![sheet] };
+    let horizon = Horizon::new("H0", vec![sheet]);
     let s = Stratigraphy {
         horizons: vec![StratigraphicHorizon { name: "H0".into(), contact: Contact::Conformable }],
         layer_names: Vec::new(),

@@ -66,7 +66,7 @@ impl AddHorizon {
         draft.document.check_new_name(Noun::Horizon, &self.name)?;
         let geometry = draft.document.frame()?.clone();
         let mut found = formats::read_horizons(&self.path, &geometry, &self.named())?;
-        let (mut horizon, report) = match found.len() {
+        let (mut horizon, mut report) = match found.len() {
             1 => found.remove(0),
             _ => {
                 let names = found.iter().map(|(horizon, _)| horizon.name.clone()).collect();
@@ -75,14 +75,20 @@ impl AddHorizon {
         };
         horizon.name.clone_from(&self.name);
         progress.check()?;
+        let mut contact = self.contact;
+        if model::is_closed(&horizon, &geometry) && contact == Contact::Conformable {
+            contact = Contact::Intrusive;
+            report.notes.push("it is closed, so it cuts the other horizons as an intrusive contact".to_owned());
+        }
+        model::check_surface(&horizon, contact, &geometry)?;
         let others = load_all(draft, progress)?;
-        let position = self.position(draft, &horizon, &others)?;
+        let position = self.position(draft, &horizon, contact, &others)?;
         let hash = content::hash_horizon(&horizon);
         let (file, new) = draft.generation("horizons", &self.name, "zarr")?;
         store::write_horizon(&new, &horizon, progress)?;
         let entry = HorizonEntry {
             name: self.name.clone(),
-            contact: self.contact,
+            contact,
             file,
             hash,
             source: super::source_of(&self.path, reading(&report))?,
@@ -93,7 +99,8 @@ impl AddHorizon {
         for (index, other) in others.iter().enumerate() {
             let index = if index < position { index } else { index + 1 };
             let (young, old) = (index.min(position), index.max(position));
-            if !rules.may_cross(young, old) {
+            let are_maps = other.surface.is_none() && horizon.surface.is_none();
+            if are_maps && !rules.may_cross(young, old) {
                 let (younger, older) = if index < position { (other, &horizon) } else { (&horizon, other) };
                 order::check(younger, older, &geometry)?;
             }
@@ -108,10 +115,18 @@ impl AddHorizon {
     }
 
     /// The position in the list, 0 = youngest.
-    fn position(&self, draft: &Draft, horizon: &Horizon, others: &[Horizon]) -> Result<usize, ProjectError> {
+    fn position(
+        &self,
+        draft: &Draft,
+        horizon: &Horizon,
+        contact: Contact,
+        others: &[Horizon],
+    ) -> Result<usize, ProjectError> {
         match &self.age {
             Age::Above(name) => draft.document.position(Noun::Horizon, name),
             Age::Below(name) => Ok(draft.document.position(Noun::Horizon, name)? + 1),
+            // A body is drawn over whatever it cuts; its layer is its own at the end of the list.
+            Age::ByDepth if horizon.surface.is_some() && contact == Contact::Intrusive => Ok(others.len()),
             Age::ByDepth => {
                 let geometry = draft.document.frame()?;
                 let deeper = |other: &Horizon| order::is_above(horizon, other, geometry);

@@ -4,7 +4,7 @@
 //! files.
 
 use store::{StoreError, StoredVolume};
-use survey::{Fault, Horizon, Well};
+use survey::{Fault, Horizon, TriangleMesh, Well};
 
 /// BLAKE3 hash of a volume's size, sample type, the checksums of its bricks and its live-trace mask: identifies its
 /// samples without reading them.
@@ -21,7 +21,7 @@ pub fn hash_stored(volume: &StoredVolume) -> Result<String, StoreError> {
     Ok(hash.finalize().to_hex().to_string())
 }
 
-/// BLAKE3 of a horizon's sheets.
+/// BLAKE3 of a horizon's sheets, or of its surface of any shape.
 pub fn hash_horizon(horizon: &Horizon) -> String {
     let mut hash = blake3::Hasher::new();
     for sheet in &horizon.sheets {
@@ -35,18 +35,25 @@ pub fn hash_horizon(horizon: &Horizon) -> String {
         let quality: Vec<u8> = sheet.quality.iter().map(|quality| *quality as u8).collect();
         hash.update(&quality);
     }
+    if let Some(mesh) = &horizon.surface {
+        add_mesh(&mut hash, mesh);
+    }
     hash.finalize().to_hex().to_string()
 }
 
 /// BLAKE3 of a fault's triangles.
 pub fn hash_fault(fault: &Fault) -> String {
     let mut hash = blake3::Hasher::new();
-    hash.update(&(fault.mesh.vertices.len() as u64).to_le_bytes());
-    for vertex in &fault.mesh.vertices {
+    add_mesh(&mut hash, &fault.mesh);
+    hash.finalize().to_hex().to_string()
+}
+
+fn add_mesh(hash: &mut blake3::Hasher, mesh: &TriangleMesh) {
+    hash.update(&(mesh.vertices.len() as u64).to_le_bytes());
+    for vertex in &mesh.vertices {
         hash.update(bytemuck::cast_slice(&vertex.to_array()));
     }
-    hash.update(bytemuck::cast_slice(&fault.mesh.triangles));
-    hash.finalize().to_hex().to_string()
+    hash.update(bytemuck::cast_slice(&mesh.triangles));
 }
 
 /// BLAKE3 of a well's path, tops, logs and checkshots.
@@ -84,9 +91,8 @@ mod tests {
         assert_ne!(hash("a", &volume), hash("e", &changed));
 
         let grid = NodeGrid::of_survey(&SurveyGeometry::regular([2, 2, 2], 1.0, 1.0, VerticalUnit::Metres));
-        let horizon = |name: &str, depth: f32, grid: NodeGrid| Horizon {
-            name: name.into(),
-            sheets: vec![Sheet::new(grid, vec![depth; 4], Quality::Picked)],
+        let horizon = |name: &str, depth: f32, grid: NodeGrid| {
+            Horizon::new(name, vec![Sheet::new(grid, vec![depth; 4], Quality::Picked)])
         };
         assert_eq!(hash_horizon(&horizon("a", 1.0, grid)), hash_horizon(&horizon("b", 1.0, grid)));
         assert_ne!(hash_horizon(&horizon("a", 1.0, grid)), hash_horizon(&horizon("a", 2.0, grid)));

@@ -139,7 +139,7 @@ pub fn write_files(made: &Synthetic, out: &Path, progress: &Progress) -> Result<
         let csv = horizons.join(format!("{stem}.csv"));
         formats::write_horizon(&csv, horizon, &made.geometry, Format::Csv)?;
         for (n, sheet) in horizon.sheets.iter().enumerate() {
-            let alone = Horizon { name: horizon.name.clone(), sheets: vec![sheet.clone()] };
+            let alone = Horizon::new(horizon.name.clone(), vec![sheet.clone()]);
             let irap = horizons.join(format!("{stem}-{n}.irap"));
             formats::write_horizon(&irap, &alone, &made.geometry, Format::Irap)?;
         }

@@ -6,7 +6,8 @@ use crate::document::Document;
 use crate::error::ProjectError;
 use model::ModelSettings;
 use param::{
-    ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, SheetSource, VoxelParameterization,
+    ComputeCost, ParamSettings, Parameterization, Region, RegionGrid, SheetRef, SheetSource, Unfolding,
+    VoxelParameterization,
 };
 use serde::{Deserialize, Serialize};
 use std::io::{self, Read, Write};
@@ -14,10 +15,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use store::{ParameterizationVolumes, StoredParameterization};
 use survey::height_field::FAR;
-use survey::{HeightField, Progress};
+use survey::{HeightField, LevelField, Progress};
 
 /// Grid files.
-const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x02", what: "the parameterization" };
+const GRIDS: Kind = Kind { prefix: "grids", magic: b"PGGRIDS\x03", what: "the parameterization" };
 
 /// The key of a parameterization: a hash of everything that it depends on.
 pub fn parameterization_key(document: &Document, model: &ModelSettings, settings: &ParamSettings) -> String {
@@ -63,6 +64,7 @@ struct Header {
     layers: usize,
     blocks: usize,
     sheets: Vec<SheetHeader>,
+    unfoldings: Vec<[FieldHeader; 2]>,
     grids: Vec<GridHeader>,
 }
 
@@ -78,6 +80,8 @@ struct GridHeader {
     thickness_m: Option<f64>,
     nodes: usize,
     words: usize,
+    /// Which of the unfoldings it has.
+    unfolded: Option<usize>,
 }
 
 /// What a sheet shifts: as [`SheetSource`], a calm sheet by its index.
@@ -127,6 +131,33 @@ impl SheetHeader {
     }
 }
 
+/// The nodes of a field of an unfolding.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+struct FieldHeader {
+    origin: [f32; 3],
+    step: [f32; 3],
+    size: [usize; 3],
+}
+
+impl FieldHeader {
+    fn of(field: &LevelField) -> Self {
+        Self { origin: field.origin.to_array(), step: field.step.to_array(), size: field.size }
+    }
+
+    /// The field, if it can be evaluated.
+    fn read(self, input: &mut dyn Read, length: u64) -> io::Result<LevelField> {
+        let is_place = self.origin.iter().chain(&self.step).all(|c| c.is_finite() && c.abs() < FAR as f32);
+        let is_sound =
+            is_place && self.step.iter().all(|&step| step > 0.0) && self.size.iter().all(|&count| count >= 2);
+        let nodes = self.size[0].checked_mul(self.size[1]).and_then(|nodes| nodes.checked_mul(self.size[2]));
+        let values: Vec<f32> = read_array(input, nodes.filter(|_| is_sound).ok_or_else(damaged)?, length)?;
+        if !values.iter().all(|value| value.is_finite()) {
+            return Err(damaged());
+        }
+        Ok(LevelField { origin: self.origin.into(), step: self.step.into(), size: self.size, values })
+    }
+}
+
 impl GridHeader {
     /// Whether this is the grid at an index of so many layers for each block, with as many nodes as its counts say:
     /// everything that looks nodes up relies on it.
@@ -140,9 +171,9 @@ impl GridHeader {
     }
 }
 
-/// The header, then the calm sheets, then offsets and creases of each grid.
+/// The header, then the calm sheets, the unfoldings, then offsets and creases of each grid.
 fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::Result<()> {
-    let calm = parameterization.calm_sheets();
+    let (calm, unfoldings) = (parameterization.calm_sheets(), parameterization.unfoldings());
     let grid = |grid: &RegionGrid| GridHeader {
         layer: grid.region.layer,
         block: grid.region.block,
@@ -154,17 +185,25 @@ fn write_grids(out: &mut dyn Write, parameterization: &Parameterization) -> io::
         thickness_m: grid.thickness_m,
         nodes: grid.offsets.len(),
         words: grid.creases.len(),
+        unfolded: grid.unfolded.as_ref().map(|own| {
+            let position = unfoldings.iter().position(|known| Arc::ptr_eq(known, own));
+            position.unwrap_or(usize::MAX)
+        }),
     };
     let header = Header {
         size: parameterization.size,
         layers: parameterization.layers,
         blocks: parameterization.blocks,
         sheets: calm.iter().map(|sheet| SheetHeader { origin: sheet.origin, size: sheet.size }).collect(),
+        unfoldings: unfoldings.iter().map(|own| [FieldHeader::of(&own[0]), FieldHeader::of(&own[1])]).collect(),
         grids: parameterization.grids.iter().map(grid).collect(),
     };
     write_header(out, &header)?;
     for sheet in &calm {
         out.write_all(bytemuck::cast_slice(&sheet.z))?;
+    }
+    for field in unfoldings.iter().flat_map(|own| own.iter()) {
+        out.write_all(bytemuck::cast_slice(&field.values))?;
     }
     for grid in &parameterization.grids {
         out.write_all(bytemuck::cast_slice(&grid.offsets))?;
@@ -187,6 +226,10 @@ fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization>
         }
         calm.push(Arc::new(HeightField { origin: sheet.origin, size: sheet.size, z }));
     }
+    let mut unfoldings: Vec<Unfolding> = Vec::new();
+    for [i, j] in header.unfoldings {
+        unfoldings.push(Arc::new([i.read(input, length)?, j.read(input, length)?]));
+    }
     let sheet = |(source, shift): (Source, f32)| {
         let of = source.source(header.layers, &calm).ok_or_else(damaged)?;
         Ok::<_, io::Error>(SheetRef { of, shift })
@@ -206,6 +249,10 @@ fn read_grids(input: &mut dyn Read, length: u64) -> io::Result<Parameterization>
             thickness_m: head.thickness_m,
             offsets: read_array(input, head.nodes, length)?,
             creases: read_array(input, head.words, length)?,
+            unfolded: match head.unfolded {
+                Some(n) => Some(unfoldings.get(n).cloned().ok_or_else(damaged)?),
+                None => None,
+            },
         });
     }
     Ok(Parameterization {
@@ -264,6 +311,7 @@ pub fn load_volumes(
 mod tests {
     use super::super::kept::KEPT;
     use super::*;
+    use glam::Vec3;
     use std::fs::{self, File};
     use std::time::{Duration, SystemTime};
 
@@ -279,12 +327,25 @@ mod tests {
             thickness_m: Some(1.0 / 3.0),
             offsets: (0..12).map(|n| [n as f32, -1.5, f32::MIN_POSITIVE]).collect(),
             creases: vec![5],
+            unfolded: None,
+        };
+        let field = |value: f32| LevelField::from_fn(Vec3::ZERO, Vec3::ONE, [2, 3, 2], |p| value + p.x);
+        let folded = RegionGrid {
+            size: [0; 2],
+            offsets: Vec::new(),
+            creases: Vec::new(),
+            unfolded: Some(Arc::new([field(1.0), field(-2.5)])),
+            ..grid(1, SheetSource::Plane)
         };
         Parameterization {
             size: [4, 5, 6],
-            layers: 2,
+            layers: 3,
             blocks: 1,
-            grids: vec![grid(0, SheetSource::Calm(calm)), grid(1, SheetSource::Plane)],
+            grids: vec![
+                grid(0, SheetSource::Calm(calm)),
+                grid(1, SheetSource::Plane),
+                RegionGrid { region: Region { layer: 2, block: 0 }, ..folded },
+            ],
             cost: ComputeCost::default(),
         }
     }
@@ -293,13 +354,18 @@ mod tests {
     fn grids_that_do_not_fit_their_counts_are_not_used() {
         let folder = tempfile::tempdir().unwrap();
         let root = folder.path();
-        let damages: [fn(&mut Parameterization); 7] = [
+        let damages: [fn(&mut Parameterization); 8] = [
+            |p| {
+                let mut field = LevelField::from_fn(Vec3::ZERO, Vec3::ONE, [2; 3], |p| p.x);
+                field.values[3] = f32::NAN;
+                p.grids[2].unfolded = Some(Arc::new([field.clone(), field]));
+            },
             |p| p.grids[1].size = [3, 2],
             |p| p.grids[0].levels = usize::MAX,
             |p| p.grids[0].region.block = 7,
-            |p| p.layers = 3,
+            |p| p.layers = 4,
             |p| p.grids[1].creases.clear(),
-            |p| p.grids[1].bottom.of = SheetSource::Horizon(1),
+            |p| p.grids[1].bottom.of = SheetSource::Horizon(2),
             |p| (p.grids[0].size, p.grids[0].levels) = ([1, 4], 3),
         ];
         for (n, damage) in damages.into_iter().enumerate() {

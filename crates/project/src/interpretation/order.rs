@@ -23,14 +23,52 @@ struct Depths {
     deep: f32,
 }
 
-/// Whether `a` lies above `b` at most traces; horizons without a common trace are compared by their mean depth.
+/// Whether `a` lies above `b` at most traces; horizons without a common trace are compared by their mean depth. Where one
+/// of them is no height field, their topmost places are compared: the highest limb of a fold is the right way up.
 pub(crate) fn is_above(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
+    if a.surface.is_some() || b.surface.is_some() {
+        return is_topmost(a, b, geometry);
+    }
     let (mut difference, mut common) = (0.0f64, 0usize);
     for (a, b) in common_traces(a, b, geometry) {
         difference += f64::from(a.shallow + a.deep - b.shallow - b.deep);
         common += 1;
     }
     if common > 0 { difference < 0.0 } else { mean(a) < mean(b) }
+}
+
+/// Cells along each side of the map in which topmost places are compared.
+const CELLS: usize = 8;
+
+fn is_topmost(a: &Horizon, b: &Horizon, geometry: &SurveyGeometry) -> bool {
+    let (tops_a, tops_b) = (tops(a, geometry), tops(b, geometry));
+    let common = || tops_a.iter().zip(&tops_b).filter(|(a, b)| a.is_finite() && b.is_finite());
+    let difference: f64 = common().map(|(a, b)| a - b).sum();
+    if common().count() > 0 { difference < 0.0 } else { lowest(&tops_a) < lowest(&tops_b) }
+}
+
+fn lowest(tops: &[f64]) -> f64 {
+    tops.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The topmost place in each cell of the map, voxel z.
+fn tops(horizon: &Horizon, geometry: &SurveyGeometry) -> Vec<f64> {
+    let corners = horizon.surface.iter().flat_map(|surface| surface.vertices.iter().copied());
+    let nodes = horizon.sheets.iter().flat_map(|sheet| {
+        let nv = sheet.grid.count[1];
+        let known = sheet.depth.iter().enumerate().filter(|(_, depth)| depth.is_finite());
+        known.map(move |(n, depth)| {
+            sheet.grid.world_at(glam::DVec2::new((n / nv) as f64, (n % nv) as f64)).extend(f64::from(*depth))
+        })
+    });
+    let [nx, ny, _] = geometry.size();
+    let mut tops = vec![f64::INFINITY; CELLS * CELLS];
+    for p in corners.chain(nodes).map(|place| geometry.voxel_from_world(place)) {
+        let cell = |c: f64, count: usize| ((c / count as f64 * CELLS as f64).max(0.0) as usize).min(CELLS - 1);
+        let top = &mut tops[cell(p.x, nx) * CELLS + cell(p.y, ny)];
+        *top = top.min(p.z);
+    }
+    tops
 }
 
 fn mean(horizon: &Horizon) -> f64 {
@@ -107,7 +145,7 @@ mod tests {
             let depths = (0..400).map(|n| depth((n / 20) as f32, (n % 20) as f32)).collect();
             Sheet::new(grid, depths, Quality::Picked)
         };
-        Horizon { name: name.into(), sheets: sheets.iter().map(sheet).collect() }
+        Horizon::new(name, sheets.iter().map(sheet).collect())
     }
 
     #[test]

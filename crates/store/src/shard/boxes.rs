@@ -105,7 +105,7 @@ impl Shards {
 
     /// The samples of a box that is inside the array. Large boxes are read by all threads.
     pub fn read_box<T: StoredSample>(&self, start: [usize; 3], size: [usize; 3]) -> Result<Vec<T>, StoreError> {
-        let mut out = vec![T::from_f32(0.0); size.iter().product()];
+        let mut out = vec![T::zeroed(); size.iter().product()];
         if out.is_empty() {
             return Ok(out);
         }
@@ -171,7 +171,7 @@ impl Shards {
                     false => reader.read(number, &wanted, &mut room).map_err(explain)?,
                     true => {
                         room.clear();
-                        room.resize(wanted.x.len() * wanted.y.len() * grid.chunk[2], T::default());
+                        room.resize(wanted.x.len() * wanted.y.len() * grid.chunk[2], T::zeroed());
                         wanted
                     }
                 };

@@ -136,7 +136,7 @@ impl ShardReader<'_> {
         };
         let samples = lines.x.len() * lines.y.len() * nz;
         if room.len() < samples {
-            room.resize(samples, T::from_f32(0.0));
+            room.resize(samples, T::zeroed());
         }
         let bytes: &mut [u8] = cast_slice_mut(&mut room[..samples]);
         let start = self.shard.chunks[chunk].start;

@@ -1,7 +1,7 @@
 //! What is written on and around a block: axes on its edges, names of layers along the layers, names and throws of
 //! faults.
 //!
-//! All labels share one [`LabelRoom`]: none lies over another or leaves the panel. Axes come first and the picture
+//! All labels share one `LabelRoom`: none lies over another or leaves the panel. Axes come first and the picture
 //! shrinks until they stand beside it; then half-arrows, names on the faces, and at last leaders to names that found no
 //! place on their layer.
 
@@ -12,8 +12,8 @@ mod room;
 
 use super::vector_block::BlockNames;
 use crate::Rect;
+use crate::annotation::Annotation;
 use crate::list::{Across, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Path, PathItem, Stroke, Text, Upright};
-use crate::spec::Annotation;
 use crate::style::{FRAME_PT, INK, QUIET_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use model::StructuralModel;

@@ -1,0 +1,281 @@
+//! The signed distance from a triangulated surface at the nodes of a box.
+//!
+//! The sign is that of the normal at the closest point, which at edges and corners is the mean of the faces weighted by
+//! their angles (J. A. Bærentzen and H. Aanæs, "Signed distance computation using the angle weighted pseudonormal",
+//! IEEE TVCG 11(3), 2005). Where the closest point lies on the border of an open surface, the value is the distance from
+//! its tangent plane there, so that the surface continues straight on.
+
+use super::tree::Tree;
+use glam::{DMat3, DVec3, Vec3};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use survey::LevelField;
+use survey::progress::{Cancelled, Progress};
+use survey::topology::OrientedMesh;
+
+/// A surface in metric space, ready for closest points.
+pub(super) struct Surface {
+    corners: Vec<[DVec3; 3]>,
+    /// Unit normal per triangle.
+    normals: Vec<DVec3>,
+    /// Pseudonormals at the corners of each triangle, then at its edges (0, 1), (1, 2), (2, 0); not of unit length.
+    around: Vec<[DVec3; 6]>,
+    /// Bit n: the corner (0 … 2) or edge (3 … 5) n lies on the border.
+    border: Vec<u8>,
+}
+
+/// The closest point of a surface.
+#[derive(Debug, Clone, Copy)]
+struct Closest {
+    point: DVec3,
+    /// 0 … 2 a corner, 3 … 5 an edge, 6 the face.
+    feature: usize,
+}
+
+impl Surface {
+    /// The triangles of a mesh in metric space.
+    pub fn of(oriented: &OrientedMesh) -> Self {
+        let mesh = &oriented.mesh;
+        let corners: Vec<[DVec3; 3]> = (0..mesh.triangles.len()).map(|n| mesh.corners(n)).collect();
+        let normals: Vec<DVec3> = corners.iter().map(|[a, b, c]| (*b - *a).cross(*c - *a).normalize()).collect();
+        let mut at_corner = vec![DVec3::ZERO; mesh.vertices.len()];
+        let mut at_edge: HashMap<[u32; 2], DVec3> = HashMap::new();
+        let edge = |a: u32, b: u32| [a.min(b), a.max(b)];
+        for (n, &triangle) in mesh.triangles.iter().enumerate() {
+            for i in 0..3 {
+                let [a, b, c] = [0, 1, 2].map(|k| corners[n][(i + k) % 3]);
+                at_corner[triangle[i] as usize] += normals[n] * (b - a).angle_between(c - a);
+                *at_edge.entry(edge(triangle[i], triangle[(i + 1) % 3])).or_default() += normals[n];
+            }
+        }
+        let mut on_border = vec![false; mesh.vertices.len()];
+        oriented.border.iter().flatten().for_each(|&v| on_border[v as usize] = true);
+        let around = |&[a, b, c]: &[u32; 3]| {
+            let [p, q, r] = [a, b, c].map(|v| at_corner[v as usize]);
+            [p, q, r, at_edge[&edge(a, b)], at_edge[&edge(b, c)], at_edge[&edge(c, a)]]
+        };
+        let borders = |&[a, b, c]: &[u32; 3]| {
+            let corners = [a, b, c].map(|v| on_border[v as usize]);
+            let edges = [(a, b), (b, c), (c, a)].map(|(a, b)| oriented.border.binary_search(&edge(a, b)).is_ok());
+            corners.into_iter().chain(edges).enumerate().map(|(n, on)| u8::from(on) << n).sum()
+        };
+        let (around, border) = (mesh.triangles.iter().map(around), mesh.triangles.iter().map(borders));
+        Self { around: around.collect(), border: border.collect(), corners, normals }
+    }
+
+    /// The closest point of a triangle (C. Ericson, "Real-Time Collision Detection", 2005, 5.1.5).
+    fn closest(&self, triangle: usize, p: DVec3) -> Closest {
+        let [a, b, c] = self.corners[triangle];
+        let (ab, ac, ap) = (b - a, c - a, p - a);
+        let (d1, d2) = (ab.dot(ap), ac.dot(ap));
+        let at = |point, feature| Closest { point, feature };
+        if d1 <= 0.0 && d2 <= 0.0 {
+            return at(a, 0);
+        }
+        let bp = p - b;
+        let (d3, d4) = (ab.dot(bp), ac.dot(bp));
+        if d3 >= 0.0 && d4 <= d3 {
+            return at(b, 1);
+        }
+        let vc = d1 * d4 - d3 * d2;
+        if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+            return at(a + ab * (d1 / (d1 - d3)), 3);
+        }
+        let cp = p - c;
+        let (d5, d6) = (ab.dot(cp), ac.dot(cp));
+        if d6 >= 0.0 && d5 <= d6 {
+            return at(c, 2);
+        }
+        let vb = d5 * d2 - d1 * d6;
+        if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+            return at(a + ac * (d2 / (d2 - d6)), 5);
+        }
+        let va = d3 * d6 - d5 * d4;
+        if va <= 0.0 && d4 - d3 >= 0.0 && d5 - d6 >= 0.0 {
+            return at(b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 4);
+        }
+        let scale = 1.0 / (va + vb + vc);
+        at(a + ab * (vb * scale) + ac * (vc * scale), 6)
+    }
+
+    /// Metres from a point to its closest point on a triangle, positive on the side that the normals point away from.
+    fn signed(&self, triangle: usize, p: DVec3) -> f64 {
+        let Closest { point, feature } = self.closest(triangle, p);
+        let normal = if feature == 6 { self.normals[triangle] } else { self.around[triangle][feature] };
+        let inside = (point - p).dot(normal);
+        let is_border = feature < 6 && self.border[triangle] >> feature & 1 == 1;
+        if is_border {
+            return inside / normal.length().max(f64::MIN_POSITIVE);
+        }
+        let distance = point.distance(p);
+        if inside >= 0.0 { distance } else { -distance }
+    }
+}
+
+/// A place where the sides of a surface contradict each other, because it neither is closed nor reaches the edge of the
+/// volume there, or crosses itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Contradiction {
+    /// Voxel position.
+    pub at: Vec3,
+}
+
+/// The box of a level field.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeBox {
+    /// Voxel position of the first node.
+    pub origin: Vec3,
+    /// Voxels between nodes.
+    pub step: Vec3,
+    /// Counts along x, y, z.
+    pub size: [usize; 3],
+}
+
+impl NodeBox {
+    /// The nodes at a spacing that cover the box from `low` to `high`.
+    pub fn covering(low: Vec3, high: Vec3, step: Vec3) -> Self {
+        let counts = ((high - low) / step).ceil().to_array().map(|n| n.max(1.0) as usize + 1);
+        Self { origin: low, step, size: counts }
+    }
+
+    /// Number of nodes.
+    pub fn len(&self) -> usize {
+        self.size.iter().product()
+    }
+
+    /// Indices of a node along x, y, z.
+    pub fn index(&self, node: usize) -> [usize; 3] {
+        [node / (self.size[1] * self.size[2]), node / self.size[2] % self.size[1], node % self.size[2]]
+    }
+
+    /// The neighbours of a node along the axes.
+    pub fn beside(&self, node: usize) -> impl Iterator<Item = usize> + use<> {
+        let (index, size) = (self.index(node), self.size);
+        let strides = [size[1] * size[2], size[2], 1];
+        (0..3).flat_map(move |axis| {
+            let before = (index[axis] > 0).then(|| node - strides[axis]);
+            let after = (index[axis] + 1 < size[axis]).then(|| node + strides[axis]);
+            before.into_iter().chain(after)
+        })
+    }
+
+    /// Voxel position of a node.
+    pub fn place(&self, node: usize) -> Vec3 {
+        self.origin + Vec3::from_array(self.index(node).map(|n| n as f32)) * self.step
+    }
+}
+
+/// The signed distance in metres at the nodes of a box, positive where the normals point away from; and the worst place
+/// inside `volume` (voxels) where the sides contradict each other.
+pub(super) fn signed_distance(
+    surface: &Surface,
+    nodes: NodeBox,
+    metric: DMat3,
+    volume: Vec3,
+    progress: &Progress,
+) -> Result<(LevelField, Option<Contradiction>), Cancelled> {
+    let place = |node: usize| metric * nodes.place(node).as_dvec3();
+    let tree = Tree::of(&surface.corners);
+    let mut values = vec![0.0f32; nodes.len()];
+    let height = nodes.size[2];
+    values.par_chunks_mut(height).enumerate().try_for_each(|(column, values)| {
+        progress.check()?;
+        let mut triangle = 0;
+        for (z, value) in values.iter_mut().enumerate() {
+            // The triangle of the node above is a good first guess.
+            let p = place(column * height + z);
+            triangle = tree.closest(p, triangle, |n| surface.closest(n, p).point.distance_squared(p));
+            *value = surface.signed(triangle, p) as f32;
+        }
+        Ok(())
+    })?;
+    let found = contradiction(&values, nodes, metric, volume);
+    Ok((LevelField { origin: nodes.origin, step: nodes.step, size: nodes.size, values }, found))
+}
+
+/// The worst place inside the volume where the sign changes between two nodes that are both farther from the surface
+/// than from each other.
+fn contradiction(values: &[f32], nodes: NodeBox, metric: DMat3, volume: Vec3) -> Option<Contradiction> {
+    let apart = [0, 1, 2].map(|axis| (metric.col(axis).length() * f64::from(nodes.step[axis])) as f32);
+    let strides = [nodes.size[1] * nodes.size[2], nodes.size[2], 1];
+    let mut worst: Option<(f32, usize)> = None;
+    for node in 0..nodes.len() {
+        let index = nodes.index(node);
+        for axis in (0..3).filter(|&axis| index[axis] + 1 < nodes.size[axis]) {
+            let (a, b) = (values[node], values[node + strides[axis]]);
+            let gap = a.abs().min(b.abs()) / apart[axis];
+            if (a >= 0.0) != (b >= 0.0) && gap > 1.0 && worst.is_none_or(|(least, _)| gap > least) {
+                let p = nodes.place(node);
+                if p.cmpge(Vec3::ZERO).all() && p.cmple(volume).all() {
+                    worst = Some((gap, node));
+                }
+            }
+        }
+    }
+    worst.map(|(_, node)| Contradiction { at: nodes.place(node) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use survey::TriangleMesh;
+
+    /// A sphere of triangles around `centre`.
+    pub(super) fn ball(centre: DVec3, radius: f64, rings: u32) -> TriangleMesh {
+        let columns = 2 * rings;
+        let place = |ring: u32, column: u32| {
+            let (polar, turn) = (
+                f64::from(ring) / f64::from(rings) * std::f64::consts::PI,
+                f64::from(column) / f64::from(columns) * std::f64::consts::TAU,
+            );
+            centre + radius * DVec3::new(polar.sin() * turn.cos(), polar.sin() * turn.sin(), polar.cos())
+        };
+        let vertices = (0..=rings).flat_map(|ring| (0..columns).map(move |column| place(ring, column))).collect();
+        let at = |ring: u32, column: u32| ring * columns + column % columns;
+        let cell = |ring: u32, c: u32| {
+            [[at(ring, c), at(ring + 1, c), at(ring + 1, c + 1)], [at(ring, c), at(ring + 1, c + 1), at(ring, c + 1)]]
+        };
+        let triangles = (0..rings).flat_map(|ring| (0..columns).flat_map(move |c| cell(ring, c))).collect();
+        TriangleMesh { vertices, triangles }
+    }
+
+    fn field(mesh: &TriangleMesh, low: f32, high: f32) -> (LevelField, Option<Contradiction>) {
+        let surface = Surface::of(&OrientedMesh::of(mesh, 1e-6).unwrap());
+        let nodes = NodeBox::covering(Vec3::splat(low), Vec3::splat(high), Vec3::ONE);
+        signed_distance(&surface, nodes, DMat3::IDENTITY, Vec3::splat(high), &Progress::silent()).unwrap()
+    }
+
+    #[test]
+    fn every_node_has_its_distance_from_a_sphere() {
+        let (found, contradiction) = field(&ball(DVec3::splat(15.3), 9.0, 48), 0.0, 30.0);
+        assert_eq!(contradiction, None);
+        let off = |n: usize| (found.values[n] - (9.0 - found.place(n).distance(Vec3::splat(15.3)))).abs();
+        let worst = (0..found.values.len()).map(off).fold(0.0, f32::max);
+        // The triangles lie up to 9·(π/48)²/8 inside the sphere.
+        assert!(worst < 0.02, "{worst}");
+    }
+
+    #[test]
+    fn no_other_triangle_is_closer() {
+        let mesh = ball(DVec3::new(11.0, 14.2, 9.7), 6.0, 9);
+        let surface = Surface::of(&OrientedMesh::of(&mesh, 1e-6).unwrap());
+        let (found, _) = field(&mesh, 0.0, 24.0);
+        for n in (0..found.values.len()).step_by(37) {
+            let p = found.place(n).as_dvec3();
+            let distances = (0..surface.corners.len()).map(|t| surface.closest(t, p).point.distance(p));
+            let least = distances.fold(f64::INFINITY, f64::min) as f32;
+            assert!((found.values[n].abs() - least).abs() < 1e-4, "{p}: {} {least}", found.values[n]);
+        }
+    }
+
+    #[test]
+    fn an_open_sheet_continues_straight_on() {
+        let slope = |x: f64, y: f64| DVec3::new(x, y, 8.0 + 0.3 * x);
+        let vertices = vec![slope(4.0, 4.0), slope(14.0, 4.0), slope(14.0, 14.0), slope(4.0, 14.0)];
+        let sheet = TriangleMesh { vertices, triangles: vec![[0, 1, 2], [0, 2, 3]] };
+        let (found, contradiction) = field(&sheet, 0.0, 18.0);
+        assert_eq!(contradiction, None);
+        let exact = |p: Vec3| (p.z - 8.0 - 0.3 * p.x) / 1.09f32.sqrt();
+        assert!((0..found.values.len()).all(|n| (found.values[n] - exact(found.place(n))).abs() < 1e-3));
+    }
+}

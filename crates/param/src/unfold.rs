@@ -1,0 +1,235 @@
+//! (i, j) of layers whose horizons are no height fields: overturned limbs have several depths over one place on the map,
+//! so the map cannot tell them apart. They are unfolded by arc length instead.
+//!
+//! With n the unit normal of the layering (towards k), a the axis about which it is folded, t ⟂ a, n in the layer, the
+//! two functions u (along t) and v (along a) are those that minimise
+//!
+//! ```text
+//! ∫ w²(∇u·n)² + (∇u·t − 1)² + (∇u·a)²   and   ∫ w²(∇v·n)² + (∇v·a − 1)² + (∇v·t)²
+//! ```
+//!
+//! so lengths along a layer are kept as far as can be, and u, v do not change across it (as the coordinates of J.-L.
+//! Mallet, "Space–time mathematical framework for sedimentary geology", Mathematical Geology 36(1), 2004). The axis is
+//! the direction that the normals have least of. Faults break u and v, beyond their tips they are one
+//! ([`model::CutLattice`]).
+//!
+//! Lengths are in metres, u and v are stored in voxels along x and y.
+
+use crate::metric::Metric;
+use crate::{LayerModel, Region};
+use glam::{DMat3, DVec3, Vec3};
+use model::{CutLattice, Equations, FaultNetwork, resampled};
+use rayon::prelude::*;
+use std::sync::Arc;
+use survey::LevelField;
+use survey::progress::{Cancelled, Progress};
+
+/// The unfolded place of every voxel of a region: i·(Nx − 1) and j·(Ny − 1). Memory: 1 byte a voxel.
+pub type Unfolding = Arc<[LevelField; 2]>;
+
+/// Nodes in the layer, all blocks together, and in the whole lattice at most.
+const NODES: f64 = 30_000.0;
+const MOST_NODES: f64 = 600_000.0;
+/// A thinner layer is solved as if it filled this share of the volume.
+const LEAST_SHARE: f64 = 0.02;
+/// Places at which the share of a layer is counted.
+const SAMPLED: f64 = 20_000.0;
+/// Nodes around the layer that are solved with it.
+const AROUND: usize = 2;
+/// Voxels between the nodes of an unfolding.
+const STEP: f32 = 2.0;
+/// Weight w of what changes across the layering.
+const ACROSS: f64 = 6.0;
+/// Weight of second differences, in units of slope.
+const SMOOTH: f64 = 0.08;
+/// Weight with which u and v are held to x and y where nothing else holds them, as a slope over the volume.
+const HELD: f64 = 1e-3;
+/// Coarser lattices before the finest, each of twice the spacing of the next.
+const COARSER: u32 = 2;
+/// Steps of the solver on each lattice, and the share of the first gradient at which it stops.
+const MOST_STEPS: usize = 400;
+const TOLERANCE: f64 = 1e-4;
+/// Normals nearer to the fold axis than this (sine) say nothing about the direction along the layer.
+const ALONG_AXIS: f64 = 0.2;
+
+/// The unfolding of a layer in each block. `up` is the metric direction of k at a voxel place in it.
+pub fn unfold<M: LayerModel + ?Sized>(
+    model: &M,
+    metric: &Metric,
+    layer: u16,
+    up: impl Fn(Vec3, Region) -> Option<DVec3> + Sync,
+    progress: &Progress,
+) -> Result<Vec<Unfolding>, Cancelled> {
+    let none = FaultNetwork::none();
+    let faults = model.faults().unwrap_or(&none);
+    let metres = metric.scaled_from_voxel() * metric.unit_m;
+    let size = model.size();
+    let last = Vec3::from_array(size.map(|n| n as f32 - 1.0));
+    let inside = |p: Vec3| p.cmpge(Vec3::ZERO).all() && p.cmple(last).all();
+    let is_in = |p: Vec3| model.region_at(p.clamp(Vec3::ZERO, last)).layer == layer;
+    let count = (NODES / share(size, metres, is_in)).min(MOST_NODES) / faults.block_count() as f64;
+    let mut found: Option<[Vec<LevelField>; 2]> = None;
+    for level in (0..=COARSER).rev() {
+        let nodes = CutLattice::nodes_around(size, metres, count, f64::from(1u32 << level));
+        let mut wanted: Vec<bool> = (0..nodes.len()).into_par_iter().map(|node| is_in(nodes.place(node))).collect();
+        for _ in 0..AROUND {
+            let before = wanted.clone();
+            let next = |node: usize| before[node] || nodes.beside(node).any(|m| before[m]);
+            wanted = (0..nodes.len()).into_par_iter().map(next).collect();
+        }
+        let lattice = CutLattice::of(faults, nodes, |node| wanted[node]);
+        let normal = |&(block, node): &(usize, usize)| {
+            let p = lattice.middle(node);
+            let region = inside(p).then(|| model.region_at(p))?;
+            (region == Region { layer, block: block as u16 }).then(|| up(p, region)).flatten()
+        };
+        let all: Vec<(usize, usize)> =
+            (0..lattice.blocks).flat_map(|block| lattice.cells(block).map(move |node| (block, node))).collect();
+        let cells: Vec<Cell> = all.par_iter().map(|cell| (cell.0, cell.1, normal(cell))).collect();
+        let frame = Frame::of(metres, cells.iter().filter_map(|(_, _, normal)| *normal));
+        let problem = Problem { lattice: &lattice, cells: &cells, frame: &frame, metres };
+        let before = found.as_ref();
+        let (u, v) = rayon::join(|| problem.solve(0, before, progress), || problem.solve(1, before, progress));
+        found = Some([lattice.spread(&u?), lattice.spread(&v?)]);
+    }
+    let Some(found) = found else { return Ok(Vec::new()) };
+    let field = |block: usize| {
+        let holds = |p: Vec3| {
+            let region = model.region_at(p.clamp(Vec3::ZERO, last));
+            usize::from(region.block) == block && region.layer == layer
+        };
+        Arc::new([0, 1].map(|n: usize| {
+            let mut field = resampled(&found[n][block], size, STEP, holds);
+            let length = metres.col(n).length() as f32;
+            field.values.iter_mut().for_each(|value| *value /= length);
+            field
+        }))
+    };
+    Ok((0..found[0].len()).into_par_iter().map(field).collect())
+}
+
+/// About the share of a volume in which `is_in` holds, at least [`LEAST_SHARE`].
+fn share(size: [usize; 3], metres: DMat3, is_in: impl Fn(Vec3) -> bool + Sync) -> f64 {
+    let nodes = CutLattice::nodes_around(size, metres, SAMPLED, 1.0);
+    let found = (0..nodes.len()).into_par_iter().filter(|&node| is_in(nodes.place(node))).count();
+    (found as f64 / nodes.len() as f64).max(LEAST_SHARE)
+}
+
+/// A cell of the lattice: block, first node, and the metric normal of the layering at its middle.
+type Cell = (usize, usize, Option<DVec3>);
+
+/// What is solved on one lattice.
+struct Problem<'a> {
+    lattice: &'a CutLattice,
+    cells: &'a [Cell],
+    frame: &'a Frame,
+    metres: DMat3,
+}
+
+impl Problem<'_> {
+    /// u (0) or v (1) in metres, from what was found on a coarser lattice.
+    fn solve(
+        &self,
+        which: usize,
+        before: Option<&[Vec<LevelField>; 2]>,
+        progress: &Progress,
+    ) -> Result<Vec<f64>, Cancelled> {
+        let (lattice, voxel) = (self.lattice, self.metres.inverse());
+        let step = |axis: usize| self.metres.col(axis).length() * f64::from(lattice.nodes.step[axis]);
+        let spacing_m = (0..3).map(step).fold(0.0, f64::max);
+        let extent_m = (0..3).map(|axis| step(axis) * lattice.nodes.size[axis] as f64).fold(0.0, f64::max);
+        let mut equations = Equations::default();
+        lattice.add_smoothness(SMOOTH / spacing_m, &mut equations);
+        for &(block, node, normal) in self.cells {
+            let Some(n) = normal else { continue };
+            let mut slope = |direction: DVec3, weight: f64, right: f64| {
+                equations.add(weight, lattice.slope(block, node, direction, voxel), right);
+            };
+            slope(n, ACROSS, 0.0);
+            if let Some(along) = self.frame.along(n) {
+                slope(along[which], 1.0, 1.0);
+                slope(along[1 - which], 1.0, 0.0);
+            }
+        }
+        let axis = [self.frame.x, self.frame.y][which];
+        let on_map = lattice.guess(|_, p| (self.metres * p.as_dvec3()).dot(axis));
+        for (unknown, &at) in on_map.iter().enumerate() {
+            equations.add(HELD / extent_m, [(unknown as u32, 1.0)], at);
+        }
+        let guess = match before {
+            Some(coarse) => lattice.guess(|block, p| f64::from(coarse[which][block].value(p))),
+            None => on_map,
+        };
+        equations.solve(guess, TOLERANCE, MOST_STEPS, progress)
+    }
+}
+
+/// Directions of a folded volume: the survey's own axes, and the axis of the folds.
+struct Frame {
+    /// Unit vectors along the inlines' and the crosslines' index.
+    x: DVec3,
+    y: DVec3,
+    /// The fold axis, and whether u (rather than v) runs along it.
+    axis: DVec3,
+    axis_is_u: bool,
+}
+
+impl Frame {
+    fn of(metres: DMat3, normals: impl Iterator<Item = DVec3>) -> Self {
+        let (x, y) = (metres.x_axis.normalize(), metres.y_axis.normalize());
+        let mut scatter = DMat3::from_diagonal(DVec3::splat(1e-9));
+        let mut count: f64 = 1e-9;
+        for n in normals {
+            scatter += DMat3::from_cols(n * n.x, n * n.y, n * n.z);
+            count += 1.0;
+        }
+        // Inverse iteration from y: where the layers are level, any horizontal axis is as good.
+        let shifted = scatter * (1.0 / count) + DMat3::from_diagonal(DVec3::splat(1e-6));
+        let inverse = shifted.inverse();
+        let axis = (0..40).fold(y, |axis, _| (inverse * axis).normalize_or(y));
+        let axis_is_u = axis.dot(x).abs() > axis.dot(y).abs();
+        let towards = if axis_is_u { x } else { y };
+        Self { x, y, axis: if axis.dot(towards) < 0.0 { -axis } else { axis }, axis_is_u }
+    }
+
+    /// The directions of u and v in a layer with normal `n`; `None` where the normal lies along the axis.
+    fn along(&self, n: DVec3) -> Option<[DVec3; 2]> {
+        let around = self.axis.cross(n);
+        if around.length() < ALONG_AXIS {
+            return None;
+        }
+        let around = around.normalize();
+        let axis = n.cross(around).normalize();
+        let axis = if axis.dot(self.axis) < 0.0 { -axis } else { axis };
+        // Where the layer lies right way up and level, u runs along x and v along y.
+        let up = -DVec3::Z;
+        let level = self.axis.cross(up);
+        let other = if self.axis_is_u { self.y } else { self.x };
+        let around = if level.dot(other) < 0.0 { -around } else { around };
+        Some(if self.axis_is_u { [axis, around] } else { [around, axis] })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_turn_with_the_layer_around_the_axis() {
+        // Folded about the crosslines' axis.
+        let normal = |turn: f64| DVec3::new(turn.sin(), 0.0, -turn.cos());
+        let turns = || (0..20).map(|n| f64::from(n) * 0.1 - 0.4);
+        let frame = Frame::of(DMat3::IDENTITY, turns().map(normal));
+        assert!(!frame.axis_is_u && frame.axis.abs_diff_eq(DVec3::Y, 1e-6), "{}", frame.axis);
+        for turn in turns() {
+            let [u, v] = frame.along(normal(turn)).unwrap();
+            assert!(v.abs_diff_eq(DVec3::Y, 1e-9));
+            assert!(u.abs_diff_eq(DVec3::new(turn.cos(), 0.0, turn.sin()), 1e-9), "{turn}: {u}");
+        }
+        assert!(frame.along(DVec3::Y).is_none());
+        // Level layers: u along x, v along y.
+        let level = Frame::of(DMat3::IDENTITY, std::iter::repeat_n(-DVec3::Z, 9));
+        let [u, v] = level.along(-DVec3::Z).unwrap();
+        assert!(u.abs_diff_eq(DVec3::X, 1e-6) && v.abs_diff_eq(DVec3::Y, 1e-6), "{u} {v}");
+    }
+}
