@@ -8,7 +8,7 @@ use super::request::{RenderRequest, Usage, numbers};
 use anyhow::Context;
 use figure::draw::block::Comparison;
 use figure::draw::section::Zoom;
-use figure::{BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart};
+use figure::{Annotation, BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart};
 use project::figures::{self, FigureSettings, InterpreterView};
 use project::{Project, memory_budget};
 use render::{Faces, Media, Scene};
@@ -28,6 +28,8 @@ pub(super) struct PageRequest {
     has_legend: bool,
     has_scale_bar: bool,
     has_north_arrow: bool,
+    annotations: Vec<Annotation>,
+    credit: Option<String>,
     title: Option<String>,
     caption: Option<String>,
     size_cm: Option<[f64; 2]>,
@@ -50,6 +52,11 @@ impl PageRequest {
             (horizon, _) => Some((horizon, typed.thickness_to)),
         };
         let size_cm = typed.size_cm.as_deref().map(size_cm).transpose()?;
+        let is_complete = typed.annotate.iter().any(|name| name == "all");
+        let mut annotations = annotations(&typed.annotate)?;
+        if typed.credit.is_some() && !annotations.contains(&Annotation::Provenance) {
+            annotations.push(Annotation::Provenance);
+        }
         let meant = Self {
             sections,
             fence,
@@ -57,9 +64,11 @@ impl PageRequest {
             has_block: typed.block,
             comparison: comparison(typed.compare.as_deref(), typed.wipe)?,
             is_interpretation: typed.interpretation,
-            has_legend: typed.legend,
-            has_scale_bar: typed.scale_bar,
-            has_north_arrow: typed.north_arrow,
+            has_legend: typed.legend || is_complete,
+            has_scale_bar: typed.scale_bar || is_complete,
+            has_north_arrow: typed.north_arrow || is_complete,
+            annotations,
+            credit: typed.credit,
             title: typed.title,
             caption: typed.caption,
             size_cm,
@@ -78,7 +87,7 @@ impl PageRequest {
     /// Whether more was asked for than a picture of the block.
     fn is_page(&self) -> bool {
         let has_parts = !self.sections.is_empty() || !self.fence.is_empty() || self.map.is_some() || self.has_block;
-        let has_words = self.title.is_some() || self.caption.is_some();
+        let has_words = self.title.is_some() || self.caption.is_some() || !self.annotations.is_empty();
         let has_more =
             self.is_interpretation || self.has_legend || self.has_scale_bar || self.has_north_arrow || has_words;
         let is_paper = self.size_cm.is_some() || self.file.is_some();
@@ -116,11 +125,28 @@ impl PageRequest {
             legend: self.has_legend,
             scale_bar: self.has_scale_bar,
             north_arrow: self.has_north_arrow,
+            annotate: self.annotations.clone(),
+            credit: self.credit.clone(),
             title: self.title.clone(),
             caption: self.caption.clone(),
             interpretation: self.is_interpretation,
         })
     }
+}
+
+/// Parses what is written on blocks.
+fn annotations(typed: &[String]) -> Result<Vec<Annotation>, Usage> {
+    let mut meant = Vec::new();
+    for name in typed {
+        let known = Annotation::ALL.into_iter().filter(|known| name == "all" || known.name() == name);
+        let known: Vec<Annotation> = known.collect();
+        if known.is_empty() {
+            let names = Annotation::ALL.map(Annotation::name).join(", ");
+            return Err(format!("--annotate {name}: expected all, or some of {names}, separated by commas"));
+        }
+        meant.extend(known.into_iter().filter(|known| !meant.contains(known)).collect::<Vec<_>>());
+    }
+    Ok(meant)
 }
 
 /// Parses width and height in centimetres.
@@ -212,6 +238,7 @@ mod tests {
         refused(FigureArgs { compare: Some("0,1".into()), wipe: Some(1.5), ..FigureArgs::default() });
         refused(FigureArgs { size_cm: Some("16".into()), ..FigureArgs::default() });
         refused(FigureArgs { size_cm: Some("0x4".into()), ..FigureArgs::default() });
+        refused(FigureArgs { annotate: vec!["axes".into(), "north".into()], ..FigureArgs::default() });
         refused(FigureArgs { inline: vec![1.0; 5], ..FigureArgs::default() });
     }
 }

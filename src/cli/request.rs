@@ -187,7 +187,7 @@ impl TryFrom<Action> for Request {
             }
             Action::Layer(LayerAction::List { project }) => Self::List { project, what: Listing::Layers },
             Action::Layer(LayerAction::Set(typed)) => {
-                let (project, command) = set_layer(typed)?;
+                let (project, command) = set_layer(*typed)?;
                 change(project, Command::SetLayer(command))
             }
             Action::Layer(LayerAction::Reset { project, layer }) => {
@@ -244,6 +244,8 @@ fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
         colour: typed.colour.as_deref().map(colour).transpose()?,
         ink: typed.ink.as_deref().map(colour).transpose()?,
         pattern: typed.pattern,
+        rock: typed.rock,
+        age: typed.age,
         intervals: typed.interval.iter().map(|text| depth_interval(text)).collect::<Result<_, _>>()?,
         frequency,
         opacity: typed.opacity,
@@ -251,7 +253,9 @@ fn set_layer(typed: LayerSetArgs) -> Result<(PathBuf, SetLayer), Usage> {
         style: None,
     };
     if change == (SetLayer { layer: change.layer.clone(), ..SetLayer::default() }) {
-        return Err("layer set: nothing to change; give --name, --pattern, --colour or another option".to_owned());
+        return Err(
+            "layer set: nothing to change; give --name, --pattern, --rock, --colour or another option".to_owned()
+        );
     }
     Ok((typed.project, change))
 }

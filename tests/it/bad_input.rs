@@ -155,6 +155,8 @@ fn faults_styles_and_scenes_that_do_not_fit() {
     refused(at, "layer set p.petro Nowhere --pattern chalk", &["no layer named \"Nowhere\""]);
     refused(at, "layer set p.petro 'above Alpha' --pattern chalc", &["chalc"]);
     refused(at, "layer set p.petro 'above Alpha' --interval 0,0.6,chalk --interval 0.5,1,marl", &["above Alpha"]);
+    refused(at, "layer set p.petro 'above Alpha' --rock cheese", &["cheese", "vocabulary"]);
+    refused(at, "layer set p.petro 'above Alpha' --age Tuesday", &["Tuesday", "Campanian"]);
     refused(at, "layer set p.petro 'above Alpha' --opacity 2", &["opacity"]);
     refused(at, "scalar set p.petro nothing --interval 0,1,chalk", &["no volume named \"nothing\""]);
     refused(at, "scalar set p.petro impedance --interval 2,1,chalk", &["impedance"]);

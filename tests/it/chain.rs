@@ -67,6 +67,7 @@ fn undo_and_redo_restore_the_project_and_its_data() {
         "horizon remove p.petro Bravo",
         "horizon add p.petro s/horizons/Bravo.csv --name Bravo",
         "layer set p.petro 'above Alpha' --name Cover --pattern shale --frequency 20,2",
+        "layer set p.petro Cover --rock 'oolitic limestone' --age Campanian",
         "horizon rename p.petro Bravo B",
         "volume remove p.petro impedance",
         "fault remove p.petro 'Dying fault'",
@@ -219,4 +220,19 @@ fn tiles_of_ones_own() {
     assert!(red > 20, "{red} red pixels");
     let before = bytes(&at.join("p.petro/textures"));
     assert_eq!(before.len(), 1);
+}
+
+#[test]
+fn a_layer_gets_the_pattern_of_its_rock_and_the_colour_of_its_age() {
+    let folder = project();
+    let at = folder.path();
+    let listed = |options: &str| {
+        run_in(at, &format!("layer set p.petro 'above Alpha' {options}")).done();
+        run_in(at, "layer list p.petro").done().stdout
+    };
+    assert!(listed("--rock 'oolitic limestone'").contains("limestone-oolitic"));
+    // A monzogranite has no pattern of its own; a granite has.
+    assert!(listed("--rock monzogranite --age 'Late Cretaceous'").contains("granite"));
+    let project = fs::read_to_string(at.join("p.petro/project.toml")).unwrap();
+    assert!(project.contains("#a6d84a"), "the colour of the Upper Cretaceous");
 }

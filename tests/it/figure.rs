@@ -110,7 +110,9 @@ mod window {
     }
 
     fn typed(at: &Path, options: &str) -> RgbImage {
-        let line = format!("render p.petro a.png --size-cm 12x9 --dpi 60 --legend --scale-bar {options}");
+        let line = format!(
+            "render p.petro a.png --size-cm 12x9 --dpi 60 --legend --scale-bar --annotate axes,layers,faults {options}"
+        );
         run_in(at, &line).done();
         image::open(at.join("a.png")).unwrap().to_rgb8()
     }
@@ -193,6 +195,18 @@ fn a_figure_is_written_as_paths_and_text() {
     for name in [">Basin</text>", ">folded</text>", ">N</text>", "inkscape:label=\"north arrow\""] {
         assert!(words.contains(name), "no {name}");
     }
+    // Labels are text that can be found, bent names as whole words.
+    run_in(at, "render p.petro all.svg --size-cm 16x11 --annotate all --credit TNO --blend 0.5 --device cpu").done();
+    let all = fs::read_to_string(at.join("all.svg")).unwrap();
+    for name in [">Inline</text>", ">Crossline</text>", ">Depth (m)</text>", "data: TNO</text>", "label=\"colour bar\""]
+    {
+        assert!(all.contains(name), "no {name}");
+    }
+    run_in(at, "render p.petro named.svg --size-cm 16x11 --annotate layers --ground off --device cpu").done();
+    let named = fs::read_to_string(at.join("named.svg")).unwrap();
+    assert!(named.contains("rotate=\"") && named.contains(">above Alpha</text>"));
+    let wrong = run_in(at, "render p.petro a.svg --annotate scales");
+    assert!(wrong.code == 2 && wrong.stderr.contains("provenance"));
     assert_eq!(run_in(at, "render p.petro a.gif").code, 2);
     run_in(at, "render p.petro p.petro/inside.svg").failed(&["project"]);
     assert!(!at.join("p.petro/inside.svg").exists());

@@ -21,6 +21,7 @@
 //! down). Absent here: files, projects, windows, and any drawing of rock: blocks come from a
 //! [`BlockPainter`](draw::block::BlockPainter).
 
+mod annotation;
 mod compress;
 pub mod cut;
 pub mod draw;
@@ -36,6 +37,7 @@ pub mod spec;
 pub mod style;
 mod svg;
 
+pub use annotation::Annotation;
 pub use cut::SectionKind;
 pub use error::FigureError;
 pub use list::DisplayList;

@@ -1,26 +1,29 @@
 //! From what a figure shows to its page: the one way that figures are made.
 
 use crate::Rect;
+use crate::annotation::Annotation;
 use crate::cut::{FenceCut, SectionCut, SectionKind, SectionSource, length_m, stations, value_at};
+use crate::draw::annotation::BlockAnnotation;
 use crate::draw::axes::Axis;
 use crate::draw::block::{BlockPainter, BlockPanel, Comparison};
-use crate::draw::legend::Legend;
+use crate::draw::legend::{Legend, LegendLine};
 use crate::draw::map::{MapPanel, title};
 use crate::draw::overlay::{OverlayLines, SeenOn};
 use crate::draw::section::{Marks, SectionContents, SectionPanel, Zoom};
 use crate::draw::vector_block::BlockNames;
-use crate::draw::{NamedColour, north, scale, words};
+use crate::draw::{NamedColour, colour_bar, north, scale, words};
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
-use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH};
+use crate::list::{DisplayList, Group, GroupKind, Ink, Item, POINTS_PER_INCH, Stroke};
 use crate::map::{HorizonMap, MapSource, Mapped};
 use crate::spec::{BlockPart, FencePart, Figure, MapPart, Part, SectionPart};
+use crate::style::{FAULT_PT, HORIZON_PT};
 use glam::DVec2;
 use render::distortion::{self, Stretch};
-use render::{Background, FaceData, Scene};
+use render::{Background, FaceData, Faces, Scene};
 use std::sync::{Arc, OnceLock};
-use survey::{SurveyGeometry, VerticalUnit};
-use ttf::{Colour, LayerStyle, TextureLibrary};
+use survey::{Contact, SurveyGeometry, VerticalUnit};
+use ttf::{Colour, LayerStyle, RawColour, TextureLibrary};
 
 /// Room around a page whose parts have text at their edges, points.
 const MARGIN_PT: f64 = 8.0;
@@ -50,6 +53,8 @@ pub struct FigureInputs<'a> {
     pub library: Option<&'a TextureLibrary>,
     /// What an interpreter sees.
     pub interpretation: Option<&'a DrawnInterpretation<'a>>,
+    /// The program and the project, for the line of provenance.
+    pub provenance: &'a str,
 }
 
 /// Makes the page of a figure; `painter` draws its blocks.
@@ -70,23 +75,37 @@ pub fn make(
     crate::raster::size_px(&list, figure.dpi)?;
     list.paper = paper(figure);
     let maker = Maker { figure, inputs, geometry: inputs.source.data.geometry };
-    let legend = maker.legend();
+    let lines = maker.legend_lines();
+    let legend = maker.legend(&lines);
     let mut room = list.bounds();
     // A block alone fills its page to the rim: it has its own margin.
-    let has_words = figure.title.is_some() || figure.caption.is_some();
-    let has_strip = figure.scale_bar || figure.north_arrow;
+    let provenance = maker.provenance();
+    let colours = maker.shown_colours();
+    let has_words = figure.title.is_some() || figure.caption.is_some() || provenance.is_some() || colours.is_some();
+    let has_strip = figure.scale_bar || figure.north_arrow || !figure.annotate.is_empty();
     let is_bare = matches!(figure.parts[..], [Part::Block(_)]) && legend.is_none() && !has_strip && !has_words;
     if !is_bare {
         room = room.grown(-MARGIN_PT);
     }
-    for (said, place) in
-        [(&figure.title, words::title as fn(Rect, &str) -> (Group, Rect)), (&figure.caption, words::caption)]
-    {
+    let words = [
+        (&figure.title, words::title as fn(Rect, &str) -> (Group, Rect)),
+        (&provenance, words::provenance),
+        (&figure.caption, words::caption),
+    ];
+    for (said, place) in words {
         if let Some(said) = said {
             let (group, rest) = place(room, said);
             list.items.push(group.into());
             room = rest;
         }
+    }
+    if !is_bare && room.size().min_element() < LEAST_PT {
+        return Err(maker.no_room());
+    }
+    if let Some(raw) = colours {
+        let [above, strip] = room.split_down(1.0 - colour_bar::STRIP_PT / room.height());
+        list.items.push(colour_bar::drawn(strip, raw).into());
+        room = above;
     }
     if !is_bare && room.size().min_element() < LEAST_PT {
         return Err(maker.no_room());
@@ -190,8 +209,36 @@ impl<'a> Maker<'a> {
         }
     }
 
+    fn wants(&self, annotation: Annotation) -> bool {
+        self.figure.annotate.contains(&annotation)
+    }
+
+    /// The line that says where the figure comes from.
+    fn provenance(&self) -> Option<String> {
+        let mut said = vec![self.inputs.provenance.to_owned()];
+        said.extend(self.figure.credit.as_ref().map(|credit| format!("data: {credit}")));
+        self.wants(Annotation::Provenance).then(|| said.join(" · "))
+    }
+
+    /// The colours of measured data, where they are seen and explained.
+    fn shown_colours(&self) -> Option<&'a RawColour> {
+        let shows = |part: &'a Part| match part {
+            Part::Block(block) => {
+                let is_raw = match block.comparison {
+                    Comparison::None => block.scene.blend > 0.0,
+                    Comparison::SideBySide(blends) | Comparison::Wipe(blends, _) => blends.iter().any(|b| *b > 0.0),
+                };
+                let own = block.scene.raw.as_ref().or(self.inputs.source.raw);
+                own.filter(|_| is_raw && block.scene.face_data == FaceData::Rock)
+            }
+            Part::Section(_) | Part::Fence(_) => self.inputs.source.raw,
+            Part::Map(_) => None,
+        };
+        self.figure.parts.iter().find_map(shows).filter(|_| self.wants(Annotation::Colours))
+    }
+
     /// Layers where blocks show them, or the colours of distortion; horizons where sections show their lines.
-    fn legend(&self) -> Option<Legend<'a>> {
+    fn legend<'b>(&'b self, lines: &'b [LegendLine]) -> Option<Legend<'b>> {
         let parts = &self.figure.parts;
         let is_illustrated = |block: &BlockPart| match block.comparison {
             Comparison::None => block.scene.blend < 1.0,
@@ -201,12 +248,59 @@ impl<'a> Maker<'a> {
             && parts.iter().any(|part| matches!(part, Part::Block(block) if is_illustrated(block)));
         let is_measured =
             |part: &Part| matches!(part, Part::Block(block) if block.scene.face_data == FaceData::Distortion);
-        let swatches = if parts.iter().any(is_measured) { distortion_classes() } else { self.inputs.layers };
+        let swatches = if parts.iter().any(is_measured) { distortion_classes() } else { self.seen_layers() };
         let layers = self.inputs.library.filter(|_| has_layers).map(|library| (swatches, library));
         let has_lines = parts.iter().any(|part| matches!(part, Part::Section(_) | Part::Fence(_)));
         let horizons = if has_lines || layers.is_none() { self.inputs.horizons } else { &[] };
-        let legend = Legend { layers, horizons, dpi: self.figure.dpi };
+        let legend = Legend { layers, horizons, lines, dpi: self.figure.dpi };
         (self.figure.legend && !legend.is_empty()).then_some(legend)
+    }
+
+    /// The layers without the one that is left out as air wherever a ground is shown.
+    fn seen_layers(&self) -> &'a [LayerStyle] {
+        let layers = self.inputs.layers;
+        let has_ground = |part: &Part| matches!(part, Part::Block(block) if block.scene.ground.is_some());
+        let is_air = self.inputs.source.data.model.is_some_and(|model| model.layer_count() == layers.len())
+            && self.figure.parts.iter().all(has_ground);
+        if is_air { layers.get(1..).unwrap_or_default() } else { layers }
+    }
+
+    /// Faults, contacts and wells that blocks of the model show.
+    fn legend_lines(&self) -> Vec<LegendLine> {
+        let blocks = self.figure.parts.iter().find_map(|part| match part {
+            Part::Block(block) => Some(&block.scene),
+            _ => None,
+        });
+        let data = &self.inputs.source.data;
+        let (Some(scene), Some(model), false) = (blocks, data.model, self.figure.interpretation) else {
+            return Vec::new();
+        };
+        let mut lines = Vec::new();
+        let mut add = |name: String, kind: GroupKind, width: f64, colour: Colour| {
+            lines.push(LegendLine { name, kind, stroke: Stroke::new(width, colour) });
+        };
+        let outlines = scene.outlines;
+        if outlines.horizons.width_px > 0.0 && scene.media.faces == Faces::All {
+            for horizon in &model.stratigraphy().horizons {
+                let contact = match horizon.contact {
+                    Contact::Conformable => continue,
+                    Contact::Erosional => "erosional",
+                    Contact::Onlap => "onlap",
+                    Contact::Intrusive => "intrusive",
+                };
+                let name = format!("{} ({contact})", horizon.name);
+                add(name, GroupKind::Horizon, 0.7 * HORIZON_PT, outlines.horizons.colour);
+            }
+        }
+        if outlines.faults.width_px > 0.0 && scene.media.faces == Faces::All && !self.inputs.faults.is_empty() {
+            add("Fault".into(), GroupKind::Fault, FAULT_PT, outlines.faults.colour);
+        }
+        if scene.wells.radius > 0.0 {
+            for well in data.wells {
+                add(well.name.to_owned(), GroupKind::Well, 2.0 * HORIZON_PT, scene.wells.colour);
+            }
+        }
+        lines
     }
 
     fn part(&self, part: &Part, room: Rect, painter: &mut dyn BlockPainter) -> Result<Group, FigureError> {
@@ -228,6 +322,8 @@ impl<'a> Maker<'a> {
         if body.size().min_element() < 1.0 {
             return Err(self.no_room());
         }
+        let names =
+            BlockNames { layers: self.inputs.layers, horizons: self.inputs.horizons, faults: self.inputs.faults };
         let panel = BlockPanel {
             scene: &part.scene,
             geometry: self.geometry,
@@ -235,11 +331,13 @@ impl<'a> Maker<'a> {
             interpretation: self.interpretation()?,
             has_surfaces: is_opaque(&part.scene),
             dpi: self.figure.dpi,
-            names: BlockNames {
-                layers: self.inputs.layers,
-                horizons: self.inputs.horizons,
-                faults: self.inputs.faults,
-            },
+            annotation: (!self.figure.annotate.is_empty()).then_some(BlockAnnotation {
+                wanted: &self.figure.annotate,
+                geometry: self.geometry,
+                model: self.inputs.source.data.model.filter(|_| !self.figure.interpretation),
+                names,
+            }),
+            names,
         };
         let mut drawn = panel.drawn(body, painter)?;
         let mut below = Rect::new(DVec2::new(room.min.x, body.max.y), room.max);
@@ -474,5 +572,5 @@ fn on_sample(index: f64) -> f64 {
 
 /// Whether faces hide what lies behind them, so that surfaces are laid over the picture.
 fn is_opaque(scene: &Scene) -> bool {
-    scene.media.faces != render::Faces::None
+    scene.media.faces != Faces::None
 }

@@ -3,6 +3,7 @@
 //!
 //! Places are line numbers and vertical values, as people type them; sizes are centimetres on paper or pixels.
 
+use crate::annotation::Annotation;
 use crate::cut::SectionKind;
 use crate::draw::block::Comparison;
 use crate::draw::section::Zoom;
@@ -38,6 +39,12 @@ pub struct Figure {
     pub scale_bar: bool,
     /// Whether an arrow below each block points to north as it lies in the block's middle. Default no.
     pub north_arrow: bool,
+    /// What is written on and around its blocks, besides. Default nothing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub annotate: Vec<Annotation>,
+    /// Who the data belong to, for the line of provenance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub credit: Option<String>,
     /// A line above everything else.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
@@ -57,6 +64,8 @@ impl Default for Figure {
             legend: false,
             scale_bar: false,
             north_arrow: false,
+            annotate: Vec::new(),
+            credit: None,
             title: None,
             caption: None,
             interpretation: false,
@@ -179,6 +188,7 @@ mod tests {
                 Part::Map(MapPart { horizon: "Top".into(), thickness_to: Some("Base".into()) }),
             ],
             legend: true,
+            annotate: Annotation::ALL.to_vec(),
             ..Figure::default()
         };
         let read: Figure = serde_json::from_str(&serde_json::to_string(&figure).unwrap()).unwrap();

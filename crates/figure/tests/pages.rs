@@ -5,16 +5,18 @@ use figure::draw::NamedColour;
 use figure::draw::block::Comparison;
 use figure::list::{DisplayList, Text};
 use figure::{
-    BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind, SectionPart,
-    make, raster,
+    Annotation, BlockPart, FencePart, Figure, FigureError, FigureInputs, MapPart, PageSize, Part, Rect, SectionKind,
+    SectionPart, make, raster,
 };
+use glam::DVec2;
 use image::{Rgba, RgbaImage};
 use model::{ModelSettings, StructuralModel};
-use render::{FaceData, Inputs, NamedVolume, Projection, Scene};
+use render::{Corner, FaceData, Ground, Inputs, NamedVolume, Projection, Scene, VoxelBox};
 use survey::{
     Contact, Horizon, NodeGrid, Progress, Quality, Sheet, StratigraphicHorizon, Stratigraphy, SurveyGeometry,
     VerticalUnit, Volume,
 };
+use synth::closed_form::ClosedForm;
 use ttf::{Colour, ColourMap, LayerStyle, RawColour, RgbaFunction, TextureLibrary};
 
 const SIZE: [usize; 3] = [31, 25, 41];
@@ -32,6 +34,13 @@ fn model(geometry: &SurveyGeometry) -> StructuralModel {
     let horizons = [flat("Top", 40.0), flat("Base", 120.0)];
     let settings = ModelSettings::default();
     StructuralModel::build(geometry, &stratigraphy, &horizons, &[], &settings, &Progress::silent()).unwrap()
+}
+
+/// Two flat horizons that a fault moves.
+fn faulted(geometry: &SurveyGeometry) -> StructuralModel {
+    let closed = ClosedForm::flat(geometry, &[10.0, 26.0]).with_fault(60.0, 5.0);
+    let (settings, quiet) = (ModelSettings::default(), Progress::silent());
+    StructuralModel::build(geometry, &closed.stratigraphy, &closed.horizons, &closed.faults, &settings, &quiet).unwrap()
 }
 
 fn made(figure: &Figure) -> Result<DisplayList, FigureError> {
@@ -54,10 +63,11 @@ fn made_of(
     let inputs = FigureInputs {
         source: SectionSource { data, raw: Some(&raw) },
         horizons: &horizons,
-        faults: &[],
+        faults: &["Northern boundary fault".to_owned()],
         layers,
         library,
         interpretation: None,
+        provenance: "Petroglyph · survey",
     };
     let mut paint = |scene: &Scene| {
         Ok(RgbaImage::from_pixel(scene.size_px[0], scene.size_px[1], Rgba([(255.0 * scene.blend) as u8, 90, 0, 255])))
@@ -203,6 +213,13 @@ fn random_figure(random: &mut Random) -> Figure {
             scene.camera.projection = Projection::Perspective { fov_deg: random.between(10.0, 70.0) };
         }
         scene.exaggeration = random.between(0.5, 5.0);
+        scene.blend = random.below(3) as f32 * 0.5;
+        if random.is_so() {
+            let corner = Corner::ALL[random.below(4) as usize];
+            let share = [random.between(0.2, 0.8), random.between(0.2, 0.8)];
+            scene.cut_outs = vec![VoxelBox::of_size(SIZE).corner_cut(corner, share)];
+        }
+        scene.ground = random.is_so().then(Ground::default);
         BlockPart { scene, comparison: Comparison::None }.into()
     };
     let count = 1 + random.below(4);
@@ -213,6 +230,8 @@ fn random_figure(random: &mut Random) -> Figure {
         legend: random.is_so(),
         scale_bar: random.is_so(),
         north_arrow: random.is_so(),
+        annotate: Annotation::ALL.into_iter().filter(|_| random.below(4) > 0).collect(),
+        credit: Some("TNO and dGB Earth Sciences, CC BY-SA 3.0".into()),
         title,
         caption,
         ..Figure::default()
@@ -221,7 +240,8 @@ fn random_figure(random: &mut Random) -> Figure {
 
 #[test]
 fn no_two_labels_overlap_on_two_hundred_random_pages() {
-    let (library, model) = (TextureLibrary::builtin().unwrap(), model(&geometry()));
+    let library = TextureLibrary::builtin().unwrap();
+    let models = [model(&geometry()), faulted(&geometry())];
     let mut random = Random(16);
     let (mut drawn, mut labels) = (0, 0);
     for n in 0..260 {
@@ -231,7 +251,7 @@ fn no_two_labels_overlap_on_two_hundred_random_pages() {
             name => LayerStyle::plain(&name, Colour::WHITE),
         };
         let layers: Vec<LayerStyle> = (0..random.below(14)).map(style).collect();
-        let page = match made_of(&model, &figure, &layers, Some(&library)) {
+        let page = match made_of(&models[n % 2], &figure, &layers, Some(&library)) {
             Ok(page) => page,
             Err(FigureError::NoRoom { .. }) => continue,
             Err(error) => panic!("page {n}: {error}"),
@@ -240,22 +260,42 @@ fn no_two_labels_overlap_on_two_hundred_random_pages() {
         let texts = page.texts();
         labels += texts.len();
         for (index, text) in texts.iter().enumerate() {
-            let bounds = lettering(text);
-            assert!(
-                page.bounds().contains(bounds.min) && page.bounds().contains(bounds.max),
-                "page {n}: {} at {bounds:?} leaves {:?}",
-                text.text,
-                page.size
-            );
+            let letters = lettering(text);
+            let is_inside = letters.iter().flatten().all(|corner| page.bounds().contains(*corner));
+            assert!(is_inside, "page {n}: {} at {letters:?} leaves {:?}", text.text, page.size);
             for other in &texts[..index] {
-                assert!(!lettering(other).meets(&bounds), "page {n}: {} lies over {}", text.text, other.text);
+                if !other.bounds().meets(&text.bounds()) {
+                    continue;
+                }
+                let others = lettering(other);
+                let is_over = letters.iter().any(|one| others.iter().any(|other| meet(one, other)));
+                assert!(!is_over, "page {n}: {} lies over {}", text.text, other.text);
             }
         }
     }
     assert!(drawn >= 200 && labels > 1000, "{drawn} pages, {labels} labels");
 }
 
-/// The rectangle of a text's letters.
-fn lettering(text: &Text) -> Rect {
-    text.outline().bounds().unwrap_or(Rect::new(text.at, text.at))
+/// The rectangles around a text's letters, turned as they are: one, or one for each letter of a bent text.
+fn lettering(text: &Text) -> Vec<[DVec2; 4]> {
+    let turned = |line: Text| {
+        let Rect { min, max } = line.clone().turned(0.0).outline().bounds()?;
+        let turn = DVec2::from_angle(line.turn_deg.to_radians());
+        let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+        Some(corners.map(|corner| line.at + turn.rotate(corner - line.at)))
+    };
+    text.straight().into_iter().filter_map(turned).collect()
+}
+
+/// Whether two rectangles meet: no line along a side of either parts them.
+fn meet(one: &[DVec2; 4], other: &[DVec2; 4]) -> bool {
+    let span = |corners: &[DVec2; 4], axis: DVec2| {
+        let along = corners.map(|corner| corner.dot(axis));
+        [along.into_iter().fold(f64::INFINITY, f64::min), along.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let axes = [one, other].into_iter().flat_map(|corners| [corners[1] - corners[0], corners[3] - corners[0]]);
+    !axes.into_iter().any(|axis| {
+        let ([low, high], [other_low, other_high]) = (span(one, axis), span(other, axis));
+        high < other_low || other_high < low
+    })
 }

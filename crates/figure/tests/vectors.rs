@@ -81,6 +81,7 @@ impl Fold {
             layers: &self.layers,
             library: Some(&self.library),
             interpretation: None,
+            provenance: "",
         };
         let part = BlockPart { scene: scene.clone(), ..BlockPart::default() };
         let figure = Figure { size: PageSize::Px(scene.size_px), dpi: 200.0, ..Figure::of(part.into()) };

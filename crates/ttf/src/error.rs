@@ -102,6 +102,24 @@ pub enum TtfError {
         /// The most similar name there is, if one is close.
         nearest: Option<String>,
     },
+    /// A rock that the vocabulary does not have.
+    #[error(
+        "there is no rock `{rock}`; name it in English as the CGI simple lithology vocabulary does (sandstone, wacke, marble, \
+         diorite), or choose a pattern"
+    )]
+    UnknownRock {
+        /// The name asked for.
+        rock: String,
+    },
+    /// A unit that the chronostratigraphic chart does not have.
+    #[error(
+        "there is no unit `{age}` in the International Chronostratigraphic Chart; use its English name (Campanian, Upper \
+         Cretaceous, Neogene), or state a colour"
+    )]
+    UnknownAge {
+        /// The name asked for.
+        age: String,
+    },
     /// A texture name that is in use already.
     #[error("the texture name `{texture}` is in use already; rename the file or choose another name")]
     DuplicateTexture {

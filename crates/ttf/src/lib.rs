@@ -15,6 +15,7 @@
 //! P-illus is Patel, Giertsen, Thurmond and Gröller, "Illustrative Rendering of Seismic Data" (Vision,
 //! Modeling and Visualization 2007).
 
+mod age;
 mod builtin;
 mod colour;
 mod colour_map;
@@ -28,6 +29,7 @@ mod library;
 mod palette;
 mod raster;
 mod rgba;
+mod rock;
 mod scalar;
 mod shade;
 mod sheet;
@@ -37,6 +39,7 @@ pub mod tables;
 pub mod text;
 pub mod texture;
 
+pub use age::{Age, age, ages};
 pub use colour::{Colour, linear_from_srgb, srgb_from_linear};
 pub use colour_map::ColourMap;
 pub use coordinates::{FaceFrame, Mapping, MappingWeights};
@@ -48,6 +51,7 @@ pub use layer::{DepthInterval, LayerStyle, LayerTtf};
 pub use library::{Pattern, TextureLibrary};
 pub use raster::{MAX_DECODING_BYTES, MAX_FILE_BYTES, MAX_IMAGE_SIDE_PX, read_svg};
 pub use rgba::{RgbaFunction, RgbaStop, symmetric_clip};
+pub use rock::{RockPattern, rock, rock_terms};
 pub use scalar::{ScalarInterval, ScalarTtf};
 pub use shade::{FlatFootprint, LayerPoint, ShadePoint, blend_raw, shade};
 pub use sheet::contact_sheet;

@@ -49,7 +49,7 @@ pub fn paint(painter: &Painter, group: &Group, texture: Option<TextureId>) {
         match item {
             Item::Group(group) => paint(painter, group, texture),
             Item::Path(path) => paint_path(painter, path),
-            Item::Text(text) => paint_text(painter, text),
+            Item::Text(text) => text.straight().iter().for_each(|line| paint_text(painter, line)),
             Item::Picture(picture) => paint_picture(painter, picture, texture),
             _ => {}
         }

@@ -47,6 +47,14 @@ pub(in crate::cli) struct FigureArgs {
     /// Draw a north arrow below the block, as it lies in the block's middle
     #[arg(long)]
     pub(in crate::cli) north_arrow: bool,
+    /// Write on the blocks: axes (inlines, crosslines, depth or time along the edges), layers (names along the
+    /// layers), faults (names, measured throw, half-arrows), colours (a bar of the raw data's values), provenance
+    /// (program, project, --credit); all adds the legend, the scale bar and the north arrow
+    #[arg(long, value_name = "all|axes,layers,faults,colours,provenance", value_delimiter = ',')]
+    pub(in crate::cli) annotate: Vec<String>,
+    /// Whose data the figure shows, for the line of provenance
+    #[arg(long, value_name = "TEXT")]
+    pub(in crate::cli) credit: Option<String>,
     /// Title above the figure
     #[arg(long, value_name = "TEXT")]
     pub(in crate::cli) title: Option<String>,
@@ -62,7 +70,7 @@ pub(in crate::cli) struct FigureArgs {
         value_name = "FILE.toml",
         conflicts_with_all = [
             "inline", "crossline", "slice", "fence", "map", "block", "compare", "size_cm", "interpretation", "legend",
-            "scale_bar", "north_arrow", "title", "caption",
+            "scale_bar", "north_arrow", "annotate", "credit", "title", "caption",
         ]
     )]
     pub(in crate::cli) figure: Option<PathBuf>,

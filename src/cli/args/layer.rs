@@ -13,9 +13,10 @@ pub(in crate::cli) enum LayerAction {
     },
     /// Change how a layer looks
     #[command(after_help = "Examples:\n  petroglyph layer set north.petro \"A - B\" --name Chalk --pattern chalk\
+                      \n  petroglyph layer set north.petro Chalk --rock \"oolitic limestone\" --age Campanian\
                       \n  petroglyph layer set north.petro Chalk --interval 0,0.3,marl --interval 0.3,1,chalk \
                       --frequency 12,3")]
-    Set(LayerSetArgs),
+    Set(Box<LayerSetArgs>),
     /// Give a layer its default style again
     #[command(after_help = "Example:\n  petroglyph layer reset north.petro Chalk")]
     Reset {
@@ -38,6 +39,13 @@ pub(in crate::cli) struct LayerSetArgs {
     /// Pattern over the whole layer (`petroglyph patterns` draws them all); sets its usual colour, too
     #[arg(long, conflicts_with = "interval")]
     pub(in crate::cli) pattern: Option<String>,
+    /// Rock, whose pattern and usual colour the layer takes: a term of the CGI simple lithology vocabulary
+    /// (`alkali olivine basalt`), or words that end in one (`oolitic limestone`)
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["pattern", "interval"])]
+    pub(in crate::cli) rock: Option<String>,
+    /// Unit of geological time, whose colour on the international chart the layer takes (`Campanian`)
+    #[arg(long, value_name = "NAME", conflicts_with = "colour")]
+    pub(in crate::cli) age: Option<String>,
     /// Colour under the pattern
     #[arg(long, value_name = "#RRGGBB")]
     pub(in crate::cli) colour: Option<String>,

@@ -164,8 +164,9 @@ pub const PICKING: [Scenario; 10] = [
 ];
 
 /// What changes how it looks.
-pub const LOOKING: [Scenario; 8] = [
+pub const LOOKING: [Scenario; 9] = [
     of(Imported, "layer set p.petro 'Top - Base' --name Chalk --pattern chalk"),
+    of(Imported, "layer set p.petro 'Top - Base' --rock 'oolitic limestone' --age Campanian"),
     of(Imported, "layer reset p.petro 'Top - Base'"),
     of(Imported, SET_SCALAR),
     after(Imported, |at| all(at, &[SET_SCALAR]), "scalar remove p.petro seismic"),

@@ -1,5 +1,6 @@
 //! The dialogues.
 
+use figure::Annotation;
 use std::path::PathBuf;
 
 /// What a file or folder is chosen for.
@@ -101,6 +102,10 @@ pub struct ExportForm {
     pub scale_bar: Shown,
     /// Draw a north arrow below the block.
     pub north_arrow: Shown,
+    /// What is written on and around the block.
+    pub annotate: Vec<Annotation>,
+    /// Whose data it shows; empty: not said.
+    pub credit: String,
     /// A line above the picture; empty: none.
     pub title: String,
     /// A sentence or two below the picture; empty: none.
@@ -128,6 +133,8 @@ impl ExportForm {
             legend: Shown::Yes,
             scale_bar: Shown::Yes,
             north_arrow: Shown::No,
+            annotate: vec![Annotation::Axes, Annotation::Layers, Annotation::Faults],
+            credit: String::new(),
             title: String::new(),
             caption: String::new(),
             accepts_sparse: false,

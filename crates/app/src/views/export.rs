@@ -3,6 +3,7 @@
 use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
 use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui};
+use figure::Annotation;
 use project::figures::FigureFormat;
 use project::picture::SparseHorizon;
 use std::path::Path;
@@ -11,6 +12,15 @@ use widgets::theme;
 
 /// Largest side of a picture, pixels.
 const LARGEST: u32 = 16_000;
+
+/// What is written on blocks, and what it is called.
+const WRITTEN: [(Annotation, &str); 5] = [
+    (Annotation::Axes, "Axes along the block's edges"),
+    (Annotation::Layers, "Names along the layers"),
+    (Annotation::Faults, "Names and throws of faults"),
+    (Annotation::Colours, "Colour bar of raw data"),
+    (Annotation::Provenance, "Program, project and data credit"),
+];
 
 /// Shows the dialogue.
 pub fn show(
@@ -45,7 +55,8 @@ pub fn show(
             let drag = DragValue::new(&mut next.dpi).speed(5.0).range(36.0..=1200.0).max_decimals(0).suffix(" dpi");
             ui.add(drag).labelled_by(label.id);
             ui.end_row();
-            for (name, words) in [("Title", &mut next.title), ("Caption", &mut next.caption)] {
+            let words = [("Title", &mut next.title), ("Caption", &mut next.caption), ("Data credit", &mut next.credit)];
+            for (name, words) in words {
                 let label = ui.label(name);
                 ui.add(TextEdit::singleline(words).desired_width(300.0)).labelled_by(label.id);
                 ui.end_row();
@@ -61,6 +72,13 @@ pub fn show(
                     let mut is_shown = *shown == Shown::Yes;
                     if ui.add_enabled(can, eframe::egui::Checkbox::new(&mut is_shown, name)).changed() {
                         *shown = if is_shown { Shown::Yes } else { Shown::No };
+                    }
+                }
+                for (annotation, name) in WRITTEN {
+                    let mut is_shown = next.annotate.contains(&annotation);
+                    if ui.checkbox(&mut is_shown, name).changed() {
+                        next.annotate.retain(|known| *known != annotation);
+                        next.annotate.extend(is_shown.then_some(annotation));
                     }
                 }
             });

@@ -50,6 +50,8 @@ impl Page {
             legend: form.legend == Shown::Yes,
             scale_bar: form.scale_bar == Shown::Yes,
             north_arrow: form.north_arrow == Shown::Yes,
+            annotate: form.annotate.clone(),
+            credit: said(&form.credit),
             title: said(&form.title),
             caption: said(&form.caption),
             interpretation: is_interpreting,

@@ -1,5 +1,6 @@
 //! The block on a page: one picture or two compared, surfaces and sticks before them, and which is which.
 
+use super::annotation::BlockAnnotation;
 use super::north;
 use super::overlay;
 use super::surfaces::{self, Cells, OPACITY};
@@ -7,7 +8,7 @@ use super::vector_block::{self, BlockNames};
 use crate::Rect;
 use crate::error::FigureError;
 use crate::interpretation::DrawnInterpretation;
-use crate::list::{Across, Group, GroupKind, POINTS_PER_INCH, Path, PathItem, Picture, Stroke, Text, Upright};
+use crate::list::{Across, Group, GroupKind, Item, POINTS_PER_INCH, Path, PathItem, Picture, Stroke, Text, Upright};
 use crate::style::{ACCENT, FRAME_PT, INK, RULE_INK, TEXT_PT};
 use glam::{DVec2, DVec3};
 use image::RgbaImage;
@@ -123,6 +124,8 @@ pub struct BlockPanel<'a> {
     pub has_surfaces: bool,
     /// Dots an inch that pictures are drawn at.
     pub dpi: f64,
+    /// What is written on it.
+    pub annotation: Option<BlockAnnotation<'a>>,
     /// What its paths are called.
     pub names: BlockNames<'a>,
 }
@@ -147,8 +150,13 @@ impl BlockPanel<'_> {
         let mut group = Group::new(GroupKind::Panel, "block");
         let (mut points_per_m, mut compass) = (0.0, [DVec2::ZERO; 2]);
         let blends = self.comparison.blends();
+        let beside = |room: Rect| self.annotation.map_or(room, |annotation| annotation.pane(room, self.scene));
+        let is_wipe = matches!(self.comparison, Comparison::Wipe(..));
+        let (whole, room) = (room, if is_wipe { beside(room) } else { room });
+        let mut written: Vec<Group> = Vec::new();
         for (index, pane) in self.comparison.panes(room).into_iter().enumerate() {
-            let pane = self.on_pixels(pane);
+            let panel = if is_wipe { whole } else { pane };
+            let pane = self.on_pixels(if is_wipe { pane } else { beside(pane) });
             let size_px = (pane.size() * self.dpi / POINTS_PER_INCH).round().max(DVec2::ONE);
             let size_px = [size_px.x as u32, size_px.y as u32];
             let blend = blends.map_or(self.scene.blend, |blends| blends[index]);
@@ -172,6 +180,9 @@ impl BlockPanel<'_> {
                 self.lay_over(&mut shown, &scene, &view, interpretation, pane);
             }
             group.push(shown);
+            if let Some(annotation) = self.annotation.filter(|_| index == 0 || !is_wipe) {
+                written.push(annotation.drawn(panel, pane, &scene, self.dpi));
+            }
             let middle = scene.box_in(self.geometry).centre();
             points_per_m = pixels_per_metre(&view, middle) * POINTS_PER_INCH / self.dpi;
             compass = north::compass(&view, self.geometry, middle);
@@ -179,6 +190,7 @@ impl BlockPanel<'_> {
         if let Some(blends) = blends {
             group.push(self.rule(room, blends));
         }
+        group.items.extend(written.into_iter().filter(|group| !group.items.is_empty()).map(Item::from));
         Ok(DrawnBlock { group, points_per_m, compass })
     }
 
@@ -278,6 +290,7 @@ mod tests {
             interpretation: None,
             has_surfaces: true,
             dpi: 144.0,
+            annotation: None,
             names: BlockNames::default(),
         };
         let mut asked = Vec::new();

@@ -20,6 +20,17 @@ const LEAST_NAME_PT: f64 = 36.0;
 /// Between layers and horizons, points.
 const PARAGRAPH_PT: f64 = 9.0;
 
+/// A line that a legend explains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegendLine {
+    /// What it stands for.
+    pub name: String,
+    /// What kind of thing that is.
+    pub kind: GroupKind,
+    /// How it is drawn.
+    pub stroke: Stroke,
+}
+
 /// What a legend lists.
 #[derive(Clone, Copy)]
 pub struct Legend<'a> {
@@ -27,6 +38,8 @@ pub struct Legend<'a> {
     pub layers: Option<(&'a [LayerStyle], &'a TextureLibrary)>,
     /// Horizons, below the layers.
     pub horizons: &'a [NamedColour],
+    /// Other lines, below the horizons: faults, wells, contacts.
+    pub lines: &'a [LegendLine],
     /// Dots an inch that patterns are drawn at.
     pub dpi: f64,
 }
@@ -38,7 +51,7 @@ impl Legend<'_> {
 
     /// Whether there is nothing to list.
     pub fn is_empty(&self) -> bool {
-        self.styles().is_empty() && self.horizons.is_empty()
+        self.styles().is_empty() && self.horizons.is_empty() && self.lines.is_empty()
     }
 
     /// The width that shows all names, but no more than `most`, points.
@@ -49,12 +62,13 @@ impl Legend<'_> {
 
     fn names(&self) -> impl Iterator<Item = &str> {
         let layers = self.styles().iter().map(|style| style.layer.as_str());
-        layers.chain(self.horizons.iter().map(|horizon| horizon.name.as_str()))
+        let horizons = self.horizons.iter().map(|horizon| horizon.name.as_str());
+        layers.chain(horizons).chain(self.lines.iter().map(|line| line.name.as_str()))
     }
 
     /// Size of all names in a legend of a width, points: that of the one which needs the smallest.
     fn size_pt(&self, width: f64, share: f64) -> f64 {
-        let pitch = if self.horizons.is_empty() { PITCH_PT[0] } else { PITCH_PT[1] };
+        let pitch = if self.horizons.is_empty() && self.lines.is_empty() { PITCH_PT[0] } else { PITCH_PT[1] };
         let largest = TEXT_PT.min(0.9 * share * pitch);
         let room = width - SWATCH_PT[0] - GAP_PT;
         let fitted = |name: &str| Text::new(DVec2::ZERO, name).sized(largest).fitted(room).size;
@@ -67,7 +81,7 @@ impl Legend<'_> {
     /// A pattern that does not draw.
     pub fn drawn(&self, room: Rect) -> Result<Group, FigureError> {
         let mut group = Group::new(GroupKind::Annotation, "legend");
-        let counts = [self.styles().len(), self.horizons.len()];
+        let counts = [self.styles().len(), self.horizons.len() + self.lines.len()];
         let between = if counts.contains(&0) { 0.0 } else { PARAGRAPH_PT };
         let needed = counts[0] as f64 * PITCH_PT[0] + counts[1] as f64 * PITCH_PT[1] + between;
         let share = (room.height() / needed.max(1.0)).min(1.0);
@@ -83,21 +97,26 @@ impl Legend<'_> {
             }
         }
         top += between;
-        for named in self.horizons {
-            group.push(horizon(named, place(top, PITCH_PT[1]), size));
+        let horizons = self.horizons.iter().map(|named| LegendLine {
+            name: named.name.clone(),
+            kind: GroupKind::Horizon,
+            stroke: Stroke::new(1.5 * HORIZON_PT, named.colour),
+        });
+        for entry in horizons.chain(self.lines.iter().cloned()) {
+            group.push(line(entry, place(top, PITCH_PT[1]), size));
             top += PITCH_PT[1];
         }
         Ok(group)
     }
 }
 
-/// An entry of a horizon in its place.
-fn horizon(named: &NamedColour, place: Rect, size_pt: f64) -> Group {
+/// An entry of a line in its place.
+fn line(entry: LegendLine, place: Rect, size_pt: f64) -> Group {
     let middle = DVec2::new(place.min.x, place.centre().y);
-    let line = Path::line(&[middle, middle + DVec2::new(SWATCH_PT[0], 0.0)]);
-    Group::new(GroupKind::Horizon, &named.name).with([
-        PathItem::stroked(line, Stroke::new(1.5 * HORIZON_PT, named.colour)).into(),
-        name(&named.name, middle + DVec2::new(SWATCH_PT[0], 0.0), place, size_pt).into(),
+    let path = Path::line(&[middle, middle + DVec2::new(SWATCH_PT[0], 0.0)]);
+    Group::new(entry.kind, &entry.name).with([
+        PathItem::stroked(path, entry.stroke).into(),
+        name(&entry.name, middle + DVec2::new(SWATCH_PT[0], 0.0), place, size_pt).into(),
     ])
 }
 
@@ -157,7 +176,7 @@ mod tests {
                 LayerStyle::textured(&name, Colour::WHITE, "shale")
             };
             let styles: Vec<LayerStyle> = (0..count).map(style).collect();
-            let legend = Legend { layers: Some((&styles, &library)), horizons: &[], dpi: 100.0 };
+            let legend = Legend { layers: Some((&styles, &library)), horizons: &[], lines: &[], dpi: 100.0 };
             let room = Rect::sized(DVec2::new(300.0, 10.0), DVec2::new(legend.width(110.0), 200.0));
             let mut found = Vec::new();
             texts(&legend.drawn(room).unwrap(), &mut found);

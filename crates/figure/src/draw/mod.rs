@@ -3,8 +3,10 @@
 //! Each takes the room it may fill and answers with a named group. Spaces: points of the page unless said
 //! otherwise.
 
+pub mod annotation;
 pub mod axes;
 pub mod block;
+pub mod colour_bar;
 pub mod legend;
 pub mod map;
 pub mod north;

@@ -25,10 +25,19 @@ pub struct BlockNames<'a> {
 
 impl BlockNames<'_> {
     /// The name of a layer counted from the deepest.
-    fn layer(&self, layer: u16) -> String {
+    pub(super) fn layer(&self, layer: u16) -> String {
+        self.style(layer).map_or_else(|| format!("layer {}", layer + 1), |style| style.layer.clone())
+    }
+
+    /// How a layer counted from the deepest is drawn.
+    pub(super) fn style(&self, layer: u16) -> Option<&LayerStyle> {
         let from_top = self.layers.len().checked_sub(1 + usize::from(layer));
-        let style = from_top.and_then(|index| self.layers.get(index));
-        style.map_or_else(|| format!("layer {}", layer + 1), |style| style.layer.clone())
+        from_top.and_then(|index| self.layers.get(index))
+    }
+
+    /// The name of a fault.
+    pub(super) fn fault(&self, fault: usize) -> String {
+        self.faults.get(fault).cloned().unwrap_or_else(|| format!("fault {}", fault + 1))
     }
 }
 
@@ -82,10 +91,7 @@ pub(super) fn items(
                 (GroupKind::Horizon, name.unwrap_or_else(|| format!("horizon {}", index + 1)))
             }
             VectorLineKind::Horizon(None) => (GroupKind::Horizon, "contacts and crests".to_owned()),
-            VectorLineKind::Fault(index) => {
-                let name = names.faults.get(index).cloned();
-                (GroupKind::Fault, name.unwrap_or_else(|| format!("fault {}", index + 1)))
-            }
+            VectorLineKind::Fault(index) => (GroupKind::Fault, names.fault(index)),
             VectorLineKind::Edge => (GroupKind::Annotation, "edges".to_owned()),
         };
         let mut path = Path::default();

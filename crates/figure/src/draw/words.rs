@@ -2,11 +2,13 @@
 
 use crate::Rect;
 use crate::list::{Across, Group, GroupKind, Text, Upright, width_of};
-use crate::style::{INK, TEXT_PT};
+use crate::style::{INK, QUIET_INK, TEXT_PT};
 use glam::DVec2;
 
 /// Size of a title, points.
 const TITLE_PT: f64 = 11.0;
+/// Size of the line of provenance, points.
+const PROVENANCE_PT: f64 = 6.0;
 /// From one line to the next, as a share of the size of the letters.
 const LEADING: f64 = 1.35;
 /// Most lines of a caption; what does not fit ends in "…".
@@ -31,6 +33,14 @@ pub fn caption(room: Rect, words: &str) -> (Group, Rect) {
         group.push(text.fitted(room.width()));
     }
     (group, Rect::new(room.min, DVec2::new(room.max.x, top)))
+}
+
+/// A line in small letters at the foot of a room, and the room that is left.
+pub fn provenance(room: Rect, words: &str) -> (Group, Rect) {
+    let text = Text::new(DVec2::new(room.min.x, room.max.y - 0.25 * PROVENANCE_PT), words).sized(PROVENANCE_PT);
+    let text = text.inked(QUIET_INK).anchored(Across::Start, Upright::Baseline);
+    let group = Group::new(GroupKind::Annotation, "provenance").with([text.fitted(room.width()).into()]);
+    (group, room.inside([0.0, 0.0, 0.0, PROVENANCE_PT * LEADING + 2.0]))
 }
 
 /// Words in lines that are no wider than `room`, as far as single words allow.

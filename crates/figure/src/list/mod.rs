@@ -13,7 +13,7 @@ mod vectors;
 
 pub use path::{Cap, Ink, Path, PathItem, Rule, Segment, Stroke};
 pub use picture::{Picture, Sampling};
-pub use text::{Across, Anchor, Halo, Text, Upright, width_of};
+pub use text::{Across, Anchor, Halo, Letter, Text, Upright, width_of};
 pub(crate) use vectors::{KnownPictures, VectorWriter, png, write_vectors};
 
 use crate::Rect;

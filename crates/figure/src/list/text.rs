@@ -28,6 +28,18 @@ pub struct Text {
     /// A rim, so that it is read on any ground.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub halo: Option<Halo>,
+    /// Where each of its characters stands; empty: side by side on a straight line.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub letters: Vec<Letter>,
+}
+
+/// Where a character of a bent line stands.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Letter {
+    /// The left end of its baseline.
+    pub at: DVec2,
+    /// Its turn about that place, degrees clockwise as seen on the page.
+    pub turn_deg: f64,
 }
 
 /// Which place of a text stands at its position.
@@ -85,6 +97,7 @@ impl Text {
             turn_deg: 0.0,
             ink: Ink::solid(INK),
             halo: None,
+            letters: Vec::new(),
         }
     }
 
@@ -121,6 +134,40 @@ impl Text {
     pub fn haloed(mut self, width: f64, ink: impl Into<Ink>) -> Self {
         self.halo = Some(Halo { width, ink: ink.into() });
         self
+    }
+
+    /// The same bent along a curve from left to right: half of the capitals' height lies on it, and the text's middle
+    /// this far along it. Before and after the curve it goes on straight.
+    #[must_use]
+    pub fn along(mut self, curve: &[DVec2], middle: f64) -> Self {
+        let begin = middle - 0.5 * self.width();
+        let mut said = String::new();
+        let mut before = 0.0;
+        for character in self.text.chars() {
+            said.push(character);
+            let after = width_of(&said, self.size);
+            let (place, along) = on_curve(curve, begin + 0.5 * (before + after));
+            let at = place - 0.5 * (after - before) * along + 0.5 * CAPITALS * self.size * along.perp();
+            self.letters.push(Letter { at, turn_deg: along.to_angle().to_degrees() });
+            before = after;
+        }
+        self
+    }
+
+    /// The straight lines of text that it is made of: itself, or one for each character of a bent line.
+    pub fn straight(&self) -> Vec<Self> {
+        if self.letters.is_empty() {
+            return vec![self.clone()];
+        }
+        let letter = |(character, letter): (char, &Letter)| Self {
+            text: character.into(),
+            at: letter.at,
+            anchor: Anchor::default(),
+            turn_deg: letter.turn_deg,
+            letters: Vec::new(),
+            ..self.clone()
+        };
+        self.text.chars().zip(&self.letters).map(letter).collect()
     }
 
     /// The same no wider than `room`, in a smaller size where that is enough and shortened to end in "…"
@@ -177,6 +224,11 @@ impl Text {
 
     /// The contours of its letters, to be filled by the non-zero rule.
     pub fn outline(&self) -> Path {
+        let segments = self.straight().iter().flat_map(|line| line.straight_outline().segments).collect();
+        Path { segments }
+    }
+
+    fn straight_outline(&self) -> Path {
         let (start, turn) = self.baseline();
         let place = |p: [f32; 2]| start + turn.rotate(DVec2::new(f64::from(p[0]), f64::from(p[1])));
         let mut path = Path::default();
@@ -210,7 +262,7 @@ impl Text {
     }
 
     /// The corners of its room from ascenders to descenders, turned: upper left, upper right, lower right,
-    /// lower left.
+    /// lower left. Of a straight line.
     pub fn corners(&self) -> [DVec2; 4] {
         let extent = measure_text(self.size as f32, &self.text);
         let (start, turn) = self.baseline();
@@ -221,10 +273,25 @@ impl Text {
 
     /// The smallest upright rectangle around it and its halo.
     pub fn bounds(&self) -> Rect {
-        let corners = self.corners();
-        let bounds = corners.iter().fold(Rect::new(corners[0], corners[0]), |rect, corner| rect.around(*corner));
+        let mut corners = self.straight().into_iter().flat_map(|line| line.corners());
+        let first = corners.next().unwrap_or(self.at);
+        let bounds = corners.fold(Rect::new(first, first), |rect, corner| rect.around(corner));
         bounds.grown(self.halo.map_or(0.0, |halo| halo.width))
     }
+}
+
+/// The place this far along a curve, and the direction there; straight on beyond its ends.
+fn on_curve(curve: &[DVec2], length: f64) -> (DVec2, DVec2) {
+    let mut left = length;
+    for (n, pair) in curve.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        if left <= step.length() || n + 2 == curve.len() {
+            let along = step.normalize_or(DVec2::X);
+            return (pair[0] + along * left, along);
+        }
+        left -= step.length();
+    }
+    (curve.first().copied().unwrap_or_default(), DVec2::X)
 }
 
 /// Length of a line of text at a font size, points.
@@ -252,6 +319,24 @@ mod tests {
         let upright = flat.clone().turned(-90.0);
         let (a, b) = (flat.bounds(), upright.bounds());
         assert!((a.width() - b.height()).abs() < 1e-6 && (a.height() - b.width()).abs() < 1e-6);
+    }
+
+    #[test]
+    fn a_bent_text_follows_its_curve_and_a_straight_curve_bends_nothing() {
+        let line = [DVec2::new(0.0, 30.0), DVec2::new(60.0, 30.0), DVec2::new(200.0, 30.0)];
+        let flat = Text::new(DVec2::ZERO, "Marl").sized(10.0).along(&line, 80.0);
+        let straight = Text::new(DVec2::new(80.0, 30.0), "Marl").sized(10.0).anchored(Across::Middle, Upright::Middle);
+        let (bent, plain) = (flat.outline().bounds().unwrap(), straight.outline().bounds().unwrap());
+        assert!((bent.min - plain.min).length() < 0.3 && (bent.max - plain.max).length() < 0.3, "{bent:?} {plain:?}");
+        // Half a circle of 50 points around (0, 0), clockwise as seen: letters stand around it, their feet inwards.
+        let arc: Vec<DVec2> =
+            (0..=180).map(|deg| 50.0 * DVec2::from_angle(f64::from(deg - 180).to_radians())).collect();
+        let text = Text::new(DVec2::ZERO, "Limestone").sized(8.0).along(&arc, 25.0 * std::f64::consts::PI);
+        for letter in text.straight() {
+            let middle = letter.corners().iter().sum::<DVec2>() / 4.0;
+            assert!((middle.length() - 50.0).abs() < 3.0, "{} at {middle}", letter.text);
+            assert!((letter.turn_deg - (middle.to_angle().to_degrees() + 90.0)).abs() < 3.0);
+        }
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::list::{
 };
 use glam::DVec2;
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
-use pdf_writer::{Content, Name, Pdf, Ref, Str};
+use pdf_writer::{Content, Name, Pdf, Ref, Str, TextStr};
 
 /// What a viewer switches: the groups of one kind and name within one other group. Where faces of a block hide one
 /// another, a layer is drawn in several groups.
@@ -176,15 +176,28 @@ impl VectorWriter for PageContent<'_> {
         if let Some((path, stroke)) = line.rim() {
             self.stroke(&path, &stroke);
         }
-        let (start, along) = line.baseline();
         let [r, g, b] = channels(line.ink);
         self.content.save_state();
         self.opacity(line.ink.opacity);
+        let is_bent = !line.letters.is_empty();
+        if is_bent {
+            // Letters one by one are still one word to readers.
+            let mut span = self.content.begin_marked_content_with_properties(Name(b"Span"));
+            span.properties().actual_text(TextStr(&line.text));
+        }
         self.content.set_fill_rgb(r, g, b).begin_text().set_font(FACE, thousandths(line.size));
-        // Letters stand upright where y points down.
-        let [x, y] = along.to_array().map(|part| (part * 1e6).round() as f32 / 1e6);
-        self.content.set_text_matrix([x, y, y, -x, number(start.x), number(start.y)]);
-        self.content.show(Str(&self.font.encoded(&line.text))).end_text().restore_state();
+        for straight in line.straight() {
+            let (start, along) = straight.baseline();
+            // Letters stand upright where y points down.
+            let [x, y] = along.to_array().map(|part| (part * 1e6).round() as f32 / 1e6);
+            self.content.set_text_matrix([x, y, y, -x, number(start.x), number(start.y)]);
+            self.content.show(Str(&self.font.encoded(&straight.text)));
+        }
+        self.content.end_text();
+        if is_bent {
+            self.content.end_marked_content();
+        }
+        self.content.restore_state();
     }
 
     /// A picture: a square of one unit, laid on its parallelogram.

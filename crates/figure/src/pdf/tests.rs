@@ -131,6 +131,17 @@ fn text_is_text_in_the_glyphs_that_it_needs() {
 }
 
 #[test]
+fn letters_along_a_curve_are_set_one_by_one_and_read_as_a_word() {
+    let mut page = DisplayList::new(DVec2::splat(100.0));
+    let curve = [DVec2::new(0.0, 60.0), DVec2::new(50.0, 40.0), DVec2::new(100.0, 60.0)];
+    page.items.push(Text::new(DVec2::ZERO, "Marl").along(&curve, 50.0).into());
+    let drawn = Objects::of(&pdf(&page, "t").unwrap()).drawn();
+    assert!(drawn.contains("/ActualText (Marl)"), "{drawn}");
+    assert_eq!([drawn.matches(" Tm").count(), drawn.matches(" Tj").count()], [4, 4]);
+    assert_eq!(drawn.matches("BDC").count(), drawn.matches("EMC").count());
+}
+
+#[test]
 fn opacity_widths_and_dashes_hold_for_one_path() {
     let mut page = DisplayList { paper: None, ..DisplayList::new(DVec2::splat(50.0)) };
     let glass = PathItem { fill: Some(Ink::glass(ttf::Colour::BLACK, 0.25)), ..square() };

@@ -89,6 +89,10 @@ fn places(curve: &CurvePx) -> &[[f64; 2]] {
 }
 
 fn curves_px(text: &Text, scale: f64) -> Vec<CurvePx> {
+    text.straight().iter().flat_map(|line| straight_curves_px(line, scale)).collect()
+}
+
+fn straight_curves_px(text: &Text, scale: f64) -> Vec<CurvePx> {
     let (start, turn) = text.baseline();
     let place = |p: [f32; 2]| ((start + turn.rotate(DVec2::new(f64::from(p[0]), f64::from(p[1])))) * scale).to_array();
     let curve = |curve: TextCurve| match curve {

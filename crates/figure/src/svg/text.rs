@@ -2,7 +2,7 @@
 
 use super::numbers::number;
 use super::{attribute, base64};
-use crate::list::Text;
+use crate::list::{Letter, Text};
 use std::collections::BTreeSet;
 use std::fmt::Write;
 use ttf::subset::font_of;
@@ -25,16 +25,25 @@ pub(super) fn face(into: &mut String, characters: &BTreeSet<char>) {
 /// Adds a line of text: its left end on its baseline, at the length that the page gives it.
 pub(super) fn text(into: &mut String, line: &Text) {
     let start = line.baseline_start();
+    let each =
+        |of: fn(&Letter) -> f64| line.letters.iter().map(|letter| number(of(letter))).collect::<Vec<_>>().join(" ");
+    let place = match line.letters.is_empty() {
+        true => format!("x=\"{}\" y=\"{}\"", number(start.x), number(start.y)),
+        false => {
+            let [x, y, turn] = [each(|letter| letter.at.x), each(|letter| letter.at.y), each(|letter| letter.turn_deg)];
+            format!("x=\"{x}\" y=\"{y}\" rotate=\"{turn}\"")
+        }
+    };
     let _ = write!(
         into,
-        "<text x=\"{}\" y=\"{}\" font-family=\"{FAMILY}\" font-weight=\"300\" font-size=\"{}\" xml:space=\"preserve\"",
-        number(start.x),
-        number(start.y),
+        "<text {place} font-family=\"{FAMILY}\" font-weight=\"300\" font-size=\"{}\" xml:space=\"preserve\"",
         number(line.size)
     );
-    let _ = write!(into, " textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"", number(line.width()));
+    if line.letters.is_empty() {
+        let _ = write!(into, " textLength=\"{}\" lengthAdjust=\"spacingAndGlyphs\"", number(line.width()));
+    }
     attribute(into, "fill", line.ink);
-    if line.turn_deg != 0.0 {
+    if line.turn_deg != 0.0 && line.letters.is_empty() {
         let _ = write!(
             into,
             " transform=\"rotate({} {} {})\"",

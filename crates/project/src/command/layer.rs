@@ -5,7 +5,7 @@ use crate::folder::Draft;
 use crate::styles;
 use param::KDefinition;
 use serde::{Deserialize, Serialize};
-use ttf::{Colour, DepthInterval, Frequency, LayerStyle, LayerTtf};
+use ttf::{Colour, DepthInterval, Frequency, LayerStyle, LayerTtf, TtfError};
 
 /// Changes a layer's style; what is `None` stays as it is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -25,6 +25,12 @@ pub struct SetLayer {
     /// One texture from bottom to top; the layer takes its usual colour unless `colour` is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub pattern: Option<String>,
+    /// A rock, whose pattern and usual colour the layer takes ([`ttf::rock`]).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rock: Option<String>,
+    /// A unit of geological time, whose colour on the international chart the layer takes ([`ttf::age()`]).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub age: Option<String>,
     /// Textures by depth in the layer, which replace the present ones.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub intervals: Vec<DepthInterval>,
@@ -78,11 +84,19 @@ impl SetLayer {
         if let Some(whole) = &self.style {
             *style = LayerStyle { layer: style.layer.clone(), ..whole.clone() };
         }
-        if let Some(pattern) = &self.pattern {
+        let meant = self.rock.as_ref().map(|rock| {
+            let patterns: Vec<&str> = library.patterns().map(|pattern| pattern.name.as_str()).collect();
+            let found = ttf::rock(rock, &patterns).map(|found| found.pattern);
+            found.ok_or_else(|| TtfError::UnknownRock { rock: rock.clone() })
+        });
+        if let Some(pattern) = meant.transpose()?.as_ref().or(self.pattern.as_ref()) {
             let index = library.index_of(pattern, &format!("layer `{}`", style.layer))?;
             let textured = LayerStyle::textured(&style.layer, library.pattern(index).colour, pattern);
             style.colour = textured.colour;
             style.intervals = textured.intervals;
+        }
+        if let Some(age) = &self.age {
+            style.colour = ttf::age(age).ok_or_else(|| TtfError::UnknownAge { age: age.clone() })?.colour;
         }
         if !self.intervals.is_empty() {
             style.intervals.clone_from(&self.intervals);

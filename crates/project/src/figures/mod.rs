@@ -20,7 +20,7 @@ use figure::cut::SectionSource;
 use figure::draw::NamedColour;
 use figure::draw::block::BlockPainter;
 use figure::list::DisplayList;
-use figure::{Figure, FigureInputs, Part};
+use figure::{Annotation, Figure, FigureInputs, Part};
 use image::RgbaImage;
 use interpreter::InterpreterPicks;
 use model::StructuralModel;
@@ -72,7 +72,8 @@ pub fn make(
     let (loaded, model, stages) = load(project, figure, settings, progress)?;
     let picks = if figure.interpretation { Some(InterpreterPicks::read(project, view, progress)?) } else { None };
     let shown = picks.as_ref().map(InterpreterPicks::borrowed);
-    let needs_library = figure.legend || settings.has_vectors;
+    let names_layers = figure.annotate.contains(&Annotation::Layers);
+    let needs_library = figure.legend || names_layers || settings.has_vectors;
     let library = if needs_library { Some(styles::pattern_library(project.root(), document)?) } else { None };
     let layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
@@ -87,6 +88,7 @@ pub fn make(
         layers: &layers,
         library: library.as_ref(),
         interpretation: shown.as_ref(),
+        provenance: &format!("Petroglyph {} · {}", env!("CARGO_PKG_VERSION"), title(project)),
     };
     let library = library.as_ref().filter(|_| settings.has_vectors);
     let mut painter =

@@ -17,7 +17,10 @@
 mod face;
 mod join;
 mod pattern;
+mod sections;
 mod visible;
+
+pub use sections::{SeenSection, seen_sections};
 
 use crate::error::RenderError;
 use crate::inputs::Inputs;

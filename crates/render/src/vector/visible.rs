@@ -30,7 +30,8 @@ impl SeenFace {
         self.cells.len() == 1 && self.cells[0] == [self.rect.low, self.rect.high]
     }
 
-    fn quads(&self, view: &View) -> Vec<Vec<DVec2>> {
+    /// Its rectangles of rock in pixels.
+    pub(super) fn quads(&self, view: &View) -> Vec<Vec<DVec2>> {
         self.cells.iter().map(|cell| quad(view, self.rect.axis, *cell)).collect()
     }
 }

@@ -1,0 +1,35 @@
+//! What may be written on a figure besides its title and caption.
+
+use serde::{Deserialize, Serialize};
+
+/// Something that is written on a figure.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Annotation {
+    /// Inlines, crosslines and depth or time along the edges of a block.
+    Axes,
+    /// Names of layers along the layers, or beside the block with a leader.
+    Layers,
+    /// Names of faults, the throw measured there, and half-arrows that say which side went down.
+    Faults,
+    /// A bar that says which values the colours of measured data stand for.
+    Colours,
+    /// A line that says which program and which project a figure comes from, and whose data it shows.
+    Provenance,
+}
+
+impl Annotation {
+    /// All of them.
+    pub const ALL: [Self; 5] = [Self::Axes, Self::Layers, Self::Faults, Self::Colours, Self::Provenance];
+
+    /// What people call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Axes => "axes",
+            Self::Layers => "layers",
+            Self::Faults => "faults",
+            Self::Colours => "colours",
+            Self::Provenance => "provenance",
+        }
+    }
+}

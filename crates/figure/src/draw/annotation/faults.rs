@@ -1,0 +1,242 @@
+//! Names of faults beside their lines, the throw measured there, and half-arrows that say which side went down.
+//!
+//! On a face, a horizon meets a fault from each side at a place of its own, its cut-offs. They are found on the fault's
+//! line from the horizon's sheets in the two blocks beside it; the throw is the difference of their depths or times,
+//! taken at the horizon whose cut-offs lie nearest to the middle of what is seen of the fault.
+
+use super::room::{LabelRoom, holds, meet, outlines};
+use crate::cut::value_at;
+use crate::list::{Across, Group, GroupKind, Ink, Path, PathItem, Segment, Stroke, Text, Upright};
+use crate::style::{INK, NUMBER_PT};
+use glam::{DVec2, DVec3};
+use model::StructuralModel;
+use model::section::LineKind;
+use render::vector::SeenSection;
+use survey::SurveyGeometry;
+use ttf::Colour;
+
+/// Half the length of an arrow, its distance from the fault, and its barb along and across, points.
+const ARROW_PT: [f64; 4] = [7.0, 3.0, 3.6, 2.2];
+/// Distance of a name's middle from the fault, points.
+const NAME_OFF_PT: f64 = 8.0;
+/// The light rim under arrows and names, points, and its opacity.
+const RIM_PT: f64 = 1.3;
+const RIM_OPACITY: f32 = 0.85;
+/// Lines that are seen shorter than this carry neither arrows nor a name, points.
+const SHORTEST_PT: f64 = 16.0;
+/// How far beside a fault its blocks are looked up, voxels.
+const BESIDE: f64 = 0.75;
+/// Sheets that differ less than this lie on one another, samples.
+const SAME: f32 = 0.05;
+/// Throws below this are not stated, samples.
+const LEAST_THROW: f64 = 0.25;
+/// Where along its line a name or an arrow may stand, in shares on both sides of the middle.
+const PLACES: [f64; 9] = [0.0, 0.08, -0.08, 0.16, -0.16, 0.24, -0.24, 0.34, -0.34];
+
+/// The seen part of a fault's line on a face.
+pub(super) struct FaultRun<'a> {
+    /// The fault, by its number in the model.
+    pub fault: usize,
+    /// Places from one end to the other: voxels and the page.
+    places: Vec<(DVec3, DVec2)>,
+    /// Length on the page, points.
+    length: f64,
+    face: &'a SeenSection,
+    /// The parts of its face that are seen, on the page.
+    seen: Vec<Vec<DVec2>>,
+}
+
+/// What is known of a fault at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Throw {
+    /// Difference of depth or time between the sides, in the survey's unit.
+    pub size: f64,
+    /// Where along the run, as a share of its places.
+    share: f64,
+    /// Whether the side to which the face's first axis points went down.
+    is_ahead_down: bool,
+}
+
+/// The longest seen run of each fault on upright faces, by fault.
+pub(super) fn runs<'a>(
+    model: &StructuralModel,
+    faces: &'a [SeenSection],
+    page_from_voxel: &dyn Fn(DVec3) -> DVec2,
+    page: &dyn Fn(DVec2) -> DVec2,
+    air: Option<u16>,
+) -> Vec<FaultRun<'a>> {
+    let mut longest: Vec<FaultRun> = Vec::new();
+    for face in faces.iter().filter(|face| face.axis < 2) {
+        let plane = face.section.plane;
+        let aside = plane.s_axis * BESIDE;
+        let seen: Vec<Vec<DVec2>> =
+            face.pieces.iter().map(|piece| piece.iter().map(|px| page(*px)).collect()).collect();
+        for line in &face.section.lines {
+            let LineKind::Fault { fault, real: true } = line.kind else { continue };
+            let is_rock =
+                |p: DVec3| [p - aside, p + aside].iter().any(|q| Some(model.region_at(q.as_vec3()).layer) != air);
+            let place = |st: &DVec2| {
+                let voxel = plane.voxel(*st);
+                let at = page_from_voxel(voxel);
+                let is_seen = seen.iter().any(|piece| holds(piece, at)) && is_rock(voxel);
+                is_seen.then_some((voxel, at))
+            };
+            let places: Vec<Option<(DVec3, DVec2)>> = line.points.iter().map(place).collect();
+            for part in places.split(Option::is_none) {
+                let places: Vec<(DVec3, DVec2)> = part.iter().flatten().copied().collect();
+                let length = places.windows(2).map(|pair| pair[0].1.distance(pair[1].1)).sum();
+                let known = longest.iter().position(|run| run.fault == fault);
+                if length < SHORTEST_PT || known.is_some_and(|n| longest[n].length >= length) {
+                    continue;
+                }
+                let run = FaultRun { fault, places, length, face, seen: seen.clone() };
+                match known {
+                    Some(n) => longest[n] = run,
+                    None => longest.push(run),
+                }
+            }
+        }
+    }
+    longest.sort_by_key(|run| run.fault);
+    longest
+}
+
+impl FaultRun<'_> {
+    /// The throw from the cut-offs of the horizon that is nearest to the middle; `None` where no horizon has both.
+    pub(super) fn throw(&self, model: &StructuralModel, geometry: &SurveyGeometry) -> Option<Throw> {
+        let middle = self.places[self.places.len() / 2].0;
+        let aside = self.face.section.plane.s_axis * BESIDE;
+        let blocks = [middle - aside, middle + aside].map(|p| model.block_at(p.as_vec3()));
+        if blocks[0] == blocks[1] {
+            return None;
+        }
+        let last = (self.places.len() - 1).max(1) as f64;
+        let throw = |horizon: usize| {
+            let [behind, ahead] = blocks.map(|block| self.cut_off(model, horizon, block));
+            let ((behind_at, behind_z), (ahead_at, ahead_z)) = (behind?, ahead?);
+            let [from, to] = [behind_z, ahead_z].map(|z| value_at(geometry, 2, z));
+            let share = 0.5 * (behind_at + ahead_at) / last;
+            let is_seen = (ahead_z - behind_z).abs() >= LEAST_THROW;
+            is_seen.then_some(Throw { size: (to - from).abs(), share, is_ahead_down: ahead_z > behind_z })
+        };
+        let horizons = 0..model.stratigraphy().horizons.len();
+        horizons.filter_map(throw).min_by(|a, b| (a.share - 0.5).abs().total_cmp(&(b.share - 0.5).abs()))
+    }
+
+    /// Where a horizon ends at the fault within a block: the place along the run, and voxel z.
+    fn cut_off(&self, model: &StructuralModel, horizon: usize, block: u16) -> Option<(f64, f64)> {
+        let sheet = model.sheet(horizon, block);
+        let off = |p: DVec3| p.z - f64::from(sheet.z_at(p.x as f32, p.y as f32));
+        self.places.windows(2).enumerate().find_map(|(n, pair)| {
+            let [a, b] = [pair[0].0, pair[1].0];
+            let (off_a, off_b) = (off(a), off(b));
+            if (off_a < 0.0) == (off_b < 0.0) {
+                return None;
+            }
+            let share = off_a / (off_a - off_b);
+            let p = a.lerp(b, share);
+            let (x, y) = (p.x as f32, p.y as f32);
+            let is_there = (model.horizon_z(horizon, block, x, y) - sheet.z_at(x, y)).abs() < SAME;
+            is_there.then_some((n as f64 + share, p.z))
+        })
+    }
+
+    /// The place on the page at a share of the run, and the direction of growing depth there.
+    fn at(&self, share: f64) -> (DVec2, DVec2) {
+        let count = self.places.len();
+        let n = (share.clamp(0.0, 1.0) * (count - 1) as f64).round() as usize;
+        let reach = (count / 12).max(1);
+        let (before, after) = (self.places[n.saturating_sub(reach)], self.places[(n + reach).min(count - 1)]);
+        let along = (after.1 - before.1).normalize_or(DVec2::Y);
+        (self.places[n].1, if after.0.z >= before.0.z { along } else { -along })
+    }
+
+    /// The direction on the page, across the fault, of the side to which the face's first axis points.
+    fn ahead(&self, along: DVec2, page_from_voxel: &dyn Fn(DVec3) -> DVec2) -> DVec2 {
+        let middle = self.places[self.places.len() / 2].0;
+        let off = page_from_voxel(middle + self.face.section.plane.s_axis) - page_from_voxel(middle);
+        let across = along.perp();
+        if across.dot(off) >= 0.0 { across } else { -across }
+    }
+
+    fn is_seen(&self, outline: &[DVec2]) -> bool {
+        outline.iter().all(|corner| self.seen.iter().any(|piece| holds(piece, *corner)))
+    }
+
+    /// Half-arrows on both sides, near where the throw was measured; `None` where there is no room.
+    pub(super) fn arrows(
+        &self,
+        throw: Throw,
+        page_from_voxel: &dyn Fn(DVec3) -> DVec2,
+        room: &mut LabelRoom,
+    ) -> Option<Group> {
+        let [half, off, ..] = ARROW_PT;
+        let place = |step: &f64| {
+            let (middle, along) = self.at(throw.share + step);
+            let ahead = self.ahead(along, page_from_voxel);
+            let reach = ahead * (off + ARROW_PT[3] + 1.0);
+            let corner = |along_by: f64, by: f64| middle + along * along_by * (half + 1.0) + reach * by;
+            let area = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+            (self.is_seen(&area) && room.is_area_free(&area)).then_some((middle, along, ahead, area))
+        };
+        let (middle, along, ahead, area) = PLACES.iter().find_map(place)?;
+        room.take_area(&area);
+        let down = if throw.is_ahead_down { along } else { -along };
+        let arrow = |side: DVec2, towards: DVec2| {
+            let tip = middle + side * off + towards * half;
+            let tail = middle + side * off - towards * half;
+            let barb = tip - towards * ARROW_PT[2] + side * ARROW_PT[3];
+            Path { segments: vec![Segment::Move(tail), Segment::Line(tip), Segment::Line(barb)] }
+        };
+        let arrows = [arrow(ahead, down), arrow(-ahead, -down)];
+        let mut group = Group::new(GroupKind::Part, "half-arrows");
+        let stroke = |width: f64, ink: Ink| Stroke::new(width, ink).round();
+        let rims = arrows.iter().cloned();
+        let rim = Ink::glass(Colour::WHITE, RIM_OPACITY);
+        rims.for_each(|path| group.push(PathItem::stroked(path, stroke(0.8 + RIM_PT, rim))));
+        arrows.into_iter().for_each(|path| group.push(PathItem::stroked(path, stroke(0.8, INK.into()))));
+        Some(group)
+    }
+
+    /// The name beside the line, on either side; `None` where there is no room. `lines` are all faults that are seen.
+    pub(super) fn named(&self, name: &str, lines: &[Vec<DVec2>], room: &LabelRoom) -> Option<Text> {
+        let text = Text::new(DVec2::ZERO, name).sized(NUMBER_PT + 0.5).anchored(Across::Middle, Upright::Middle);
+        let text = text.haloed(RIM_PT, Ink::glass(Colour::WHITE, RIM_OPACITY));
+        let text = &text;
+        let placed = PLACES.iter().flat_map(|step| {
+            let (middle, along) = self.at(0.5 + step);
+            let read = if along.x < -1e-6 || (along.x.abs() <= 1e-6 && along.y > 0.0) { -along } else { along };
+            [1.0, -1.0].map(|side| {
+                let at = middle + along.perp() * side * NAME_OFF_PT;
+                Text { at, ..text.clone() }.turned(read.to_angle().to_degrees())
+            })
+        });
+        let fits = |text: &Text| {
+            outlines(text).all(|outline| {
+                let crossed = |line: &Vec<DVec2>| line.windows(2).any(|pair| meet(pair, &outline));
+                self.is_seen(&outline) && !lines.iter().any(crossed)
+            }) && room.is_free(text)
+        };
+        placed.into_iter().find(fits)
+    }
+
+    /// Its places on the page.
+    pub(super) fn line(&self) -> Vec<DVec2> {
+        self.places.iter().map(|(_, at)| *at).collect()
+    }
+
+    /// Places on the page where a leader may end, the best one first.
+    pub(super) fn anchors(&self) -> Vec<DVec2> {
+        [0.93, 0.07, 0.8, 0.2, 0.65, 0.35, 0.5].map(|share| self.at(share).0).to_vec()
+    }
+}
+
+/// "F1, 45 m": a name with the throw.
+pub(super) fn said(name: &str, throw: Option<Throw>, geometry: &SurveyGeometry) -> String {
+    let unit = geometry.vertical.unit.symbol();
+    match throw {
+        Some(throw) if throw.size >= 10.0 => format!("{name}, {:.0} {unit}", throw.size),
+        Some(throw) => format!("{name}, {:.1} {unit}", throw.size),
+        None => name.to_owned(),
+    }
+}

@@ -1,0 +1,282 @@
+//! Names of layers along the layers: on a face that is seen, halfway between the layer's boundaries, on the run where
+//! the letters have most room.
+//!
+//! The middle line of a piece of a layer is sampled along the face, smoothed over a word's height, and tried from end
+//! to end: every letter has to lie within the piece (so within the layer and its fault block) and within the part of
+//! the face that is seen. A name that fits nowhere in a readable size stands beside the block, with a leader.
+
+use super::room::{LabelRoom, meet};
+use crate::list::Text;
+use glam::DVec2;
+use render::vector::SeenSection;
+
+/// Sizes that are tried, points: the first one that fits is taken.
+const SIZES_PT: [f64; 4] = [8.5, 7.5, 6.75, 6.0];
+/// Samples of a middle line.
+const SAMPLES: usize = 240;
+/// Distance of points of a smoothed line, and of the places that are tried, points.
+const STEP_PT: f64 = 1.5;
+/// Half the length over which a line is smoothed, points.
+const SMOOTH_PT: f64 = 14.0;
+/// Letters next to one another turn by no more than this, and all of a word by no more than the second, degrees.
+const MOST_TURN_DEG: [f64; 2] = [16.0, 75.0];
+/// The share of a line's height above capital letters.
+const OVER_CAPITALS: f64 = 0.1;
+/// Steeper words are hard to read, degrees.
+const STEEPEST_DEG: f64 = 70.0;
+
+/// A piece of a layer in one fault block on a face, as it lies on the page.
+pub(super) struct LayerPiece {
+    /// Layer, 0 = deepest.
+    pub layer: u16,
+    /// Its outline and holes.
+    rings: Vec<Vec<DVec2>>,
+    /// The parts of the face that are seen.
+    seen: Vec<Vec<DVec2>>,
+    /// Middle lines from left to right.
+    lines: Vec<Vec<LinePlace>>,
+}
+
+/// A place of a smoothed middle line.
+#[derive(Debug, Clone, Copy)]
+struct LinePlace {
+    at: DVec2,
+    /// How thick the piece is there, points.
+    thick: f64,
+    is_seen: bool,
+}
+
+/// The pieces of layers on the seen upright faces; `px` takes voxels, `page` pixels to the page.
+pub(super) fn pieces(
+    faces: &[SeenSection],
+    page_from_voxel: &dyn Fn(glam::DVec3) -> DVec2,
+    page: &dyn Fn(DVec2) -> DVec2,
+    air: Option<u16>,
+) -> Vec<LayerPiece> {
+    let mut all = Vec::new();
+    for face in faces.iter().filter(|face| face.axis < 2) {
+        let plane = face.section.plane;
+        let placed = |st: DVec2| page_from_voxel(plane.voxel(st));
+        for polygon in face.section.polygons.iter().filter(|polygon| Some(polygon.region.layer) != air) {
+            let rings = polygon.rings.iter().map(|ring| ring.iter().map(|st| placed(*st)).collect()).collect();
+            let seen = face.pieces.iter().map(|piece| piece.iter().map(|px| page(*px)).collect()).collect();
+            let runs = middle_lines(&polygon.rings, plane.extent[0], &placed);
+            all.push(LayerPiece::new(polygon.region.layer, rings, seen, &runs));
+        }
+    }
+    all
+}
+
+/// Middle lines of a polygon in (s, t): one for each run of neighbouring samples along s whose thickest parts touch.
+fn middle_lines(rings: &[Vec<DVec2>], extent: f64, placed: &dyn Fn(DVec2) -> DVec2) -> Vec<Vec<(DVec2, f64)>> {
+    let mut runs: Vec<Vec<(DVec2, f64)>> = Vec::new();
+    let mut last: Option<[f64; 2]> = None;
+    for n in 0..SAMPLES {
+        let s = (n as f64 + 0.5) / SAMPLES as f64 * extent;
+        let mut crossings: Vec<f64> = Vec::new();
+        for ring in rings {
+            for (k, a) in ring.iter().enumerate() {
+                let b = ring[(k + 1) % ring.len()];
+                if (a.x > s) != (b.x > s) {
+                    crossings.push(a.y + (s - a.x) / (b.x - a.x) * (b.y - a.y));
+                }
+            }
+        }
+        crossings.sort_by(f64::total_cmp);
+        let parts = crossings.chunks_exact(2).map(|pair| [pair[0], pair[1]]);
+        let thickest = parts.max_by(|a, b| (a[1] - a[0]).total_cmp(&(b[1] - b[0])));
+        let Some([top, bottom]) = thickest else {
+            last = None;
+            continue;
+        };
+        let [upper, lower] = [top, bottom].map(|t| placed(DVec2::new(s, t)));
+        let entry = (upper.midpoint(lower), upper.distance(lower));
+        match (last.filter(|[t0, t1]| top < *t1 && bottom > *t0), runs.last_mut()) {
+            (Some(_), Some(run)) => run.push(entry),
+            _ => runs.push(vec![entry]),
+        }
+        last = Some([top, bottom]);
+    }
+    for run in &mut runs {
+        if run.len() > 1 && run[0].0.x > run[run.len() - 1].0.x {
+            run.reverse();
+        }
+    }
+    runs
+}
+
+/// A line with places `STEP_PT` apart, smoothed.
+fn smooth(run: &[(DVec2, f64)]) -> Vec<DVec2> {
+    let mut even: Vec<DVec2> = Vec::new();
+    let mut left = 0.0;
+    for pair in run.windows(2) {
+        let (a, b) = (pair[0].0, pair[1].0);
+        let length = a.distance(b);
+        while left < length {
+            even.push(a.lerp(b, left / length));
+            left += STEP_PT;
+        }
+        left -= length;
+    }
+    let reach = (SMOOTH_PT / STEP_PT) as usize;
+    for _ in 0..2 {
+        let mean = |n: usize| {
+            // The same on both sides, so that ends stay where they are.
+            let reach = reach.min(n).min(even.len() - 1 - n);
+            even[n - reach..=n + reach].iter().sum::<DVec2>() / (2 * reach + 1) as f64
+        };
+        even = (0..even.len()).map(mean).collect();
+    }
+    even
+}
+
+impl LayerPiece {
+    fn new(layer: u16, rings: Vec<Vec<DVec2>>, seen: Vec<Vec<DVec2>>, runs: &[Vec<(DVec2, f64)>]) -> Self {
+        let line = |run: &Vec<(DVec2, f64)>| {
+            let place = |at: DVec2| {
+                let near = run.iter().min_by(|a, b| a.0.distance_squared(at).total_cmp(&b.0.distance_squared(at)));
+                let is_seen = seen.iter().any(|piece| super::room::holds(piece, at));
+                LinePlace { at, thick: near.map_or(0.0, |(_, thick)| *thick), is_seen }
+            };
+            smooth(run).into_iter().map(place).collect()
+        };
+        let lines = runs.iter().map(line).collect();
+        Self { layer, rings, seen, lines }
+    }
+
+    /// The best place for a name on this piece, and how good it is: larger letters first, then straighter words in
+    /// thicker parts.
+    pub(super) fn named(&self, name: &Text, room: &LabelRoom) -> Option<(Text, f64)> {
+        for (n, size) in SIZES_PT.into_iter().enumerate() {
+            let text = name.clone().sized(size);
+            let fits = self.lines.iter().flat_map(|line| self.along(line, &text, room));
+            if let Some((text, score)) = fits.max_by(|a, b| a.1.total_cmp(&b.1)) {
+                return Some((text, score - 1000.0 * n as f64));
+            }
+        }
+        None
+    }
+
+    fn along(&self, line: &[LinePlace], text: &Text, room: &LabelRoom) -> Vec<(Text, f64)> {
+        let places: Vec<DVec2> = line.iter().map(|place| place.at).collect();
+        let (length, width) = (line.len().saturating_sub(1) as f64 * STEP_PT, text.width());
+        let mut found = Vec::new();
+        let mut middle = 0.5 * width + text.size * 0.5;
+        while middle <= length - 0.5 * width - text.size * 0.5 {
+            let [first, last] = [middle - 0.5 * width, middle + 0.5 * width].map(|at| (at / STEP_PT) as usize);
+            let below = &line[first.min(line.len() - 1)..=last.min(line.len() - 1)];
+            let thick = below.iter().map(|place| place.thick).fold(f64::INFINITY, f64::min);
+            if thick > 0.9 * text.size && below.iter().all(|place| place.is_seen) {
+                let bent = text.clone().along(&places, middle);
+                if let Some(turn) = readable(&bent).filter(|_| self.holds(&bent) && room.is_free(&bent)) {
+                    found.push((bent, thick.min(5.0 * text.size) - 0.6 * turn));
+                }
+            }
+            middle += 2.0 * STEP_PT;
+        }
+        found
+    }
+
+    /// Whether all letters lie within the piece, and are seen.
+    fn holds(&self, text: &Text) -> bool {
+        text.straight().iter().map(letter_box).all(|letter| {
+            let crossed = self.rings.iter().any(|ring| {
+                (0..ring.len()).any(|n| {
+                    let side = [ring[n], ring[(n + 1) % ring.len()]];
+                    is_near(&side, &letter) && meet(&side, &letter)
+                })
+            });
+            !crossed && self.is_inside(letter[0]) && letter.iter().all(|corner| self.is_seen(*corner))
+        })
+    }
+
+    /// Whether a place lies in the piece, by the even-odd rule.
+    fn is_inside(&self, place: DVec2) -> bool {
+        let mut inside = false;
+        for ring in &self.rings {
+            for (n, a) in ring.iter().enumerate() {
+                let b = ring[(n + 1) % ring.len()];
+                if (a.y > place.y) != (b.y > place.y) && place.x < a.x + (place.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+                    inside = !inside;
+                }
+            }
+        }
+        inside
+    }
+
+    fn is_seen(&self, place: DVec2) -> bool {
+        self.seen.iter().any(|piece| super::room::holds(piece, place))
+    }
+
+    /// The place of the piece where it is seen thickest, and that thickness, points.
+    pub(super) fn thickest(&self) -> Option<(DVec2, f64)> {
+        let seen = self.lines.iter().flatten().filter(|place| place.is_seen && self.is_inside(place.at));
+        seen.max_by(|a, b| a.thick.total_cmp(&b.thick)).map(|place| (place.at, place.thick))
+    }
+}
+
+/// The room of a letter from the height of capitals down to its descender.
+fn letter_box(letter: &Text) -> [DVec2; 4] {
+    let [a, b, c, d] = letter.corners();
+    [a.lerp(d, OVER_CAPITALS), b.lerp(c, OVER_CAPITALS), c, d]
+}
+
+fn is_near(side: &[DVec2; 2], letter: &[DVec2]) -> bool {
+    let low = letter.iter().copied().fold(DVec2::INFINITY, DVec2::min);
+    let high = letter.iter().copied().fold(DVec2::NEG_INFINITY, DVec2::max);
+    side[0].min(side[1]).cmple(high).all() && side[0].max(side[1]).cmpge(low).all()
+}
+
+/// How much a bent text turns from its first letter to its last, degrees; `None` where it is hard to read.
+fn readable(text: &Text) -> Option<f64> {
+    let turns: Vec<f64> = text.letters.iter().map(|letter| letter.turn_deg).collect();
+    let jump = turns.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f64::max);
+    let low = turns.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = turns.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let is_upright = low > -STEEPEST_DEG && high < STEEPEST_DEG;
+    (is_upright && jump < MOST_TURN_DEG[0] && high - low < MOST_TURN_DEG[1]).then_some(high - low)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Rect;
+
+    fn piece(upper: impl Fn(f64) -> f64, lower: impl Fn(f64) -> f64) -> LayerPiece {
+        let xs: Vec<f64> = (0..=60).map(|n| 5.0 * f64::from(n)).collect();
+        let ring: Vec<DVec2> = xs
+            .iter()
+            .map(|x| DVec2::new(*x, upper(*x)))
+            .chain(xs.iter().rev().map(|x| DVec2::new(*x, lower(*x))))
+            .collect();
+        let page = [[0.0, 0.0], [300.0, 0.0], [300.0, 200.0], [0.0, 200.0]].map(DVec2::from_array);
+        let runs = middle_lines(std::slice::from_ref(&ring), 300.0, &|st| st);
+        LayerPiece::new(0, vec![ring], vec![page.to_vec()], &runs)
+    }
+
+    fn room() -> LabelRoom {
+        LabelRoom::new(Rect::sized(DVec2::ZERO, DVec2::new(300.0, 200.0)))
+    }
+
+    #[test]
+    fn a_name_follows_the_middle_of_a_fold() {
+        let bend = |x: f64| 100.0 + 25.0 * (x / 300.0 * std::f64::consts::TAU).sin();
+        let fold = piece(|x| bend(x) - 12.0, |x| bend(x) + 12.0);
+        let (text, _) = fold.named(&Text::new(DVec2::ZERO, "Nodular limestone"), &room()).unwrap();
+        assert_eq!(text.size, SIZES_PT[0]);
+        for letter in text.straight() {
+            let middle = letter.corners().iter().sum::<DVec2>() / 4.0;
+            assert!((middle.y - bend(middle.x)).abs() < 3.5, "{} at {middle}", letter.text);
+        }
+    }
+
+    #[test]
+    fn a_layer_that_is_thinner_than_letters_takes_none_and_a_wedge_takes_them_where_it_is_thick() {
+        let name = Text::new(DVec2::ZERO, "Marl");
+        assert!(piece(|_| 100.0, |_| 106.0).named(&name, &room()).is_none());
+        let wedge = piece(|_| 100.0, |x| 100.0 + 0.1 * x);
+        let (text, _) = wedge.named(&name, &room()).unwrap();
+        assert!(text.letters.iter().all(|letter| letter.at.x > 120.0));
+        assert!(wedge.thickest().unwrap().0.x > 290.0);
+    }
+}

@@ -1,0 +1,233 @@
+//! What is written on a block, against closed forms: throws, half-arrows, names within their layers, axes.
+
+use figure::cut::SectionSource;
+use figure::draw::NamedColour;
+use figure::list::{DisplayList, Group, Item, Segment, Text};
+use figure::{Annotation, BlockPart, Figure, FigureInputs, PageSize, make};
+use glam::{DVec2, DVec3};
+use image::RgbaImage;
+use model::{ModelSettings, StructuralModel};
+use render::{Inputs, NamedVolume, Projection, Scene, pick};
+use survey::{Progress, SurveyGeometry, VerticalUnit, Volume};
+use synth::closed_form::ClosedForm;
+use ttf::{Colour, ColourMap, LayerStyle, RawColour, RgbaFunction};
+
+const DPI: f64 = 144.0;
+
+/// A survey with its model, and what is read of a page.
+struct Survey {
+    geometry: SurveyGeometry,
+    closed: ClosedForm,
+    model: StructuralModel,
+    volume: Volume<f32>,
+    layers: Vec<LayerStyle>,
+}
+
+impl Survey {
+    fn new(closed: impl Fn(&SurveyGeometry) -> ClosedForm) -> Self {
+        let geometry = SurveyGeometry::regular([61, 41, 51], 12.5, 12.5, VerticalUnit::Metres);
+        let closed = closed(&geometry);
+        let (settings, quiet) = (ModelSettings::default(), Progress::silent());
+        let model = StructuralModel::build(
+            &geometry,
+            &closed.stratigraphy,
+            &closed.horizons,
+            &closed.faults,
+            &settings,
+            &quiet,
+        );
+        let names = closed.stratigraphy.layer_names_bottom_up();
+        let layers = (0..names.len()).rev().map(|n| LayerStyle::plain(&format!("Bed {n}"), Colour::WHITE)).collect();
+        Self { volume: Volume::filled(geometry.size(), 1.0f32), model: model.unwrap(), geometry, closed, layers }
+    }
+
+    fn raw() -> RawColour {
+        RawColour::new("seismic", RgbaFunction::over(ColourMap::Grey, [-3.0, 3.0]))
+    }
+
+    fn page(&self, scene: &Scene, annotate: &[Annotation]) -> (DisplayList, Scene) {
+        let volumes = [NamedVolume::whole("seismic", &self.volume)];
+        let data = Inputs { model: Some(&self.model), ..Inputs::raw(&self.geometry, &volumes) };
+        let inputs = FigureInputs {
+            source: SectionSource { data, raw: Some(&Self::raw()) },
+            horizons: &[NamedColour { name: "H1".into(), colour: Colour::BLACK }],
+            faults: &["F1".to_owned()],
+            layers: &self.layers,
+            library: None,
+            interpretation: None,
+            provenance: "Petroglyph · survey",
+        };
+        let part = BlockPart { scene: scene.clone(), ..BlockPart::default() };
+        let figure = Figure {
+            size: PageSize::Cm([16.0, 11.0]),
+            dpi: DPI,
+            annotate: annotate.to_vec(),
+            credit: Some("nobody".into()),
+            ..Figure::of(part.into())
+        };
+        let mut asked = Scene::default();
+        let mut paint = |scene: &Scene| {
+            asked = scene.clone();
+            Ok(RgbaImage::new(scene.size_px[0], scene.size_px[1]))
+        };
+        let page = make(&figure, &inputs, &mut paint).unwrap();
+        (page, asked)
+    }
+}
+
+fn said(page: &DisplayList) -> Vec<String> {
+    page.texts().into_iter().map(|text| text.text.clone()).collect()
+}
+
+fn groups<'a>(items: &'a [Item], name: &str, into: &mut Vec<&'a Group>) {
+    for item in items {
+        if let Item::Group(group) = item {
+            if group.name == name {
+                into.push(group);
+            }
+            groups(&group.items, name, into);
+        }
+    }
+}
+
+fn corner(page: &DisplayList) -> DVec2 {
+    let pictures = page.leaves().into_iter().filter_map(|item| match item {
+        Item::Picture(picture) => Some(picture.corner),
+        _ => None,
+    });
+    pictures.into_iter().next().unwrap()
+}
+
+/// Flat beds, moved by six samples of 12.5 m along a fault: 75 m, whichever side went down.
+#[test]
+fn the_throw_is_that_of_the_model_and_arrows_point_the_way_the_sides_went() {
+    for throw in [6.0, -6.0] {
+        let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0, 38.0]).with_fault(65.0, throw));
+        let (page, scene) = survey.page(&Scene::default(), &[Annotation::Faults]);
+        assert!(said(&page).contains(&"F1, 75 m".to_owned()), "{:?}", said(&page));
+        let mut arrows = Vec::new();
+        groups(&page.items, "half-arrows", &mut arrows);
+        assert_eq!(arrows.len(), 1);
+        let view = scene.view(&survey.geometry);
+        // The hanging wall lies towards larger x.
+        let ahead = view.project(DVec3::new(60.0, 0.0, 25.0)) - view.project(DVec3::new(0.0, 0.0, 25.0));
+        let drawn: Vec<[DVec2; 2]> = arrows[0].items[2..].iter().map(arrow).collect();
+        let is_hanging_first = (drawn[0][0] - drawn[1][0]).dot(ahead) > 0.0;
+        let hanging = drawn[usize::from(!is_hanging_first)];
+        assert_eq!(hanging[1].y > hanging[0].y, throw > 0.0, "the hanging wall went {throw} samples down");
+        let foot = drawn[usize::from(is_hanging_first)];
+        assert_eq!(foot[1].y > foot[0].y, throw < 0.0);
+    }
+}
+
+/// Tail and tip of an arrow.
+fn arrow(item: &Item) -> [DVec2; 2] {
+    let Item::Path(path) = item else { panic!("no path") };
+    match path.path.segments[..2] {
+        [Segment::Move(tail), Segment::Line(tip)] => [tail, tip],
+        _ => panic!("no arrow"),
+    }
+}
+
+#[test]
+fn a_fault_that_moves_nothing_has_a_name_and_neither_throw_nor_arrows() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[14.0, 26.0]).with_fault(65.0, 0.0));
+    let (page, _) = survey.page(&Scene::default(), &[Annotation::Faults]);
+    assert!(said(&page).contains(&"F1".to_owned()));
+    let mut arrows = Vec::new();
+    groups(&page.items, "half-arrows", &mut arrows);
+    assert!(arrows.is_empty());
+}
+
+/// What lies under every corner of a letter is asked of the renderer, which knows nothing of labels.
+#[test]
+fn every_letter_of_a_name_lies_on_its_own_layer_from_any_side() {
+    let survey = Survey::new(|geometry| ClosedForm::dome(geometry, &[10.0, 22.0, 36.0], 30.0).with_fault(65.0, 6.0));
+    let volumes = [NamedVolume::whole("seismic", &survey.volume)];
+    let inputs = Inputs { model: Some(&survey.model), ..Inputs::raw(&survey.geometry, &volumes) };
+    let mut letters = 0;
+    for (azimuth, elevation, projection) in [
+        (35.0, 28.0, Projection::Orthographic),
+        (130.0, 15.0, Projection::Orthographic),
+        (250.0, 40.0, Projection::Perspective { fov_deg: 40.0 }),
+    ] {
+        let mut scene = Scene::default();
+        (scene.camera.azimuth_deg, scene.camera.elevation_deg) = (Some(azimuth), elevation);
+        scene.camera.projection = projection;
+        let (page, asked) = survey.page(&scene, &[Annotation::Layers]);
+        let corner = corner(&page);
+        let seen = Scene { blend: 1.0, raw: Some(Survey::raw()), ..asked };
+        for text in page.texts().into_iter().filter(|text| !text.letters.is_empty()) {
+            let layer: u16 = text.text.strip_prefix("Bed ").unwrap().parse().unwrap();
+            for letter in text.straight().into_iter().filter(|letter| letter.text != " ") {
+                let pixel = (letter.outline().bounds().unwrap().centre() - corner) * DPI / 72.0;
+                let hit = pick(&seen, &inputs, pixel).unwrap().expect("a letter beside the block");
+                assert_eq!(hit.region.unwrap().layer, layer, "{} from {azimuth}", text.text);
+                letters += 1;
+            }
+        }
+    }
+    assert!(letters > 30, "{letters} letters");
+}
+
+/// A layer of two samples has no room for letters.
+#[test]
+fn a_thin_layer_is_named_beside_the_block_with_a_leader() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[20.0, 22.0]));
+    let (page, _) = survey.page(&Scene::default(), &[Annotation::Layers]);
+    let named = |name: &str| page.texts().into_iter().find(|text| text.text == name).cloned().unwrap();
+    assert!(named("Bed 1").letters.is_empty() && !named("Bed 0").letters.is_empty());
+    let mut leaders = Vec::new();
+    groups(&page.items, "leader to Bed 1", &mut leaders);
+    assert_eq!(leaders.len(), 1);
+    assert!(survey.closed.horizons.len() == 2);
+}
+
+/// All three titles stand on the page, turned along their edges, wherever the camera is.
+#[test]
+fn axes_have_titles_and_numbers_beside_the_block_from_any_camera() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[20.0]));
+    for azimuth in [0.0, 20.0, 77.0, 140.0, 235.0, 300.0] {
+        for elevation in [-50.0, -10.0, 8.0, 30.0, 65.0] {
+            let mut scene = Scene::default();
+            (scene.camera.azimuth_deg, scene.camera.elevation_deg) = (Some(azimuth), elevation);
+            let (page, asked) = survey.page(&scene, &[Annotation::Axes]);
+            let (view, corner) = (asked.view(&survey.geometry), corner(&page));
+            let block = asked.box_in(&survey.geometry);
+            let on_page = |voxel: DVec3| corner + view.project(voxel) * 72.0 / DPI;
+            let long = |axis: usize| {
+                let [a, b] = [block.low(), block.low() + DVec3::AXES[axis] * block.extent()[axis]].map(on_page);
+                a.distance(b) > 45.0
+            };
+            for (_, title) in ["Inline", "Crossline", "Depth (m)"].into_iter().enumerate().filter(|(n, _)| long(*n)) {
+                assert!(
+                    said(&page).contains(&title.to_owned()),
+                    "no {title} from {azimuth}, {elevation}: {:?}",
+                    said(&page)
+                );
+            }
+            // No number lies on the block.
+            for text in page.texts() {
+                let middle = (text.bounds().centre() - corner) * DPI / 72.0;
+                let raw = Scene { blend: 1.0, raw: Some(Survey::raw()), ..asked.clone() };
+                let volumes = [NamedVolume::whole("seismic", &survey.volume)];
+                let hit = pick(&raw, &Inputs::raw(&survey.geometry, &volumes), middle).unwrap();
+                assert!(hit.is_none(), "{} lies on the block from {azimuth}, {elevation}", text.text);
+            }
+        }
+    }
+}
+
+#[test]
+fn raw_data_have_a_colour_bar_and_a_page_says_where_it_comes_from() {
+    let survey = Survey::new(|geometry| ClosedForm::flat(geometry, &[20.0]));
+    let texts = |blend: f32| {
+        let scene = Scene { blend, ..Scene::default() };
+        said(&survey.page(&scene, &Annotation::ALL).0)
+    };
+    assert!(texts(0.5).contains(&"−3".to_owned()) && texts(0.5).contains(&"seismic".to_owned()));
+    assert!(!texts(0.0).contains(&"seismic".to_owned()), "nothing raw is seen");
+    assert!(texts(0.0).contains(&"Petroglyph · survey · data: nobody".to_owned()));
+    let plain: Vec<Text> = survey.page(&Scene::default(), &[]).0.texts().into_iter().cloned().collect();
+    assert!(plain.is_empty(), "nothing is written unasked");
+}
