@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Draws README's first picture from the project of `petroglyph demo` (`make demo`):
+# Draws README's first picture from the project of `petroglyph demo` (`make demo`), and the blocks with salt and with an
+# overturned limb from synthetic surveys that it makes in a temporary folder:
 #   docs/readme.sh out/demo/demo.petro [FOLDER]
 set -euo pipefail
 project=$1
@@ -11,3 +12,31 @@ petroglyph=${PETROGLYPH:-target/debug/petroglyph}
     --caption "Block diagram with a corner cut away. The sandstone and marl above the unconformity lie on an eroded \
 fold of sandstone, limestone and shale. Half-arrows show which side of each fault went down, and numbers its throw \
 on the face on which they stand."
+
+made=$(mktemp -d)
+trap 'rm -rf "$made"' EXIT
+quietly() { "$petroglyph" "$@" > /dev/null 2>&1; }
+
+"$petroglyph" synth "$made/salt" --salt --size 112x112x96 > /dev/null 2>&1
+quietly import "$made/salt/survey.sgy" "$made/salt.petro"
+for fault in "$made"/salt/faults/*.ts; do
+    quietly fault add "$made/salt.petro" "$fault" --name "$(basename "$fault" .ts)"
+done
+for horizon in Alpha Bravo Unconformity Charlie Delta; do
+    contact=conformable
+    if [ "$horizon" = Unconformity ]; then contact=erosional; fi
+    quietly horizon add "$made/salt.petro" "$made/salt/horizons/$horizon.csv" --name "$horizon" --contact "$contact"
+done
+quietly horizon add "$made/salt.petro" "$made/salt/horizons/Salt.ts" --name Salt
+"$petroglyph" render "$made/salt.petro" "$folder/salt.png" --size-cm 17x12 --dpi 200 --samples 4 --cut nearest,0.58,0.6
+
+"$petroglyph" synth "$made/outcrop" --overturned --size 112x90x80 > "$made/told"
+# The last line that it prints is the command that makes the project.
+eval "quietly create $made/outcrop.petro $(tail -1 "$made/told" | cut -d' ' -f4-)"
+for fault in "$made"/outcrop/faults/*.ts; do
+    quietly fault add "$made/outcrop.petro" "$fault" --name "$(basename "$fault" .ts)"
+done
+for horizon in "$made"/outcrop/horizons/*.csv; do
+    quietly horizon add "$made/outcrop.petro" "$horizon" --name "$(basename "$horizon" .csv)"
+done
+"$petroglyph" render "$made/outcrop.petro" "$folder/overturned.png" --size-cm 17x12 --dpi 200 --samples 4

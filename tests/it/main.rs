@@ -20,6 +20,7 @@ mod memory;
 mod program;
 mod proposed_faults;
 mod safety;
+mod shapes;
 #[cfg(target_os = "linux")]
 mod sources;
 #[cfg(target_os = "linux")]

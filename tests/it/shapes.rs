@@ -1,23 +1,76 @@
 //! Horizons of any shape through the binary: an overturned outcrop of scattered points, salt with an overhang, and what
 //! cannot be a body.
 
-use crate::runner::{petroglyph, stdout};
-use serde_json::Value;
+use crate::program::run_in;
 use std::fs;
 use std::path::Path;
 
-fn run(arguments: &[&str]) -> String {
-    let output = petroglyph().args(arguments).output().unwrap();
-    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
-    stdout(&output)
+/// The command of an outcrop's project, as `synth` states it, for this project's name.
+fn create(folder: &Path, told: &str) {
+    let line = told.lines().find_map(|line| line.strip_prefix("petroglyph create OUTCROP.petro ")).unwrap();
+    run_in(folder, &format!("create o.petro {line}")).done();
 }
 
-fn refused(arguments: &[&str]) -> String {
-    let output = petroglyph().args(arguments).output().unwrap();
-    assert_eq!(output.status.code(), Some(1), "{arguments:?}");
-    String::from_utf8_lossy(&output.stderr).into_owned()
+#[test]
+fn an_overturned_outcrop_is_taken_as_it_is() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    let made = run_in(at, "synth o --overturned --size 40x36x32 --seed 3").done();
+    create(at, &made.stdout);
+    for fault in ["F1", "F2", "F3"] {
+        run_in(at, &format!("fault add o.petro o/faults/{fault}.ts --name {fault}")).done();
+    }
+    // In any order: they find their places.
+    for n in [5, 1, 9, 3, 7, 2, 8, 4, 6] {
+        run_in(at, &format!("horizon add o.petro o/horizons/H{n}.csv --name H{n}")).done();
+    }
+    let listed = run_in(at, "horizon list o.petro --json").done().json();
+    let names: Vec<&str> = listed["horizons"].as_array().unwrap().iter().filter_map(|h| h["name"].as_str()).collect();
+    assert_eq!(names, ["H1", "H2", "H3", "H4", "H5", "H6", "H7", "H8", "H9"]);
+    run_in(at, "parameterize o.petro").done();
+    let drawn = run_in(at, "render o.petro o.png --size 240x180 --device cpu").done();
+    assert!(fs::metadata(at.join("o.png")).unwrap().len() > 5000, "{}", drawn.stdout);
+    // A horizon comes out as it went in.
+    let shown = run_in(at, "horizon show o.petro H5").done();
+    if shown.stdout.contains("any shape") {
+        run_in(at, "export o.petro h5.csv --horizon H5 --format csv").done();
+        let rows = |path: &str| fs::read_to_string(at.join(path)).unwrap().lines().count();
+        assert_eq!(rows("h5.csv"), rows("o/horizons/H5.csv"));
+        run_in(at, "export o.petro h5.irap --horizon H5 --format irap").failed(&["several depths", "tsurf"]);
+    }
+    run_in(at, "check o.petro").done();
 }
 
-fn text(path: &Path) -> &str {
-    path.to_str().unwrap()
+#[test]
+fn salt_with_an_overhang_cuts_what_is_there_and_an_open_one_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    run_in(at, "synth s --salt --size 48x48x48").done();
+    run_in(at, "import s/survey.sgy s.petro").done();
+    for (name, contact) in [("Alpha", "conformable"), ("Unconformity", "erosional"), ("Delta", "conformable")] {
+        run_in(at, &format!("horizon add s.petro s/horizons/{name}.csv --name {name} --contact {contact}")).done();
+    }
+    let salt = fs::read_to_string(at.join("s/horizons/Salt.ts")).unwrap();
+    // Without a third of its triangles it is open in the middle of the block.
+    let count = salt.lines().filter(|line| line.starts_with("TRGL")).count();
+    let mut left = count * 2 / 3;
+    let kept = salt.lines().filter(|line| {
+        let is_triangle = line.starts_with("TRGL");
+        left = left.saturating_sub(usize::from(is_triangle));
+        !is_triangle || left > 0
+    });
+    fs::write(at.join("open.ts"), kept.map(|line| format!("{line}\n")).collect::<String>()).unwrap();
+    let open = "horizon add s.petro open.ts --name Salt --contact intrusive --shape any";
+    run_in(at, open).failed(&["it is open inside the volume", "near inline"]);
+    let listed = run_in(at, "horizon list s.petro --json").done().json();
+    assert_eq!(listed["horizons"].as_array().unwrap().len(), 3, "nothing half done");
+    let added = run_in(at, "horizon add s.petro s/horizons/Salt.ts --name Salt").done();
+    assert!(added.stdout.contains("it is closed: a body"), "{}", added.stdout);
+    let layers = run_in(at, "layer list s.petro").done();
+    assert!(layers.stdout.contains("below Delta: ") && layers.stdout.contains("\nSalt: salt "), "{}", layers.stdout);
+    run_in(at, "render s.petro s.png --size 240x180 --device cpu").done();
+    // The same body given as a map loses its overhang: it is only taken so when that is asked for.
+    run_in(at, "horizon remove s.petro Salt").done();
+    let map = run_in(at, "horizon add s.petro s/horizons/Salt.ts --name Salt --shape map --contact intrusive").done();
+    assert!(map.stdout.contains("sampled at the survey's traces"), "{}", map.stdout);
 }

@@ -28,7 +28,7 @@ use survey::progress::{Cancelled, Progress};
 pub type Unfolding = Arc<[LevelField; 2]>;
 
 /// Nodes of the lattice around the volume; a layer is solved on those that it holds.
-const NODES: f64 = 250_000.0;
+const NODES: f64 = 200_000.0;
 /// Nodes around the layer that are solved with it.
 const AROUND: usize = 2;
 /// Voxels between the nodes of an unfolding.
@@ -42,8 +42,8 @@ const HELD: f64 = 1e-3;
 /// Coarser lattices before the finest, each of twice the spacing of the next.
 const COARSER: u32 = 2;
 /// Steps of the solver on each lattice, and the share of the first gradient at which it stops.
-const MOST_STEPS: usize = 250;
-const TOLERANCE: f64 = 1e-4;
+const MOST_STEPS: usize = 200;
+const TOLERANCE: f64 = 1e-3;
 /// Normals nearer to the fold axis than this (sine) say nothing about the direction along the layer.
 const ALONG_AXIS: f64 = 0.2;
 
@@ -65,20 +65,15 @@ pub fn unfold<M: LayerModel + ?Sized>(
     progress.begin("unfolding", layers.len() as u64 * u64::from(COARSER + 1));
     for level in (0..=COARSER).rev() {
         let nodes = CutLattice::nodes_around(size, metres, NODES, f64::from(1u32 << level));
-        let of_node: Vec<u16> =
-            (0..nodes.count()).into_par_iter().map(|node| region_near(nodes.place(node)).layer).collect();
+        let of_node: Vec<Region> =
+            (0..nodes.count()).into_par_iter().map(|node| region_near(nodes.place(node))).collect();
         found = layers
             .par_iter()
             .zip(found)
             .map(|(&layer, before)| {
-                let mut wanted: Vec<bool> = of_node.iter().map(|&own| own == layer).collect();
-                for _ in 0..AROUND {
-                    let inside = wanted.clone();
-                    for node in (0..nodes.count()).filter(|&node| inside[node]) {
-                        nodes.beside(node).for_each(|m| wanted[m] = true);
-                    }
-                }
-                let lattice = CutLattice::of(faults, nodes, |node| wanted[node]);
+                let holds = |node: usize| (of_node[node].layer == layer).then(|| of_node[node].block);
+                let near = CutLattice::near_blocks(faults, nodes, AROUND, holds);
+                let lattice = CutLattice::of(faults, nodes, |block, node| near[block][node]);
                 let normal = |block: usize, node: usize| {
                     let p = lattice.middle(node);
                     let inside = p.cmpge(Vec3::ZERO).all() && p.cmple(last).all();

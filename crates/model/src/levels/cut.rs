@@ -47,15 +47,15 @@ impl CutLattice {
         NodeBox::covering(low, high, step)
     }
 
-    /// The unknowns at the nodes for which `is_wanted` holds.
-    pub fn of(faults: &FaultNetwork, nodes: NodeBox, is_wanted: impl Fn(usize) -> bool + Sync) -> Self {
+    /// The unknowns of each block at the nodes for which `is_wanted(block, node)` holds.
+    pub fn of(faults: &FaultNetwork, nodes: NodeBox, is_wanted: impl Fn(usize, usize) -> bool + Sync) -> Self {
         let signatures = faults.signatures();
         let blocks = faults.block_count();
         // For each node, the first block that each block shares its value with.
         let shared: Vec<Vec<u16>> = (0..nodes.count())
             .into_par_iter()
             .map(|node| {
-                if !is_wanted(node) {
+                if !(0..blocks).any(|block| is_wanted(block, node)) {
                     return Vec::new();
                 }
                 let p = nodes.place(node).as_dvec3();
@@ -78,16 +78,35 @@ impl CutLattice {
         let mut unknown = vec![NONE; blocks * nodes.count()];
         let mut unknowns = 0;
         for (node, first) in shared.iter().enumerate() {
-            for (block, &of) in first.iter().enumerate() {
-                unknown[block * nodes.count() + node] = if usize::from(of) == block {
-                    unknowns += 1;
-                    unknowns as u32 - 1
-                } else {
-                    unknown[usize::from(of) * nodes.count() + node]
-                };
+            for block in (0..first.len()).filter(|&block| is_wanted(block, node)) {
+                let at = |block: usize| block * nodes.count() + node;
+                let known = (0..block).find(|&other| first[other] == first[block] && unknown[at(other)] != NONE);
+                unknown[at(block)] = known.map_or(unknowns as u32, |other| unknown[at(other)]);
+                unknowns += usize::from(known.is_none());
             }
         }
         Self { nodes, blocks, unknown, unknowns }
+    }
+
+    /// For each block, the nodes that `holds` gives to it, and those up to `around` nodes from them.
+    pub fn near_blocks(
+        faults: &FaultNetwork,
+        nodes: NodeBox,
+        around: usize,
+        holds: impl Fn(usize) -> Option<u16> + Send + Sync,
+    ) -> Vec<Vec<bool>> {
+        let of_node: Vec<Option<u16>> = (0..nodes.count()).into_par_iter().map(holds).collect();
+        let near = |block: usize| {
+            let mut near: Vec<bool> = of_node.iter().map(|of| of.map(usize::from) == Some(block)).collect();
+            for _ in 0..around {
+                let inside = near.clone();
+                for node in (0..nodes.count()).filter(|&node| inside[node]) {
+                    nodes.beside(node).for_each(|m| near[m] = true);
+                }
+            }
+            near
+        };
+        (0..faults.block_count()).into_par_iter().map(near).collect()
     }
 
     /// The unknown of a block at a node, [`u32::MAX`] where none is wanted.

@@ -23,14 +23,16 @@ use std::sync::Arc;
 use survey::LevelField;
 use survey::progress::{Cancelled, Progress};
 
-/// Nodes of the finest lattice, all blocks together.
-const NODES: f64 = 120_000.0;
+/// Nodes of the finest lattice.
+const NODES: f64 = 60_000.0;
+/// Nodes beyond its faults at which a block is solved, too.
+const AROUND: usize = 3;
 /// How much a point counts beside a second difference.
 const POINT_WEIGHT: f64 = 25.0;
 /// Coarser lattices before the finest, each of twice the spacing of the next.
 const COARSER: u32 = 2;
 /// Steps of the solver on each lattice, and the share of the first gradient at which it stops.
-const MOST_STEPS: usize = 600;
+const MOST_STEPS: usize = 400;
 const TOLERANCE: f64 = 1e-5;
 
 /// A point of a horizon.
@@ -95,9 +97,10 @@ impl Series<'_> {
 
     /// τ on a lattice whose spacing is `coarseness` times the finest.
     fn solve(&self, coarseness: f64, before: Option<&Solution>, progress: &Progress) -> Result<Solution, Cancelled> {
-        let count = NODES / self.faults.block_count() as f64;
-        let nodes = CutLattice::nodes_around(self.size, self.metric, count, coarseness);
-        let lattice = CutLattice::of(self.faults, nodes, |_| true);
+        let nodes = CutLattice::nodes_around(self.size, self.metric, NODES, coarseness);
+        let near =
+            CutLattice::near_blocks(self.faults, nodes, AROUND, |node| Some(self.faults.block_at(nodes.place(node))));
+        let lattice = CutLattice::of(self.faults, nodes, |block, node| near[block][node]);
         let first_level = lattice.unknowns as u32;
         let mut equations = Equations::default();
         lattice.add_smoothness(1.0, &mut equations);

@@ -17,12 +17,16 @@ const SHORTEST_RUN: f64 = 8.0;
 /// Whether `edge` is part of a fault where it was interpreted.
 pub(super) fn is_real_fault(model: &StructuralModel, plane: &SectionPlane, positions: &[DVec2], edge: &Edge) -> bool {
     let Tag::Fault { fault, .. } = edge.tag else { return false };
-    // A body cuts the faults, too.
-    let top = model.stratigraphy().top_of(usize::from(edge.region.layer));
-    if top.is_some_and(|top| model.is_body(top)) {
+    if is_in_body(model, edge) {
         return false;
     }
     model.faults().surfaces()[usize::from(fault)].extent_at(middle(plane, positions, edge)) >= 0.0
+}
+
+/// Whether an edge lies in a body, which cuts the faults, too.
+fn is_in_body(model: &StructuralModel, edge: &Edge) -> bool {
+    let top = model.stratigraphy().top_of(usize::from(edge.region.layer));
+    top.is_some_and(|top| model.is_body(top))
 }
 
 fn middle(plane: &SectionPlane, positions: &[DVec2], edge: &Edge) -> DVec3 {
@@ -47,6 +51,7 @@ pub(super) fn lines(
         }
         match edge.tag {
             Tag::Inner | Tag::Frame => {}
+            Tag::Fault { .. } if is_in_body(model, edge) && is_in_body(model, other) => {}
             Tag::Horizon { horizon } => {
                 let horizon = usize::from(horizon);
                 let p = middle(plane, &positions, edge).as_vec3();
