@@ -20,6 +20,7 @@ use render::Scene;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 use survey::{Progress, file};
+use synth::SynthSettings;
 use ttf::{TextureLibrary, contact_sheet};
 
 /// Why a request failed.
@@ -65,14 +66,8 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             refuse_inside_project(&out)?;
             demo::run(&out, &progress)?
         }),
-        Request::Synth { out, settings } => told({
-            refuse_inside_project(&out)?;
-            survey_files::write(&out, &settings, &progress)?
-        }),
-        Request::SynthOutcrop { out, settings } => told({
-            refuse_inside_project(&out)?;
-            survey_files::write_outcrop(&out, settings.size, settings.seed, &progress)?
-        }),
+        Request::Synth { out, settings } => synth(&out, &settings, &progress)?,
+        Request::SynthOutcrop { out, settings } => outcrop(&out, &settings, &progress)?,
         Request::Info { path, distortion, segy, reading } => {
             info::describe(&path, distortion, &segy, &reading, &progress)?
         }
@@ -149,6 +144,16 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
         report.field("warnings", warnings);
     }
     Ok(report)
+}
+
+fn synth(out: &Path, settings: &SynthSettings, progress: &Progress) -> anyhow::Result<Report> {
+    refuse_inside_project(out)?;
+    Ok(told(survey_files::write(out, settings, progress)?))
+}
+
+fn outcrop(out: &Path, settings: &SynthSettings, progress: &Progress) -> anyhow::Result<Report> {
+    refuse_inside_project(out)?;
+    Ok(told(survey_files::write_outcrop(out, settings.size, settings.seed, progress)?))
 }
 
 /// Applies a command and reports what it did.

@@ -75,13 +75,8 @@ fn a_diapir_with_an_overhang_is_where_it_is() {
         let at = DVec2::new(st.x * 25.0, st.y * 10.0);
         // The distance to the outline along ρ and along z; the smaller one bounds it.
         let along_rho = ((at.x - diapir.axis.x).abs() - diapir.radius(at.y)).abs() / 25.0;
-        let root = |mut z: f64| {
-            (0..60).for_each(|n| {
-                z += if diapir.holds(DVec3::new(at.x, diapir.axis.y, z)) { -1.0 } else { 1.0 } * 2.0 / f64::from(n + 1)
-            });
-            z
-        };
-        let along_z = (root(at.y) - at.y).abs() / 10.0;
+        let nearest = diapir.crossings((at.x - diapir.axis.x).abs(), 1.0).map(|(z, _)| (z - at.y).abs());
+        let along_z = nearest.fold(f64::INFINITY, f64::min) / 10.0;
         points += 1;
         worst = worst.max(along_rho.min(along_z));
     }

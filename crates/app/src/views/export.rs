@@ -2,7 +2,7 @@
 
 use super::notices;
 use crate::state::{Action, Dialogue, ExportForm, Place, Session, Shown, State};
-use eframe::egui::{Button, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui};
+use eframe::egui::{Button, Checkbox, Context, DragValue, Grid, Id, Modal, Spinner, TextEdit, Ui};
 use figure::Annotation;
 use project::figures::FigureFormat;
 use project::picture::SparseHorizon;
@@ -62,26 +62,7 @@ pub fn show(
                 ui.end_row();
             }
             ui.label("With");
-            ui.vertical(|ui| {
-                let has_layers = !session.document.horizons.is_empty();
-                for (shown, name, can) in [
-                    (&mut next.legend, "Legend", has_layers),
-                    (&mut next.scale_bar, "Scale bar and exaggeration", true),
-                    (&mut next.north_arrow, "North arrow", true),
-                ] {
-                    let mut is_shown = *shown == Shown::Yes;
-                    if ui.add_enabled(can, eframe::egui::Checkbox::new(&mut is_shown, name)).changed() {
-                        *shown = if is_shown { Shown::Yes } else { Shown::No };
-                    }
-                }
-                for (annotation, name) in WRITTEN {
-                    let mut is_shown = next.annotate.contains(&annotation);
-                    if ui.checkbox(&mut is_shown, name).changed() {
-                        next.annotate.retain(|known| *known != annotation);
-                        next.annotate.extend(is_shown.then_some(annotation));
-                    }
-                }
-            });
+            ui.vertical(|ui| choices(ui, !session.document.horizons.is_empty(), &mut next));
             ui.end_row();
         });
         let [width, height] = next.size_px();
@@ -125,6 +106,27 @@ pub fn show(
     });
     if modal.should_close() {
         actions.push(Action::Answered);
+    }
+}
+
+/// What is written on the picture and beside it.
+fn choices(ui: &mut Ui, has_layers: bool, next: &mut ExportForm) {
+    for (shown, name, can) in [
+        (&mut next.legend, "Legend", has_layers),
+        (&mut next.scale_bar, "Scale bar and exaggeration", true),
+        (&mut next.north_arrow, "North arrow", true),
+    ] {
+        let mut is_shown = *shown == Shown::Yes;
+        if ui.add_enabled(can, Checkbox::new(&mut is_shown, name)).changed() {
+            *shown = if is_shown { Shown::Yes } else { Shown::No };
+        }
+    }
+    for (annotation, name) in WRITTEN {
+        let mut is_shown = next.annotate.contains(&annotation);
+        if ui.checkbox(&mut is_shown, name).changed() {
+            next.annotate.retain(|known| *known != annotation);
+            next.annotate.extend(is_shown.then_some(annotation));
+        }
     }
 }
 
