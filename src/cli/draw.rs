@@ -3,11 +3,11 @@
 use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
-use project::Project;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
-use project::picture::{self, Painter};
+use project::picture::{self, Device, Painter};
 use project::picture::{load, scene};
+use project::{Project, figures};
 use render::{FaceData, Scene};
 use std::path::Path;
 use survey::{Progress, VerticalUnit, memory};
@@ -27,17 +27,12 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     let mut scene = choose(&project, request.scene.as_deref())?;
     request.volume_rendering.change(&mut scene, document)?;
     request.view.change(&mut scene, document.frame()?);
-    scene::leaves_in_volume(&mut scene);
     if document.volumes.is_empty() && document.horizons.is_empty() {
         anyhow::bail!(
             "the project has neither horizons nor a volume, so there is nothing to draw; add a horizon or import a volume"
         );
     }
-    if document.volumes.is_empty() && scene.blend > 0.0 {
-        progress.warn("the project has no volume to blend with: the picture is fully illustrated");
-        scene.blend = 0.0;
-    }
-    scene.validate(document.frame()?)?;
+    scene::prepare(document, &mut scene, progress)?;
     memory::check("the picture", &scene.size_px.map(|side| side as usize), PIXEL_BYTES)?;
     if let Some(page) = &request.figure {
         return super::page::draw(request, page, &project, &scene, progress);
@@ -54,15 +49,7 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     };
     let mut stages = loaded.rock.map(|rock| rock.stages).unwrap_or_default();
     stages.push(stage);
-    let [width, height] = scene.size_px;
-    let mut report = Report::default();
-    report.say(format!(
-        "{}: {width} x {height} pixels, {:.0} x {:.0} mm at {} dpi",
-        request.out.display(),
-        millimetres(width, request.dpi),
-        millimetres(height, request.dpi),
-        request.dpi
-    ));
+    let mut report = Report::line(written(&request.out, scene.size_px, request.dpi));
     super::distortion::say(document, &distortion, &mut report);
     let assumed = assumptions(&project, &scene);
     assumed.iter().for_each(|line| {
@@ -80,9 +67,29 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
     Ok(report)
 }
 
-/// Printed length of this many pixels.
-pub(super) fn millimetres(pixels: u32, dpi: f64) -> f64 {
-    f64::from(pixels) / dpi * INCH_MM
+/// Makes all figures of a project.
+pub(super) fn figures(
+    project: &Path,
+    out: &Path,
+    device: Device,
+    volume_bytes: Option<u64>,
+    progress: &Progress,
+) -> anyhow::Result<Report> {
+    let volume_bytes = volume_bytes.unwrap_or_else(memory_budget::half_of_available);
+    let made = figures::make_all(&Project::open(project)?, out, device, volume_bytes, progress)?;
+    let mut report = Report::default();
+    for figure in &made {
+        report.say(written(&figure.file, figure.size_px, figure.dpi));
+    }
+    report.field("figures", made);
+    Ok(report)
+}
+
+/// A file that was written, its size in pixels and on paper.
+pub(super) fn written(file: &Path, [width, height]: [u32; 2], dpi: f64) -> String {
+    let millimetres = |pixels: u32| f64::from(pixels) / dpi * INCH_MM;
+    let (width_mm, height_mm) = (millimetres(width), millimetres(height));
+    format!("{}: {width} x {height} pixels, {width_mm:.0} x {height_mm:.0} mm at {dpi} dpi", file.display())
 }
 
 /// The scene that was asked for: a named one, or one from a file.

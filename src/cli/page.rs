@@ -2,7 +2,7 @@
 //! blocks, a legend.
 
 use super::args::FigureArgs;
-use super::draw::{assumptions, millimetres};
+use super::draw::{assumptions, written};
 use super::report::Report;
 use super::request::{RenderRequest, Usage, numbers};
 use anyhow::Context;
@@ -11,7 +11,7 @@ use figure::draw::section::Zoom;
 use figure::{Annotation, BlockPart, FencePart, Figure, MapPart, PageSize, Part, SectionKind, SectionPart};
 use project::figures::{self, FigureSettings, InterpreterView};
 use project::{Project, memory_budget};
-use render::{Faces, Media, Scene};
+use render::Scene;
 use std::path::PathBuf;
 use survey::{Progress, file};
 
@@ -115,7 +115,7 @@ impl PageRequest {
             parts.push(Part::Map(MapPart { horizon, thickness_to: thickness_to.clone() }));
         }
         if self.has_block || parts.is_empty() {
-            let scene = if self.is_interpretation { interpreted(scene) } else { scene.clone() };
+            let scene = if self.is_interpretation { figures::interpreted(scene) } else { scene.clone() };
             parts.insert(0, BlockPart { scene, comparison: self.comparison }.into());
         }
         Ok(Figure {
@@ -170,13 +170,6 @@ fn comparison(blends: Option<&str>, wipe: Option<f64>) -> Result<Comparison, Usa
     }
 }
 
-/// The block as an interpreter sees it: raw data with the horizons in front; volume rendering stays.
-fn interpreted(scene: &Scene) -> Scene {
-    let is_through = scene.media.faces == Faces::None;
-    let media = if is_through { scene.media.clone() } else { Media::default() };
-    Scene { blend: 1.0, ground: None, media, ..scene.clone() }
-}
-
 /// Makes the page and writes it.
 pub(super) fn draw(
     request: &RenderRequest,
@@ -190,15 +183,7 @@ pub(super) fn draw(
     let settings = FigureSettings { device: request.device, volume_bytes, has_vectors: request.format.has_vectors() };
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
     figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
-    let [width, height] = figure.size_px();
-    let mut report = Report::default();
-    report.say(format!(
-        "{}: {width} x {height} pixels, {:.0} x {:.0} mm at {} dpi",
-        request.out.display(),
-        millimetres(width, figure.dpi),
-        millimetres(height, figure.dpi),
-        figure.dpi
-    ));
+    let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));
     let blocks = figure.parts.iter().filter_map(|part| match part {
         Part::Block(block) => Some(&block.scene),
         _ => None,
@@ -209,7 +194,7 @@ pub(super) fn draw(
     });
     report
         .field("file", &request.out)
-        .field("size_px", [width, height])
+        .field("size_px", figure.size_px())
         .field("dpi", figure.dpi)
         .field("parts", figure.parts.len())
         .field("device", made.device)

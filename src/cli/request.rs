@@ -1,8 +1,8 @@
 //! Turns arguments into requests with commands and values, or refuses them as wrong usage.
 
 use super::args::{
-    Action, CreateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction, SynthArgs,
-    VolumeAction,
+    Action, CreateArgs, DrawingArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction,
+    SynthArgs, VolumeAction,
 };
 use super::page::PageRequest;
 use super::view::ViewChanges;
@@ -68,6 +68,8 @@ pub(super) enum Request {
     Parameterize { project: PathBuf, size: Option<[usize; 3]> },
     /// Draw a picture.
     Render(RenderRequest),
+    /// Make all figures of a project, with at most so many bytes of memory for the samples of a volume.
+    Figures { project: PathBuf, out: PathBuf, device: Device, volume_bytes: Option<u64> },
     /// Open the window.
     Window { project: Option<PathBuf>, frame_times: Option<PathBuf> },
     /// Draw all patterns.
@@ -173,6 +175,10 @@ impl TryFrom<Action> for Request {
                 Self::Parameterize { project: typed.project, size }
             }
             Action::Render(typed) => Self::Render(render_request(*typed)?),
+            Action::Figures(typed) => {
+                let (device, volume_bytes) = drawing(&typed.drawing)?;
+                Self::Figures { project: typed.project, out: typed.out, device, volume_bytes }
+            }
             Action::Patterns { out, project } => Self::Patterns { out, project },
             Action::Bench(typed) => {
                 let sizes = if typed.quick { bench::Sizes::Quick } else { bench::Sizes::Full };
@@ -312,12 +318,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
     if !(typed.clear_below >= -1.0 && typed.clear_below < 1.0) {
         return Err(format!("--clear-below {}: expected -1 to less than 1", typed.clear_below));
     }
-    let device = match typed.device.as_str() {
-        "auto" => Device::Auto,
-        "gpu" => Device::Gpu,
-        "cpu" => Device::Cpu,
-        other => return Err(format!("--device {other}: expected auto, gpu or cpu")),
-    };
+    let (device, volume_bytes) = drawing(&typed.drawing)?;
     if !(typed.dpi >= 1.0 && typed.dpi <= 10_000.0) {
         return Err(format!("--dpi {}: expected 1 to 10000", typed.dpi));
     }
@@ -338,7 +339,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
         scene: typed.scene,
         view: typed.view.try_into()?,
         dpi: typed.dpi,
-        volume_bytes: interpretation::bytes("--volume-memory", typed.volume_memory.as_deref())?,
+        volume_bytes,
         device,
         volume_rendering: VolumeRendering {
             technique,
@@ -354,6 +355,17 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
             },
         },
     })
+}
+
+/// What draws, and the largest memory for the samples of a volume, bytes.
+fn drawing(typed: &DrawingArgs) -> Result<(Device, Option<u64>), Usage> {
+    let device = match typed.device.as_str() {
+        "auto" => Device::Auto,
+        "gpu" => Device::Gpu,
+        "cpu" => Device::Cpu,
+        other => return Err(format!("--device {other}: expected auto, gpu or cpu")),
+    };
+    Ok((device, interpretation::bytes("--volume-memory", typed.volume_memory.as_deref())?))
 }
 
 /// `NAME[,#RRGGBB[,OPACITY[,LIGHT]]]`

@@ -94,6 +94,9 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
         }
         Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,
+        Request::Figures { project, out, device, volume_bytes } => {
+            draw::figures(&project, &out, device, volume_bytes, &progress)?
+        }
         Request::Patterns { out, project } => patterns(&out, project.as_deref())?,
         Request::BenchSegy { side, folder } => told(bench::segy::run(side, &folder, &progress)?),
         Request::Bench { sizes, dump } => told(bench::run(sizes, dump.as_deref(), &progress)?),
@@ -127,18 +130,8 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             change(project, &Command::SetRaw(SetRaw { raw }), &progress)?
         }
         Request::List { project, what } => list::list(&open(&project)?, what)?,
-        Request::Undo(project) => {
-            let undone = open(&project)?.undo()?;
-            let mut report = Report::line(format!("undone: {undone}"));
-            report.field("undone", undone);
-            report
-        }
-        Request::Redo(project) => {
-            let redone = open(&project)?.redo()?;
-            let mut report = Report::line(format!("redone: {redone}"));
-            report.field("redone", redone);
-            report
-        }
+        Request::Undo(project) => step("undone", open(&project)?.undo()?),
+        Request::Redo(project) => step("redone", open(&project)?.redo()?),
         Request::Check(project) => check::report(&project::check::check(&project, &progress)?),
         Request::Repair(project) => check::report(&project::check::repair(&project, wait, &progress)?),
         Request::Prune(project) => {
@@ -170,6 +163,13 @@ fn change(mut project: Project, command: &Command, progress: &Progress) -> anyho
     let mut report = Report::text(effect.to_string().trim_end());
     report.fields(&effect);
     Ok(report)
+}
+
+/// Reports a step back or forth in the history: the command that was `what`.
+fn step(what: &str, summary: String) -> Report {
+    let mut report = Report::line(format!("{what}: {summary}"));
+    report.field(what, summary);
+    report
 }
 
 /// Reads a scene file.

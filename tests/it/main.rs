@@ -3,6 +3,7 @@
 mod app;
 mod assembly;
 mod bad_input;
+mod batch;
 mod bombs;
 mod chain;
 mod check;

@@ -299,6 +299,17 @@ pub enum ProjectError {
     /// A figure that shows nothing, or has no room.
     #[error(transparent)]
     Figure(figure::FigureError),
+    /// A figure of the project's list that cannot be made.
+    #[error("the figure \"{file}\" of the project cannot be made: {fact}")]
+    BadFigure {
+        /// Its file.
+        file: String,
+        /// Why not.
+        fact: String,
+    },
+    /// A project that lists no figures.
+    #[error("the project lists no figures")]
+    NoFigures,
     /// A synthetic survey could not be made.
     #[error(transparent)]
     Synth(#[from] synth::SynthError),

@@ -19,7 +19,7 @@ pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
 };
 pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, TextureArgs};
-pub(super) use output::{BenchArgs, DemoArgs, ParameterizeArgs, RenderArgs, SynthArgs};
+pub(super) use output::{BenchArgs, DemoArgs, DrawingArgs, FiguresArgs, ParameterizeArgs, RenderArgs, SynthArgs};
 pub(super) use scene::{SceneAction, ViewArgs};
 pub(super) use segy::SegyArgs;
 pub(super) use well::{WellAction, WellAddArgs};
@@ -163,6 +163,11 @@ pub(super) enum Action {
                       \n  petroglyph render north.petro isochore.png --map \"Top Chalk\" --thickness-to \"Base \
                       Chalk\"")]
     Render(Box<RenderArgs>),
+    /// Make all figures that the project lists under [[figures]] in its project.toml
+    #[command(after_help = "Example:\n  petroglyph figures north.petro out/figures\n\n\
+                      A figure in project.toml, with the words of `render --figure` (guide: Batches of figures):\
+                      \n  [[figures]]\n  file = \"block.pdf\"\n  scene = \"corner\"\n  size = { cm = [16.0, 11.0] }\n  legend = true")]
+    Figures(FiguresArgs),
     /// Open the window, for the whole work from volume to picture
     #[command(after_help = "Examples:\n  petroglyph view\n  petroglyph view north.petro")]
     View {

@@ -39,6 +39,27 @@ pub(in crate::cli) struct RenderArgs {
     /// Where the volume shows: everywhere, near the horizons shown, or away from them
     #[arg(long, value_name = "everywhere|near|away", default_value = "everywhere")]
     pub(in crate::cli) scope: String,
+    #[command(flatten)]
+    pub(in crate::cli) drawing: DrawingArgs,
+    #[command(flatten)]
+    pub(in crate::cli) figure: FigureArgs,
+    #[command(flatten)]
+    pub(in crate::cli) view: ViewArgs,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct FiguresArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Folder to write into; created if it does not exist. Files of the figures' names are replaced, others stay
+    pub(in crate::cli) out: PathBuf,
+    #[command(flatten)]
+    pub(in crate::cli) drawing: DrawingArgs,
+}
+
+/// What draws, and with how much memory.
+#[derive(Debug, Args)]
+pub(in crate::cli) struct DrawingArgs {
     /// Device that draws: the graphics adapter, or the processor when there is none (auto), or one of the two
     #[arg(long, value_name = "auto|gpu|cpu", default_value = "auto")]
     pub(in crate::cli) device: String,
@@ -46,10 +67,6 @@ pub(in crate::cli) struct RenderArgs {
     /// of its pyramid [default: half of what is free]
     #[arg(long, value_name = "BYTES")]
     pub(in crate::cli) volume_memory: Option<String>,
-    #[command(flatten)]
-    pub(in crate::cli) figure: FigureArgs,
-    #[command(flatten)]
-    pub(in crate::cli) view: ViewArgs,
 }
 
 #[derive(Debug, Args)]

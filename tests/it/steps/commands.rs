@@ -177,11 +177,12 @@ pub const LOOKING: [Scenario; 9] = [
 ];
 
 /// What is computed, drawn and exported.
-pub const COMPUTING: [Scenario; 7] = [
+pub const COMPUTING: [Scenario; 8] = [
     of(Imported, "attribute p.petro --kind envelope --name strength"),
     of(Imported, "parameterize p.petro --size 6x6x6"),
     of(Imported, "render p.petro a.png --size 16x12 --samples 1 --device cpu"),
     of(Imported, "render p.petro a.png --inline 4 --size-cm 3x2"),
+    after(Imported, with_figures, "figures p.petro out"),
     of(Imported, "export p.petro top.irap --horizon Top --format irap"),
     of(Imported, "export p.petro out.sgy --volume seismic"),
     of(Extracted, "export p.petro c.csv --candidates"),
@@ -206,6 +207,17 @@ fn proposed(at: &Path) {
 
 /// A long history, of which the present step is in the middle.
 pub const LONG_PRUNE: Scenario = after(Extracted, |at| all(at, &["undo p.petro", "undo p.petro"]), "prune p.petro");
+
+/// A project that lists two small figures.
+fn with_figures(at: &Path) {
+    let state = at.join("p.petro/project.toml");
+    let mut text = fs::read_to_string(&state).unwrap();
+    for file in ["a.png", "b.svg"] {
+        write!(text, "\n[[figures]]\nfile = \"{file}\"\nsize = {{ cm = [3, 2] }}\n").unwrap();
+        text.push_str("[[figures.parts]]\nsection = { kind = \"inline\", at = 4.0 }\n");
+    }
+    fs::write(&state, text).unwrap();
+}
 
 fn with_well(at: &Path) {
     all(at, &["well add p.petro A.csv --name A-1 --head 100,100 --kb 0 --tops tops.csv"]);

@@ -1,7 +1,7 @@
 //! Comments of `project.toml`: what a person wrote between the lines stays when a command writes the file again.
 //!
 //! A comment belongs to the key, table or entry below it, or to the value before it on the same line. It
-//! stays as long as that item exists. Entries of a list are recognised by their `name` or `layer`.
+//! stays as long as that item exists. Entries of a list are recognised by their `name`, `layer` or `file`.
 
 use toml_edit::{ArrayOfTables, Decor, DocumentMut, Item, Table};
 
@@ -47,7 +47,7 @@ fn keep_in_list(old: &ArrayOfTables, new: &mut ArrayOfTables) {
 }
 
 fn name_of(entry: &Table) -> Option<String> {
-    let name = ["name", "layer"].iter().find_map(|key| entry.get(key)?.as_str());
+    let name = ["name", "layer", "file"].iter().find_map(|key| entry.get(key)?.as_str());
     name.map(str::to_owned)
 }
 

@@ -2,6 +2,7 @@
 //! identifies data by its content.
 
 use super::picks::Assembly;
+use figure::Figure;
 use render::Scene;
 use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
@@ -200,4 +201,20 @@ pub struct SceneEntry {
     pub name: String,
     /// The scene.
     pub scene: Scene,
+}
+
+/// A figure that is made with the others of the project. Beside its file and its scene it has the words of a figure's
+/// own file ([`Figure`]).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FigureEntry {
+    /// The name of the file, whose ending states the format. Unique, whatever the case of its letters.
+    pub file: String,
+    /// The scene of the project that its blocks show. Absent: its blocks show their own, and a figure without parts
+    /// shows the project's first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scene: Option<String>,
+    /// What is on the page; without parts, one block.
+    #[serde(flatten)]
+    pub figure: Figure,
 }

@@ -13,8 +13,8 @@ mod picks;
 use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
 pub use entries::{
-    ExtractionEntry, FaultEntry, HorizonEntry, Polarity, ProposalsEntry, SceneEntry, Source, Style, TextureEntry,
-    VolumeEntry, WellEntry,
+    ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, Polarity, ProposalsEntry, SceneEntry, Source, Style,
+    TextureEntry, VolumeEntry, WellEntry,
 };
 use param::KDefinition;
 pub use picks::{Assembly, FaultSticks, PickEntry};
@@ -88,6 +88,9 @@ pub struct Document {
     /// Named scenes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneEntry>,
+    /// Figures that are made together, in the order in which they are made.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub figures: Vec<FigureEntry>,
 }
 
 /// The comment at the top of the file.
@@ -113,6 +116,7 @@ impl Document {
             style: Style::default(),
             k: BTreeMap::new(),
             scenes: Vec::new(),
+            figures: Vec::new(),
         }
     }
 

@@ -38,6 +38,12 @@ impl ProjectError {
             }
             Self::Geometry(_) => "check the header bytes or bounds from which the geometry is made",
             Self::CircularTruncation { .. } => "remove one of these truncations",
+            Self::BadFigure { .. } => {
+                "correct it under [[figures]] in project.toml, then try again; nothing was written"
+            }
+            Self::NoFigures => {
+                "write them into project.toml: [[figures]], then file = \"block.pdf\", scene = \"corner\", legend = true"
+            }
             Self::BadGrowth { .. } => "state metres, 0 or more",
             Self::Io { .. }
             | Self::Segy(_)

@@ -4,9 +4,11 @@
 //! A figure with a block needs what the block's scene needs. A figure of sections and maps alone needs the model but no
 //! layer coordinates, and what an interpreter sees needs no model at all.
 
+mod batch;
 mod interpreter;
 mod output;
 
+pub use batch::{WrittenFigure, make_all};
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
@@ -25,7 +27,7 @@ use image::RgbaImage;
 use interpreter::InterpreterPicks;
 use model::StructuralModel;
 use render::vector::{VectorBlock, vectors};
-use render::{FaceData, RenderError, Scene};
+use render::{FaceData, Faces, Media, RenderError, Scene};
 use std::time::Instant;
 use survey::{Progress, memory};
 use ttf::{LayerStyle, LayerTtf, TextureLibrary};
@@ -188,6 +190,13 @@ fn needs(figure: &Figure) -> Scene {
         scene.blend = 0.5;
     }
     scene
+}
+
+/// The block as an interpreter sees it: raw data with the horizons in front; volume rendering stays.
+pub fn interpreted(scene: &Scene) -> Scene {
+    let is_through = scene.media.faces == Faces::None;
+    let media = if is_through { scene.media.clone() } else { Media::default() };
+    Scene { blend: 1.0, ground: None, media, ..scene.clone() }
 }
 
 /// The horizons of a project with the colours that figures and the window draw them in.

@@ -9,6 +9,7 @@ use render::{
     Background, FaceData, Faces, Ground, Interleaved, Isosurface, IsosurfaceSource, Medium, Occlusion, Outlines, Phong,
     PickedHorizon, Scene, Scope, Shading, Stroke,
 };
+use survey::Progress;
 use ttf::{Colour, ColourMap, RgbaFunction, RgbaStop};
 
 /// The scene of that name; without a name the project's first scene, otherwise the default view.
@@ -49,6 +50,20 @@ pub fn default_view(document: &Document) -> Result<Scene, ProjectError> {
         scene.cut_outs = vec![block.corner_cut(corner, CUT_SHARE)];
     }
     Ok(scene)
+}
+
+/// Fits a scene to what the project has: leaves are shown in the volume where no face shows them, and without a volume
+/// nothing is blended, which is warned of.
+///
+/// # Errors
+/// The scene shows nothing, or the project has no survey geometry.
+pub fn prepare(document: &Document, scene: &mut Scene, progress: &Progress) -> Result<(), ProjectError> {
+    leaves_in_volume(scene);
+    if document.volumes.is_empty() && scene.blend > 0.0 {
+        progress.warn("the project has no volume to blend with: the picture is fully illustrated");
+        scene.blend = 0.0;
+    }
+    Ok(scene.validate(document.frame()?)?)
 }
 
 /// A technique of drawing.
@@ -216,7 +231,7 @@ impl VolumeRendering {
 
 /// If no face of rock shows leaves, the horizons shown in the volume are coloured by their leaves; without such
 /// horizons all candidates are shown.
-pub fn leaves_in_volume(scene: &mut Scene) {
+fn leaves_in_volume(scene: &mut Scene) {
     if scene.face_data != FaceData::Leaves || scene.media.faces != Faces::None {
         return;
     }
