@@ -28,7 +28,7 @@ for horizon in Alpha Bravo Unconformity Charlie Delta; do
     quietly horizon add "$made/salt.petro" "$made/salt/horizons/$horizon.csv" --name "$horizon" --contact "$contact"
 done
 quietly horizon add "$made/salt.petro" "$made/salt/horizons/Salt.ts" --name Salt
-"$petroglyph" render "$made/salt.petro" "$folder/salt.png" --size-cm 17x12 --dpi 200 --samples 4 --cut nearest,0.58,0.6
+"$petroglyph" render "$made/salt.petro" "$folder/salt.png" --size-cm 17x12 --dpi 200 --samples 4
 
 "$petroglyph" synth "$made/outcrop" --overturned --size 112x90x80 > "$made/told"
 # The last line that it prints is the command that makes the project.

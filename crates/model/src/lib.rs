@@ -34,6 +34,12 @@
 //!   horizon it is placed as a surface through the nodes of all other blocks.
 //! - **A node on the wrong side of a fault,** or closer to the fault than the setback, is left out.
 //!
+//! # Horizons of any shape
+//!
+//! A horizon whose surface is no height field ([`survey::Horizon::any_shape`]) is a [`LevelSurface`]: overturned limbs and
+//! bodies of triangles, scattered points of a series. [`StructuralModel::sheet`] then is its topmost part, and
+//! [`StructuralModel::level`] the surface.
+//!
 //! [`section`] cuts the model along any plane.
 //!
 //! Deliberately absent: files, pictures, flat space.

@@ -163,7 +163,7 @@ pub(super) enum Action {
                       \n  petroglyph render north.petro isochore.png --map \"Top Chalk\" --thickness-to \"Base \
                       Chalk\"")]
     Render(Box<RenderArgs>),
-    /// Make all figures that the project lists under [[figures]] in its project.toml
+    /// Make all figures that the project lists as `figures` in its project.toml
     #[command(after_help = "Example:\n  petroglyph figures north.petro out/figures\n\n\
                       A figure in project.toml, with the words of `render --figure` (guide: Batches of figures):\
                       \n  [[figures]]\n  file = \"block.pdf\"\n  scene = \"corner\"\n  size = { cm = [16.0, 11.0] }\n  legend = true")]
