@@ -14,7 +14,11 @@ struct GridInfo {
     top_shift: f32,
     // 1: the boundary that is drawn may lie beyond the sheets, and v goes on there.
     is_calm: u32,
-    padding_0: u32,
+    // Where the pool holds i·(Nx − 1) and j·(Ny − 1) if a horizon of the layer is no height field, else NONE. k then
+    // follows from the distances from the horizons, or from `thickness_m` where one is missing.
+    unfolded_i: u32,
+    unfolded_j: u32,
+    thickness_m: f32,
 }
 
 // Index block · layers + layer.
@@ -87,8 +91,49 @@ fn grid_column(index: u32, cell: u32, levels: u32, t: f32) -> ColumnSample {
     return column;
 }
 
+// Distance in m below a horizon (w) and its derivatives per voxel (xyz).
+fn distance_below(info: SheetInfo, p: vec3<f32>) -> vec4<f32> {
+    if info.level != NONE {
+        return level_distance(info, p);
+    }
+    let sheet = sheet_sample(info, p.xy);
+    return vec4(-sheet.yz, 1.0, p.z - sheet.x) * params.voxel_m.z;
+}
+
+// k between surfaces of any shape (w), and its derivatives per voxel (xyz): the twin of `RegionGrid::level_k`.
+fn level_k(grid: GridInfo, p: vec3<f32>) -> vec4<f32> {
+    if grid.bottom_sheet == NONE && grid.top_sheet == NONE {
+        return vec4(0.0, 0.0, 0.0, 0.5);
+    }
+    if grid.top_sheet == NONE {
+        return -distance_below(sheets[grid.bottom_sheet], p) / grid.thickness_m;
+    }
+    let top = distance_below(sheets[grid.top_sheet], p);
+    if grid.bottom_sheet == NONE {
+        return vec4(0.0, 0.0, 0.0, 1.0) - top / grid.thickness_m;
+    }
+    let bottom = distance_below(sheets[grid.bottom_sheet], p);
+    let sum = top.w - bottom.w;
+    if abs(sum) < PINCHED {
+        return vec4(0.0, 0.0, 0.0, 0.5);
+    }
+    return vec4((top.xyz * bottom.w - bottom.xyz * top.w) / (sum * sum), clamp(-bottom.w / sum, 0.0, 1.0));
+}
+
+// The twin of `RegionGrid::lookup_unfolded`.
+fn flat_unfolded(grid: GridInfo, p: vec3<f32>) -> FlatSample {
+    let unit = model.unit_from_voxel;
+    let i = level_sample(grid.unfolded_i, p) * unit.x;
+    let j = level_sample(grid.unfolded_j, p) * unit.y;
+    let k = level_k(grid, p);
+    return FlatSample(vec3(i.w, j.w, k.w), i.xyz, j.xyz, k.xyz);
+}
+
 fn flat_exact(p: vec3<f32>, layer: u32, block: u32) -> FlatSample {
     let grid = grids[block * model.layers + layer];
+    if has_levels == 1u && grid.unfolded_i != NONE {
+        return flat_unfolded(grid, p);
+    }
     let bottom = shifted_sheet(grid.bottom_sheet, grid.bottom_shift, p.xy);
     let top = shifted_sheet(grid.top_sheet, grid.top_shift, p.xy);
     let thickness = bottom.x - top.x;

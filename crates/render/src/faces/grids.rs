@@ -56,18 +56,19 @@ pub struct GridBuffers {
 }
 
 impl GridBuffers {
-    /// Uploads what is visible.
+    /// Uploads what is visible. `unfolded` says where the pool of the model holds the unfolded layers.
     pub fn new(
         gpu: &Gpu,
         model: &StructuralModel,
         param: &Parameterization,
+        unfolded: &[[u32; 2]],
         seen: VisibleParts,
     ) -> Result<Self, RenderError> {
         let windows: Vec<Vec<LevelRange>> = param.grids.par_iter().map(|grid| windows(model, grid, &seen)).collect();
         let mut infos = Vec::new();
         let mut columns: Vec<[u32; 2]> = Vec::new();
         let mut offsets: Vec<[f32; 3]> = Vec::new();
-        let calm = param.calm_sheets();
+        let (calm, unfoldings) = (param.calm_sheets(), param.unfoldings());
         let (horizons, blocks) = (param.layers - 1, param.blocks);
         // As `ModelBuffers` lays sheets out: those of the horizons, then the calm ones.
         let index = |grid: &RegionGrid, sheet: &SheetRef| match &sheet.of {
@@ -79,6 +80,8 @@ impl GridBuffers {
             }
         };
         for (grid, windows) in param.grids.iter().zip(&windows) {
+            let place = |of_layer| unfoldings.iter().position(|known| Arc::ptr_eq(known, of_layer));
+            let [unfolded_i, unfolded_j] = grid.unfolded.as_ref().and_then(place).map_or([NONE; 2], |n| unfolded[n]);
             infos.push(GridInfo {
                 origin: grid.origin,
                 size: grid.size.map(|n| n as u32),
@@ -89,7 +92,9 @@ impl GridBuffers {
                 bottom_shift: grid.bottom.shift,
                 top_shift: grid.top.shift,
                 is_calm: u32::from(grid.is_calm()),
-                padding: 0,
+                unfolded_i,
+                unfolded_j,
+                thickness_m: grid.thickness_m.map_or(1.0, |thickness| thickness as f32),
             });
             for (column, window) in windows.iter().enumerate() {
                 let count = window.end.saturating_sub(window.first);

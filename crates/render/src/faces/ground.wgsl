@@ -55,12 +55,12 @@ fn probe_at(p: vec3<f32>) -> Probe {
         var n = 0u;
         loop {
             let h = relief_map[n];
-            let z = sheet_z(sheets[h * model.blocks + probe.block], p.xy);
-            if p.z >= z {
+            let offset = ground_offset(sheets[h * model.blocks + probe.block], p);
+            if offset >= 0.0 {
                 below = with_bit(below, h);
             }
-            if abs(z - p.z) < probe.gap {
-                probe.gap = abs(z - p.z);
+            if abs(offset) < probe.gap {
+                probe.gap = abs(offset);
                 probe.horizon = h;
             }
             continuing {
@@ -71,6 +71,14 @@ fn probe_at(p: vec3<f32>) -> Probe {
     }
     probe.is_rock = layer_of(below) != model.layers - 1u;
     return probe;
+}
+
+// How far a voxel position lies below a horizon, vertically, or inside a surface of any shape, in longest voxel edges.
+fn ground_offset(info: SheetInfo, p: vec3<f32>) -> f32 {
+    if has_levels == 1u && info.level != NONE {
+        return level_distance(info, p).w / params.relief.w;
+    }
+    return p.z - sheet_z(info, p.xy);
 }
 
 // The first distance at or after t at which the coarse map does not exclude rock.
@@ -143,8 +151,12 @@ fn refine(
     hit.block = inside.block;
     hit.layer = layer_at(hit.point + vec3(0.0, 0.0, INTO_ROCK), hit.block);
     if air.block == inside.block {
-        let slope = sheet_sample(sheets[inside.horizon * model.blocks + inside.block], hit.point.xy).yz;
-        hit.normal = vec3(slope, -1.0);
+        let info = sheets[inside.horizon * model.blocks + inside.block];
+        if has_levels == 1u && info.level != NONE {
+            hit.normal = -level_distance(info, hit.point).xyz;
+        } else {
+            hit.normal = vec3(sheet_sample(info, hit.point.xy).yz, -1.0);
+        }
     } else {
         let normal = faults[inside.fault].w.xyz;
         hit.normal = select(normal, -normal, dot(normal, direction) > 0.0);
@@ -170,7 +182,11 @@ fn march(origin: vec3<f32>, direction: vec3<f32>, enter: f32, leave: f32) -> Gro
             return hit;
         }
     }
-    let fall = abs(direction.z) + params.relief.z * length(direction.xy);
+    var fall = abs(direction.z) + params.relief.z * length(direction.xy);
+    if has_levels == 1u {
+        // A surface of any shape may lie in any direction.
+        fall = max(fall, 1.0);
+    }
     var air_t = enter;
     var air: Probe;
     air.block = NONE;

@@ -42,14 +42,16 @@ pub struct FaceParams {
     pub cut_outs: [[f32; 4]; 2 * MAX_CUT_OUTS],
 }
 
-/// A height field in the pool.
+/// A height field in the pool. A horizon that is none has a level field there as well, and this is its topmost part.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, Pod, Zeroable)]
 pub struct SheetInfo {
     pub origin: [i32; 2],
     pub size: [u32; 2],
     pub offset: u32,
-    pub padding: [u32; 3],
+    pub level: u32,
+    pub at: f32,
+    pub scale_m: f32,
 }
 
 /// A fault surface: the rows of its frame relative to the centre of the model, and its height field.
@@ -88,7 +90,9 @@ pub struct GridInfo {
     pub bottom_shift: f32,
     pub top_shift: f32,
     pub is_calm: u32,
-    pub padding: u32,
+    pub unfolded_i: u32,
+    pub unfolded_j: u32,
+    pub thickness_m: f32,
 }
 
 /// Size, scale and value ranges of the packed volume.

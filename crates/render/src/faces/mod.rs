@@ -16,6 +16,7 @@ mod model;
 #[cfg(test)]
 mod tests;
 mod textures;
+mod tile;
 mod volumes;
 
 use crate::error::RenderError;
@@ -25,16 +26,17 @@ use crate::media::interleaved::{halves, interleave};
 use crate::media::prepared::Preparations;
 use crate::outline::draw::draw as draw_outlines;
 use crate::resolved::{Flat, MAX_VOLUMES, ResolvedScene};
-use crate::scene::Scene;
+use crate::scene::{Lookup, Scene};
 use grids::{GridBuffers, VisibleParts};
 use image::RgbaImage;
-use layout::{FaceParams, WORKGROUP};
+use layout::FaceParams;
 use light::LightBuffers;
 use media::{CandidateTextures, MediaVariant};
-use model::{ModelBuffers, POOL_BUFFERS, PackedTexture};
+use model::{ModelBuffers, POOL_BUFFERS, PackedTexture, floats_of_any_shape};
 use std::collections::HashMap;
 use survey::Progress;
 use textures::TextureBuffers;
+use tile::{TileTarget, tile_side};
 use ttf::tables::NONE;
 use volumes::{VolumePlacement, no_volume, upload_volume};
 
@@ -43,6 +45,7 @@ pub(crate) const SHADER: &str = concat!(
     include_str!("faces.wgsl"),
     include_str!("visible.wgsl"),
     include_str!("ground.wgsl"),
+    include_str!("levels.wgsl"),
     include_str!("model.wgsl"),
     include_str!("flat.wgsl"),
     include_str!("packed.wgsl"),
@@ -61,9 +64,6 @@ pub(crate) fn shader(filters_floats: bool) -> String {
     let filter = if filters_floats { include_str!("filtered.wgsl") } else { include_str!("by_hand.wgsl") };
     [SHADER, filter].concat()
 }
-
-/// Largest number of samples in one dispatch: a tenth of a second on the software driver.
-const SAMPLES_PER_TILE: u32 = 1 << 17;
 
 /// Draws scenes on the GPU. Keeps what it has uploaded.
 pub struct Renderer {
@@ -100,6 +100,7 @@ struct Variant {
     volume_count: u32,
     has_faults: u32,
     has_horizons: u32,
+    has_levels: u32,
     pool_chunk: u32,
     pool_chunks: u32,
     media: MediaVariant,
@@ -187,8 +188,8 @@ impl Renderer {
     /// # Errors
     /// A scene that cannot be drawn, missing inputs, cancellation, or an error of the device.
     pub fn render(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
-        // A measurement has one implementation, on the processor; the shaders know height fields alone.
-        if scene.face_data == crate::FaceData::Distortion || inputs.model.is_some_and(|m| m.has_levels()) {
+        // A measurement has one implementation, on the processor, which also draws what does not fit the device.
+        if scene.face_data == crate::FaceData::Distortion || !self.holds_surfaces(scene, inputs) {
             return crate::reference::render(scene, inputs, progress);
         }
         match self.render_once(scene, inputs, progress) {
@@ -198,6 +199,14 @@ impl Renderer {
             }
             drawn => drawn,
         }
+    }
+
+    /// Whether horizons of any shape fit the device. Sheets that do not are an error of their own.
+    fn holds_surfaces(&self, scene: &Scene, inputs: &Inputs) -> bool {
+        let Some(model) = inputs.model.filter(|model| model.has_levels()) else { return true };
+        let param = inputs.param.filter(|_| scene.lookup == Lookup::Exact);
+        // A third is left to sheets.
+        floats_of_any_shape(model, param) / 2 < self.gpu.buffer_floats / 3 * POOL_BUFFERS
     }
 
     fn render_once(&mut self, scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<RgbaImage, RenderError> {
@@ -244,16 +253,18 @@ impl Renderer {
         let gpu = &self.gpu;
         let flat = resolved.interpretation.filter(|_| resolved.illustrated).map(|interpretation| interpretation.flat);
         if let Some(interpretation) = resolved.interpretation {
-            let calm = if let Some(Flat::Exact(param)) = flat { param.calm_sheets() } else { Vec::new() };
-            if self.model.as_ref().is_none_or(|held| held.calm_sheets < calm.len()) {
-                self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, interpretation.model, &calm))?);
+            let param = if let Some(Flat::Exact(param)) = flat { Some(param) } else { None };
+            if self.model.as_ref().is_none_or(|held| param.is_some() && !held.with_flat) {
+                self.model = Some(gpu.guarded(|| ModelBuffers::new(gpu, interpretation.model, param))?);
             }
         }
         if let (Some(interpretation), Some(Flat::Exact(param))) = (resolved.interpretation, flat) {
             let seen = VisibleParts::of(resolved);
             if !self.grids.as_ref().is_some_and(|grids| grids.seen == seen) {
                 self.grids = None;
-                self.grids = Some(gpu.guarded(|| GridBuffers::new(gpu, interpretation.model, param, seen))?);
+                let unfolded = self.model.as_ref().map_or(&[][..], |held| &held.unfolded);
+                let model = interpretation.model;
+                self.grids = Some(gpu.guarded(|| GridBuffers::new(gpu, model, param, unfolded, seen))?);
             }
         }
         if let Some(Flat::Packed(packed)) = flat
@@ -285,6 +296,7 @@ impl Renderer {
             has_horizons: resolved
                 .interpretation
                 .map_or(0, |interpretation| u32::from(!interpretation.model.stratigraphy().horizons.is_empty())),
+            has_levels: resolved.interpretation.map_or(0, |found| u32::from(found.model.has_levels())),
             pool_chunk: self.model.as_ref().map_or(1, |m| m.pool_chunk),
             pool_chunks: self.model.as_ref().map_or(1, |m| m.pool_chunks() as u32),
             media: MediaVariant::of(resolved),
@@ -356,6 +368,7 @@ impl Renderer {
             ("volume_count", f64::from(variant.volume_count)),
             ("has_faults", f64::from(variant.has_faults)),
             ("has_horizons", f64::from(variant.has_horizons)),
+            ("has_levels", f64::from(variant.has_levels)),
             ("pool_chunk", f64::from(variant.pool_chunk)),
             ("pool_chunks", f64::from(variant.pool_chunks)),
         ];
@@ -479,78 +492,6 @@ fn on_a_large_stack<T: Send>(work: impl FnOnce() -> T + Send) -> T {
         (Ok(made), _) => made,
         (Err(_), Some(work)) => work(),
         (Err(_), None) => unreachable!("a thread that took the work sends its result or its panic"),
-    }
-}
-
-/// Side of a tile for a number of samples per pixel along each axis: a multiple of the side of a workgroup.
-fn tile_side(samples: u32) -> u32 {
-    let pixels = SAMPLES_PER_TILE / (samples * samples);
-    (pixels.isqrt() / WORKGROUP * WORKGROUP).clamp(4 * WORKGROUP, 1024)
-}
-
-/// The pixels of a tile on the device, and the buffer in which they are read back.
-struct TileTarget {
-    pixels: wgpu::Buffer,
-    readback: wgpu::Buffer,
-}
-
-impl TileTarget {
-    fn new(gpu: &Gpu, side: u32) -> Self {
-        let buffer = |label, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: u64::from(side) * u64::from(side) * 4,
-                usage,
-                mapped_at_creation: false,
-            })
-        };
-        Self {
-            pixels: buffer("pixels", wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC),
-            readback: buffer("readback", wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST),
-        }
-    }
-
-    /// Draws one tile and copies it into the image.
-    fn draw(
-        &self,
-        gpu: &Gpu,
-        pipeline: &wgpu::ComputePipeline,
-        groups: &[wgpu::BindGroup; 4],
-        [x, y, width, height]: [u32; 4],
-        image: &mut RgbaImage,
-    ) -> Result<(), RenderError> {
-        let bytes = u64::from(width) * u64::from(height) * 4;
-        let mut encoder = gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("faces") });
-        {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(pipeline);
-            for (index, group) in (0u32..).zip(groups) {
-                pass.set_bind_group(index, group, &[]);
-            }
-            pass.dispatch_workgroups(width.div_ceil(WORKGROUP), height.div_ceil(WORKGROUP), 1);
-        }
-        encoder.copy_buffer_to_buffer(&self.pixels, 0, &self.readback, 0, bytes);
-        gpu.queue.submit([encoder.finish()]);
-        let (sender, receiver) = std::sync::mpsc::channel();
-        self.readback.map_async(wgpu::MapMode::Read, ..bytes, move |result| {
-            // The receiver waits below. It is gone only if this function has already failed.
-            let _ = sender.send(result);
-        });
-        gpu.wait()?;
-        let lost = |reason: String| RenderError::DeviceLost { reason };
-        receiver.recv().map_err(|e| lost(e.to_string()))?.map_err(|e| lost(e.to_string()))?;
-        {
-            let mapped = self.readback.get_mapped_range(..bytes).map_err(|e| lost(e.to_string()))?;
-            let stride = image.width() as usize * 4;
-            let row_bytes = width as usize * 4;
-            let to: &mut [u8] = image;
-            for (row, from) in mapped.chunks_exact(row_bytes).enumerate() {
-                let start = (y as usize + row) * stride + x as usize * 4;
-                to[start..start + row_bytes].copy_from_slice(from);
-            }
-        }
-        self.readback.unmap();
-        Ok(())
     }
 }
 

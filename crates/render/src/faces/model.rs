@@ -1,17 +1,18 @@
 //! The interpretation on the GPU: sheets, fault surfaces, blocks and contact rules, and the packed volume.
 //!
-//! All heights lie in a *pool* of floats, which is split over two storage buffers if bindings are small (128
-//! MiB on the software driver). Memory: the same as on the CPU.
+//! All heights and level fields lie in a *pool* of floats, which is split over two storage buffers if bindings are small
+//! (128 MiB on the software driver). Memory: the same as on the CPU.
 
 use super::layout::{FaultInfo, ModelInfo, PackedInfo, SheetInfo};
 use crate::error::RenderError;
 use crate::gpu::Gpu;
 use glam::{DVec3, Vec3};
 use model::{FaultSurface, StructuralModel};
-use param::PackedVolume;
+use param::{PackedVolume, Parameterization};
 use std::sync::Arc;
-use survey::HeightField;
 use survey::stratigraphy::Contact;
+use survey::{HeightField, LevelField};
+use ttf::tables::NONE;
 
 /// Number of buffers over which the pool may be split.
 pub const POOL_BUFFERS: usize = 2;
@@ -25,14 +26,19 @@ pub struct ModelBuffers {
     pub pool: Vec<wgpu::Buffer>,
     /// Number of floats in each buffer of the pool.
     pub pool_chunk: u32,
-    /// Number of calm sheets among the sheets.
-    pub calm_sheets: usize,
+    /// Where the pool holds the (i, j) of the parameterization's unfolded layers, in the order of
+    /// [`Parameterization::unfoldings`].
+    pub unfolded: Vec<[u32; 2]>,
+    /// Whether what a parameterization adds is among it.
+    pub with_flat: bool,
 }
 
 /// Collects floats; addresses have 32 bits.
 #[derive(Default)]
 struct Pool {
     floats: Vec<f32>,
+    /// The level fields that it holds, each once, and where.
+    fields: Vec<(Arc<LevelField>, u32)>,
 }
 
 impl Pool {
@@ -54,13 +60,52 @@ impl Pool {
         } else {
             self.add(&HeightField::from_fn(first, size, |x, y| field.node(x, y)).z)
         };
-        SheetInfo { origin: first, size: size.map(|n| n as u32), offset, padding: [0; 3] }
+        SheetInfo { origin: first, size: size.map(|n| n as u32), offset, level: NONE, at: 0.0, scale_m: 1.0 }
+    }
+
+    /// Adds a level field: origin, step and size along x, y, z (the size as bits of whole numbers), then its values.
+    fn field(&mut self, field: &LevelField) -> u32 {
+        let size = field.size.map(|n| f32::from_bits(n as u32));
+        let offset = self.add(&[field.origin.to_array(), field.step.to_array(), size].concat());
+        self.add(&field.values);
+        offset
+    }
+
+    /// The surface of a horizon in a block.
+    fn horizon(&mut self, model: &StructuralModel, horizon: usize, block: u16, last: [f32; 2]) -> SheetInfo {
+        let sheet = self.sheet(model.sheet(horizon, block), [0.0; 2], last);
+        let Some(surface) = model.level(horizon, block) else { return sheet };
+        let known = self.fields.iter().find(|(field, _)| Arc::ptr_eq(field, &surface.field));
+        let level = known.map(|(_, offset)| *offset).unwrap_or_else(|| {
+            let offset = self.field(&surface.field);
+            self.fields.push((Arc::clone(&surface.field), offset));
+            offset
+        });
+        SheetInfo { level, at: surface.at, scale_m: surface.scale_m, ..sheet }
     }
 }
 
+/// Floats that the level fields of a model and the unfolded layers of its parameterization take in the pool.
+pub fn floats_of_any_shape(model: &StructuralModel, param: Option<&Parameterization>) -> usize {
+    let mut fields: Vec<*const LevelField> = Vec::new();
+    let mut floats = 0;
+    for horizon in 0..model.stratigraphy().horizons.len() {
+        for block in 0..model.block_count() as u16 {
+            if let Some(surface) = model.level(horizon, block)
+                && !fields.contains(&Arc::as_ptr(&surface.field))
+            {
+                fields.push(Arc::as_ptr(&surface.field));
+                floats += surface.field.values.len();
+            }
+        }
+    }
+    let unfolded = param.map_or_else(Vec::new, Parameterization::unfoldings);
+    floats + unfolded.iter().flat_map(|of_layer| of_layer.iter()).map(|field| field.values.len()).sum::<usize>()
+}
+
 impl ModelBuffers {
-    /// Uploads a model, and the sheets of its parameterization.
-    pub fn new(gpu: &Gpu, model: &StructuralModel, calm: &[Arc<HeightField>]) -> Result<Self, RenderError> {
+    /// Uploads a model, and what its parameterization adds to it: calm sheets and unfolded layers.
+    pub fn new(gpu: &Gpu, model: &StructuralModel, param: Option<&Parameterization>) -> Result<Self, RenderError> {
         let mut pool = Pool::default();
         let horizons = model.stratigraphy().horizons.len();
         let blocks = model.block_count();
@@ -69,10 +114,13 @@ impl ModelBuffers {
         let mut sheets = Vec::new();
         for horizon in 0..horizons {
             for block in 0..blocks {
-                sheets.push(pool.sheet(model.sheet(horizon, block as u16), [0.0; 2], [last[0], last[1]]));
+                sheets.push(pool.horizon(model, horizon, block as u16, [last[0], last[1]]));
             }
         }
+        let calm = param.map_or_else(Vec::new, Parameterization::calm_sheets);
         sheets.extend(calm.iter().map(|sheet| pool.sheet(sheet, [0.0; 2], [last[0], last[1]])));
+        let unfoldings = param.map_or_else(Vec::new, Parameterization::unfoldings);
+        let unfolded = unfoldings.iter().map(|of_layer| [0, 1].map(|axis: usize| pool.field(&of_layer[axis]))).collect();
         let centre = Vec3::from_array(size.map(|n| 0.5 * n as f32)).as_dvec3();
         let surfaces = model.faults().surfaces();
         let faults: Vec<FaultInfo> = surfaces
@@ -99,7 +147,8 @@ impl ModelBuffers {
             rules: gpu.storage("rules", bytemuck::cast_slice(&rules(model))),
             pool: buffers,
             pool_chunk,
-            calm_sheets: calm.len(),
+            unfolded,
+            with_flat: param.is_some(),
         })
     }
 

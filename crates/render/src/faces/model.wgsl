@@ -12,9 +12,11 @@ struct SheetInfo {
     size: vec2<u32>,
     // First node in the pool.
     offset: u32,
-    padding_0: u32,
-    padding_1: u32,
-    padding_2: u32,
+    // Where the pool holds the level field of a horizon that is no height field, else NONE. Its surface is where the
+    // field has the value `at`; one unit of the field is about `scale_m` metres.
+    level: u32,
+    at: f32,
+    scale_m: f32,
 }
 
 // A fault as w = g(u, v). Each row gives one of u, v (cells) and w (m) from (x, y, z, 1) relative to
@@ -202,7 +204,7 @@ fn layer_at(p: vec3<f32>, block: u32) -> u32 {
     if has_horizons == 1u {
         var h = 0u;
         loop {
-            if p.z >= sheet_z(sheets[h * model.blocks + block], p.xy) {
+            if is_below(h * model.blocks + block, p) {
                 below = with_bit(below, h);
             }
             continuing {
@@ -212,4 +214,15 @@ fn layer_at(p: vec3<f32>, block: u32) -> u32 {
         }
     }
     return layer_of(below);
+}
+
+// Whether a voxel position lies at or below an unclipped horizon, on its older side, or in a body.
+fn is_below(sheet: u32, p: vec3<f32>) -> bool {
+    if has_levels == 1u {
+        let info = sheets[sheet];
+        if info.level != NONE {
+            return level_sample(info.level, p).w >= info.at;
+        }
+    }
+    return p.z >= sheet_z(sheets[sheet], p.xy);
 }

@@ -71,10 +71,11 @@ fn structs_have_the_same_layout() {
     check!(m, FaceParams: origin, origin_dx, origin_dy, direction, direction_dx, direction_dy, box_low, box_high,
         background, voxel_m, tones, light, display_normal_x, display_normal_y, display_normal_z, relief, reference_px,
         samples, cut_count, map_low, map_cells, ground_horizons, ground_opacity, tile, cut_outs);
-    check!(m, SheetInfo: origin, size, offset);
+    check!(m, SheetInfo: origin, size, offset, level, at, scale_m);
     check!(m, FaultInfo: u, v, w, surface);
     check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);
-    check!(m, GridInfo: origin, size, levels, first_column, bottom_sheet, top_sheet, bottom_shift, top_shift, is_calm);
+    check!(m, GridInfo: origin, size, levels, first_column, bottom_sheet, top_sheet, bottom_shift, top_shift, is_calm,
+        unfolded_i, unfolded_j, thickness_m);
     check!(m, PackedInfo: scale, size, i_range, j_range, layers, blocks);
     check!(m, TextureInfo: mean, offset, side, levels);
     check!(m, VolumePlacement: scale, offset, size);

@@ -4,5 +4,6 @@ mod block;
 mod closed_form;
 mod gpu;
 mod gpu_media;
+mod gpu_shapes;
 mod media;
 mod vector;

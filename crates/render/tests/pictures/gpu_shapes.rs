@@ -1,0 +1,89 @@
+//! The GPU draws horizons of any shape as the CPU reference does: bodies, overturned beds, the ground over them.
+
+use crate::block::Block;
+use crate::gpu::skipped;
+use glam::{DVec2, DVec3};
+use render::compare::compare;
+use render::{Ground, Inputs, Renderer, Scene, VoxelBox};
+use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
+use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
+use survey::{Progress, SurveyGeometry, TriangleMesh, VerticalUnit};
+use synth::closed_form::ClosedForm;
+use synth::shapes::{Diapir, RecumbentFold, world};
+use ttf::{TextureLibrary, TransferFunctions};
+
+fn geometry() -> SurveyGeometry {
+    SurveyGeometry::regular([41, 33, 41], 25.0, 20.0, VerticalUnit::Metres)
+}
+
+fn block(horizons: Vec<(Horizon, Contact)>, faults: &[survey::Fault]) -> Block {
+    let named = |(h, contact): &(Horizon, Contact)| StratigraphicHorizon { name: h.name.clone(), contact: *contact };
+    let stratigraphy = Stratigraphy { horizons: horizons.iter().map(named).collect(), layer_names: Vec::new() };
+    let horizons: Vec<Horizon> = horizons.into_iter().map(|(horizon, _)| horizon).collect();
+    let library = TextureLibrary::builtin().unwrap();
+    Block::new(&geometry(), &stratigraphy, &horizons, faults, &TransferFunctions::default(), &library)
+}
+
+/// A dome over a salt dome that stands out of the ground.
+fn salt() -> Block {
+    let geometry = geometry();
+    let grid = NodeGrid::of_survey(&geometry);
+    let domed = |name: &str, depth: f64| {
+        let node = |n: usize| {
+            let at = DVec2::new((n / grid.count[1]) as f64, (n % grid.count[1]) as f64) * 25.0;
+            (depth - 60.0 * (-(at - DVec2::new(500.0, 400.0)).length_squared() / 9e4).exp()) as f32
+        };
+        let depths = (0..grid.count[0] * grid.count[1]).map(node).collect();
+        (Horizon::new(name, vec![Sheet::new(grid, depths, Quality::Picked)]), Contact::Conformable)
+    };
+    let body = Horizon::of_surface("salt", Diapir::fitting(&geometry).mesh(&geometry, 48));
+    block(vec![domed("ground", 330.0), domed("below", 520.0), (body, Contact::Intrusive)], &[])
+}
+
+/// Beds of a recumbent fold, as scattered points, cut by a fault.
+fn fold() -> Block {
+    let geometry = geometry();
+    let fold = RecumbentFold::fitting(&geometry);
+    let bed = |(n, age): (usize, f64)| {
+        let mut vertices = Vec::new();
+        let mut at = n * 7919;
+        while vertices.len() < 90 {
+            at += 1;
+            let (y, z) = ((at as f64 * 0.754_877).fract() * 800.0, (at as f64 * 0.569_840).fract() * 800.0);
+            let x = fold.x_of(age, z);
+            if (0.0..=1000.0).contains(&x) {
+                vertices.push(world(&geometry, DVec3::new(x, y, z)));
+            }
+        }
+        let points = TriangleMesh { vertices, triangles: Vec::new() };
+        (Horizon::of_surface(format!("H{n}"), points), Contact::Conformable)
+    };
+    let beds = [-350.0, -150.0, 50.0, 250.0].into_iter().enumerate().map(bed).collect();
+    block(beds, &ClosedForm::flat(&geometry, &[10.0, 20.0]).with_fault(60.0, 2.0).faults)
+}
+
+#[test]
+fn gpu_and_cpu_agree_on_horizons_of_any_shape() {
+    if skipped() {
+        return;
+    }
+    let quiet = Progress::silent();
+    let mut renderer = Renderer::headless().expect("a Vulkan driver, or PETROGLYPH_GPU_TESTS=skip");
+    let base = Scene { size_px: [150, 110], samples: 2, ..Scene::default() };
+    let whole = VoxelBox::of_size(geometry().size());
+    let cut_outs = vec![whole.corner_cut(base.view(&geometry()).nearest_corner(&whole), [0.5, 0.5])];
+    let ground = Some(Ground::default());
+    for (version, (name, block)) in (1..).zip([("salt", salt()), ("fold", fold())]) {
+        let inputs = Inputs { version, ..block.inputs(&[]) };
+        let mut earlier = None;
+        for scene in [Scene { cut_outs: cut_outs.clone(), ..base.clone() }, Scene { ground, ..base.clone() }] {
+            let reference = render::reference::render(&scene, &inputs, &quiet).unwrap();
+            let picture = renderer.render(&scene, &inputs, &quiet).unwrap();
+            let found = compare(&reference, &picture).unwrap();
+            assert!(found.agrees(), "{name}, with ground: {}: {found:?}", scene.ground.is_some());
+            if let Some(earlier) = earlier.replace(picture) {
+                assert!(!compare(&reference, &earlier).unwrap().agrees(), "{name}: the ground shows");
+            }
+        }
+    }
+}
