@@ -11,6 +11,7 @@
 //!
 //! Where a face blends several mappings ([`ttf::FaceFrame`]) each counts with its weight.
 
+use crate::body::BodyPlane;
 use crate::camera::ViewRay;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
@@ -23,7 +24,6 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 use survey::Progress;
-use ttf::{FaceFrame, TtfTables};
 
 /// The largest aspect ratio that counts as calm.
 pub const CALM_ASPECT: f32 = 2.0;
@@ -123,7 +123,7 @@ pub fn measure(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Ve
             for x in 0..width {
                 let view_ray = resolved.view.ray(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5));
                 if let RayHit::Face(hit) = stopping_hit(&resolved, &Ray::from(view_ray), f32::MIN) {
-                    let place = FacePlace::new(&interpretation, &resolved.tables, resolved.voxel_m, &faces, &hit);
+                    let place = FacePlace::new(&resolved, &interpretation, &hit);
                     row[place.layer].add(&place.distortion(faces.pixel_m2(&view_ray, &hit)));
                 }
             }
@@ -138,8 +138,7 @@ pub fn measure(scene: &Scene, inputs: &Inputs, progress: &Progress) -> Result<Ve
 /// The colour that shows a place: white for no distortion, blue where the pattern is too dense, orange where it is too
 /// sparse; saturated at the limit of what is calm, and dark far beyond it. sRGB-encoded.
 pub(crate) fn colour_at(resolved: &ResolvedScene, interpretation: &ResolvedInterpretation, hit: &FaceHit) -> Vec3 {
-    let faces = FaceMetric::of(resolved);
-    let place = FacePlace::new(interpretation, &resolved.tables, resolved.voxel_m, &faces, hit);
+    let place = FacePlace::new(resolved, interpretation, hit);
     place.mappings.iter().map(|(weight, stretch)| tone(*stretch) * *weight).sum()
 }
 
@@ -170,27 +169,34 @@ pub fn tone(stretch: Stretch) -> Vec3 {
     SCALE[cell].lerp(SCALE[cell + 1], at - cell as f32)
 }
 
-/// The metric of displayed space on faces of constant x, y and z.
+/// The metric of displayed space.
 struct FaceMetric {
     metres: DMat3,
-    /// Per axis: the inverse of the matrix whose columns are the steps of one voxel along the other two axes, Cartesian
-    /// on the face.
-    voxels: [[[f32; 2]; 2]; 3],
+}
+
+/// Two directions that span a plane, voxels, and the inverse of the matrix whose columns they are, Cartesian on the plane.
+struct InFace {
+    steps: [Vec3; 2],
+    inverse: [[f32; 2]; 2],
 }
 
 impl FaceMetric {
     fn of(resolved: &ResolvedScene) -> Self {
         let stretch = DMat3::from_diagonal(DVec3::new(1.0, 1.0, resolved.scene.exaggeration));
-        let metres = stretch * resolved.metric;
-        let voxels = [0, 1, 2].map(|axis| {
-            let [p, q] = in_face(axis).map(|n| metres.col(n));
-            let (length, along) = (p.length(), p.dot(q) / p.length());
-            let across = (q.length_squared() - along * along).max(0.0).sqrt();
-            // The inverse of [[length, along], [0, across]].
-            let inverse = [[1.0 / length, -along / (length * across)], [0.0, 1.0 / across]];
-            inverse.map(|row| row.map(|value| value as f32))
-        });
-        Self { metres, voxels }
+        Self { metres: stretch * resolved.metric }
+    }
+
+    fn on(&self, plane: &BodyPlane) -> InFace {
+        let steps = match plane.axis {
+            Some(axis) => [[1, 2], [0, 2], [0, 1]][axis].map(|n: usize| DVec3::AXES[n]),
+            None => plane.normal.as_dvec3().any_orthonormal_pair().into(),
+        };
+        let [p, q] = steps.map(|step| self.metres * step);
+        let (length, along) = (p.length(), p.dot(q) / p.length());
+        let across = (q.length_squared() - along * along).max(0.0).sqrt();
+        // The inverse of [[length, along], [0, across]].
+        let inverse = [[1.0 / length, -along / (length * across)], [0.0, 1.0 / across]];
+        InFace { steps: steps.map(|step| step.as_vec3()), inverse: inverse.map(|row| row.map(|value| value as f32)) }
     }
 
     /// Area of a pixel on the face, m².
@@ -200,11 +206,6 @@ impl FaceMetric {
     }
 }
 
-/// The two axes in a face of constant `axis`.
-fn in_face(axis: usize) -> [usize; 2] {
-    [[1, 2], [0, 2], [0, 1]][axis]
-}
-
 /// A place on a face: its layer, and the weight and stretch of each mapping.
 struct FacePlace {
     layer: usize,
@@ -212,27 +213,21 @@ struct FacePlace {
 }
 
 impl FacePlace {
-    fn new(
-        interpretation: &ResolvedInterpretation,
-        tables: &TtfTables,
-        voxel_m: Vec3,
-        faces: &FaceMetric,
-        hit: &FaceHit,
-    ) -> Self {
+    fn new(resolved: &ResolvedScene, interpretation: &ResolvedInterpretation, hit: &FaceHit) -> Self {
+        let tables = &resolved.tables;
         let (flat, jacobian) = interpretation.flat_at(hit.point, None);
         let layer = usize::from(flat.region.layer);
-        let mut normal = [0.0; 3];
-        normal[hit.axis] = 1.0;
-        let frame = FaceFrame::new(normal);
-        let weights = frame.weights((Vec3::from_array(jacobian[2]) / voxel_m).to_array()).to_array();
+        let frame = resolved.frame(&hit.plane);
+        let weights = frame.weights((Vec3::from_array(jacobian[2]) / resolved.voxel_m).to_array()).to_array();
         let (horizontal_m, vertical_m) = (tables.extent_i_m, tables.thicknesses_m.get(layer).copied().unwrap_or(1.0));
-        let inverse = faces.voxels[hit.axis];
+        let InFace { steps, inverse } = FaceMetric::of(resolved).on(&hit.plane);
         let mut number = 0;
         let mappings = frame.mappings(tables.globals.aspect_j).map(|mapping| {
             let is_map = number == 2;
             number += 1;
-            // Derivatives of u and v along the two axes of the face, per voxel.
-            let [along_p, along_q] = in_face(hit.axis).map(|n| mapping.apply([0, 1, 2].map(|row| jacobian[row][n])));
+            // Derivatives of u and v along the two directions in the face, per voxel.
+            let along = |step: Vec3| mapping.apply(jacobian.map(|row| Vec3::from_array(row).dot(step)));
+            let [along_p, along_q] = steps.map(along);
             let row = |n: usize, nominal_m: f32| {
                 let (p, q) = (along_p[n] * nominal_m, along_q[n] * nominal_m);
                 [p * inverse[0][0], p * inverse[0][1] + q * inverse[1][1]]

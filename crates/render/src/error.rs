@@ -76,6 +76,14 @@ pub enum SceneError {
         /// The largest number allowed.
         limit: usize,
     },
+    /// A cut-out that is no box and cannot be drawn.
+    #[error("cut-out {index} of those that are no boxes cannot be drawn: {reason}")]
+    CutShape {
+        /// Position in the list, from 1.
+        index: usize,
+        /// Why, and what to change.
+        reason: String,
+    },
     /// More cut-outs than a scene may have.
     #[error("{found} cut-outs are more than the {limit} that a scene can have; merge some")]
     TooManyCutOuts {

@@ -21,8 +21,10 @@
 //!   Pacific Visualization 2010).
 
 pub mod accuracy;
+pub mod body;
 pub mod camera;
 pub mod compare;
+pub mod cut_shape;
 pub mod distortion;
 pub mod error;
 pub mod faces;
@@ -44,6 +46,7 @@ pub mod voxel_box;
 pub mod wells;
 
 pub use camera::{Camera, Projection, View};
+pub use cut_shape::{CutShape, Side};
 pub use error::{RenderError, SceneError};
 pub use faces::Renderer;
 pub use inputs::{CandidateVolume, Inputs, NamedVolume};

@@ -1,5 +1,6 @@
 //! A scene and its inputs, checked and with all names resolved: the starting point of both renderers.
 
+use crate::body::BodyPlane;
 use crate::camera::View;
 use crate::error::RenderError;
 use crate::ground::Relief;
@@ -13,11 +14,11 @@ use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
 use crate::wells::Tubes;
-use glam::{DMat3, DVec3, Vec3};
+use glam::{DMat3, DVec3, Vec2, Vec3};
 use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
-use ttf::{RawColour, TtfTables};
+use ttf::{FaceFrame, RawColour, TtfTables};
 
 /// Largest number of volumes in a picture.
 pub const MAX_VOLUMES: usize = 6;
@@ -92,7 +93,7 @@ impl<'a> ResolvedScene<'a> {
             tables.globals.blend >= 1.0 && tables.globals.raw_volume != NONE && tables.globals.no_data[3] >= 1.0;
         let metric = inputs.geometry.metric_from_voxel();
         let field = MediaField::new(&scene.media, inputs, &tables, &view, relief.is_some(), kept)?;
-        let solid = Solid::new(&roaming_box, &scene.cuts_in(inputs.geometry));
+        let solid = scene.solid(inputs.geometry);
         let longest_m = (0..3).map(|axis| metric.col(axis).length() * roaming_box.extent()[axis]).fold(0.0, f64::max);
         let background = if scene.has_back_edges() { [0.0; 4] } else { scene.background.rgba() };
         Ok(Self {
@@ -113,6 +114,29 @@ impl<'a> ResolvedScene<'a> {
             metric,
             voxel_m: DVec3::new(metric.x_axis.length(), metric.y_axis.length(), metric.z_axis.length()).as_vec3(),
         })
+    }
+}
+
+impl ResolvedScene<'_> {
+    /// How patterns lie on a plane of the block.
+    pub fn frame(&self, plane: &BodyPlane) -> FaceFrame {
+        let normal = (plane.normal / self.voxel_m).to_array();
+        let Some(wall) = plane.wall else {
+            // Exactly an axis where the plane is one of an axis.
+            let exact = plane.axis.map_or(normal, |axis| Vec3::AXES[axis].to_array());
+            return FaceFrame::new(exact);
+        };
+        let along = Vec2::from(wall.along) * self.voxel_m.truncate();
+        FaceFrame::on_wall(normal, along.normalize().to_array(), wall.shift_m / self.tables.extent_i_m)
+    }
+
+    /// The factor on colours of a plane of the block: of its direction between those of constant x and y.
+    pub fn tone(&self, plane: &BodyPlane) -> f32 {
+        if let Some(axis) = plane.axis {
+            return self.tones[axis];
+        }
+        let normal = (plane.normal / self.voxel_m).normalize();
+        1.0 - (1.0 - self.tones[0]) * normal.x * normal.x - (1.0 - self.tones[1]) * normal.y * normal.y
     }
 }
 

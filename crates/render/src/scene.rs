@@ -5,10 +5,12 @@
 //! inline index, y = crossline index, z = sample index downwards), line widths and image sizes in pixels.
 
 use crate::camera::{Camera, View};
+use crate::cut_shape::{CutShape, MAX_BODIES, MAX_PLANES};
 use crate::error::SceneError;
 use crate::leaves::FaceData;
 use crate::media::{Faces, Media};
 use crate::outline::Outlines;
+use crate::visible::Solid;
 use crate::voxel_box::VoxelBox;
 use crate::wells::WellStyle;
 use serde::{Deserialize, Serialize};
@@ -65,6 +67,8 @@ pub struct Scene {
     pub outlines: Outlines,
     /// Boxes cut out of the roaming box.
     pub cut_outs: Vec<VoxelBox>,
+    /// Cut-outs of other shapes: fences, outlines, oblique planes.
+    pub cut_shapes: Vec<CutShape>,
     /// What faces show. Default: the rock.
     pub face_data: FaceData,
     /// Level of the surface trees, counted up from the leaves, at which leaves are grouped for colouring. The
@@ -95,6 +99,7 @@ impl Default for Scene {
             raw: None,
             outlines: Outlines::default(),
             cut_outs: Vec::new(),
+            cut_shapes: Vec::new(),
             face_data: FaceData::Rock,
             tree_level: 0,
             wells: WellStyle::default(),
@@ -176,10 +181,22 @@ impl Scene {
         self.media.faces == Faces::None && self.outlines.edges.width_px > 0.0
     }
 
-    /// The cut-outs, clipped to the roaming box.
-    pub fn cuts_in(&self, geometry: &SurveyGeometry) -> Vec<VoxelBox> {
+    /// Whether anything is cut out.
+    pub fn has_cut_outs(&self) -> bool {
+        !self.cut_outs.is_empty() || !self.cut_shapes.is_empty()
+    }
+
+    /// The roaming box less what is cut out. A shape that cannot be drawn ([`Scene::validate`]) is left out.
+    pub fn solid(&self, geometry: &SurveyGeometry) -> Solid {
         let roaming_box = self.box_in(geometry);
-        self.cut_outs.iter().filter_map(|cut| cut.intersection(&roaming_box)).collect()
+        let boxes: Vec<VoxelBox> = self.cut_outs.iter().filter_map(|cut| cut.intersection(&roaming_box)).collect();
+        let metric = geometry.metric_from_voxel();
+        let voxel_m = [metric.x_axis.length(), metric.y_axis.length()];
+        let shapes = self.cut_shapes.iter().enumerate();
+        let shapes = shapes.flat_map(|(n, shape)| shape.bodies(&roaming_box, voxel_m, n).unwrap_or_default());
+        let mut solid = Solid::of_boxes(&roaming_box, &boxes);
+        solid.cut_outs.extend(shapes);
+        solid
     }
 
     /// Checks that the scene can be drawn.
@@ -239,6 +256,21 @@ impl Scene {
                     box_max: max,
                 });
             }
+        }
+        for (n, shape) in self.cut_shapes.iter().enumerate() {
+            shape.validate(n + 1, &roaming_box)?;
+        }
+        let bodies = self.solid(geometry).cut_outs;
+        let planes = bodies.iter().map(|body| body.planes.len()).sum::<usize>();
+        if bodies.len() > MAX_BODIES || planes > MAX_PLANES {
+            return Err(SceneError::CutShape {
+                index: self.cut_shapes.len(),
+                reason: format!(
+                    "all cut-outs together have {} parts of {planes} planes, more than the {MAX_BODIES} of {MAX_PLANES} \
+                     that fit; use fewer points or smaller curves",
+                    bodies.len()
+                ),
+            });
         }
         Ok(())
     }

@@ -18,7 +18,7 @@ use crate::visible::{FaceHit, Ray, TOUCH};
 use crate::wells::WellHit;
 use glam::{Vec3, Vec4};
 use model::Region;
-use ttf::{FaceFrame, FlatFootprint, LayerPoint, ShadePoint, linear_from_srgb, srgb_from_linear};
+use ttf::{FlatFootprint, LayerPoint, ShadePoint, linear_from_srgb, srgb_from_linear};
 
 /// Straight RGBA of rays: of what stops each, and of what lies behind a ground that is not opaque. Fastest
 /// for rays that are neighbours in the picture.
@@ -180,7 +180,7 @@ pub(crate) fn first_hit(resolved: &ResolvedScene, ray: &Ray, start: f32) -> RayH
     RayHit::Background
 }
 
-/// The colour of a point of a face of constant x, y or z.
+/// The colour of a point of a face.
 fn face_colour(resolved: &ResolvedScene, view_ray: &ViewRay, hit: &FaceHit) -> Vec3 {
     if resolved.scene.face_data == FaceData::Distortion
         && let Some(interpretation) = resolved.interpretation
@@ -188,13 +188,12 @@ fn face_colour(resolved: &ResolvedScene, view_ray: &ViewRay, hit: &FaceHit) -> V
         return distortion::colour_at(resolved, &interpretation, hit);
     }
     let scalars = scalar_values(resolved, hit.point);
-    let mut normal = [0.0; 3];
-    normal[hit.axis] = 1.0;
+    let face = resolved.frame(&hit.plane);
     let point = match resolved.interpretation.filter(|_| resolved.illustrated) {
         None => ShadePoint {
             flat: LayerPoint { i: f32::NAN, j: f32::NAN, k: f32::NAN, layer: 0 },
             footprint: FlatFootprint::default(),
-            face: FaceFrame::new(normal),
+            face,
             grad_k: [0.0; 3],
         },
         Some(interpretation) => {
@@ -206,13 +205,13 @@ fn face_colour(resolved: &ResolvedScene, view_ray: &ViewRay, hit: &FaceHit) -> V
             ShadePoint {
                 flat: LayerPoint { i: flat.i, j: flat.j, k: flat.k, layer: u32::from(flat.region.layer) },
                 footprint: FlatFootprint { dx: step(0), dy: step(1) },
-                face: FaceFrame::new(normal),
+                face,
                 grad_k: (Vec3::from_array(jacobian[2]) / resolved.voxel_m).to_array(),
             }
         }
     };
     let rock = Vec4::from_array(ttf::shade(&resolved.tables, &point, &scalars)).truncate();
-    with_candidates(resolved, hit.point, rock) * resolved.tones[hit.axis]
+    with_candidates(resolved, hit.point, rock) * resolved.tone(&hit.plane)
 }
 
 /// The colour of a face, with horizon candidates if the scene shows them.
@@ -251,7 +250,8 @@ fn ground_colour(resolved: &ResolvedScene, hit: &GroundHit) -> Vec3 {
 /// The change of the hit on its plane for a step of one pixel to the right (n = 0) or down (n = 1), voxels.
 pub(crate) fn pixel_shift(ray: &ViewRay, hit: &FaceHit, n: usize) -> Vec3 {
     let drift = ray.origin_step[n] + ray.direction_step[n] * f64::from(hit.t);
-    let slide = -drift[hit.axis] / ray.direction[hit.axis];
+    let normal = hit.plane.normal.as_dvec3();
+    let slide = -normal.dot(drift) / normal.dot(ray.direction);
     (drift + ray.direction * slide).as_vec3()
 }
 

@@ -1,7 +1,7 @@
 //! Finds the first point of the solid block on a ray (P-illus 5.1): inside the roaming box and outside every
 //! cut-out.
 //!
-//! A ray crosses each box over an interval of t. The solid part is the interval of the roaming box minus
+//! A ray crosses each body over an interval of t. The solid part is the interval of the roaming box minus
 //! those of the cut-outs: from a start t, while the point is inside a cut-out, t moves to the exit of that
 //! cut-out. Only the ends of intervals are compared, so any number of overlapping or touching cut-outs works,
 //! and the plane of the hit is known exactly.
@@ -9,6 +9,7 @@
 //! Voxel space, f32. Rays have unit direction, so t is in voxels. The shader `visible.wgsl` computes the
 //! same.
 
+use crate::body::{Body, BodyPlane};
 use crate::camera::ViewRay;
 use crate::voxel_box::VoxelBox;
 use glam::Vec3;
@@ -38,15 +39,15 @@ impl From<ViewRay> for Ray {
     }
 }
 
-/// A plane of constant x, y or z that a ray meets.
+/// A plane that a ray meets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaceHit {
     /// Distance along the ray, voxels.
     pub t: f32,
-    /// The hit point, with the coordinate of the plane exact.
+    /// The hit point; on a plane of constant x, y or z that coordinate is exact.
     pub point: Vec3,
-    /// The axis of the plane's normal: 0 = x, 1 = y, 2 = z.
-    pub axis: usize,
+    /// The plane.
+    pub plane: BodyPlane,
 }
 
 /// A stretch of solid rock along a ray.
@@ -62,9 +63,10 @@ pub struct SolidSpan {
 ///
 /// ```
 /// use glam::Vec3;
+/// use render::body::Body;
 /// use render::visible::{Ray, Solid};
-/// let cut_outs = vec![[Vec3::ZERO, Vec3::new(3.0, 10.0, 10.0)]];
-/// let solid = Solid { roaming_box: [Vec3::ZERO, Vec3::splat(10.0)], cut_outs };
+/// let cut_out = Body::of_box([Vec3::ZERO, Vec3::new(3.0, 10.0, 10.0)]);
+/// let solid = Solid::new([Vec3::ZERO, Vec3::splat(10.0)], vec![cut_out]);
 /// let ray = Ray { origin: Vec3::new(-5.0, 4.0, 6.0), direction: Vec3::X };
 /// let span = solid.next_span(&ray, f32::MIN).unwrap();
 /// assert_eq!((span.entry.t, span.entry.point, span.end), (8.0, Vec3::new(3.0, 4.0, 6.0), 15.0));
@@ -73,66 +75,41 @@ pub struct SolidSpan {
 pub struct Solid {
     /// Smallest and largest corner of the roaming box.
     pub roaming_box: [Vec3; 2],
-    /// Smallest and largest corners of the cut-outs.
-    pub cut_outs: Vec<[Vec3; 2]>,
-}
-
-/// The interval of t over which a ray is inside a box, and the axes of the planes at its ends.
-#[derive(Debug, Clone, Copy)]
-struct BoxCrossing {
-    enter: f32,
-    exit: f32,
-    enter_axis: usize,
-    exit_axis: usize,
-}
-
-/// Components of a direction smaller than this are replaced by it, so that 1/d stays finite.
-const PARALLEL: f32 = 1e-12;
-
-fn cross(ray: &Ray, [low, high]: [Vec3; 2]) -> BoxCrossing {
-    let mut crossing = BoxCrossing { enter: f32::MIN, exit: f32::MAX, enter_axis: 0, exit_axis: 0 };
-    for axis in 0..3 {
-        let d = ray.direction[axis];
-        let d = if d.abs() < PARALLEL { PARALLEL } else { d };
-        let a = (low[axis] - ray.origin[axis]) / d;
-        let b = (high[axis] - ray.origin[axis]) / d;
-        if a.min(b) > crossing.enter {
-            (crossing.enter, crossing.enter_axis) = (a.min(b), axis);
-        }
-        if a.max(b) < crossing.exit {
-            (crossing.exit, crossing.exit_axis) = (a.max(b), axis);
-        }
-    }
-    crossing
+    /// The roaming box as planes.
+    pub block: Body,
+    /// What is cut out. A cut-out may be several bodies.
+    pub cut_outs: Vec<Body>,
 }
 
 impl Solid {
-    /// The block of a scene; cut-outs must already be clipped to the box.
-    pub fn new(roaming_box: &VoxelBox, cut_outs: &[VoxelBox]) -> Self {
+    /// The block with these bodies cut out.
+    pub fn new(roaming_box: [Vec3; 2], cut_outs: Vec<Body>) -> Self {
+        Self { roaming_box, block: Body::of_box(roaming_box), cut_outs }
+    }
+
+    /// A box with boxes cut out, clipped to it.
+    pub fn of_boxes(roaming_box: &VoxelBox, cut_outs: &[VoxelBox]) -> Self {
         let corners = |b: &VoxelBox| [b.low().as_vec3(), b.high().as_vec3()];
-        Self { roaming_box: corners(roaming_box), cut_outs: cut_outs.iter().map(corners).collect() }
+        Self::new(corners(roaming_box), cut_outs.iter().map(|cut| Body::of_box(corners(cut))).collect())
     }
 
     /// Whether a point is in the box and in no cut-out. The boundary of the box counts as inside, that of a
     /// cut-out as outside it.
     pub fn contains(&self, p: Vec3) -> bool {
         let [low, high] = self.roaming_box;
-        p.cmpge(low).all()
-            && p.cmple(high).all()
-            && !self.cut_outs.iter().any(|[low, high]| p.cmpgt(*low).all() && p.cmplt(*high).all())
+        p.cmpge(low).all() && p.cmple(high).all() && !self.cut_outs.iter().any(|cut| cut.holds(p))
     }
 
     /// The interval of a ray in the roaming box, regardless of cut-outs.
     pub fn box_interval(&self, ray: &Ray) -> Option<[f32; 2]> {
-        let outer = cross(ray, self.roaming_box);
+        let outer = self.block.cross(ray);
         (outer.exit > outer.enter).then_some([outer.enter, outer.exit])
     }
 
     /// The first stretch of rock that begins at or after distance `from`.
     pub fn next_span(&self, ray: &Ray, from: f32) -> Option<SolidSpan> {
-        let outer = cross(ray, self.roaming_box);
-        let mut plane = self.roaming_box;
-        let (mut t, mut axis, mut entering) = (outer.enter, outer.enter_axis, true);
+        let outer = self.block.cross(ray);
+        let (mut t, mut plane) = (outer.enter, outer.enter_plane);
         if from > t {
             t = from;
         }
@@ -140,9 +117,9 @@ impl Solid {
         for _ in 0..=self.cut_outs.len() {
             let mut moved = false;
             for cut in &self.cut_outs {
-                let crossing = cross(ray, *cut);
+                let crossing = cut.cross(ray);
                 if crossing.enter <= t + TOUCH && t + TOUCH < crossing.exit {
-                    (t, axis, entering, plane) = (crossing.exit, crossing.exit_axis, false, *cut);
+                    (t, plane) = (crossing.exit, crossing.exit_plane.or(plane));
                     moved = true;
                 }
             }
@@ -155,26 +132,24 @@ impl Solid {
         }
         let mut end = outer.exit;
         for cut in &self.cut_outs {
-            let crossing = cross(ray, *cut);
+            let crossing = cut.cross(ray);
             if crossing.enter > t + TOUCH && crossing.enter < crossing.exit {
                 end = end.min(crossing.enter);
             }
         }
-        let mut point = ray.at(t);
-        if t != from {
-            let forwards = ray.direction[axis] >= 0.0;
-            point[axis] = if forwards == entering { plane[0][axis] } else { plane[1][axis] };
-        }
-        Some(SolidSpan { entry: FaceHit { t, point, axis }, end })
+        let plane = *plane?;
+        let point = if t == from { ray.at(t) } else { plane.settle(ray.at(t)) };
+        Some(SolidSpan { entry: FaceHit { t, point, plane }, end })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::CutShape;
 
     fn block() -> Solid {
-        Solid { roaming_box: [Vec3::ZERO, Vec3::splat(10.0)], cut_outs: Vec::new() }
+        Solid::new([Vec3::ZERO, Vec3::splat(10.0)], Vec::new())
     }
 
     fn along_x(y: f32, z: f32) -> Ray {
@@ -185,8 +160,8 @@ mod tests {
     fn the_front_face_without_cut_outs() {
         let span = block().next_span(&along_x(4.0, 6.0), f32::MIN).unwrap();
         assert_eq!(
-            (span.entry.t, span.entry.point, span.entry.axis, span.end),
-            (5.0, Vec3::new(0.0, 4.0, 6.0), 0, 15.0)
+            (span.entry.t, span.entry.point, span.entry.plane.axis, span.end),
+            (5.0, Vec3::new(0.0, 4.0, 6.0), Some(0), 15.0)
         );
         assert_eq!(block().next_span(&along_x(10.5, 6.0), f32::MIN), None);
         assert_eq!(block().next_span(&along_x(4.0, 6.0), 15.0), None);
@@ -195,9 +170,9 @@ mod tests {
     #[test]
     fn a_cut_out_shows_its_back_face() {
         let mut solid = block();
-        solid.cut_outs.push([Vec3::ZERO, Vec3::new(3.0, 10.0, 10.0)]);
+        solid.cut_outs.push(Body::of_box([Vec3::ZERO, Vec3::new(3.0, 10.0, 10.0)]));
         let span = solid.next_span(&along_x(4.0, 6.0), f32::MIN).unwrap();
-        assert_eq!((span.entry.point, span.entry.axis), (Vec3::new(3.0, 4.0, 6.0), 0));
+        assert_eq!((span.entry.point, span.entry.plane.axis), (Vec3::new(3.0, 4.0, 6.0), Some(0)));
         let backwards = Ray { origin: Vec3::new(15.0, 4.0, 6.0), direction: -Vec3::X };
         let span = solid.next_span(&backwards, f32::MIN).unwrap();
         assert_eq!((span.entry.t, span.end), (5.0, 12.0));
@@ -210,7 +185,9 @@ mod tests {
             let cuts = [[0.0, 2.0], [2.0, 4.0], [3.5, 6.0]];
             let mut solid = block();
             solid.cut_outs =
-                order.map(|n| [Vec3::new(cuts[n][0], 0.0, 0.0), Vec3::new(cuts[n][1], 10.0, 10.0)]).to_vec();
+                order
+                    .map(|n| Body::of_box([Vec3::new(cuts[n][0], 0.0, 0.0), Vec3::new(cuts[n][1], 10.0, 10.0)]))
+                    .to_vec();
             assert_eq!(solid.next_span(&along_x(4.0, 6.0), f32::MIN).unwrap().entry.point.x, 6.0);
         }
     }
@@ -220,10 +197,17 @@ mod tests {
     fn it_agrees_with_walking() {
         let mut solid = block();
         solid.cut_outs = vec![
-            [Vec3::new(5.0, 0.0, 0.0), Vec3::new(10.0, 5.0, 10.0)],
-            [Vec3::new(2.0, 4.0, 0.0), Vec3::new(7.0, 8.0, 5.0)],
-            [Vec3::new(3.0, 3.0, 3.0), Vec3::new(6.0, 6.0, 9.0)],
+            Body::of_box([Vec3::new(5.0, 0.0, 0.0), Vec3::new(10.0, 5.0, 10.0)]),
+            Body::of_box([Vec3::new(2.0, 4.0, 0.0), Vec3::new(7.0, 8.0, 5.0)]),
+            Body::of_box([Vec3::new(3.0, 3.0, 3.0), Vec3::new(6.0, 6.0, 9.0)]),
         ];
+        let block = VoxelBox::of_size([11; 3]);
+        let bay = vec![[1.0, 8.0], [6.0, 9.5], [9.0, 5.5], [9.5, 9.8], [1.0, 9.9]];
+        let shapes = [
+            CutShape::Plane { through: [8.0, 2.0, 8.0], normal: [1.0, 0.3, 0.8] },
+            CutShape::Outline { outline: bay, smooth: false, depth: Some([2.0, 7.0]) },
+        ];
+        solid.cut_outs.extend(shapes.iter().flat_map(|shape| shape.bodies(&block, [1.0; 2], 0).unwrap()));
         for n in 0..500 {
             let turn = n as f32 * 0.61;
             let direction = Vec3::new(turn.cos(), turn.sin(), 0.4 * (turn * 1.7).sin() + 0.05).normalize();

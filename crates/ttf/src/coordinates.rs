@@ -21,6 +21,9 @@
 //! sin² 25°, |s|²)`, `r = (s·t)²/((s·t)² + (s·t′)²)`, `along = (1 − map)·S(0.35, 0.65, r)`, `across = 1 − map
 //! − along`; t′ = t turned by 90°.
 //!
+//! On a wall that turns, `along` continues from one plane to the next: u is shifted so that it is the same on both sides
+//! of their edge wherever (i, j) is the place on the map.
+//!
 //! Spaces: normals and gradients are in metric space with the axes of voxel space (x, y in metres, z in
 //! metres downwards); their signs do not matter. All arithmetic is f32, so that the WGSL twin computes the
 //! same.
@@ -43,6 +46,8 @@ pub struct FaceFrame {
     pub normal: [f32; 3],
     /// Unit horizontal direction t (x, y) in the face.
     pub along: [f32; 2],
+    /// Added to u of the mapping along t, before its frequency.
+    pub shift: f32,
 }
 
 /// The weights of the three mappings; they are in [0, 1] and add up to 1.
@@ -63,6 +68,8 @@ pub struct Mapping {
     pub u: [f32; 3],
     /// Coefficients of v; times the vertical frequency, or the horizontal one in the map mapping.
     pub v: [f32; 3],
+    /// Added to u of a place, before the frequency.
+    pub shift: f32,
 }
 
 impl FaceFrame {
@@ -80,14 +87,19 @@ impl FaceFrame {
         let normal = unit(normal);
         let horizontal_sq = normal[0] * normal[0] + normal[1] * normal[1];
         if horizontal_sq <= HORIZONTAL_NORMAL_SQ {
-            return Self { normal, along: [1.0, 0.0] };
+            return Self { normal, along: [1.0, 0.0], shift: 0.0 };
         }
         let scale = 1.0 / horizontal_sq.sqrt();
         let [x, y] = [-normal[1] * scale, normal[0] * scale];
         let larger = if x.abs() >= y.abs() { x } else { y };
         let sign = if larger < 0.0 { -1.0 } else { 1.0 };
         // Adding 0 turns -0 into 0.
-        Self { normal, along: [sign * x + 0.0, sign * y + 0.0] }
+        Self { normal, along: [sign * x + 0.0, sign * y + 0.0], shift: 0.0 }
+    }
+
+    /// The frame of a part of a wall that turns: t and the shift of u are given.
+    pub fn on_wall(normal: [f32; 3], along: [f32; 2], shift: f32) -> Self {
+        Self { normal: unit(normal), along, shift }
     }
 
     /// The weights at a point where k rises along `grad_k` (any length). A gradient that is zero or NaN gives
@@ -123,9 +135,9 @@ impl FaceFrame {
         let [x, y] = self.along;
         let k = [0.0, 0.0, 1.0];
         [
-            Mapping { u: [x, y * aspect_j, 0.0], v: k },
-            Mapping { u: [-y, x * aspect_j, 0.0], v: k },
-            Mapping { u: [1.0, 0.0, 0.0], v: [0.0, aspect_j, 0.0] },
+            Mapping { u: [x, y * aspect_j, 0.0], v: k, shift: self.shift },
+            Mapping { u: [-y, x * aspect_j, 0.0], v: k, shift: 0.0 },
+            Mapping { u: [1.0, 0.0, 0.0], v: [0.0, aspect_j, 0.0], shift: 0.0 },
         ]
     }
 }
@@ -138,7 +150,13 @@ impl MappingWeights {
 }
 
 impl Mapping {
-    /// Texture coordinates (u, v) of a flat point or of a flat displacement, before the frequencies.
+    /// Texture coordinates (u, v) of a flat point, before the frequencies.
+    pub fn place(&self, flat: [f32; 3]) -> [f32; 2] {
+        let [u, v] = self.apply(flat);
+        [u + self.shift, v]
+    }
+
+    /// Change of the texture coordinates (u, v) for a flat displacement, before the frequencies.
     pub fn apply(&self, flat: [f32; 3]) -> [f32; 2] {
         let dot = |a: [f32; 3]| a[0] * flat[0] + a[1] * flat[1] + a[2] * flat[2];
         [dot(self.u), dot(self.v)]

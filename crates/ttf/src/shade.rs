@@ -165,10 +165,11 @@ struct Sampler<'a> {
 impl<'a> Sampler<'a> {
     fn new(tables: &'a TtfTables, point: &ShadePoint) -> Self {
         let flat = [point.flat.i, point.flat.j, point.flat.k];
+        let FlatFootprint { dx, dy } = point.footprint;
         let coordinates = point
             .face
             .mappings(tables.globals.aspect_j)
-            .map(|mapping| [flat, point.footprint.dx, point.footprint.dy].map(|vector| mapping.apply(vector)));
+            .map(|mapping| [mapping.place(flat), mapping.apply(dx), mapping.apply(dy)]);
         Self { tables, weights: point.face.weights(point.grad_k).to_array(), coordinates }
     }
 

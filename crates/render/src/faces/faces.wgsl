@@ -4,6 +4,9 @@
 // One invocation draws one pixel of a tile. Its samples are averaged as sRGB-encoded values weighted by
 // alpha. Voxel space.
 
+const BODIES: u32 = 97u;
+const PLANES: u32 = 406u;
+
 struct FaceParams {
     // The ray through `reference_px`, and its change per pixel to the right (dx) and down (dy); w unused.
     origin: vec4<f32>,
@@ -17,8 +20,6 @@ struct FaceParams {
     background: vec4<f32>,
     // Metres between voxels along x, y, z; w unused.
     voxel_m: vec4<f32>,
-    // Factors on the colour of faces of constant x, y, z; w unused.
-    tones: vec4<f32>,
     // Direction to the light in display space; w: strength of the hill shading.
     light: vec4<f32>,
     // Columns of the map from voxel to display covectors; w unused.
@@ -40,8 +41,9 @@ struct FaceParams {
     padding_1: u32,
     // Pixels of the tile: left, top, width, height.
     tile: vec4<u32>,
-    // Smallest and largest corner of each cut-out.
-    cut_outs: array<vec4<f32>, 32>,
+    // First plane and number of planes of the block (0) and of what is cut out; zw unused.
+    bodies: array<vec4<u32>, BODIES>,
+    planes: array<PlaneInfo, PLANES>,
 }
 
 @group(0) @binding(0) var<uniform> params: FaceParams;
@@ -83,11 +85,12 @@ fn pixel_ray(pixel: vec2<f32>) -> PixelRay {
 }
 
 // The change of a hit on its plane for a step of the ray.
-fn slide_on_plane(drift: vec3<f32>, direction: vec3<f32>, axis: u32) -> vec3<f32> {
-    return drift - direction * (drift[axis] / direction[axis]);
+fn slide_on_plane(drift: vec3<f32>, direction: vec3<f32>, plane: u32) -> vec3<f32> {
+    let normal = params.planes[plane].normal.xyz;
+    return drift - direction * (dot(normal, drift) / dot(normal, direction));
 }
 
-fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
+fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, plane: u32) -> vec3<f32> {
     var point: ShadePoint;
     if lookup != LOOKUP_RAW {
         var flat: FlatSample;
@@ -100,15 +103,15 @@ fn face_colour(ray: PixelRay, t: f32, p: vec3<f32>, axis: u32) -> vec3<f32> {
             point.layer = packed.layer;
             flat = packed.flat;
         }
-        let dx = slide_on_plane(ray.origin_dx + ray.direction_dx * t, ray.direction, axis);
-        let dy = slide_on_plane(ray.origin_dy + ray.direction_dy * t, ray.direction, axis);
+        let dx = slide_on_plane(ray.origin_dx + ray.direction_dx * t, ray.direction, plane);
+        let dy = slide_on_plane(ray.origin_dy + ray.direction_dy * t, ray.direction, plane);
         point.ijk = flat.ijk;
         point.dx = vec3(dot(flat.di, dx), dot(flat.dj, dx), dot(flat.dk, dx));
         point.dy = vec3(dot(flat.di, dy), dot(flat.dj, dy), dot(flat.dk, dy));
         point.grad_k = flat.dk / params.voxel_m.xyz;
         point.defined = 1u;
     }
-    return with_candidates(p, shade(point, axis, p)) * params.tones[axis];
+    return with_candidates(p, shade(point, plane, p)) * params.planes[plane].metric_normal.w;
 }
 
 // What stops a ray: the first rock at or after a distance, or the ground. With `faces_shown` =
@@ -127,7 +130,7 @@ fn stopping_hit(ray: PixelRay, after: f32) -> Stop {
     if faces_shown != FACES_ALL && faces_shown != FACES_CUT_OUTS {
         return stop;
     }
-    let outer = cross_box(ray.origin, ray.direction, params.box_low.xyz, params.box_high.xyz);
+    let outer = cross_body(ray.origin, ray.direction, 0u);
     var start = after;
     for (var round = 0u; round < params.cut_count + 2u; round += 1u) {
         stop.span = next_span(ray.origin, ray.direction, start);
@@ -166,7 +169,7 @@ fn seen(ray: PixelRay, after: f32, start: f32) -> Seen {
     var stop = HIGHEST;
     var is_ground = false;
     if hit.span.found {
-        behind = vec4(face_colour(ray, hit.span.t, hit.span.point, hit.span.axis), 1.0);
+        behind = vec4(face_colour(ray, hit.span.t, hit.span.point, hit.span.plane), 1.0);
         stop = hit.span.t;
     } else if with_ground != 0u && hit.ground.found {
         behind = vec4(ground_colour(hit.ground), params.ground_opacity);

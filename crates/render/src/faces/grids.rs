@@ -12,7 +12,8 @@
 use super::layout::GridInfo;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
-use crate::outline::solid::{FaceRect, face_rects};
+use crate::body::part_behind;
+use crate::outline::solid::{Face, faces};
 use crate::resolved::{ResolvedScene, shows_depths};
 use glam::DVec3;
 use model::StructuralModel;
@@ -27,11 +28,13 @@ pub(super) const PINCHED: f32 = 1e-3;
 const SPARE_LEVELS: f32 = 1.0;
 /// A plane that is this many levels outside a layer is not visible in it.
 const FAR_LEVELS: f32 = 3.0;
+/// A plane with less of its unit normal along z than this is a wall: it crosses many levels from column to column.
+const STEEP: f32 = 0.3;
 
 /// The parts of the grids that are visible: faces towards the camera, and the ground of a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct VisibleParts {
-    faces: Vec<FaceRect>,
+    faces: Vec<Face>,
     ground: Option<[DVec3; 2]>,
     /// Whether all of the inside of the block is needed.
     inside: bool,
@@ -40,7 +43,7 @@ pub struct VisibleParts {
 impl VisibleParts {
     /// The visible parts of a scene.
     pub fn of(resolved: &ResolvedScene) -> Self {
-        let mut faces = face_rects(&resolved.solid, &resolved.view);
+        let mut faces = faces(&resolved.solid, &resolved.view);
         faces.retain(|face| face.faces_camera);
         let ground = resolved.relief.as_ref().map(|_| resolved.solid.roaming_box.map(|corner| corner.as_dvec3()));
         Self { faces, ground, inside: shows_depths(resolved.scene) }
@@ -157,15 +160,24 @@ fn windows(model: &StructuralModel, grid: &RegionGrid, seen: &VisibleParts) -> V
         cell(low)..=cell(high) + 1
     };
     for face in &seen.faces {
-        let columns = |axis| around(face.low[axis], face.high[axis], axis);
-        if face.axis == 2 {
-            let levels = plane_levels(model, grid, |_, _| face.low.z as f32);
-            add_windows(&mut windows, grid, &levels, columns(0), columns(1));
-        } else {
-            for x in columns(0) {
-                for y in columns(1) {
-                    windows[x * ny + y].join(whole);
-                }
+        let [low, high] = face.bounds();
+        let (normal, offset) = (face.plane.normal, face.plane.offset);
+        if normal.z.abs() > STEEP {
+            let z = |x: f32, y: f32| (offset - normal.x * x - normal.y * y) / normal.z;
+            let columns = |axis| around(low[axis], high[axis], axis);
+            add_windows(&mut windows, grid, &plane_levels(model, grid, z), columns(0), columns(1));
+            continue;
+        }
+        // A wall crosses few of the columns around it.
+        for x in around(low.x, high.x, 0) {
+            let at = f64::from(grid.origin[0]) + x as f64;
+            let slab = part_behind(&part_behind(&face.outline, |p| p.x - at - 1.0), |p| at - 1.0 - p.x);
+            // Columns beyond the survey's grid stand for those at its border.
+            let seen = if slab.is_empty() { &face.outline } else { &slab };
+            let ys = seen.iter().map(|p| p.y);
+            let (from, to) = ys.fold((f64::MAX, f64::MIN), |(from, to), y| (from.min(y), to.max(y)));
+            for y in around(from, to, 1) {
+                windows[x * ny + y].join(whole);
             }
         }
     }

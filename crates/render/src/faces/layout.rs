@@ -3,9 +3,10 @@
 //! A test reads the WGSL with naga and compares every offset.
 
 use crate::resolved::ResolvedScene;
-use crate::scene::MAX_CUT_OUTS;
+use crate::cut_shape::{MAX_BODIES, MAX_PLANES};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
+use ttf::tables::NONE;
 
 /// Side of a workgroup, pixels or cells.
 pub const WORKGROUP: u32 = 8;
@@ -24,7 +25,6 @@ pub struct FaceParams {
     pub box_high: [f32; 4],
     pub background: [f32; 4],
     pub voxel_m: [f32; 4],
-    pub tones: [f32; 4],
     pub light: [f32; 4],
     pub display_normal_x: [f32; 4],
     pub display_normal_y: [f32; 4],
@@ -39,7 +39,24 @@ pub struct FaceParams {
     pub ground_opacity: f32,
     pub padding: [u32; 2],
     pub tile: [u32; 4],
-    pub cut_outs: [[f32; 4]; 2 * MAX_CUT_OUTS],
+    pub bodies: [[u32; 4]; BODIES],
+    pub planes: [PlaneInfo; PLANES],
+}
+
+/// Largest number of bodies: the roaming box, and what is cut out.
+pub const BODIES: usize = 1 + MAX_BODIES;
+/// Largest number of planes.
+pub const PLANES: usize = 6 + MAX_PLANES;
+
+/// A plane of the block or of what is cut out.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, Pod, Zeroable, Default)]
+pub struct PlaneInfo {
+    pub normal: [f32; 4],
+    pub metric_normal: [f32; 4],
+    pub along: [f32; 2],
+    pub shift: f32,
+    pub axis: u32,
 }
 
 /// A height field in the pool. A horizon that is none has a level field there as well, and this is its topmost part.
@@ -108,6 +125,28 @@ pub struct PackedInfo {
     pub padding: [u32; 2],
 }
 
+/// The bodies of the block, each as its first plane and their count, and their planes.
+fn bodies(resolved: &ResolvedScene) -> ([[u32; 4]; BODIES], [PlaneInfo; PLANES]) {
+    let (mut bodies, mut planes) = ([[0; 4]; BODIES], [PlaneInfo::default(); PLANES]);
+    let mut next = 0;
+    let all = std::iter::once(&resolved.solid.block).chain(&resolved.solid.cut_outs);
+    for (to, body) in bodies.iter_mut().zip(all) {
+        *to = [next as u32, body.planes.len() as u32, 0, 0];
+        for (to, plane) in planes[next..].iter_mut().zip(&body.planes) {
+            let frame = resolved.frame(plane);
+            *to = PlaneInfo {
+                normal: plane.normal.extend(plane.offset).to_array(),
+                metric_normal: Vec3::from_array(frame.normal).extend(resolved.tone(plane)).to_array(),
+                along: frame.along,
+                shift: frame.shift,
+                axis: plane.axis.map_or(NONE, |axis| axis as u32),
+            };
+        }
+        next += body.planes.len();
+    }
+    (bodies, planes)
+}
+
 /// The horizons and the coarse map of the ground, as 32-bit words for the shader.
 pub fn relief_map(resolved: &ResolvedScene) -> Vec<u32> {
     let Some(relief) = &resolved.relief else { return Vec::new() };
@@ -123,10 +162,7 @@ impl FaceParams {
         let ray = resolved.view.ray(reference);
         let four = |v: DVec3| v.as_vec3().extend(0.0).to_array();
         let plain = |v: Vec3| v.extend(0.0).to_array();
-        let mut cut_outs = [[0.0; 4]; 2 * MAX_CUT_OUTS];
-        for (to, corner) in cut_outs.iter_mut().zip(resolved.solid.cut_outs.iter().flatten()) {
-            *to = plain(*corner);
-        }
+        let (bodies, planes) = bodies(resolved);
         let mut params = Self {
             origin: four(ray.origin),
             origin_dx: four(ray.origin_step[0]),
@@ -138,7 +174,6 @@ impl FaceParams {
             box_high: plain(resolved.solid.roaming_box[1]),
             background: resolved.background,
             voxel_m: plain(resolved.voxel_m),
-            tones: Vec3::from_array(resolved.tones).extend(1.0).to_array(),
             light: [0.0; 4],
             display_normal_x: [0.0; 4],
             display_normal_y: [0.0; 4],
@@ -153,7 +188,8 @@ impl FaceParams {
             ground_opacity: 1.0,
             padding: [0; 2],
             tile: [0; 4],
-            cut_outs,
+            bodies,
+            planes,
         };
         if let Some(relief) = &resolved.relief {
             params.light = relief.light.extend(relief.hill_shade).to_array();

@@ -50,7 +50,7 @@ fn slice_adds(cell: vec2<u32>) -> Added {
     let direction = per_depth / norm;
     let near = media.cells_low.z + f32(slice.index) * media.cells_low.w;
     let far = near + media.cells_low.w;
-    let outer = cross_box(origin, direction, params.box_low.xyz, params.box_high.xyz);
+    let outer = cross_body(origin, direction, 0u);
     if outer.exit <= outer.enter {
         return added;
     }

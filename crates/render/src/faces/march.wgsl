@@ -84,7 +84,7 @@ fn through(
 fn gather(origin: vec3<f32>, direction: vec3<f32>, start: f32, stop: f32) -> Gathered {
     var gathered: Gathered;
     gathered.transmittance = 1.0;
-    let outer = cross_box(origin, direction, params.box_low.xyz, params.box_high.xyz);
+    let outer = cross_body(origin, direction, 0u);
     if outer.exit <= outer.enter {
         return gathered;
     }

@@ -1,5 +1,5 @@
 // The colour of a point on a cut face: the twin of `ttf::shade` (P-illus 4, figure 7) and of `ttf::FaceFrame`
-// for faces of constant x, y or z.
+// for the planes of the block.
 
 struct TtfGlobals {
     no_data: vec4<f32>,
@@ -89,8 +89,9 @@ struct ShadePoint {
 // The mappings of a face (along, across, map) with their weights.
 struct Mappings {
     weights: vec3<f32>,
-    // Horizontal direction t in the face.
+    // Horizontal direction t in the face, and what is added to u along it.
     along: vec2<f32>,
+    shift: f32,
 }
 
 fn unit_or_zero(v: vec3<f32>) -> vec3<f32> {
@@ -101,11 +102,12 @@ fn unit_or_zero(v: vec3<f32>) -> vec3<f32> {
     return vec3(0.0);
 }
 
-fn face_mappings(axis: u32, grad_k: vec3<f32>) -> Mappings {
+fn face_mappings(plane: u32, grad_k: vec3<f32>) -> Mappings {
+    let info = params.planes[plane];
     var mappings: Mappings;
-    mappings.along = select(vec2(1.0, 0.0), vec2(0.0, 1.0), axis == 0u);
-    var n = vec3(0.0);
-    n[axis] = 1.0;
+    mappings.along = info.along;
+    mappings.shift = info.shift;
+    let n = info.metric_normal.xyz;
     let g = unit_or_zero(grad_k);
     if all(g == vec3(0.0)) {
         mappings.weights = vec3(1.0, 0.0, 0.0);
@@ -125,7 +127,7 @@ fn face_mappings(axis: u32, grad_k: vec3<f32>) -> Mappings {
     return mappings;
 }
 
-// Texture coordinates of a flat vector under mapping 0 (along), 1 (across) or 2 (map), before frequencies.
+// Texture coordinates of a flat vector, without the shift, under mapping 0 (along), 1 (across) or 2 (map), before frequencies.
 fn map_flat(mappings: Mappings, mapping: u32, flat: vec3<f32>) -> vec2<f32> {
     let i = flat.x;
     let j = flat.y * ttf.aspect_j;
@@ -161,7 +163,7 @@ fn sample_scaled(texture: u32, scale: vec2<f32>, point: ShadePoint, mappings: Ma
         let factor = select(scale, scale.xx, mapping == 2u);
         sum += weight * sample_texture(
             texture,
-            map_flat(mappings, mapping, point.ijk) * factor,
+            (map_flat(mappings, mapping, point.ijk) + vec2(select(0.0, mappings.shift, mapping == 0u), 0.0)) * factor,
             map_flat(mappings, mapping, point.dx) * factor,
             map_flat(mappings, mapping, point.dy) * factor,
         );
@@ -224,12 +226,12 @@ fn blend_raw(colour: vec3<f32>, p: vec3<f32>) -> vec3<f32> {
 }
 
 // The colour of a point of a face of constant x, y or z at voxel position p.
-fn shade(point: ShadePoint, axis: u32, p: vec3<f32>) -> vec3<f32> {
+fn shade(point: ShadePoint, plane: u32, p: vec3<f32>) -> vec3<f32> {
     let layer = layers[point.layer];
     var colour = layer.colour.rgb;
     var frequency = layer.frequency;
     if point.defined == 1u {
-        let mappings = face_mappings(axis, point.grad_k);
+        let mappings = face_mappings(plane, point.grad_k);
         let covering = interval_at(layer, point.ijk.z);
         if covering != NONE {
             let interval = intervals[covering];

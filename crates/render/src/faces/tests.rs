@@ -1,6 +1,6 @@
 //! The shader is valid, and Rust and WGSL agree on every shared struct and constant.
 
-use super::layout::{FaceParams, FaultInfo, GridInfo, ModelInfo, PackedInfo, SheetInfo};
+use super::layout::{FaceParams, FaultInfo, GridInfo, ModelInfo, PackedInfo, PlaneInfo, SheetInfo};
 use super::light::Slice;
 use super::media::{HORIZON_WORDS, MediaParams, MediumInfo};
 use super::textures::TextureInfo;
@@ -69,8 +69,9 @@ macro_rules! check {
 fn structs_have_the_same_layout() {
     let m = &module();
     check!(m, FaceParams: origin, origin_dx, origin_dy, direction, direction_dx, direction_dy, box_low, box_high,
-        background, voxel_m, tones, light, display_normal_x, display_normal_y, display_normal_z, relief, reference_px,
-        samples, cut_count, map_low, map_cells, ground_horizons, ground_opacity, tile, cut_outs);
+        background, voxel_m, light, display_normal_x, display_normal_y, display_normal_z, relief, reference_px,
+        samples, cut_count, map_low, map_cells, ground_horizons, ground_opacity, tile, bodies, planes);
+    check!(m, PlaneInfo: normal, metric_normal, along, shift, axis);
     check!(m, SheetInfo: origin, size, offset, level, at, scale_m);
     check!(m, FaultInfo: u, v, w, surface);
     check!(m, ModelInfo: centre, horizons, blocks, faults, layers, unit_from_voxel);
@@ -114,6 +115,8 @@ fn constants_are_the_same() {
     let m = module();
     for (name, value) in [
         ("TOUCH", f64::from(visible::TOUCH)),
+        ("BODIES", super::layout::BODIES as f64),
+        ("PLANES", super::layout::PLANES as f64),
         ("SHORTEST_STEP", f64::from(ground::SHORTEST_STEP)),
         ("BISECTIONS", f64::from(ground::BISECTIONS)),
         ("MAX_STEPS", f64::from(ground::MAX_STEPS)),

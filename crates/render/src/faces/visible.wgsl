@@ -1,64 +1,80 @@
-// The first stretch of rock on a ray: the twin of `visible::Solid::next_span`.
+// The first stretch of rock on a ray: the twin of `visible::Solid::next_span` and of `body::Body`.
 
 const TOUCH: f32 = 1e-3;
 const PARALLEL: f32 = 1e-12;
 const LOWEST: f32 = -3.0e38;
 const HIGHEST: f32 = 3.0e38;
 
-// The interval of t over which a ray is inside a box, and the axes of the planes at its ends.
-struct BoxCrossing {
+// A plane of the block (the first six) or of what is cut out.
+struct PlaneInfo {
+    // Unit normal out of its body, voxels; w: n·p of its points.
+    normal: vec4<f32>,
+    // Unit normal in metric space; w: factor on colours.
+    metric_normal: vec4<f32>,
+    // Horizontal direction in the face, and what is added to u along it.
+    along: vec2<f32>,
+    shift: f32,
+    // Axis of a plane of constant x, y or z, else NONE.
+    axis: u32,
+}
+
+// The interval of t over which a ray is inside a body, and the planes at its ends.
+struct Crossing {
     enter: f32,
     exit: f32,
-    enter_axis: u32,
-    exit_axis: u32,
+    enter_plane: u32,
+    exit_plane: u32,
 }
 
 struct SolidSpan {
     point: vec3<f32>,
     t: f32,
     end: f32,
-    axis: u32,
+    plane: u32,
     found: bool,
 }
 
-fn cross_box(origin: vec3<f32>, direction: vec3<f32>, low: vec3<f32>, high: vec3<f32>) -> BoxCrossing {
-    var crossing = BoxCrossing(LOWEST, HIGHEST, 0u, 0u);
-    for (var axis = 0u; axis < 3u; axis += 1u) {
-        let d = select(direction[axis], PARALLEL, abs(direction[axis]) < PARALLEL);
-        let a = (low[axis] - origin[axis]) / d;
-        let b = (high[axis] - origin[axis]) / d;
-        if min(a, b) > crossing.enter {
-            crossing.enter = min(a, b);
-            crossing.enter_axis = axis;
+// Body 0 is the block.
+fn cross_body(origin: vec3<f32>, direction: vec3<f32>, body: u32) -> Crossing {
+    var crossing = Crossing(LOWEST, HIGHEST, 0u, 0u);
+    let range = params.bodies[body];
+    for (var n = range.x; n < range.x + range.y; n += 1u) {
+        let plane = params.planes[n].normal;
+        let outside = dot(plane.xyz, origin) - plane.w;
+        let speed = dot(plane.xyz, direction);
+        if abs(speed) < PARALLEL {
+            if outside > 0.0 {
+                return Crossing(HIGHEST, LOWEST, 0u, 0u);
+            }
+            continue;
         }
-        if max(a, b) < crossing.exit {
-            crossing.exit = max(a, b);
-            crossing.exit_axis = axis;
+        let t = -outside / speed;
+        if speed < 0.0 && t > crossing.enter {
+            crossing.enter = t;
+            crossing.enter_plane = n;
+        }
+        if speed > 0.0 && t < crossing.exit {
+            crossing.exit = t;
+            crossing.exit_plane = n;
         }
     }
     return crossing;
 }
 
 fn next_span(origin: vec3<f32>, direction: vec3<f32>, start: f32) -> SolidSpan {
-    let outer = cross_box(origin, direction, params.box_low.xyz, params.box_high.xyz);
+    let outer = cross_body(origin, direction, 0u);
     var span: SolidSpan;
     span.t = max(outer.enter, start);
-    span.axis = outer.enter_axis;
-    var low = params.box_low.xyz;
-    var high = params.box_high.xyz;
-    var entering = true;
+    span.plane = outer.enter_plane;
     for (var round = 0u; round <= params.cut_count; round += 1u) {
         var moved = false;
-        for (var cut = 0u; cut < params.cut_count; cut += 1u) {
-            let cut_low = params.cut_outs[2u * cut].xyz;
-            let cut_high = params.cut_outs[2u * cut + 1u].xyz;
-            let crossing = cross_box(origin, direction, cut_low, cut_high);
+        for (var cut = 1u; cut <= params.cut_count; cut += 1u) {
+            let crossing = cross_body(origin, direction, cut);
             if crossing.enter <= span.t + TOUCH && span.t + TOUCH < crossing.exit {
                 span.t = crossing.exit;
-                span.axis = crossing.exit_axis;
-                low = cut_low;
-                high = cut_high;
-                entering = false;
+                if crossing.exit < HIGHEST {
+                    span.plane = crossing.exit_plane;
+                }
                 moved = true;
             }
         }
@@ -71,16 +87,20 @@ fn next_span(origin: vec3<f32>, direction: vec3<f32>, start: f32) -> SolidSpan {
     }
     span.found = true;
     span.end = outer.exit;
-    for (var cut = 0u; cut < params.cut_count; cut += 1u) {
-        let crossing = cross_box(origin, direction, params.cut_outs[2u * cut].xyz, params.cut_outs[2u * cut + 1u].xyz);
+    for (var cut = 1u; cut <= params.cut_count; cut += 1u) {
+        let crossing = cross_body(origin, direction, cut);
         if crossing.enter > span.t + TOUCH && crossing.enter < crossing.exit {
             span.end = min(span.end, crossing.enter);
         }
     }
     span.point = origin + direction * span.t;
     if span.t != start {
-        let forwards = direction[span.axis] >= 0.0;
-        span.point[span.axis] = select(high[span.axis], low[span.axis], forwards == entering);
+        let plane = params.planes[span.plane];
+        if plane.axis != NONE {
+            span.point[plane.axis] = plane.normal.w * plane.normal[plane.axis];
+        } else {
+            span.point -= plane.normal.xyz * (dot(plane.normal.xyz, span.point) - plane.normal.w);
+        }
     }
     return span;
 }

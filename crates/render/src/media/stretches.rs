@@ -44,17 +44,16 @@ pub fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: i
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::Body;
     use glam::Vec3;
 
     #[test]
     fn stretches_alternate_and_end_at_the_stop() {
-        let solid = Solid {
-            roaming_box: [Vec3::ZERO, Vec3::splat(10.0)],
-            cut_outs: vec![
-                [Vec3::new(2.0, 0.0, 0.0), Vec3::new(4.0, 10.0, 10.0)],
-                [Vec3::new(8.0, 0.0, 0.0), Vec3::new(10.0, 10.0, 10.0)],
-            ],
-        };
+        let cut_outs = vec![
+            Body::of_box([Vec3::new(2.0, 0.0, 0.0), Vec3::new(4.0, 10.0, 10.0)]),
+            Body::of_box([Vec3::new(8.0, 0.0, 0.0), Vec3::new(10.0, 10.0, 10.0)]),
+        ];
+        let solid = Solid::new([Vec3::ZERO, Vec3::splat(10.0)], cut_outs);
         let ray = Ray { origin: Vec3::new(-5.0, 5.0, 5.0), direction: Vec3::X };
         let all = |stop: f32| {
             let mut list = Vec::new();

@@ -3,7 +3,7 @@
 use super::dash::{APPROXIMATE, INFERRED, dashed};
 use super::hidden::{ASIDE, IN_FRONT, covered_by, is_seen, seen_parts};
 use super::relief::relief_lines;
-use super::solid::{EdgeLine, FaceRect, edge_lines, face_rects};
+use super::solid::{EdgeLine, Face, edge_lines, faces};
 use super::stroke::stroke_lines;
 use super::underlay::underlay;
 use super::{NOMINAL_SIDE_PX, Unpicked};
@@ -41,8 +41,8 @@ impl OutlineLines {
             lines.edges = edges.par_iter().flat_map_iter(|edge| seen_edge(resolved, edge)).collect();
         }
         if let (Some(interpretation), Faces::All) = (resolved.interpretation, resolved.scene.media.faces) {
-            for rect in face_rects(&resolved.solid, &resolved.view) {
-                lines.add_face(resolved, interpretation, &rect);
+            for face in faces(&resolved.solid, &resolved.view) {
+                lines.add_face(resolved, interpretation, &face);
             }
             let relief = relief_lines(resolved);
             lines
@@ -54,20 +54,21 @@ impl OutlineLines {
     }
 
     /// Adds the lines of the section on one face.
-    fn add_face(&mut self, resolved: &ResolvedScene, interpretation: ResolvedInterpretation, rect: &FaceRect) {
-        if !rect.faces_camera && (resolved.relief.is_none() || rect.axis == 2) {
+    fn add_face(&mut self, resolved: &ResolvedScene, interpretation: ResolvedInterpretation, face: &Face) {
+        if !face.faces_camera && (resolved.relief.is_none() || face.plane.axis == Some(2)) {
             return;
         }
-        let plane = rect.plane();
+        let plane = face.section_plane();
         let section = Section::new(interpretation.model, &plane);
+        let beside = (beside(face, &plane), face.bounds());
         let seen = |points: &[DVec2]| {
             let points: Vec<DVec3> = points.iter().map(|&st| plane.voxel(st)).collect();
-            seen_parts(&resolved.view, &points, |p| match rect.faces_camera {
-                true => seen_on_face(resolved, rect, p),
-                false => seen_over_rim(resolved, interpretation, rect, p),
+            seen_parts(&resolved.view, &points, |p| match face.faces_camera {
+                true => seen_on_face(resolved, &beside, p),
+                false => seen_over_rim(resolved, interpretation, face, p),
             })
         };
-        for line in section.lines.iter().filter(|_| rect.faces_camera) {
+        for line in section.lines.iter().filter(|_| face.faces_camera) {
             match line.kind {
                 LineKind::Fault { real: true, fault } => self.faults.extend(parts_of(Some(fault), seen(&line.points))),
                 // Beyond its tip a fault is not interpreted, but different layers meet there.
@@ -106,16 +107,6 @@ fn parts_of(of: Option<usize>, parts: Vec<Vec<DVec2>>) -> impl Iterator<Item = O
     parts.into_iter().map(move |points| OutlineLine { of, points })
 }
 
-impl FaceRect {
-    pub(crate) fn plane(&self) -> SectionPlane {
-        match self.axis {
-            0 => SectionPlane::inline(self.low.x, self.low, self.high),
-            1 => SectionPlane::crossline(self.low.y, self.low, self.high),
-            _ => SectionPlane::slice(self.low.z, self.low, self.high),
-        }
-    }
-}
-
 /// The parts of a ring that do not lie on the border of its rectangle: where air meets rock.
 fn rim_parts(ring: &[DVec2], extent: [f64; 2]) -> Vec<Vec<DVec2>> {
     const ON: f64 = 1e-6;
@@ -139,25 +130,26 @@ fn rim_parts(ring: &[DVec2], extent: [f64; 2]) -> Vec<Vec<DVec2>> {
     parts
 }
 
+/// Unit steps beside a line on a face, in the face. Downwards first, since rock lies there if the ground is shown.
+fn beside(face: &Face, plane: &SectionPlane) -> [DVec3; 4] {
+    if face.plane.axis == Some(2) {
+        return [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y];
+    }
+    let (down, level) = (plane.t_axis, plane.s_axis);
+    [down, -down, level, -level]
+}
+
 /// Whether a point of a line on a face is visible: the face itself is, on at least one side of the line.
-fn seen_on_face(resolved: &ResolvedScene, rect: &FaceRect, p: DVec3) -> bool {
-    let (u, v) = (DVec3::AXES[(rect.axis + 1) % 3], DVec3::AXES[(rect.axis + 2) % 3]);
-    // Downwards first, since rock lies there if the ground is shown.
-    let beside =
-        if rect.axis == 2 { [u, -u, v, -v] } else { [DVec3::Z, -DVec3::Z, u + v - DVec3::Z, DVec3::Z - u - v] };
-    beside.into_iter().any(|aside| {
-        let q = (p + aside * ASIDE).clamp(rect.low, rect.high);
-        is_seen(resolved, q)
-    })
+fn seen_on_face(resolved: &ResolvedScene, (beside, [low, high]): &([DVec3; 4], [DVec3; 2]), p: DVec3) -> bool {
+    beside.iter().any(|aside| is_seen(resolved, (p + aside * ASIDE).clamp(*low, *high)))
 }
 
 /// Whether a point of the ground's edge is visible on a face that looks away from the camera: nothing is in
 /// front of it, and there is rock beside it (not so for a fault between air and air).
-fn seen_over_rim(resolved: &ResolvedScene, interpretation: ResolvedInterpretation, rect: &FaceRect, p: DVec3) -> bool {
-    let along = DVec3::AXES[1 - rect.axis];
-    let into_rock = DVec3::AXES[rect.axis] * rect.rock;
+fn seen_over_rim(resolved: &ResolvedScene, interpretation: ResolvedInterpretation, face: &Face, p: DVec3) -> bool {
+    let along = face.section_plane().s_axis;
     let is_rock = |aside: DVec3| {
-        let q = (p + (aside + into_rock) * ASIDE).as_vec3();
+        let q = (p + (aside + face.rock) * ASIDE).as_vec3();
         resolved.solid.contains(q) && !is_air(interpretation.model, q)
     };
     [DVec3::Z, along, -along].into_iter().any(is_rock) && covered_by(resolved, p) < IN_FRONT

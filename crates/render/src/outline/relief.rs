@@ -181,7 +181,7 @@ fn seen(
 
 fn cut_away(resolved: &ResolvedScene, p: DVec3) -> bool {
     let p = p.as_vec3();
-    resolved.solid.cut_outs.iter().any(|[low, high]| p.cmpge(*low).all() && p.cmple(*high).all())
+    resolved.solid.cut_outs.iter().any(|cut| cut.holds_or_touches(p))
 }
 
 #[cfg(test)]

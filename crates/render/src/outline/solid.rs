@@ -1,24 +1,23 @@
 //! Faces and edges of the solid block: the roaming box minus its cut-outs.
 //!
-//! The planes of all boxes divide space into cells, each of which is rock or not. A face rectangle is a side
-//! of a box with rock behind it. An edge is a part of a line in which two planes meet, if the four cells
-//! around it are neither all alike nor form a flat face.
+//! A face is the part of a body's plane that bounds it, with rock on the other side. An edge is a part of a line in which
+//! two planes meet, if the four wedges around it are neither all alike nor form a flat face.
 
+use crate::body::{Body, BodyPlane, part_behind};
 use crate::camera::View;
 use crate::visible::Solid;
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec3};
+use model::section::SectionPlane;
 
 /// A side of the box, or a back face of a cut-out. Parts of it may be cut away or hidden.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct FaceRect {
-    /// Axis of its normal.
-    pub axis: usize,
-    /// Smallest corner, voxels.
-    pub low: DVec3,
-    /// Largest corner; equal to `low` along `axis`.
-    pub high: DVec3,
-    /// Direction to the rock along `axis`: +1 or −1.
-    pub rock: f64,
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Face {
+    /// Its plane, with the normal of the body that it bounds.
+    pub plane: BodyPlane,
+    /// A convex polygon, voxels.
+    pub outline: Vec<DVec3>,
+    /// Unit direction across it into the rock, voxels.
+    pub rock: DVec3,
     /// Whether it faces the camera. Of other faces only the edge of the ground can be visible.
     pub faces_camera: bool,
 }
@@ -28,101 +27,240 @@ pub(crate) struct FaceRect {
 pub(super) struct EdgeLine {
     /// Ends, voxels.
     pub ends: [DVec3; 2],
-    /// Unit directions along an axis from the edge into those of its faces that face the camera.
+    /// Unit directions from the edge into those of its faces that face the camera.
     pub faces: [Option<DVec3>; 4],
 }
 
-/// All face rectangles.
-pub(crate) fn face_rects(solid: &Solid, view: &View) -> Vec<FaceRect> {
-    let outer = solid.roaming_box;
-    let mut rects = Vec::new();
-    for axis in 0..3 {
-        for end in 0..2 {
-            let normal = unit(axis) * if end == 0 { -1.0 } else { 1.0 };
-            rects.push(face_rect(view, axis, outer, end, normal));
-            for cut in &solid.cut_outs {
-                // A face of the cut-out on the side of the roaming box has no rock behind it. The normal of
-                // the others points into the cut-out.
-                if cut[end][axis] != outer[end][axis] {
-                    rects.push(face_rect(view, axis, *cut, end, -normal));
-                }
-            }
+/// Corners of a face closer than this are one, voxels.
+const SAME: f64 = 1e-6;
+/// Faces smaller than this are left out, square voxels.
+const LEAST_AREA: f64 = 1e-9;
+
+/// All faces.
+pub(crate) fn faces(solid: &Solid, view: &View) -> Vec<Face> {
+    let bounds = solid.roaming_box.map(|corner| corner.as_dvec3());
+    let face = |body: &Body, n: usize, rock: f64| {
+        let plane = body.planes[n];
+        let outline = without_doubles(body.face(n, bounds));
+        let (from, area) = (outline.first()?, normal_of(&outline));
+        let rock = plane.normal.as_dvec3() * rock;
+        let faces_camera = view.towards_camera(*from).dot(-rock) > 0.0;
+        (area.length() > LEAST_AREA).then_some(Face { plane, outline, rock, faces_camera })
+    };
+    let mut found = Vec::new();
+    for n in 0..solid.block.planes.len() {
+        found.extend(face(&solid.block, n, -1.0));
+        // A face of a cut-out on a side of the roaming box has no rock behind it.
+        for cut in &solid.cut_outs {
+            let alike = (0..cut.planes.len()).filter(|m| cut.planes[*m].normal == solid.block.planes[n].normal);
+            let inside = alike.filter(|m| cut.planes[*m].offset != solid.block.planes[n].offset);
+            found.extend(inside.filter(|m| !cut.planes[*m].is_seam).filter_map(|m| face(cut, m, 1.0)));
         }
     }
-    rects
+    for cut in &solid.cut_outs {
+        let oblique = (0..cut.planes.len()).filter(|m| cut.planes[*m].axis.is_none() && !cut.planes[*m].is_seam);
+        found.extend(oblique.filter_map(|m| face(cut, m, 1.0)));
+    }
+    found
 }
 
-fn face_rect(view: &View, axis: usize, corners: [Vec3; 2], end: usize, normal: DVec3) -> FaceRect {
-    let [mut low, mut high] = corners.map(|c| c.as_dvec3());
-    low[axis] = f64::from(corners[end][axis]);
-    high[axis] = low[axis];
-    FaceRect { axis, low, high, rock: -normal[axis], faces_camera: view.towards_camera(low).dot(normal) > 0.0 }
+fn without_doubles(mut outline: Vec<DVec3>) -> Vec<DVec3> {
+    outline.dedup_by(|a, b| a.distance(*b) < SAME);
+    if outline.len() > 1 && outline[0].distance(outline[outline.len() - 1]) < SAME {
+        outline.pop();
+    }
+    outline
 }
 
-fn unit(axis: usize) -> DVec3 {
-    DVec3::AXES[axis]
+/// Twice the area of a polygon, along its normal.
+fn normal_of(outline: &[DVec3]) -> DVec3 {
+    (0..outline.len()).map(|n| (outline[n] - outline[0]).cross(outline[(n + 1) % outline.len()] - outline[0])).sum()
+}
+
+impl Face {
+    /// The axis nearest to its normal: 2 for a face on which a map is seen.
+    pub fn nearest_axis(&self) -> usize {
+        let size = self.plane.normal.abs();
+        (0..3).max_by(|a, b| size[*a].total_cmp(&size[*b])).unwrap_or(2)
+    }
+
+    /// Smallest and largest x, y, z of its corners.
+    pub fn bounds(&self) -> [DVec3; 2] {
+        let start = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let (low, high) = self.outline.iter().fold(start, |(low, high), p| (low.min(*p), high.max(*p)));
+        [low, high]
+    }
+
+    /// The rectangle around it: t runs down, s level; on a horizontal face along y and x.
+    pub fn section_plane(&self) -> SectionPlane {
+        let [low, high] = self.bounds();
+        match self.plane.axis {
+            Some(0) => return SectionPlane::inline(low.x, low, high),
+            Some(1) => return SectionPlane::crossline(low.y, low, high),
+            Some(_) => return SectionPlane::slice(low.z, low, high),
+            None => {}
+        }
+        let normal = self.plane.normal.as_dvec3();
+        let level = DVec2::new(-normal.y, normal.x).normalize_or(DVec2::X);
+        let s_axis = level.extend(0.0);
+        let t_axis = normal.cross(s_axis);
+        let t_axis = if t_axis.z < 0.0 { -t_axis } else { t_axis };
+        let place = |p: &DVec3| DVec2::new(s_axis.dot(*p), t_axis.dot(*p));
+        let (least, most) = self.outline.iter().map(place).fold(
+            (DVec2::INFINITY, DVec2::NEG_INFINITY),
+            |(least, most), st| (least.min(st), most.max(st)),
+        );
+        let origin = normal * f64::from(self.plane.offset) + s_axis * least.x + t_axis * least.y;
+        SectionPlane { origin, s_axis, t_axis, extent: (most - least).to_array() }
+    }
+
+    /// Whether it fills the rectangle around it.
+    pub fn is_rectangle(&self) -> bool {
+        let plane = self.section_plane();
+        let whole = plane.extent[0] * plane.extent[1] * plane.s_axis.cross(plane.t_axis).length();
+        (0.5 * normal_of(&self.outline).length() - whole).abs() < 1e-6 * whole.max(1.0)
+    }
+
+    /// The part of it in which a body lies, moved by `aside` along the rock's direction; empty if there is none.
+    pub fn part_in(&self, body: &Body, aside: f64) -> Vec<DVec3> {
+        let mut part = self.outline.clone();
+        for plane in &body.planes {
+            let normal = plane.normal.as_dvec3();
+            part = part_behind(&part, |p| normal.dot(p + self.rock * aside) - f64::from(plane.offset));
+            if part.is_empty() {
+                break;
+            }
+        }
+        if normal_of(&part).length() > LEAST_AREA { part } else { Vec::new() }
+    }
 }
 
 /// All parts of edges with a face towards the camera.
 pub(super) fn edge_lines(solid: &Solid, view: &View) -> Vec<EdgeLine> {
-    let planes: [Vec<f64>; 3] = std::array::from_fn(|axis| {
-        let boxes = std::iter::once(&solid.roaming_box).chain(&solid.cut_outs);
-        let mut planes: Vec<f64> = boxes.flatten().map(|corner| f64::from(corner[axis])).collect();
-        planes.sort_by(f64::total_cmp);
-        planes.dedup();
-        planes
-    });
+    let mut planes: Vec<BodyPlane> = Vec::new();
+    for plane in std::iter::once(&solid.block).chain(&solid.cut_outs).flat_map(|body| &body.planes) {
+        let same = |other: &BodyPlane| {
+            let sign = other.normal.dot(plane.normal);
+            sign.abs() > 1.0 - 1e-6 && (other.offset * sign.signum() - plane.offset).abs() < 1e-4
+        };
+        if !plane.is_seam && !planes.iter().any(same) {
+            planes.push(*plane);
+        }
+    }
     let mut edges = Vec::new();
-    for along in 0..3 {
-        let (u, v) = ((along + 1) % 3, (along + 2) % 3);
-        for &at_u in &planes[u] {
-            for &at_v in &planes[v] {
-                for stretch in planes[along].windows(2) {
-                    let end = |w: f64| unit(along) * w + unit(u) * at_u + unit(v) * at_v;
-                    let ends = [end(stretch[0]), end(stretch[1])];
-                    edges.extend(edge(solid, view, ends, unit(u), unit(v)));
-                }
+    for (n, a) in planes.iter().enumerate() {
+        for b in &planes[n + 1..] {
+            let Some(line) = Line::of(a, b, solid.roaming_box) else { continue };
+            let curve = |plane: &BodyPlane| plane.wall.and_then(|wall| wall.curve);
+            let is_smooth = curve(a).is_some() && curve(a) == curve(b);
+            let cuts = line.cuts(&planes);
+            for stretch in cuts.windows(2) {
+                let ends = [line.at(stretch[0]), line.at(stretch[1])];
+                edges.extend(edge(solid, view, ends, [a, b], is_smooth));
             }
         }
     }
     edges
 }
 
-/// The edge in which planes of constant `u` and `v` meet, if there is one.
-fn edge(solid: &Solid, view: &View, ends: [DVec3; 2], u: DVec3, v: DVec3) -> Option<EdgeLine> {
+/// The line in which two planes meet, within the roaming box.
+struct Line {
+    point: DVec3,
+    direction: DVec3,
+    ends: [f64; 2],
+}
+
+impl Line {
+    fn of(a: &BodyPlane, b: &BodyPlane, bounds: [Vec3; 2]) -> Option<Self> {
+        let (p, q) = (a.normal.as_dvec3(), b.normal.as_dvec3());
+        let direction = p.cross(q);
+        if direction.length() < 1e-6 {
+            return None;
+        }
+        // The point of both planes nearest to the origin.
+        let (at_a, at_b) = (f64::from(a.offset), f64::from(b.offset));
+        let point = (q.cross(direction) * at_a + direction.cross(p) * at_b) / direction.length_squared();
+        let direction = direction.normalize();
+        let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
+        let [low, high] = bounds.map(|corner| corner.as_dvec3());
+        for axis in 0..3 {
+            if direction[axis].abs() < 1e-9 {
+                if point[axis] < low[axis] - 1e-4 || point[axis] > high[axis] + 1e-4 {
+                    return None;
+                }
+                continue;
+            }
+            let (s, t) = ((low[axis] - point[axis]) / direction[axis], (high[axis] - point[axis]) / direction[axis]);
+            (first, last) = (first.max(s.min(t)), last.min(s.max(t)));
+        }
+        (last - first > 1e-6).then_some(Self { point, direction, ends: [first, last] })
+    }
+
+    fn at(&self, t: f64) -> DVec3 {
+        self.point + self.direction * t
+    }
+
+    /// Where planes cross the line, and its ends.
+    fn cuts(&self, planes: &[BodyPlane]) -> Vec<f64> {
+        let [first, last] = self.ends;
+        let crossing = |plane: &BodyPlane| {
+            let normal = plane.normal.as_dvec3();
+            (f64::from(plane.offset) - normal.dot(self.point)) / normal.dot(self.direction)
+        };
+        let inside = planes.iter().map(crossing).filter(|t| *t > first && *t < last);
+        let mut cuts: Vec<f64> = inside.chain(self.ends).collect();
+        cuts.sort_by(f64::total_cmp);
+        cuts.dedup_by(|a, b| (*a - *b).abs() < 1e-6);
+        cuts
+    }
+}
+
+/// The edge in which two planes meet, if there is one. Between planes of one curve there is one only where the curve turns
+/// away from the camera.
+fn edge(solid: &Solid, view: &View, ends: [DVec3; 2], planes: [&BodyPlane; 2], is_smooth: bool) -> Option<EdgeLine> {
     let middle = (ends[0] + ends[1]) * 0.5;
     // Far enough for f32, and less than the width of any cell that matters.
     const ASIDE: f64 = 1e-3;
-    let quadrants = [u + v, v - u, -u - v, u - v];
-    let rock = quadrants.map(|q| is_rock(solid, (middle + q * ASIDE).as_vec3()));
-    // Between quadrants n and n + 1 lies the half-plane in direction v, −u, −v, u.
-    let between = [v, -u, -v, u];
+    let [p, q] = planes.map(|plane| plane.normal.as_dvec3());
+    let along = p.cross(q).normalize();
+    // Unit directions in the planes, across the line.
+    let (u, v) = (along.cross(q).normalize(), along.cross(p).normalize());
+    let quadrants = [u + v, v - u, -u - v, u - v].map(DVec3::normalize);
+    let rock = quadrants.map(|direction| is_rock(solid, (middle + direction * ASIDE).as_vec3()));
+    // Between quadrants n and n + 1 lies the half-plane in direction v, −u, −v, u; v lies in the first plane.
+    let between = [(v, p), (-u, q), (-v, p), (u, q)];
     let mut faces = [None; 4];
-    let mut count = 0;
+    let (mut count, mut towards, mut away) = (0, 0, 0);
     for n in 0..4 {
-        let (here, next) = (rock[n], rock[(n + 1) % 4]);
-        if here != next {
+        let next = (n + 1) % 4;
+        if rock[n] != rock[next] {
             count += 1;
-            let normal = (quadrants[(n + 1) % 4] - quadrants[n]) * if here { 1.0 } else { -1.0 };
+            let (direction, normal) = between[n];
+            let into_air = if rock[n] { quadrants[next] - quadrants[n] } else { quadrants[n] - quadrants[next] };
+            let normal = if normal.dot(into_air) < 0.0 { -normal } else { normal };
             if view.towards_camera(middle).dot(normal) > 0.0 {
-                faces[n] = Some(between[n]);
+                faces[n] = Some(direction);
+                towards += 1;
+            } else {
+                away += 1;
             }
         }
     }
     let flat = count == 2 && rock[0] != rock[2] && rock[1] != rock[3] && (rock[0] == rock[1] || rock[0] == rock[3]);
-    (count > 0 && !flat && faces.iter().any(Option::is_some)).then_some(EdgeLine { ends, faces })
+    let is_drawn = if is_smooth { towards > 0 && away > 0 } else { towards > 0 };
+    // Planes of a curve bound the rock on both sides of the line, which is not flat, but hardly bent.
+    (count > 0 && (is_smooth || !flat) && is_drawn).then_some(EdgeLine { ends, faces })
 }
 
 /// Whether a point, which must not lie on a plane, is rock.
 pub(crate) fn is_rock(solid: &Solid, p: Vec3) -> bool {
-    let inside = |[low, high]: &[Vec3; 2]| p.cmpgt(*low).all() && p.cmplt(*high).all();
-    inside(&solid.roaming_box) && !solid.cut_outs.iter().any(inside)
+    solid.block.holds(p) && !solid.cut_outs.iter().any(|cut| cut.holds(p))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Camera, Corner, VoxelBox};
+    use crate::{Camera, Corner, CutShape, VoxelBox};
     use survey::{SurveyGeometry, VerticalUnit};
 
     fn view(block: &VoxelBox) -> View {
@@ -131,7 +269,7 @@ mod tests {
     }
 
     fn facing(solid: &Solid, block: &VoxelBox) -> usize {
-        face_rects(solid, &view(block)).iter().filter(|rect| rect.faces_camera).count()
+        faces(solid, &view(block)).iter().filter(|face| face.faces_camera).count()
     }
 
     fn length(edges: &[EdgeLine]) -> f64 {
@@ -141,7 +279,7 @@ mod tests {
     #[test]
     fn a_box_shows_nine_edges_and_three_faces() {
         let block = VoxelBox::of_size([11, 11, 11]);
-        let solid = Solid::new(&block, &[]);
+        let solid = Solid::of_boxes(&block, &[]);
         assert_eq!(facing(&solid, &block), 3);
         assert!((length(&edge_lines(&solid, &view(&block))) - 90.0).abs() < 1e-3);
     }
@@ -151,7 +289,7 @@ mod tests {
         let block = VoxelBox::of_size([11, 11, 11]);
         let corner = view(&block).nearest_corner(&block);
         assert_eq!(corner, Corner::MinMin);
-        let solid = Solid::new(&block, &[block.corner_cut(corner, [0.4, 0.3])]);
+        let solid = Solid::of_boxes(&block, &[block.corner_cut(corner, [0.4, 0.3])]);
         assert_eq!(facing(&solid, &block), 5);
         // The edges at the back of the top and the left and right side edges, shortened by the cut, plus
         // those of the cut: the outline of an L on top (40), the same at the bottom without its two hidden
@@ -162,10 +300,49 @@ mod tests {
     #[test]
     fn a_stair_has_an_edge_where_a_face_meets_the_next_floor() {
         let block = VoxelBox::of_size([11, 11, 11]);
-        let solid = Solid::new(&block, &block.stair(Corner::MinMin, [0.6, 0.6], 0.8, 2));
+        let solid = Solid::of_boxes(&block, &block.stair(Corner::MinMin, [0.6, 0.6], 0.8, 2));
         let edges = edge_lines(&solid, &view(&block));
         // The back face x = 3 of the lower step begins at the floor z = 4 of the upper step.
         let meets = |e: &EdgeLine| e.ends.iter().all(|p| (p.x - 3.0).abs() < 1e-5 && (p.z - 4.0).abs() < 1e-5);
         assert!(edges.iter().any(meets));
+    }
+
+    #[test]
+    fn a_sloping_plane_across_a_block_has_four_edges_and_one_face() {
+        let block = VoxelBox::of_size([11, 11, 11]);
+        // Takes the upper part at smaller x and y, from the corner nearest to the camera.
+        let shape = CutShape::Plane { through: [5.0, 5.0, 5.0], normal: [-1.0, -1.0, -1.5] };
+        let solid = Solid::new(Solid::of_boxes(&block, &[]).roaming_box, shape.bodies(&block, [10.0; 2], 0).unwrap());
+        let faces = faces(&solid, &view(&block));
+        let sloping = faces.iter().find(|face| face.plane.axis.is_none()).unwrap();
+        assert!(sloping.faces_camera && sloping.outline.len() >= 4, "{sloping:?}");
+        let plane = sloping.section_plane();
+        assert!(plane.s_axis.z.abs() < 1e-9 && plane.t_axis.z > 0.0);
+        for corner in &sloping.outline {
+            assert!((DVec3::new(1.0, 1.0, 1.5).dot(*corner - DVec3::splat(5.0))).abs() < 1e-4);
+            assert!((0..3).any(|axis| (corner[axis] - 5.0).abs() > 5.0 - 1e-6), "{corner}");
+        }
+        let on_plane = |p: &DVec3| (DVec3::new(1.0, 1.0, 1.5).dot(*p - DVec3::splat(5.0))).abs() < 1e-3;
+        let edges = edge_lines(&solid, &view(&block));
+        let around: f64 = edges.iter().filter(|e| e.ends.iter().all(on_plane)).map(|e| e.ends[0].distance(e.ends[1])).sum();
+        let outline = &sloping.outline;
+        let length: f64 = (0..outline.len()).map(|n| outline[n].distance(outline[(n + 1) % outline.len()])).sum();
+        assert!((around - length).abs() < 1e-3, "{around} {length}");
+    }
+
+    #[test]
+    fn a_curved_wall_has_no_edges_between_its_planes_but_above_and_below() {
+        let block = VoxelBox::of_size([11, 11, 11]);
+        let outline = (0..8).map(|n| (DVec2::from_angle(f64::from(n)) * 4.0 + 5.0).to_array()).take(6).collect();
+        let shape = CutShape::Outline { outline, smooth: true, depth: Some([-1.0, 6.0]) };
+        let bodies = shape.bodies(&block, [10.0; 2], 0).unwrap();
+        let walls = bodies.iter().flat_map(|body| &body.planes).filter(|plane| plane.wall.is_some()).count();
+        let solid = Solid::new(Solid::of_boxes(&block, &[]).roaming_box, bodies);
+        let edges = edge_lines(&solid, &view(&block));
+        let upright = |e: &&EdgeLine| (e.ends[0].z - e.ends[1].z).abs() > 1e-3;
+        let inside = |e: &&EdgeLine| e.ends[0].truncate().min_element() > 0.1 && e.ends[0].truncate().max_element() < 9.9;
+        assert!(walls > 20 && edges.iter().filter(upright).filter(inside).count() <= 2, "{walls}");
+        // The rim of the floor is there.
+        assert!(edges.iter().any(|e| e.ends.iter().all(|p| (p.z - 6.0).abs() < 1e-5) && inside(&e)));
     }
 }

@@ -5,7 +5,7 @@ use super::visible::{seen_faces, seen_pieces};
 use super::{AreaFill, PatternPart, VectorArea};
 use crate::error::RenderError;
 use crate::ground::air_layer;
-use crate::outline::solid::FaceRect;
+use crate::outline::solid::Face;
 use crate::pattern_size::Frequencies;
 use crate::resolved::{ResolvedInterpretation, ResolvedScene};
 use glam::DVec2;
@@ -35,9 +35,9 @@ pub(super) fn face_areas(
         if seen.as_ref().is_some_and(Vec::is_empty) {
             continue;
         }
-        let plane = face.rect.plane();
+        let plane = face.face.section_plane();
         let section = Section::new(interpretation.model, &plane);
-        let painter = FacePainter { resolved, interpretation, rect: &face.rect, plane, tiles: &tiles, tolerance_px };
+        let painter = FacePainter { resolved, interpretation, face: &face.face, plane, tiles: &tiles, tolerance_px };
         // Colours of whole layers, so that no seam shows where a fault is only continued; then their patterns.
         let colours = section.layers.iter().map(|area| (area.layer, None, &area.rings));
         let patterns = section.polygons.iter().map(|area| (area.region.layer, Some(area.region), &area.rings));
@@ -69,7 +69,7 @@ fn tiles(resolved: &ResolvedScene, library: &TextureLibrary) -> Result<Vec<Optio
 struct FacePainter<'a> {
     resolved: &'a ResolvedScene<'a>,
     interpretation: ResolvedInterpretation<'a>,
-    rect: &'a FaceRect,
+    face: &'a Face,
     plane: SectionPlane,
     tiles: &'a [Option<Tile>],
     tolerance_px: f64,
@@ -108,7 +108,7 @@ impl FacePainter<'_> {
 
     /// A colour on a face of this direction.
     fn toned(&self, [r, g, b, _]: [f32; 4]) -> Colour {
-        Colour::from_unit([r, g, b].map(|channel| channel * self.resolved.tones[self.rect.axis]))
+        Colour::from_unit([r, g, b].map(|channel| channel * self.resolved.tone(&self.face.plane)))
     }
 
     /// The pattern of a layer's part in one block; `None` if it has none, or is painted.
@@ -117,7 +117,7 @@ impl FacePainter<'_> {
         let pattern = FacePattern {
             resolved: self.resolved,
             interpretation: self.interpretation,
-            axis: self.rect.axis,
+            frame: self.resolved.frame(&self.face.plane),
             plane: self.plane,
             region,
             frequency: interval.frequency.map(|part| part * Frequencies::nearest(&self.resolved.tables.globals)),

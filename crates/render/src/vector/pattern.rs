@@ -52,8 +52,8 @@ pub(super) struct Tile {
 pub(super) struct FacePattern<'a> {
     pub resolved: &'a ResolvedScene<'a>,
     pub interpretation: ResolvedInterpretation<'a>,
-    /// Axis of the face's normal.
-    pub axis: usize,
+    /// How patterns lie on the face.
+    pub frame: FaceFrame,
     pub plane: SectionPlane,
     pub region: Region,
     /// Repeats of the tile over i and over k.
@@ -167,11 +167,7 @@ impl FacePattern<'_> {
     pub(super) fn drawn(&self, rings: &[Vec<DVec2>], tile: &Tile) -> Vec<DrawnPart> {
         let groups = alike(&tile.drawing);
         let Some(lattice) = Lattice::over(rings).filter(|_| !groups.is_empty()) else { return Vec::new() };
-        let frame = FaceFrame::new({
-            let mut normal = [0.0; 3];
-            normal[self.axis] = 1.0;
-            normal
-        });
+        let frame = self.frame;
         let mappings = frame.mappings(self.resolved.tables.globals.aspect_j);
         let [horizontal, vertical] = self.frequency.map(f64::from);
         let scales = [[horizontal, vertical], [horizontal, vertical], [horizontal, horizontal]];
@@ -232,7 +228,7 @@ impl MappedCells<'_> {
             let step = jacobian.map(|row| Vec3::from_array(row).dot(axis.as_vec3()));
             scaled(self.mapping.apply(step))
         };
-        let at = scaled(self.mapping.apply([flat.i, flat.j, flat.k]));
+        let at = scaled(self.mapping.place([flat.i, flat.j, flat.k]));
         (at, DMat2::from_cols(along(plane.s_axis), along(plane.t_axis)))
     }
 

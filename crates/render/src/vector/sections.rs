@@ -2,7 +2,6 @@
 
 use super::visible::{seen_faces, seen_pieces};
 use crate::scene::Scene;
-use crate::visible::Solid;
 use glam::DVec2;
 use model::StructuralModel;
 use model::section::Section;
@@ -12,7 +11,7 @@ use survey::SurveyGeometry;
 /// A face that looks at the camera, and what is on it.
 #[derive(Debug, Clone)]
 pub struct SeenSection {
-    /// Axis of its normal: 0 along inlines' numbers, 1 along crosslines', 2 = horizontal.
+    /// Axis nearest to its normal: 0 along inlines' numbers, 1 along crosslines', 2 = seen as a map.
     pub axis: usize,
     /// Layers and lines on the whole of its rectangle.
     pub section: Section,
@@ -42,13 +41,13 @@ pub struct SeenSection {
 /// ```
 pub fn seen_sections(scene: &Scene, geometry: &SurveyGeometry, model: &StructuralModel) -> Vec<SeenSection> {
     let view = scene.view(geometry);
-    let solid = Solid::new(&scene.box_in(geometry), &scene.cuts_in(geometry));
+    let solid = scene.solid(geometry);
     let faces = seen_faces(&solid, &view);
     let seen = (0..faces.len()).into_par_iter().filter_map(|index| {
         let face = &faces[index];
         let pieces = seen_pieces(&faces, index, &view, false).unwrap_or_else(|| face.quads(&view));
-        let section = || Section::new(model, &face.rect.plane());
-        (!pieces.is_empty()).then(|| SeenSection { axis: face.rect.axis, section: section(), pieces })
+        let section = || Section::new(model, &face.face.section_plane());
+        (!pieces.is_empty()).then(|| SeenSection { axis: face.face.nearest_axis(), section: section(), pieces })
     });
     seen.collect()
 }

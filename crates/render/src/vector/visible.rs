@@ -1,14 +1,15 @@
 //! Which part of a face is seen: its rock, less what other faces hide.
 //!
-//! The planes of all boxes divide a face into rectangles. One is rock if there is rock behind it and none in front.
-//! What hides a face lies on the camera's side of its plane, and every ray enters rock through a face that looks at the
-//! camera, so the projected rectangles of those faces are cut off. All are convex, and so are the pieces left.
+//! A face is rock where there is rock behind it and none in front: where no other cut-out lies behind it. What hides a
+//! face lies on the camera's side of its plane, and every ray enters rock through a face that looks at the camera, so the
+//! projected pieces of those faces are cut off. All are convex, and so are the pieces left.
 //!
-//! Over a relief a rectangle may be partly air; there nothing is cut off, and what is nearer is drawn later
+//! Over a relief a piece may be partly air; there nothing is cut off, and what is nearer is drawn later
 //! ([`back_to_front`]).
 
+use crate::body::part_behind;
 use crate::camera::View;
-use crate::outline::solid::{FaceRect, face_rects, is_rock};
+use crate::outline::solid::{Face, faces, is_rock};
 use crate::visible::Solid;
 use glam::{DVec2, DVec3};
 
@@ -16,80 +17,93 @@ use glam::{DVec2, DVec3};
 const BESIDE: f64 = 1e-3;
 /// Pieces smaller than this are left out, square pixels.
 const LEAST_AREA: f64 = 1e-4;
+/// Pieces of a face smaller than this are left out, square voxels.
+const LEAST_ROCK: f64 = 1e-6;
 
-/// A face that looks at the camera, with its rectangles of rock.
+/// A face that looks at the camera, with its pieces of rock.
 pub(crate) struct SeenFace {
-    pub rect: FaceRect,
-    /// Smallest and largest corners of the rectangles of rock, voxels.
-    cells: Vec<[DVec3; 2]>,
+    pub face: Face,
+    /// Its convex pieces of rock, voxels.
+    cells: Vec<Vec<DVec3>>,
 }
 
 impl SeenFace {
-    /// Whether all of its rectangle is rock.
+    /// Whether all of the rectangle around it is rock.
     fn is_whole(&self) -> bool {
-        self.cells.len() == 1 && self.cells[0] == [self.rect.low, self.rect.high]
+        self.cells.len() == 1 && self.cells[0] == self.face.outline && self.face.is_rectangle()
     }
 
-    /// Its rectangles of rock in pixels.
+    /// Its pieces of rock in pixels.
     pub(super) fn quads(&self, view: &View) -> Vec<Vec<DVec2>> {
-        self.cells.iter().map(|cell| quad(view, self.rect.axis, *cell)).collect()
+        self.cells.iter().map(|cell| projected(view, cell)).collect()
     }
 }
 
 /// The faces that look at the camera and have rock, back to front.
 pub(crate) fn seen_faces(solid: &Solid, view: &View) -> Vec<SeenFace> {
-    let rects = face_rects(solid, view).into_iter().filter(|rect| rect.faces_camera);
-    let faces = rects.map(|rect| SeenFace { cells: cells(solid, &rect), rect });
-    back_to_front(faces.filter(|face| !face.cells.is_empty()).collect())
+    let facing = faces(solid, view).into_iter().filter(|face| face.faces_camera);
+    let seen = facing.map(|face| SeenFace { cells: cells(solid, &face), face });
+    back_to_front(seen.filter(|face| !face.cells.is_empty()).collect())
 }
 
-/// The rectangles of a face that are rock, along the planes of all boxes; one where nothing divides them.
-fn cells(solid: &Solid, rect: &FaceRect) -> Vec<[DVec3; 2]> {
-    let (u, v) = ((rect.axis + 1) % 3, (rect.axis + 2) % 3);
-    let cuts = |axis: usize| {
-        let corners = solid.cut_outs.iter().flatten().map(|corner| f64::from(corner[axis]));
-        let inside = corners.filter(|at| *at > rect.low[axis] && *at < rect.high[axis]);
-        let mut cuts: Vec<f64> = inside.chain([rect.low[axis], rect.high[axis]]).collect();
-        cuts.sort_by(f64::total_cmp);
-        cuts.dedup();
-        cuts
-    };
-    let (across, along) = (cuts(u), cuts(v));
-    let mut cells = Vec::new();
-    for a in across.windows(2) {
-        for b in along.windows(2) {
-            let (mut low, mut high) = (rect.low, rect.high);
-            (low[u], high[u], low[v], high[v]) = (a[0], a[1], b[0], b[1]);
-            let inwards = DVec3::AXES[rect.axis] * rect.rock * BESIDE;
-            let middle = 0.5 * (low + high);
-            if is_rock(solid, (middle + inwards).as_vec3()) && !is_rock(solid, (middle - inwards).as_vec3()) {
-                cells.push([low, high]);
-            }
+/// The pieces of a face that are rock.
+fn cells(solid: &Solid, face: &Face) -> Vec<Vec<DVec3>> {
+    let mut cells = vec![face.outline.clone()];
+    for body in &solid.cut_outs {
+        // Behind the face, so that the cut-out which it bounds does not count.
+        let hole = face.part_in(body, BESIDE);
+        if hole.len() > 2 {
+            cells = cells.iter().flat_map(|cell| outside(cell, &hole, face.plane.normal.as_dvec3())).collect();
         }
     }
-    let whole = (across.len() - 1) * (along.len() - 1);
-    if cells.len() == whole { vec![[rect.low, rect.high]] } else { cells }
-}
-
-fn quad(view: &View, axis: usize, [low, high]: [DVec3; 2]) -> Vec<DVec2> {
-    let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
-    let corner = |at_u: f64, at_v: f64| {
-        let mut p = low;
-        (p[u], p[v]) = (at_u, at_v);
-        view.project(p)
+    // Of two cut-outs that end at the same plane one alone has a face there.
+    let open = |cell: &Vec<DVec3>| {
+        let middle = cell.iter().sum::<DVec3>() / cell.len() as f64;
+        let beside = |aside: f64| is_rock(solid, (middle + face.rock * aside).as_vec3());
+        beside(BESIDE) && !beside(-BESIDE)
     };
-    vec![corner(low[u], low[v]), corner(high[u], low[v]), corner(high[u], high[v]), corner(low[u], high[v])]
+    cells.retain(open);
+    cells
 }
 
-/// Whether a part of a cell lies on the camera's side of the plane of a face.
-fn is_in_front(face: &FaceRect, cell: &[DVec3; 2]) -> bool {
-    let outwards = |p: DVec3| (p - face.low)[face.axis] * -face.rock;
-    outwards(cell[0]).max(outwards(cell[1])) > BESIDE
+/// A convex polygon less another one in the same plane, in convex pieces.
+fn outside(polygon: &[DVec3], hole: &[DVec3], normal: DVec3) -> Vec<Vec<DVec3>> {
+    let turn = (0..hole.len()).map(|n| (hole[n] - hole[0]).cross(hole[(n + 1) % hole.len()] - hole[0])).sum::<DVec3>();
+    let normal = if turn.dot(normal) < 0.0 { -normal } else { normal };
+    let area = |part: &[DVec3]| {
+        let corner = |n: usize| (part[n] - part[0]).cross(part[(n + 1) % part.len()] - part[0]);
+        (0..part.len()).map(corner).sum::<DVec3>().length()
+    };
+    let (mut pieces, mut rest) = (Vec::new(), polygon.to_vec());
+    for n in 0..hole.len() {
+        let (a, b) = (hole[n], hole[(n + 1) % hole.len()]);
+        // Positive on the hole's own side of this border.
+        let inwards = normal.cross(b - a).normalize_or_zero();
+        let beyond = part_behind(&rest, |p| inwards.dot(p - a));
+        rest = part_behind(&rest, |p| -inwards.dot(p - a));
+        if area(&beyond) > LEAST_ROCK {
+            pieces.push(beyond);
+        }
+        if area(&rest) <= LEAST_ROCK {
+            break;
+        }
+    }
+    pieces
+}
+
+fn projected(view: &View, cell: &[DVec3]) -> Vec<DVec2> {
+    cell.iter().map(|p| view.project(*p)).collect()
+}
+
+/// The part of a piece that lies on the camera's side of the plane of a face.
+fn in_front(face: &Face, cell: &[DVec3]) -> Vec<DVec3> {
+    let depth = |p: DVec3| face.rock.dot(p - face.outline[0]);
+    if cell.iter().any(|p| depth(*p) < -BESIDE) { part_behind(cell, depth) } else { Vec::new() }
 }
 
 /// The faces so that none is hidden by an earlier one. Faces that hide one another in turn keep their order.
 fn back_to_front(mut faces: Vec<SeenFace>) -> Vec<SeenFace> {
-    let hides = |one: &SeenFace, other: &SeenFace| one.cells.iter().any(|cell| is_in_front(&other.rect, cell));
+    let hides = |one: &SeenFace, other: &SeenFace| one.cells.iter().any(|cell| !in_front(&other.face, cell).is_empty());
     let mut sorted = Vec::new();
     while !faces.is_empty() {
         // The next one hides none of the rest, or less of them than others do.
@@ -109,9 +123,9 @@ pub(crate) fn seen_pieces(faces: &[SeenFace], index: usize, view: &View, is_reli
     let mut is_cut = !face.is_whole();
     if !is_relief {
         for other in faces.iter().enumerate().filter(|(n, _)| *n != index).map(|(_, other)| other) {
-            for cell in other.cells.iter().filter(|cell| is_in_front(&face.rect, cell)) {
+            for cell in other.cells.iter().map(|cell| in_front(&face.face, cell)).filter(|cell| cell.len() > 2) {
                 let before = pieces.iter().map(|piece| area(piece).abs()).sum::<f64>();
-                let hiding = quad(view, other.rect.axis, *cell);
+                let hiding = projected(view, &cell);
                 let left: Vec<Vec<DVec2>> = pieces.iter().flat_map(|piece| without(piece, &hiding)).collect();
                 if before - left.iter().map(|piece| area(piece).abs()).sum::<f64>() > LEAST_AREA {
                     pieces = left;
@@ -166,7 +180,8 @@ fn half(polygon: &[DVec2], side: impl Fn(DVec2) -> f64) -> Vec<DVec2> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Camera, Corner, VoxelBox};
+    use crate::{Camera, Corner, CutShape, Side, VoxelBox};
+    use glam::Vec3;
     use survey::{SurveyGeometry, VerticalUnit};
 
     fn inside(pieces: &[Vec<DVec2>], p: DVec2) -> usize {
@@ -206,8 +221,27 @@ mod tests {
         ] {
             let camera = Camera { azimuth_deg: Some(azimuth), projection, ..Camera::default() };
             let view = View::new(&camera, &geometry, &block, 1.0, [160, 140]);
-            for cuts in [vec![], stair.clone(), vec![inner], [stair.clone(), vec![inner]].concat()] {
-                let solid = Solid::new(&block, &cuts);
+            let shapes = [
+                CutShape::Plane { through: [7.0, 8.0, 9.0], normal: [-1.0, -0.6, -0.8] },
+                CutShape::Fence {
+                    fence: vec![[2.0, 17.0], [9.0, 9.0], [12.0, 12.0], [18.0, 3.0]],
+                    side: Side::Right,
+                    smooth: false,
+                    depth: Some([0.0, 11.0]),
+                },
+            ];
+            let shaped = |n: usize| shapes[n].bodies(&block, [10.0; 2], n).unwrap();
+            for (cuts, bodies) in [
+                (vec![], vec![]),
+                (stair.clone(), vec![]),
+                (vec![inner], vec![]),
+                ([stair.clone(), vec![inner]].concat(), vec![]),
+                (vec![], shaped(0)),
+                (vec![], shaped(1)),
+                (vec![inner], [shaped(0), shaped(1)].concat()),
+            ] {
+                let mut solid = Solid::of_boxes(&block, &cuts);
+                solid.cut_outs.extend(bodies.clone());
                 let faces = seen_faces(&solid, &view);
                 let pieces: Vec<Vec<Vec<DVec2>>> = (0..faces.len())
                     .map(|n| seen_pieces(&faces, n, &view, false).unwrap_or_else(|| faces[n].quads(&view)))
@@ -217,13 +251,22 @@ mod tests {
                     let pixel = DVec2::new(f64::from(n % 160) + 0.5, f64::from(n / 160) + 0.5);
                     let hit = solid.next_span(&Ray::from(view.ray(pixel)), f32::MIN).map(|span| span.entry);
                     let counts: Vec<usize> = pieces.iter().map(|pieces| inside(pieces, pixel)).collect();
-                    let expected = hit.map(|hit| (hit.axis, hit.point[hit.axis]));
-                    let found: Vec<(usize, f32)> = (0..faces.len())
+                    let expected = hit.map(|hit| (hit.plane.normal, hit.plane.offset));
+                    let found: Vec<(Vec3, f32)> = (0..faces.len())
                         .filter(|n| counts[*n] > 0)
-                        .map(|n| (faces[n].rect.axis, faces[n].rect.low[faces[n].rect.axis] as f32))
+                        .map(|n| (faces[n].face.plane.normal, faces[n].face.plane.offset))
                         .collect();
+                    // A plane may bound the block on one side and a cut-out on the other.
+                    let same = |(a, at): &(Vec3, f32), (b, other): &(Vec3, f32)| {
+                        (*a - *b).length() < 1e-6 && at == other || (*a + *b).length() < 1e-6 && *at == -other
+                    };
+                    let agrees = match (expected, found.as_slice()) {
+                        (None, []) => true,
+                        (Some(expected), [found]) => same(&expected, found),
+                        _ => false,
+                    };
                     tested += 1;
-                    wrong += usize::from(found != Vec::from_iter(expected) || counts.iter().any(|count| *count > 1));
+                    wrong += usize::from(!agrees || counts.iter().any(|count| *count > 1));
                 }
                 // A ray through a pixel that an edge passes may fall on either side.
                 assert!(wrong * 2000 < tested, "{wrong} of {tested} with {} cuts from {azimuth}", cuts.len());

@@ -7,8 +7,8 @@ use crate::block::Block;
 use glam::DVec3;
 use render::compare::compare;
 use render::{
-    Background, Camera, Ground, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Projection, RenderError, Renderer,
-    Scene, VoxelBox,
+    Background, Camera, CutShape, Ground, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Projection, RenderError, Renderer,
+    Scene, Side, VoxelBox,
 };
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};
@@ -65,7 +65,18 @@ fn scenes(base: &Scene, whole: &VoxelBox, corner: render::Corner) -> Vec<(&'stat
         ("half raw", Scene { blend: 0.5, camera: perspective, face_tone: 0.2, ..clear.clone() }),
         ("raw", Scene { blend: 1.0, cut_outs: whole.stair(corner, [0.6, 0.7], 0.8, 3), ..clear }),
         ("ground", Scene { cut_outs: vec![cut], ground: Some(Ground::default()), ..base.clone() }),
+        ("shapes", Scene { cut_shapes: shapes(), face_tone: 0.2, ..base.clone() }),
+        ("shapes and ground", Scene { cut_shapes: shapes(), ground: Some(Ground::default()), ..base.clone() }),
         ("raw ground", Scene { blend: 1.0, ground: Some(Ground::default()), camera: perspective, ..base.clone() }),
+    ]
+}
+
+/// A curved fence and a sloping plane.
+fn shapes() -> Vec<CutShape> {
+    let fence = vec![[2.0, 25.0], [11.0, 14.0], [20.0, 12.0], [33.0, 3.0]];
+    vec![
+        CutShape::Fence { fence, side: Side::Left, smooth: true, depth: Some([0.0, 30.0]) },
+        CutShape::Plane { through: [30.0, 8.0, 20.0], normal: [1.0, -0.4, -0.6] },
     ]
 }
 
