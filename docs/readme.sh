@@ -13,6 +13,11 @@ petroglyph=${PETROGLYPH:-target/debug/petroglyph}
 fold of sandstone, limestone and shale. Half-arrows show which side of each fault went down, and numbers its throw \
 on the face on which they stand."
 
+"$petroglyph" render "$project" "$folder/cut-fence.png" --size 1080x720 --samples 4 --azimuth 335 --zoom 1.05 \
+    --cut-fence 101,545 150,585 205,560 260,600 --cut-smooth
+"$petroglyph" render "$project" "$folder/cut-shaft.png" --size 1080x720 --samples 4 --zoom 1.05 \
+    --cut-round 170,560,900 --cut-depth 0,900
+
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT
 quietly() { "$petroglyph" "$@" > /dev/null 2>&1; }

@@ -7,6 +7,7 @@
 mod args;
 mod assembly;
 mod check;
+mod cut;
 mod distortion;
 mod draw;
 mod extraction;

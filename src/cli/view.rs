@@ -1,10 +1,11 @@
 //! Turns the options of a view into changes of a scene.
 
 use super::args::ViewArgs;
+use super::cut::{self, Cut, LineBox, voxel_box};
 use super::request::{Usage, counts, numbers};
-use glam::DVec3;
+use project::Project;
 use render::{
-    Background, Corner, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked, VoxelBox,
+    Background, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked,
 };
 use survey::SurveyGeometry;
 
@@ -32,18 +33,6 @@ pub(super) struct ViewChanges {
     background: Option<Background>,
 }
 
-/// A box in line numbers and vertical values: two inlines, two crosslines, two values.
-type LineBox = [f64; 6];
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Cut {
-    Corner { corner: Option<Corner>, share: [f64; 2] },
-    Box(LineBox),
-}
-
-/// Share of the block that a corner cut takes by default.
-const CUT_SHARE: f64 = 0.45;
-
 impl TryFrom<ViewArgs> for ViewChanges {
     type Error = Usage;
 
@@ -62,13 +51,7 @@ impl TryFrom<ViewArgs> for ViewChanges {
             Some("packed") => Some(Lookup::Packed),
             Some(other) => return Err(format!("--lookup {other}: expected exact or packed")),
         };
-        let mut cuts = Vec::new();
-        for text in &typed.cut {
-            cuts.push(corner_cut(text)?);
-        }
-        for text in &typed.cut_box {
-            cuts.push(Cut::Box(numbers("--cut-box", text, ',')?));
-        }
+        let cuts = cut::typed(&typed)?;
         let background = match typed.background.as_deref() {
             None => None,
             Some("transparent") => Some(Background::Transparent),
@@ -125,30 +108,6 @@ fn switch<T>(option: &str, text: Option<&str>, on: T, off: T) -> Result<Option<T
     }
 }
 
-fn corner_cut(text: &str) -> Result<Cut, Usage> {
-    let usage = || format!("--cut {text}: expected CORNER or CORNER,SHARE,SHARE with shares between 0 and 1");
-    let mut parts = text.splitn(2, ',');
-    let corner = match parts.next().unwrap_or_default() {
-        "nearest" => None,
-        "min-min" => Some(Corner::MinMin),
-        "min-max" => Some(Corner::MinMax),
-        "max-min" => Some(Corner::MaxMin),
-        "max-max" => Some(Corner::MaxMax),
-        other => {
-            return Err(format!("--cut {other}: expected nearest, min-min, min-max, max-min or max-max"));
-        }
-    };
-    let share = match parts.next() {
-        None => [CUT_SHARE; 2],
-        Some(shares) => numbers::<2>("--cut", shares, ',').map_err(|_| usage())?,
-    };
-    if share.iter().all(|share| *share > 0.0 && *share < 1.0) {
-        Ok(Cut::Corner { corner, share })
-    } else {
-        Err(usage())
-    }
-}
-
 impl ViewChanges {
     /// Applies the changes to `scene`. Cuts, if any are given, replace the scene's own.
     pub(super) fn change(&self, scene: &mut Scene, geometry: &SurveyGeometry) {
@@ -172,35 +131,21 @@ impl ViewChanges {
         scene.pattern_size = self.pattern_size.unwrap_or(scene.pattern_size);
         scene.samples = self.samples.unwrap_or(scene.samples);
         scene.background = self.background.unwrap_or(scene.background);
-        if !self.cuts.is_empty() {
-            let block = scene.box_in(geometry);
-            let view = scene.view(geometry);
-            let cut = |cut: &Cut| match *cut {
-                Cut::Corner { corner, share } => {
-                    block.corner_cut(corner.unwrap_or_else(|| view.nearest_corner(&block)), share)
-                }
-                Cut::Box(lines) => voxel_box(lines, geometry),
-            };
-            scene.cut_outs = self.cuts.iter().map(cut).collect();
-        }
+        cut::change(&self.cuts, scene, geometry);
     }
-}
 
-/// The voxel box between two inlines, two crosslines and two vertical values, in any order. A coordinate within a
-/// millionth of a sample is placed on that sample, since people type rounded decimals.
-fn voxel_box([il0, il1, xl0, xl1, z0, z1]: LineBox, geometry: &SurveyGeometry) -> VoxelBox {
-    let on_sample = |voxel: DVec3| {
-        let near = voxel.round();
-        DVec3::select((voxel - near).abs().cmplt(DVec3::splat(1e-6)), near, voxel)
-    };
-    let corner = |il, xl, z| on_sample(geometry.voxel_from_lines(il, xl).extend(geometry.vertical.index_of(z)));
-    let (a, b): (DVec3, DVec3) = (corner(il0, xl0, z0), corner(il1, xl1, z1));
-    VoxelBox { min: a.min(b).to_array(), max: a.max(b).to_array() }
+    /// The same with wells at the corners of fences found in a project.
+    pub(super) fn with_wells(&self, project: &Project) -> anyhow::Result<Self> {
+        let mut found = self.clone();
+        cut::find_wells(&mut found.cuts, project)?;
+        Ok(found)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec3;
     use survey::VerticalUnit;
 
     fn geometry() -> SurveyGeometry {
@@ -244,11 +189,30 @@ mod tests {
     }
 
     #[test]
+    fn a_fence_is_cut_towards_the_viewer() {
+        let side = |azimuth| {
+            let cut_fence = vec!["140,16".into(), "120,10".into(), "100,16".into()];
+            let typed = ViewArgs { cut_fence, azimuth: Some(azimuth), ..ViewArgs::default() };
+            let mut scene = Scene::default();
+            ViewChanges::try_from(typed).unwrap().change(&mut scene, &geometry());
+            let [render::CutShape::Fence { side, fence, .. }] = scene.cut_shapes.as_slice() else { panic!("a fence") };
+            assert_eq!(fence[1], [20.0, 9.0]);
+            assert!(scene.validate(&geometry()).is_ok());
+            *side
+        };
+        assert_ne!(side(0.0), side(180.0));
+    }
+
+    #[test]
     fn nonsense_is_a_usage_error() {
         let refused = |typed: ViewArgs| ViewChanges::try_from(typed).unwrap_err();
         refused(ViewArgs { cut: vec!["left".into()], ..ViewArgs::default() });
         refused(ViewArgs { cut: vec!["nearest,0.5".into()], ..ViewArgs::default() });
         refused(ViewArgs { cut: vec!["nearest,0,1".into()], ..ViewArgs::default() });
+        refused(ViewArgs { cut_fence: vec!["1,2".into(), "3".into()], ..ViewArgs::default() });
+        refused(ViewArgs { cut_round: vec!["1,2,0".into()], ..ViewArgs::default() });
+        refused(ViewArgs { cut_plane: vec!["1,2,3,4,95".into()], ..ViewArgs::default() });
+        refused(ViewArgs { cut_depth: Some("1,2".into()), ..ViewArgs::default() });
         refused(ViewArgs { size: Some("800".into()), ..ViewArgs::default() });
         refused(ViewArgs { lookup: Some("fast".into()), ..ViewArgs::default() });
         refused(ViewArgs { background: Some("red".into()), ..ViewArgs::default() });

@@ -8,6 +8,7 @@ mod bombs;
 mod chain;
 mod check;
 mod create;
+mod cuts;
 mod demo;
 mod extraction;
 mod fault_extent;

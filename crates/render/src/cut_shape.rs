@@ -6,10 +6,12 @@
 
 use crate::body::{Body, BodyPlane, Wall};
 use crate::error::SceneError;
+use crate::camera::View;
 use crate::voxel_box::VoxelBox;
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use survey::SurveyGeometry;
 
 /// Largest number of planes of all shapes of a scene.
 pub const MAX_PLANES: usize = 400;
@@ -78,6 +80,14 @@ pub enum Side {
 }
 
 impl Side {
+    /// The side of a line, voxel x and y, on which the camera stands.
+    pub fn facing(line: &[[f64; 2]], block: &VoxelBox, view: &View) -> Self {
+        let (Some(first), Some(last)) = (line.first(), line.last()) else { return Self::Left };
+        let along = DVec2::from(*last) - DVec2::from(*first);
+        let towards = view.towards_camera(block.centre()).truncate();
+        if along.perp_dot(towards) >= 0.0 { Self::Left } else { Self::Right }
+    }
+
     /// The other one.
     pub fn other(self) -> Self {
         if self == Self::Left { Self::Right } else { Self::Left }
@@ -92,6 +102,8 @@ const MOST_PARTS: usize = 24;
 const FAR_POINTS: usize = 8;
 /// Points closer than this are one, voxels.
 const SAME: f64 = 1e-6;
+/// Points of a round shaft, through which a curve is led.
+const ROUND_POINTS: usize = 12;
 
 /// A polygon of the map.
 struct Outline {
@@ -103,6 +115,39 @@ struct Outline {
 }
 
 impl CutShape {
+    /// A round shaft around a voxel x and y, between two z or over the whole height.
+    pub fn round(centre: DVec2, radius_m: f64, depth: Option<[f64; 2]>, geometry: &SurveyGeometry) -> Self {
+        let from_metres = DMat2::from_cols(geometry.inline_vector, geometry.crossline_vector).inverse();
+        let point = |n: usize| {
+            let direction = DVec2::from_angle(TAU * n as f64 / ROUND_POINTS as f64);
+            (centre + from_metres * (direction * radius_m)).to_array()
+        };
+        Self::Outline { outline: (0..ROUND_POINTS).map(point).collect(), smooth: true, depth }
+    }
+
+    /// All above a plane through a voxel that dips towards a bearing (degrees clockwise from north) by `dip_deg`.
+    pub fn dipping(through: DVec3, bearing_deg: f64, dip_deg: f64, geometry: &SurveyGeometry) -> Self {
+        let ((east, north), (sin, cos)) = (bearing_deg.to_radians().sin_cos(), dip_deg.to_radians().sin_cos());
+        let up = DVec3::new(east * sin, north * sin, cos);
+        // As a covector of voxels.
+        let normal = [
+            up.dot(geometry.inline_vector.extend(0.0)),
+            up.dot(geometry.crossline_vector.extend(0.0)),
+            -up.z * geometry.sample_m(),
+        ];
+        Self::Plane { through: through.to_array(), normal }
+    }
+
+    /// Bearing and angle of a plane's dip, degrees; `None` for other shapes and for planes that cut what lies below.
+    pub fn bearing_and_dip(&self, geometry: &SurveyGeometry) -> Option<[f64; 2]> {
+        let Self::Plane { normal, .. } = self else { return None };
+        let steps = DMat2::from_cols(geometry.inline_vector, geometry.crossline_vector).transpose();
+        let level = steps.inverse() * DVec2::new(normal[0], normal[1]);
+        let up = -normal[2] / geometry.sample_m();
+        let bearing_deg = level.x.atan2(level.y).to_degrees().rem_euclid(360.0);
+        (up >= -1e-9 * level.length()).then(|| [bearing_deg, level.length().atan2(up.max(0.0)).to_degrees()])
+    }
+
     /// Checks the shape by itself.
     ///
     /// # Errors
@@ -417,6 +462,25 @@ mod tests {
         for p in places() {
             let side = (p - DVec3::new(10.0, 5.0, 8.0)).dot(DVec3::new(1.0, 2.0, -3.0));
             assert!(side.abs() < 1e-3 || cut(&plane, p) == (side > 0.0), "{p}");
+        }
+    }
+
+    #[test]
+    fn dips_and_radii_are_those_of_the_ground() {
+        let geometry = SurveyGeometry::regular([41, 31, 21], 25.0, 10.0, survey::VerticalUnit::Metres);
+        let world = |p: DVec3| geometry.world_from_voxel(p);
+        let at = DVec3::new(20.0, 15.0, 10.0);
+        // Dips to the south-east by 30°: 100 m in that direction it lies 57.7 m deeper.
+        let plane = CutShape::dipping(at, 135.0, 30.0, &geometry);
+        let ahead = world(at) + DVec3::new(70.711, -70.711, 0.0);
+        let inside = |depth_m: f64| cut(&plane, geometry.voxel_from_world(ahead + DVec3::Z * depth_m));
+        assert!(inside(57.2) && !inside(58.2));
+        let [bearing_deg, dip_deg] = plane.bearing_and_dip(&geometry).unwrap();
+        assert!((bearing_deg - 135.0).abs() < 1e-6 && (dip_deg - 30.0).abs() < 1e-6);
+        let CutShape::Outline { outline, .. } = CutShape::round(at.truncate(), 120.0, None, &geometry) else { panic!() };
+        for p in outline {
+            let off = (world(DVec2::from(p).extend(10.0)) - world(at)).length();
+            assert!((off - 120.0).abs() < 1e-6, "{off}");
         }
     }
 

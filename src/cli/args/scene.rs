@@ -85,6 +85,27 @@ pub(in crate::cli) struct ViewArgs {
     /// Cut a box out; repeat it for several
     #[arg(long, value_name = "IL0,IL1,XL0,XL1,Z0,Z1", allow_hyphen_values = true)]
     pub(in crate::cli) cut_box: Vec<String>,
+    /// Cut everything away that lies before a wall on a line with these corners, two or more: line numbers, or
+    /// well:NAME for the head of a well. The line's ends go on straight
+    #[arg(long, value_name = "IL,XL|well:NAME", num_args = 2.., allow_hyphen_values = false)]
+    pub(in crate::cli) cut_fence: Vec<String>,
+    /// The side of --cut-fence that is cut away, seen along the line on a map with inlines' indices to the right and
+    /// crosslines' upwards [default: the viewer's]
+    #[arg(long, value_name = "left|right", requires = "cut_fence")]
+    pub(in crate::cli) cut_side: Option<String>,
+    /// Lead a curve through the corners of --cut-fence
+    #[arg(long, requires = "cut_fence")]
+    pub(in crate::cli) cut_smooth: bool,
+    /// Cut a round shaft: inline, crossline, radius in metres; repeat it for several
+    #[arg(long, value_name = "IL,XL,RADIUS_M", allow_hyphen_values = true)]
+    pub(in crate::cli) cut_round: Vec<String>,
+    /// Limit --cut-fence and --cut-round to these vertical values
+    #[arg(long, value_name = "Z0,Z1", allow_hyphen_values = true)]
+    pub(in crate::cli) cut_depth: Option<String>,
+    /// Cut everything away above a plane through a place: inline, crossline, vertical value, bearing of its dip and
+    /// dip in degrees; repeat it for several
+    #[arg(long, value_name = "IL,XL,Z,BEARING,DIP", allow_hyphen_values = true)]
+    pub(in crate::cli) cut_plane: Vec<String>,
     /// Show the relief of the topmost horizon instead of a flat top
     #[arg(long, value_name = "on|off")]
     pub(in crate::cli) ground: Option<String>,

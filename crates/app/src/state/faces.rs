@@ -56,7 +56,7 @@ fn boxes(scene: &Scene, geometry: &SurveyGeometry) -> Vec<(Owner, VoxelBox)> {
 pub fn handles(scene: &Scene, geometry: &SurveyGeometry, size: DVec2) -> Vec<Handle> {
     let view = camera::view(scene, geometry, size);
     let block = scene.box_in(geometry);
-    let solid = Solid::new(&block, &scene.cuts_in(geometry));
+    let solid = scene.solid(geometry);
     let mut found = Vec::new();
     for (owner, bounds) in boxes(scene, geometry) {
         let Some(bounds) = bounds.intersection(&block) else { continue };

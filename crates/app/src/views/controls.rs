@@ -1,6 +1,6 @@
 //! The panel on the right: camera, display, block, and named scenes.
 
-use super::notices;
+use super::{cut_shapes, notices};
 use crate::state::{Action, Panel, Place, Session, StandardView, State};
 use eframe::egui::{Button, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
@@ -197,13 +197,15 @@ fn block(ui: &mut Ui, session: &Session, scene: &mut Scene, actions: &mut Vec<Ac
             let corner: Corner = scene.view(geometry).nearest_corner(&block);
             scene.cut_outs = block.stair(corner, [0.6, 0.6], 0.75, 3);
         }
-        if ui.add_enabled(!scene.cut_outs.is_empty(), Button::new("No cut-outs")).clicked() {
+        if ui.add_enabled(scene.has_cut_outs(), Button::new("No cut-outs")).clicked() {
             scene.cut_outs.clear();
+            scene.cut_shapes.clear();
         }
         if ui.add_enabled(scene.roaming_box.is_some(), Button::new("Whole survey")).clicked() {
             scene.roaming_box = None;
         }
     });
+    cut_shapes::show(ui, session, scene);
     let mut handles = session.view.handles;
     if ui.checkbox(&mut handles, "Handles to drag faces (H)").changed() {
         actions.push(Action::Handles(handles));

@@ -5,6 +5,7 @@ pub mod block;
 pub mod candidates;
 pub mod chooser;
 pub mod controls;
+pub mod cut_shapes;
 pub mod data;
 pub mod dropped;
 pub mod export;

@@ -3,7 +3,7 @@
 use crate::state::camera;
 use glam::{DVec2, DVec3, Vec3};
 use project::picture::load::Loaded;
-use render::visible::{Ray, Solid};
+use render::visible::Ray;
 use render::{NamedVolume, Scene};
 
 /// Steps for each voxel of a ray in the search for the ground.
@@ -26,14 +26,14 @@ pub struct Pointed {
 pub fn on_block(loaded: &Loaded, scene: &Scene, size: DVec2, at: DVec2) -> Option<Pointed> {
     let geometry = &loaded.geometry;
     let ray = Ray::from(camera::view(scene, geometry, size).ray(at));
-    let solid = Solid::new(&scene.box_in(geometry), &scene.cuts_in(geometry));
+    let solid = scene.solid(geometry);
     let air = scene.ground.and(loaded.rock.as_ref()).map(|rock| (rock, (rock.model.layer_count() - 1) as u16));
     let mut from = 0.0;
     while let Some(span) = solid.next_span(&ray, from) {
-        let Some((rock, air)) = air else { return Some(at_voxel(loaded, span.entry.point, Some(span.entry.axis))) };
+        let Some((rock, air)) = air else { return Some(at_voxel(loaded, span.entry.point, span.entry.plane.axis)) };
         let is_air = |t: f32| rock.model.region_at(ray.at(t)).layer == air;
         if !is_air(span.entry.t + 1e-3) {
-            return Some(at_voxel(loaded, span.entry.point, Some(span.entry.axis)));
+            return Some(at_voxel(loaded, span.entry.point, span.entry.plane.axis));
         }
         let mut t = span.entry.t;
         while t < span.end {

@@ -105,10 +105,11 @@ pub const SHORTCUTS: &[Shortcut] = &[
     plain(Key::C, "C", "Cut the nearest corner, or remove the cut-outs", |session| {
         let geometry = session.document.geometry.as_ref()?;
         let mut scene = session.view.scene.clone();
-        if scene.cut_outs.is_empty() {
-            scene.cut_outs = vec![super::controls::nearest_cut(&scene, geometry)];
-        } else {
+        if scene.has_cut_outs() {
             scene.cut_outs.clear();
+            scene.cut_shapes.clear();
+        } else {
+            scene.cut_outs = vec![super::controls::nearest_cut(&scene, geometry)];
         }
         show(scene)
     }),

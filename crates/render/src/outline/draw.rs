@@ -141,7 +141,11 @@ fn beside(face: &Face, plane: &SectionPlane) -> [DVec3; 4] {
 
 /// Whether a point of a line on a face is visible: the face itself is, on at least one side of the line.
 fn seen_on_face(resolved: &ResolvedScene, (beside, [low, high]): &([DVec3; 4], [DVec3; 2]), p: DVec3) -> bool {
-    beside.iter().any(|aside| is_seen(resolved, (p + aside * ASIDE).clamp(*low, *high)))
+    beside.iter().any(|aside| {
+        let q = (p + aside * ASIDE).clamp(*low, *high);
+        // A line on an oblique plane goes on beyond the block.
+        q.distance(p) < 3.0 * ASIDE && is_seen(resolved, q)
+    })
 }
 
 /// Whether a point of the ground's edge is visible on a face that looks away from the camera: nothing is in

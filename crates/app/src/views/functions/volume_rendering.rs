@@ -83,7 +83,7 @@ fn place(ui: &mut Ui, session: &Session, volume: &str, next: &mut Scene, actions
     if let Err(error) = volume_rendering::set_volume(next, &session.document, extent, &name) {
         actions.push(Action::Tell(Notice::failure(Place::Data, &error)));
     }
-    if let (Extent::CutOuts, true, Some(geometry)) = (extent, next.cut_outs.is_empty(), &session.document.geometry) {
+    if let (Extent::CutOuts, false, Some(geometry)) = (extent, next.has_cut_outs(), &session.document.geometry) {
         next.cut_outs.push(controls::nearest_cut(next, geometry));
     }
 }
