@@ -118,7 +118,10 @@ pub(super) fn find_wells(cuts: &mut [Cut], project: &Project) -> anyhow::Result<
             let well = wells.iter().flatten().find(|well| well.name == *name);
             let Some(head) = well.and_then(|well| well.path.first()) else {
                 let known: Vec<&str> = project.document().wells.iter().map(|well| well.name.as_str()).collect();
-                anyhow::bail!("the project has no well `{name}` to lead a fence through; its wells: {}", known.join(", "));
+                anyhow::bail!(
+                    "the project has no well `{name}` to lead a fence through; its wells: {}",
+                    known.join(", ")
+                );
             };
             *corner = FenceCorner::Lines(frame.lines_from_voxel(head.truncate()).to_array());
         }
@@ -153,7 +156,7 @@ pub(super) fn change(cuts: &[Cut], scene: &mut Scene, geometry: &SurveyGeometry)
                     FenceCorner::Well(_) => None,
                 };
                 let fence: Vec<[f64; 2]> = corners.iter().filter_map(place).map(DVec2::into).collect();
-                let side = side.unwrap_or_else(|| Side::facing(&fence, &block, &view));
+                let side = side.unwrap_or_else(|| Side::facing(&fence, view.towards_camera(block.centre()).truncate()));
                 scene.cut_shapes.push(CutShape::Fence { fence, side, smooth: *smooth, depth: depth(limits) });
             }
             Cut::Round { lines: [inline, crossline], radius_m, depth: limits } => {

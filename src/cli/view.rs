@@ -4,9 +4,7 @@ use super::args::ViewArgs;
 use super::cut::{self, Cut, LineBox, voxel_box};
 use super::request::{Usage, counts, numbers};
 use project::Project;
-use render::{
-    Background, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked,
-};
+use render::{Background, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked};
 use survey::SurveyGeometry;
 
 /// Changes to a scene; what is `None` stays.

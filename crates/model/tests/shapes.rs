@@ -6,6 +6,7 @@ use model::{ModelError, ModelNote, ModelSettings, StructuralModel, SurfaceProble
 use survey::horizon::{Horizon, NodeGrid, Quality, Sheet};
 use survey::stratigraphy::{Contact, StratigraphicHorizon, Stratigraphy};
 use survey::{Progress, SurveyGeometry, TriangleMesh, VerticalUnit};
+use synth::closed_form::ClosedForm;
 use synth::shapes::{Diapir, Laccolith, RecumbentFold, world};
 
 fn geometry() -> SurveyGeometry {
@@ -107,6 +108,56 @@ fn a_recumbent_fold_of_triangles_repeats_its_beds() {
     assert!(wrong <= 10, "{wrong}");
 }
 
+#[test]
+fn a_laccolith_is_where_it_is() {
+    let laccolith = Laccolith { axis: DVec2::new(740.0, 610.0), base_z: 560.0, radius: 520.0, height: 180.0 };
+    let body = Horizon::of_surface("sill", laccolith.mesh(&geometry(), 120));
+    let model = build(vec![(flat("roof", 300.0), Contact::Conformable), (body, Contact::Intrusive)]).unwrap();
+    // Metres from the outline, at most: along ρ its roof is no steeper than 1.54·H/R, which is less than 1.
+    let near = |at: DVec3| {
+        let rho = at.truncate().distance(laccolith.axis);
+        let share = (1.0 - (rho / laccolith.radius).powi(2)).max(0.0);
+        let roof = laccolith.base_z - laccolith.height * share * share;
+        let beside = (rho - laccolith.radius).abs() < 50.0 && (at.z - laccolith.base_z).abs() < 10.0;
+        beside || rho < laccolith.radius + 5.0 && ((at.z - roof).abs() < 5.0 || (at.z - laccolith.base_z).abs() < 5.0)
+    };
+    let (mut inside, mut wrong) = (0, 0);
+    for p in places().filter(|p| !near(metres(*p))) {
+        let holds = laccolith.holds(metres(p));
+        inside += usize::from(holds);
+        let expected = if holds { 0 } else { 1 + u16::from(metres(p).z < 300.0) };
+        wrong += usize::from(model.region_at(p).layer != expected);
+    }
+    println!("laccolith: {wrong} wrong, {inside} inside");
+    assert!(inside > 300 && wrong == 0, "{wrong} wrong, {inside} inside");
+}
+
+#[test]
+fn a_thrust_repeats_a_layer() {
+    // A reverse fault of 25°; the hanging wall lies on the side of larger x, 11 samples higher.
+    let form = ClosedForm::flat(&geometry(), &[34.0, 46.0]).with_fault(25.0, -11.0);
+    let quiet = Progress::silent();
+    let settings = ModelSettings::default();
+    let model =
+        StructuralModel::build(&geometry(), &form.stratigraphy, &form.horizons, &form.faults, &settings, &quiet)
+            .unwrap();
+    let layer = |p: DVec3| model.region_at(p.as_vec3()).layer;
+    let (mut wrong, mut repeated) = (0, 0);
+    for p in places().map(|p| p.as_dvec3()) {
+        let aside = [DVec3::Z, -DVec3::Z, DVec3::X, -DVec3::X].map(|step| form.layer_at(p + 0.3 * step));
+        if aside == [form.layer_at(p); 4] {
+            wrong += usize::from(layer(p) != form.layer_at(p));
+        }
+    }
+    for x in 0..61 {
+        let at = |z: i32| layer(DVec3::new(f64::from(x), 25.0, f64::from(z)));
+        let entered = (1..80).filter(|z| at(*z) == 1 && at(z - 1) != 1).count();
+        repeated += usize::from(entered == 2);
+    }
+    println!("thrust: {wrong} wrong, layer 1 is met twice by {repeated} columns of 61");
+    assert!(wrong == 0 && repeated >= 8, "{wrong} {repeated}");
+}
+
 /// Scattered points of a bed, as an outcrop model has them.
 fn scattered(fold: &RecumbentFold, age: f64, count: usize, seed: usize) -> TriangleMesh {
     let geometry = geometry();
@@ -147,6 +198,7 @@ fn scattered_points_of_an_overturned_series_need_no_normals() {
             overturned[1] += u32::from(found);
         }
     }
+    println!("right: {right} of {all}, on the overturned limb {overturned:?}");
     assert!(right as f64 > 0.9 * f64::from(all), "{right} of {all}");
     assert!(f64::from(overturned[1]) > 0.88 * f64::from(overturned[0]), "{overturned:?}");
     // The points themselves lie on the surfaces.

@@ -80,6 +80,7 @@ fn patterns_go_around_a_recumbent_fold() {
     let angle = [0.5, 0.95].map(|share| quantile(&mut angles, share));
     let area = [0.05, 0.5, 0.95].map(|share| quantile(&mut areas, share));
     let cross = [0.5, 0.95].map(|share| quantile(&mut across, share));
+    println!("k {k:?} voxels, angles {angle:?}°, j across {cross:?}°, areas {area:?}");
     assert!(k[0] < 0.02 && k[1] < 0.1, "{k:?}");
     assert!(angle[0] < 1.5 && angle[1] < 6.0, "{angle:?}");
     assert!(cross[1] < 0.1, "{cross:?}");

@@ -11,10 +11,10 @@
 //! which gives exact pixel differentials for texture filtering.
 
 use crate::error::SceneError;
-use crate::voxel_box::{Corner, VoxelBox};
 use glam::{DMat3, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
+use survey::block::{Corner, VoxelBox};
 
 /// The position and projection of the camera.
 ///

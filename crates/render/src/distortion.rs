@@ -11,7 +11,6 @@
 //!
 //! Where a face blends several mappings ([`ttf::FaceFrame`]) each counts with its weight.
 
-use crate::body::BodyPlane;
 use crate::camera::ViewRay;
 use crate::error::RenderError;
 use crate::inputs::Inputs;
@@ -24,6 +23,7 @@ use glam::{DMat3, DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use serde::Serialize;
 use survey::Progress;
+use survey::block::BodyPlane;
 
 /// The largest aspect ratio that counts as calm.
 pub const CALM_ASPECT: f32 = 2.0;

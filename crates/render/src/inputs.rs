@@ -2,11 +2,11 @@
 
 use crate::error::RenderError;
 use crate::leaves::{BORDER, BORDER_REACH, BORDER_STEP};
-use crate::voxel_box::VoxelBox;
 use crate::wells::DrawnWell;
 use glam::Vec3;
 use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
+use survey::block::VoxelBox;
 use survey::{SurveyGeometry, Volume};
 use ttf::TtfTables;
 

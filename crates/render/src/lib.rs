@@ -21,10 +21,8 @@
 //!   Pacific Visualization 2010).
 
 pub mod accuracy;
-pub mod body;
 pub mod camera;
 pub mod compare;
-pub mod cut_shape;
 pub mod distortion;
 pub mod error;
 pub mod faces;
@@ -42,11 +40,9 @@ pub mod scene;
 mod shade;
 pub mod vector;
 pub mod visible;
-pub mod voxel_box;
 pub mod wells;
 
 pub use camera::{Camera, Projection, View};
-pub use cut_shape::{CutShape, Side};
 pub use error::{RenderError, SceneError};
 pub use faces::Renderer;
 pub use inputs::{CandidateVolume, Inputs, NamedVolume};
@@ -57,5 +53,5 @@ pub use media::{
 pub use outline::{Outlines, Stroke, Unpicked};
 pub use pick::{PickedObject, PickedPoint, pick};
 pub use scene::{Background, Ground, Lookup, PatternSize, Scene};
-pub use voxel_box::{Corner, VoxelBox};
+pub use survey::block::{Corner, CutShape, Side, VoxelBox};
 pub use wells::{DrawnWell, WellStyle};

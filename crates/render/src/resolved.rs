@@ -1,6 +1,5 @@
 //! A scene and its inputs, checked and with all names resolved: the starting point of both renderers.
 
-use crate::body::BodyPlane;
 use crate::camera::View;
 use crate::error::RenderError;
 use crate::ground::Relief;
@@ -12,11 +11,12 @@ use crate::media::{Faces, IsosurfaceSource};
 use crate::pattern_size::Frequencies;
 use crate::scene::{Lookup, Scene};
 use crate::visible::Solid;
-use crate::voxel_box::VoxelBox;
 use crate::wells::Tubes;
 use glam::{DMat3, DVec3, Vec2, Vec3};
 use model::StructuralModel;
 use param::{PackedVolume, Parameterization};
+use survey::block::BodyPlane;
+use survey::block::VoxelBox;
 use ttf::tables::{LayerEntry, NONE, StopEntry, TtfGlobals};
 use ttf::{FaceFrame, RawColour, TtfTables};
 

@@ -5,16 +5,16 @@
 //! inline index, y = crossline index, z = sample index downwards), line widths and image sizes in pixels.
 
 use crate::camera::{Camera, View};
-use crate::cut_shape::{CutShape, MAX_BODIES, MAX_PLANES};
 use crate::error::SceneError;
 use crate::leaves::FaceData;
 use crate::media::{Faces, Media};
 use crate::outline::Outlines;
 use crate::visible::Solid;
-use crate::voxel_box::VoxelBox;
 use crate::wells::WellStyle;
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
+use survey::block::VoxelBox;
+use survey::block::{CutShape, CutShapeError, MAX_BODIES, MAX_PLANES};
 use ttf::{Colour, RawColour};
 
 /// Largest image side, pixels.
@@ -258,7 +258,8 @@ impl Scene {
             }
         }
         for (n, shape) in self.cut_shapes.iter().enumerate() {
-            shape.validate(n + 1, &roaming_box)?;
+            let refused = |error: CutShapeError| SceneError::CutShape { index: n + 1, reason: error.to_string() };
+            shape.validate(&roaming_box).map_err(refused)?;
         }
         let bodies = self.solid(geometry).cut_outs;
         let planes = bodies.iter().map(|body| body.planes.len()).sum::<usize>();

@@ -9,29 +9,14 @@
 //! Voxel space, f32. Rays have unit direction, so t is in voxels. The shader `visible.wgsl` computes the
 //! same.
 
-use crate::body::{Body, BodyPlane};
 use crate::camera::ViewRay;
-use crate::voxel_box::VoxelBox;
 use glam::Vec3;
+pub use survey::block::Ray;
+use survey::block::VoxelBox;
+use survey::block::{Body, BodyPlane};
 
 /// Boxes closer than this along a ray count as touching, voxels.
 pub const TOUCH: f32 = 1e-3;
-
-/// A ray in voxel space, single precision.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ray {
-    /// A point in front of the block.
-    pub origin: Vec3,
-    /// Unit direction.
-    pub direction: Vec3,
-}
-
-impl Ray {
-    /// The point at distance `t`, voxels.
-    pub fn at(&self, t: f32) -> Vec3 {
-        self.origin + self.direction * t
-    }
-}
 
 impl From<ViewRay> for Ray {
     fn from(ray: ViewRay) -> Self {
@@ -63,7 +48,7 @@ pub struct SolidSpan {
 ///
 /// ```
 /// use glam::Vec3;
-/// use render::body::Body;
+/// use survey::block::Body;
 /// use render::visible::{Ray, Solid};
 /// let cut_out = Body::of_box([Vec3::ZERO, Vec3::new(3.0, 10.0, 10.0)]);
 /// let solid = Solid::new([Vec3::ZERO, Vec3::splat(10.0)], vec![cut_out]);
@@ -184,10 +169,9 @@ mod tests {
         for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {
             let cuts = [[0.0, 2.0], [2.0, 4.0], [3.5, 6.0]];
             let mut solid = block();
-            solid.cut_outs =
-                order
-                    .map(|n| Body::of_box([Vec3::new(cuts[n][0], 0.0, 0.0), Vec3::new(cuts[n][1], 10.0, 10.0)]))
-                    .to_vec();
+            solid.cut_outs = order
+                .map(|n| Body::of_box([Vec3::new(cuts[n][0], 0.0, 0.0), Vec3::new(cuts[n][1], 10.0, 10.0)]))
+                .to_vec();
             assert_eq!(solid.next_span(&along_x(4.0, 6.0), f32::MIN).unwrap().entry.point.x, 6.0);
         }
     }

@@ -6,6 +6,7 @@
 //! - measurements: [`volume`], [`well`];
 //! - the interpretation: [`horizon`], [`fault`], [`stratigraphy`];
 //! - the surfaces on which it is evaluated: [`height_field`], [`mesh`];
+//! - the part of the volume that is drawn, and what is cut out of it: [`block`];
 //! - horizon candidates extracted from a volume: [`candidates`];
 //! - progress and cancellation of long computations: [`progress`];
 //! - what a user can state about a file: [`remedy`];
@@ -26,6 +27,7 @@
 //!
 //! Only [`geometry::SurveyGeometry`] converts between them.
 
+pub mod block;
 pub mod candidates;
 pub mod fault;
 pub mod file;

@@ -51,7 +51,7 @@ fn add(ui: &mut Ui, session: &Session, scene: &mut Scene, geometry: &SurveyGeome
     let along = ui.add_enabled(fence.len() > 1, Button::new("Cut along fence"));
     let along = along.on_hover_text("Cut away what lies before the line of the fence view");
     if along.on_disabled_hover_text("Click the corners of a line in the fence view first").clicked() {
-        let side = Side::facing(fence, &block, &view);
+        let side = Side::facing(fence, view.towards_camera(block.centre()).truncate());
         scene.cut_shapes.push(CutShape::Fence { fence: fence.clone(), side, smooth: false, depth: None });
     }
     // In front of the viewer, so that it is seen at once.
@@ -86,7 +86,12 @@ fn shaft(ui: &mut Ui, outline: &mut [[f64; 2]], name: &str, geometry: &SurveyGeo
     let changed = [
         field(ui, name, "inline", DragValue::new(&mut inline).max_decimals(0)),
         field(ui, name, "crossline", DragValue::new(&mut crossline).max_decimals(0)),
-        field(ui, name, "radius", DragValue::new(&mut radius_m).range(1.0..=1e5).speed(5.0).max_decimals(0).suffix(" m")),
+        field(
+            ui,
+            name,
+            "radius",
+            DragValue::new(&mut radius_m).range(1.0..=1e5).speed(5.0).max_decimals(0).suffix(" m"),
+        ),
     ];
     if changed.iter().any(Response::changed) {
         let moved = geometry.voxel_from_lines(inline, crossline);

@@ -12,7 +12,6 @@
 use super::layout::GridInfo;
 use crate::error::RenderError;
 use crate::gpu::Gpu;
-use crate::body::part_behind;
 use crate::outline::solid::{Face, faces};
 use crate::resolved::{ResolvedScene, shows_depths};
 use glam::DVec3;
@@ -20,6 +19,7 @@ use model::StructuralModel;
 use param::{Parameterization, RegionGrid, SheetRef, SheetSource};
 use rayon::prelude::*;
 use std::sync::Arc;
+use survey::block::part_behind;
 use ttf::tables::NONE;
 
 /// Thickness below which a layer has no inside, voxels, as in `param` and the shader.

@@ -3,9 +3,9 @@
 //! A test reads the WGSL with naga and compares every offset.
 
 use crate::resolved::ResolvedScene;
-use crate::cut_shape::{MAX_BODIES, MAX_PLANES};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec3};
+use survey::block::{MAX_BODIES, MAX_PLANES};
 use ttf::tables::NONE;
 
 /// Side of a workgroup, pixels or cells.

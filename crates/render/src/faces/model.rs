@@ -120,7 +120,8 @@ impl ModelBuffers {
         let calm = param.map_or_else(Vec::new, Parameterization::calm_sheets);
         sheets.extend(calm.iter().map(|sheet| pool.sheet(sheet, [0.0; 2], [last[0], last[1]])));
         let unfoldings = param.map_or_else(Vec::new, Parameterization::unfoldings);
-        let unfolded = unfoldings.iter().map(|of_layer| [0, 1].map(|axis: usize| pool.field(&of_layer[axis]))).collect();
+        let unfolded =
+            unfoldings.iter().map(|of_layer| [0, 1].map(|axis: usize| pool.field(&of_layer[axis]))).collect();
         let centre = Vec3::from_array(size.map(|n| 0.5 * n as f32)).as_dvec3();
         let surfaces = model.faults().surfaces();
         let faults: Vec<FaultInfo> = surfaces

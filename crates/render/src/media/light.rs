@@ -28,8 +28,8 @@ use super::light_grid::{Asked, LightGrid, cells_from_voxel};
 use super::slices::{Carried, carry};
 use crate::camera::View;
 use crate::visible::Solid;
-use crate::voxel_box::VoxelBox;
 use glam::{Mat3, Vec2, Vec3};
+use survey::block::VoxelBox;
 use survey::{Cancelled, Progress};
 
 /// λ and E at the front of every slice, for the cells that matter.

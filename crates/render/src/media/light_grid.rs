@@ -2,8 +2,8 @@
 
 use super::Occlusion;
 use crate::camera::View;
-use crate::voxel_box::VoxelBox;
 use glam::{DMat3, DVec2, DVec3, Mat3, Vec3};
+use survey::block::VoxelBox;
 
 /// Width of the free border around the block, cells, so that light can leave it sideways.
 const MARGIN: f64 = 3.0;

@@ -19,9 +19,9 @@ use super::wide::{Loops, widest};
 use super::windows::{CellWindow, windows};
 use crate::camera::View;
 use crate::visible::{Ray, Solid};
-use crate::voxel_box::VoxelBox;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
+use survey::block::VoxelBox;
 use survey::{Cancelled, Progress};
 
 /// λ and E at the front of every slice, in its window: row by row, slice by slice.

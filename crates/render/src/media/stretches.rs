@@ -44,8 +44,8 @@ pub fn stretches(solid: &Solid, ray: &Ray, [start, stop]: [f32; 2], mut found: i
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Body;
     use glam::Vec3;
+    use survey::block::Body;
 
     #[test]
     fn stretches_alternate_and_end_at_the_stop() {

@@ -6,8 +6,8 @@
 
 use super::light_grid::{Asked, LightGrid};
 use crate::camera::View;
-use crate::voxel_box::VoxelBox;
 use glam::{DVec2, DVec3};
+use survey::block::VoxelBox;
 
 /// A rectangle of cells of a slice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

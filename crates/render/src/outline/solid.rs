@@ -3,11 +3,11 @@
 //! A face is the part of a body's plane that bounds it, with rock on the other side. An edge is a part of a line in which
 //! two planes meet, if the four wedges around it are neither all alike nor form a flat face.
 
-use crate::body::{Body, BodyPlane, part_behind};
 use crate::camera::View;
 use crate::visible::Solid;
 use glam::{DVec2, DVec3, Vec3};
 use model::section::SectionPlane;
+use survey::block::{Body, BodyPlane, part_behind};
 
 /// A side of the box, or a back face of a cut-out. Parts of it may be cut away or hidden.
 #[derive(Debug, Clone, PartialEq)]
@@ -106,10 +106,11 @@ impl Face {
         let t_axis = normal.cross(s_axis);
         let t_axis = if t_axis.z < 0.0 { -t_axis } else { t_axis };
         let place = |p: &DVec3| DVec2::new(s_axis.dot(*p), t_axis.dot(*p));
-        let (least, most) = self.outline.iter().map(place).fold(
-            (DVec2::INFINITY, DVec2::NEG_INFINITY),
-            |(least, most), st| (least.min(st), most.max(st)),
-        );
+        let (least, most) = self
+            .outline
+            .iter()
+            .map(place)
+            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(least, most), st| (least.min(st), most.max(st)));
         let origin = normal * f64::from(self.plane.offset) + s_axis * least.x + t_axis * least.y;
         SectionPlane { origin, s_axis, t_axis, extent: (most - least).to_array() }
     }
@@ -324,7 +325,8 @@ mod tests {
         }
         let on_plane = |p: &DVec3| (DVec3::new(1.0, 1.0, 1.5).dot(*p - DVec3::splat(5.0))).abs() < 1e-3;
         let edges = edge_lines(&solid, &view(&block));
-        let around: f64 = edges.iter().filter(|e| e.ends.iter().all(on_plane)).map(|e| e.ends[0].distance(e.ends[1])).sum();
+        let around: f64 =
+            edges.iter().filter(|e| e.ends.iter().all(on_plane)).map(|e| e.ends[0].distance(e.ends[1])).sum();
         let outline = &sloping.outline;
         let length: f64 = (0..outline.len()).map(|n| outline[n].distance(outline[(n + 1) % outline.len()])).sum();
         assert!((around - length).abs() < 1e-3, "{around} {length}");
@@ -340,7 +342,8 @@ mod tests {
         let solid = Solid::new(Solid::of_boxes(&block, &[]).roaming_box, bodies);
         let edges = edge_lines(&solid, &view(&block));
         let upright = |e: &&EdgeLine| (e.ends[0].z - e.ends[1].z).abs() > 1e-3;
-        let inside = |e: &&EdgeLine| e.ends[0].truncate().min_element() > 0.1 && e.ends[0].truncate().max_element() < 9.9;
+        let inside =
+            |e: &&EdgeLine| e.ends[0].truncate().min_element() > 0.1 && e.ends[0].truncate().max_element() < 9.9;
         assert!(walls > 20 && edges.iter().filter(upright).filter(inside).count() <= 2, "{walls}");
         // The rim of the floor is there.
         assert!(edges.iter().any(|e| e.ends.iter().all(|p| (p.z - 6.0).abs() < 1e-5) && inside(&e)));

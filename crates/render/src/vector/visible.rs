@@ -7,11 +7,11 @@
 //! Over a relief a piece may be partly air; there nothing is cut off, and what is nearer is drawn later
 //! ([`back_to_front`]).
 
-use crate::body::part_behind;
 use crate::camera::View;
 use crate::outline::solid::{Face, faces, is_rock};
 use crate::visible::Solid;
 use glam::{DVec2, DVec3};
+use survey::block::part_behind;
 
 /// How far beside a plane it is asked whether there is rock, voxels.
 const BESIDE: f64 = 1e-3;

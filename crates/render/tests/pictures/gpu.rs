@@ -7,8 +7,8 @@ use crate::block::Block;
 use glam::DVec3;
 use render::compare::compare;
 use render::{
-    Background, Camera, CutShape, Ground, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Projection, RenderError, Renderer,
-    Scene, Side, VoxelBox,
+    Background, Camera, CutShape, Ground, Inputs, Lookup, NamedVolume, Outlines, PatternSize, Projection, RenderError,
+    Renderer, Scene, Side, VoxelBox,
 };
 use survey::Progress;
 use synth::{SynthSettings, Synthetic};

@@ -50,7 +50,7 @@ impl VoxelBox {
     /// All samples of a volume of this size.
     ///
     /// ```
-    /// assert_eq!(render::VoxelBox::of_size([3, 4, 5]).max, [2.0, 3.0, 4.0]);
+    /// assert_eq!(survey::block::VoxelBox::of_size([3, 4, 5]).max, [2.0, 3.0, 4.0]);
     /// ```
     pub fn of_size(size: [usize; 3]) -> Self {
         Self { min: [0.0; 3], max: size.map(|n| n.saturating_sub(1) as f64) }
@@ -92,7 +92,7 @@ impl VoxelBox {
     }
 
     /// Whether every coordinate is a number and every edge has a length.
-    pub(crate) fn is_solid(&self) -> bool {
+    pub fn is_solid(&self) -> bool {
         self.min.iter().chain(&self.max).all(|v| v.is_finite()) && self.extent().min_element() > 0.0
     }
 
@@ -100,7 +100,7 @@ impl VoxelBox {
     /// along y.
     ///
     /// ```
-    /// use render::{Corner, VoxelBox};
+    /// use survey::block::{Corner, VoxelBox};
     /// let block = VoxelBox { min: [0.0; 3], max: [100.0, 80.0, 60.0] };
     /// let cut = block.corner_cut(Corner::MaxMin, [0.4, 0.5]);
     /// assert_eq!((cut.min, cut.max), ([60.0, 0.0, 0.0], [100.0, 40.0, 60.0]));

@@ -1,15 +1,30 @@
 //! Convex bodies of planes, of which a block and what is cut out of it are made.
 //!
-//! A box is six planes. A cut-out of any other shape ([`crate::CutShape`]) is one convex body or several that touch; the
+//! A box is six planes. A cut-out of any other shape ([`super::CutShape`]) is one convex body or several that touch; the
 //! planes in which they touch are seams, where there is no face. Voxel space, f32.
 
-use crate::visible::Ray;
 use glam::{DVec3, Vec3};
 
 /// Components of a direction across a plane smaller than this count as none.
 const PARALLEL: f32 = 1e-12;
 /// Points as near to a seam as this lie in the bodies on both of its sides, voxels.
 const ON_SEAM: f32 = 1e-4;
+
+/// A ray in voxel space, single precision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// A point in front of the block.
+    pub origin: Vec3,
+    /// Unit direction.
+    pub direction: Vec3,
+}
+
+impl Ray {
+    /// The point at distance `t`, voxels.
+    pub fn at(&self, t: f32) -> Vec3 {
+        self.origin + self.direction * t
+    }
+}
 
 /// A plane that bounds a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,10 +61,14 @@ pub struct Body {
 
 /// The interval of t over which a ray is inside a body, and the planes at its ends.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Crossing<'b> {
+pub struct Crossing<'b> {
+    /// Where it begins.
     pub enter: f32,
+    /// Where it ends.
     pub exit: f32,
+    /// The plane at its beginning.
     pub enter_plane: Option<&'b BodyPlane>,
+    /// The plane at its end.
     pub exit_plane: Option<&'b BodyPlane>,
 }
 
@@ -68,13 +87,7 @@ impl BodyPlane {
                 return Self::of_axis(axis, point[axis] as f32, unit[axis].signum() as f32);
             }
         }
-        Self {
-            normal: unit.as_vec3(),
-            offset: unit.dot(point) as f32,
-            axis: None,
-            wall: None,
-            is_seam: false,
-        }
+        Self { normal: unit.as_vec3(), offset: unit.dot(point) as f32, axis: None, wall: None, is_seam: false }
     }
 
     /// Distance of a point from the plane, voxels, positive outside the body.
@@ -83,7 +96,7 @@ impl BodyPlane {
     }
 
     /// A point of a ray on the plane, with what is exact about it.
-    pub(crate) fn settle(&self, p: Vec3) -> Vec3 {
+    pub fn settle(&self, p: Vec3) -> Vec3 {
         match self.axis {
             Some(axis) => {
                 let mut exact = p;
@@ -98,7 +111,8 @@ impl BodyPlane {
 impl Body {
     /// A box.
     pub fn of_box([low, high]: [Vec3; 2]) -> Self {
-        let sides = |axis: usize| [BodyPlane::of_axis(axis, low[axis], -1.0), BodyPlane::of_axis(axis, high[axis], 1.0)];
+        let sides =
+            |axis: usize| [BodyPlane::of_axis(axis, low[axis], -1.0), BodyPlane::of_axis(axis, high[axis], 1.0)];
         Self { planes: (0..3).flat_map(sides).collect() }
     }
 
@@ -113,7 +127,7 @@ impl Body {
     }
 
     /// Where a ray crosses the body; the exit lies before the entry if it does not.
-    pub(crate) fn cross(&self, ray: &Ray) -> Crossing<'_> {
+    pub fn cross(&self, ray: &Ray) -> Crossing<'_> {
         let mut crossing = Crossing { enter: f32::MIN, exit: f32::MAX, enter_plane: None, exit_plane: None };
         for plane in &self.planes {
             let outside = plane.distance(ray.origin);
@@ -177,7 +191,7 @@ impl Body {
 }
 
 /// The part of a convex polygon on which a linear function is not positive.
-pub(crate) fn part_behind(polygon: &[DVec3], side: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
+pub fn part_behind(polygon: &[DVec3], side: impl Fn(DVec3) -> f64) -> Vec<DVec3> {
     let mut part = Vec::new();
     for n in 0..polygon.len() {
         let (a, b) = (polygon[n], polygon[(n + 1) % polygon.len()]);
@@ -198,7 +212,8 @@ mod tests {
 
     /// A pyramid without its base plane: four sloping sides that meet at (0, 0, 0), open downwards.
     fn pyramid() -> Body {
-        let sides = [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y].map(|side| BodyPlane::through(DVec3::ZERO, side - DVec3::Z));
+        let sides =
+            [DVec3::X, -DVec3::X, DVec3::Y, -DVec3::Y].map(|side| BodyPlane::through(DVec3::ZERO, side - DVec3::Z));
         Body { planes: sides.to_vec() }
     }
 
@@ -221,7 +236,8 @@ mod tests {
         let body = pyramid();
         let face = body.face(0, [DVec3::splat(-3.0), DVec3::splat(3.0)]);
         // The triangle from the tip down to z = 3.
-        let area: f64 = (1..face.len() - 1).map(|n| 0.5 * (face[n] - face[0]).cross(face[n + 1] - face[0]).length()).sum();
+        let area: f64 =
+            (1..face.len() - 1).map(|n| 0.5 * (face[n] - face[0]).cross(face[n + 1] - face[0]).length()).sum();
         assert!((area - 9.0 * 2f64.sqrt()).abs() < 1e-4, "{area} {face:?}");
         let block = Body::of_box([Vec3::ZERO, Vec3::splat(2.0)]);
         assert_eq!(block.face(0, [DVec3::ZERO, DVec3::splat(9.0)]).len(), 4);

@@ -4,14 +4,12 @@
 //! by cutting off ears, joined again while they stay convex (S. Hertel and K. Mehlhorn, "Fast triangulation of simple
 //! polygons", 1983).
 
-use crate::body::{Body, BodyPlane, Wall};
-use crate::error::SceneError;
-use crate::camera::View;
-use crate::voxel_box::VoxelBox;
+use super::body::{Body, BodyPlane, Wall};
+use super::voxel_box::VoxelBox;
+use crate::geometry::SurveyGeometry;
 use glam::{DMat2, DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
-use survey::SurveyGeometry;
 
 /// Largest number of planes of all shapes of a scene.
 pub const MAX_PLANES: usize = 400;
@@ -23,15 +21,11 @@ pub const MAX_POINTS: usize = 200;
 /// A cut-out that is no box. Positions are voxels: x = inline index, y = crossline index, z = sample index downwards.
 ///
 /// ```
-/// let scene: render::Scene = toml::from_str("
-///     [[cut_shapes]]
-///     fence = [[5.0, 2.0], [9.0, 7.0], [20.0, 9.0]]
-///     side = 'right'
-///     [[cut_shapes]]
-///     through = [10.0, 10.0, 0.0]
-///     normal = [1.0, 0.0, -1.0]
-/// ").unwrap();
-/// assert!(matches!(scene.cut_shapes[0], render::CutShape::Fence { smooth: false, .. }));
+/// use glam::DVec3;
+/// use survey::block::{CutShape, VoxelBox};
+/// let plane = CutShape::Plane { through: [10.0, 10.0, 0.0], normal: [1.0, 0.0, -1.0] };
+/// let bodies = plane.bodies(&VoxelBox::of_size([41, 31, 21]), [25.0; 2], 0).unwrap();
+/// assert!(bodies[0].holds(DVec3::new(30.0, 3.0, 5.0).as_vec3()));
 /// ```
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged, deny_unknown_fields)]
@@ -69,6 +63,11 @@ pub enum CutShape {
     },
 }
 
+/// Why a cut-out cannot be drawn, and what to change.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct CutShapeError(pub String);
+
 /// A side of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -80,11 +79,10 @@ pub enum Side {
 }
 
 impl Side {
-    /// The side of a line, voxel x and y, on which the camera stands.
-    pub fn facing(line: &[[f64; 2]], block: &VoxelBox, view: &View) -> Self {
+    /// The side of a line, voxel x and y, from which a direction comes.
+    pub fn facing(line: &[[f64; 2]], towards: DVec2) -> Self {
         let (Some(first), Some(last)) = (line.first(), line.last()) else { return Self::Left };
         let along = DVec2::from(*last) - DVec2::from(*first);
-        let towards = view.towards_camera(block.centre()).truncate();
         if along.perp_dot(towards) >= 0.0 { Self::Left } else { Self::Right }
     }
 
@@ -151,9 +149,9 @@ impl CutShape {
     /// Checks the shape by itself.
     ///
     /// # Errors
-    /// The first [`SceneError`] found; `index` counts from 1.
-    pub(crate) fn validate(&self, index: usize, block: &VoxelBox) -> Result<(), SceneError> {
-        let refused = |reason: String| Err(SceneError::CutShape { index, reason });
+    /// What is wrong with it, and what to change.
+    pub fn validate(&self, block: &VoxelBox) -> Result<(), CutShapeError> {
+        let refused = |reason: String| Err(CutShapeError(reason));
         match self {
             Self::Plane { through, normal } => {
                 let length = DVec3::from_array(*normal).length();
@@ -192,7 +190,7 @@ impl CutShape {
 
     /// The convex bodies of the shape; `None` if its line crosses itself. `voxel_m`: metres between voxels along x and
     /// y; `number` is that of its curve.
-    pub(crate) fn bodies(&self, block: &VoxelBox, voxel_m: [f64; 2], number: usize) -> Option<Vec<Body>> {
+    pub fn bodies(&self, block: &VoxelBox, voxel_m: [f64; 2], number: usize) -> Option<Vec<Body>> {
         let outline = match self {
             Self::Plane { through, normal } => {
                 let normal = -DVec3::from_array(*normal);
@@ -233,9 +231,8 @@ impl Outline {
         let (first, last) = (far(line[1], line[0]), far(line[count - 2], line[count - 1]));
         let angle = |p: DVec2| (p - centre).to_angle();
         let turn = (angle(first) - angle(last)).rem_euclid(TAU);
-        let around = (1..FAR_POINTS).map(|n| {
-            centre + DVec2::from_angle(angle(last) + turn * n as f64 / FAR_POINTS as f64) * radius
-        });
+        let around = (1..FAR_POINTS)
+            .map(|n| centre + DVec2::from_angle(angle(last) + turn * n as f64 / FAR_POINTS as f64) * radius);
         let points: Vec<DVec2> = std::iter::once(first).chain(line).chain([last]).chain(around).collect();
         Self { points, walls: count + 1, smooth, depth: None }
     }
@@ -250,9 +247,9 @@ impl Outline {
         }
         self.remove_straight_corners();
         let walls = self.walls(voxel_m, number);
-        let depth = self.depth.map(|[top, bottom]| {
-            [BodyPlane::of_axis(2, top as f32, -1.0), BodyPlane::of_axis(2, bottom as f32, 1.0)]
-        });
+        let depth = self
+            .depth
+            .map(|[top, bottom]| [BodyPlane::of_axis(2, top as f32, -1.0), BodyPlane::of_axis(2, bottom as f32, 1.0)]);
         let body = |corners: &Vec<usize>| {
             let side = |n: usize| {
                 let (a, b) = (corners[n], corners[(n + 1) % corners.len()]);
@@ -420,9 +417,9 @@ fn join_convex(points: &[DVec2], mut parts: Vec<Vec<usize>>) -> Vec<Vec<usize>> 
     };
     let joined = |one: &[usize], other: &[usize]| {
         let (count, more) = (one.len(), other.len());
-        let (n, m) = (0..count).flat_map(|n| (0..more).map(move |m| (n, m))).find(|&(n, m)| {
-            one[n] == other[(m + 1) % more] && one[(n + 1) % count] == other[m]
-        })?;
+        let (n, m) = (0..count)
+            .flat_map(|n| (0..more).map(move |m| (n, m)))
+            .find(|&(n, m)| one[n] == other[(m + 1) % more] && one[(n + 1) % count] == other[m])?;
         let rest = (2..more).map(|k| other[(m + k) % more]);
         let corners: Vec<usize> = (1..=count).map(|k| one[(n + k) % count]).chain(rest).collect();
         is_convex(&corners).then_some(corners)
@@ -467,7 +464,7 @@ mod tests {
 
     #[test]
     fn dips_and_radii_are_those_of_the_ground() {
-        let geometry = SurveyGeometry::regular([41, 31, 21], 25.0, 10.0, survey::VerticalUnit::Metres);
+        let geometry = SurveyGeometry::regular([41, 31, 21], 25.0, 10.0, crate::VerticalUnit::Metres);
         let world = |p: DVec3| geometry.world_from_voxel(p);
         let at = DVec3::new(20.0, 15.0, 10.0);
         // Dips to the south-east by 30°: 100 m in that direction it lies 57.7 m deeper.
@@ -477,7 +474,9 @@ mod tests {
         assert!(inside(57.2) && !inside(58.2));
         let [bearing_deg, dip_deg] = plane.bearing_and_dip(&geometry).unwrap();
         assert!((bearing_deg - 135.0).abs() < 1e-6 && (dip_deg - 30.0).abs() < 1e-6);
-        let CutShape::Outline { outline, .. } = CutShape::round(at.truncate(), 120.0, None, &geometry) else { panic!() };
+        let CutShape::Outline { outline, .. } = CutShape::round(at.truncate(), 120.0, None, &geometry) else {
+            panic!()
+        };
         for p in outline {
             let off = (world(DVec2::from(p).extend(10.0)) - world(at)).length();
             assert!((off - 120.0).abs() < 1e-6, "{off}");
@@ -558,7 +557,13 @@ mod tests {
                 ) / det;
                 // Neighbours meet on the line.
                 let on = |plane: &BodyPlane| plane.distance(meets.extend(0.0).as_vec3()).abs() < 1e-3;
-                if a.dot(b) > (1.3 * TURN).cos() && det.abs() > 1e-6 && on(one) && on(other) && meets.x > 5.0 && meets.x < 30.0 {
+                if a.dot(b) > (1.3 * TURN).cos()
+                    && det.abs() > 1e-6
+                    && on(one)
+                    && on(other)
+                    && meets.x > 5.0
+                    && meets.x < 30.0
+                {
                     let step = (metres(one, meets) - metres(other, meets)).abs();
                     edges += usize::from(step < 1e-2);
                 }
@@ -569,7 +574,7 @@ mod tests {
 
     #[test]
     fn what_is_no_shape_is_refused_with_a_sentence() {
-        let refused = |shape: CutShape| shape.validate(2, &BLOCK).unwrap_err().to_string();
+        let refused = |shape: CutShape| shape.validate(&BLOCK).unwrap_err().to_string();
         let outline = |points: &[[f64; 2]]| CutShape::Outline { outline: points.to_vec(), smooth: false, depth: None };
         assert!(refused(outline(&[[1.0, 1.0], [2.0, 2.0]])).contains("2 points"));
         assert!(refused(outline(&[[0.0, 0.0], [9.0, 9.0], [9.0, 0.0], [0.0, 9.0]])).contains("crosses itself"));
@@ -581,7 +586,7 @@ mod tests {
             smooth: false,
             depth: Some([5.0, 5.0]),
         };
-        assert!(refused(deep).starts_with("cut-out 2"));
+        assert!(refused(deep).contains("depths"));
         let spiral = CutShape::Fence {
             fence: vec![[10.0, 10.0], [20.0, 10.0], [20.0, 20.0], [10.0, 20.0], [10.0, 12.0]],
             side: Side::Left,
