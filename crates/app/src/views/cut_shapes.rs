@@ -84,14 +84,9 @@ fn shaft(ui: &mut Ui, outline: &mut [[f64; 2]], name: &str, geometry: &SurveyGeo
     let lines = geometry.lines_from_voxel(centre);
     let (mut inline, mut crossline, mut radius_m) = (lines.x, lines.y, mean);
     let changed = [
-        field(ui, name, "inline", DragValue::new(&mut inline).max_decimals(0)),
-        field(ui, name, "crossline", DragValue::new(&mut crossline).max_decimals(0)),
-        field(
-            ui,
-            name,
-            "radius",
-            DragValue::new(&mut radius_m).range(1.0..=1e5).speed(5.0).max_decimals(0).suffix(" m"),
-        ),
+        field(ui, name, "inline", DragValue::new(&mut inline).max_decimals(0), ""),
+        field(ui, name, "crossline", DragValue::new(&mut crossline).max_decimals(0), ""),
+        field(ui, name, "radius", DragValue::new(&mut radius_m).range(1.0..=1e5).speed(5.0).max_decimals(0), "m"),
     ];
     if changed.iter().any(Response::changed) {
         let moved = geometry.voxel_from_lines(inline, crossline);
@@ -108,9 +103,9 @@ fn plane(ui: &mut Ui, shape: &mut CutShape, name: &str, geometry: &SurveyGeometr
     let mut z = geometry.vertical.value_at(at.z);
     let unit = geometry.vertical.unit.symbol();
     let changed = [
-        field(ui, name, "at", DragValue::new(&mut z).max_decimals(0).suffix(format!(" {unit}"))),
-        field(ui, name, "dip", DragValue::new(&mut dip_deg).range(0.0..=90.0).max_decimals(0).suffix("°")),
-        field(ui, name, "towards", DragValue::new(&mut bearing_deg).max_decimals(0).suffix("°")),
+        field(ui, name, "at", DragValue::new(&mut z).max_decimals(0), unit),
+        field(ui, name, "dip", DragValue::new(&mut dip_deg).range(0.0..=90.0).max_decimals(0), "°"),
+        field(ui, name, "towards", DragValue::new(&mut bearing_deg).max_decimals(0), "°"),
     ];
     if changed.iter().any(Response::changed) {
         let at = at.truncate().extend(geometry.vertical.index_of(z));
@@ -118,7 +113,12 @@ fn plane(ui: &mut Ui, shape: &mut CutShape, name: &str, geometry: &SurveyGeometr
     }
 }
 
-fn field(ui: &mut Ui, name: &str, what: &str, value: DragValue) -> Response {
+/// A number with its unit, which a screen reader calls by the shape's name.
+fn field(ui: &mut Ui, name: &str, what: &str, value: DragValue, unit: &str) -> Response {
     ui.label(what);
-    ui.name_inputs(format!("{name} {what}"), |ui| ui.add(value))
+    let response = ui.name_inputs(format!("{name} {what}"), |ui| ui.add(value));
+    if !unit.is_empty() {
+        ui.label(unit);
+    }
+    response
 }
