@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Draws README's first picture from the project of `petroglyph demo` (`make demo`), and the blocks with salt and with an
-# overturned limb from synthetic surveys that it makes in a temporary folder:
+# Draws README's first picture, and the same in black and white, from the project of `petroglyph demo` (`make demo`),
+# and the blocks with salt and with an overturned limb from synthetic surveys that it makes in a temporary folder:
 #   docs/readme.sh out/demo/demo.petro [FOLDER]
 set -euo pipefail
 project=$1
@@ -12,6 +12,9 @@ petroglyph=${PETROGLYPH:-target/debug/petroglyph}
     --caption "Block diagram with a corner cut away. The sandstone and marl above the unconformity lie on an eroded \
 fold of sandstone, limestone and shale. Half-arrows show which side of each fault went down, and numbers its throw \
 on the face on which they stand."
+
+"$petroglyph" render "$project" "$folder/demo-black-and-white.png" --cut nearest,0.45,0.45 --blend 0 \
+    --annotate all --size-cm 17x11.5 --dpi 150 --samples 4 --preset black-and-white
 
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT

@@ -13,7 +13,7 @@ use crate::voxel_box::VoxelBox;
 use crate::wells::WellStyle;
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
-use ttf::{Colour, RawColour};
+use ttf::{Colour, Preset, RawColour};
 
 /// Largest image side, pixels.
 pub const MAX_SIDE_PX: u32 = 32_768;
@@ -46,6 +46,9 @@ pub struct Scene {
     pub pattern_size: PatternSize,
     /// How flat coordinates are looked up. Default exact.
     pub lookup: Lookup,
+    /// How colours are printed. Default as they are.
+    #[serde(skip_serializing_if = "Preset::is_colour")]
+    pub preset: Preset,
     /// Colour behind the block. Default white; [`Background::Transparent`] leaves the pixels empty.
     pub background: Background,
     /// Darkening of the side faces on the right, from 0 (unlit) to 0.5. Default 0.
@@ -87,6 +90,7 @@ impl Default for Scene {
             global_frequency: 1.0,
             pattern_size: PatternSize::default(),
             lookup: Lookup::Exact,
+            preset: Preset::Colour,
             background: Background::Colour(Colour::WHITE),
             face_tone: 0.0,
             roaming_box: None,
@@ -168,6 +172,21 @@ impl Scene {
     /// The camera, fitted to the block and the image. The scene must be valid.
     pub fn view(&self, geometry: &SurveyGeometry) -> View {
         View::new(&self.camera, geometry, &self.box_in(geometry), self.exaggeration, self.size_px)
+    }
+
+    /// The same with its own colours as its preset prints them. Those of the layers follow from the transfer functions.
+    #[must_use]
+    pub fn printed(mut self) -> Self {
+        let preset = self.preset;
+        let outlines = &mut self.outlines;
+        for stroke in [&mut outlines.edges, &mut outlines.horizons, &mut outlines.faults] {
+            stroke.colour = preset.line(stroke.colour);
+        }
+        for colour in [&mut self.wells.colour, &mut self.wells.top_colour] {
+            *colour = preset.line(*colour);
+        }
+        self.raw = self.raw.map(|raw| raw.printed(preset));
+        self
     }
 
     /// Whether the edges at the back of the block are drawn behind the media: if the whole box is rendered as

@@ -63,14 +63,14 @@ impl Vision {
     pub const ALL: [Self; 5] =
         [Self::Protanopia, Self::Deuteranopia, Self::Tritanopia, Self::Greyscale, Self::Photocopy];
 
-    /// Its name.
-    pub fn name(self) -> &'static str {
+    /// When it is met, as a phrase.
+    pub fn phrase(self) -> &'static str {
         match self {
-            Self::Protanopia => "protanopia",
-            Self::Deuteranopia => "deuteranopia",
-            Self::Tritanopia => "tritanopia",
-            Self::Greyscale => "greyscale",
-            Self::Photocopy => "photocopy",
+            Self::Protanopia => "with protanopia (blind to red)",
+            Self::Deuteranopia => "with deuteranopia (blind to green)",
+            Self::Tritanopia => "with tritanopia (blind to blue)",
+            Self::Greyscale => "in greyscale",
+            Self::Photocopy => "photocopied",
         }
     }
 

@@ -152,6 +152,17 @@ impl Rock {
         }
     }
 
+    /// The pairs of layers that touch, as positions among the layers, youngest first. Where a scene shows the ground,
+    /// the first layer is left out as air.
+    pub fn touching(&self, scene: &Scene) -> Vec<[usize; 2]> {
+        let youngest = self.model.layer_count() - 1;
+        let pairs = self.model.touching_layers().into_iter();
+        let mut pairs: Vec<_> = pairs.map(|[deep, high]| [high, deep].map(|n| youngest - usize::from(n))).collect();
+        pairs.retain(|pair| scene.ground.is_none() || pair[0] > 0);
+        pairs.sort_unstable();
+        pairs
+    }
+
     /// Metres that k = 0 … 1 spans in each layer, bottom to top: the mean thickness where the layer exists, or the
     /// reference thickness of an open layer.
     fn thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
@@ -266,6 +277,7 @@ pub fn load_within(
     if let Some(raw) = &scene.raw {
         functions.raw = Some(raw.clone());
     }
+    functions = functions.printed(scene.preset);
     let packed = match (&rock, scene.lookup) {
         (Some(rock), Lookup::Packed) => {
             let voxels = rock.voxels(project, geometry.size(), progress)?;
@@ -466,7 +478,7 @@ impl Loaded {
             Some(candidates) => candidates.complete(&mut scene),
             None => scene.media.horizons.retain(|horizon| horizon.name.is_none()),
         }
-        scene
+        scene.printed()
     }
 
     /// The volumes in the form that renderers take.

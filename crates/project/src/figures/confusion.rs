@@ -1,0 +1,55 @@
+//! Layers of a picture that touch and cannot be told apart, by name.
+
+use super::layer_styles;
+use crate::document::Document;
+use crate::error::ProjectError;
+use crate::picture::load::Rock;
+use crate::styles;
+use render::{FaceData, Faces, Scene};
+use serde::Serialize;
+use std::path::Path;
+use ttf::Confusion;
+
+/// Two layers that touch and cannot be told apart.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NamedConfusion {
+    /// Their names, the younger first.
+    pub layers: [String; 2],
+    /// The layer to change, where a change was found that is enough.
+    pub change: Option<String>,
+    /// Under what, and the change.
+    pub confusion: Confusion,
+}
+
+/// The layers that a scene shows side by side and that cannot be told apart by a colour-blind reader, in greyscale or
+/// photocopied; none where it shows no patterns.
+///
+/// # Errors
+/// The patterns of the project cannot be read.
+pub fn confusions(
+    root: &Path,
+    document: &Document,
+    rock: Option<&Rock>,
+    scene: &Scene,
+) -> Result<Vec<NamedConfusion>, ProjectError> {
+    let is_illustrated = scene.blend < 1.0 && scene.face_data == FaceData::Rock && scene.media.faces != Faces::None;
+    let Some(rock) = rock.filter(|_| is_illustrated) else { return Ok(Vec::new()) };
+    let library = styles::pattern_library(root, document)?;
+    let layers = layer_styles(document, &library);
+    let found = ttf::confusions(&layers, &rock.touching(scene), scene.preset, &library)?;
+    let name = |position: usize| layers[position].layer.clone();
+    let named = found.into_iter().map(|confusion| NamedConfusion {
+        layers: confusion.layers.map(name),
+        change: confusion.remedy.as_ref().map(|remedy| name(remedy.layer)),
+        confusion,
+    });
+    Ok(named.collect())
+}
+
+impl std::fmt::Display for NamedConfusion {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [upper, lower] = &self.layers;
+        let under: Vec<&str> = self.confusion.under.iter().map(|vision| vision.phrase()).collect();
+        write!(f, "{upper} and {lower} touch and cannot be told apart {}", under.join(", "))
+    }
+}
