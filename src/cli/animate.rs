@@ -167,7 +167,7 @@ pub(super) fn animate(request: &AnimateRequest, progress: &Progress) -> anyhow::
             "the project has neither horizons nor a volume, so there is nothing to draw; add a horizon or import a volume"
         );
     }
-    let start = prepared(request, &project, request.scene.as_deref(), progress)?;
+    let start = prepared(request, &project, progress)?;
     let motion = match &request.moving {
         Moving::Turntable { turn_deg } => Motion::Turntable { turn_deg: *turn_deg },
         Moving::Section { axis } => Motion::Section { axis: *axis },
@@ -205,13 +205,8 @@ pub(super) fn animate(request: &AnimateRequest, progress: &Progress) -> anyhow::
 }
 
 /// The scene that the motion starts from.
-fn prepared(
-    request: &AnimateRequest,
-    project: &Project,
-    name: Option<&str>,
-    progress: &Progress,
-) -> anyhow::Result<Scene> {
-    let mut start = choose(project, name)?;
+fn prepared(request: &AnimateRequest, project: &Project, progress: &Progress) -> anyhow::Result<Scene> {
+    let mut start = choose(project, request.scene.as_deref())?;
     if !request.has_size {
         // Scenes are as large as figures for print; animations are looked at on a screen.
         let largest = start.size_px[0].max(start.size_px[1]).max(1);

@@ -91,7 +91,7 @@ pub(super) fn figures(
 /// Pairs of layers that are told; others are counted.
 const TOLD: usize = 5;
 
-/// Says which layers that touch cannot be told apart, and what helps.
+/// Says which neighbouring layers cannot be told apart, and what helps.
 pub(super) fn advise(project: &Path, pairs: Vec<NamedConfusion>, report: &mut Report) {
     for pair in pairs.iter().take(TOLD) {
         let remedy = pair.change.as_ref().zip(pair.confusion.remedy.as_ref());
@@ -103,7 +103,7 @@ pub(super) fn advise(project: &Path, pairs: Vec<NamedConfusion>, report: &mut Re
         report.note(format!("{pair}{help}"));
     }
     if pairs.len() > TOLD {
-        report.note(format!("{} more pairs of layers that touch cannot be told apart", pairs.len() - TOLD));
+        report.note(format!("{} more pairs of neighbours cannot be told apart", pairs.len() - TOLD));
     }
     report.field("look_alikes", pairs);
 }

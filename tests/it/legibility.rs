@@ -1,4 +1,4 @@
-//! Layers that touch and look alike are said with what helps, and presets print without colours in every format.
+//! Neighbouring layers that look alike are said with what helps, and presets print without colours in every format.
 
 use crate::program::{project, run_in, words};
 use std::fs;
@@ -32,7 +32,7 @@ fn layers_that_look_alike_are_said_and_the_advice_helps() {
     run_in(at, "layer set p.petro 'Bravo - Unconformity' --pattern sand --colour #40b62f").done();
     let told = notes(at, "");
     assert_eq!(told.len(), 1, "{told:?}");
-    assert!(told[0].starts_with("Alpha - Bravo and Bravo - Unconformity touch"), "{told:?}");
+    assert!(told[0].starts_with("Alpha - Bravo and Bravo - Unconformity are neighbours"), "{told:?}");
     assert!(told[0].contains("deuteranopia") && !told[0].contains("tritanopia"), "{told:?}");
     let json = run_in(at, &format!("render p.petro a.png {SMALL} --json")).done().json();
     assert_eq!(json["look_alikes"][0]["layers"][1], "Bravo - Unconformity");

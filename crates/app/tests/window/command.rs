@@ -195,7 +195,7 @@ fn layers_that_look_alike_are_told_with_a_button_that_helps_and_presets_are_chos
     }
     let is_told = |harness: &Driven| harness.query_by_label("Hard to tell apart").is_some();
     wait(&mut harness, "it is told", is_told);
-    let told = "Top - Base and below Base touch and cannot be told apart";
+    let told = "Top - Base and below Base are neighbours and cannot be told apart";
     assert_eq!(harness.query_all_by_label_contains(told).count(), 1);
     harness.get_by_label_contains("Give below Base").click_accesskit();
     wait(&mut harness, "nothing looks alike", |harness| !is_told(harness));

@@ -1,4 +1,4 @@
-//! Layers of a picture that touch and cannot be told apart, by name.
+//! Layers of a picture that are neighbours and cannot be told apart, by name.
 
 use super::layer_styles;
 use crate::document::Document;
@@ -8,9 +8,9 @@ use crate::styles;
 use render::{FaceData, Faces, Scene};
 use serde::Serialize;
 use std::path::Path;
-use ttf::Confusion;
+use ttf::{Confusion, Vision};
 
-/// Two layers that touch and cannot be told apart.
+/// Two layers that are neighbours and cannot be told apart.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct NamedConfusion {
     /// Their names, the younger first.
@@ -21,8 +21,8 @@ pub struct NamedConfusion {
     pub confusion: Confusion,
 }
 
-/// The layers that a scene shows side by side and that cannot be told apart by a colour-blind reader, in greyscale or
-/// photocopied; none where it shows no patterns.
+/// The layers that touch in the block or follow one another in the column and cannot be told apart by a colour-blind
+/// reader, in greyscale or photocopied; none where the scene shows no patterns.
 ///
 /// # Errors
 /// The patterns of the project cannot be read.
@@ -36,7 +36,7 @@ pub fn confusions(
     let Some(rock) = rock.filter(|_| is_illustrated) else { return Ok(Vec::new()) };
     let library = styles::pattern_library(root, document)?;
     let layers = layer_styles(document, &library);
-    let found = ttf::confusions(&layers, &rock.touching(scene), scene.preset, &library)?;
+    let found = ttf::confusions(&layers, &rock.neighbours(scene), scene.preset, &library)?;
     let name = |position: usize| layers[position].layer.clone();
     let named = found.into_iter().map(|confusion| NamedConfusion {
         layers: confusion.layers.map(name),
@@ -49,7 +49,10 @@ pub fn confusions(
 impl std::fmt::Display for NamedConfusion {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let [upper, lower] = &self.layers;
-        let under: Vec<&str> = self.confusion.under.iter().map(|vision| vision.phrase()).collect();
-        write!(f, "{upper} and {lower} touch and cannot be told apart {}", under.join(", "))
+        write!(f, "{upper} and {lower} are neighbours and cannot be told apart ")?;
+        match &self.confusion.under[..] {
+            under if under.len() == Vision::ALL.len() => f.write_str("by any reader or in any print"),
+            under => f.write_str(&under.iter().map(|vision| vision.phrase()).collect::<Vec<_>>().join(", ")),
+        }
     }
 }

@@ -42,7 +42,7 @@ pub struct MadeFigure {
     pub device: Option<String>,
     /// The duration of the stages.
     pub stages: Vec<Stage>,
-    /// The layers of its blocks that touch and cannot be told apart.
+    /// The neighbouring layers of its blocks that cannot be told apart.
     pub confusions: Vec<NamedConfusion>,
 }
 

@@ -152,14 +152,16 @@ impl Rock {
         }
     }
 
-    /// The pairs of layers that touch, as positions among the layers, youngest first. Where a scene shows the ground,
-    /// the first layer is left out as air.
-    pub fn touching(&self, scene: &Scene) -> Vec<[usize; 2]> {
+    /// The pairs of layers that touch in the block or follow one another in the column, as positions among the layers,
+    /// youngest first. Where a scene shows the ground, the first layer is left out as air.
+    pub fn neighbours(&self, scene: &Scene) -> Vec<[usize; 2]> {
         let youngest = self.model.layer_count() - 1;
-        let pairs = self.model.touching_layers().into_iter();
-        let mut pairs: Vec<_> = pairs.map(|[deep, high]| [high, deep].map(|n| youngest - usize::from(n))).collect();
+        let touching = self.model.touching_layers().into_iter();
+        let touching = touching.map(|[deep, high]| [high, deep].map(|n| youngest - usize::from(n)));
+        let mut pairs: Vec<[usize; 2]> = touching.chain((0..youngest).map(|n| [n, n + 1])).collect();
         pairs.retain(|pair| scene.ground.is_none() || pair[0] > 0);
         pairs.sort_unstable();
+        pairs.dedup();
         pairs
     }
 

@@ -1,4 +1,4 @@
-//! Which layers touch and cannot be told apart, with a button for what helps.
+//! Which neighbouring layers cannot be told apart, with a button for what helps.
 //!
 //! They are compared on a thread of their own, whenever the project, its data or what is shown has changed.
 
