@@ -186,6 +186,10 @@ impl Scene {
             *colour = preset.line(*colour);
         }
         self.raw = self.raw.map(|raw| raw.printed(preset));
+        if preset == Preset::BlackAndWhite {
+            // Paper has no tone.
+            self.face_tone = 0.0;
+        }
         self
     }
 
@@ -315,6 +319,18 @@ mod tests {
         assert!(toml::from_str::<Scene>("exageration = 2.0").is_err());
         let coloured: Scene = toml::from_str("background = '#ffeedd'").unwrap();
         assert_eq!(coloured.background, Background::Colour(Colour::new(0xff, 0xee, 0xdd)));
+    }
+
+    #[test]
+    fn a_scene_without_colours_has_none_of_its_own() {
+        let printed = |preset: Preset| Scene { preset, face_tone: 0.2, ..full() }.printed();
+        let line = Scene::default().wells.top_colour;
+        assert_eq!(printed(Preset::Colour), Scene { face_tone: 0.2, ..full() });
+        let black = printed(Preset::BlackAndWhite);
+        assert_eq!((black.wells.top_colour, black.outlines.faults.colour), (Colour::BLACK, Colour::BLACK));
+        assert_eq!(black.face_tone, 0.0);
+        let grey = printed(Preset::Greyscale);
+        assert_eq!((grey.wells.top_colour, grey.face_tone), (Preset::Greyscale.line(line), 0.2));
     }
 
     #[test]

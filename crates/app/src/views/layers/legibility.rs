@@ -14,6 +14,11 @@ use ttf::Preset;
 /// Pairs that are listed; others are counted.
 const LISTED: usize = 5;
 
+/// Room between sentences and the right end of the panel, points.
+const MARGIN: f32 = 8.0;
+/// Least width of a sentence, points.
+const LEAST: f32 = 80.0;
+
 /// What a comparison depends on: the project's revision, the version of the loaded data, the preset, and whether the
 /// ground is shown and the layers are illustrated.
 type Key = (u64, u64, Preset, bool, bool);
@@ -45,6 +50,15 @@ impl Legibility {
         }
         ui.add_space(8.0);
         ui.separator();
+        ui.scope(|ui| {
+            // Rows above may reach beyond what is seen of the panel; a sentence must not.
+            let seen = ui.clip_rect().right() - ui.cursor().left();
+            ui.set_max_width((seen - MARGIN).clamp(LEAST, ui.available_width().max(LEAST)));
+            self.list(ui, actions);
+        });
+    }
+
+    fn list(&self, ui: &mut Ui, actions: &mut Vec<Action>) {
         ui.strong("Hard to tell apart");
         for pair in self.found.iter().take(LISTED) {
             ui.colored_label(ui.visuals().warn_fg_color, format!("{pair}."));
