@@ -334,7 +334,7 @@ mod tests {
             assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "{name}");
             let bytes = write(&out, kind, shape, |_| Ok(RgbaImage::new(5, 4)), &Progress::silent()).unwrap();
             assert!(out.exists() && bytes > 0);
-            assert_eq!(holds_something(&out).unwrap(), true);
+            assert!(holds_something(&out).unwrap());
             if out.is_dir() { fs::remove_dir_all(&out).unwrap() } else { fs::remove_file(&out).unwrap() }
         }
     }
