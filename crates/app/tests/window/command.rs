@@ -194,6 +194,7 @@ fn layers_that_look_alike_are_told_with_a_button_that_helps_and_presets_are_chos
         applied(&mut harness, &Command::SetLayer(look));
     }
     let is_told = |harness: &Driven| harness.query_by_label("Hard to tell apart").is_some();
+    act(&mut harness, Action::Panel(Panel::Layers));
     wait(&mut harness, "it is told", is_told);
     let told = "Top - Base and below Base are neighbours and cannot be told apart";
     assert_eq!(harness.query_all_by_label_contains(told).count(), 1);

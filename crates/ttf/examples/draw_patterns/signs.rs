@@ -147,8 +147,8 @@ pub fn coal_bony() -> Tile {
         if along < 1.0 { 2.75 * (std::f32::consts::PI * along).sin().powf(0.55) - 0.1 } else { -0.1 }
     };
     let xs: Vec<f32> = (0..=204).map(|step| -0.5 + step as f32 * 0.3).collect();
-    for row in 0..rows.len() {
-        let (top, base) = (rows[row].0, rows[row].0 + 7.5);
+    for (row, &(top, _)) in rows.iter().enumerate() {
+        let base = top + 7.5;
         let upper = xs.iter().map(|&x| [x, top + swell(row, x)]);
         let lower = xs.iter().rev().map(|&x| [x, base - swell(row + 1, x)]);
         tile.filled_polygon(&upper.chain(lower).collect::<Vec<_>>());

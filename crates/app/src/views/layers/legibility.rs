@@ -8,7 +8,7 @@ use eframe::egui::{Button, Ui};
 use project::command::{Command, SetLayer};
 use project::figures::{NamedConfusion, confusions};
 use std::sync::PoisonError;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use ttf::Preset;
 
 /// Pairs that are listed; others are counted.
@@ -40,9 +40,10 @@ impl Legibility {
         rocks: Option<(&Rocks, u64)>,
         actions: &mut Vec<Action>,
     ) {
-        if let Some(found) = self.coming.as_ref().and_then(|coming| coming.try_recv().ok()) {
-            self.found = found;
-            self.coming = None;
+        match self.coming.as_ref().map(Receiver::try_recv) {
+            Some(Ok(found)) => (self.found, self.coming) = (found, None),
+            Some(Err(TryRecvError::Disconnected)) => self.coming = None,
+            Some(Err(TryRecvError::Empty)) | None => {}
         }
         self.follow(ui, session, rocks);
         if self.found.is_empty() {
