@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Draws README's first picture from the project of `petroglyph demo` (`make demo`), and the blocks with salt and with an
-# overturned limb from synthetic surveys that it makes in a temporary folder:
+# Draws README's first picture, and the same in black and white, from the project of `petroglyph demo` (`make demo`),
+# and the blocks with salt and with an overturned limb from synthetic surveys that it makes in a temporary folder:
 #   docs/readme.sh out/demo/demo.petro [FOLDER]
 set -euo pipefail
 project=$1
@@ -17,6 +17,8 @@ on the face on which they stand."
     --cut-fence 101,545 150,585 205,560 260,600 --cut-smooth
 "$petroglyph" render "$project" "$folder/cut-shaft.png" --size 1080x720 --samples 4 --zoom 1.05 \
     --cut-round 170,560,900 --cut-depth 0,900
+"$petroglyph" render "$project" "$folder/demo-black-and-white.png" --cut nearest,0.45,0.45 --blend 0 \
+    --annotate all --size-cm 17x11.5 --dpi 150 --samples 4 --preset black-and-white
 
 made=$(mktemp -d)
 trap 'rm -rf "$made"' EXIT

@@ -3,6 +3,7 @@
 use super::report::Report;
 use super::request::RenderRequest;
 use super::run::scene_file;
+use project::figures::NamedConfusion;
 use project::folder::refuse_inside_project;
 use project::memory_budget;
 use project::picture::{self, Device, Painter};
@@ -47,9 +48,11 @@ pub(super) fn draw(request: &RenderRequest, progress: &Progress) -> anyhow::Resu
         FaceData::Distortion => loaded.distortion(&scene, progress)?,
         _ => Vec::new(),
     };
+    let look_alikes = figures::confusions(project.root(), document, loaded.rock.as_ref(), &scene)?;
     let mut stages = loaded.rock.map(|rock| rock.stages).unwrap_or_default();
     stages.push(stage);
     let mut report = Report::line(written(&request.out, scene.size_px, request.dpi));
+    advise(&request.project, look_alikes, &mut report);
     super::distortion::say(document, &distortion, &mut report);
     let assumed = assumptions(&project, &scene);
     assumed.iter().for_each(|line| {
@@ -85,6 +88,26 @@ pub(super) fn figures(
     Ok(report)
 }
 
+/// Pairs of layers that are told; others are counted.
+const TOLD: usize = 5;
+
+/// Says which neighbouring layers cannot be told apart, and what helps.
+pub(super) fn advise(project: &Path, pairs: Vec<NamedConfusion>, report: &mut Report) {
+    for pair in pairs.iter().take(TOLD) {
+        let remedy = pair.change.as_ref().zip(pair.confusion.remedy.as_ref());
+        let help = remedy.map_or_else(String::new, |(layer, remedy)| {
+            let pattern = remedy.pattern.as_ref().map_or_else(String::new, |name| format!(" --pattern {name}"));
+            let (project, colour) = (project.display(), remedy.colour);
+            format!("; petroglyph layer set {project} {layer:?}{pattern} --colour \"{colour}\" tells them apart")
+        });
+        report.note(format!("{pair}{help}"));
+    }
+    if pairs.len() > TOLD {
+        report.note(format!("{} more pairs of neighbours cannot be told apart", pairs.len() - TOLD));
+    }
+    report.field("look_alikes", pairs);
+}
+
 /// A file that was written, its size in pixels and on paper.
 pub(super) fn written(file: &Path, [width, height]: [u32; 2], dpi: f64) -> String {
     let millimetres = |pixels: u32| f64::from(pixels) / dpi * INCH_MM;
@@ -93,7 +116,7 @@ pub(super) fn written(file: &Path, [width, height]: [u32; 2], dpi: f64) -> Strin
 }
 
 /// The scene that was asked for: a named one, or one from a file.
-fn choose(project: &Project, wanted: Option<&str>) -> anyhow::Result<Scene> {
+pub(super) fn choose(project: &Project, wanted: Option<&str>) -> anyhow::Result<Scene> {
     match wanted {
         Some(file) if file.ends_with(".toml") => scene_file(Path::new(file)),
         name => Ok(scene::choose(project.document(), name)?),

@@ -4,6 +4,7 @@
 //! 0 success, 1 failure, 2 wrong usage. An answer that cannot be written is a failure; a reader that goes away is none.
 //! Control characters in names and files reach no terminal (`plain`).
 
+mod animate;
 mod args;
 mod assembly;
 mod check;

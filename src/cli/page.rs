@@ -2,7 +2,7 @@
 //! blocks, a legend.
 
 use super::args::FigureArgs;
-use super::draw::{assumptions, written};
+use super::draw::{advise, assumptions, written};
 use super::report::Report;
 use super::request::{RenderRequest, Usage, numbers};
 use anyhow::Context;
@@ -130,6 +130,7 @@ impl PageRequest {
             title: self.title.clone(),
             caption: self.caption.clone(),
             interpretation: self.is_interpretation,
+            preset: Some(scene.preset),
         })
     }
 }
@@ -184,6 +185,7 @@ pub(super) fn draw(
     let made = figures::make(project, &figure, &InterpreterView::default(), &settings, progress)?;
     figures::write(&made.page, request.format, &request.out, figure.dpi, &figures::title(project))?;
     let mut report = Report::line(written(&request.out, figure.size_px(), figure.dpi));
+    advise(&request.project, made.confusions, &mut report);
     let blocks = figure.parts.iter().filter_map(|part| match part {
         Part::Block(block) => Some(&block.scene),
         _ => None,

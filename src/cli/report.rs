@@ -9,6 +9,8 @@ use std::process::ExitCode;
 #[derive(Debug, Default)]
 pub(super) struct Report {
     lines: Vec<String>,
+    /// Advice, which is printed on stderr.
+    notes: Vec<String>,
     object: Map<String, Value>,
     /// Whether the answer is that something is wrong: exit code 1.
     is_bad: bool,
@@ -42,6 +44,12 @@ impl Report {
         self
     }
 
+    /// Adds a piece of advice, which people see on stderr.
+    pub(super) fn note(&mut self, line: impl Into<String>) -> &mut Self {
+        self.notes.push(line.into().replace('\n', "\\n"));
+        self
+    }
+
     /// Adds a field for programs.
     pub(super) fn field(&mut self, name: &str, value: impl serde::Serialize) -> &mut Self {
         // Only non-finite floats and maps with odd keys fail to serialise; neither is reported.
@@ -64,6 +72,9 @@ impl Report {
 
     /// Prints the report.
     pub(super) fn print(self, json: bool) -> ExitCode {
+        for note in &self.notes {
+            let _ = writeln!(io::stderr(), "note: {}", plain(note));
+        }
         let written = if json {
             write_out(&plain_json(&Value::Object(self.object).to_string()))
         } else {

@@ -1,5 +1,6 @@
 //! Turns arguments into requests with commands and values, or refuses them as wrong usage.
 
+use super::animate::AnimateRequest;
 use super::args::{
     Action, CreateArgs, DrawingArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction,
     SynthArgs, VolumeAction,
@@ -68,6 +69,8 @@ pub(super) enum Request {
     Parameterize { project: PathBuf, size: Option<[usize; 3]> },
     /// Draw a picture.
     Render(RenderRequest),
+    /// Draw an animation.
+    Animate(AnimateRequest),
     /// Make all figures of a project, with at most so many bytes of memory for the samples of a volume.
     Figures { project: PathBuf, out: PathBuf, device: Device, volume_bytes: Option<u64> },
     /// Open the window.
@@ -175,6 +178,7 @@ impl TryFrom<Action> for Request {
                 Self::Parameterize { project: typed.project, size }
             }
             Action::Render(typed) => Self::Render(render_request(*typed)?),
+            Action::Animate(typed) => Self::Animate((*typed).try_into()?),
             Action::Figures(typed) => {
                 let (device, volume_bytes) = drawing(&typed.drawing)?;
                 Self::Figures { project: typed.project, out: typed.out, device, volume_bytes }
@@ -358,7 +362,7 @@ fn render_request(typed: RenderArgs) -> Result<RenderRequest, Usage> {
 }
 
 /// What draws, and the largest memory for the samples of a volume, bytes.
-fn drawing(typed: &DrawingArgs) -> Result<(Device, Option<u64>), Usage> {
+pub(super) fn drawing(typed: &DrawingArgs) -> Result<(Device, Option<u64>), Usage> {
     let device = match typed.device.as_str() {
         "auto" => Device::Auto,
         "gpu" => Device::Gpu,

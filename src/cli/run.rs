@@ -3,7 +3,7 @@
 use super::report::Report;
 use super::request::{Request, Usage};
 use super::terminal::Terminal;
-use super::{assembly, check, draw, info, list, option};
+use super::{animate, assembly, check, draw, info, list, option};
 use crate::bench;
 use anyhow::Context;
 use formats::{ExportOptions, Format};
@@ -94,6 +94,7 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
         }
         Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,
+        Request::Animate(request) => animate::animate(&request, &progress)?,
         Request::Figures { project, out, device, volume_bytes } => {
             draw::figures(&project, &out, device, volume_bytes, &progress)?
         }

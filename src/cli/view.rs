@@ -6,6 +6,7 @@ use super::request::{Usage, counts, numbers};
 use project::Project;
 use render::{Background, FaceData, Ground, Lookup, Outlines, PatternSize, Projection, Scene, Unpicked};
 use survey::SurveyGeometry;
+use ttf::Preset;
 
 /// Changes to a scene; what is `None` stays.
 #[derive(Debug, Default, Clone, PartialEq)]
@@ -27,6 +28,7 @@ pub(super) struct ViewChanges {
     outlines: Option<Outlines>,
     global_frequency: Option<f32>,
     pattern_size: Option<PatternSize>,
+    preset: Option<Preset>,
     samples: Option<u32>,
     background: Option<Background>,
 }
@@ -91,10 +93,16 @@ impl TryFrom<ViewArgs> for ViewChanges {
                 Some("paper") => Some(PatternSize::Paper),
                 Some(other) => return Err(format!("--pattern-size {other}: expected rock or paper")),
             },
+            preset: typed.preset.as_deref().map(preset).transpose()?,
             samples: typed.samples,
             background,
         })
     }
+}
+
+fn preset(text: &str) -> Result<Preset, Usage> {
+    let known = Preset::ALL.into_iter().find(|preset| preset.name() == text);
+    known.ok_or_else(|| format!("--preset {text}: expected {}", Preset::ALL.map(Preset::name).join(", ")))
 }
 
 fn switch<T>(option: &str, text: Option<&str>, on: T, off: T) -> Result<Option<T>, Usage> {
@@ -127,6 +135,7 @@ impl ViewChanges {
         scene.outlines = self.outlines.unwrap_or(scene.outlines);
         scene.global_frequency = self.global_frequency.unwrap_or(scene.global_frequency);
         scene.pattern_size = self.pattern_size.unwrap_or(scene.pattern_size);
+        scene.preset = self.preset.unwrap_or(scene.preset);
         scene.samples = self.samples.unwrap_or(scene.samples);
         scene.background = self.background.unwrap_or(scene.background);
         cut::change(&self.cuts, scene, geometry);
@@ -213,6 +222,7 @@ mod tests {
         refused(ViewArgs { cut_depth: Some("1,2".into()), ..ViewArgs::default() });
         refused(ViewArgs { size: Some("800".into()), ..ViewArgs::default() });
         refused(ViewArgs { lookup: Some("fast".into()), ..ViewArgs::default() });
+        refused(ViewArgs { preset: Some("sepia".into()), ..ViewArgs::default() });
         refused(ViewArgs { background: Some("red".into()), ..ViewArgs::default() });
     }
 }

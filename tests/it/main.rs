@@ -1,5 +1,6 @@
 //! Drives the real program in temporary folders: what a user types, what comes out, what is left on disk.
 
+mod animation;
 mod app;
 mod assembly;
 mod bad_input;
@@ -17,6 +18,7 @@ mod foreign;
 mod help;
 mod hostile;
 mod kill;
+mod legibility;
 #[cfg(target_os = "linux")]
 mod memory;
 mod program;

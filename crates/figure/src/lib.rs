@@ -8,6 +8,7 @@
 //! |---|---|
 //! | [`list`] | the page as data |
 //! | [`mod@raster`] | a page as pixels |
+//! | [`animation`] | pictures that follow one another, as one file |
 //! | [`svg()`] | a page as an SVG document |
 //! | [`pdf()`] | a page as a PDF document |
 //! | [`cut`] | sections and fences as data: rasters and lines |
@@ -21,6 +22,7 @@
 //! down). Absent here: files, projects, windows, and any drawing of rock: blocks come from a
 //! [`BlockPainter`](draw::block::BlockPainter).
 
+pub mod animation;
 mod annotation;
 mod compress;
 pub mod cut;

@@ -127,6 +127,7 @@ pub fn make(
     // The legend explains what is drawn before it.
     panels.append(&mut list.items);
     list.items = panels;
+    list.print(figure.printed_in());
     Ok(list)
 }
 

@@ -10,6 +10,7 @@ use crate::draw::section::Zoom;
 use glam::DVec2;
 use render::{FaceData, Scene};
 use serde::{Deserialize, Serialize};
+use ttf::Preset;
 
 /// Centimetres in an inch.
 const INCH_CM: f64 = 2.54;
@@ -53,6 +54,9 @@ pub struct Figure {
     pub caption: Option<String>,
     /// Whether it shows what an interpreter sees, sheets as they were picked, instead of the model. Default no.
     pub interpretation: bool,
+    /// How its colours are printed. Default as its first block's scene says.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub preset: Option<Preset>,
 }
 
 impl Default for Figure {
@@ -69,6 +73,7 @@ impl Default for Figure {
             title: None,
             caption: None,
             interpretation: false,
+            preset: None,
         }
     }
 }
@@ -77,6 +82,15 @@ impl Figure {
     /// A figure of one part.
     pub fn of(part: Part) -> Self {
         Self { parts: vec![part], ..Self::default() }
+    }
+
+    /// How its colours are printed.
+    pub fn printed_in(&self) -> Preset {
+        let block = self.parts.iter().find_map(|part| match part {
+            Part::Block(block) => Some(block.scene.preset),
+            _ => None,
+        });
+        self.preset.or(block).unwrap_or_default()
     }
 
     /// Its size in pixels.

@@ -62,6 +62,7 @@ mod settings;
 mod sheets;
 mod strays;
 mod structural;
+mod touching;
 
 pub use contacts::ContactRules;
 pub use levels::{CutLattice, Equations, LevelSurface, NodeBox, Terms, check_surface, is_closed, resampled};

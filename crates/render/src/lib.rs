@@ -31,6 +31,7 @@ pub mod ground;
 pub mod inputs;
 pub mod leaves;
 pub mod media;
+pub mod motion;
 pub mod outline;
 mod pattern_size;
 pub mod pick;
@@ -50,6 +51,7 @@ pub use leaves::FaceData;
 pub use media::{
     Faces, Interleaved, Isosurface, IsosurfaceSource, Media, Medium, Occlusion, Phong, PickedHorizon, Scope, Shading,
 };
+pub use motion::Motion;
 pub use outline::{Outlines, Stroke, Unpicked};
 pub use pick::{PickedObject, PickedPoint, pick};
 pub use scene::{Background, Ground, Lookup, PatternSize, Scene};

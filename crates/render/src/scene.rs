@@ -13,9 +13,8 @@ use crate::visible::Solid;
 use crate::wells::WellStyle;
 use serde::{Deserialize, Serialize};
 use survey::SurveyGeometry;
-use survey::block::VoxelBox;
-use survey::block::{CutShape, CutShapeError, MAX_BODIES, MAX_PLANES};
-use ttf::{Colour, RawColour};
+use survey::block::{CutShape, CutShapeError, MAX_BODIES, MAX_PLANES, VoxelBox};
+use ttf::{Colour, Preset, RawColour};
 
 /// Largest image side, pixels.
 pub const MAX_SIDE_PX: u32 = 32_768;
@@ -48,6 +47,9 @@ pub struct Scene {
     pub pattern_size: PatternSize,
     /// How flat coordinates are looked up. Default exact.
     pub lookup: Lookup,
+    /// How colours are printed. Default as they are.
+    #[serde(skip_serializing_if = "Preset::is_colour")]
+    pub preset: Preset,
     /// Colour behind the block. Default white; [`Background::Transparent`] leaves the pixels empty.
     pub background: Background,
     /// Darkening of the side faces on the right, from 0 (unlit) to 0.5. Default 0.
@@ -91,6 +93,7 @@ impl Default for Scene {
             global_frequency: 1.0,
             pattern_size: PatternSize::default(),
             lookup: Lookup::Exact,
+            preset: Preset::Colour,
             background: Background::Colour(Colour::WHITE),
             face_tone: 0.0,
             roaming_box: None,
@@ -173,6 +176,25 @@ impl Scene {
     /// The camera, fitted to the block and the image. The scene must be valid.
     pub fn view(&self, geometry: &SurveyGeometry) -> View {
         View::new(&self.camera, geometry, &self.box_in(geometry), self.exaggeration, self.size_px)
+    }
+
+    /// The same with its own colours as its preset prints them. Those of the layers follow from the transfer functions.
+    #[must_use]
+    pub fn printed(mut self) -> Self {
+        let preset = self.preset;
+        let outlines = &mut self.outlines;
+        for stroke in [&mut outlines.edges, &mut outlines.horizons, &mut outlines.faults] {
+            stroke.colour = preset.line(stroke.colour);
+        }
+        for colour in [&mut self.wells.colour, &mut self.wells.top_colour] {
+            *colour = preset.line(*colour);
+        }
+        self.raw = self.raw.map(|raw| raw.printed(preset));
+        if preset == Preset::BlackAndWhite {
+            // Paper has no tone.
+            self.face_tone = 0.0;
+        }
+        self
     }
 
     /// Whether the edges at the back of the block are drawn behind the media: if the whole box is rendered as
@@ -329,6 +351,18 @@ mod tests {
         assert!(toml::from_str::<Scene>("exageration = 2.0").is_err());
         let coloured: Scene = toml::from_str("background = '#ffeedd'").unwrap();
         assert_eq!(coloured.background, Background::Colour(Colour::new(0xff, 0xee, 0xdd)));
+    }
+
+    #[test]
+    fn a_scene_without_colours_has_none_of_its_own() {
+        let printed = |preset: Preset| Scene { preset, face_tone: 0.2, ..full() }.printed();
+        let line = Scene::default().wells.top_colour;
+        assert_eq!(printed(Preset::Colour), Scene { face_tone: 0.2, ..full() });
+        let black = printed(Preset::BlackAndWhite);
+        assert_eq!((black.wells.top_colour, black.outlines.faults.colour), (Colour::BLACK, Colour::BLACK));
+        assert_eq!(black.face_tone, 0.0);
+        let grey = printed(Preset::Greyscale);
+        assert_eq!((grey.wells.top_colour, grey.face_tone), (Preset::Greyscale.line(line), 0.2));
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::layer::check_unit;
-use crate::{Colour, LayerTtf, RgbaFunction, ScalarTtf, TextureLibrary, TtfError};
+use crate::{Colour, LayerTtf, Preset, RgbaFunction, ScalarTtf, TextureLibrary, TtfError};
 
 /// The transfer functions of a scene.
 ///
@@ -37,11 +37,14 @@ pub struct TtfSettings {
     pub blend: f32,
     /// Factor on every frequency (P-illus 4.2), above 0. Default 1.
     pub global_frequency: f32,
+    /// How colours are printed. Default as they are.
+    #[serde(skip_serializing_if = "Preset::is_colour")]
+    pub preset: Preset,
 }
 
 impl Default for TtfSettings {
     fn default() -> Self {
-        Self { blend: 0.0, global_frequency: 1.0 }
+        Self { blend: 0.0, global_frequency: 1.0, preset: Preset::Colour }
     }
 }
 
@@ -64,6 +67,13 @@ fn no_data_grey() -> Option<Colour> {
 }
 
 impl RawColour {
+    /// The same in a preset.
+    #[must_use]
+    pub fn printed(self, preset: Preset) -> Self {
+        let function = preset.measured(&self.function);
+        Self { function, no_data: self.no_data.map(|colour| preset.area(colour)), ..self }
+    }
+
     /// A volume coloured by a function; missing data in light grey.
     pub fn new(volume: &str, function: RgbaFunction) -> Self {
         Self { volume: volume.to_owned(), no_data: no_data_grey(), function }
@@ -71,6 +81,14 @@ impl RawColour {
 }
 
 impl TransferFunctions {
+    /// The same in a preset; styles follow when they are compiled.
+    #[must_use]
+    pub fn printed(mut self, preset: Preset) -> Self {
+        self.settings.preset = preset;
+        self.raw = self.raw.map(|raw| raw.printed(preset));
+        self
+    }
+
     /// Checks that this can be drawn.
     ///
     /// # Errors

@@ -2,8 +2,8 @@
 //!
 //! The names are the 265 terms of the CGI simple lithology vocabulary (`textures/rocks.tsv`, CC BY 4.0), in which each
 //! term has broader ones. A term without a pattern of its own takes that of the nearest broader one. A name that is no
-//! term is looked for among the patterns ("oolitic limestone" is `limestone-oolitic`) and then by its last words, where
-//! English has the rock ("dark grey shale" is a shale).
+//! term is looked for among the patterns ("oolitic limestone" is `limestone-oolitic`), then among the other names that
+//! terms have, and then by its last words, where English has the rock ("dark grey shale" is a shale).
 
 use std::collections::{BTreeSet, VecDeque};
 
@@ -63,22 +63,23 @@ fn words(name: &str) -> Vec<String> {
 pub fn rock(name: &str, patterns: &[&str]) -> Option<RockPattern> {
     let asked = words(name);
     let known: Vec<Term> = terms().collect();
-    let called = |asked: &[String]| {
-        let is_named = |term: &&Term| words(term.name) == asked;
-        // Of terms that share an alternative the rocks come after the loose sediments.
-        let is_also = |term: &&Term| term.alternatives.iter().any(|name| words(name) == asked);
-        let found = known.iter().find(is_named).or_else(|| known.iter().rfind(is_also));
+    let named = |asked: &[String]| {
+        let found = known.iter().find(|term| words(term.name) == asked);
         found.and_then(|term| climbed(term, &known, patterns))
     };
-    if let Some(found) = called(&asked) {
-        return Some(found);
-    }
-    let same_words =
-        |pattern: &&&str| words(pattern).into_iter().collect::<BTreeSet<_>>() == asked.iter().cloned().collect();
-    if let Some(pattern) = patterns.iter().find(same_words) {
-        return Some(RockPattern { term: (*pattern).to_owned(), pattern: (*pattern).to_owned() });
-    }
-    (1..asked.len()).find_map(|from| called(&asked[from..]))
+    let of_pattern = |asked: &[String]| {
+        let set = |words: &[String]| words.iter().cloned().collect::<BTreeSet<_>>();
+        let found = patterns.iter().find(|pattern| set(&words(pattern)) == set(asked));
+        found.map(|pattern| RockPattern { term: (*pattern).to_owned(), pattern: (*pattern).to_owned() })
+    };
+    let also_called = |asked: &[String]| {
+        // Of terms that share an alternative the rocks come after the loose sediments.
+        let is_also = |term: &&Term| term.alternatives.iter().any(|name| words(name) == asked);
+        known.iter().rfind(is_also).and_then(|term| climbed(term, &known, patterns))
+    };
+    // A pattern says more than another name of a term: loess is drawn as loess, not as silt.
+    let called = |asked: &[String]| named(asked).or_else(|| of_pattern(asked)).or_else(|| also_called(asked));
+    (0..asked.len()).find_map(|from| called(&asked[from..]))
 }
 
 /// The pattern of a term or of the nearest broader one that has one.
@@ -127,6 +128,15 @@ mod tests {
             ("travertine", "limestone"),
             ("Marlstone", "marl"),
             ("rock salt", "salt"),
+            ("foid bearing gabbro", "gabbro"),
+            ("pyroxenite", "peridotite"),
+            ("quartz latite", "dacite"),
+            ("wacke", "graywacke"),
+            ("migmatite", "gneiss-contorted"),
+            ("obsidian or other glassy igneous rock", "vitrophyre"),
+            ("loess", "loess"),
+            ("red cross-bedded limestone", "limestone"),
+            ("cherty dolostone", "dolostone-cherty"),
         ];
         assert_eq!(expected.map(|(name, _)| of(name)), expected.map(|(_, pattern)| pattern.to_owned()));
     }

@@ -1,6 +1,9 @@
 //! The contact sheet: every texture of a library at printed size on its colour, with its name and FGDC number
 //! below.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use image::{Rgba, RgbaImage};
 
 use crate::text::{draw_text, measure_text};
@@ -27,6 +30,20 @@ const SMALL_LETTERS: Colour = Colour::new(0x66, 0x60, 0x58);
 /// # Errors
 /// A drawing that cannot be rasterised.
 pub fn contact_sheet(library: &TextureLibrary) -> Result<RgbaImage, TtfError> {
+    contact_sheet_beside(library, &BTreeMap::new())
+}
+
+/// A drawing to look at beside one of ours: its pixels, and the printed width and height of its tile in millimetres.
+pub type TileBeside = (Arc<Texture>, [f32; 2]);
+
+/// Draws [`contact_sheet`], and in the right half of a swatch, on white, the tile of the same FGDC number in `beside`.
+///
+/// # Errors
+/// A drawing that cannot be rasterised.
+pub fn contact_sheet_beside(
+    library: &TextureLibrary,
+    beside: &BTreeMap<u16, TileBeside>,
+) -> Result<RgbaImage, TtfError> {
     let px = |mm: f32| (mm * PIXELS_PER_MM).round() as u32;
     let rows = library.len().div_ceil(COLUMNS).max(1);
     let pitch = [SWATCH_MM[0] + GAP_MM[0], SWATCH_MM[1] + GAP_MM[1]];
@@ -36,16 +53,33 @@ pub fn contact_sheet(library: &TextureLibrary) -> Result<RgbaImage, TtfError> {
     for (index, pattern) in library.patterns().enumerate() {
         let left = px(MARGIN_MM + pitch[0] * (index % COLUMNS) as f32);
         let top = px(MARGIN_MM + pitch[1] * (index / COLUMNS) as f32);
-        draw_swatch(&mut sheet, [left, top], pattern, library.texture(index)?.as_ref());
+        let [wide, high] = SWATCH_MM.map(px);
+        let other = pattern.fgdc.and_then(|number| beside.get(&number));
+        let own = if other.is_some() { wide / 2 } else { wide };
+        let background = pattern.colour.to_unit();
+        draw_swatch(
+            &mut sheet,
+            [left, top],
+            [own, high],
+            background,
+            (library.texture(index)?.as_ref(), pattern.tile_mm),
+        );
+        if let Some((texture, tile_mm)) = other {
+            draw_swatch(&mut sheet, [left + own, top], [wide - own, high], [1.0; 3], (texture, *tile_mm));
+        }
         label(&mut sheet, [left as f32, (top + px(SWATCH_MM[1])) as f32], pattern);
     }
     Ok(sheet)
 }
 
-fn draw_swatch(sheet: &mut RgbaImage, corner: [u32; 2], pattern: &Pattern, texture: &Texture) {
-    let size = SWATCH_MM.map(|side| (side * PIXELS_PER_MM).round() as u32);
-    let background = pattern.colour.to_unit();
-    let step = pattern.tile_mm.map(|side| 1.0 / (side * PIXELS_PER_MM * SUPERSAMPLES as f32));
+fn draw_swatch(
+    sheet: &mut RgbaImage,
+    corner: [u32; 2],
+    size: [u32; 2],
+    background: [f32; 3],
+    (texture, tile_mm): (&Texture, [f32; 2]),
+) {
+    let step = tile_mm.map(|side| 1.0 / (side * PIXELS_PER_MM * SUPERSAMPLES as f32));
     for y in 0..size[1] {
         for x in 0..size[0] {
             let edge = x == 0 || y == 0 || x == size[0] - 1 || y == size[1] - 1;

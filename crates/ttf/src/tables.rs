@@ -191,6 +191,7 @@ impl TtfTables {
                 .style(&layer.name)
                 .cloned()
                 .unwrap_or_else(|| LayerTtf::default_style(&layer.name, index, library));
+            let style = functions.settings.preset.layer(&style);
             let first_interval = intervals.len() as u32;
             slots.add_intervals(&style, block, layer.thickness_m, &mut intervals)?;
             let [r, g, b] = style.colour.to_unit();

@@ -1,5 +1,6 @@
 //! The arguments of the command line.
 
+mod animate;
 mod assembly;
 mod attribute;
 mod extraction;
@@ -11,6 +12,7 @@ mod scene;
 mod segy;
 mod well;
 
+pub(super) use animate::AnimateArgs;
 pub(super) use assembly::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
 pub(super) use attribute::AttributeArgs;
 pub(super) use extraction::ExtractArgs;
@@ -168,6 +170,13 @@ pub(super) enum Action {
                       A figure in project.toml, with the words of `render --figure` (guide: Batches of figures):\
                       \n  [[figures]]\n  file = \"block.pdf\"\n  scene = \"corner\"\n  size = { cm = [16.0, 11.0] }\n  legend = true")]
     Figures(FiguresArgs),
+    /// Draw an animation: around the block, from illustration to raw data, through the block, or between two scenes
+    #[command(after_help = "Animated PNG, GIF and numbered frames are written; animated WebP and films are not.\n\n\
+                      Examples:\n  petroglyph animate north.petro turn.png --frames 72 --size 800x600\
+                      \n  petroglyph animate north.petro blend.gif --motion blend --cut nearest,0.45,0.45\
+                      \n  petroglyph animate north.petro sections.gif --motion section --along crossline\
+                      \n  petroglyph animate north.petro frames --scene overview --to corner --once")]
+    Animate(Box<AnimateArgs>),
     /// Open the window, for the whole work from volume to picture
     #[command(after_help = "Examples:\n  petroglyph view\n  petroglyph view north.petro")]
     View {

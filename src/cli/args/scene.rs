@@ -133,6 +133,10 @@ pub(in crate::cli) struct ViewArgs {
     /// keep the size that they have where the whole survey fits the picture
     #[arg(long, value_name = "rock|paper")]
     pub(in crate::cli) pattern_size: Option<String>,
+    /// Colours, black patterns on white, or shades of grey. What is measured stays in shades of grey where there are no
+    /// colours
+    #[arg(long, value_name = "colour|black-and-white|greyscale")]
+    pub(in crate::cli) preset: Option<String>,
     /// Samples per pixel along each axis
     #[arg(long, value_name = "N")]
     pub(in crate::cli) samples: Option<u32>,

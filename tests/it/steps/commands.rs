@@ -177,11 +177,12 @@ pub const LOOKING: [Scenario; 9] = [
 ];
 
 /// What is computed, drawn and exported.
-pub const COMPUTING: [Scenario; 8] = [
+pub const COMPUTING: [Scenario; 9] = [
     of(Imported, "attribute p.petro --kind envelope --name strength"),
     of(Imported, "parameterize p.petro --size 6x6x6"),
     of(Imported, "render p.petro a.png --size 16x12 --samples 1 --device cpu"),
     of(Imported, "render p.petro a.png --inline 4 --size-cm 3x2"),
+    of(Imported, "animate p.petro a.gif --frames 2 --size 16x12 --samples 1 --device cpu"),
     after(Imported, with_figures, "figures p.petro out"),
     of(Imported, "export p.petro top.irap --horizon Top --format irap"),
     of(Imported, "export p.petro out.sgy --volume seismic"),

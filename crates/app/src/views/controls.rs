@@ -2,11 +2,12 @@
 
 use super::{cut_shapes, notices};
 use crate::state::{Action, Panel, Place, Session, StandardView, State};
-use eframe::egui::{Button, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
+use eframe::egui::{Button, ComboBox, DragValue, Grid, ScrollArea, Slider, TextEdit, Ui};
 use glam::DVec3;
 use project::command::{AddScene, Command, RemoveScene};
 use render::{Corner, Ground, PatternSize, Projection, Scene, VoxelBox};
 use survey::VerticalUnit;
+use ttf::Preset;
 
 /// Opening angle that a perspective starts with.
 const FOV_DEG: f64 = 35.0;
@@ -122,6 +123,18 @@ fn display(ui: &mut Ui, session: &Session, scene: &mut Scene) {
                     scene.pattern_size = if on_paper { PatternSize::Paper } else { PatternSize::Rock };
                 }
                 constant
+            });
+        }
+        if has_layers {
+            row(ui, "Print in", |ui| {
+                let words = |preset: Preset| preset.name().replace('-', " ");
+                let shown = ComboBox::from_id_salt("preset").selected_text(words(scene.preset));
+                let shown = shown.show_ui(ui, |ui| {
+                    for preset in Preset::ALL {
+                        ui.selectable_value(&mut scene.preset, preset, words(preset));
+                    }
+                });
+                shown.response
             });
         }
         row(ui, "Face tone", |ui| ui.add(Slider::new(&mut scene.face_tone, 0.0..=0.5).max_decimals(2)));

@@ -55,6 +55,7 @@ impl Page {
             title: said(&form.title),
             caption: said(&form.caption),
             interpretation: is_interpreting,
+            preset: Some(session.view.scene.preset),
         };
         let view = interpreter_view(session, overlay.selected());
         Some(Self { root: session.root.clone(), figure, view, path: form.path.clone() })

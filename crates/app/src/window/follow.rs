@@ -7,7 +7,7 @@ use crate::work::{Event, Purpose, Seen, Wanted};
 use eframe::egui::Context;
 use project::command::Command;
 use std::path::Path;
-use ttf::{LayerStyle, RawColour};
+use ttf::{LayerStyle, Preset, RawColour};
 
 /// What the loaded data depend on.
 #[derive(PartialEq)]
@@ -19,6 +19,7 @@ pub(super) struct Needs {
     /// The draft of the raw colours.
     raw: Option<RawColour>,
     exaggeration: f64,
+    preset: Preset,
     /// The volumes and horizons of the volume rendering.
     seen: Seen,
     /// While interpreting: the extraction whose candidates are shown, if any are.
@@ -120,12 +121,14 @@ impl Window {
             document.faults.clear();
             document.sticks.clear();
             document.layer_names.clear();
-            Wanted { root, document, exaggeration: 1.0, purpose: Purpose::Interpret { extraction } }
+            let purpose = Purpose::Interpret { extraction };
+            Wanted { root, document, exaggeration: 1.0, preset: Preset::Colour, purpose }
         } else {
             Wanted {
                 root,
                 document,
                 exaggeration: needs.exaggeration,
+                preset: needs.preset,
                 purpose: Purpose::Illustrate(needs.seen.clone()),
             }
         };
@@ -146,6 +149,7 @@ impl Window {
             layer: self.layers.draft().cloned(),
             raw: self.functions.draft().cloned(),
             exaggeration: session.view.scene.exaggeration,
+            preset: session.view.scene.preset,
             seen: Seen::of(&session.view.scene),
             interpreting: (session.view.panel == Panel::Interpret).then(extraction),
         }

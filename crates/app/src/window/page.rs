@@ -79,7 +79,8 @@ impl Window {
         ui.separator();
         match session.view.panel {
             Side::Layers => {
-                self.layers.show(ui, &self.state, session, &self.swatches, &mut self.tiles, actions);
+                let rocks = self.rocks.as_ref().map(|(rocks, version)| (rocks, *version));
+                self.layers.show(ui, &self.state, session, (&self.swatches, rocks), &mut self.tiles, actions);
             }
             Side::Data => self.data.show(ui, &self.state, session, actions),
             Side::Interpret => {

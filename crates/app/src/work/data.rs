@@ -18,7 +18,7 @@ use render::{FaceData, Medium, PickedHorizon, Scene};
 use std::path::PathBuf;
 use std::sync::{Arc, PoisonError, RwLock};
 use survey::Progress;
-use ttf::{Colour, TtfTables};
+use ttf::{Colour, Preset, TtfTables};
 
 /// Loaded data. The window's thread must not wait for them; it uses `try_read`.
 pub type Rocks = Arc<RwLock<Loaded>>;
@@ -32,6 +32,8 @@ pub struct Wanted {
     pub document: Document,
     /// Vertical exaggeration: patterns are sized for it.
     pub exaggeration: f64,
+    /// How colours are printed.
+    pub preset: Preset,
     /// The purpose of the pictures.
     pub purpose: Purpose,
 }
@@ -71,7 +73,7 @@ impl Seen {
     }
 
     /// A scene that renders this.
-    fn scene(&self, exaggeration: f64) -> Scene {
+    fn scene(&self, exaggeration: f64, preset: Preset) -> Scene {
         let medium = |volume: &String| Medium {
             volume: volume.clone(),
             function: white_ramp(1.0, 0.0),
@@ -81,7 +83,7 @@ impl Seen {
         let horizon =
             |name: &String| PickedHorizon { name: Some(name.clone()), ..PickedHorizon::of(Vec::new(), Colour::WHITE) };
         // A blend in between needs everything that any blend needs.
-        let mut scene = Scene { blend: 0.5, exaggeration, ..Scene::default() };
+        let mut scene = Scene { blend: 0.5, exaggeration, preset, ..Scene::default() };
         scene.media.surroundings = self.volumes.iter().map(medium).collect();
         scene.media.horizons = self.horizons.iter().map(horizon).collect();
         scene
@@ -187,7 +189,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     if let Some(kept) = kept.as_mut().filter(|kept| same(&&**kept)) {
         if kept.seen != *seen {
             let project = Project::open(&wanted.root)?;
-            let scene = seen.scene(wanted.exaggeration);
+            let scene = seen.scene(wanted.exaggeration, wanted.preset);
             let more = {
                 let loaded = kept.rocks.read().unwrap_or_else(PoisonError::into_inner);
                 super::compute(|| load::read_more(&project, &loaded, &scene, progress))?
@@ -207,7 +209,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     // Drop the old data first, so that memory holds one model and its volumes rather than two.
     *kept = None;
     let project = Project::open(&wanted.root)?;
-    let scene = seen.scene(wanted.exaggeration);
+    let scene = seen.scene(wanted.exaggeration, wanted.preset);
     let loaded = super::compute(|| load::load(&project, &scene, progress))?;
     let rocks = Arc::new(RwLock::new(loaded));
     let (seen, wells) = (seen.clone(), document.wells.clone());
@@ -256,7 +258,7 @@ fn needed_volumes(document: &Document) -> Vec<(String, String)> {
 /// Compiles the styles of a project state into the loaded data.
 fn restyle(rocks: &Rocks, wanted: &Wanted) -> Result<(), ProjectError> {
     let document = &wanted.document;
-    let functions = styles::transfer_functions(document);
+    let functions = styles::transfer_functions(document).printed(wanted.preset);
     let tables = {
         let loaded = rocks.read().unwrap_or_else(PoisonError::into_inner);
         match &loaded.rock {
@@ -308,6 +310,7 @@ mod tests {
             root: project.root().to_owned(),
             document: project.document().clone(),
             exaggeration: 1.0,
+            preset: Preset::Colour,
             purpose: Purpose::Illustrate(Seen::default()),
         };
         let mut kept = None;

@@ -7,7 +7,7 @@ use egui_kittest::kittest::{NodeT, Queryable};
 use glam::DVec3;
 use interp::faults::{Proposal, ProposeSettings};
 use project::Project;
-use project::command::{Command, PickFault, ProposeFaults};
+use project::command::{Command, PickFault, ProposeFaults, SetLayer};
 use project::interpretation::proposals::{self, Proposals};
 use survey::{Contact, Progress, TriangleMesh};
 
@@ -182,6 +182,28 @@ fn contacts_beds_and_default_styles_are_set_in_the_column() {
     wait(&mut harness, "the window knows", |harness| !state(harness).session.as_ref().unwrap().document.k.is_empty());
     click(&mut harness, "Default style");
     wait(&mut harness, "they are as they were", |harness| document(harness).k.is_empty());
+}
+
+#[test]
+fn layers_that_look_alike_are_told_with_a_button_that_helps_and_presets_are_chosen() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut harness = open(folder.path());
+    for layer in ["Top - Base", "below Base"] {
+        let (colour, pattern) = (Some(ttf::Colour::new(200, 180, 120)), Some("sand".to_owned()));
+        let look = SetLayer { layer: layer.to_owned(), colour, pattern, ..SetLayer::default() };
+        applied(&mut harness, &Command::SetLayer(look));
+    }
+    let is_told = |harness: &Driven| harness.query_by_label("Hard to tell apart").is_some();
+    act(&mut harness, Action::Panel(Panel::Layers));
+    wait(&mut harness, "it is told", is_told);
+    let told = "Top - Base and below Base are neighbours and cannot be told apart";
+    assert_eq!(harness.query_all_by_label_contains(told).count(), 1);
+    harness.get_by_label_contains("Give below Base").click_accesskit();
+    wait(&mut harness, "nothing looks alike", |harness| !is_told(harness));
+    choose(&mut harness, "Print in", "greyscale");
+    wait(&mut harness, "the scene is printed in grey", |harness| {
+        state(harness).session.as_ref().unwrap().view.scene.preset == ttf::Preset::Greyscale
+    });
 }
 
 #[test]

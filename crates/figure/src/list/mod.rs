@@ -8,6 +8,7 @@
 
 mod path;
 mod picture;
+mod printed;
 mod text;
 mod vectors;
 

@@ -5,10 +5,12 @@
 //! layer coordinates, and what an interpreter sees needs no model at all.
 
 mod batch;
+mod confusion;
 mod interpreter;
 mod output;
 
 pub use batch::{WrittenFigure, make_all};
+pub use confusion::{NamedConfusion, confusions};
 pub use interpreter::{InterpreterView, borrowed};
 pub use output::{FigureFormat, title, write};
 
@@ -30,7 +32,7 @@ use render::vector::{VectorBlock, vectors};
 use render::{FaceData, Faces, Media, RenderError, Scene};
 use std::time::Instant;
 use survey::{Progress, memory};
-use ttf::{LayerStyle, LayerTtf, TextureLibrary};
+use ttf::{LayerStyle, LayerTtf, Preset, TextureLibrary};
 
 /// The page of a figure, and how it was made.
 pub struct MadeFigure {
@@ -40,6 +42,8 @@ pub struct MadeFigure {
     pub device: Option<String>,
     /// The duration of the stages.
     pub stages: Vec<Stage>,
+    /// The neighbouring layers of its blocks that cannot be told apart.
+    pub confusions: Vec<NamedConfusion>,
 }
 
 /// Settings for making a figure.
@@ -77,7 +81,8 @@ pub fn make(
     let names_layers = figure.annotate.contains(&Annotation::Layers);
     let needs_library = figure.legend || names_layers || settings.has_vectors;
     let library = if needs_library { Some(styles::pattern_library(project.root(), document)?) } else { None };
-    let layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
+    let mut layers = library.as_ref().map(|library| layer_styles(document, library)).unwrap_or_default();
+    layers.iter_mut().for_each(|style| *style = figure.printed_in().layer(style));
     let (volumes, wells) = (loaded.named_volumes(), loaded.well_paths());
     let mut data = loaded.inputs(&volumes, &wells);
     if let Some(model) = &model {
@@ -93,11 +98,14 @@ pub fn make(
         provenance: &format!("Petroglyph {} · {}", env!("CARGO_PKG_VERSION"), title(project)),
     };
     let library = library.as_ref().filter(|_| settings.has_vectors);
-    let mut painter =
-        FigurePainter { painter: None, device: settings.device, loaded: &loaded, library, stages, progress };
+    let (device, preset) = (settings.device, figure.printed_in());
+    let mut painter = FigurePainter { painter: None, device, loaded: &loaded, library, preset, stages, progress };
     let page = figure::make(figure, &inputs, &mut painter)?;
     let device = painter.painter.map(|painter| painter.device().to_owned());
-    Ok(MadeFigure { page, device, stages: painter.stages })
+    let stages = painter.stages;
+    let scene = Scene { preset, ..needs(figure) };
+    let confusions = confusions(project.root(), document, loaded.rock.as_ref(), &scene)?;
+    Ok(MadeFigure { page, device, stages, confusions })
 }
 
 /// Draws and traces the blocks of a figure; a device is looked for when the first picture is asked for.
@@ -107,6 +115,7 @@ struct FigurePainter<'a> {
     loaded: &'a Loaded,
     /// The patterns, where blocks are drawn as paths.
     library: Option<&'a TextureLibrary>,
+    preset: Preset,
     stages: Vec<Stage>,
     progress: &'a Progress,
 }
@@ -115,7 +124,8 @@ impl FigurePainter<'_> {
     /// The scene with what can be shown of it: while a project is being interpreted it has no model to take the
     /// relief from.
     fn shown(&self, scene: &Scene) -> Scene {
-        Scene { ground: scene.ground.filter(|_| self.loaded.rock.is_some()), ..scene.clone() }
+        let ground = scene.ground.filter(|_| self.loaded.rock.is_some());
+        Scene { ground, preset: self.preset, ..scene.clone() }
     }
 }
 
@@ -150,7 +160,7 @@ fn load(
     settings: &FigureSettings,
     progress: &Progress,
 ) -> Result<(Loaded, Option<StructuralModel>, Vec<Stage>), ProjectError> {
-    let scene = needs(figure);
+    let scene = Scene { preset: figure.printed_in(), ..needs(figure) };
     let has_block = figure.parts.iter().any(|part| matches!(part, Part::Block(_)));
     if has_block && !figure.interpretation {
         let mut loaded = load::load_within(project, &scene, settings.volume_bytes, progress)?;

@@ -152,6 +152,19 @@ impl Rock {
         }
     }
 
+    /// The pairs of layers that touch in the block or follow one another in the column, as positions among the layers,
+    /// youngest first. Where a scene shows the ground, the first layer is left out as air.
+    pub fn neighbours(&self, scene: &Scene) -> Vec<[usize; 2]> {
+        let youngest = self.model.layer_count() - 1;
+        let touching = self.model.touching_layers().into_iter();
+        let touching = touching.map(|[deep, high]| [high, deep].map(|n| youngest - usize::from(n)));
+        let mut pairs: Vec<[usize; 2]> = touching.chain((0..youngest).map(|n| [n, n + 1])).collect();
+        pairs.retain(|pair| scene.ground.is_none() || pair[0] > 0);
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
     /// Metres that k = 0 … 1 spans in each layer, bottom to top: the mean thickness where the layer exists, or the
     /// reference thickness of an open layer.
     fn thicknesses_m(&self, geometry: &SurveyGeometry) -> Vec<f32> {
@@ -266,6 +279,7 @@ pub fn load_within(
     if let Some(raw) = &scene.raw {
         functions.raw = Some(raw.clone());
     }
+    functions = functions.printed(scene.preset);
     let packed = match (&rock, scene.lookup) {
         (Some(rock), Lookup::Packed) => {
             let voxels = rock.voxels(project, geometry.size(), progress)?;
@@ -466,7 +480,7 @@ impl Loaded {
             Some(candidates) => candidates.complete(&mut scene),
             None => scene.media.horizons.retain(|horizon| horizon.name.is_none()),
         }
-        scene
+        scene.printed()
     }
 
     /// The volumes in the form that renderers take.

@@ -82,7 +82,7 @@ impl Painter {
         let wells = loaded.well_paths();
         let inputs = loaded.inputs(&volumes, &wells);
         let drawn = self.renderer.as_mut().map(|renderer| renderer.render(scene, &inputs, progress));
-        let image = match drawn {
+        let mut image = match drawn {
             Some(Err(error @ (RenderError::OutOfMemory { .. } | RenderError::DeviceLost { .. })))
                 if self.device == Device::Auto =>
             {
@@ -93,6 +93,9 @@ impl Painter {
             Some(drawn) => drawn?,
             None => self.processor.render(scene, &inputs, progress)?,
         };
+        if !scene.preset.is_colour() {
+            image.pixels_mut().for_each(|pixel| pixel.0 = scene.preset.pixel(pixel.0));
+        }
         Ok((image, Stage::new("picture", start.elapsed())))
     }
 }

@@ -20,6 +20,9 @@ const SAME: f64 = 0.05;
 pub(super) const IN_FRONT: f64 = 0.6;
 /// Distance between two tested points of a line, pixels.
 const STEP_PX: f64 = 2.0;
+/// A part of a line that is shorter is no part, pixels: a stroke of it would be a dot, such as at a corner of the box that
+/// is cut away.
+const SHORTEST_PX: f64 = 0.25;
 /// Bisections of the last step before a line disappears: 1/64 pixel.
 const BISECTIONS: usize = 7;
 
@@ -80,6 +83,8 @@ pub(super) fn seen_parts(view: &View, points: &[DVec3], seen: impl Fn(DVec3) -> 
     if part.len() > 1 {
         parts.push(part);
     }
+    let length = |part: &[DVec2]| part.windows(2).map(|ends| ends[0].distance(ends[1])).sum::<f64>();
+    parts.retain(|part| length(part) >= SHORTEST_PX);
     parts
 }
 
@@ -112,6 +117,7 @@ mod tests {
             }
         }
         assert!(seen_parts(&view, &line, |_| false).is_empty());
+        assert!(seen_parts(&view, &line, |p| p.x < 1e-4).is_empty(), "a dot at the beginning");
         assert_eq!(seen_parts(&view, &line, |_| true), vec![line.map(|p| view.project(p)).to_vec()]);
     }
 }

@@ -1,13 +1,10 @@
 //! Shales, carbonates, chert, coal, evaporites (FGDC 620–668, 677).
 
-use crate::tile::{Dice, Point, Tile};
-
-const THIN: f32 = 0.55;
-const LINE: f32 = 0.65;
+use crate::tile::{Dice, LINE, Point, THIN, Tile};
 
 /// Rows of dashes, each row shifted against the one before. `each` is called with the left end and the length
 /// of every dash.
-fn dashes(
+pub fn dashes(
     tile: &mut Tile,
     dice: &mut Dice,
     rows: usize,
@@ -97,7 +94,7 @@ pub fn oil_shale() -> Tile {
 }
 
 /// A flat filled body with pointed ends.
-fn lens(tile: &mut Tile, centre: Point, radii: [f32; 2]) {
+pub fn lens(tile: &mut Tile, centre: Point, radii: [f32; 2]) {
     let arc = |sign: f32| {
         (0..=24).map(move |step| {
             let t = step as f32 / 12.0 - 1.0;
@@ -111,14 +108,14 @@ fn lens(tile: &mut Tile, centre: Point, radii: [f32; 2]) {
 
 /// Courses of bricks. `joint` draws a head joint: it is called with the foot, the height and the course of
 /// each.
-struct Wall {
-    courses: usize,
-    bricks: usize,
-    width: f32,
+pub struct Wall {
+    pub courses: usize,
+    pub bricks: usize,
+    pub width: f32,
 }
 
 impl Wall {
-    fn draw(&self, tile: &mut Tile, dice: &mut Dice, mut joint: impl FnMut(&mut Tile, Point, f32, usize)) {
+    pub fn draw(&self, tile: &mut Tile, dice: &mut Dice, mut joint: impl FnMut(&mut Tile, Point, f32, usize)) {
         let (height, step) = (tile.side / self.courses as f32, tile.side / self.bricks as f32);
         for course in 0..self.courses {
             let base = (course + 1) as f32 * height;
@@ -201,7 +198,7 @@ pub fn limestone_shaly() -> Tile {
 }
 
 /// The bricks of each course of [`limestone_cherty`] that hold a nodule; no two lie above each other.
-const NODULES: [&[usize]; 10] = [&[0, 2], &[3], &[1], &[0, 2], &[3], &[2], &[0, 1], &[3], &[0, 2], &[1]];
+pub const NODULES: [&[usize]; 10] = [&[0, 2], &[3], &[1], &[0, 2], &[3], &[2], &[0, 1], &[3], &[0, 2], &[1]];
 
 /// 639: bricks with black nodules of chert.
 pub fn limestone_cherty() -> Tile {

@@ -1,13 +1,9 @@
 //! Gravel, breccia, sand, silt, till (FGDC 601–619, 670, 681).
 
-use crate::tile::{Dice, Point, Tile, pebble, shard};
-
-const DOT: f32 = 0.45;
-const THIN: f32 = 0.55;
-const LINE: f32 = 0.65;
+use crate::tile::{DOT, Dice, LINE, Point, THIN, Tile, pebble, shard};
 
 /// Radii in falling order, `count` of each class, with some variation.
-fn radii(dice: &mut Dice, classes: &[(usize, f32)]) -> Vec<f32> {
+pub fn radii(dice: &mut Dice, classes: &[(usize, f32)]) -> Vec<f32> {
     let mut radii = Vec::new();
     for &(count, radius) in classes {
         radii.extend((0..count).map(|_| radius * dice.between(0.88, 1.12)));
@@ -122,7 +118,7 @@ pub fn sand() -> Tile {
 }
 
 /// Dots in a row, placed irregularly as by hand.
-fn dotted_row(tile: &mut Tile, dice: &mut Dice, y: f32, count: usize, height: impl Fn(f32) -> f32) {
+pub fn dotted_row(tile: &mut Tile, dice: &mut Dice, y: f32, count: usize, height: impl Fn(f32) -> f32) {
     let step = tile.side / count as f32;
     let start = dice.between(0.0, step);
     for index in 0..count {
@@ -144,81 +140,6 @@ pub fn sandstone_bedded() -> Tile {
         tile.dot(point, DOT);
     }
     tile
-}
-
-/// 609: trough cross-bedding. Each trough cuts those below it and holds dotted foresets parallel to its
-/// floor.
-pub fn sandstone_crossbedded() -> Tile {
-    let mut tile = Tile::new(90.0);
-    let mut dice = Dice::new(6093);
-    // Troughs: centre of the rim, half width, depth; the youngest last.
-    let mut troughs: Vec<(Point, f32, f32)> = Vec::new();
-    for row in 0..7 {
-        for column in 0..2 {
-            // Each row is shifted by 3/7 of the distance between troughs, so seven rows close the tile.
-            let x = column as f32 * 45.0 + row as f32 * 135.0 / 7.0 + dice.jitter(5.0);
-            let y = 90.0 - (row as f32 + 0.5) * 90.0 / 7.0 + dice.jitter(1.5);
-            troughs.push(([x, y], dice.between(38.0, 44.5), dice.between(17.0, 21.0)));
-        }
-    }
-    let side = tile.side;
-    let floor = |(centre, half, depth): (Point, f32, f32), x: f32| {
-        let mut dx = x - centre[0];
-        dx -= (dx / side).round() * side;
-        let t = dx / half;
-        (t.abs() < 1.0).then(|| centre[1] + depth * (1.0 - t * t))
-    };
-    for (index, &trough) in troughs.iter().enumerate() {
-        // Younger troughs removed all that lay above their floors. The stack repeats upwards: the troughs of
-        // the tile above are younger than all of this one.
-        let cut = |point: Point, margin: f32| {
-            troughs.iter().enumerate().any(|(other, &younger)| {
-                (0..=1).filter(|lap| other + lap * troughs.len() > index).any(|lap| {
-                    let lift = lap as f32 * side;
-                    floor(younger, point[0]).is_some_and(|y| point[1] < y - lift + margin)
-                })
-            })
-        };
-        let (centre, half, _) = trough;
-        // The floor, as a thin line where it is not cut.
-        let mut run: Vec<Point> = Vec::new();
-        for step in 0..=120 {
-            let x = centre[0] - half * 0.999 + half * 1.998 * step as f32 / 120.0;
-            let point = floor(trough, x).map(|y| [x, y]).filter(|point| !cut(*point, 0.0));
-            match point {
-                Some(point) => run.push(point),
-                None => draw_run(&mut tile, &mut run),
-            }
-        }
-        draw_run(&mut tile, &mut run);
-        for layer in 1..9 {
-            let lift = layer as f32 * 2.7;
-            let mut x = centre[0] - half + dice.between(0.0, 1.5);
-            while x < centre[0] + half {
-                let point = floor(trough, x).map(|y| [x, y - lift]);
-                if let Some(point) = point.filter(|point| !cut(*point, 1.3) && point[1] > centre[1] - 3.0) {
-                    tile.dot(point, DOT);
-                }
-                let slope = (x - centre[0]) / half * 1.2;
-                x += 2.1 / (1.0 + slope * slope).sqrt();
-            }
-        }
-    }
-    tile
-}
-
-fn draw_run(tile: &mut Tile, run: &mut Vec<Point>) {
-    if run.len() > 3 {
-        let sparse: Vec<Point> = run
-            .iter()
-            .copied()
-            .enumerate()
-            .filter(|(i, _)| i % 4 == 0 || *i == run.len() - 1)
-            .map(|(_, p)| p)
-            .collect();
-        tile.curve(&sparse, 0.5);
-    }
-    run.clear();
 }
 
 /// 610: planar sets, with foresets of dots that flatten towards the base of their set.
@@ -258,7 +179,7 @@ pub fn sandstone_rippled() -> Tile {
 }
 
 /// A ripple of unit length: a gentle rise and a steeper fall, mean 0, size about 1.
-fn ripple(x: f32) -> f32 {
+pub fn ripple(x: f32) -> f32 {
     let angle = std::f32::consts::TAU * x;
     angle.sin() + 0.28 * (2.0 * angle).sin()
 }

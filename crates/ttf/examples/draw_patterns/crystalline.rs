@@ -1,9 +1,6 @@
-//! Metamorphic, volcanic and plutonic rocks (FGDC 703–729).
+//! Metamorphic, volcanic and plutonic rocks (FGDC 703–730).
 
-use crate::tile::{Dice, Point, Tile, shard};
-
-const THIN: f32 = 0.55;
-const LINE: f32 = 0.65;
+use crate::tile::{Dice, LINE, Point, THIN, Tile, shard};
 
 /// 703: steep cleavage in close broken lines, crossed by faint bedding.
 pub fn slate() -> Tile {
@@ -187,7 +184,7 @@ pub fn granite_crosses() -> Tile {
     tile
 }
 
-/// 729: large crystals in a fine matrix.
+/// 730: large crystals in a fine matrix.
 pub fn porphyry() -> Tile {
     let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(729));
     let crystals: Vec<(Point, f32)> =

@@ -7,6 +7,13 @@ use std::fmt::Write;
 /// A point in the tile, in points.
 pub type Point = [f32; 2];
 
+/// Radius of a grain of sand.
+pub const DOT: f32 = 0.45;
+/// Width of the lines within a sign.
+pub const THIN: f32 = 0.55;
+/// Width of the lines that make a pattern: joints, bedding, outlines.
+pub const LINE: f32 = 0.65;
+
 /// The ink of all patterns: a warm black.
 const INK: &str = "#231f1b";
 
@@ -107,6 +114,11 @@ impl Tile {
         if let Some(element) = self.elements.last_mut() {
             element.style = Style::Fill;
         }
+    }
+
+    /// A smooth filled area.
+    pub fn filled_blob(&mut self, points: &[Point]) {
+        self.elements.push(Element { style: Style::Fill, commands: closed_curve(points) });
     }
 
     /// A round dot: a stroke of no length with round ends.
@@ -295,4 +307,52 @@ pub fn shard(dice: &mut Dice, centre: Point, radius: f32) -> Vec<Point> {
             polar(centre, radius * dice.between(0.72, 1.0), angle, 1.0)
         })
         .collect()
+}
+
+/// A valve of a shell: a crescent, `half` wide to each side. `up` is 1 for a hollow below, −1 for one above.
+pub fn shell(centre: Point, half: f32, up: f32) -> Vec<Point> {
+    let arc = |from: f32, to: f32, high: f32| {
+        (0..16).map(move |step| {
+            let angle = from + (to - from) * step as f32 / 16.0;
+            [centre[0] + half * angle.cos(), centre[1] + up * (half * 0.4 - high * angle.sin())]
+        })
+    };
+    let pi = std::f32::consts::PI;
+    arc(0.0, pi, half * 0.86).chain(arc(pi, 0.0, half * 0.28)).collect()
+}
+
+/// Short lines across an outline at `angle` from the horizontal, `gap` apart, kept `inset` from its edge along them.
+pub fn hatch(tile: &mut Tile, outline: &[Point], angle: f32, gap: f32, inset: f32, width: f32) {
+    let (sin, cos) = angle.sin_cos();
+    // Along the lines and across them.
+    let turned: Vec<Point> = outline.iter().map(|p| [p[0] * cos + p[1] * sin, p[1] * cos - p[0] * sin]).collect();
+    let (low, high) = turned.iter().fold((f32::MAX, f32::MIN), |(low, high), p| (low.min(p[1]), high.max(p[1])));
+    let mut across = low + gap * 0.5;
+    while across < high {
+        let mut ends: Vec<f32> = Vec::new();
+        for (index, &from) in turned.iter().enumerate() {
+            let to = turned[(index + 1) % turned.len()];
+            if (from[1] < across) != (to[1] < across) {
+                ends.push(from[0] + (to[0] - from[0]) * (across - from[1]) / (to[1] - from[1]));
+            }
+        }
+        ends.sort_by(f32::total_cmp);
+        for pair in ends.chunks_exact(2) {
+            let (start, end) = (pair[0] + inset, pair[1] - inset);
+            if end > start {
+                let back = |along: f32| [along * cos - across * sin, along * sin + across * cos];
+                tile.line(back(start), back(end), width);
+            }
+        }
+        across += gap;
+    }
+}
+
+/// The places of signs in staggered rows: an even number of rows, each shifted by half a step against the one above.
+pub fn staggered(side: f32, rows: usize, columns: usize) -> impl Iterator<Item = Point> {
+    let (height, step) = (side / rows as f32, side / columns as f32);
+    (0..rows).flat_map(move |row| {
+        (0..columns)
+            .map(move |column| [(column as f32 + 0.5 * (row % 2) as f32 + 0.25) * step, (row as f32 + 0.5) * height])
+    })
 }

@@ -3,17 +3,19 @@
 //! A change in progress is a draft: the picture follows it at once, and when the user releases the pointer it becomes
 //! one command, so that dragging a slider is one step of the history.
 
+mod legibility;
 mod style;
 
 use super::notices;
 use super::sections::entry_colour;
 use super::tiles::Tiles;
 use crate::state::{Action, Choice, Dialogue, Panel, Place, Session, State};
-use crate::work::Swatches;
+use crate::work::{Rocks, Swatches};
 use eframe::egui::{
     Button, ComboBox, Frame, Grid, Key, Response, Role, ScrollArea, Sense, Slider, Stroke, TextEdit, Ui, WidgetInfo,
     vec2,
 };
+use legibility::Legibility;
 use project::command::{Command, ResetLayer, SetContact, SetLayer};
 use project::document::Document;
 use project::document::HorizonEntry;
@@ -34,6 +36,7 @@ pub struct Layers {
     library: Option<TextureLibrary>,
     /// The layer whose style was shown last.
     editing: Option<String>,
+    legibility: Legibility,
 }
 
 impl Layers {
@@ -57,7 +60,7 @@ impl Layers {
         ui: &mut Ui,
         state: &State,
         session: &Session,
-        swatches: &Swatches,
+        (swatches, rocks): (&Swatches, Option<(&Rocks, u64)>),
         tiles: &mut Tiles,
         actions: &mut Vec<Action>,
     ) {
@@ -88,6 +91,7 @@ impl Layers {
                 }
             }
             unpicked(ui, session, actions);
+            self.legibility.show(ui, session, rocks, actions);
             let chosen = session.view.layer.as_ref().and_then(|name| layers.iter().position(|layer| layer == name));
             if let Some(index) = chosen {
                 ui.add_space(8.0);
