@@ -102,8 +102,18 @@ fn main() -> Result<(), Box<dyn Error>> {
             let extraction = start.elapsed().as_secs_f64();
             let network = FaultNetwork::build(&survey.geometry, &survey.faults, &progress)?;
             let cuts = Cut::of_network(&network, surfaces.size);
+            if std::env::var("TRACE").is_ok() {
+                for f in 0..3 {
+                    let (l, n) = (survey.truth.size[1] as f64 - 1.0, side as f64);
+                    let t = [(0.0, 0.2), (0.0, 0.8), (l / 2.0, 0.5), (l, 0.2), (l, 0.8)].map(|(y, d)| {
+                        let u = survey.truth.faults[f].surface_u(y * survey.truth.step_m.y, d * n * survey.truth.step_m.z) / survey.truth.step_m.x;
+                        survey.truth.throw_m(f, u, y) / survey.truth.step_m.z
+                    });
+                    eprintln!("true {f}: {t:.1?}");
+                }
+            }
             let start = Instant::now();
-            let time = geologic_time(&surfaces, &cuts, &TimeSettings::default(), &progress)?;
+            let time = geologic_time(&survey.seismic, &surfaces, &cuts, &TimeSettings::default(), &progress)?;
             let seconds = start.elapsed().as_secs_f64();
             let per_horizon = measure(&survey, &time.tau);
             let mut all = Errors::default();

@@ -20,6 +20,7 @@
 //! | faults as cuts | [`Cut`] |
 //! | patches cut at faults: hubs | `hubs` |
 //! | links and dips | `links` |
+//! | where it starts | `start` |
 //! | the minimum | `solve` |
 //! | monotone traces | [`isotonic`] |
 //! | throws and what matches across faults | `throws` |
@@ -37,6 +38,8 @@ mod isochron;
 pub mod isotonic;
 mod links;
 mod solve;
+mod start;
+mod throws;
 
 pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cut::{Across, Cut};

@@ -75,14 +75,56 @@ fn spread(trace: &mut [f32], z: f32, value: f32) {
     trace[high] += share * value;
 }
 
-/// Visits the links of one pair of traces: `visit(z on a, z on b, dip, weight)`.
+/// One end of a link: the node above it, and its share of the node below.
+#[derive(Clone, Copy)]
+struct End {
+    low: usize,
+    share: f32,
+}
+
+impl End {
+    /// The end at `fixed` halves of a [`DIP_STEP`].
+    #[inline]
+    fn new(fixed: i32, nz: usize) -> Self {
+        let low = ((fixed / HALF_STEPS) as usize).min(nz - 2);
+        Self { low, share: (fixed - low as i32 * HALF_STEPS) as f32 * (0.5 * DIP_STEP) }
+    }
+
+    #[inline]
+    fn of(self, trace: &[f32]) -> f32 {
+        let pair = &trace[self.low..self.low + 2];
+        pair[0] + self.share * (pair[1] - pair[0])
+    }
+
+    #[inline]
+    fn spread(self, trace: &mut [f32], value: f32) {
+        let pair = &mut trace[self.low..self.low + 2];
+        let below = self.share * value;
+        pair[0] += value - below;
+        pair[1] += below;
+    }
+
+    #[inline]
+    fn spread_square(self, trace: &mut [f32], weight: f32) {
+        trace[self.low] += weight * (1.0 - self.share) * (1.0 - self.share);
+        trace[self.low + 1] += weight * self.share * self.share;
+    }
+}
+
+/// Halves of a [`DIP_STEP`] in a sample.
+const HALF_STEPS: i32 = 512;
+
+/// Visits the links of one pair of traces: `visit(end on a, end on b, dip, weight)`. Links with a weight have both ends
+/// inside the traces.
 #[inline]
-fn each_link(dips: &[i16], weights: &[u8], mut visit: impl FnMut(f32, f32, f32, f32)) {
+fn each_link(dips: &[i16], weights: &[u8], mut visit: impl FnMut(End, End, f32, f32)) {
+    let nz = dips.len();
     for (z, (&dip, &weight)) in dips.iter().zip(weights).enumerate() {
         let weight = weight & !CUT_BELOW;
         if weight != 0 {
-            let p = f32::from(dip) * DIP_STEP;
-            visit(z as f32 - 0.5 * p, z as f32 + 0.5 * p, p, f32::from(weight) * WEIGHT_STEP);
+            let (at, half) = (z as i32 * HALF_STEPS, i32::from(dip));
+            let (a, b) = (End::new(at - half, nz), End::new(at + half, nz));
+            visit(a, b, f32::from(dip) * DIP_STEP, f32::from(weight) * WEIGHT_STEP);
         }
     }
 }
@@ -159,10 +201,10 @@ impl System<'_> {
         });
         self.each_pair(out, |[ta, tb], dips, weights, out_a, out_b| {
             let (a, b) = (&s[ta * nz..(ta + 1) * nz], &s[tb * nz..(tb + 1) * nz]);
-            each_link(dips, weights, |za, zb, p, weight| {
-                let e = weight * (interpolate(b, zb) - interpolate(a, za) + offset * p);
-                spread(out_a, za, -e);
-                spread(out_b, zb, e);
+            each_link(dips, weights, |at_a, at_b, p, weight| {
+                let e = weight * (at_b.of(b) - at_a.of(a) + offset * p);
+                at_a.spread(out_a, -e);
+                at_b.spread(out_b, e);
             });
         });
         for tie in self.ties {
@@ -222,9 +264,9 @@ impl System<'_> {
             }
         });
         self.each_pair(&mut out, |_, dips, weights, a, b| {
-            each_link(dips, weights, |za, zb, _, weight| {
-                square(a, za, weight);
-                square(b, zb, weight);
+            each_link(dips, weights, |at_a, at_b, _, weight| {
+                at_a.spread_square(a, weight);
+                at_b.spread_square(b, weight);
             });
         });
         for tie in self.ties {
@@ -276,6 +318,7 @@ impl System<'_> {
                 .for_each(|(p, (r, d))| *p = r / d + keep * *p);
             size = next;
             steps += 1;
+            if std::env::var("TRACE").is_ok() { eprintln!("{steps} {:.5}", size.sqrt() / at_rest); }
         }
         Ok(steps)
     }
