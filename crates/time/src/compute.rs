@@ -5,6 +5,8 @@ use crate::error::TimeError;
 use crate::hubs::Hubs;
 use crate::isotonic::{Pools, regress};
 use crate::links::Links;
+use crate::matches::Timed;
+use crate::merge::merge;
 use crate::solve::{System, Tie};
 use crate::start;
 use crate::throws::{Throw, throw_of, ties};
@@ -71,35 +73,128 @@ pub fn geologic_time(
     progress: &Progress,
 ) -> Result<GeologicTime, TimeError> {
     let [nx, ny, nz] = surfaces.size;
-    let mut hubs = Hubs::new(surfaces, cuts, settings.fewest_vertices, settings.hub_weight);
-    let links = Links::new(&hubs, cuts);
-    let mut near = start::neighbours(&hubs, &links);
-    let ties = spanning_ties(volume, &hubs, &links, cuts, &mut near);
-    let times = start::hub_times(hubs.len(), &near);
-    let mut s = start::between_hubs(&hubs, &links, &times, progress)?;
-    let mut steps = 0;
-    progress.begin("solving for geologic time", 2 * settings.most_steps as u64);
-    for round in 0..2 {
-        let system = System {
-            hubs: &hubs,
-            links: &links,
-            ties: &ties,
-            anchors: &[],
-            smoothness: [settings.steepness_weight, settings.bend_weight],
-        };
-        steps += system.minimise(&mut s, settings.most_steps, settings.tolerance, progress)?;
-        if round == 0 {
-            let times = system.at_vertices(&s, 1.0);
-            let means = hubs.means(&times);
-            for (v, time) in times.iter().enumerate() {
-                let off = (time - means[hubs.hub[v] as usize]) / MISFIT;
-                hubs.weight[v] = settings.hub_weight / (1.0 + off * off).powi(2);
-            }
+    progress.begin("solving for geologic time", (ROUNDS.len() * settings.most_steps) as u64);
+    let mut solution = Solution::start(volume, surfaces, cuts, settings, progress)?;
+    solution.minimise(progress)?;
+    solution.weigh_vertices();
+    for round in ROUNDS {
+        solution.match_faults(&round, progress)?;
+        if let Some(tolerance) = round.merge {
+            let times = solution.vertex_times();
+            let left = merge(&mut solution.hubs, &solution.links, &times, tolerance);
+            if std::env::var("TRACE").is_ok() { eprintln!("merged to {left}"); }
         }
+        solution.minimise(progress)?;
     }
+    let Solution { hubs, links, mut s, steps, .. } = solution;
     let changed = make_monotone(&mut s, &hubs, &links);
     let tau = Volume::from_samples([nx, ny, nz], s).unwrap_or_else(|_| Volume::filled([nx, ny, nz], f32::NAN));
     Ok(GeologicTime { tau, not_monotone: changed as f64 / (nx * ny * nz).max(1) as f64, steps })
+}
+
+/// What one round of matching does.
+struct Round {
+    /// Lines of a stretch of a fault, about; all of them where that is more than there are.
+    stretch: usize,
+    /// Greatest shift between the logs of both sides, samples.
+    most: f32,
+    /// Difference of time up to which hubs become one, samples.
+    merge: Option<f64>,
+}
+
+/// The rounds: the whole fault first, then stretches.
+const ROUNDS: [Round; 3] = [
+    Round { stretch: usize::MAX, most: 8.0, merge: None },
+    Round { stretch: 40, most: 3.0, merge: Some(0.75) },
+    Round { stretch: 40, most: 2.0, merge: Some(1.5) },
+];
+
+/// A solution on its way.
+struct Solution<'a> {
+    volume: &'a Volume<f32>,
+    cuts: &'a [Cut],
+    settings: &'a TimeSettings,
+    hubs: Hubs,
+    links: Links,
+    ties: Vec<Tie>,
+    s: Vec<f32>,
+    steps: usize,
+}
+
+impl<'a> Solution<'a> {
+    /// Hubs, links, throws, and s from the hubs alone.
+    fn start(
+        volume: &'a Volume<f32>,
+        surfaces: &Surfaces,
+        cuts: &'a [Cut],
+        settings: &'a TimeSettings,
+        progress: &Progress,
+    ) -> Result<Self, TimeError> {
+        let hubs = Hubs::new(surfaces, cuts, settings.fewest_vertices, settings.hub_weight);
+        let links = Links::new(&hubs, cuts);
+        let mut near = start::neighbours(&hubs, &links);
+        let ties = spanning_ties(volume, &hubs, &links, cuts, &mut near);
+        let times = start::hub_times(hubs.len(), &near);
+        let mut s = vec![0.0f32; surfaces.size.iter().product()];
+        let of_hub = |v: usize| times[hubs.hub[v] as usize] as f32 - hubs.z[v];
+        start::add_between(&hubs, &links, of_hub, &mut s, progress)?;
+        Ok(Self { volume, cuts, settings, hubs, links, ties, s, steps: 0 })
+    }
+
+    fn system(&self) -> System<'_> {
+        System {
+            hubs: &self.hubs,
+            links: &self.links,
+            ties: &self.ties,
+            anchors: &[],
+            smoothness: [self.settings.steepness_weight, self.settings.bend_weight],
+        }
+    }
+
+    /// Moves s to the minimum.
+    fn minimise(&mut self, progress: &Progress) -> Result<(), TimeError> {
+        let mut s = std::mem::take(&mut self.s);
+        let done = self.system().minimise(&mut s, self.settings.most_steps, self.settings.tolerance, progress);
+        self.s = s;
+        self.steps += done?;
+        Ok(())
+    }
+
+    /// τ at the vertices.
+    fn vertex_times(&self) -> Vec<f32> {
+        self.system().at_vertices(&self.s, 1.0)
+    }
+
+    /// Takes weight from the vertices that do not fit their hub.
+    fn weigh_vertices(&mut self) {
+        let times = self.vertex_times();
+        let means = self.hubs.means(&times);
+        for (v, time) in times.iter().enumerate() {
+            let off = (time - means[self.hubs.hub[v] as usize]) / MISFIT;
+            self.hubs.weight[v] = self.settings.hub_weight / (1.0 + off * off).powi(2);
+        }
+    }
+
+    /// Ties what matches across the faults, and corrects the hubs by it.
+    fn match_faults(&mut self, round: &Round, progress: &Progress) -> Result<(), TimeError> {
+        let timed = Timed { volume: self.volume, s: &self.s };
+        let mut ties = Vec::new();
+        for cut in self.cuts {
+            progress.check()?;
+            let stretches = (cut.size[0] / round.stretch).max(1);
+            ties.extend(timed.ties(cut, stretches, round.most, TIE_STEP, TIE_WEIGHT));
+        }
+        self.ties = ties;
+        let times = self.vertex_times();
+        let tied = start::tied(&self.hubs, &self.ties, Some(&times));
+        let near = start::neighbours(&self.hubs, &self.links);
+        let more = start::corrections(self.hubs.len(), &near, &tied);
+        let mut s = std::mem::take(&mut self.s);
+        let done =
+            start::add_between(&self.hubs, &self.links, |v| more[self.hubs.hub[v] as usize] as f32, &mut s, progress);
+        self.s = s;
+        Ok(done?)
+    }
 }
 
 /// Steps between ties along a fault, lines and samples.
@@ -127,7 +222,7 @@ fn spanning_ties(
             eprintln!("fault {f}: correlation {:.3}, margin {:.3}, throws {t:?}", throw.correlation, throw.margin);
         }
         let ties = ties(&cuts[f], hubs.size, &throw, TIE_STEP, TIE_WEIGHT);
-        let tied = start::tied(hubs, &ties);
+        let tied = start::tied(hubs, &ties, None);
         let joining = tied.iter().filter(|pair| parts.find(pair.hubs[0]) != parts.find(pair.hubs[1])).count();
         if 2 * joining > tied.len() {
             for pair in &tied {

@@ -47,14 +47,17 @@ pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
 }
 
 /// The same for the hubs beside the two ends of ties.
-pub fn tied(hubs: &Hubs, ties: &[Tie]) -> Vec<Neighbours> {
+///
+/// The distance is that of two points of one time; with the times of the vertices, it is what their times lack.
+pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<Neighbours> {
     let nearest = |trace: u32, z: f32| {
         let own = hubs.on_trace(trace as usize);
         own.min_by(|&v, &w| (hubs.z[v] - z).abs().total_cmp(&(hubs.z[w] - z).abs())).filter(|&v| (hubs.z[v] - z).abs() < TIED_REACH)
     };
     let pair = |tie: &Tie| {
         let (v, w) = (nearest(tie.trace[0], tie.z[0])?, nearest(tie.trace[1], tie.z[1])?);
-        let distance = (tie.z[0] - hubs.z[v]) - (tie.z[1] - hubs.z[w]);
+        let between = (tie.z[0] - hubs.z[v]) - (tie.z[1] - hubs.z[w]);
+        let distance = between - times.map_or(0.0, |times| times[w] - times[v]);
         (hubs.hub[v] != hubs.hub[w]).then(|| Neighbours { hubs: [hubs.hub[v], hubs.hub[w]], count: 1.0, distance })
     };
     ties.iter().filter_map(pair).collect()
@@ -117,14 +120,30 @@ pub fn hub_times(count: usize, neighbours: &[Neighbours]) -> Vec<f64> {
     times
 }
 
-/// s = τ − z at every voxel from the times of the hubs: linear between the vertices of a trace, constant beyond them,
+/// The correction of the times of hubs that ties ask for: neighbours keep their distances as well as they can.
+pub fn corrections(count: usize, neighbours: &[Neighbours], tied: &[Neighbours]) -> Vec<f64> {
+    let mut all: Vec<Neighbours> =
+        neighbours.iter().map(|pair| Neighbours { count: STIFFNESS * pair.count, distance: 0.0, ..*pair }).collect();
+    all.extend(tied);
+    hub_times(count, &all)
+}
+
+/// Weight of the distance of neighbouring hubs on one trace in a correction; a tie has 1.
+const STIFFNESS: f32 = 0.05;
+
+/// Adds to every voxel what `value` says at the vertices: linear between the vertices of a trace, constant beyond them,
 /// not across faults.
 ///
 /// # Errors
 /// [`Cancelled`].
-pub fn between_hubs(hubs: &Hubs, links: &Links, times: &[f64], progress: &Progress) -> Result<Vec<f32>, Cancelled> {
-    let [nx, ny, nz] = hubs.size;
-    let mut s = vec![0.0f32; nx * ny * nz];
+pub fn add_between(
+    hubs: &Hubs,
+    links: &Links,
+    value: impl Fn(usize) -> f32 + Sync,
+    s: &mut [f32],
+    progress: &Progress,
+) -> Result<(), Cancelled> {
+    let [_, ny, nz] = hubs.size;
     s.par_chunks_mut(ny * nz).enumerate().try_for_each(|(x, line)| {
         progress.check()?;
         for (y, s) in line.chunks_mut(nz).enumerate() {
@@ -133,22 +152,18 @@ pub fn between_hubs(hubs: &Hubs, links: &Links, times: &[f64], progress: &Progre
             for z in 0..nz {
                 if z + 1 == nz || links.is_cut_below(trace * nz + z) {
                     let inside = |v: &usize| hubs.z[*v] >= from as f32 - 0.5 && hubs.z[*v] < z as f32 + 0.5;
-                    let known: Vec<(f32, f32)> = hubs
-                        .on_trace(trace)
-                        .filter(inside)
-                        .map(|v| (hubs.z[v], times[hubs.hub[v] as usize] as f32 - hubs.z[v]))
-                        .collect();
+                    let known: Vec<(f32, f32)> =
+                        hubs.on_trace(trace).filter(inside).map(|v| (hubs.z[v], value(v))).collect();
                     fill(&known, from, &mut s[from..=z]);
                     from = z + 1;
                 }
             }
         }
         Ok(())
-    })?;
-    Ok(s)
+    })
 }
 
-/// Fills a part of a trace that begins at sample `from`.
+/// Adds to a part of a trace that begins at sample `from`.
 fn fill(known: &[(f32, f32)], from: usize, s: &mut [f32]) {
     let mut below = 0;
     for (n, s) in s.iter_mut().enumerate() {
@@ -156,7 +171,7 @@ fn fill(known: &[(f32, f32)], from: usize, s: &mut [f32]) {
         while below < known.len() && known[below].0 < z {
             below += 1;
         }
-        *s = match (below.checked_sub(1).map(|n| known[n]), known.get(below).copied()) {
+        *s += match (below.checked_sub(1).map(|n| known[n]), known.get(below).copied()) {
             (Some((za, a)), Some((zb, b))) => a + (z - za) / (zb - za).max(1e-3) * (b - a),
             (Some((_, only)), None) | (None, Some((_, only))) => only,
             (None, None) => 0.0,

@@ -22,6 +22,8 @@ const LEVEL_WINDOW: usize = 24;
 const GREATEST_SHARE: f32 = 0.16;
 /// Throws that differ by less are the same one in the margin, samples.
 const SAME_THROW: f32 = 3.0;
+/// What a throw that varies costs, for each squared sample.
+const BEND_COST: f32 = 5e-4;
 /// Least share of the fault that must overlap under a throw.
 const LEAST_OVERLAP: f32 = 0.4;
 
@@ -148,8 +150,9 @@ impl Panels {
                 }
             }
         }
+        let bend = BEND_COST * terms[1..].iter().map(|term| term * term).sum::<f32>();
         let overlap = both as f32 / there.max(1) as f32;
-        if overlap < LEAST_OVERLAP { -1.0 } else { product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) }
+        if overlap < LEAST_OVERLAP { -1.0 } else { product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) - bend }
     }
 
     /// Improves a throw term by term.
