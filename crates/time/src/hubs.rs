@@ -150,11 +150,6 @@ impl Hubs {
         &self.order[self.hub_starts[hub] as usize..self.hub_starts[hub + 1] as usize]
     }
 
-    /// Trace of a vertex.
-    pub fn trace_of(&self, vertex: usize) -> usize {
-        self.starts.partition_point(|&start| start as usize <= vertex) - 1
-    }
-
     /// The weighted mean of a value of the vertices of each hub.
     pub fn means(&self, value: &[f32]) -> Vec<f32> {
         (0..self.len())

@@ -22,8 +22,9 @@
 //! | links and dips | `links` |
 //! | where it starts | `start` |
 //! | the minimum | `solve` |
-//! | monotone traces | [`isotonic`] |
-//! | throws and what matches across faults | `throws` |
+//! | monotone traces, and what is not known | [`isotonic`], `known` |
+//! | throws, then what matches across faults | `throws`, `logs`, `matches` |
+//! | patches of one event become one | `merge` |
 //! | one level of τ | [`isochron`] |
 //!
 //! Space: voxels, x = inline index, y = crossline index, z = sample index, z down.
@@ -36,6 +37,7 @@ mod error;
 mod hubs;
 mod isochron;
 pub mod isotonic;
+mod known;
 mod links;
 mod logs;
 mod matches;
@@ -43,6 +45,9 @@ mod merge;
 mod solve;
 mod start;
 mod throws;
+
+#[cfg(test)]
+mod tests;
 
 pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cut::{Across, Cut};
