@@ -1,6 +1,6 @@
 //! Turns arguments for picks and faults into commands, and evaluates extractions.
 
-use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
+use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, TimeArgs};
 use super::report::Report;
 use super::request::{Request, Usage};
 use anyhow::bail;
@@ -13,12 +13,14 @@ use interp::holes::FillSettings;
 use model::FaultNetwork;
 use project::Project;
 use project::command::{
-    AcceptFault, Climb, Command, FillHorizon, Move, MovePick, PickFault, PickNode, ReplayPicks, Unfit,
+    AcceptFault, Climb, Command, ComputeTime, FillHorizon, Move, MovePick, PickByTime, PickFault, PickNode, ReplayPicks, TimeLevel,
+    Unfit,
 };
 use project::interpretation::candidates::Candidates;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;
+use ::time::TimeSettings;
 
 /// Parses three numbers separated by commas.
 fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
@@ -28,7 +30,16 @@ fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
     if text.split(',').count() == 3 && place.iter().all(|number| number.is_finite()) { Ok(place) } else { Err(wrong()) }
 }
 
+pub(super) fn time(typed: TimeArgs) -> Request {
+    let command = ComputeTime { name: typed.name, settings: TimeSettings::default() };
+    Request::Change { project: typed.project, command: Command::Time(command) }
+}
+
 pub(super) fn pick(typed: PickArgs) -> Result<Request, Usage> {
+    if typed.by_time {
+        let command = PickByTime { level: TimeLevel::Through(place("--at", &typed.at)?), horizon: typed.horizon };
+        return Ok(Request::Change { project: typed.project, command: Command::PickByTime(command) });
+    }
     let climb = if typed.highest_valid { Climb::HighestValid } else { Climb::Levels(typed.up.unwrap_or(0)) };
     let colour = typed.colour.map(|text| text.parse().map_err(|_| format!("--colour {text}: expected #rrggbb")));
     let command = PickNode {

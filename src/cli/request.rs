@@ -19,6 +19,8 @@ use project::command::{
     SetVelocity,
 };
 use project::figures::FigureFormat;
+use project::illustrate::IllustrateSettings;
+use project::memory_budget;
 use project::picture::Device;
 use project::picture::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use render::{IsosurfaceSource, Scope};
@@ -34,6 +36,8 @@ use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf
 pub(super) enum Request {
     /// Make a synthetic survey and pictures of it.
     Demo { out: PathBuf },
+    /// Draw a survey that nobody has interpreted.
+    Illustrate { survey: PathBuf, out: PathBuf, project: PathBuf, settings: IllustrateSettings },
     /// Make a synthetic survey.
     Synth { out: PathBuf, settings: SynthSettings },
     /// An outcrop of the size and seed of the settings.
@@ -165,6 +169,24 @@ impl TryFrom<Action> for Request {
             Action::Fault(action) => interpretation::fault(action)?,
             Action::Well(action) => well::well(action)?,
             Action::Extract(typed) => extraction::extract(typed)?,
+            Action::Illustrate(typed) => {
+                if typed.layers < 2 {
+                    return Err(format!("--layers {}: expected at least 2", typed.layers));
+                }
+                if FigureFormat::of(&typed.out).is_none() {
+                    return Err(format!("{}: expected a file that ends in .png, .tif, .svg or .pdf", typed.out.display()));
+                }
+                let (device, volume_bytes) = drawing(&typed.drawing)?;
+                let settings = IllustrateSettings {
+                    layers: typed.layers,
+                    options: interpretation::segy_options(&typed.segy)?,
+                    device,
+                    volume_bytes: volume_bytes.unwrap_or_else(memory_budget::half_of_available),
+                };
+                let project = typed.project.unwrap_or_else(|| typed.out.with_extension("petro"));
+                Self::Illustrate { survey: typed.survey, out: typed.out, project, settings }
+            }
+            Action::Time(typed) => assembly::time(typed),
             Action::Pick(typed) => assembly::pick(typed)?,
             Action::Climb(typed) => assembly::climb(typed),
             Action::Descend(typed) => assembly::descend(typed),

@@ -12,6 +12,7 @@ use project::command::{AddScene, Command, Effect, Extract, ImportVolume, Propose
 use project::demo::{self, survey_files};
 use project::error::Noun;
 use project::folder::refuse_inside_project;
+use project::illustrate;
 use project::interpretation::extraction;
 use project::picture::load::Stage;
 use project::picture::{self, load, scene};
@@ -66,6 +67,9 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             refuse_inside_project(&out)?;
             demo::run(&out, &progress)?
         }),
+        Request::Illustrate { survey, out, project, settings } => {
+            told(illustrate::run(&survey, &out, &project, &settings, &progress)?)
+        }
         Request::Synth { out, settings } => synth(&out, &settings, &progress)?,
         Request::SynthOutcrop { out, settings } => outcrop(&out, &settings, &progress)?,
         Request::Info { path, distortion, segy, reading } => {

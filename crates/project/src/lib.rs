@@ -34,6 +34,7 @@ pub mod document;
 pub mod error;
 pub mod figures;
 pub mod folder;
+pub mod illustrate;
 pub mod interpretation;
 pub mod memory_budget;
 pub mod picture;

@@ -25,7 +25,8 @@
 //! | monotone traces, and what is not known | [`isotonic`], `known` |
 //! | throws, then what matches across faults | `throws`, `logs`, `matches` |
 //! | patches of one event become one | `merge` |
-//! | one level of τ | [`isochron`] |
+//! | one level of τ, and the reflections beside it | [`isochron()`], [`Reflections`] |
+//! | levels that stand out | [`strongest_levels`], [`characters`] |
 //!
 //! Space: voxels, x = inline index, y = crossline index, z = sample index, z down.
 //!
@@ -38,10 +39,12 @@ mod hubs;
 mod isochron;
 pub mod isotonic;
 mod known;
+mod levels;
 mod links;
 mod logs;
 mod matches;
 mod merge;
+mod reflections;
 mod solve;
 mod start;
 mod throws;
@@ -53,3 +56,5 @@ pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cut::{Across, Cut};
 pub use error::TimeError;
 pub use isochron::{Crossing, Isochron, isochron};
+pub use levels::{Character, Level, characters, strongest_levels};
+pub use reflections::{Reflection, Reflections};
