@@ -179,7 +179,7 @@ impl TryFrom<Action> for Request {
                 let (device, volume_bytes) = drawing(&typed.drawing)?;
                 let settings = IllustrateSettings {
                     layers: typed.layers,
-                    options: interpretation::segy_options(&typed.segy)?,
+                    options: super::segy::segy_options(&typed.segy)?,
                     device,
                     volume_bytes: volume_bytes.unwrap_or_else(memory_budget::half_of_available),
                 };

@@ -352,25 +352,19 @@ pub enum ProjectError {
         vertical: [f64; 2],
     },
     /// The project has no geologic time.
-    #[error("the project has no geologic time; compute it with `petroglyph time PROJECT`")]
+    #[error("the project has no geologic time")]
     NoTime,
     /// Geologic time is not known at a place.
-    #[error(
-        "geologic time is not known at inline {}, crossline {}, {}: no candidate lies near it; point at a reflection",
-        at[0], at[1], at[2]
-    )]
+    #[error("geologic time is not known at inline {}, crossline {}, {}: no candidate lies near it", at[0], at[1], at[2])]
     TimeUnknown {
         /// Inline, crossline, vertical value.
         at: [f64; 3],
     },
     /// Nothing in geologic time can bound layers.
-    #[error(
-        "no level of geologic time crosses half of the traces, so there are no layers to draw; the volume is chaotic, \
-         constant or too small: pick horizons by hand"
-    )]
+    #[error("no level of geologic time crosses half of the traces, so there are no layers to draw")]
     NoLevels,
     /// No trace has a value of geologic time.
-    #[error("geologic time is {time} nowhere; point at a place inside the survey, or compute it again")]
+    #[error("geologic time is {time} nowhere")]
     NoIsochron {
         /// The value.
         time: f32,

@@ -16,6 +16,20 @@ const NO_CROSSING: f64 = 99.0;
 /// Traces from which isochrons start, as shares of the survey's sides.
 const SHARES: [f64; 4] = [0.12, 0.37, 0.62, 0.88];
 
+/// Explanations of the tables.
+const NOTES: &str = "
+## What falls short, and why
+
+- Horizons inside a conformable series are right to a few tenths of a sample in all blocks. What fails are the
+  unconformity and the bed below it (Charlie). Where the unconformity has no reflection of its own, its time lies on a
+  steep ramp between the last bed above and the first below, and a small error of τ is a large one of depth. Beds that
+  it leaves as islands have no patch from one to the next.
+- Comparing the log of every tile of 8 × 8 traces with that of the survey did not help such islands here, and neither
+  did cutting patches into tiles or where their vertices disagree: they are left out.
+- Faults that are not drawn are not found by this step: across them isochrons go on at the wrong event.
+- Times were taken while the machine did other work.
+";
+
 /// Errors of isochrons in samples.
 #[derive(Default, Clone)]
 struct Errors {
@@ -87,51 +101,85 @@ fn measure(survey: &Synthetic, tau: &Volume<f32>) -> Vec<Errors> {
         .collect()
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let mut arguments = std::env::args().skip(1);
-    let side: usize = arguments.next().map_or(Ok(128), |side| side.parse())?;
-    let seeds: Vec<u64> = arguments.next().map_or(Ok(vec![1]), |text| text.split(',').map(str::parse).collect())?;
-    let ratios: Vec<f64> = arguments.next().map_or(Ok(vec![3.0]), |text| text.split(',').map(str::parse).collect())?;
+/// Signal-to-noise ratios.
+const RATIOS: [f64; 3] = [10.0, 3.0, 1.5];
+/// Seeds that were used while the method was developed.
+const SEEDS: [u64; 3] = [1, 2, 3];
+/// Seeds that were not looked at.
+const HELD_OUT: [u64; 2] = [4, 5];
+
+/// One survey.
+struct Case {
+    snr: f64,
+    seed: u64,
+    all: Errors,
+    horizons: Vec<(String, Errors)>,
+    not_monotone: f64,
+    extraction_s: f64,
+    time_s: f64,
+}
+
+fn case(side: usize, snr: f64, seed: u64) -> Result<Case, Box<dyn Error>> {
     let progress = Progress::silent();
-    for snr in ratios {
-        for &seed in &seeds {
-            let settings = SynthSettings { size: [side; 3], seed, snr: Some(snr), ..SynthSettings::default() };
-            let survey = Synthetic::generate(&settings, &progress)?;
-            let start = Instant::now();
-            let surfaces = grow_surfaces(&survey.seismic, &GrowSettings::default(), &progress)?;
-            let extraction = start.elapsed().as_secs_f64();
-            let network = FaultNetwork::build(&survey.geometry, &survey.faults, &progress)?;
-            let cuts = Cut::of_network(&network, surfaces.size);
-            if std::env::var("TRACE").is_ok() {
-                for f in 0..3 {
-                    let (l, n) = (survey.truth.size[1] as f64 - 1.0, side as f64);
-                    let t = [(0.0, 0.2), (0.0, 0.8), (l / 2.0, 0.5), (l, 0.2), (l, 0.8)].map(|(y, d)| {
-                        let u = survey.truth.faults[f].surface_u(y * survey.truth.step_m.y, d * n * survey.truth.step_m.z) / survey.truth.step_m.x;
-                        survey.truth.throw_m(f, u, y) / survey.truth.step_m.z
-                    });
-                    eprintln!("true {f}: {t:.1?}");
-                }
-            }
-            let start = Instant::now();
-            let time = geologic_time(&survey.seismic, &surfaces, &cuts, &TimeSettings::default(), &progress)?;
-            let seconds = start.elapsed().as_secs_f64();
-            let per_horizon = measure(&survey, &time.tau);
-            let mut all = Errors::default();
-            for errors in &per_horizon {
-                all.same.extend(&errors.same);
-                all.other.extend(&errors.other);
-            }
-            println!(
-                "| {snr} | {seed} | {} | {} | {:.2} % | {} | {extraction:.1} + {seconds:.1} s",
-                figures(&mut all.same),
-                figures(&mut all.other),
-                time.not_monotone * 100.0,
-                time.steps
-            );
-            for (horizon, mut errors) in survey.truth.horizons.iter().zip(per_horizon) {
-                println!("    {:14} {} | {}", horizon.name, figures(&mut errors.same), figures(&mut errors.other));
-            }
-        }
+    let settings = SynthSettings { size: [side; 3], seed, snr: Some(snr), ..SynthSettings::default() };
+    let survey = Synthetic::generate(&settings, &progress)?;
+    let start = Instant::now();
+    let surfaces = grow_surfaces(&survey.seismic, &GrowSettings::default(), &progress)?;
+    let extraction_s = start.elapsed().as_secs_f64();
+    let network = FaultNetwork::build(&survey.geometry, &survey.faults, &progress)?;
+    let cuts = Cut::of_network(&network, surfaces.size);
+    let start = Instant::now();
+    let found = geologic_time(&survey.seismic, &surfaces, &cuts, &TimeSettings::default(), &progress)?;
+    let time_s = start.elapsed().as_secs_f64();
+    let names = survey.truth.horizons.iter().map(|horizon| horizon.name.clone());
+    let horizons: Vec<(String, Errors)> = names.zip(measure(&survey, &found.tau)).collect();
+    let mut all = Errors::default();
+    for (_, errors) in &horizons {
+        all.same.extend(&errors.same);
+        all.other.extend(&errors.other);
     }
+    Ok(Case { snr, seed, all, horizons, not_monotone: found.not_monotone, extraction_s, time_s })
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let side: usize = std::env::args().nth(1).map_or(Ok(128), |side| side.parse())?;
+    println!("# Geologic time\n");
+    println!(
+        "Written by `cargo run -p petroglyph-time --example isochrons {side}`, from synthetic surveys of {side}³ samples\n\
+         with their faults drawn. Errors of isochrons in samples: median / 95 % / share of the nodes within one sample.\n\
+         An isochron starts at one trace of a horizon, where the horizon truly is, and is compared with the truth on every\n\
+         seventh node of that horizon; up to sixteen starts a horizon. No crossing counts as {NO_CROSSING}. Other blocks\n\
+         are those without the start.\n"
+    );
+    println!("| SNR | seed | same block | other blocks | not monotone before the last step | extraction + time, s |");
+    println!("|---|---|---|---|---|---|");
+    let seen = RATIOS.into_iter().flat_map(|snr| SEEDS.into_iter().map(move |seed| (snr, seed, "")));
+    let held_out = HELD_OUT.into_iter().map(|seed| (3.0, seed, ", held out"));
+    let mut cases = Vec::new();
+    for (snr, seed, note) in seen.chain(held_out) {
+        let mut case = case(side, snr, seed)?;
+        println!(
+            "| {snr} | {seed}{note} | {} | {} | {:.1} % | {:.1} + {:.1} |",
+            figures(&mut case.all.same),
+            figures(&mut case.all.other),
+            case.not_monotone * 100.0,
+            case.extraction_s,
+            case.time_s
+        );
+        cases.push(case);
+    }
+    println!("\n## By horizon\n\nSNR 3; same block, other blocks.\n");
+    let names: Vec<&str> = cases[0].horizons.iter().map(|(name, _)| name.as_str()).collect();
+    println!("| seed | {} |", names.join(" | "));
+    println!("|---|{}", "---|".repeat(names.len()));
+    for case in cases.iter_mut().filter(|case| case.snr == 3.0) {
+        let columns: Vec<String> = case
+            .horizons
+            .iter_mut()
+            .map(|(_, errors)| format!("{}, {}", figures(&mut errors.same), figures(&mut errors.other)))
+            .collect();
+        println!("| {} | {} |", case.seed, columns.join(" | "));
+    }
+    print!("{NOTES}");
     Ok(())
 }
