@@ -3,6 +3,7 @@
 use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, TimeArgs};
 use super::report::Report;
 use super::request::{Request, Usage};
+use ::time::TimeSettings;
 use anyhow::bail;
 use interp::assembly::Operation;
 use interp::evaluate::{
@@ -13,14 +14,13 @@ use interp::holes::FillSettings;
 use model::FaultNetwork;
 use project::Project;
 use project::command::{
-    AcceptFault, Climb, Command, ComputeTime, FillHorizon, Move, MovePick, PickByTime, PickFault, PickNode, ReplayPicks, TimeLevel,
-    Unfit,
+    AcceptFault, Climb, Command, ComputeTime, FillHorizon, Move, MovePick, PickByTime, PickFault, PickNode,
+    ReplayPicks, TimeLevel, Unfit,
 };
 use project::interpretation::candidates::Candidates;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use survey::Progress;
-use ::time::TimeSettings;
 
 /// Parses three numbers separated by commas.
 fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {

@@ -174,7 +174,10 @@ impl TryFrom<Action> for Request {
                     return Err(format!("--layers {}: expected at least 2", typed.layers));
                 }
                 if FigureFormat::of(&typed.out).is_none() {
-                    return Err(format!("{}: expected a file that ends in .png, .tif, .svg or .pdf", typed.out.display()));
+                    return Err(format!(
+                        "{}: expected a file that ends in .png, .tif, .svg or .pdf",
+                        typed.out.display()
+                    ));
                 }
                 let (device, volume_bytes) = drawing(&typed.drawing)?;
                 let settings = IllustrateSettings {

@@ -13,7 +13,7 @@ fn depths(at: &Path, horizon: &str) -> BTreeMap<(i64, i64), Vec<f64>> {
     let mut rows = text.lines().filter(|line| !line.starts_with('#'));
     let header: Vec<&str> = rows.next().unwrap().split(',').collect();
     let column = |name: &str| header.iter().position(|found| *found == name).unwrap();
-    let (inline, crossline, z) = (column("inline"), column("crossline"), column("z"));
+    let (inline, crossline, z) = (column("inline"), column("crossline"), column("depth_m"));
     let mut found: BTreeMap<(i64, i64), Vec<f64>> = BTreeMap::new();
     for row in rows {
         let cells: Vec<f64> = row.split(',').map(|cell| cell.parse().unwrap_or(f64::NAN)).collect();
@@ -30,11 +30,12 @@ fn one_pick_by_time_is_a_horizon_in_all_blocks_with_its_quality() {
     run_in(at, "import s/survey.sgy p.petro").done();
     for fault in made["faults"].as_array().unwrap() {
         let (file, name) = (fault["file"].as_str().unwrap(), fault["name"].as_str().unwrap());
-        run_in(at, &format!("fault add p.petro {file} --name '{name}'")).done();
+        run_in(at, &format!("fault add p.petro '{file}' --name '{name}'")).done();
     }
     run_in(at, "time p.petro").failed(&["no horizon candidates"]);
     run_in(at, "extract p.petro").done();
-    run_in(at, "pick p.petro --at 150,540,400 --horizon Early --by-time").failed(&["no geologic time", "petroglyph time"]);
+    run_in(at, "pick p.petro --at 150,540,400 --horizon Early --by-time")
+        .failed(&["no geologic time", "petroglyph time"]);
     let told = run_in(at, "time p.petro --json").done().json();
     assert!(told["known"].as_f64().unwrap() > 0.9 && told["faults"] == 3, "{told}");
     assert!(run_in(at, "volume list p.petro").done().stdout.contains("time"));
@@ -47,7 +48,10 @@ fn one_pick_by_time_is_a_horizon_in_all_blocks_with_its_quality() {
     run_in(at, "horizon remove p.petro Truth").done();
     let picked = run_in(at, &line).done().json();
     assert!(picked["coverage"].as_f64().unwrap() > 0.9, "{picked}");
-    assert!(picked["sheets"].as_u64().unwrap() >= 3 && picked["tracked"].as_u64() > picked["between"].as_u64(), "{picked}");
+    assert!(
+        picked["sheets"].as_u64().unwrap() >= 3 && picked["tracked"].as_u64() > picked["between"].as_u64(),
+        "{picked}"
+    );
     // Samples are 10 m apart.
     let found = depths(at, "Bravo");
     let near = |place: &(i64, i64), z: f64| {

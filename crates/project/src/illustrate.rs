@@ -5,9 +5,7 @@
 //! rock: the legend says how the reflections look, and the title says that nothing was interpreted.
 
 use crate::Project;
-use crate::command::{
-    Command, ComputeTime, Extract, ImportVolume, PickByTime, SetLayer, TimeLevel, read_time,
-};
+use crate::command::{Command, ComputeTime, Extract, ImportVolume, PickByTime, SetLayer, TimeLevel, read_time};
 use crate::document::Polarity;
 use crate::error::ProjectError;
 use crate::figures::{self, FigureFormat, FigureSettings, InterpreterView};
@@ -65,7 +63,7 @@ const SEISMIC: &str = "seismic";
 const PAGE_CM: [f64; 2] = [20.0, 13.0];
 /// Its resolution, dots an inch.
 const DPI: f64 = 200.0;
-const TITLE: &str = "Uninterpreted: layers of one geologic time";
+const TITLE: &str = "Uninterpreted: layers by computed geologic time";
 
 /// Colours of the layers from the top: each differs from the next, and none claims a rock.
 const COLOURS: [[u8; 3]; 8] = [
@@ -99,6 +97,8 @@ pub fn run(
     let project = new.publish()?;
     let document = project.document();
     let mut scene = scene::choose(document, None)?;
+    // The topmost layer is one of those that were asked for, not air.
+    scene.ground = None;
     scene::prepare(document, &mut scene, progress)?;
     let figure = Figure {
         size: PageSize::Cm(PAGE_CM),

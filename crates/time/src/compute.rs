@@ -3,10 +3,10 @@
 use crate::cut::Cut;
 use crate::error::TimeError;
 use crate::hubs::Hubs;
+use crate::known::{hide_unknown, make_monotone};
 use crate::links::Links;
 use crate::matches::Timed;
 use crate::merge::merge;
-use crate::known::{hide_unknown, make_monotone};
 use crate::solve::{System, Tie};
 use crate::start;
 use crate::throws::{Throw, throw_of, ties};

@@ -73,8 +73,11 @@ pub fn strongest_levels(tau: &Volume<f32>, volume: &Volume<f32>, count: usize) -
     let mut levels: Vec<Level> = (1..bins.len().saturating_sub(1))
         .filter(is_top)
         .map(|n| {
-            let mut traces: Vec<usize> =
-                isochron(tau, bins[n].0).crossings.iter().map(|at| usize::from(at.x) * ny + usize::from(at.y)).collect();
+            let mut traces: Vec<usize> = isochron(tau, bins[n].0)
+                .crossings
+                .iter()
+                .map(|at| usize::from(at.x) * ny + usize::from(at.y))
+                .collect();
             traces.dedup();
             let coverage = traces.len() as f64 / live.max(1) as f64;
             Level { time: bins[n].0, coverage, strength: bins[n].1 / rms.max(f32::MIN_POSITIVE) }

@@ -36,9 +36,10 @@ impl Timed<'_> {
     pub fn range(&self) -> [f32; 2] {
         let nz = self.volume.size()[2];
         let of = |trace: &[f32]| {
-            trace.iter().enumerate().fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], (z, s)| {
-                [a.min(s + z as f32), b.max(s + z as f32)]
-            })
+            trace
+                .iter()
+                .enumerate()
+                .fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], (z, s)| [a.min(s + z as f32), b.max(s + z as f32)])
         };
         let both = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         self.s.par_chunks(nz).map(of).reduce(|| [f32::INFINITY, f32::NEG_INFINITY], both)

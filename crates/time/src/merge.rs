@@ -42,15 +42,19 @@ pub fn merge(hubs: &mut Hubs, links: &Links, times: &[f32], tolerance: f64) -> u
     order.sort_by_key(|&hub| (std::cmp::Reverse(hubs.of_hub(hub).len()), hub));
     let mut groups: Vec<Group> = Vec::new();
     // Groups by kind and whole samples of time.
-    let mut shelves: std::collections::BTreeMap<(interp::Extremum, i64), Vec<usize>> = std::collections::BTreeMap::new();
+    let mut shelves: std::collections::BTreeMap<(interp::Extremum, i64), Vec<usize>> =
+        std::collections::BTreeMap::new();
     let mut group_of = vec![0u32; hubs.len()];
     for hub in order {
         let own: Vec<u64> = hubs.of_hub(hub).iter().map(|&v| places[v as usize]).collect();
         let (kind, time) = (hubs.kind[hub], f64::from(means[hub]));
         let shelf = time.floor() as i64;
         let reach = tolerance.ceil() as i64;
-        let mut near: Vec<usize> =
-            (shelf - reach..=shelf + reach).filter_map(|shelf| shelves.get(&(kind, shelf))).flatten().copied().collect();
+        let mut near: Vec<usize> = (shelf - reach..=shelf + reach)
+            .filter_map(|shelf| shelves.get(&(kind, shelf)))
+            .flatten()
+            .copied()
+            .collect();
         near.retain(|&group| (groups[group].time - time).abs() < tolerance);
         near.sort_by(|&a, &b| (groups[a].time - time).abs().total_cmp(&(groups[b].time - time).abs()).then(a.cmp(&b)));
         let fits = |&&group: &&usize| {

@@ -287,7 +287,13 @@ impl System<'_> {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub fn minimise(&self, s: &mut [f32], most: usize, tolerance: f64, progress: &Progress) -> Result<usize, Cancelled> {
+    pub fn minimise(
+        &self,
+        s: &mut [f32],
+        most: usize,
+        tolerance: f64,
+        progress: &Progress,
+    ) -> Result<usize, Cancelled> {
         let line = self.size()[1] * self.size()[2];
         let diagonal = self.diagonal();
         let mut image = vec![0.0f32; s.len()];
@@ -318,7 +324,9 @@ impl System<'_> {
                 .for_each(|(p, (r, d))| *p = r / d + keep * *p);
             size = next;
             steps += 1;
-            if std::env::var("TRACE").is_ok() { eprintln!("{steps} {:.5}", size.sqrt() / at_rest); }
+            if std::env::var("TRACE").is_ok() {
+                eprintln!("{steps} {:.5}", size.sqrt() / at_rest);
+            }
         }
         Ok(steps)
     }

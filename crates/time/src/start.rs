@@ -52,7 +52,8 @@ pub fn neighbours(hubs: &Hubs, links: &Links) -> Vec<Neighbours> {
 pub fn tied(hubs: &Hubs, ties: &[Tie], times: Option<&[f32]>) -> Vec<Neighbours> {
     let nearest = |trace: u32, z: f32| {
         let own = hubs.on_trace(trace as usize);
-        own.min_by(|&v, &w| (hubs.z[v] - z).abs().total_cmp(&(hubs.z[w] - z).abs())).filter(|&v| (hubs.z[v] - z).abs() < TIED_REACH)
+        own.min_by(|&v, &w| (hubs.z[v] - z).abs().total_cmp(&(hubs.z[w] - z).abs()))
+            .filter(|&v| (hubs.z[v] - z).abs() < TIED_REACH)
     };
     let pair = |tie: &Tie| {
         let (v, w) = (nearest(tie.trace[0], tie.z[0])?, nearest(tie.trace[1], tie.z[1])?);

@@ -26,11 +26,7 @@ fn time_of(volume: &Volume<f32>, cuts: &[Cut]) -> GeologicTime {
 
 /// The greatest error of isochrons from the middle trace, in samples, and the share of traces that have one, leaving out
 /// places for which `counts` is false.
-fn errors(
-    tau: &Volume<f32>,
-    strat: impl Fn(f32, f32, f32) -> f32,
-    counts: impl Fn(f32, f32) -> bool,
-) -> (f32, f32) {
+fn errors(tau: &Volume<f32>, strat: impl Fn(f32, f32, f32) -> f32, counts: impl Fn(f32, f32) -> bool) -> (f32, f32) {
     let [nx, ny, nz] = tau.size();
     let (mut worst, mut found, mut all) = (0.0f32, 0, 0);
     for z in (nz / 3..2 * nz / 3).step_by(5) {

@@ -152,7 +152,11 @@ impl Panels {
         }
         let bend = BEND_COST * terms[1..].iter().map(|term| term * term).sum::<f32>();
         let overlap = both as f32 / there.max(1) as f32;
-        if overlap < LEAST_OVERLAP { -1.0 } else { product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) - bend }
+        if overlap < LEAST_OVERLAP {
+            -1.0
+        } else {
+            product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) - bend
+        }
     }
 
     /// Improves a throw term by term.
@@ -196,7 +200,9 @@ pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw>
     };
     let slopes = [greatest * 0.75, greatest * 0.5];
     let starts: Vec<[f32; 6]> = steps(greatest, 1.0)
-        .flat_map(|a| steps(slopes[0], 3.0).flat_map(move |b| steps(slopes[1], 3.0).map(move |c| [a, b, c, 0.0, 0.0, 0.0])))
+        .flat_map(|a| {
+            steps(slopes[0], 3.0).flat_map(move |b| steps(slopes[1], 3.0).map(move |c| [a, b, c, 0.0, 0.0, 0.0]))
+        })
         .filter(|terms| terms[0].abs() + 0.5 * (terms[1].abs() + terms[2].abs()) <= 1.2 * greatest)
         .collect();
     let mut found: Vec<([f32; 6], f32)> = starts.into_par_iter().map(|terms| (terms, panels.score(&terms))).collect();

@@ -11,7 +11,9 @@ mod scene;
 mod segy;
 mod well;
 
-pub(super) use assembly::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, TimeArgs};
+pub(super) use assembly::{
+    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, TimeArgs,
+};
 pub(super) use attribute::AttributeArgs;
 pub(super) use extraction::ExtractArgs;
 pub(super) use figure::FigureArgs;

@@ -8,6 +8,7 @@ use crate::document::{Document, Polarity, Source, VolumeEntry};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::Candidates;
+use ::time::{Crossing, Cut, Isochron, Reflections, TimeSettings, geologic_time, isochron};
 use glam::Vec3;
 use interp::Extremum;
 use model::FaultNetwork;
@@ -16,7 +17,6 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use store::VolumeInfo;
 use survey::{Horizon, NodeGrid, Progress, Quality, Sheet, SurveyGeometry, Volume};
-use ::time::{Crossing, Cut, Isochron, Reflections, TimeSettings, geologic_time, isochron};
 
 /// What a volume of geologic time says that it holds.
 const QUANTITY: &str = "geologic time";
@@ -141,7 +141,7 @@ pub fn read_time(
 pub enum TimeLevel {
     /// The one through this inline, crossline and vertical value, or through the reflection beside it.
     Through([f64; 3]),
-    /// The one of this value, samples.
+    /// The one of this value, samples. It stays where it is beside reflections, which is smoother than what was tracked.
     Of(f32),
 }
 
@@ -218,11 +218,7 @@ impl PickByTime {
         let mut traces: Vec<[u16; 2]> = level.crossings.iter().map(|at| [at.x, at.y]).collect();
         traces.dedup();
         let coverage = traces.len() as f64 / (tau.size()[0] * tau.size()[1]) as f64;
-        let source = Source {
-            path: PathBuf::from(&entry.file),
-            bytes: entry.source.bytes,
-            reading,
-        };
+        let source = Source { path: PathBuf::from(&entry.file), bytes: entry.source.bytes, reading };
         let count = sheets.len();
         let horizon = Horizon::new(self.horizon.clone(), sheets);
         let position = insert_made(draft, &horizon, &Age::ByDepth, source, progress)?;
@@ -308,7 +304,7 @@ fn sheets(
             continue;
         }
         let reflection = snapped(at);
-        let z = reflection.unwrap_or(at.z);
+        let z = reflection.filter(|_| seed.place.is_some()).unwrap_or(at.z);
         sheet.depth[node] = geometry.vertical.value_at(f64::from(z)) as f32;
         sheet.quality[node] = match reflection {
             _ if seed.place.is_some_and(|(trace, at)| trace == [x, y] && (z - at).abs() < 0.5) => Quality::Picked,
