@@ -36,7 +36,7 @@ acts=0
 open() {
     "$program" view "$@" >window.log 2>&1 &
     window_process=$!
-    window=$(timeout 120 xdotool search --sync --onlyvisible --name '^Petroglyph$' | head -n 1)
+    window=$(timeout 120 xdotool search --sync --onlyvisible --name 'Petroglyph$' | head -n 1)
     xdotool windowmove "$window" 0 0 windowsize "$window" "$width" "$height"
     xdotool windowfocus "$window"
     sleep 3

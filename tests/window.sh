@@ -26,7 +26,7 @@ unset WAYLAND_DISPLAY || true
 
 "$program" view "$project" >"$out/window.log" 2>&1 &
 window_process=$!
-window=$(timeout 120 xdotool search --sync --onlyvisible --name '^Petroglyph$' | head -n 1)
+window=$(timeout 120 xdotool search --sync --onlyvisible --name 'Petroglyph$' | head -n 1)
 xdotool windowmove "$window" 0 0 windowsize "$window" "$width" "$height"
 xdotool windowfocus "$window"
 

@@ -72,9 +72,13 @@ fn the_real_window_undoes_on_a_key_and_is_remembered_when_killed() {
     view.env("XDG_CONFIG_HOME", at.join("settings")).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut window = Ended(view.spawn().unwrap());
     let tool = |arguments: &[&str]| Command::new("xdotool").env("DISPLAY", &display).args(arguments).output().unwrap();
-    let found = tool(&["search", "--sync", "--onlyvisible", "--name", "^Petroglyph$", "windowfocus", "--sync"]);
-    assert!(found.status.success(), "{}", String::from_utf8_lossy(&found.stderr));
     let start = Instant::now();
+    // Its title begins with the project's name once that is open.
+    while !tool(&["search", "--onlyvisible", "--name", "Petroglyph$", "windowfocus"]).status.success() {
+        assert!(window.0.try_wait().unwrap().is_none(), "the window ended");
+        assert!(start.elapsed() < PATIENCE, "no window shows");
+        std::thread::sleep(Duration::from_millis(200));
+    }
     // The key is given until the project is open and obeys it.
     while step(at) != before {
         assert!(window.0.try_wait().unwrap().is_none(), "the window ended");
