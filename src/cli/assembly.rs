@@ -108,7 +108,7 @@ pub(super) fn fault_accept(project: PathBuf, id: u32, name: String) -> Request {
 /// Measures the present extraction against a synthetic survey's truth.
 pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
-    let truth = project::demo::survey_files::read_truth(truth)?;
+    let truth = chains::demo::survey_files::read_truth(truth)?;
     let candidates = Candidates::load(project.root(), project.document(), progress)?;
     let size = candidates.forest.surfaces.size;
     if size != truth.size {

@@ -1,14 +1,15 @@
 //! Turns arguments into requests with commands and values, or refuses them as wrong usage.
 
 use super::args::{
-    Action, CreateArgs, DrawingArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction,
-    SynthArgs, VolumeAction,
+    Action, CreateArgs, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction,
+    SceneAction, SynthArgs, VolumeAction,
 };
 use super::page::PageRequest;
 use super::view::ViewChanges;
 use super::well;
 use super::{assembly, extraction, interpretation};
 use crate::bench;
+use chains::illustrate::IllustrateSettings;
 use formats::{ExportOptions, Format, ImportOptions};
 use glam::DVec2;
 use interp::ExtractSettings;
@@ -19,7 +20,6 @@ use project::command::{
     SetVelocity,
 };
 use project::figures::FigureFormat;
-use project::illustrate::IllustrateSettings;
 use project::memory_budget;
 use project::picture::Device;
 use project::picture::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
@@ -169,26 +169,7 @@ impl TryFrom<Action> for Request {
             Action::Fault(action) => interpretation::fault(action)?,
             Action::Well(action) => well::well(action)?,
             Action::Extract(typed) => extraction::extract(typed)?,
-            Action::Illustrate(typed) => {
-                if typed.layers < 2 {
-                    return Err(format!("--layers {}: expected at least 2", typed.layers));
-                }
-                if FigureFormat::of(&typed.out).is_none() {
-                    return Err(format!(
-                        "{}: expected a file that ends in .png, .tif, .svg or .pdf",
-                        typed.out.display()
-                    ));
-                }
-                let (device, volume_bytes) = drawing(&typed.drawing)?;
-                let settings = IllustrateSettings {
-                    layers: typed.layers,
-                    options: super::segy::segy_options(&typed.segy)?,
-                    device,
-                    volume_bytes: volume_bytes.unwrap_or_else(memory_budget::half_of_available),
-                };
-                let project = typed.project.unwrap_or_else(|| typed.out.with_extension("petro"));
-                Self::Illustrate { survey: typed.survey, out: typed.out, project, settings }
-            }
+            Action::Illustrate(typed) => illustrate(typed)?,
             Action::Time(typed) => assembly::time(typed),
             Action::Pick(typed) => assembly::pick(typed)?,
             Action::Climb(typed) => assembly::climb(typed),
@@ -303,6 +284,24 @@ fn k_definition(text: &str) -> Result<KDefinition, Usage> {
             "--k {other}: expected flow, harmonic, distance, proportional, parallel-to-bottom or parallel-to-top"
         )),
     }
+}
+
+fn illustrate(typed: IllustrateArgs) -> Result<Request, Usage> {
+    if typed.layers < 2 {
+        return Err(format!("--layers {}: expected at least 2", typed.layers));
+    }
+    if FigureFormat::of(&typed.out).is_none() {
+        return Err(format!("{}: expected a file that ends in .png, .tif, .svg or .pdf", typed.out.display()));
+    }
+    let (device, volume_bytes) = drawing(&typed.drawing)?;
+    let settings = IllustrateSettings {
+        layers: typed.layers,
+        options: super::segy::segy_options(&typed.segy)?,
+        device,
+        volume_bytes: volume_bytes.unwrap_or_else(memory_budget::half_of_available),
+    };
+    let project = typed.project.unwrap_or_else(|| typed.out.with_extension("petro"));
+    Ok(Request::Illustrate { survey: typed.survey, out: typed.out, project, settings })
 }
 
 fn synth(typed: &SynthArgs) -> Result<Request, Usage> {

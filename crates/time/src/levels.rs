@@ -29,6 +29,9 @@ pub struct Character {
 /// Least share of the traces that a level crosses.
 const LEAST_COVERAGE: f64 = 0.5;
 
+/// Least mean amplitude along a level, over the root mean square of the volume: less is chaos.
+const LEAST_STRENGTH: f32 = 0.3;
+
 /// The log of a volume, its root mean square amplitude, and the count of its live traces.
 fn whole(tau: &Volume<f32>, volume: &Volume<f32>) -> (Log, f32, usize) {
     let [nx, ny, _] = tau.size();
@@ -82,7 +85,7 @@ pub fn strongest_levels(tau: &Volume<f32>, volume: &Volume<f32>, count: usize) -
             let coverage = traces.len() as f64 / live.max(1) as f64;
             Level { time: bins[n].0, coverage, strength: bins[n].1 / rms.max(f32::MIN_POSITIVE) }
         })
-        .filter(|level| level.coverage >= LEAST_COVERAGE)
+        .filter(|level| level.coverage >= LEAST_COVERAGE && level.strength.abs() >= LEAST_STRENGTH)
         .collect();
     let score = |level: &Level| f64::from(level.strength.abs()) * level.coverage.powi(2);
     levels.sort_by(|a, b| score(b).total_cmp(&score(a)));

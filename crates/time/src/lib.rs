@@ -35,6 +35,7 @@
 mod compute;
 mod cut;
 mod error;
+mod find;
 mod hubs;
 mod isochron;
 pub mod isotonic;
@@ -55,6 +56,7 @@ mod tests;
 pub use compute::{GeologicTime, TimeSettings, geologic_time};
 pub use cut::{Across, Cut};
 pub use error::TimeError;
+pub use find::find_cuts;
 pub use isochron::{Crossing, Isochron, isochron};
 pub use levels::{Character, Level, characters, strongest_levels};
 pub use reflections::{Reflection, Reflections};

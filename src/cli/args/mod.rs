@@ -109,7 +109,8 @@ pub(super) enum Action {
     Extract(ExtractArgs),
     /// Compute geologic time: a volume in which every bed has one value, also beyond faults
     #[command(after_help = "Example:\n  petroglyph time north.petro\n\n\
-                      It needs horizon candidates (`petroglyph extract`) and cuts at the faults of the project.")]
+                      It needs horizon candidates (`petroglyph extract`) and is cut at the faults of the project, or at\n\
+                      faults that it finds where none is drawn.")]
     Time(TimeArgs),
     /// Pick a candidate and add it to a horizon, or take it out; or add the level of geologic time through a place
     #[command(after_help = "Examples:\

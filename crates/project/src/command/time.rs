@@ -8,10 +8,11 @@ use crate::document::{Document, Polarity, Source, VolumeEntry};
 use crate::folder::Draft;
 use crate::interpretation::assembly;
 use crate::interpretation::candidates::Candidates;
-use ::time::{Crossing, Cut, Isochron, Reflections, TimeSettings, geologic_time, isochron};
+use ::time::{Crossing, Cut, Isochron, Reflections, TimeSettings, find_cuts, geologic_time, isochron};
 use glam::Vec3;
 use interp::Extremum;
 use model::FaultNetwork;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -43,18 +44,21 @@ pub struct TimeComputed {
     pub volume: String,
     /// The volume of amplitudes.
     pub of: String,
-    /// Number of faults that cut it.
+    /// Number of drawn faults that cut it.
     pub faults: usize,
+    /// Number of faults that were found, where none is drawn, and cut it.
+    pub found: usize,
     /// Share of the voxels at which time is known, 0 to 1.
     pub known: f64,
 }
 
 impl std::fmt::Display for TimeComputed {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { volume, of, faults, known } = self;
+        let Self { volume, of, faults, found, known } = self;
+        let (faults, what) = if *faults > 0 { (faults, "drawn") } else { (found, "found") };
         write!(
             f,
-            "volume '{volume}': geologic time of '{of}' across {faults} faults, known at {:.1} % of the voxels",
+            "volume '{volume}': geologic time of '{of}' across {faults} faults that were {what}, known at {:.1} % of the voxels",
             100.0 * known
         )?;
         if *known == 0.0 {
@@ -72,7 +76,14 @@ impl ComputeTime {
         let geometry = draft.document.frame()?.clone();
         let volume = content::read_volume(draft.root(), &from, &geometry, progress)?;
         let network = assembly::blocks(draft.root(), &draft.document, progress)?;
-        let cuts = Cut::of_network(&network, volume.size());
+        let drawn = Cut::of_network(&network, volume.size());
+        let found_faults = if drawn.is_empty() {
+            find_cuts(&candidates.forest.surfaces, self.settings.fewest_vertices, progress)?
+        } else {
+            Vec::new()
+        };
+        let (faults, found_count) = (drawn.len(), found_faults.len());
+        let cuts = if drawn.is_empty() { found_faults } else { drawn };
         let found = geologic_time(&volume, &candidates.forest.surfaces, &cuts, &self.settings, progress)?;
         let (file, path) = draft.generation("volumes", &self.name, "zarr")?;
         let info = VolumeInfo {
@@ -97,7 +108,8 @@ impl ComputeTime {
         Ok(Effect::TimeComputed(TimeComputed {
             volume: self.name.clone(),
             of: from.name,
-            faults: cuts.len(),
+            faults,
+            found: found_count,
             known: found.known,
         }))
     }
@@ -312,5 +324,24 @@ fn sheets(
             None => Quality::Filled,
         };
     }
+    if seed.place.is_none() {
+        sheets.values_mut().for_each(smooth);
+    }
     sheets.into_values().collect()
+}
+
+/// Nodes to either side over which a level of a picture is smoothed.
+const SMOOTHED: usize = 3;
+
+/// Replaces every depth by the median of those around it: steps stay, single spikes go.
+fn smooth(sheet: &mut Sheet) {
+    let [nu, nv] = sheet.grid.count;
+    let range = |at: usize, count: usize| at.saturating_sub(SMOOTHED)..(at + SMOOTHED + 1).min(count);
+    let median = |n: usize| {
+        let places = range(n / nv, nu).flat_map(|u| range(n % nv, nv).map(move |v| u * nv + v));
+        let mut near: Vec<f32> = places.map(|n| sheet.depth[n]).filter(|depth| depth.is_finite()).collect();
+        near.sort_by(f32::total_cmp);
+        if sheet.depth[n].is_finite() { near[near.len() / 2] } else { f32::NAN }
+    };
+    sheet.depth = (0..nu * nv).into_par_iter().map(median).collect();
 }

@@ -4,23 +4,23 @@
 //! character of the reflections → a block with a legend. The project is kept, to go on from. A pattern does not claim a
 //! rock: the legend says how the reflections look, and the title says that nothing was interpreted.
 
-use crate::Project;
-use crate::command::{Command, ComputeTime, Extract, ImportVolume, PickByTime, SetLayer, TimeLevel, read_time};
-use crate::document::Polarity;
-use crate::error::ProjectError;
-use crate::figures::{self, FigureFormat, FigureSettings, InterpreterView};
-use crate::folder::refuse_inside_project;
-use crate::picture::Device;
-use crate::picture::scene;
-use ::time::{Character, TimeSettings, characters, strongest_levels};
 use figure::{Annotation, BlockPart, Figure, PageSize};
 use interp::ExtractSettings;
+use project::Project;
+use project::command::{Command, ComputeTime, Extract, ImportVolume, PickByTime, SetLayer, TimeLevel, read_time};
+use project::document::Polarity;
+use project::error::ProjectError;
+use project::figures::{self, FigureFormat, FigureSettings, InterpreterView};
+use project::folder::refuse_inside_project;
+use project::picture::Device;
+use project::picture::scene;
 use segy::SegyOptions;
 use serde::Serialize;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use survey::Progress;
+use time::{Character, TimeSettings, characters, strongest_levels};
 use ttf::Colour;
 
 /// How a survey is illustrated.
