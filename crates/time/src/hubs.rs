@@ -68,8 +68,7 @@ impl Hubs {
         let mut hub_of_set = vec![NONE; vertices.len()];
         let mut kind = Vec::new();
         for surface in &surfaces.surfaces {
-            for v in surface.vertices.start as usize..surface.vertices.end as usize {
-                let s = set[v];
+            for &s in &set[surface.vertices.start as usize..surface.vertices.end as usize] {
                 if s != NONE && hub_of_set[s as usize] == NONE && count[s as usize] as usize >= fewest {
                     hub_of_set[s as usize] = kind.len() as u32;
                     kind.push(surface.extremum);

@@ -50,8 +50,7 @@ pub fn isochron(tau: &Volume<f32>, time: f32) -> Isochron {
 
 /// The depths at which a trace of τ rises through `time`.
 fn on_trace(trace: &[f32], time: f32) -> impl Iterator<Item = f32> + '_ {
-    trace.windows(2).enumerate().filter_map(move |(z, pair)| {
-        // NaN compares as false.
-        (pair[0] <= time && pair[1] > time).then(|| z as f32 + (time - pair[0]) / (pair[1] - pair[0]))
-    })
+    // NaN compares as false.
+    let crossed = trace.windows(2).enumerate().filter(move |(_, pair)| pair[0] <= time && pair[1] > time);
+    crossed.map(move |(z, pair)| z as f32 + (time - pair[0]) / (pair[1] - pair[0]))
 }

@@ -43,7 +43,7 @@ impl Log {
     #[inline]
     pub fn add(&mut self, time: f32, amplitude: f32) {
         let at = (time - self.first) / BIN;
-        if !(at >= 0.0 && at < (self.sum.len() - 1) as f32) || !amplitude.is_finite() {
+        if !(at >= 0.0 && at < (self.sum.len() - 1) as f32 && amplitude.is_finite()) {
             return;
         }
         let low = at as usize;

@@ -130,15 +130,19 @@ fn a_fault_is_found_where_patches_end_and_none_where_they_go_on() {
     let fault = |y: f32, z: f32| 22.0 + 0.3 * (z - 48.0) + 0.2 * (y - 20.0);
     let strat = |x: f32, y: f32, z: f32| z - 0.2 * y - if x > fault(y, z) { 5.0 } else { 0.0 };
     let found = |strat: &dyn Fn(f32, f32, f32) -> f32| {
-        let surfaces = grow_surfaces(&volume([48, 40, 96], strat), &GrowSettings::default(), &Progress::silent()).unwrap();
+        let surfaces =
+            grow_surfaces(&volume([48, 40, 96], strat), &GrowSettings::default(), &Progress::silent()).unwrap();
         find_cuts(&surfaces, 30, &Progress::silent()).unwrap()
     };
     let cuts = found(&strat);
     assert_eq!(cuts.len(), 1);
     assert_eq!(cuts[0].across, Across::Inlines);
     let off = |line: usize, z: usize| (cuts[0].at(line, z as f32) - fault(line as f32, z as f32)).abs();
-    let known: Vec<f32> =
-        (0..40).flat_map(|line| (10..86).map(move |z| (line, z))).map(|(l, z)| off(l, z)).filter(|d| !d.is_nan()).collect();
+    let known: Vec<f32> = (0..40)
+        .flat_map(|line| (10..86).map(move |z| (line, z)))
+        .map(|(l, z)| off(l, z))
+        .filter(|d| !d.is_nan())
+        .collect();
     let mean = known.iter().sum::<f32>() / known.len() as f32;
     assert!(mean < 1.0 && known.len() > 40 * 76 / 2, "{mean} of {}", known.len());
     assert!(found(&|x, y, z| z - 0.2 * y + 0.3 * x).is_empty());
