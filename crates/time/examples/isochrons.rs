@@ -32,7 +32,7 @@ const NOTES: &str = "
   half of their nodes on the held-out surveys. Draw the faults where isochrons must be right beyond them.
 - Penobscot, Horizon B, no fault drawn, one click at each of fifteen places of it (`pick --by-time` on the survey in
   docs/real-data.md, compared with the interpretation on its own nodes): within 4 ms of it on 63 % of the nodes on
-  average, 73 % from eleven of the places; two places beside the faults give 4 and 5 %. Where it is right the error is
+  average, 73 % from eleven of the places; two of them give 4 and 5 %. Where it is right the error is
   1.8 ms.
 - Times were taken while the machine did other work.
 ";

@@ -1,6 +1,6 @@
 //! The commands that change files, each with the small folder that it begins in.
 //!
-//! A test compares them with what the program's help lists: no command can be forgotten. Five are left out, each with
+//! A test compares them with what the program's help lists: no command can be forgotten. Six are left out, each with
 //! its reason ([`ELSEWHERE`]).
 
 use super::supervised::{self, Verdict};
@@ -263,10 +263,14 @@ const READING: [&str; 15] = [
 ];
 
 /// What is not disturbed itself, and why.
-const ELSEWHERE: [(&str, &str); 5] = [
+const ELSEWHERE: [(&str, &str); 6] = [
     (
         "demo",
         "carries out `synth`, `import`, `extract`, `pick`, `climb`, `horizon fill`, `layer set`, `scene add` and `render`",
+    ),
+    (
+        "illustrate",
+        "carries out `import`, `extract`, `time`, `pick --by-time`, `layer set` and `render`, and draws for seconds",
     ),
     ("patterns", "writes its picture by what `render` writes pictures by, and draws it for seconds"),
     ("bench", "changes no project; with `--dump` and `--segy` it writes files of its own to a folder"),
