@@ -13,12 +13,14 @@
 #   make screenshots   every panel of the window, without a display (SIZES, APPEARANCES)
 #   make accuracy   measures the accuracy again, for docs/accuracy.md
 #   make extraction measures the quality of horizon candidates, for docs/extraction.md
+#   make time       measures geologic time, for docs/time.md
 #   make picks      counts the picks that horizons take, for docs/picks.md
 
 OUT ?= out/demo
 OUT_ACCURACY ?= docs/accuracy.md
 OUT_EXTRACTION ?= docs/extraction.md
 OUT_PICKS ?= docs/picks.md
+OUT_TIME ?= docs/time.md
 SPEED_SIDE ?= 128
 SPEED_SIZE ?= 800x800
 # The Vulkan loader complains where no desktop session has set this.
@@ -29,7 +31,7 @@ SIZES ?= 1280x800 2560x1440
 APPEARANCES ?= light dark
 PYTHON ?= python3
 
-.PHONY: demo gallery screenshots test check bench accuracy extraction picks speed check-peers scenario attack fuzz fuzz-long setup build
+.PHONY: demo gallery screenshots test check bench accuracy extraction picks time speed check-peers scenario attack fuzz fuzz-long setup build
 
 build: setup
 	cargo build --locked
@@ -66,6 +68,9 @@ check-peers: build
 
 extraction: setup
 	cargo run --locked -p petroglyph-interp --example extraction > $(OUT_EXTRACTION).part && mv $(OUT_EXTRACTION).part $(OUT_EXTRACTION)
+
+time: setup
+	cargo run --locked -p petroglyph-time --example isochrons > $(OUT_TIME).part && mv $(OUT_TIME).part $(OUT_TIME)
 
 picks: setup
 	cargo run --locked -p petroglyph-interp --example picks > $(OUT_PICKS).part && mv $(OUT_PICKS).part $(OUT_PICKS)

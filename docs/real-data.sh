@@ -126,3 +126,7 @@ named "Ekofisk - Ommelanden" "Ekofisk Fm (chalk)" --pattern chalk --colour "#dfe
 named "below Ommelanden" "Ommelanden Fm (chalk, chert)" --pattern limestone-cherty --colour "#b5d0dc"
 "$petroglyph" render "$project" "$pictures/f02-1.png" --exaggeration 3 --azimuth 145 --elevation 25 --ground off --legend \
     --cut nearest,0.5175,0.5 --size 1700x880
+
+# F3 without interpretation.
+rm -rf "$out/illustrate-f3.petro"
+"$petroglyph" illustrate "$data/volumes/f3_depth_il300-427_xl300-439_int16.sgy" "$pictures/illustrate-f3.png" --project "$out/illustrate-f3.petro"

@@ -1,8 +1,9 @@
 //! Turns arguments for picks and faults into commands, and evaluates extractions.
 
-use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
+use super::args::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, TimeArgs};
 use super::report::Report;
 use super::request::{Request, Usage};
+use ::time::TimeSettings;
 use anyhow::bail;
 use interp::assembly::Operation;
 use interp::evaluate::{
@@ -13,7 +14,8 @@ use interp::holes::FillSettings;
 use model::FaultNetwork;
 use project::Project;
 use project::command::{
-    AcceptFault, Climb, Command, FillHorizon, Move, MovePick, PickFault, PickNode, ReplayPicks, Unfit,
+    AcceptFault, Climb, Command, ComputeTime, FillHorizon, Move, MovePick, PickByTime, PickFault, PickNode,
+    ReplayPicks, TimeLevel, Unfit,
 };
 use project::interpretation::candidates::Candidates;
 use serde_json::{Value, json};
@@ -28,7 +30,16 @@ fn place(option: &str, text: &str) -> Result<[f64; 3], Usage> {
     if text.split(',').count() == 3 && place.iter().all(|number| number.is_finite()) { Ok(place) } else { Err(wrong()) }
 }
 
+pub(super) fn time(typed: TimeArgs) -> Request {
+    let command = ComputeTime { name: typed.name, settings: TimeSettings::default() };
+    Request::Change { project: typed.project, command: Command::Time(command) }
+}
+
 pub(super) fn pick(typed: PickArgs) -> Result<Request, Usage> {
+    if typed.by_time {
+        let command = PickByTime { level: TimeLevel::Through(place("--at", &typed.at)?), horizon: typed.horizon };
+        return Ok(Request::Change { project: typed.project, command: Command::PickByTime(command) });
+    }
     let climb = if typed.highest_valid { Climb::HighestValid } else { Climb::Levels(typed.up.unwrap_or(0)) };
     let colour = typed.colour.map(|text| text.parse().map_err(|_| format!("--colour {text}: expected #rrggbb")));
     let command = PickNode {
@@ -97,7 +108,7 @@ pub(super) fn fault_accept(project: PathBuf, id: u32, name: String) -> Request {
 /// Measures the present extraction against a synthetic survey's truth.
 pub(super) fn evaluate(project: &Path, truth: &Path, progress: &Progress) -> anyhow::Result<Report> {
     let project = Project::open(project)?;
-    let truth = project::demo::survey_files::read_truth(truth)?;
+    let truth = chains::demo::survey_files::read_truth(truth)?;
     let candidates = Candidates::load(project.root(), project.document(), progress)?;
     let size = candidates.forest.surfaces.size;
     if size != truth.size {

@@ -53,6 +53,7 @@ fn words(error: &ProjectError) -> Option<&'static str> {
         ProjectError::UnknownProposal { .. } => "`petroglyph fault propose PROJECT` lists them",
         ProjectError::NoGeometry => "import a volume, or create the project with --bounds and --size",
         ProjectError::NothingToUndo | ProjectError::NothingToRedo => "`petroglyph info PROJECT` shows the history",
+        ProjectError::NoTime => "run `petroglyph time PROJECT` first",
         ProjectError::NotExtracted => "run `petroglyph extract PROJECT` first",
         ProjectError::NoVolume => "import one with `petroglyph import SURVEY.sgy PROJECT`",
         ProjectError::Style(_) => "`petroglyph patterns OUT.png` draws every pattern with its name",

@@ -2,14 +2,15 @@
 
 use super::animate::AnimateRequest;
 use super::args::{
-    Action, CreateArgs, DrawingArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction, SceneAction,
-    SynthArgs, VolumeAction,
+    Action, CreateArgs, DrawingArgs, IllustrateArgs, LayerAction, LayerSetArgs, RawArgs, RenderArgs, ScalarAction,
+    SceneAction, SynthArgs, VolumeAction,
 };
 use super::page::PageRequest;
 use super::view::ViewChanges;
 use super::well;
 use super::{assembly, extraction, interpretation};
 use crate::bench;
+use chains::illustrate::IllustrateSettings;
 use formats::{ExportOptions, Format, ImportOptions};
 use glam::DVec2;
 use interp::ExtractSettings;
@@ -20,6 +21,7 @@ use project::command::{
     SetVelocity,
 };
 use project::figures::FigureFormat;
+use project::memory_budget;
 use project::picture::Device;
 use project::picture::scene::{ShownHorizon, ShownIsosurface, Technique, VolumeRendering};
 use render::{IsosurfaceSource, Scope};
@@ -35,6 +37,8 @@ use ttf::{Colour, ColourMap, DepthInterval, Frequency, ScalarInterval, ScalarTtf
 pub(super) enum Request {
     /// Make a synthetic survey and pictures of it.
     Demo { out: PathBuf },
+    /// Draw a survey that nobody has interpreted.
+    Illustrate { survey: PathBuf, out: PathBuf, project: PathBuf, settings: IllustrateSettings },
     /// Make a synthetic survey.
     Synth { out: PathBuf, settings: SynthSettings },
     /// An outcrop of the size and seed of the settings.
@@ -168,6 +172,8 @@ impl TryFrom<Action> for Request {
             Action::Fault(action) => interpretation::fault(action)?,
             Action::Well(action) => well::well(action)?,
             Action::Extract(typed) => extraction::extract(typed)?,
+            Action::Illustrate(typed) => illustrate(typed)?,
+            Action::Time(typed) => assembly::time(typed),
             Action::Pick(typed) => assembly::pick(typed)?,
             Action::Climb(typed) => assembly::climb(typed),
             Action::Descend(typed) => assembly::descend(typed),
@@ -282,6 +288,24 @@ fn k_definition(text: &str) -> Result<KDefinition, Usage> {
             "--k {other}: expected flow, harmonic, distance, proportional, parallel-to-bottom or parallel-to-top"
         )),
     }
+}
+
+fn illustrate(typed: IllustrateArgs) -> Result<Request, Usage> {
+    if typed.layers < 2 {
+        return Err(format!("--layers {}: expected at least 2", typed.layers));
+    }
+    if FigureFormat::of(&typed.out).is_none() {
+        return Err(format!("{}: expected a file that ends in .png, .tif, .svg or .pdf", typed.out.display()));
+    }
+    let (device, volume_bytes) = drawing(&typed.drawing)?;
+    let settings = IllustrateSettings {
+        layers: typed.layers,
+        options: super::segy::segy_options(&typed.segy)?,
+        device,
+        volume_bytes: volume_bytes.unwrap_or_else(memory_budget::half_of_available),
+    };
+    let project = typed.project.unwrap_or_else(|| typed.out.with_extension("petro"));
+    Ok(Request::Illustrate { survey: typed.survey, out: typed.out, project, settings })
 }
 
 fn synth(typed: &SynthArgs) -> Result<Request, Usage> {

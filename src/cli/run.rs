@@ -6,10 +6,11 @@ use super::terminal::Terminal;
 use super::{animate, assembly, check, draw, info, list, option};
 use crate::bench;
 use anyhow::Context;
+use chains::demo::{self, survey_files};
+use chains::illustrate;
 use formats::{ExportOptions, Format};
 use project::Project;
 use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetRaw};
-use project::demo::{self, survey_files};
 use project::error::Noun;
 use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
@@ -66,6 +67,9 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
             refuse_inside_project(&out)?;
             demo::run(&out, &progress)?
         }),
+        Request::Illustrate { survey, out, project, settings } => {
+            told(illustrate::run(&survey, &out, &project, &settings, &progress)?)
+        }
         Request::Synth { out, settings } => synth(&out, &settings, &progress)?,
         Request::SynthOutcrop { out, settings } => outcrop(&out, &settings, &progress)?,
         Request::Info { path, distortion, segy, reading } => {

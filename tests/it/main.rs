@@ -30,6 +30,7 @@ mod sources;
 #[cfg(target_os = "linux")]
 mod steps;
 mod store;
+mod time;
 mod unpicked;
 mod volume_rendering;
 mod well;

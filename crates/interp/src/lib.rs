@@ -46,5 +46,5 @@ pub use evaluate::{EvaluateSettings, Evaluation, evaluate};
 pub use extraction::{ExtractReport, ExtractSettings, Extraction, StageSeconds, extract, extract_into};
 pub use extrema::Extrema;
 pub use forest::{Forest, ForestSettings, Node, Subtree};
-pub use grow::{GrowError, GrowSettings, Method, grow_slabs, grow_surfaces};
+pub use grow::{GrowError, GrowSettings, Method, UnionFind, grow_slabs, grow_surfaces};
 pub use surfaces::{Extremum, Surface, Surfaces, Vertex};

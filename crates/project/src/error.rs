@@ -351,6 +351,27 @@ pub enum ProjectError {
         /// First and last vertical value.
         vertical: [f64; 2],
     },
+    /// The project has no geologic time.
+    #[error("the project has no geologic time")]
+    NoTime,
+    /// Geologic time is not known at a place.
+    #[error("geologic time is not known at inline {}, crossline {}, {}: no candidate lies near it", at[0], at[1], at[2])]
+    TimeUnknown {
+        /// Inline, crossline, vertical value.
+        at: [f64; 3],
+    },
+    /// Nothing in geologic time can bound layers.
+    #[error("no level of geologic time crosses half of the traces, so there are no layers to draw")]
+    NoLevels,
+    /// No trace has a value of geologic time.
+    #[error("geologic time is {time} nowhere")]
+    NoIsochron {
+        /// The value.
+        time: f32,
+    },
+    /// Geologic time could not be computed.
+    #[error(transparent)]
+    Time(::time::TimeError),
     /// There is no candidate near a place.
     #[error(
         "no candidate lies within {max_distance} voxels of inline {}, crossline {}, {}: the nearest is \
@@ -494,6 +515,15 @@ pub enum ProjectError {
     NothingToRedo,
 }
 
+impl From<::time::TimeError> for ProjectError {
+    fn from(error: ::time::TimeError) -> Self {
+        match error {
+            ::time::TimeError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            other => Self::Time(other),
+        }
+    }
+}
+
 impl From<interp::InterpError> for ProjectError {
     fn from(error: interp::InterpError) -> Self {
         match error {
@@ -517,6 +547,16 @@ fn listed(names: &[String]) -> String {
 }
 
 impl ProjectError {
+    /// A place that lies outside of a survey.
+    pub(crate) fn outside(at: [f64; 3], geometry: &survey::SurveyGeometry) -> Self {
+        Self::PickOutside {
+            at,
+            inlines: [geometry.inlines.first, geometry.inlines.last()],
+            crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
+            vertical: [geometry.vertical.first, geometry.vertical.last()],
+        }
+    }
+
     /// Turns a failure of the file system into an error that the user can act on.
     pub fn io(action: &'static str, path: &Path, source: io::Error) -> Self {
         let path = path.to_owned();

@@ -19,7 +19,7 @@
 //! | [`command`] | every change, as data |
 //! | [`Project`] | applies commands; undo and redo |
 //! | [`figures`] | what a figure needs, loaded, and its page made |
-//! | [`demo`], [`segy_export`] | the demonstration; a volume written as SEG-Y |
+//! | [`segy_export`] | a volume written as SEG-Y |
 //!
 //! Deliberately absent: the words of a command line or a window. An error says what is wrong; what helps is said here
 //! only where it is the same everywhere. The names of options and fields are known only to the program that shows the
@@ -28,7 +28,6 @@
 pub mod check;
 pub mod command;
 pub mod content;
-pub mod demo;
 pub mod derived;
 pub mod document;
 pub mod error;

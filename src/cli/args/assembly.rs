@@ -20,12 +20,25 @@ pub(in crate::cli) struct PickArgs {
     /// itself, as noise leaves them, and 10 % over the horizon, as beside a fault that is not drawn
     #[arg(long)]
     pub(in crate::cli) highest_valid: bool,
+    /// Add a new horizon that is the level of geologic time through the place, over the whole survey and across its
+    /// faults; `petroglyph time` first
+    #[arg(long, conflicts_with_all = ["up", "highest_valid", "remove", "colour"])]
+    pub(in crate::cli) by_time: bool,
     /// Remove the node from the horizon
     #[arg(long)]
     pub(in crate::cli) remove: bool,
     /// Colour of the horizon, #rrggbb [default: its present colour, or the next of a list]
     #[arg(long, value_name = "COLOUR")]
     pub(in crate::cli) colour: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct TimeArgs {
+    /// Project folder
+    pub(in crate::cli) project: PathBuf,
+    /// Name of the new volume
+    #[arg(long, default_value = "time")]
+    pub(in crate::cli) name: String,
 }
 
 #[derive(Debug, Args)]

@@ -13,7 +13,9 @@ mod segy;
 mod well;
 
 pub(super) use animate::AnimateArgs;
-pub(super) use assembly::{ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs};
+pub(super) use assembly::{
+    ClimbArgs, DescendArgs, FaultPickArgs, FaultProposeArgs, FillArgs, PickArgs, ReplayArgs, TimeArgs,
+};
 pub(super) use attribute::AttributeArgs;
 pub(super) use extraction::ExtractArgs;
 pub(super) use figure::FigureArgs;
@@ -21,7 +23,9 @@ pub(super) use interpretation::{
     ExportArgs, FaultAction, FaultAddArgs, HorizonAction, HorizonAddArgs, ImportArgs, ReadingArgs, VolumeAction,
 };
 pub(super) use layer::{LayerAction, LayerSetArgs, RawArgs, ScalarAction, TextureArgs};
-pub(super) use output::{BenchArgs, DemoArgs, DrawingArgs, FiguresArgs, ParameterizeArgs, RenderArgs, SynthArgs};
+pub(super) use output::{
+    BenchArgs, DemoArgs, DrawingArgs, FiguresArgs, IllustrateArgs, ParameterizeArgs, RenderArgs, SynthArgs,
+};
 pub(super) use scene::{SceneAction, ViewArgs};
 pub(super) use segy::SegyArgs;
 pub(super) use well::{WellAction, WellAddArgs};
@@ -48,6 +52,12 @@ pub(super) enum Action {
     /// Run the whole chain from a synthetic survey to finished pictures
     #[command(after_help = "Example:\n  petroglyph demo --out out/demo")]
     Demo(DemoArgs),
+    /// Draw a block of a survey that nobody has interpreted, with layers of one geologic time
+    #[command(after_help = "Example:\n  petroglyph illustrate survey.sgy block.png --layers 6\n\n\
+                      It imports the survey into a new project beside the picture, extracts candidates, computes\n\
+                      geologic time and draws the strongest, most continuous levels. The picture says that it is\n\
+                      not interpreted.")]
+    Illustrate(IllustrateArgs),
     /// Make a synthetic survey with its interpretation and its truth
     #[command(after_help = "Example:\n  petroglyph synth out/synth --size 128x128x128 --seed 7 --snr 3")]
     Synth(SynthArgs),
@@ -99,11 +109,17 @@ pub(super) enum Action {
     #[command(after_help = "Examples:\n  petroglyph extract north.petro\
                       \n  petroglyph extract north.petro --extrema peak --min-front-width 6 --json")]
     Extract(ExtractArgs),
-    /// Pick a candidate and add it to a horizon, or take it out
+    /// Compute geologic time: a volume in which every bed has one value, also beyond faults
+    #[command(after_help = "Example:\n  petroglyph time north.petro\n\n\
+                      It needs horizon candidates (`petroglyph extract`) and is cut at the faults of the project, or at\n\
+                      faults that it finds where none is drawn.")]
+    Time(TimeArgs),
+    /// Pick a candidate and add it to a horizon, or take it out; or add the level of geologic time through a place
     #[command(after_help = "Examples:\
                       \n  petroglyph pick north.petro --at 1250,1302,948 --horizon \"Top Chalk\" \
                       --highest-valid\
-                      \n  petroglyph pick north.petro --at 1310,1302,960 --horizon \"Top Chalk\" --up 2 --remove")]
+                      \n  petroglyph pick north.petro --at 1310,1302,960 --horizon \"Top Chalk\" --up 2 --remove\
+                      \n  petroglyph pick north.petro --at 1250,1302,948 --horizon \"Top Chalk\" --by-time")]
     Pick(PickArgs),
     /// Move a pick up its tree
     #[command(after_help = "Example:\n  petroglyph climb north.petro 3 --levels 2")]

@@ -1,6 +1,6 @@
 //! Arguments for pictures, synthetic surveys and measurements.
 
-use super::{FigureArgs, ViewArgs};
+use super::{FigureArgs, SegyArgs, ViewArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -45,6 +45,24 @@ pub(in crate::cli) struct RenderArgs {
     pub(in crate::cli) figure: FigureArgs,
     #[command(flatten)]
     pub(in crate::cli) view: ViewArgs,
+}
+
+#[derive(Debug, Args)]
+pub(in crate::cli) struct IllustrateArgs {
+    /// SEG-Y file
+    pub(in crate::cli) survey: PathBuf,
+    /// File to write: .png or .tif for pixels, .svg or .pdf for paths and text
+    pub(in crate::cli) out: PathBuf,
+    /// Number of layers, at least 2; fewer are drawn where fewer levels stand out
+    #[arg(long, value_name = "N", default_value_t = 6)]
+    pub(in crate::cli) layers: usize,
+    /// Project folder to create, to go on from [default: OUT with the ending .petro]
+    #[arg(long)]
+    pub(in crate::cli) project: Option<PathBuf>,
+    #[command(flatten)]
+    pub(in crate::cli) drawing: DrawingArgs,
+    #[command(flatten)]
+    pub(in crate::cli) segy: SegyArgs,
 }
 
 #[derive(Debug, Args)]

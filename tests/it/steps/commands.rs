@@ -1,6 +1,6 @@
 //! The commands that change files, each with the small folder that it begins in.
 //!
-//! A test compares them with what the program's help lists: no command can be forgotten. Five are left out, each with
+//! A test compares them with what the program's help lists: no command can be forgotten. Six are left out, each with
 //! its reason ([`ELSEWHERE`]).
 
 use super::supervised::{self, Verdict};
@@ -150,9 +150,11 @@ pub const INTERPRETING: [Scenario; 14] = [
 ];
 
 /// What is done with candidates and proposals.
-pub const PICKING: [Scenario; 10] = [
+pub const PICKING: [Scenario; 12] = [
     of(Imported, "extract p.petro --min-leaf-triangles 20"),
     of(Extracted, "pick p.petro --at 4,4,64 --horizon Second --highest-valid"),
+    of(Extracted, "time p.petro"),
+    after(Extracted, |at| all(at, &["time p.petro"]), "pick p.petro --at 4,4,64 --horizon Level --by-time"),
     of(Extracted, "climb p.petro 2 --levels 2"),
     after(Extracted, |at| all(at, &["climb p.petro 2 --levels 2"]), "descend p.petro 2"),
     of(Extracted, "horizon unpick p.petro 1"),
@@ -262,10 +264,14 @@ const READING: [&str; 15] = [
 ];
 
 /// What is not disturbed itself, and why.
-const ELSEWHERE: [(&str, &str); 5] = [
+const ELSEWHERE: [(&str, &str); 6] = [
     (
         "demo",
         "carries out `synth`, `import`, `extract`, `pick`, `climb`, `horizon fill`, `layer set`, `scene add` and `render`",
+    ),
+    (
+        "illustrate",
+        "carries out `import`, `extract`, `time`, `pick --by-time`, `layer set` and `render`, and draws for seconds",
     ),
     ("patterns", "writes its picture by what `render` writes pictures by, and draws it for seconds"),
     ("bench", "changes no project; with `--dump` and `--segy` it writes files of its own to a folder"),

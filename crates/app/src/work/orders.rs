@@ -4,10 +4,10 @@
 use super::running::{Running, RunningGuard};
 use super::{Event, Outbox, keep_working};
 use crate::state::{Notice, Place, Snapshot};
+use chains::demo;
 use project::Project;
 use project::check::check;
 use project::command::{Command, ImportVolume};
-use project::demo;
 use project::error::ProjectError;
 use project::folder::DEFAULT_WAIT;
 use std::path::{Path, PathBuf};

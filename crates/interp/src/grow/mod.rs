@@ -42,6 +42,8 @@ mod tests;
 mod union_find;
 
 use crate::extrema::{ExtremaError, find_extrema};
+pub use union_find::UnionFind;
+
 use crate::surfaces::{Extremum, Surfaces};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

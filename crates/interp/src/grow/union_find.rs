@@ -2,19 +2,25 @@
 //! unions.
 
 /// Disjoint sets over 0 … n − 1.
-pub(super) struct UnionFind {
+///
+/// ```
+/// let mut sets = interp::UnionFind::new(4);
+/// sets.union(3, 1);
+/// assert_eq!((sets.find(3), sets.find(2)), (1, 2));
+/// ```
+pub struct UnionFind {
     parent: Vec<u32>,
 }
 
 impl UnionFind {
     /// Every member alone.
-    pub(super) fn new(count: usize) -> Self {
+    pub fn new(count: usize) -> Self {
         Self { parent: (0..count as u32).collect() }
     }
 
     /// The smallest member of the set of `member`.
     #[inline]
-    pub(super) fn find(&mut self, member: u32) -> u32 {
+    pub fn find(&mut self, member: u32) -> u32 {
         let mut at = member;
         loop {
             let up = self.parent[at as usize];
@@ -30,7 +36,7 @@ impl UnionFind {
 
     /// Joins two sets; the representative of the union.
     #[inline]
-    pub(super) fn union(&mut self, a: u32, b: u32) -> u32 {
+    pub fn union(&mut self, a: u32, b: u32) -> u32 {
         let (a, b) = (self.find(a), self.find(b));
         let (low, high) = (a.min(b), a.max(b));
         self.parent[high as usize] = low;

@@ -5,7 +5,7 @@
 
 use super::{Effect, Noun, ProjectError};
 use crate::content;
-use crate::document::HorizonEntry;
+use crate::document::{HorizonEntry, Source};
 use crate::folder::Draft;
 use crate::interpretation::order;
 use formats::{ImportOptions, ImportReport};
@@ -82,7 +82,7 @@ impl AddHorizon {
         }
         model::check_surface(&horizon, contact, &geometry)?;
         let others = load_all(draft, progress)?;
-        let position = self.position(draft, &horizon, contact, &others)?;
+        let position = position(&self.age, draft, &horizon, contact, &others)?;
         let contacts = draft.document.stratigraphy().horizons.iter().map(|h| h.contact).collect::<Vec<_>>();
         let contacts = [&contacts[..position], &[contact], &contacts[position..]].concat();
         self.check_order(&mut horizon, &others, position, &ContactRules::of(contacts), &geometry, &mut report)?;
@@ -138,27 +138,60 @@ impl AddHorizon {
         let name = self.options.name.clone().or_else(|| Some(self.name.clone()));
         ImportOptions { name, ..self.options.clone() }
     }
+}
 
-    /// The position in the list, 0 = youngest.
-    fn position(
-        &self,
-        draft: &Draft,
-        horizon: &Horizon,
-        contact: Contact,
-        others: &[Horizon],
-    ) -> Result<usize, ProjectError> {
-        match &self.age {
-            Age::Above(name) => draft.document.position(Noun::Horizon, name),
-            Age::Below(name) => Ok(draft.document.position(Noun::Horizon, name)? + 1),
-            // A body is drawn over whatever it cuts; its layer is its own at the end of the list.
-            Age::ByDepth if horizon.any_shape().is_some() && contact == Contact::Intrusive => Ok(others.len()),
-            Age::ByDepth => {
-                let geometry = draft.document.frame()?;
-                let deeper = |other: &Horizon| order::is_above(horizon, other, geometry);
-                Ok(others.iter().position(deeper).unwrap_or(others.len()))
-            }
+/// The position in the list, 0 = youngest.
+fn position(
+    age: &Age,
+    draft: &Draft,
+    horizon: &Horizon,
+    contact: Contact,
+    others: &[Horizon],
+) -> Result<usize, ProjectError> {
+    match age {
+        Age::Above(name) => draft.document.position(Noun::Horizon, name),
+        Age::Below(name) => Ok(draft.document.position(Noun::Horizon, name)? + 1),
+        // A body is drawn over whatever it cuts; its layer is its own at the end of the list.
+        Age::ByDepth if horizon.any_shape().is_some() && contact == Contact::Intrusive => Ok(others.len()),
+        Age::ByDepth => {
+            let geometry = draft.document.frame()?;
+            let deeper = |other: &Horizon| order::is_above(horizon, other, geometry);
+            Ok(others.iter().position(deeper).unwrap_or(others.len()))
         }
     }
+}
+
+/// Adds a horizon that was made here, conformable with its neighbours; returns its position, 0 = youngest.
+///
+/// # Errors
+/// It crosses another horizon where neither ends the other, data are damaged, or the user cancelled.
+pub(super) fn insert_made(
+    draft: &mut Draft,
+    horizon: &Horizon,
+    age: &Age,
+    source: Source,
+    progress: &Progress,
+) -> Result<usize, ProjectError> {
+    let others = load_all(draft, progress)?;
+    let contact = Contact::Conformable;
+    let position = position(age, draft, horizon, contact, &others)?;
+    let contacts = draft.document.stratigraphy().horizons.iter().map(|h| h.contact).collect::<Vec<_>>();
+    let rules = ContactRules::of([&contacts[..position], &[contact], &contacts[position..]].concat());
+    let geometry = draft.document.frame()?.clone();
+    for (index, other) in others.iter().enumerate() {
+        let index = if index < position { index } else { index + 1 };
+        let (young, old) = (index.min(position), index.max(position));
+        if !rules.may_cross(young, old) && other.any_shape().is_none() {
+            let (younger, older) = if index < position { (other, horizon) } else { (horizon, other) };
+            order::check(younger, older, &geometry)?;
+        }
+    }
+    let (file, new) = draft.generation("horizons", &horizon.name, "zarr")?;
+    store::write_horizon(&new, horizon, progress)?;
+    let hash = content::hash_horizon(horizon);
+    let entry = HorizonEntry { name: horizon.name.clone(), contact, file, hash, source, assembly: None };
+    draft.document.split_layer(position, |document| document.horizons.insert(position, entry));
+    Ok(position)
 }
 
 /// The report of an added horizon.

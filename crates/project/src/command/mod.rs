@@ -18,6 +18,7 @@ mod scalar;
 mod scene;
 mod survey_frame;
 mod texture;
+pub(crate) mod time;
 mod well;
 
 pub use attribute::{AttributeComputed, AttributeKind, ComputeAttribute};
@@ -37,6 +38,7 @@ pub use scalar::{RemoveScalar, SetRaw, SetScalar};
 pub use scene::{AddScene, RemoveScene};
 pub use survey_frame::SetVelocity;
 pub use texture::AddTexture;
+pub use time::{ComputeTime, PickByTime, PickedByTime, TimeComputed, TimeLevel, read_time};
 pub use well::{AddWell, RemoveWell, RenameWell, WellAdded};
 
 use crate::document::{Document, Source};
@@ -66,6 +68,8 @@ pub enum Command {
     Attribute(ComputeAttribute),
     /// Extract horizon candidates from a volume.
     Extract(Extract),
+    /// Compute geologic time.
+    Time(ComputeTime),
     /// Propose faults from the horizons.
     ProposeFaults(ProposeFaults),
     /// Remove a volume.
@@ -78,6 +82,8 @@ pub enum Command {
     RemoveHorizon(RemoveHorizon),
     /// Add a node of a surface tree to a horizon, or remove it.
     Pick(PickNode),
+    /// Add a horizon that is a level of geologic time.
+    PickByTime(PickByTime),
     /// Make several picks of one horizon.
     PickSeveral(PickNodes),
     /// Move a pick up or down its tree.
@@ -140,6 +146,10 @@ pub enum Effect {
     VolumeImported(VolumeImported),
     /// Volumes were computed.
     AttributeComputed(AttributeComputed),
+    /// Geologic time was computed.
+    TimeComputed(TimeComputed),
+    /// A horizon was picked by geologic time.
+    PickedByTime(PickedByTime),
     /// Candidates were extracted.
     Extracted(Box<Extracted>),
     /// Faults were proposed.
@@ -186,6 +196,8 @@ impl Command {
             Self::Import(change) => change.execute(draft, progress),
             Self::Attribute(change) => change.execute(draft, progress),
             Self::Extract(change) => change.execute(draft, progress),
+            Self::Time(change) => change.execute(draft, progress),
+            Self::PickByTime(change) => change.execute(draft, progress),
             Self::ProposeFaults(change) => change.execute(draft, progress),
             Self::RemoveVolume(change) => change.execute(draft),
             Self::AddHorizon(change) => change.execute(draft, progress),
@@ -237,6 +249,8 @@ impl Effect {
             Self::WellAdded(done) => done.report.notes.iter_mut().chain(&mut done.report.warnings).collect(),
             Self::Created
             | Self::AttributeComputed(_)
+            | Self::TimeComputed(_)
+            | Self::PickedByTime(_)
             | Self::Extracted(_)
             | Self::FaultsProposed(_)
             | Self::Picked(_)
@@ -261,6 +275,8 @@ impl Effect {
             Self::Created => "create".to_owned(),
             Self::VolumeImported(done) => format!("import volume {}", done.volume),
             Self::AttributeComputed(done) => format!("{} of {}", done.attribute, done.of),
+            Self::TimeComputed(done) => format!("geologic time of {}", done.of),
+            Self::PickedByTime(done) => format!("horizon {} by geologic time", done.horizon),
             Self::Extracted(done) => format!("candidates of {}", done.volume),
             Self::FaultsProposed(done) => format!("{} faults proposed", done.proposals.len()),
             Self::HorizonAdded(done) => format!("horizon {}", done.report.name),
@@ -296,6 +312,8 @@ impl std::fmt::Display for Effect {
                 done.assumptions.iter().try_for_each(|line| writeln!(f, "  assumed: {line}"))
             }
             Self::AttributeComputed(done) => write!(f, "{done}"),
+            Self::TimeComputed(done) => write!(f, "{done}"),
+            Self::PickedByTime(done) => write!(f, "{done}"),
             Self::Extracted(done) => write!(f, "{done}"),
             Self::FaultsProposed(done) => write!(f, "{done}"),
             Self::HorizonAdded(done) => write!(f, "{}", done.report),

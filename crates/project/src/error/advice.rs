@@ -44,6 +44,9 @@ impl ProjectError {
             Self::NoFigures => {
                 "write them into project.toml: [[figures]], then file = \"block.pdf\", scene = \"corner\", legend = true"
             }
+            Self::TimeUnknown { .. } => "point at a reflection",
+            Self::NoIsochron { .. } => "point at a place inside the survey, or compute geologic time again",
+            Self::NoLevels => "it may be chaotic, constant or too small: pick horizons by hand",
             Self::BadGrowth { .. } => "state metres, 0 or more",
             Self::Io { .. }
             | Self::Segy(_)
@@ -56,6 +59,7 @@ impl ProjectError {
             | Self::Model(_)
             | Self::Param(_)
             | Self::Interp(_)
+            | Self::Time(_)
             | Self::Memory(_)
             | Self::Render(_)
             | Self::AlreadyPicked { .. }
@@ -66,6 +70,7 @@ impl ProjectError {
             | Self::Figure(_)
             | Self::NoCandidate { .. }
             | Self::NoGeometry
+            | Self::NoTime
             | Self::NoPickFits { .. }
             | Self::NoProposals
             | Self::NoVolume

@@ -52,12 +52,7 @@ impl Candidates {
         let place = geometry.voxel_from_lines(at[0], at[1]);
         let voxel = place.extend(geometry.vertical.index_of(at[2])).as_vec3();
         leaf_at(&self.forest, voxel, self.max_distance).map_err(|error| match error {
-            AssemblyError::Outside { .. } => ProjectError::PickOutside {
-                at,
-                inlines: [geometry.inlines.first, geometry.inlines.last()],
-                crosslines: [geometry.crosslines.first, geometry.crosslines.last()],
-                vertical: [geometry.vertical.first, geometry.vertical.last()],
-            },
+            AssemblyError::Outside { .. } => ProjectError::outside(at, geometry),
             AssemblyError::NothingNear { distance, nearest, max_distance, .. } => {
                 let lines = geometry.lines_from_voxel(DVec2::new(f64::from(nearest.x), f64::from(nearest.y)));
                 let z = geometry.vertical.value_at(f64::from(nearest.z));

@@ -11,8 +11,8 @@
 //! truth.json                  the closed form, the age order and where the attribute lies
 //! ```
 
-use crate::error::ProjectError;
 use formats::Format;
+use project::error::ProjectError;
 use segy::WriteOptions;
 use serde::{Deserialize, Serialize};
 use serde_json::json;

@@ -6,23 +6,22 @@
 
 pub mod survey_files;
 
-use crate::Project;
-use crate::command::{
-    AddFault, AddScene, Climb, Command, Effect, Extract, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
-};
-use crate::content;
-use crate::document::Polarity;
-use crate::error::{Noun, ProjectError};
-use crate::interpretation::assembly::blocks;
-use crate::interpretation::candidates::Candidates;
-use crate::picture::load::{self, Stage};
-use crate::picture::{self, Device, Painter};
-use ::synth::SynthSettings;
 use formats::ImportOptions;
 use interp::ExtractSettings;
 use interp::assembly::Operation;
 use interp::evaluate::Parts;
 use interp::holes::FillSettings;
+use project::Project;
+use project::command::{
+    AddFault, AddScene, Climb, Command, Effect, Extract, FillHorizon, ImportVolume, PickNode, SetContact, SetLayer,
+};
+use project::content;
+use project::document::Polarity;
+use project::error::{Noun, ProjectError};
+use project::interpretation::assembly::blocks;
+use project::interpretation::candidates::Candidates;
+use project::picture::load::{self, Stage};
+use project::picture::{self, Device, Painter};
 use render::Scene;
 use segy::SegyOptions;
 use serde::{Deserialize, Serialize};
@@ -32,6 +31,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 use survey::{Contact, Progress};
 use survey_files::SynthSurvey;
+use synth::SynthSettings;
 
 /// The survey, the patterns and the scene of the demonstration.
 #[derive(Debug, Deserialize)]

@@ -1,0 +1,62 @@
+//! Geologic time for every voxel: τ(x, y, z) from horizon candidates, their dips and faults.
+//!
+//! Candidates are patches of reflections that were followed from trace to trace. Within a patch time is constant, and
+//! between patches the layering runs along their dips. So τ = z + s, and s is the minimum of
+//!
+//! ```text
+//! Σ w [s(x+1, z+p/2) − s(x, z−p/2) + p]²     links of neighbouring traces along the dip p, in both directions
+//!   + Σ W [τ(v) − c_k]²                      vertices v of patch k (a hub), which all have the time c_k
+//!   + e₁ (∂z s)² + e₂ (∂zz s)²               little, where nothing else decides
+//! ```
+//!
+//! without links across faults. Each fault's throw is found by comparing both of its sides; then what matches is linked
+//! across it, and patches of the same event become one hub. At the end τ is made monotone on every trace, which is
+//! isotonic regression.
+//!
+//! τ is measured in samples. It has no zero of its own: only its level surfaces (isochrons) mean something.
+//!
+//! | step | where |
+//! |---|---|
+//! | faults as cuts | [`Cut`] |
+//! | patches cut at faults: hubs | `hubs` |
+//! | links and dips | `links` |
+//! | where it starts | `start` |
+//! | the minimum | `solve` |
+//! | monotone traces, and what is not known | [`isotonic`], `known` |
+//! | throws, then what matches across faults | `throws`, `logs`, `matches` |
+//! | patches of one event become one | `merge` |
+//! | one level of τ, and the reflections beside it | [`isochron()`], [`Reflections`] |
+//! | levels that stand out | [`strongest_levels`], [`characters`] |
+//!
+//! Space: voxels, x = inline index, y = crossline index, z = sample index, z down.
+//!
+//! Deliberately absent: files, projects, pictures, and the growing of candidates.
+
+mod compute;
+mod cut;
+mod error;
+mod find;
+mod hubs;
+mod isochron;
+pub mod isotonic;
+mod known;
+mod levels;
+mod links;
+mod logs;
+mod matches;
+mod merge;
+mod reflections;
+mod solve;
+mod start;
+mod throws;
+
+#[cfg(test)]
+mod tests;
+
+pub use compute::{GeologicTime, TimeSettings, geologic_time};
+pub use cut::{Across, Cut};
+pub use error::TimeError;
+pub use find::find_cuts;
+pub use isochron::{Crossing, Isochron, isochron};
+pub use levels::{Character, Level, characters, strongest_levels};
+pub use reflections::{Reflection, Reflections};

@@ -1,0 +1,149 @@
+//! Geologic time of volumes whose layering is a closed form.
+
+use crate::{Across, Cut, GeologicTime, TimeError, TimeSettings, find_cuts, geologic_time, isochron};
+use interp::{GrowSettings, grow_surfaces};
+use survey::{Progress, Volume};
+
+/// Reflectivity of made-up beds at a stratigraphic depth: nothing repeats over a few beds.
+fn beds(t: f32) -> f32 {
+    (t * 0.71).sin() + 0.8 * (t * 0.43 + 1.0).sin() + 0.5 * (t * 0.93 + 2.0).cos()
+}
+
+/// A volume whose stratigraphic depth at a voxel is `strat`.
+fn volume(size: [usize; 3], strat: impl Fn(f32, f32, f32) -> f32) -> Volume<f32> {
+    let mut volume = Volume::filled(size, 0.0f32);
+    let [_, ny, nz] = size;
+    for (n, sample) in volume.samples_mut().iter_mut().enumerate() {
+        *sample = beds(strat((n / nz / ny) as f32, (n / nz % ny) as f32, (n % nz) as f32));
+    }
+    volume
+}
+
+fn time_of(volume: &Volume<f32>, cuts: &[Cut]) -> GeologicTime {
+    let surfaces = grow_surfaces(volume, &GrowSettings::default(), &Progress::silent()).unwrap();
+    geologic_time(volume, &surfaces, cuts, &TimeSettings::default(), &Progress::silent()).unwrap()
+}
+
+/// The greatest error of isochrons from the middle trace, in samples, and the share of traces that have one, leaving out
+/// places for which `counts` is false.
+fn errors(tau: &Volume<f32>, strat: impl Fn(f32, f32, f32) -> f32, counts: impl Fn(f32, f32) -> bool) -> (f32, f32) {
+    let [nx, ny, nz] = tau.size();
+    let (mut worst, mut found, mut all) = (0.0f32, 0, 0);
+    for z in (nz / 3..2 * nz / 3).step_by(5) {
+        let wanted = strat((nx / 4) as f32, (ny / 2) as f32, z as f32);
+        for at in isochron(tau, tau.at(nx / 4, ny / 2, z)).crossings {
+            if counts(f32::from(at.x), at.z) {
+                worst = worst.max((strat(f32::from(at.x), f32::from(at.y), at.z) - wanted).abs());
+                found += 1;
+            }
+        }
+        all += nx * ny;
+    }
+    (worst, found as f32 / all as f32)
+}
+
+#[test]
+fn dipping_planes_are_isochrons() {
+    let strat = |x: f32, y: f32, z: f32| z - 0.6 * x + 0.35 * y;
+    let found = time_of(&volume([32, 32, 80], strat), &[]);
+    let (worst, share) = errors(&found.tau, strat, |_, _| true);
+    assert!(worst < 0.1 && share > 0.95, "{worst} {share}");
+    assert!(found.known > 0.95);
+}
+
+#[test]
+fn a_throw_between_reflectors_is_found_and_isochrons_go_on_beyond_the_fault() {
+    // The upper side is 11.5 samples deeper, more than the distance of the reflectors.
+    let fault = |z: f32| 22.0 + 0.3 * (z - 48.0);
+    let strat = |x: f32, y: f32, z: f32| z - 0.2 * y - if x > fault(z) { 11.5 } else { 0.0 };
+    let cut = Cut::new(Across::Inlines, 40, 96, |_, z| fault(z as f32));
+    let volume = volume([48, 40, 96], strat);
+    let found = time_of(&volume, &[cut]);
+    let beside = |x: f32, z: f32| (x - fault(z)).abs() > 2.0;
+    let (worst, share) = errors(&found.tau, strat, beside);
+    assert!(worst < 0.5 && share > 0.8, "{worst} {share}");
+    // Without the fault the time of one bed is that of another beyond it.
+    let (worst, _) = errors(&time_of(&volume, &[]).tau, strat, beside);
+    assert!(worst > 2.0, "{worst}");
+}
+
+#[test]
+fn time_increases_down_every_trace_without_a_fault() {
+    let strat = |x: f32, y: f32, z: f32| z + 4.0 * (0.2 * x).sin() * (0.15 * y).cos();
+    let tau = time_of(&volume([32, 32, 80], strat), &[]).tau;
+    for (x, y) in (0..32).flat_map(|x| (0..32).map(move |y| (x, y))) {
+        let known: Vec<f32> = tau.trace(x, y).iter().copied().filter(|t| t.is_finite()).collect();
+        assert!(known.windows(2).all(|pair| pair[0] <= pair[1]), "trace {x}, {y}");
+    }
+}
+
+#[test]
+fn the_same_bits_on_one_thread_and_on_several() {
+    let strat = |x: f32, y: f32, z: f32| z - 0.2 * y - if x > 15.0 { 6.0 } else { 0.0 };
+    let volume = volume([32, 24, 64], strat);
+    let cut = [Cut::new(Across::Inlines, 24, 64, |_, _| 15.3)];
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let tau = pool.install(|| time_of(&volume, &cut)).tau;
+        tau.samples().iter().map(|t| t.to_bits()).collect::<Vec<_>>()
+    };
+    assert!(on(1) == on(3));
+}
+
+#[test]
+fn where_nothing_reflects_time_is_not_known() {
+    for size in [[24, 24, 48], [1, 1, 48], [1, 30, 48]] {
+        let found = time_of(&Volume::filled(size, 1.0f32), &[]);
+        assert_eq!(found.known, 0.0);
+        assert!(found.tau.samples().iter().all(|t| t.is_nan()));
+    }
+    // A fault cuts off a side without any event; dead traces stay unknown.
+    let mut one_side = volume([40, 30, 64], |_, _, z| z);
+    for x in 20..40 {
+        (0..30).for_each(|y| one_side.trace_mut(x, y).fill(0.0));
+    }
+    let mut live = vec![true; 40 * 30];
+    live[5 * 30 + 7] = false;
+    one_side.set_live(Some(live)).unwrap();
+    let tau = time_of(&one_side, &[Cut::new(Across::Inlines, 30, 64, |_, _| 19.5)]).tau;
+    assert!(tau.at(10, 10, 30).is_finite());
+    assert!(tau.trace(5, 7).iter().all(|t| t.is_nan()), "a dead trace");
+    assert!((22..40).all(|x| tau.trace(x, 10).iter().all(|t| t.is_nan())), "beyond the fault");
+}
+
+#[test]
+fn it_refuses_candidates_of_another_volume_and_stops_when_cancelled() {
+    let small = volume([24, 24, 48], |_, _, z| z);
+    let surfaces = grow_surfaces(&small, &GrowSettings::default(), &Progress::silent()).unwrap();
+    let other = Volume::filled([24, 24, 50], 0.0f32);
+    let settings = TimeSettings::default();
+    let refused = geologic_time(&other, &surfaces, &[], &settings, &Progress::silent());
+    assert!(matches!(refused, Err(TimeError::Size { .. })));
+    let cancelled = Progress::silent();
+    cancelled.cancel();
+    let stopped = geologic_time(&small, &surfaces, &[], &settings, &cancelled);
+    assert!(matches!(stopped, Err(TimeError::Cancelled(_))));
+}
+
+#[test]
+fn a_fault_is_found_where_patches_end_and_none_where_they_go_on() {
+    let fault = |y: f32, z: f32| 22.0 + 0.3 * (z - 48.0) + 0.2 * (y - 20.0);
+    let strat = |x: f32, y: f32, z: f32| z - 0.2 * y - if x > fault(y, z) { 5.0 } else { 0.0 };
+    let found = |strat: &dyn Fn(f32, f32, f32) -> f32| {
+        let surfaces =
+            grow_surfaces(&volume([48, 40, 96], strat), &GrowSettings::default(), &Progress::silent()).unwrap();
+        find_cuts(&surfaces, 30, &Progress::silent()).unwrap()
+    };
+    let cuts = found(&strat);
+    assert_eq!(cuts.len(), 1);
+    assert_eq!(cuts[0].across, Across::Inlines);
+    let off = |line: usize, z: usize| (cuts[0].at(line, z as f32) - fault(line as f32, z as f32)).abs();
+    let known: Vec<f32> = (0..40)
+        .flat_map(|line| (10..86).map(move |z| (line, z)))
+        .map(|(l, z)| off(l, z))
+        .filter(|d| !d.is_nan())
+        .collect();
+    let mean = known.iter().sum::<f32>() / known.len() as f32;
+    assert!(mean < 1.0 && known.len() > 40 * 76 / 2, "{mean} of {}", known.len());
+    assert!(found(&|x, y, z| z - 0.2 * y + 0.3 * x).is_empty());
+}

@@ -1,0 +1,249 @@
+//! Throws: how far the layering is offset across a fault, found by comparing its two sides in depth.
+//!
+//! Beside the fault, at every line along it and every sample, a few traces are stacked along the dip. That gives a panel
+//! A₋(line, z) on the lower side across and A₊(line, z) on the upper. The throw T is a quadratic of line and depth; it is
+//! the one for which A₋(line, z − T/2) and A₊(line, z + T/2) correlate best. Comparing the whole fault at once tells
+//! apart throws that differ by a reflector, which single traces cannot. The margin is by how much the best throw
+//! correlates better than any that differs from it by more than a few samples. Space: voxels.
+
+use crate::cut::{Across, Cut};
+use crate::links::{DIP_STEP, Links};
+use crate::solve::{Tie, interpolate};
+use rayon::prelude::*;
+use survey::Volume;
+
+/// Distance of the first trace of a panel from the fault, traces.
+pub const FIRST: f32 = 1.5;
+/// Count of traces that are stacked.
+const STACKED: usize = 5;
+/// Samples within which amplitudes are brought to one level.
+const LEVEL_WINDOW: usize = 24;
+/// Greatest throw that is looked for, as a share of the samples.
+const GREATEST_SHARE: f32 = 0.16;
+/// Throws that differ by less are the same one in the margin, samples.
+const SAME_THROW: f32 = 3.0;
+/// What a throw that varies costs, for each squared sample.
+const BEND_COST: f32 = 5e-4;
+/// Least share of the fault that must overlap under a throw.
+const LEAST_OVERLAP: f32 = 0.4;
+
+/// The side of a fault: towards lower or towards higher indices across.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Lower indices.
+    Lower,
+    /// Higher indices.
+    Upper,
+}
+
+/// The trace `distance` traces beside a fault at a line and a sample; `None` outside the volume and where there is no
+/// fault.
+pub fn beside(cut: &Cut, size: [usize; 3], line: usize, z: usize, side: Side, distance: f32) -> Option<[usize; 2]> {
+    let place = cut.place[line * cut.size[1] + z];
+    let across = match side {
+        Side::Lower => (place - distance).floor(),
+        Side::Upper => (place + distance).ceil(),
+    };
+    let count = size[if cut.across == Across::Inlines { 0 } else { 1 }];
+    (across >= 0.0 && across < count as f32).then(|| cut.trace(across as usize, line))
+}
+
+/// Stacked amplitudes beside a fault, `[line][sample]`; NaN where there are none.
+fn panel(volume: &Volume<f32>, links: &Links, cut: &Cut, side: Side) -> Vec<f32> {
+    let size = volume.size();
+    let [lines, nz] = cut.size;
+    let axis = if cut.across == Across::Inlines { 0 } else { 1 };
+    let mut all = vec![f32::NAN; lines * nz];
+    all.par_chunks_mut(nz).enumerate().for_each(|(line, out)| {
+        for (z, out) in out.iter_mut().enumerate() {
+            let Some(first) = beside(cut, size, line, z, side, FIRST) else { continue };
+            let [mut across, _] = cut.split(first);
+            let (mut at, mut sum, mut count) = (z as f32, 0.0, 0);
+            for _ in 0..STACKED {
+                let [x, y] = cut.trace(across, line);
+                sum += interpolate(volume.trace(x, y), at);
+                count += 1;
+                // One trace away from the fault, along the dip.
+                let (from, sign) = match side {
+                    Side::Lower if across > 0 => (across - 1, -1.0),
+                    Side::Upper if across + 1 < size[axis] => (across, 1.0),
+                    _ => break,
+                };
+                let [x, y] = cut.trace(from, line);
+                let voxel = (x * size[1] + y) * nz + (at.round().max(0.0) as usize).min(nz - 1);
+                at += sign * f32::from(links.dip[axis][voxel]) * DIP_STEP;
+                across = if side == Side::Lower { across - 1 } else { across + 1 };
+            }
+            *out = sum / count as f32;
+        }
+        level(out);
+    });
+    all
+}
+
+/// Brings the amplitudes of a trace to one level.
+fn level(trace: &mut [f32]) {
+    let power: Vec<f32> = trace.iter().map(|a| if a.is_finite() { a * a } else { 0.0 }).collect();
+    let whole: f32 = power.iter().sum::<f32>() / power.len() as f32;
+    for z in 0..trace.len() {
+        let window = &power[z.saturating_sub(LEVEL_WINDOW)..(z + LEVEL_WINDOW + 1).min(power.len())];
+        let mean = window.iter().sum::<f32>() / window.len() as f32;
+        trace[z] /= (mean + 0.1 * whole + f32::MIN_POSITIVE).sqrt();
+    }
+}
+
+/// The throw of a fault, samples, as a quadratic of line and depth; positive where the upper side across lies deeper.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Throw {
+    /// Of 1, u, v, u², u·v, v², with u and v from −1 to 1 along the lines and down.
+    terms: [f32; 6],
+    /// Correlation of both sides, −1 to 1.
+    pub correlation: f32,
+    /// By how much that is more than the correlation of any other throw.
+    pub margin: f32,
+    size: [usize; 2],
+}
+
+impl Throw {
+    /// The throw at a line and a sample, samples.
+    pub fn at(&self, line: usize, z: f32) -> f32 {
+        quadratic(&self.terms, self.size, line, z)
+    }
+}
+
+fn quadratic(terms: &[f32; 6], size: [usize; 2], line: usize, z: f32) -> f32 {
+    let scaled = |at: f32, count: usize| 2.0 * at / (count.max(2) - 1) as f32 - 1.0;
+    let (u, v) = (scaled(line as f32, size[0]), scaled(z, size[1]));
+    terms[0] + terms[1] * u + terms[2] * v + terms[3] * u * u + terms[4] * u * v + terms[5] * v * v
+}
+
+/// Two sides to compare.
+struct Panels {
+    size: [usize; 2],
+    sides: [Vec<f32>; 2],
+    /// Every so many lines are compared.
+    step: usize,
+}
+
+impl Panels {
+    /// Correlation under a throw, a little less where little overlaps; −1 where less than enough does.
+    fn score(&self, terms: &[f32; 6]) -> f32 {
+        let nz = self.size[1];
+        let (mut product, mut lower, mut upper, mut both, mut there) = (0.0f32, 0.0f32, 0.0f32, 0usize, 0usize);
+        for line in (0..self.size[0]).step_by(self.step) {
+            let row = line * nz..(line + 1) * nz;
+            let (a, b) = (&self.sides[0][row.clone()], &self.sides[1][row]);
+            for z in 0..nz {
+                there += usize::from(a[z].is_finite() || b[z].is_finite());
+                let half = 0.5 * quadratic(terms, self.size, line, z as f32);
+                let (za, zb) = (z as f32 - half, z as f32 + half);
+                let last = (nz - 1) as f32;
+                if za < 0.0 || zb < 0.0 || za > last || zb > last {
+                    continue;
+                }
+                let (va, vb) = (interpolate(a, za), interpolate(b, zb));
+                if va.is_finite() && vb.is_finite() {
+                    product += va * vb;
+                    lower += va * va;
+                    upper += vb * vb;
+                    both += 1;
+                }
+            }
+        }
+        let bend = BEND_COST * terms[1..].iter().map(|term| term * term).sum::<f32>();
+        let overlap = both as f32 / there.max(1) as f32;
+        if overlap < LEAST_OVERLAP {
+            -1.0
+        } else {
+            product / (lower * upper).sqrt().max(1e-9) * overlap.powf(0.25) - bend
+        }
+    }
+
+    /// Improves a throw term by term.
+    fn refine(&self, mut terms: [f32; 6], mut score: f32) -> ([f32; 6], f32) {
+        for step in [2.0f32, 1.0, 0.5, 0.25] {
+            for _ in 0..6 {
+                let before = score;
+                for n in 0..6 {
+                    for change in [step, -step] {
+                        let mut other = terms;
+                        other[n] += change;
+                        let found = self.score(&other);
+                        if found > score + 1e-5 {
+                            (terms, score) = (other, found);
+                        }
+                    }
+                }
+                if score <= before {
+                    break;
+                }
+            }
+        }
+        (terms, score)
+    }
+}
+
+/// Count of throws that are refined.
+const REFINED: usize = 6;
+
+/// Finds the throw of a fault; `None` where one of its sides is nowhere inside the volume.
+pub fn throw_of(volume: &Volume<f32>, links: &Links, cut: &Cut) -> Option<Throw> {
+    let sides = [Side::Lower, Side::Upper].map(|side| panel(volume, links, cut, side));
+    if sides.iter().any(|side| side.iter().all(|a| a.is_nan())) {
+        return None;
+    }
+    let panels = Panels { size: cut.size, sides, step: cut.size[0].div_ceil(48).max(1) };
+    let greatest = (GREATEST_SHARE * cut.size[1] as f32).floor();
+    let steps = |most: f32, step: f32| {
+        let count = (most / step).floor() as i32;
+        (-count..=count).map(move |n| n as f32 * step)
+    };
+    let slopes = [greatest * 0.75, greatest * 0.5];
+    let starts: Vec<[f32; 6]> = steps(greatest, 1.0)
+        .flat_map(|a| {
+            steps(slopes[0], 3.0).flat_map(move |b| steps(slopes[1], 3.0).map(move |c| [a, b, c, 0.0, 0.0, 0.0]))
+        })
+        .filter(|terms| terms[0].abs() + 0.5 * (terms[1].abs() + terms[2].abs()) <= 1.2 * greatest)
+        .collect();
+    let mut found: Vec<([f32; 6], f32)> = starts.into_par_iter().map(|terms| (terms, panels.score(&terms))).collect();
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut chosen: Vec<([f32; 6], f32)> = Vec::new();
+    for (terms, score) in found {
+        let is_new = chosen.iter().all(|(other, _)| (0..3).any(|n| (terms[n] - other[n]).abs() > SAME_THROW));
+        if is_new {
+            chosen.push((terms, score));
+        }
+        if chosen.len() == REFINED {
+            break;
+        }
+    }
+    let mut refined: Vec<([f32; 6], f32)> =
+        chosen.into_par_iter().map(|(terms, score)| panels.refine(terms, score)).collect();
+    refined.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let (terms, correlation) = *refined.first()?;
+    let other = refined.iter().find(|(other, _)| (other[0] - terms[0]).abs() > SAME_THROW);
+    let margin = correlation - other.map_or(0.0, |(_, score)| *score);
+    Some(Throw { terms, correlation, margin, size: cut.size })
+}
+
+/// Ties across a fault under a throw, every `step` lines and samples.
+pub fn ties(cut: &Cut, size: [usize; 3], throw: &Throw, step: [usize; 2], weight: f32) -> Vec<Tie> {
+    let [lines, nz] = cut.size;
+    let mut ties = Vec::new();
+    for line in (0..lines).step_by(step[0]) {
+        for z in (0..nz).step_by(step[1]) {
+            let half = 0.5 * throw.at(line, z as f32);
+            let depths = [z as f32 - half, z as f32 + half];
+            if depths.iter().any(|&z| z < 0.0 || z > (nz - 1) as f32) {
+                continue;
+            }
+            let [a, b] = [(Side::Lower, depths[0]), (Side::Upper, depths[1])]
+                .map(|(side, z)| beside(cut, size, line, z.round() as usize, side, FIRST));
+            if let (Some([xa, ya]), Some([xb, yb])) = (a, b) {
+                let trace = [(xa * size[1] + ya) as u32, (xb * size[1] + yb) as u32];
+                ties.push(Tie { trace, z: depths, weight });
+            }
+        }
+    }
+    ties
+}
