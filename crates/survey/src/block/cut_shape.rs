@@ -155,7 +155,7 @@ impl CutShape {
         match self {
             Self::Plane { through, normal } => {
                 let length = DVec3::from_array(*normal).length();
-                if !DVec3::from_array(*through).is_finite() || !(length > 1e-9 && length.is_finite()) {
+                if !(DVec3::from_array(*through).is_finite() && length > 1e-9 && length.is_finite()) {
                     return refused("a plane needs a point of numbers and a normal that is not zero".into());
                 }
             }
