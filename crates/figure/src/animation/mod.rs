@@ -1,7 +1,7 @@
 //! Pictures that follow one another, as an animated PNG or GIF.
 //!
 //! Frames are written as they come, so that memory holds one of them. An animated PNG keeps every colour and its alpha
-//! (PNG specification, third edition, 5.2); a GIF has 256 colours a frame, chosen anew for each ([`palette`]), pixels
+//! (PNG specification, third edition, 5.2); a GIF has 256 colours a frame, chosen anew for each (`palette`), pixels
 //! that are clear or opaque, and delays in hundredths of a second. Animated WebP and AV1 need encoders that are not
 //! here.
 
