@@ -71,7 +71,7 @@ const MISFIT: f32 = 1.5;
 /// volume that no patch and no fault with a throw joins to the largest. Without candidates it is known nowhere.
 ///
 /// Memory: at most 40 bytes a voxel beside the volume and its candidates, at its peak while s is solved for. The result
-/// does not depend on the number of threads. Cost: about 2 µs a voxel and core for a faulted volume.
+/// does not depend on the number of threads. Cost: some hundred sweeps over the volume where there are faults.
 ///
 /// # Errors
 /// [`TimeError`].

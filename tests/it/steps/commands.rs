@@ -154,7 +154,7 @@ pub const PICKING: [Scenario; 12] = [
     of(Imported, "extract p.petro --min-leaf-triangles 20"),
     of(Extracted, "pick p.petro --at 4,4,64 --horizon Second --highest-valid"),
     of(Extracted, "time p.petro"),
-    after(Extracted, |at| all(at, &["time p.petro"]), "pick p.petro --at 4,4,64 --horizon Level --by-time"),
+    after(Extracted, |at| all(at, &["time p.petro"]), "pick p.petro --at 10,4,64 --horizon Level --by-time"),
     of(Extracted, "climb p.petro 2 --levels 2"),
     after(Extracted, |at| all(at, &["climb p.petro 2 --levels 2"]), "descend p.petro 2"),
     of(Extracted, "horizon unpick p.petro 1"),
