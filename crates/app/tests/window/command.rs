@@ -242,7 +242,7 @@ fn a_tile_of_ones_own_is_added_and_a_scene_comes_and_goes() {
     harness.step();
     harness.get_by_label("Scene name").type_text("plan");
     harness.run_steps(2);
-    click(&mut harness, "Save scene");
+    click_last(&mut harness, "Save scene");
     wait(&mut harness, "the view is kept", |harness| document(harness).scenes.len() == 1);
     wait(&mut harness, "it is listed", |harness| harness.query_by_label("plan").is_some());
     click_last(&mut harness, "Remove");

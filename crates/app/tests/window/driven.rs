@@ -1,5 +1,6 @@
 //! A window in a test harness, the helpers of the other tests, and tests of the main workflow.
 
+use crate::command::click_last;
 use app::state::{Compare, Dialogue, FileContent, Layout, State, Target};
 use app::window::Window;
 use eframe::egui::{Key, Modifiers};
@@ -215,7 +216,7 @@ fn a_layer_gets_a_pattern_and_undo_takes_it_back() {
     button.expect("the present pattern can be changed").click();
     harness.run_steps(3);
     wait(&mut harness, "the patterns are listed", |harness| harness.query_by_label("Pattern chalk").is_some());
-    click(&mut harness, "Pattern chalk");
+    click_last(&mut harness, "Pattern chalk");
     wait(&mut harness, "the layer has it", |harness| {
         document(harness).style.layers.style("Top - Base").is_some_and(|style| style.texture_at(0.5) == Some("chalk"))
     });
@@ -246,7 +247,7 @@ fn views_are_arranged_and_compared_and_a_scene_is_saved() {
     harness.step();
     harness.get_by_label("Scene name").type_text("plan");
     harness.run_steps(2);
-    click(&mut harness, "Save scene");
+    click_last(&mut harness, "Save scene");
     wait(&mut harness, "the scene is kept", |harness| document(harness).scenes.len() == 1);
     assert_eq!(document(&harness).scenes[0].scene.camera.elevation_deg, 90.0);
 }

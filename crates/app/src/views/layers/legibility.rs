@@ -7,6 +7,7 @@ use crate::work::Rocks;
 use eframe::egui::{Button, Ui};
 use project::command::{Command, SetLayer};
 use project::figures::{NamedConfusion, confusions};
+use std::path::PathBuf;
 use std::sync::PoisonError;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use ttf::Preset;
@@ -19,9 +20,17 @@ const MARGIN: f32 = 8.0;
 /// Least width of a sentence, points.
 const LEAST: f32 = 80.0;
 
-/// What a comparison depends on: the project's revision, the version of the loaded data, the preset, and whether the
-/// ground is shown and the layers are illustrated.
-type Key = (u64, u64, Preset, bool, bool);
+/// What a comparison depends on.
+#[derive(PartialEq)]
+struct Key {
+    /// The project, its step and the revision of the window's copy: opened again, it may have another step.
+    project: (PathBuf, u32, u64),
+    /// The version of the loaded data.
+    version: u64,
+    preset: Preset,
+    has_ground: bool,
+    is_illustrated: bool,
+}
 
 /// The pairs that were found last.
 #[derive(Default)]
@@ -79,8 +88,14 @@ impl Legibility {
     fn follow(&mut self, ui: &Ui, session: &Session, rocks: Option<(&Rocks, u64)>) {
         let Some((rocks, version)) = rocks else { return };
         let scene = &session.view.scene;
-        let key = (session.revision, version, scene.preset, scene.ground.is_some(), scene.blend < 1.0);
-        if self.coming.is_some() || self.key == Some(key) {
+        let key = Key {
+            project: (session.root.clone(), session.document.step, session.revision),
+            version,
+            preset: scene.preset,
+            has_ground: scene.ground.is_some(),
+            is_illustrated: scene.blend < 1.0,
+        };
+        if self.coming.is_some() || self.key.as_ref() == Some(&key) {
             return;
         }
         self.key = Some(key);
