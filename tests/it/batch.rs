@@ -62,7 +62,7 @@ fn what_cannot_be_made_is_said_and_nothing_is_half_done() {
     };
     refused("file = 'b.png'\nscene = 'nowhere'", &["\"b.png\"", "no scene named \"nowhere\""]);
     refused("file = 'A.png'", &["\"A.png\"", "another figure has this file"]);
-    for file in ["../b.png", "sub/b.png", "/tmp/b.png", "..", "", "sub\\b.png"] {
+    for file in ["../b.png", "sub/b.png", "/b.png", "..", "", "sub\\b.png"] {
         refused(&format!("file = '{file}'"), &["without a folder"]);
     }
     refused("file = 'b.gif'", &["\"b.gif\"", ".svg or .pdf"]);
