@@ -1,6 +1,6 @@
 //! Shales, carbonates, chert, coal, evaporites (FGDC 620–668, 677).
 
-use crate::tile::{Dice, LINE, Point, THIN, Tile};
+use crate::tile::{Dice, LINE, Point, THIN, Tile, nodule};
 
 /// Rows of dashes, each row shifted against the one before. `each` is called with the left end and the length
 /// of every dash.
@@ -239,13 +239,7 @@ pub fn chert() -> Tile {
             let x = (body as f32 + 0.5 * (course % 2) as f32) * 15.0 + dice.jitter(0.5);
             let half = dice.between(6.4, 7.1);
             let rise = dice.between(2.1, 2.45);
-            let outline: Vec<Point> = (0..14)
-                .map(|step| {
-                    let (sin, cos) = (step as f32 * std::f32::consts::TAU / 14.0).sin_cos();
-                    [x + half * cos.signum() * cos.abs().powf(0.75), y + rise * sin.signum() * sin.abs().powf(0.65)]
-                })
-                .collect();
-            tile.blob(&outline, LINE);
+            tile.blob(&nodule([x, y], [half, rise]), LINE);
         }
     }
     tile

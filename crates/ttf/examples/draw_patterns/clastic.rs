@@ -220,32 +220,35 @@ pub fn siltstone() -> Tile {
     tile
 }
 
-/// 670: beds of stipple and beds of shale alternate.
-pub fn sandstone_shale() -> Tile {
-    let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(670));
+/// Beds of stipple over beds of rows. `element` draws at the places of a row, which are shifted from row to row and from
+/// bed to bed.
+pub fn beds_under_stipple(seed: u64, columns: usize, mut element: impl FnMut(&mut Tile, Point)) -> Tile {
+    let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(seed));
+    let step = 60.0 / columns as f32;
     for bed in 0..3 {
         let top = bed as f32 * 20.0;
         tile.line([-1.0, top], [61.0, top], 0.5);
         tile.line([-1.0, top + 10.5], [61.0, top + 10.5], 0.5);
         for row in 0..3 {
             let y = top + 12.9 + row as f32 * 2.4;
-            let shift = (row % 2) as f32 * 5.0 + bed as f32 * 2.0 + dice.jitter(0.6);
-            for column in 0..6 {
-                let x = column as f32 * 10.0 + shift;
-                tile.line([x, y], [x + 7.0, y], THIN);
-            }
+            let shift = (row % 2) as f32 * 0.5 * step + bed as f32 * 0.2 * step + dice.jitter(0.6);
+            (0..columns).for_each(|column| element(&mut tile, [column as f32 * step + shift, y]));
         }
     }
-    let shale: Vec<(Point, f32)> = (0..3)
+    let rows: Vec<(Point, f32)> = (0..3)
         .flat_map(|bed| (0..30).map(move |x| ([x as f32 * 2.0 + 1.0, bed as f32 * 20.0 + 15.25], 4.75)))
         .collect();
-    for point in tile.scatter(&mut dice, 2.75, &shale, 1.1) {
-        let in_bed = point[1] % 20.0;
-        if in_bed > 1.1 && in_bed < 9.4 {
+    for point in tile.scatter(&mut dice, 2.75, &rows, 1.1) {
+        if (1.1..9.4).contains(&(point[1] % 20.0)) {
             tile.dot(point, DOT);
         }
     }
     tile
+}
+
+/// 670: beds of stipple and beds of shale alternate.
+pub fn sandstone_shale() -> Tile {
+    beds_under_stipple(670, 6, |tile, [x, y]| tile.line([x, y], [x + 7.0, y], THIN))
 }
 
 /// 681: stones of all sizes and short strokes, unsorted, in a dotted matrix.

@@ -1,8 +1,8 @@
 //! Rocks that are known by a sign among stipple, dashes or nothing (FGDC 613–617, 651–671, 684).
 
 use crate::chemical::lens;
-use crate::clastic::{dotted_row, radii, ripple};
-use crate::tile::{DOT, Dice, LINE, Point, THIN, Tile, hatch, pebble, shell, staggered};
+use crate::clastic::{beds_under_stipple, dotted_row, radii, ripple};
+use crate::tile::{DOT, Dice, LINE, Point, THIN, Tile, hatch, nodule, pebble, shell, staggered};
 
 /// Stipple with short beds, each with a joint whose top lies `lean` to the right of its foot.
 fn sandstone_with_joints(seed: u64, lean: f32) -> Tile {
@@ -73,13 +73,7 @@ pub fn chert_fossiliferous() -> Tile {
         for body in 0..4 {
             let x = (body as f32 + 0.5 * (course % 2) as f32) * 15.0 + dice.jitter(0.5);
             let (half, rise) = (dice.between(6.5, 7.1), dice.between(2.8, 3.1));
-            let outline: Vec<Point> = (0..14)
-                .map(|step| {
-                    let (sin, cos) = (step as f32 * std::f32::consts::TAU / 14.0).sin_cos();
-                    [x + half * cos.signum() * cos.abs().powf(0.75), y + rise * sin.signum() * sin.abs().powf(0.65)]
-                })
-                .collect();
-            tile.blob(&outline, LINE);
+            tile.blob(&nodule([x, y], [half, rise]), LINE);
             if (body + course / 2) % 2 == 0 {
                 tile.polygon(&shell([x, y], 2.6, if (body + course) % 3 == 0 { -1.0 } else { 1.0 }), THIN);
             }
@@ -262,30 +256,10 @@ pub fn phosphorite() -> Tile {
 
 /// 669: beds of stipple and of siltstone in turn.
 pub fn sandstone_siltstone() -> Tile {
-    let (mut tile, mut dice) = (Tile::new(60.0), Dice::new(669));
-    for bed in 0..3 {
-        let top = bed as f32 * 20.0;
-        tile.line([-1.0, top], [61.0, top], 0.5);
-        tile.line([-1.0, top + 10.5], [61.0, top + 10.5], 0.5);
-        for row in 0..3 {
-            let y = top + 12.9 + row as f32 * 2.4;
-            let shift = (row % 2) as f32 * 7.5 + bed as f32 * 3.0 + dice.jitter(0.6);
-            for column in 0..4 {
-                let x = column as f32 * 15.0 + shift;
-                tile.line([x, y], [x + 6.0, y], THIN);
-                (0..3).for_each(|dot| tile.dot([x + 8.3 + dot as f32 * 2.2, y], 0.42));
-            }
-        }
-    }
-    let silt: Vec<(Point, f32)> = (0..3)
-        .flat_map(|bed| (0..30).map(move |x| ([x as f32 * 2.0 + 1.0, bed as f32 * 20.0 + 15.25], 4.75)))
-        .collect();
-    for point in tile.scatter(&mut dice, 2.75, &silt, 1.1) {
-        if (1.1..9.4).contains(&(point[1] % 20.0)) {
-            tile.dot(point, DOT);
-        }
-    }
-    tile
+    beds_under_stipple(669, 4, |tile, [x, y]| {
+        tile.line([x, y], [x + 6.0, y], THIN);
+        (0..3).for_each(|dot| tile.dot([x + 8.3 + dot as f32 * 2.2, y], 0.42));
+    })
 }
 
 /// 671: rows of grains over ripples, and rows of clay that follow them.

@@ -309,6 +309,15 @@ pub fn shard(dice: &mut Dice, centre: Point, radius: f32) -> Vec<Point> {
         .collect()
 }
 
+/// The outline of a nodule of chert: a flattened ellipse with blunt ends.
+pub fn nodule([x, y]: Point, [half, rise]: [f32; 2]) -> Vec<Point> {
+    let at = |step: usize| {
+        let (sin, cos) = (step as f32 * std::f32::consts::TAU / 14.0).sin_cos();
+        [x + half * cos.signum() * cos.abs().powf(0.75), y + rise * sin.signum() * sin.abs().powf(0.65)]
+    };
+    (0..14).map(at).collect()
+}
+
 /// A valve of a shell: a crescent, `half` wide to each side. `up` is 1 for a hollow below, −1 for one above.
 pub fn shell(centre: Point, half: f32, up: f32) -> Vec<Point> {
     let arc = |from: f32, to: f32, high: f32| {
