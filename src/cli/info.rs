@@ -66,6 +66,11 @@ fn project(project: &Project) -> anyhow::Result<Report> {
     if let Some(last) = history.iter().rev().find(|line| line.in_effect) {
         report.say(format!("last change: {}", last.summary));
     }
+    let taken = document.parameterization.as_ref();
+    if let Some(taken) = taken {
+        report.say(format!("i, j, k: from {}, {}", taken.source.path.display(), taken.source.reading));
+    }
+    report.field("parameterization", taken.map(|taken| &taken.name));
     report.field("history", history);
     Ok(report)
 }

@@ -17,8 +17,8 @@ use interp::ExtractSettings;
 use interp::faults::ProposeSettings;
 use param::KDefinition;
 use project::command::{
-    AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer, SetScalar,
-    SetVelocity,
+    AddTexture, Command, ImportVolume, RemoveScalar, RemoveScene, RemoveVolume, ResetLayer, SetLayer,
+    SetParameterization, SetScalar, SetVelocity,
 };
 use project::figures::FigureFormat;
 use project::memory_budget;
@@ -70,7 +70,7 @@ pub(super) enum Request {
     /// Write a volume as SEG-Y, by default in the type it is stored in.
     ExportVolume { project: PathBuf, out: PathBuf, volume: String, format: Option<WriteFormat> },
     /// Compute i, j, k.
-    Parameterize { project: PathBuf, size: Option<[usize; 3]> },
+    Parameterize { project: PathBuf, size: Option<[usize; 3]>, change: Option<SetParameterization> },
     /// Draw a picture.
     Render(RenderRequest),
     /// Draw an animation.
@@ -181,7 +181,9 @@ impl TryFrom<Action> for Request {
             Action::Export(typed) => interpretation::export(typed)?,
             Action::Parameterize(typed) => {
                 let size = typed.size.as_deref().map(|size| counts::<3>("--size", size)).transpose()?;
-                Self::Parameterize { project: typed.project, size }
+                let change =
+                    (typed.from.is_some() || typed.computed).then_some(SetParameterization { from: typed.from });
+                Self::Parameterize { project: typed.project, size, change }
             }
             Action::Render(typed) => Self::Render(render_request(*typed)?),
             Action::Animate(typed) => Self::Animate((*typed).try_into()?),

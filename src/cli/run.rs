@@ -10,7 +10,8 @@ use chains::demo::{self, survey_files};
 use chains::illustrate;
 use formats::{ExportOptions, Format};
 use project::Project;
-use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetRaw};
+use project::ProjectError;
+use project::command::{AddScene, Command, Effect, Extract, ImportVolume, ProposeFaults, SetParameterization, SetRaw};
 use project::error::Noun;
 use project::folder::refuse_inside_project;
 use project::interpretation::extraction;
@@ -96,7 +97,7 @@ pub(super) fn run(request: Request, wait: Duration) -> Result<Report, Failure> {
         Request::ExportVolume { project, out, volume, format } => {
             told(segy_export::write(&open(&project)?, &out, &volume, format, &progress)?)
         }
-        Request::Parameterize { project, size } => parameterize(&project, size, &progress)?,
+        Request::Parameterize { project, size, change } => parameterize(open(&project)?, size, change, &progress)?,
         Request::Render(request) => draw::draw(&request, &progress)?,
         Request::Animate(request) => animate::animate(&request, &progress)?,
         Request::Figures { project, out, device, volume_bytes } => {
@@ -229,16 +230,22 @@ fn export(
 }
 
 /// Computes i, j, k and keeps them, for lookups and as arrays for other programs.
-fn parameterize(path: &Path, size: Option<[usize; 3]>, progress: &Progress) -> anyhow::Result<Report> {
-    let project = Project::open(path)?;
+fn parameterize(
+    mut project: Project,
+    size: Option<[usize; 3]>,
+    change: Option<SetParameterization>,
+    progress: &Progress,
+) -> anyhow::Result<Report> {
+    let mut report = Report::default();
+    if let Some(change) = change {
+        report.say(project.apply(&Command::SetParameterization(change), progress)?.summary());
+    }
     let size = match size {
         Some(size) => size,
         None => project.document().frame()?.size(),
     };
     let Some(mut rock) = load::rock(&project, progress)? else {
-        anyhow::bail!(
-            "the project has no horizons, so there are no layers to parameterize; add one with `petroglyph horizon add`"
-        );
+        return Err(ProjectError::NoLayers.into());
     };
     let fresh = derived::load_volumes(project.root(), &rock.key, Some(size), progress).is_none();
     if fresh {
@@ -249,7 +256,6 @@ fn parameterize(path: &Path, size: Option<[usize; 3]>, progress: &Progress) -> a
     }
     let out = derived::volumes_path(project.root());
     let (model, parameterization) = (&rock.model, &rock.parameterization);
-    let mut report = Report::default();
     report.say(format!(
         "{} layers in {} fault blocks, i, j, k at {} x {} x {} in {}",
         model.layer_count(),

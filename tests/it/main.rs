@@ -17,6 +17,7 @@ mod figure;
 mod foreign;
 mod help;
 mod hostile;
+mod imported_parameterization;
 mod kill;
 mod legibility;
 #[cfg(target_os = "linux")]

@@ -149,7 +149,9 @@ impl Samples {
             Ok((n + m, sums.collect()))
         })?;
         let same: u64 = counts.iter().map(|[_, own]| own).sum();
-        Ok(Self { size, volume, region: regions, offsets, agreeing: same as f64 / given.max(1) as f64, counts })
+        // Without any value it is no other layers' but empty, which the counts tell.
+        let agreeing = if given == 0 { 1.0 } else { same as f64 / given as f64 };
+        Ok(Self { size, volume, region: regions, offsets, agreeing, counts })
     }
 
     /// The offsets of a region at a voxel position, from the samples around it that lie in the region.

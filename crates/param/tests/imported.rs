@@ -87,7 +87,7 @@ fn what_is_of_other_horizons_or_has_a_gap_is_refused() {
     let mut upside_down = arrays.clone();
     upside_down.layer.samples_mut().iter_mut().for_each(|layer| *layer = 2 - *layer);
     assert!(matches!(taken(&upside_down), ParamError::OtherLayers { share, layers: 3 } if share > 0.3));
-    let mut gap = arrays.clone();
+    let mut gap = arrays;
     let of_middle: Vec<bool> = gap.layer.samples().iter().map(|layer| *layer == 1).collect();
     gap.k.samples_mut().iter_mut().zip(of_middle).for_each(|(k, middle)| *k = if middle { f32::NAN } else { *k });
     assert_eq!(taken(&gap), ParamError::NoValues { layer: 1 });

@@ -27,6 +27,8 @@ pub enum Noun {
     Layer,
     /// A picture to tile a layer with.
     Texture,
+    /// i, j, k from another program.
+    Parameterization,
     /// A named view.
     Scene,
 }
@@ -40,6 +42,7 @@ impl std::fmt::Display for Noun {
             Self::Well => "well",
             Self::Layer => "layer",
             Self::Texture => "texture",
+            Self::Parameterization => "parameterization",
             Self::Scene => "scene",
         })
     }
@@ -484,6 +487,9 @@ pub enum ProjectError {
         /// Its name.
         fault: String,
     },
+    /// There are no horizons, so there are no layers.
+    #[error("the project has no horizons, so there are no layers to parameterize")]
+    NoLayers,
     /// There are no horizons from which to propose faults.
     #[error("the project has no horizons whose offsets could indicate faults")]
     NoEvidence,

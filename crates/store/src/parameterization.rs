@@ -106,6 +106,32 @@ impl StoredParameterization {
         Ok(Self { fields: [open("i")?, open("j")?, open("k")?], ids: [open("layer")?, open("block")?], header })
     }
 
+    /// Opens a group that another program wrote: arrays `i`, `j`, `k` (float32) and `layer`, `block` (uint8 or uint16),
+    /// all of one size; values are read later.
+    ///
+    /// # Errors
+    /// [`StoreError`] when an array is missing, damaged, or of another size than `i`.
+    pub fn open_foreign(path: &Path) -> Result<Self, StoreError> {
+        let wrong = |reason: String| StoreError::WrongKind {
+            path: path.to_owned(),
+            expected: "a Zarr v3 group with arrays i, j, k, layer and block",
+            reason,
+        };
+        if !path.is_dir() {
+            return Err(StoreError::Missing { path: path.to_owned() });
+        }
+        let open = |name: &str| StoredArray::open(path, name);
+        let fields = [open("i")?, open("j")?, open("k")?];
+        let ids = [open("layer")?, open("block")?];
+        let size: [usize; 3] = fields[0].shape().try_into().map_err(|_| {
+            wrong(format!("i has {} axes; it needs inline, crossline and sample", fields[0].shape().len()))
+        })?;
+        if let Some(other) = fields.iter().chain(&ids).find(|array| array.shape() != size) {
+            return Err(wrong(format!("{} has {:?} samples, i has {size:?}", other.name(), other.shape())));
+        }
+        Ok(Self { header: Header { size, key: String::new() }, fields, ids })
+    }
+
     /// Voxels.
     pub fn size(&self) -> [usize; 3] {
         self.header.size

@@ -165,7 +165,8 @@ pub(super) enum Action {
     #[command(subcommand)]
     Scene(SceneAction),
     /// Compute the layer coordinates i, j, k and keep them in the project
-    #[command(after_help = "Example:\n  petroglyph parameterize north.petro --size 128x128x128")]
+    #[command(after_help = "Examples:\n  petroglyph parameterize north.petro --size 128x128x128\n  petroglyph \
+                      parameterize north.petro --from geochron.zarr")]
     Parameterize(ParameterizeArgs),
     /// Draw a picture
     #[command(after_help = "Examples:\n  petroglyph render north.petro block.png\

@@ -91,6 +91,13 @@ pub(in crate::cli) struct DrawingArgs {
 pub(in crate::cli) struct ParameterizeArgs {
     /// Project folder
     pub(in crate::cli) project: PathBuf,
+    /// Take i, j, k from a Zarr v3 group that another program wrote, instead of computing them: arrays i, j, k (float32,
+    /// NaN outside), layer (0 = deepest) and block (uint8 or uint16), [inline][crossline][sample] over the whole survey
+    #[arg(long, value_name = "FILE.zarr", conflicts_with = "computed")]
+    pub(in crate::cli) from: Option<PathBuf>,
+    /// Compute i, j, k here again, after --from
+    #[arg(long)]
+    pub(in crate::cli) computed: bool,
     /// Samples of the stored arrays along inlines, crosslines and depth [default: the survey's]
     #[arg(long, value_name = "NxNxN")]
     pub(in crate::cli) size: Option<String>,

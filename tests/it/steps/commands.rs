@@ -179,9 +179,10 @@ pub const LOOKING: [Scenario; 9] = [
 ];
 
 /// What is computed, drawn and exported.
-pub const COMPUTING: [Scenario; 9] = [
+pub const COMPUTING: [Scenario; 10] = [
     of(Imported, "attribute p.petro --kind envelope --name strength"),
     of(Imported, "parameterize p.petro --size 6x6x6"),
+    after(Imported, with_arrays, "parameterize p.petro --from own.zarr --size 6x6x6"),
     of(Imported, "render p.petro a.png --size 16x12 --samples 1 --device cpu"),
     of(Imported, "render p.petro a.png --inline 4 --size-cm 3x2"),
     of(Imported, "animate p.petro a.gif --frames 2 --size 16x12 --samples 1 --device cpu"),
@@ -220,6 +221,12 @@ fn with_figures(at: &Path) {
         text.push_str("[[figures.parts]]\nsection = { kind = \"inline\", at = 4.0 }\n");
     }
     fs::write(&state, text).unwrap();
+}
+
+/// The project's own i, j, k beside it, as if another program had written them.
+fn with_arrays(at: &Path) {
+    all(at, &["parameterize p.petro --size 6x6x6"]);
+    fs::rename(at.join("p.petro/derived/parameterization.zarr"), at.join("own.zarr")).unwrap();
 }
 
 fn with_well(at: &Path) {

@@ -11,6 +11,7 @@ use model::ModelSettings;
 use project::Project;
 use project::document::{Document, WellEntry};
 use project::error::ProjectError;
+use project::interpretation::solid;
 use project::picture::load::{self, Loaded};
 use project::{derived, styles};
 use render::media::{LayerOpacity, MediumColour, white_ramp};
@@ -183,7 +184,7 @@ fn load(wanted: &Wanted, kept: &mut Option<Kept>, progress: &Progress) -> Result
     let Purpose::Illustrate(seen) = &wanted.purpose else {
         return load_bare(wanted, kept, progress);
     };
-    let key = derived::parameterization_key(document, &ModelSettings::default(), &load::param_settings(document));
+    let key = derived::parameterization_key(document, &ModelSettings::default(), &solid::param_settings(document));
     let volumes = needed_volumes(document);
     let same = |kept: &&Kept| kept.root == wanted.root && kept.key == key && kept.volumes == volumes;
     if let Some(kept) = kept.as_mut().filter(|kept| same(&&**kept)) {

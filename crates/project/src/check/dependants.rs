@@ -12,6 +12,7 @@ pub(super) fn of(document: &Document, entry: &Entry) -> Vec<String> {
         Entry::Fault(entry) => of_fault(document, &entry.name),
         Entry::Well(_) => Vec::new(),
         Entry::Texture(entry) => of_texture(document, &entry.name),
+        Entry::Parameterization(_) => vec!["every picture of layers".to_owned()],
     }
 }
 

@@ -2,7 +2,9 @@
 
 use super::report::Cure;
 use super::states::States;
-use crate::document::{Document, FaultEntry, HorizonEntry, Source, TextureEntry, VolumeEntry, WellEntry};
+use crate::document::{
+    Document, FaultEntry, HorizonEntry, ParameterizationEntry, Source, TextureEntry, VolumeEntry, WellEntry,
+};
 use crate::error::Noun;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,6 +17,7 @@ pub(super) enum Entry<'a> {
     Fault(&'a FaultEntry),
     Well(&'a WellEntry),
     Texture(&'a TextureEntry),
+    Parameterization(&'a ParameterizationEntry),
 }
 
 impl<'a> Entry<'a> {
@@ -25,6 +28,7 @@ impl<'a> Entry<'a> {
             Self::Fault(entry) => &entry.file,
             Self::Well(entry) => &entry.file,
             Self::Texture(entry) => &entry.file,
+            Self::Parameterization(entry) => &entry.file,
         }
     }
 
@@ -35,6 +39,7 @@ impl<'a> Entry<'a> {
             Self::Fault(entry) => &entry.name,
             Self::Well(entry) => &entry.name,
             Self::Texture(entry) => &entry.name,
+            Self::Parameterization(entry) => &entry.name,
         }
     }
 
@@ -45,6 +50,7 @@ impl<'a> Entry<'a> {
             Self::Fault(_) => Noun::Fault,
             Self::Well(_) => Noun::Well,
             Self::Texture(_) => Noun::Texture,
+            Self::Parameterization(_) => Noun::Parameterization,
         }
     }
 
@@ -56,6 +62,7 @@ impl<'a> Entry<'a> {
             Self::Fault(entry) => &entry.hash,
             Self::Well(entry) => &entry.hash,
             Self::Texture(entry) => &entry.hash,
+            Self::Parameterization(entry) => &entry.hash,
         }
     }
 
@@ -66,6 +73,7 @@ impl<'a> Entry<'a> {
             Self::Fault(entry) => &entry.source,
             Self::Well(entry) => &entry.source,
             Self::Texture(entry) => &entry.source,
+            Self::Parameterization(entry) => &entry.source,
         }
     }
 
@@ -99,7 +107,7 @@ pub(super) struct Object<'a> {
 impl Object<'_> {
     /// Whether it is a folder, else a file.
     pub fn is_folder(&self) -> bool {
-        matches!(self.entry, Entry::Volume(_) | Entry::Horizon(_))
+        matches!(self.entry, Entry::Volume(_) | Entry::Horizon(_) | Entry::Parameterization(_))
     }
 }
 
@@ -110,7 +118,8 @@ fn entries(document: &Document) -> impl Iterator<Item = Entry<'_>> {
     let faults = document.faults.iter().map(Entry::Fault);
     let wells = document.wells.iter().map(Entry::Well);
     let textures = document.textures.iter().map(Entry::Texture);
-    volumes.chain(horizons).chain(faults).chain(wells).chain(textures)
+    let maps = document.parameterization.iter().map(Entry::Parameterization);
+    volumes.chain(horizons).chain(faults).chain(wells).chain(textures).chain(maps)
 }
 
 /// All data files of all states, each once for every hash that is recorded for it.

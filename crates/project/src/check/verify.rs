@@ -97,6 +97,7 @@ fn content_of(root: &Path, object: &Object, progress: &Progress) -> Result<(), P
             if lies_in(object.document.frame()?, vertices(&fault)) { Ok(()) } else { Err(damaged(elsewhere())) }
         }
         Entry::Well(entry) => content::read_well(root, entry).map(drop),
+        Entry::Parameterization(entry) => content::read_parameterization(root, entry, &progress.muted()).map(drop),
         Entry::Texture(entry) => {
             let path = root.join(&entry.file);
             TextureLibrary::builtin()?.add_user(&path)?;

@@ -13,7 +13,8 @@ mod fill;
 mod horizon;
 mod import;
 mod layer;
-pub(crate) mod pick;
+pub(crate) mod parameterization;
+mod pick;
 mod scalar;
 mod scene;
 mod survey_frame;
@@ -30,6 +31,7 @@ pub use fill::{FillHorizon, HorizonFilled};
 pub use horizon::{AddHorizon, Age, HorizonAdded, RemoveHorizon, RenameHorizon};
 pub use import::{ImportVolume, RemoveVolume, VolumeImported};
 pub use layer::{ResetLayer, SetLayer};
+pub use parameterization::SetParameterization;
 pub use pick::{
     Climb, Move, MovePick, PickNode, PickNodes, Picked, RemovePick, ReplayPicks, Replayed, ReplayedPick,
     SetHorizonColour, Unfit,
@@ -130,6 +132,8 @@ pub enum Command {
     SetRaw(SetRaw),
     /// Add a tile.
     AddTexture(AddTexture),
+    /// Take i, j, k from a file.
+    SetParameterization(SetParameterization),
     /// Save a scene under a name.
     AddScene(AddScene),
     /// Remove a scene.
@@ -227,6 +231,7 @@ impl Command {
             Self::RemoveScalar(change) => change.execute(draft),
             Self::SetRaw(change) => change.execute(draft),
             Self::AddTexture(change) => change.execute(draft),
+            Self::SetParameterization(change) => change.execute(draft, progress),
             Self::AddScene(change) => change.execute(draft),
             Self::RemoveScene(change) => change.execute(draft),
         }

@@ -3,7 +3,7 @@
 //! A hash covers what a computation depends on, which is values and their places, and nothing else: neither names nor
 //! files.
 
-use store::{StoreError, StoredVolume};
+use store::{ParameterizationVolumes, StoreError, StoredVolume};
 use survey::{Fault, Horizon, TriangleMesh, Well};
 
 /// BLAKE3 hash of a volume's size, sample type, the checksums of its bricks and its live-trace mask: identifies its
@@ -54,6 +54,19 @@ fn add_mesh(hash: &mut blake3::Hasher, mesh: &TriangleMesh) {
         hash.update(bytemuck::cast_slice(&vertex.to_array()));
     }
     hash.update(bytemuck::cast_slice(&mesh.triangles));
+}
+
+/// BLAKE3 of i, j, k, layer and block at all samples, and of how many there are along each axis.
+pub fn hash_parameterization(volumes: &ParameterizationVolumes) -> String {
+    let mut hash = blake3::Hasher::new();
+    hash.update(bytemuck::cast_slice(&volumes.i.size().map(|count| count as u64)));
+    for values in [&volumes.i, &volumes.j, &volumes.k] {
+        hash.update(bytemuck::cast_slice(values.samples()));
+    }
+    for ids in [&volumes.layer, &volumes.block] {
+        hash.update(bytemuck::cast_slice(ids.samples()));
+    }
+    hash.finalize().to_hex().to_string()
 }
 
 /// BLAKE3 of a well's path, tops, logs and checkshots.

@@ -4,13 +4,13 @@
 //! outside of the program are never shown as the project's own. An entry without a hash, from a project that recorded
 //! none, is believed. A part of a volume is read without that: its bricks have checksums of their own.
 
-use super::{hash_fault, hash_horizon, hash_stored, hash_well};
-use crate::document::{FaultEntry, HorizonEntry, TextureEntry, VolumeEntry, WellEntry};
+use super::{hash_fault, hash_horizon, hash_parameterization, hash_stored, hash_well};
+use crate::document::{FaultEntry, HorizonEntry, ParameterizationEntry, TextureEntry, VolumeEntry, WellEntry};
 use crate::error::{Noun, ProjectError};
 use crate::folder::at_hand;
 use glam::DVec3;
 use std::path::{Path, PathBuf};
-use store::{self, StoredVolume};
+use store::{self, ParameterizationVolumes, StoredParameterization, StoredVolume};
 use survey::{Fault, Horizon, Progress, SurveyGeometry, Volume, Well, file};
 
 /// Compares the hash of what was read with the one that was recorded; an empty one is not known.
@@ -121,6 +121,22 @@ pub fn read_fault(root: &Path, entry: &FaultEntry) -> Result<Fault, ProjectError
     let fault = store::read_fault(&path)?;
     compare(&path, Noun::Fault, &entry.name, &entry.hash, hash_fault(&fault))?;
     Ok(Fault { name: entry.name.clone(), truncated_by: entry.truncated_by.clone(), grown_m: entry.grown_m, ..fault })
+}
+
+/// Reads the parameterization of another program that the project in `root` keeps.
+///
+/// # Errors
+/// Data are missing or damaged, [`ProjectError::OtherContent`] if they are not those that were recorded, or the user
+/// cancelled.
+pub fn read_parameterization(
+    root: &Path,
+    entry: &ParameterizationEntry,
+    progress: &Progress,
+) -> Result<ParameterizationVolumes, ProjectError> {
+    let path = at_hand(root, &entry.file);
+    let volumes = StoredParameterization::open(&path)?.read(progress)?;
+    compare(&path, Noun::Parameterization, &entry.name, &entry.hash, hash_parameterization(&volumes))?;
+    Ok(volumes)
 }
 
 /// The path of a tile of the project in `root`, whose bytes are those that were recorded.

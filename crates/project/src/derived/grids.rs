@@ -30,6 +30,7 @@ pub fn parameterization_key(document: &Document, model: &ModelSettings, settings
         faults: Vec<(&'a str, Option<usize>, f64)>,
         model: &'a ModelSettings,
         settings: &'a ParamSettings,
+        taken: Option<&'a str>,
     }
     let ends_at = |name: &str| document.faults.iter().position(|fault| fault.name == name);
     let inputs = Inputs {
@@ -43,6 +44,7 @@ pub fn parameterization_key(document: &Document, model: &ModelSettings, settings
             .collect(),
         model,
         settings,
+        taken: document.parameterization.as_ref().map(|entry| entry.hash.as_str()),
     };
     key_of(&inputs)
 }
@@ -282,13 +284,18 @@ pub fn write_volumes(
     voxels: VoxelParameterization,
     progress: &Progress,
 ) -> Result<VoxelParameterization, ProjectError> {
-    let VoxelParameterization { size, i, j, k, layer, block } = voxels;
+    let VoxelParameterization { i, j, k, layer, block, .. } = voxels;
     let volumes = ParameterizationVolumes { i, j, k, layer, block };
     let scratch = Scratch::begin(root)?;
     store::write_parameterization(&scratch.path(VOLUMES), &volumes, key, progress)?;
     scratch.publish(VOLUMES)?;
+    Ok(voxels_of(volumes))
+}
+
+/// Arrays that were read, as the sampled parameterization.
+pub(crate) fn voxels_of(volumes: ParameterizationVolumes) -> VoxelParameterization {
     let ParameterizationVolumes { i, j, k, layer, block } = volumes;
-    Ok(VoxelParameterization { size, i, j, k, layer, block })
+    VoxelParameterization { size: i.size(), i, j, k, layer, block }
 }
 
 /// The sampled parameterization, if the stored one was computed from the same input; with `size` `None` any size will
@@ -303,8 +310,7 @@ pub fn load_volumes(
     if stored.key() != key || size.is_some_and(|size| size != stored.size()) {
         return None;
     }
-    let ParameterizationVolumes { i, j, k, layer, block } = stored.read(progress).ok()?;
-    Some(VoxelParameterization { size: stored.size(), i, j, k, layer, block })
+    Some(voxels_of(stored.read(progress).ok()?))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Names of data files: exactly `KIND/NAME`, so that a state can name only data of its own project.
 
 /// Folders of data, one for each kind.
-pub(crate) const KINDS: [&str; 5] = ["volumes", "horizons", "faults", "wells", "textures"];
+pub(crate) const KINDS: [&str; 6] = ["volumes", "horizons", "faults", "wells", "textures", "parameterizations"];
 
 /// Whether `file` names data of the kind `kind`: `KIND/NAME` with one plain name that no file system reads as a path.
 pub(crate) fn is_data_file(kind: &str, file: &str) -> bool {

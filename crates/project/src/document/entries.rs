@@ -167,6 +167,20 @@ pub struct TextureEntry {
     pub source: Source,
 }
 
+/// A parameterization that another program computed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ParameterizationEntry {
+    /// The name of the file that it was read from.
+    pub name: String,
+    /// Data, relative to the project's folder.
+    pub file: String,
+    /// BLAKE3 of its values.
+    pub hash: String,
+    /// Where it came from.
+    pub source: Source,
+}
+
 /// How everything is coloured and textured; what is not set gets a default when it is drawn. Blend and frequency belong
 /// to the scenes.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

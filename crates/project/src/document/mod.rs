@@ -13,8 +13,8 @@ mod picks;
 use crate::error::{Noun, ProjectError};
 pub(crate) use entries::is_zero;
 pub use entries::{
-    ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, Polarity, ProposalsEntry, SceneEntry, Source, Style,
-    TextureEntry, VolumeEntry, WellEntry,
+    ExtractionEntry, FaultEntry, FigureEntry, HorizonEntry, ParameterizationEntry, Polarity, ProposalsEntry,
+    SceneEntry, Source, Style, TextureEntry, VolumeEntry, WellEntry,
 };
 use param::KDefinition;
 pub use picks::{Assembly, FaultSticks, PickEntry};
@@ -85,6 +85,9 @@ pub struct Document {
     /// Definitions of k by layer name; other layers have the default one.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub k: BTreeMap<String, KDefinition>,
+    /// i, j, k from another program, in place of those computed here.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parameterization: Option<ParameterizationEntry>,
     /// Named scenes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneEntry>,
@@ -115,6 +118,7 @@ impl Document {
             textures: Vec::new(),
             style: Style::default(),
             k: BTreeMap::new(),
+            parameterization: None,
             scenes: Vec::new(),
             figures: Vec::new(),
         }
@@ -203,6 +207,7 @@ impl Document {
             Noun::Well => self.wells.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Layer => self.layers(),
             Noun::Texture => self.textures.iter().map(|entry| entry.name.clone()).collect(),
+            Noun::Parameterization => self.parameterization.iter().map(|entry| entry.name.clone()).collect(),
             Noun::Scene => self.scenes.iter().map(|entry| entry.name.clone()).collect(),
         }
     }
@@ -219,7 +224,8 @@ impl Document {
         let faults = self.faults.iter().map(|entry| ("faults", entry.file.as_str()));
         let wells = self.wells.iter().map(|entry| ("wells", entry.file.as_str()));
         let textures = self.textures.iter().map(|entry| ("textures", entry.file.as_str()));
-        volumes.chain(horizons).chain(faults).chain(wells).chain(textures)
+        let maps = self.parameterization.iter().map(|entry| ("parameterizations", entry.file.as_str()));
+        volumes.chain(horizons).chain(faults).chain(wells).chain(textures).chain(maps)
     }
 
     /// The horizons' order, contacts and the layers between them.

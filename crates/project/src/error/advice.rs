@@ -46,6 +46,7 @@ impl ProjectError {
             }
             Self::TimeUnknown { .. } => "point at a reflection",
             Self::NoIsochron { .. } => "point at a place inside the survey, or compute geologic time again",
+            Self::NoLayers => "add one with `petroglyph horizon add`",
             Self::NoLevels => "it may be chaotic, constant or too small: pick horizons by hand",
             Self::BadGrowth { .. } => "state metres, 0 or more",
             Self::Io { .. }

@@ -8,3 +8,4 @@ pub mod candidates;
 pub mod extraction;
 pub(crate) mod order;
 pub mod proposals;
+pub mod solid;

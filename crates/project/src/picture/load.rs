@@ -5,12 +5,13 @@ use super::SparseHorizon;
 use crate::Project;
 use crate::document::Document;
 use crate::error::ProjectError;
+use crate::interpretation::solid;
 use crate::picture::shown_candidates::ShownCandidates;
 use crate::placement;
 use crate::{content, derived, memory_budget, styles};
 use glam::{DVec3, Vec3};
 use model::{ModelSettings, StructuralModel};
-use param::{PackedVolume, ParamSettings, Parameterization, VoxelParameterization};
+use param::{PackedVolume, Parameterization, VoxelParameterization};
 use render::distortion::{self, LayerDistortion};
 use render::{DrawnWell, Inputs, Lookup, Media, NamedVolume, RenderError, Scene, VoxelBox};
 use std::path::Path;
@@ -19,16 +20,9 @@ use std::time::{Duration, Instant};
 use survey::{Progress, SurveyGeometry, Volume, memory};
 use ttf::{BlockExtent, LayerExtent, RawColour, TtfTables};
 
-/// Memory that the model takes at least for each horizon at each trace.
-const MODEL_BYTES: usize = 32;
-
 /// Memory that the sampled parameterization takes for each voxel: i, j, k, layer and block.
 const VOXEL_BYTES: usize = 16;
 
-/// Printed length of the block's longer side for which patterns are sized, mm: a picture across a page.
-const PRINTED_MM: f64 = 150.0;
-/// Printed size of a pattern's tile, mm.
-const TILE_MM: f64 = 20.0;
 /// Number of samples along each axis at which mean thicknesses are measured.
 const THICKNESS_SAMPLES: usize = 48;
 
@@ -60,25 +54,6 @@ pub struct Rock {
     pub stages: Vec<Stage>,
 }
 
-/// The settings with which a project is parameterized: the flow of layers does not follow what is smaller than a
-/// pattern's tile.
-pub fn param_settings(document: &Document) -> ParamSettings {
-    let flow_wave_m = document.geometry.as_ref().map_or(0.0, |geometry| TILE_MM * metres_per_mm(geometry));
-    ParamSettings { definitions: document.k_definitions(), flow_wave_m, ..ParamSettings::default() }
-}
-
-/// Metres of rock for a printed millimetre, when the block's longer side has its usual width on paper.
-fn metres_per_mm(geometry: &SurveyGeometry) -> f64 {
-    let [x_m, y_m] = extent_m(geometry);
-    x_m.max(y_m) / PRINTED_MM
-}
-
-/// Lengths of the block along x and y, m.
-fn extent_m(geometry: &SurveyGeometry) -> [f64; 2] {
-    let [nx, ny, _] = geometry.size().map(|count| count.saturating_sub(1).max(1) as f64);
-    [geometry.inline_vector.length() * nx, geometry.crossline_vector.length() * ny]
-}
-
 /// Builds the model alone, from which sections and maps are cut; `None` for a project without horizons.
 ///
 /// # Errors
@@ -87,20 +62,9 @@ pub fn structural_model(
     project: &Project,
     progress: &Progress,
 ) -> Result<Option<(StructuralModel, Stage)>, ProjectError> {
-    let document = project.document();
-    if document.horizons.is_empty() {
-        return Ok(None);
-    }
     let start = Instant::now();
-    let horizons = document.horizons.iter().map(|entry| content::read_horizon(project.root(), entry, progress));
-    let horizons = horizons.collect::<Result<Vec<_>, _>>()?;
-    let faults = document.faults.iter().map(|entry| content::read_fault(project.root(), entry));
-    let faults = faults.collect::<Result<Vec<_>, _>>()?;
-    let (geometry, settings) = (document.frame()?, ModelSettings::default());
-    let [inlines, crosslines, _] = geometry.size();
-    memory::check("the model of the survey", &[inlines, crosslines, horizons.len()], MODEL_BYTES)?;
-    let model = StructuralModel::build(geometry, &document.stratigraphy(), &horizons, &faults, &settings, progress)?;
-    Ok(Some((model, Stage::new("model", start.elapsed()))))
+    let model = solid::structural_model(project.root(), project.document(), progress)?;
+    Ok(model.map(|model| (model, Stage::new("model", start.elapsed()))))
 }
 
 /// Builds the model and its parameterization; `None` for a project without horizons.
@@ -111,13 +75,20 @@ pub fn rock(project: &Project, progress: &Progress) -> Result<Option<Rock>, Proj
     let document = project.document();
     let Some((model, stage)) = structural_model(project, progress)? else { return Ok(None) };
     let mut stages = vec![stage];
-    let param_settings = param_settings(document);
+    let param_settings = solid::param_settings(document);
     let key = derived::parameterization_key(document, &ModelSettings::default(), &param_settings);
     let parameterization = match derived::load_grids(project.root(), &key) {
         Some(kept) if is_of(&kept, &model) => kept,
         _ => {
             let start = Instant::now();
-            let computed = Parameterization::compute(&model, &param_settings, progress)?;
+            let computed = match &document.parameterization {
+                None => Parameterization::compute(&model, &param_settings, progress)?,
+                Some(entry) => {
+                    let volumes = content::read_parameterization(project.root(), entry, progress)?;
+                    let arrays = derived::voxels_of(volumes);
+                    Parameterization::of_volumes(&model, &arrays, &param_settings, progress)?.0
+                }
+            };
             stages.push(Stage::new("parameterization", start.elapsed()));
             derived::keep_grids(project.root(), &key, &computed, progress);
             computed
@@ -449,14 +420,14 @@ fn at_level(covers: VoxelBox, full: [usize; 3], size: [usize; 3], level: usize) 
 /// What styles are compiled for: sizes in metres, and the names of the layers, bottom to top. Thicknesses are those of
 /// the exaggerated display, so that tiles are printed undistorted.
 pub fn block_extent(geometry: &SurveyGeometry, rock: &Rock, names: Vec<String>, exaggeration: f64) -> BlockExtent {
-    let extent = extent_m(geometry);
+    let extent = solid::extent_m(geometry);
     let layer =
         |(name, thickness_m): (String, f32)| LayerExtent { name, thickness_m: thickness_m * exaggeration as f32 };
     BlockExtent {
         extent_i_m: extent[0] as f32,
         extent_j_m: extent[1] as f32,
         layers: names.into_iter().zip(rock.thicknesses_m(geometry)).map(layer).collect(),
-        metres_per_mm: metres_per_mm(geometry) as f32,
+        metres_per_mm: solid::metres_per_mm(geometry) as f32,
     }
 }
 
