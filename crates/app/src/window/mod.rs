@@ -6,8 +6,6 @@ mod page;
 
 use super::error::WindowError;
 use super::hold::Hold;
-use super::state::picking::Pick;
-use super::state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, Task};
 use super::views::dropped::{self, Dropped};
 use super::views::{
     block::BlockView, chooser::Chooser, controls::Controls, data::Data, export, fence::FenceView, functions::Functions,
@@ -20,6 +18,8 @@ use eframe::egui::{self, CentralPanel, Context, Panel, ThemePreference, Ui};
 use follow::Needs;
 use frames::FrameTimes;
 use project::command::Command;
+use state::picking::Pick;
+use state::{Action, Appearance, Dialogue, ExportForm, Notice, Place, Remembered, State, Task};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -176,7 +176,7 @@ impl Window {
 
     /// Whether nothing is under way and the picture is final.
     pub fn is_settled(&self) -> bool {
-        let drawable = self.state.session.as_ref().is_some_and(super::state::Session::is_drawable);
+        let drawable = self.state.session.as_ref().is_some_and(state::Session::is_drawable);
         self.work.running.is_idle() && (!drawable || self.block.is_settled())
     }
 
@@ -274,7 +274,7 @@ impl Window {
 
     /// Names the open project in the title of the window.
     fn entitle(&mut self, ctx: &Context) {
-        let name = self.state.session.as_ref().map(super::state::Session::name);
+        let name = self.state.session.as_ref().map(state::Session::name);
         if self.titled != name {
             let title = name.as_ref().map_or_else(|| "Petroglyph".to_owned(), |name| format!("{name} – Petroglyph"));
             ctx.send_viewport_cmd(egui::ViewportCommand::Title(title));

@@ -3,7 +3,6 @@
 use super::command::{applied, click_last};
 use super::driven::{Driven, click, document, open, state, wait};
 use super::picking::{act, interpreting, on_a_trough, picking};
-use app::state::{Action, How, PickingStep};
 use eframe::egui::{Event, Key};
 use egui_kittest::kittest::Queryable;
 use formats::ImportOptions;
@@ -11,6 +10,7 @@ use glam::DVec3;
 use interp::ExtractSettings;
 use project::command::{AddHorizon, Age, Command};
 use project::document::{HorizonEntry, PickEntry};
+use state::{Action, How, PickingStep};
 use survey::Contact;
 
 fn entry(harness: &Driven) -> Option<HorizonEntry> {

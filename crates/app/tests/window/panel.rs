@@ -2,14 +2,12 @@
 
 use super::command::{act, applied, choose, click_last};
 use super::driven::{Driven, click, document, driven, open, project, state, survey, wait};
-use app::state::{
-    Action, Appearance, Choice, Dialogue, ExportForm, FileContent, Layout, Panel, PickingStep, Target, Tool,
-};
 use eframe::egui::Key;
 use eframe::egui::accesskit::Role;
 use egui_kittest::kittest::{NodeT, Queryable};
 use project::command::{Command, SetLayer, SetScalar};
 use render::Projection;
+use state::{Action, Appearance, Choice, Dialogue, ExportForm, FileContent, Layout, Panel, PickingStep, Target, Tool};
 use std::collections::HashSet;
 use std::path::Path;
 use ttf::{ScalarInterval, ScalarTtf};

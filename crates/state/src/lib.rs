@@ -9,6 +9,7 @@ mod apply;
 pub mod camera;
 mod dialogue;
 pub mod faces;
+mod hint;
 mod notice;
 pub mod picking;
 mod picking_steps;
@@ -34,7 +35,7 @@ pub use view::{Compare, Layout, Panel, SectionKind, StandardView, ViewState};
 /// Everything that the window shows.
 ///
 /// ```
-/// use app::state::{Action, Remembered, Snapshot, State, Task};
+/// use state::{Action, Remembered, Snapshot, State, Task};
 /// use project::document::Document;
 /// use survey::{SurveyGeometry, VerticalUnit};
 ///
